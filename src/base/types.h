@@ -1,0 +1,12 @@
+#pragma once
+// Small value types shared by every room. SI units everywhere; angles in radians inside the program.
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace frana {
+
+using Index = std::int64_t;
+using Vec2 = Eigen::Vector2d;
+using Mat2 = Eigen::Matrix2d;
+
+}  // namespace frana

@@ -1,0 +1,45 @@
+#pragma once
+// Shape functions: which nodes a point touches, with which weights and slopes.
+#include <cmath>
+
+#include "base/types.h"
+
+namespace frana {
+
+/// Quadratic B-spline in one direction: 3 nodes from `base`; weights and their slopes per cell.
+/// u is the position in cells; N = {(3/2-f)^2/2, 3/4-(f-1)^2, (f-1/2)^2/2}, f = u - base in [1/2, 3/2).
+struct Quadratic {
+    static constexpr int kNodes = 3;
+    Index base;
+    double w[3];
+    explicit Quadratic(double u) {
+        const double first = std::floor(u - 0.5);
+        base = static_cast<Index>(first);
+        const double f = u - first;
+        w[0] = 0.5 * (1.5 - f) * (1.5 - f);
+        w[1] = 0.75 - (f - 1.0) * (f - 1.0);
+        w[2] = 0.5 * (f - 0.5) * (f - 0.5);
+        offset = f;
+    }
+    /// dN/du of node n
+    double slope(int n) const { return n == 0 ? offset - 1.5 : n == 1 ? -2.0 * (offset - 1.0) : offset - 0.5; }
+    double offset;  ///< u - base
+};
+
+/// Linear shape function (bilinear in the plane), the choice of Fois et al. 2024, eq. 14: 2 nodes from `base`.
+struct Linear {
+    static constexpr int kNodes = 2;
+    Index base;
+    double w[2];
+    explicit Linear(double u) {
+        const double first = std::floor(u);
+        base = static_cast<Index>(first);
+        offset = u - first;
+        w[0] = 1.0 - offset;
+        w[1] = offset;
+    }
+    double slope(int n) const { return n == 0 ? -1.0 : 1.0; }
+    double offset;
+};
+
+}  // namespace frana

@@ -1,0 +1,118 @@
+#pragma once
+// The background grid: nodes stored row-major in tiles of 16 x 16, with a ring of spare tiles around the domain.
+// Only tiles near material are ever touched; arrays come zeroed from the system and cost nothing until then.
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "base/types.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+constexpr Index kTile = 16;   ///< nodes along a tile's edge
+constexpr Index kGhosts = 3;  ///< layers of nodes beyond the outer ones that material can reach
+
+/// A zeroed array whose untouched pages take no memory.
+template <class T>
+class LazyArray {
+public:
+    LazyArray() = default;
+    explicit LazyArray(Index count)
+        : data_(static_cast<T*>(std::calloc(static_cast<std::size_t>(count), sizeof(T)))), count_(count) {
+        if (!data_ && count > 0) throw std::bad_alloc();
+    }
+    T& operator[](Index k) { return data_.get()[k]; }
+    const T& operator[](Index k) const { return data_.get()[k]; }
+    T* data() { return data_.get(); }
+    const T* data() const { return data_.get(); }
+    Index count() const { return count_; }
+    explicit operator bool() const { return count_ > 0; }
+
+private:
+    struct Free {
+        void operator()(T* p) const { std::free(p); }
+    };
+    std::unique_ptr<T[], Free> data_;
+    Index count_ = 0;
+};
+
+/// Maps nodes, cells and tiles to storage. Node (i, j), i in [-kTile, nx + kGhosts), has storage index
+/// at(i, j); positions are measured in cells from node (0, 0).
+class TileGrid {
+public:
+    explicit TileGrid(const GridGeometry& geometry)
+        : geometry_(geometry),
+          tiles_x_((geometry.nx + kGhosts + kTile - 1) / kTile + 2),
+          tiles_y_((geometry.ny + kGhosts + kTile - 1) / kTile + 2),
+          stride_(tiles_x_ * kTile) {
+        if ((stride_ / kTile) % 2 == 0) stride_ += kTile;  // an odd multiple of 16 avoids aliasing in the caches
+    }
+    const GridGeometry& geometry() const { return geometry_; }
+    Index nx() const { return geometry_.nx; }
+    Index ny() const { return geometry_.ny; }
+    double cell() const { return geometry_.cell; }
+    Index stride() const { return stride_; }
+    Index size() const { return stride_ * tiles_y_ * kTile; }
+    Index at(Index i, Index j) const { return (j + kTile) * stride_ + i + kTile; }
+
+    Index tiles_x() const { return tiles_x_; }
+    Index tiles() const { return tiles_x_ * tiles_y_; }
+    /// Tile that a particle at (x, y) [cells] belongs to: the one of its stencil's first node.
+    Index tile_of(double x, double y) const {
+        const Index i = static_cast<Index>(std::floor(x - 0.5)) + kTile;
+        const Index j = static_cast<Index>(std::floor(y - 0.5)) + kTile;
+        return (j / kTile) * tiles_x_ + i / kTile;
+    }
+    Index tile_i(Index tile) const { return (tile % tiles_x_ - 1) * kTile; }  ///< first node of the tile
+    Index tile_j(Index tile) const { return (tile / tiles_x_ - 1) * kTile; }
+
+private:
+    GridGeometry geometry_;
+    Index tiles_x_, tiles_y_, stride_;
+};
+
+/// Tiles that hold particles (with their ranges), those tiles grown by one (the work list of node loops), and the
+/// particle tiles by colour: tiles of one colour share no node, so that they scatter at once without locks and
+/// every sum has one order, whatever the number of threads.
+struct ActiveTiles {
+    std::vector<Index> tile;                  ///< ids of tiles with particles, ascending
+    std::vector<Index> begin;                 ///< first particle of each, and the count at the end
+    std::array<std::vector<Index>, 4> colour; ///< positions in `tile`, by colour
+    std::vector<Index> work;                  ///< ids of tiles with particles and their neighbours, ascending
+    std::vector<std::uint8_t> in_work;        ///< per tile of the domain: 1 when it is on the work list
+
+    Index count() const { return static_cast<Index>(tile.size()); }
+};
+
+/// Runs body(position) for all particle tiles, colour after colour.
+template <class Body>
+void for_each_tile_coloured(const ActiveTiles& active, Body&& body) {
+#pragma omp parallel
+    for (const auto& positions : active.colour) {
+        const Index count = static_cast<Index>(positions.size());
+#pragma omp for schedule(dynamic, 1)
+        for (Index n = 0; n < count; ++n) body(positions[static_cast<std::size_t>(n)]);
+    }
+}
+
+/// Runs body(position) for all particle tiles, in parallel; the body writes to its own particles only.
+template <class Body>
+void for_each_tile(const ActiveTiles& active, Body&& body) {
+    const Index count = active.count();
+#pragma omp parallel for schedule(dynamic, 1)
+    for (Index n = 0; n < count; ++n) body(n);
+}
+
+/// Runs body(position, tile id) for all tiles of the work list, in parallel; the body writes to its own nodes only.
+template <class Body>
+void for_each_work_tile(const ActiveTiles& active, Body&& body) {
+    const Index count = static_cast<Index>(active.work.size());
+#pragma omp parallel for schedule(dynamic, 1)
+    for (Index n = 0; n < count; ++n) body(n, active.work[static_cast<std::size_t>(n)]);
+}
+
+}  // namespace frana

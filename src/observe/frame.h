@@ -1,0 +1,68 @@
+#pragma once
+// How the outside sees a state: named columns with units. Writers and figures know frames, never the solver.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// One named quantity; `data` is borrowed and holds count * components numbers, components interleaved.
+struct Field {
+    std::string name;          ///< "depth", "velocity", ...
+    std::string unit;          ///< "m", "m/s", "Pa", "kg", "m3", "1"
+    int components = 1;
+    const double* data = nullptr;
+    Index count = 0;
+};
+
+/// Scalars of one step: budgets and extremes. Sums run over all material still in the domain.
+struct Status {
+    Index step = 0;
+    double time = 0.0;               ///< [s]
+    double dt = 0.0;                 ///< last step [s]
+    Index particles = 0;
+    double mass = 0.0;               ///< [kg]
+    double mass_left = 0.0;          ///< left through open sides or exits since the start [kg]
+    std::array<double, 2> momentum{};          ///< [kg m/s]
+    std::array<double, 2> impulse{};           ///< impulse of all forces since the start [kg m/s]
+    std::array<double, 2> momentum_left{};     ///< carried out by what left [kg m/s]
+    double kinetic = 0.0;            ///< [J]
+    double potential = 0.0;          ///< sum of rho g A h (Z + h/2) [J]
+    double dissipated = 0.0;         ///< by bed friction and rheology since the start [J]
+    double energy_left = 0.0;        ///< carried out by what left [J]
+    double p2g_mass_error = 0.0;     ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
+    double p2g_momentum_error = 0.0; ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]
+    double max_depth = 0.0;          ///< [m]
+    double max_speed = 0.0;          ///< largest particle speed along the map [m/s]
+    double mean_speed = 0.0;         ///< mass mean of the speed [m/s]
+    double covered_area = 0.0;       ///< deeper than the footprint depth now [m2]
+    double front = 0.0;              ///< largest map distance of such a node from the release's centre [m]
+};
+
+/// Seconds spent in one named phase of the step.
+struct PhaseTime { std::string name; double seconds = 0.0; };
+
+/// A state at an output time; valid only during the call that hands it out.
+struct Frame {
+    Index number = 0;                ///< 0, 1, 2, ... of the output frames
+    Status status;
+    std::vector<Field> particles;    ///< "position" (3: x, y, z on the free surface), "depth", "velocity" (3), ...
+    GridGeometry grid;
+    std::vector<Field> nodes;        ///< "elevation", "depth", "surface", "velocity" (3), "peak_depth", ...
+
+    /// The field of that name, or nullptr.
+    const Field* particle(const std::string& name) const { return find(particles, name); }
+    const Field* node(const std::string& name) const { return find(nodes, name); }
+
+private:
+    static const Field* find(const std::vector<Field>& fields, const std::string& name) {
+        for (const Field& field : fields)
+            if (field.name == name) return &field;
+        return nullptr;
+    }
+};
+
+}  // namespace frana

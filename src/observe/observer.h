@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+
+#include "observe/frame.h"
+
+namespace frana {
+
+/// Flow at one map point.
+struct Sample {
+    double elevation = 0.0;  ///< bed [m]
+    double depth = 0.0;      ///< [m]
+    Vec2 velocity{0, 0};     ///< [m/s]
+};
+
+/// Answers questions about the state between frames, cheaply.
+class Probe {
+public:
+    virtual ~Probe() = default;
+    virtual Sample at(const Vec2& point) const = 0;  ///< bilinear between nodes; zero depth outside
+};
+
+/// Looks on while a case runs; never changes it.
+class Observer {
+public:
+    virtual ~Observer() = default;
+    virtual std::string name() const = 0;                  ///< for the timing table
+    virtual void step(const Status&, const Probe&) {}      ///< after every step (and once at the start)
+    virtual void see(const Frame&) {}                      ///< at the start, at every output time and at the end
+    virtual void end(const Frame&) {}                      ///< once, with the last frame, after see()
+};
+
+}  // namespace frana

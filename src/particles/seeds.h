@@ -1,0 +1,20 @@
+#pragma once
+#include <vector>
+
+#include "base/types.h"
+
+namespace frana {
+
+/// The material points at the start of a run, one array per quantity, equal lengths. A point is a column of
+/// material: its mass is the integral of the release over the point's own patch of the map.
+struct Seeds {
+    std::vector<double> x, y;    ///< map position [m]
+    std::vector<double> vx, vy;  ///< horizontal velocity [m/s]
+    std::vector<double> volume;  ///< [m^3]
+    std::vector<double> depth;   ///< release depth (vertical) at the point [m]
+    std::vector<double> size;    ///< edge of the point's square patch [m]
+
+    Index count() const { return static_cast<Index>(x.size()); }
+};
+
+}  // namespace frana

@@ -1,0 +1,113 @@
+#pragma once
+// The checked, plain description of one run: SI units, no files, no text to parse. `build_scene` makes it from a
+// case file (scene/build_scene.h); `make_simulation` turns it into a solver (solver/simulation.h).
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "particles/seeds.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+enum class TerrainModel { shallow, steep };
+enum class Curvature { none, inertia, full };
+enum class Sides { open, wall };
+enum class Transfer { tpic, apic, flip, pic };
+enum class Shape { linear, quadratic };
+
+/// Bed laws: shear stress between the flow and its bed (law/bed_law.h has the formulas).
+namespace bed {
+struct None {};
+struct Coulomb { double mu = 0.0; };                                 ///< mu = tan(friction angle) [1]
+struct Voellmy { double mu = 0.0; double xi = 1000.0; };             ///< xi: turbulence coefficient [m/s^2]
+struct Manning { double n = 0.03; double mu = 0.0; };                ///< n: Manning roughness [s/m^(1/3)]
+struct Bingham { double viscosity = 0.0; double yield_stress = 0.0; double mu = 0.0; };  ///< [Pa s], [Pa], [1]
+struct Pouliquen {                                                   ///< mu(I), depth-averaged
+    double mu_s = 0.38;            ///< friction at I -> 0 [1]
+    double mu_2 = 0.65;            ///< friction at I -> infinity [1]
+    double i0 = 0.3;               ///< inertial number scale [1]
+    double grain_diameter = 1e-3;  ///< [m]
+    double solid_fraction = 0.6;   ///< [1]
+};
+}  // namespace bed
+using BedLaw = std::variant<bed::None, bed::Coulomb, bed::Voellmy, bed::Manning, bed::Bingham, bed::Pouliquen>;
+
+/// Rheologies: stress inside the depth-averaged mass.
+namespace rheology {
+struct None {};
+struct Newtonian { double viscosity = 0.0; };                            ///< [Pa s]
+struct Bingham { double viscosity = 0.0; double yield_stress = 0.0; };   ///< [Pa s], [Pa]
+}  // namespace rheology
+using Rheology = std::variant<rheology::None, rheology::Newtonian, rheology::Bingham>;
+
+/// How the equations are solved. Defaults: scheme S2 with steep terrain; preset "paper" is Fois et al. (2024).
+struct Scheme {
+    std::string preset = "default";
+    Shape shape = Shape::quadratic;
+    Transfer transfer = Transfer::tpic;
+    double flip_ratio = 0.99;          ///< share of FLIP in transfer "flip" [1]
+    double cfl = 0.5;                  ///< fraction of a cell per step [1]
+    double filter = 1.0;               ///< strength of the surface filter, 0 = off [1]
+    double margin_limit = 1.0;         ///< clamp of the quadratic part of the margin extrapolation [1]
+    double viscosity_linear = 0.1;     ///< c1 of the artificial viscosity [1]
+    double viscosity_quadratic = 1.0;  ///< c2 [1]
+    double split_length = 0.8;         ///< domain edge that triggers a split, in cells [1]
+    double split_min_mass = 0.05;      ///< no split below this fraction of the largest initial mass [1]
+    bool split = true;
+    bool mass_fit = true;              ///< fit initial masses to the nodal release depth
+    double curvature_length = 10.0;    ///< smoothing length of the bed's Hessian, 0 = none [m]
+    double strain_rate_floor = 1e-3;   ///< regularisation of the yield stress [1/s]
+    double stress_cap = 0.25;          ///< nu: largest 2 mu_eff dt / (rho cell^2) [1]
+    std::optional<double> still_level; ///< paper preset: known still level of its eq. (33) [m]
+    bool paper_pressure = false;       ///< pressure on particles and depth by the ODE (paper preset)
+};
+
+/// A named line along which the flow is recorded.
+struct Profile { std::string name; Polyline line; };
+/// A named point at which the flow is recorded every step.
+struct Gauge { std::string name; Vec2 point{0, 0}; };
+
+/// What is written, and when.
+struct Output {
+    double every = 1.0;                ///< [s]; frames are hit exactly
+    bool vtk = true, xdmf = false, geotiff = true, png = true;
+    std::vector<std::string> fields;   ///< empty: all
+    double footprint_depth = 0.1;      ///< [m]
+    bool history_per_step = true;      ///< history.csv: a line a step, or a line an output
+};
+
+struct Scene {
+    std::string name;                  ///< case file's folder or stem
+    std::string title;
+    std::filesystem::path case_file;
+    std::filesystem::path footprint;   ///< survey outline, empty when none
+    double gravity = 9.81;             ///< [m/s^2]
+    double density = 1000.0;           ///< [kg/m^3]
+
+    Raster bed;                        ///< bed elevation on the solver's nodes [m]; NaN: outside (an exit)
+    TerrainModel terrain = TerrainModel::steep;
+    Curvature curvature = Curvature::full;
+    Sides sides = Sides::open;
+
+    Seeds particles;                   ///< material at the start
+    std::optional<double> still_surface;  ///< level of a release given as one horizontal surface at rest [m]: the
+                                          ///< points' masses are then fitted so that it starts at exact rest
+    BedLaw bed_law;
+    Rheology rheology;
+    Scheme scheme;
+
+    double end = 10.0;                 ///< [s]
+    bool stop_at_rest = false;
+    double rest_fraction = 0.05;       ///< mean speed, as a fraction of its peak, that counts as rest [1]
+    Output output;
+    std::vector<Profile> profiles;
+    std::vector<Gauge> gauges;
+    std::optional<Polygons> survey;    ///< surveyed footprint, for figures
+
+    std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)
+};
+
+}  // namespace frana

@@ -1,0 +1,46 @@
+#pragma once
+// What the scene needs from the outside world (files of a GIS), as an interface: the solver library builds
+// without GDAL, the program hands in readers made with it (src/io/gdal_*.h).
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// What part of an elevation model is wanted, and how fine.
+struct DemRequest {
+    std::optional<std::array<double, 4>> window;  ///< xmin, ymin, xmax, ymax in map coordinates [m]
+    std::optional<double> cell;                   ///< node distance [m]; nothing: the pixel of the file
+};
+
+/// Readers of GIS files. Every problem is a UserError that names the file, what was found and a way out.
+/// Remarks that the user should see (resampled from 5 m to 10 m, ...) are appended to `log`.
+class GisReader {
+public:
+    virtual ~GisReader() = default;
+    /// Elevation model as nodes: window cut, resampled (area average to coarser, cubic to finer; untouched when
+    /// the cell is the pixel), scale/offset applied, nodata (value, mask or NaN) to NaN. Refuses a geographic
+    /// or non-metre CRS with the gdalwarp line that cures it.
+    virtual Raster read_dem(const std::filesystem::path& file, const DemRequest& request,
+                            std::vector<std::string>& log) const = 0;
+    /// Any raster (depth, mask, velocity, ...) in its own pixels, cut to the pixels that touch `extent`
+    /// (xmin, ymin, xmax, ymax), reprojected only when its CRS is known and differs from `crs_wkt`. Pixels
+    /// must be square within 1e-6; NaN where nodata.
+    virtual Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                               const std::string& crs_wkt, std::vector<std::string>& log) const = 0;
+    /// The same, averaged / interpolated onto `grid`.
+    virtual Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid,
+                             const std::string& crs_wkt, std::vector<std::string>& log) const = 0;
+    /// All polygons of a vector file, reprojected to `crs_wkt` when both are known and differ.
+    virtual Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                   std::vector<std::string>& log) const = 0;
+    /// All lines of a vector file, likewise.
+    virtual std::vector<Polyline> read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
+                                             std::vector<std::string>& log) const = 0;
+};
+
+}  // namespace frana

@@ -1,0 +1,145 @@
+#include "solver/bed_geometry.h"
+
+#include <algorithm>
+#include <deque>
+
+#include "base/error.h"
+
+namespace frana {
+namespace {
+
+/// A rectangle of storage rows and columns on which static fields are computed; all loops run over it.
+struct Window {
+    const TileGrid& grid;
+    Index i0() const { return -kTile; }
+    Index j0() const { return -kTile; }
+    Index i1() const { return grid.tiles_x() * kTile - kTile; }
+    Index j1() const { return grid.tiles() / grid.tiles_x() * kTile - kTile; }
+};
+
+template <class Body>
+void for_each_node(const TileGrid& grid, Index margin, Body&& body) {
+    const Window window{grid};
+#pragma omp parallel for schedule(static)
+    for (Index j = window.j0() + margin; j < window.j1() - margin; ++j)
+        for (Index i = window.i0() + margin; i < window.i1() - margin; ++i) body(i, j, grid.at(i, j));
+}
+
+/// Elevation of the nearest node that has one (breadth first from the known nodes), so that shape functions
+/// near the edge of the data have something to average.
+std::vector<double> filled(const Raster& bed) {
+    const Index nx = bed.geometry.nx, ny = bed.geometry.ny;
+    std::vector<double> z = bed.values;
+    std::deque<Index> front;
+    bool any_missing = false;
+    for (Index k = 0; k < nx * ny; ++k) {
+        if (std::isnan(z[k])) any_missing = true;
+        else front.push_back(k);
+    }
+    if (front.empty())
+        throw UserError(bed.source + ": the elevation model holds no data in the window; choose another window");
+    if (!any_missing) return z;
+    while (!front.empty()) {
+        const Index k = front.front(), i = k % nx, j = k / nx;
+        front.pop_front();
+        const auto spread = [&](Index neighbour) {
+            if (!std::isnan(z[neighbour])) return;
+            z[neighbour] = z[k];
+            front.push_back(neighbour);
+        };
+        if (i > 0) spread(k - 1);
+        if (i + 1 < nx) spread(k + 1);
+        if (j > 0) spread(k - nx);
+        if (j + 1 < ny) spread(k + nx);
+    }
+    return z;
+}
+
+/// Index into 0..n-1 and the sign and offset of the extension beyond: mirrored at walls, odd about the end
+/// value (linear for a plane) at open sides.
+double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index j, bool wall) {
+    const auto inside = [](Index k, Index n) { return std::clamp<Index>(k, 0, n - 1); };
+    const auto mirror = [](Index k, Index n) {
+        if (n == 1) return Index{0};
+        const Index period = 2 * (n - 1);
+        k = ((k % period) + period) % period;
+        return k < n ? k : period - k;
+    };
+    const Index im = mirror(i, nx), jm = mirror(j, ny);
+    if (wall) return z[jm * nx + im];
+    const Index ic = inside(i, nx), jc = inside(j, ny);
+    if (ic == i && jc == j) return z[j * nx + i];
+    return 2.0 * z[jc * nx + ic] - z[inside(2 * jc - j, ny) * nx + inside(2 * ic - i, nx)];
+}
+
+/// Applies the symmetric weights w[0] (centre), w[1], w[2] along one direction (step 1: x, stride: y).
+void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch, Index step,
+            const double (&w)[3]) {
+    for_each_node(grid, 2, [&](Index, Index, Index k) {
+        scratch[k] = w[0] * field[k] + w[1] * (field[k - step] + field[k + step]) +
+                     w[2] * (field[k - 2 * step] + field[k + 2 * step]);
+    });
+    for_each_node(grid, 2, [&](Index, Index, Index k) { field[k] = scratch[k]; });
+}
+
+void fill_curvature(const Scene& scene, const TileGrid& grid, BedGeometry& bed) {
+    const double cell = grid.cell(), length = scene.scheme.curvature_length;
+    LazyArray<double> smoothed(grid.size()), scratch(grid.size());
+    for (Index k = 0; k < grid.size(); ++k) smoothed[k] = bed.z[k];
+    // A pass of the binomial filter adds variance cell^2/2 (scheme: sigma = cell sqrt(passes / 2)).
+    const Index passes = std::min<Index>(static_cast<Index>(std::lround(2.0 * length * length / (cell * cell))), 400);
+    const double binomial[3] = {0.5, 0.25, 0.0};
+    for (Index pass = 0; pass < passes; ++pass) {
+        smooth(grid, smoothed, scratch, 1, binomial);
+        smooth(grid, smoothed, scratch, grid.stride(), binomial);
+    }
+    bed.hxx = LazyArray<double>(grid.size());
+    bed.hxy = LazyArray<double>(grid.size());
+    bed.hyy = LazyArray<double>(grid.size());
+    const Index up = grid.stride();
+    for_each_node(grid, 3, [&](Index, Index, Index k) {
+        const double* z = smoothed.data() + k;
+        bed.hxx[k] = (z[1] - 2.0 * z[0] + z[-1]) / (cell * cell);
+        bed.hyy[k] = (z[up] - 2.0 * z[0] + z[-up]) / (cell * cell);
+        bed.hxy[k] = (z[up + 1] - z[up - 1] - z[-up + 1] + z[-up - 1]) / (4.0 * cell * cell);
+    });
+}
+
+}  // namespace
+
+BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
+    BedGeometry bed;
+    const Index nx = grid.nx(), ny = grid.ny(), up = grid.stride();
+    const bool wall = scene.sides == Sides::wall;
+    const std::vector<double> z = filled(scene.bed);
+    bed.z = LazyArray<double>(grid.size());
+    bed.exit = LazyArray<std::uint8_t>(grid.size());
+    for_each_node(grid, 0, [&](Index i, Index j, Index k) {
+        bed.z[k] = extended(z, nx, ny, i, j, wall);
+        const bool inside = i >= 0 && i < nx && j >= 0 && j < ny;
+        bed.exit[k] = inside && std::isnan(scene.bed.at(i, j));
+    });
+    LazyArray<double> scratch(grid.size());
+    if (scene.scheme.shape == Shape::quadratic) {
+        const double average[3] = {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
+        smooth(grid, bed.z, scratch, 1, average);
+        smooth(grid, bed.z, scratch, up, average);
+    }
+    bed.z_min = LazyArray<double>(grid.size());
+    bed.slope_x = LazyArray<double>(grid.size());
+    bed.slope_y = LazyArray<double>(grid.size());
+    const double scale = 1.0 / (12.0 * grid.cell());
+    for_each_node(grid, 4, [&](Index, Index, Index k) {
+        const double* c = bed.z.data() + k;
+        bed.slope_x[k] = (8.0 * (c[1] - c[-1]) - (c[2] - c[-2])) * scale;
+        bed.slope_y[k] = (8.0 * (c[up] - c[-up]) - (c[2 * up] - c[-2 * up])) * scale;
+        double least = c[0];
+        for (Index dj = -2; dj <= 2; ++dj)
+            for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);
+        bed.z_min[k] = least;
+    });
+    if (scene.curvature != Curvature::none && scene.terrain == TerrainModel::steep) fill_curvature(scene, grid, bed);
+    return bed;
+}
+
+}  // namespace frana

@@ -1,0 +1,25 @@
+#pragma once
+// The bed as the solver sees it: static, computed once, one number per node and quantity.
+#include "grid/tile_grid.h"
+#include "scene/scene.h"
+
+namespace frana {
+
+/// Node values on the storage of a TileGrid, filled on all of it (beyond walls mirrored, beyond open sides
+/// extended linearly, over nodata by the nearest known value).
+struct BedGeometry {
+    LazyArray<double> z;        ///< bed averaged with the node's own shape function, (1/A) int N_i Z dx [m]
+    LazyArray<double> z_min;    ///< least z of the 5 x 5 neighbourhood [m]
+    LazyArray<double> slope_x;  ///< dz/dx by the 4th-order stencil that also differentiates the free surface [1]
+    LazyArray<double> slope_y;  ///< [1]
+    LazyArray<double> hxx, hxy, hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
+    LazyArray<std::uint8_t> exit;     ///< 1 where the elevation model has no data: material leaves there
+};
+
+/// Fills the geometry of scene.bed for the scheme's shape function (quadratic: the elevation model is taken
+/// bilinear between nodes, and its average with the B-spline is exact: weights (1, 76, 230, 76, 1)/384 in each
+/// direction; linear: z is the nodal elevation itself, as Fois et al. 2024 have it).
+/// Throws UserError when scene.bed holds no data at all.
+BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid);
+
+}  // namespace frana

@@ -1,0 +1,78 @@
+#include "solver/columns.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace frana {
+
+void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
+                      ActiveTiles& active) {
+    const Index count = columns.count();
+    key_.resize(static_cast<std::size_t>(count));
+    tile_count_.resize(static_cast<std::size_t>(grid.tiles()));
+    Index* key = key_.data();
+#pragma omp parallel for schedule(static)
+    for (Index p = 0; p < count; ++p)
+        key[p] = !gone.empty() && gone[static_cast<std::size_t>(p)] ? -1 : grid.tile_of(columns.x[p], columns.y[p]);
+
+    used_.clear();
+    for (Index p = 0; p < count; ++p)
+        if (key[p] >= 0 && tile_count_[key[p]]++ == 0) used_.push_back(key[p]);
+    std::sort(used_.begin(), used_.end());
+
+    active.tile.assign(used_.begin(), used_.end());
+    active.begin.clear();
+    Index kept = 0;
+    for (const Index tile : used_) {
+        active.begin.push_back(kept);
+        kept += tile_count_[tile];
+        tile_count_[tile] = active.begin.back();
+    }
+    active.begin.push_back(kept);
+
+    order_.resize(static_cast<std::size_t>(kept));
+    for (Index p = 0; p < count; ++p)
+        if (key[p] >= 0) order_[tile_count_[key[p]]++] = p;
+    for (const Index tile : used_) tile_count_[tile] = 0;
+
+    // One field at a time: scattering all fields in one loop keeps too many streams open (measured 2-3x slower).
+    const Index* order = order_.data();
+    columns.each([&](std::vector<double>& column) {
+        scratch_.resize(static_cast<std::size_t>(kept));
+        const double* from = column.data();
+        double* to = scratch_.data();
+#pragma omp parallel for schedule(static)
+        for (Index p = 0; p < kept; ++p) to[p] = from[order[p]];
+        column.swap(scratch_);
+    });
+    id_scratch_.resize(static_cast<std::size_t>(kept));
+    for (Index p = 0; p < kept; ++p) id_scratch_[p] = columns.id[order[p]];
+    columns.id.swap(id_scratch_);
+    list_tiles(grid, active);
+}
+
+void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
+    for (auto& positions : active.colour) positions.clear();
+    active.in_work.resize(static_cast<std::size_t>(grid.tiles()));
+    for (const Index tile : active.work) active.in_work[tile] = 0;
+    active.work.clear();
+    const Index width = grid.tiles_x();
+    for (Index n = 0; n < active.count(); ++n) {
+        const Index tile = active.tile[n], column = tile % width, row = tile / width;
+        active.colour[(row % 2) * 2 + column % 2].push_back(n);
+        for (Index dr = -1; dr <= 1; ++dr)
+            for (Index dc = -1; dc <= 1; ++dc) {
+                if (column + dc < 0 || column + dc >= width) continue;
+                const Index neighbour = tile + dr * width + dc;
+                if (neighbour < 0 || neighbour >= grid.tiles()) continue;
+                if (!active.in_work[neighbour]) {
+                    active.in_work[neighbour] = 1;
+                    active.work.push_back(neighbour);
+                }
+            }
+    }
+    std::sort(active.work.begin(), active.work.end());
+}
+
+}  // namespace frana

@@ -1,0 +1,52 @@
+#pragma once
+// The material points of the depth-averaged model: one array per quantity, sorted by tile.
+#include <array>
+#include <vector>
+
+#include "grid/tile_grid.h"
+
+namespace frana {
+
+/// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI.
+struct Columns {
+    std::vector<double> x, y;                ///< position [cells]
+    std::vector<double> vx, vy;              ///< velocity [m/s], half a step behind the position
+    std::vector<double> cxx, cxy, cyx, cyy;  ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
+    std::vector<double> mass;                ///< [kg]
+    std::vector<double> r1x, r1y, r2x, r2y;  ///< edges of the point's domain [cells]
+    std::vector<double> depth;               ///< sampled from the nodes (paper preset: carried) [m]
+    std::vector<std::int64_t> id;            ///< constant through sorting; children of a split get new ones
+
+    Index count() const { return static_cast<Index>(x.size()); }
+
+    /// The one list of floating-point columns: sorting and growing walk it.
+    template <class Visit>
+    void each(Visit&& visit) {
+        for (std::vector<double>* column : {&x, &y, &vx, &vy, &cxx, &cxy, &cyx, &cyy, &mass, &r1x, &r1y, &r2x,
+                                            &r2y, &depth})
+            visit(*column);
+    }
+    void resize(Index count) {
+        each([&](std::vector<double>& column) { column.resize(static_cast<std::size_t>(count)); });
+        id.resize(static_cast<std::size_t>(count));
+    }
+};
+
+/// Stable counting sort by tile; points whose `keep` says no are dropped. Needs no memory once warmed up.
+class TileSorter {
+public:
+    /// Sorts `columns` and rebuilds `active`. Same bits for any number of threads.
+    /// `gone` (one byte per particle, may be empty) marks particles to drop.
+    void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+
+private:
+    void list_tiles(const TileGrid& grid, ActiveTiles& active);
+
+    std::vector<Index> key_, order_;
+    std::vector<Index> tile_count_;   ///< per tile of the domain; only entries in `used_` are non-zero
+    std::vector<Index> used_;
+    std::vector<double> scratch_;
+    std::vector<std::int64_t> id_scratch_;
+};
+
+}  // namespace frana

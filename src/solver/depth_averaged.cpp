@@ -1,0 +1,204 @@
+#include "solver/depth_averaged.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "base/flush_denormals.h"
+
+namespace frana {
+namespace {
+
+constexpr Index kStepsBetweenSplits = 3;
+/// Cells a point may have moved since the last sort: same-colour tiles then still share no node
+/// (a point's stencil and sub-points reach 2 cells further; 2 (4 + 2) + 2 < 16).
+constexpr double kDriftLimit = 3.0;
+
+double least_split_mass(const Scene& scene) {
+    double largest = 0.0;
+    for (const double volume : scene.particles.volume) largest = std::max(largest, volume);
+    return scene.scheme.split_min_mass * largest * scene.density;
+}
+
+}  // namespace
+
+void StepClock::add(const char* phase, double seconds) {
+    for (PhaseTime& time : times_)
+        if (time.name == phase) {
+            time.seconds += seconds;
+            return;
+        }
+    times_.push_back({phase, seconds});
+}
+
+DepthAveraged::DepthAveraged(const Scene& scene)
+    : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
+      peaks_(flow_.grid), rheology_(scene.rheology), steep_(scene.terrain == TerrainModel::steep),
+      curved_(steep_ && scene.curvature == Curvature::full), footprint_depth_(scene.output.footprint_depth),
+      rest_fraction_(scene.rest_fraction) {
+    expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
+    flush_denormals_on_all_threads();
+    place(scene.particles);
+    if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape == Shape::quadratic &&
+        !scene.scheme.paper_pressure)
+        fit_ = fit_masses(flow_, *scene.still_surface);
+    arrive();
+    signal_ += std::sqrt(flow_.gravity * status_.max_depth);
+}
+
+/// Seeds become columns: positions in cells, square domains, sorted by tile.
+void DepthAveraged::place(const Seeds& seeds) {
+    Columns& c = flow_.columns;
+    const GridGeometry& g = flow_.grid.geometry();
+    c.resize(seeds.count());
+    double mass = 0.0;
+    for (Index p = 0; p < seeds.count(); ++p) {
+        c.x[p] = (seeds.x[p] - g.x0) / g.cell;
+        c.y[p] = (seeds.y[p] - g.y0) / g.cell;
+        c.vx[p] = seeds.vx[p];
+        c.vy[p] = seeds.vy[p];
+        c.mass[p] = seeds.volume[p] * flow_.density;
+        c.r1x[p] = c.r2y[p] = seeds.size[p] / g.cell;
+        c.depth[p] = seeds.depth[p];
+        c.id[p] = p;
+        centre_ += c.mass[p] * Vec2(c.x[p], c.y[p]);
+        mass += c.mass[p];
+        signal_ = std::max(signal_, std::hypot(c.vx[p], c.vy[p]));
+    }
+    status_.max_speed = signal_;
+    if (mass > 0.0) centre_ /= mass;
+    splitter_.set_next_id(seeds.count());
+    sorter_.sort(c, flow_.grid, {}, flow_.active);
+}
+
+/// One step: the nodes are kicked and braked, the points are carried, then they deposit where they arrived.
+void DepthAveraged::advance(double until) {
+    const double dt = step_length(until);
+    const double kick = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
+    book_kick(timed_("kick and friction", [&] { return kick_->kick(flow_, kick); }), kick);
+    timed_("kick and friction", [&] { mirror_motion(flow_); });
+    const PointSums moved = timed_("gather", [&] { return transfer_->gather(flow_, dt); });
+    require_sound(moved);
+    book_points(moved);
+    status_.step += 1;
+    status_.time = dt >= until - status_.time ? until : status_.time + dt;
+    status_.dt = dt;
+    adapt_points(moved.left_count > 0);
+    arrive();
+}
+
+/// Deposit at the present positions, and what follows from it: depth, surface, status, peaks.
+void DepthAveraged::arrive() {
+    const double longest = longest_step();
+    const PointSums points =
+        timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * (status_.dt + longest)); });
+    const PointSums nodes = timed_("deposit", [&] { return node_sums(flow_); });
+    status_.p2g_mass_error = points.mass > 0.0 ? std::abs(nodes.mass - points.mass) / points.mass : 0.0;
+    status_.p2g_momentum_error =
+        points.p_abs > 0.0 ? std::hypot(nodes.px - points.px, nodes.py - points.py) / points.p_abs : 0.0;
+    const NodeSums sums = timed_("depth", [&] {
+        fold_walls(flow_);
+        return depth_pass(flow_, {footprint_depth_, centre_});
+    });
+    timed_("shoreline", [&] { shoreline(flow_); });
+    timed_("filter", [&] { filter(flow_); });
+    timed_("peaks", [&] { update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_); });
+
+    stress_power_ = points.stress_power;
+    status_.particles = flow_.columns.count();
+    status_.mass = points.mass;
+    status_.momentum = {points.px, points.py};
+    status_.mean_speed = points.mass > 0.0 ? points.p_abs / points.mass : 0.0;
+    status_.potential = sums.potential;
+    status_.max_depth = sums.max_depth;
+    status_.covered_area = sums.covered_area;
+    status_.front = std::sqrt(sums.front2);
+    peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
+}
+
+/// Every few steps points split where they spread; points that left are dropped; tiles are kept up to date.
+void DepthAveraged::adapt_points(bool points_left) {
+    const bool may_split = flow_.scheme.split && !flow_.scheme.paper_pressure;
+    const bool due = status_.step % kStepsBetweenSplits == 0;
+    const std::vector<std::uint8_t> none;
+    if (points_left)
+        timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, transfer_->gone(), flow_.active); });
+    Index born = 0;
+    if (may_split && due) born = timed_("split", [&] { return splitter_.split(flow_); });
+    if (born > 0 || drift_ > kDriftLimit || (due && !points_left)) {
+        timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, none, flow_.active); });
+        drift_ = 0.0;
+    }
+}
+
+/// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs
+/// to cross the fraction C of a cell. A film at rest (S = 0) gets a step too.
+double DepthAveraged::longest_step() const {
+    const double reach = flow_.scheme.cfl * flow_.cell;
+    return 2.0 * reach / (signal_ + std::sqrt(signal_ * signal_ + 2.0 * flow_.gravity * reach));
+}
+
+/// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
+double DepthAveraged::step_length(double until) const {
+    const double left = until - status_.time, longest = longest_step();
+    if (left <= longest) return left;
+    return left < 2.0 * longest ? 0.5 * left : longest;
+}
+
+void DepthAveraged::book_kick(const KickSums& sums, double kick) {
+    status_.kinetic = sums.kinetic;
+    status_.dissipated += sums.dissipated + kick * stress_power_;
+    status_.impulse[0] += sums.impulse_x;
+    status_.impulse[1] += sums.impulse_y;
+    signal_ = sums.max_signal;
+}
+
+void DepthAveraged::book_points(const PointSums& sums) {
+    signal_ = std::max(signal_, sums.max_signal);
+    drift_ += sums.max_shift;
+    status_.max_speed = sums.max_speed;
+    status_.mass_left += sums.left_mass;
+    status_.momentum_left[0] += sums.left_px;
+    status_.momentum_left[1] += sums.left_py;
+    status_.energy_left += sums.left_energy;
+}
+
+void DepthAveraged::require_sound(const PointSums& sums) const {
+    if (sums.bad < 0) return;
+    const Index p = sums.bad;
+    const GridGeometry& g = flow_.grid.geometry();
+    throw NumericsError(fmt::format(
+        "step {}, t = {:.6g} s, dt = {:.3g} s: the point at ({:.6g}, {:.6g}) has depth {:.3g} m and would move more than "
+        "four cells in one step or is not finite; reduce scheme.cfl (now {}) or look at the terrain there",
+        status_.step, status_.time, status_.dt, g.x0 + flow_.columns.x[p] * g.cell, g.y0 + flow_.columns.y[p] * g.cell,
+        flow_.columns.depth[p], flow_.scheme.cfl));
+}
+
+bool DepthAveraged::at_rest() const {
+    if (status_.step == 0) return false;
+    return status_.max_speed == 0.0 || status_.mean_speed < rest_fraction_ * peak_mean_speed_;
+}
+
+Sample DepthAveraged::at(const Vec2& point) const {
+    const GridGeometry& g = flow_.grid.geometry();
+    const double u = (point.x() - g.x0) / g.cell, v = (point.y() - g.y0) / g.cell;
+    Sample sample;
+    if (!(u >= 0.0 && v >= 0.0 && u <= static_cast<double>(g.nx - 1) && v <= static_cast<double>(g.ny - 1)))
+        return sample;
+    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
+    const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
+    for (Index dj = 0; dj < 2; ++dj)
+        for (Index di = 0; di < 2; ++di) {
+            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
+            const Index ni = i + di + kTile, nj = j + dj + kTile, k = flow_.grid.at(i + di, j + dj);
+            sample.elevation += w * flow_.bed.z[k];
+            if (!flow_.active.in_work[nj / kTile * flow_.grid.tiles_x() + ni / kTile]) continue;
+            sample.depth += w * flow_.nodes.depth[k];
+            sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
+        }
+    return sample;
+}
+
+std::unique_ptr<Simulation> make_simulation(const Scene& scene) { return std::make_unique<DepthAveraged>(scene); }
+
+}  // namespace frana

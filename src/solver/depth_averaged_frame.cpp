@@ -1,0 +1,216 @@
+// What a depth-averaged run shows of itself: fields of points and nodes at the present time.
+#include <algorithm>
+
+#include "grid/stencil.h"
+#include "law/rheology.h"
+#include "solver/depth_averaged.h"
+
+namespace frana {
+namespace {
+
+/// Calls body(storage index, output index) for all nodes of the domain in tiles near material.
+template <class Body>
+void for_each_output_node(const Flow& flow, Body&& body) {
+    const Index nx = flow.grid.nx(), ny = flow.grid.ny();
+    for (const Index tile : flow.active.work)
+        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+            if (i >= 0 && i < nx && j >= 0 && j < ny) body(k, j * nx + i);
+        });
+}
+
+/// The same for all nodes, near material or not.
+template <class Body>
+void for_all_output_nodes(const Flow& flow, Body&& body) {
+    const Index nx = flow.grid.nx(), ny = flow.grid.ny();
+    for (Index j = 0; j < ny; ++j)
+        for (Index i = 0; i < nx; ++i) body(flow.grid.at(i, j), j * nx + i);
+}
+
+/// Bed at a point: elevation, slope and normal thickness factor.
+struct BedHere { double z = 0.0, slope_x = 0.0, slope_y = 0.0; };
+BedHere bed_at(const Flow& flow, double x, double y) {
+    const Quadratic sx(x), sy(y);
+    BedHere here;
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) {
+            const double w = sx.w[i] * sy.w[j];
+            const Index k = flow.grid.at(sx.base + i, sy.base + j);
+            here.z += w * flow.bed.z[k];
+            here.slope_x += w * flow.bed.slope_x[k];
+            here.slope_y += w * flow.bed.slope_y[k];
+        }
+    return here;
+}
+
+}  // namespace
+
+Field& DepthAveraged::add_field(std::vector<Field>& fields, const char* name, const char* unit, int components,
+                                Index count) {
+    frame_storage_.emplace_back(static_cast<std::size_t>(count * components), 0.0);
+    fields.push_back({name, unit, components, frame_storage_.back().data(), count});
+    return fields.back();
+}
+
+/// Velocities are half a step behind: nodes are kicked by the missing half on a copy, points gather from it.
+Frame DepthAveraged::frame() {
+    Frame frame;
+    frame_storage_.clear();
+    timed_("frame", [&] {
+        const KickSums sums = kick_->kick(flow_, 0.5 * status_.dt);
+        mirror_motion(flow_);
+        transfer_->probe(flow_, probe_);
+        frame.grid = flow_.grid.geometry();
+        frame.status = status_;
+        frame.status.kinetic = sums.kinetic;
+        frame.status.dissipated += sums.dissipated + 0.5 * status_.dt * stress_power_;
+        frame.status.impulse[0] += sums.impulse_x;
+        frame.status.impulse[1] += sums.impulse_y;
+        frame.status.momentum = {0.0, 0.0};
+        frame.status.max_speed = 0.0;
+        for (Index p = 0; p < flow_.columns.count(); ++p) {
+            frame.status.momentum[0] += flow_.columns.mass[p] * probe_.vx[p];
+            frame.status.momentum[1] += flow_.columns.mass[p] * probe_.vy[p];
+            frame.status.max_speed = std::max(frame.status.max_speed, std::hypot(probe_.vx[p], probe_.vy[p]));
+        }
+        particle_fields(frame);
+        node_fields(frame);
+        if (rheology_.index() != 0) stress_fields(frame);
+    });
+    return frame;
+}
+
+void DepthAveraged::particle_fields(Frame& frame) {
+    const Columns& c = flow_.columns;
+    const Index count = c.count();
+    const GridGeometry& g = flow_.grid.geometry();
+    const auto column = [&](const char* name, const char* unit, int components) {
+        return const_cast<double*>(add_field(frame.particles, name, unit, components, count).data);
+    };
+    double* position = column("position", "m", 3);
+    double* depth = column("depth", "m", 1);
+    double* thickness = column("thickness", "m", 1);
+    double* velocity = column("velocity", "m/s", 3);
+    double* speed = column("speed", "m/s", 1);
+    double* elevation = column("elevation", "m", 1);
+    double* surface = column("surface", "m", 1);
+    double* pressure = column("pressure", "Pa", 1);
+    double* mass = column("mass", "kg", 1);
+    double* volume = column("volume", "m3", 1);
+    double* id = column("id", "1", 1);
+#pragma omp parallel for schedule(static)
+    for (Index p = 0; p < count; ++p) {
+        const BedHere bed = bed_at(flow_, c.x[p], c.y[p]);
+        const double h = std::max(probe_.depth[p], 0.0), vx = probe_.vx[p], vy = probe_.vy[p];
+        const double slope2 = steep_ ? bed.slope_x * bed.slope_x + bed.slope_y * bed.slope_y : 0.0;
+        const double vz = steep_ ? vx * bed.slope_x + vy * bed.slope_y : 0.0;
+        position[3 * p] = g.x0 + c.x[p] * g.cell;
+        position[3 * p + 1] = g.y0 + c.y[p] * g.cell;
+        position[3 * p + 2] = bed.z + h;
+        depth[p] = h;
+        thickness[p] = h / std::sqrt(1.0 + slope2);
+        velocity[3 * p] = vx;
+        velocity[3 * p + 1] = vy;
+        velocity[3 * p + 2] = vz;
+        speed[p] = std::sqrt(vx * vx + vy * vy + vz * vz);
+        elevation[p] = bed.z;
+        surface[p] = bed.z + h;
+        pressure[p] = flow_.density * flow_.gravity * h / (1.0 + slope2);
+        mass[p] = c.mass[p];
+        volume[p] = c.mass[p] / flow_.density;
+        id[p] = static_cast<double>(c.id[p]);
+    }
+}
+
+void DepthAveraged::node_fields(Frame& frame) {
+    const Index count = flow_.grid.geometry().size();
+    const auto column = [&](const char* name, const char* unit, int components) {
+        return const_cast<double*>(add_field(frame.nodes, name, unit, components, count).data);
+    };
+    double* elevation = column("elevation", "m", 1);
+    double* depth = column("depth", "m", 1);
+    double* thickness = column("thickness", "m", 1);
+    double* surface = column("surface", "m", 1);
+    double* velocity = column("velocity", "m/s", 3);
+    double* speed = column("speed", "m/s", 1);
+    double* pressure = column("pressure", "Pa", 1);
+    double* peak_depth = column("peak_depth", "m", 1);
+    double* peak_speed = column("peak_speed", "m/s", 1);
+    double* peak_pressure = column("peak_pressure", "Pa", 1);
+    double* peak_dynamic = column("peak_dynamic_pressure", "Pa", 1);
+    double* arrival = column("arrival_time", "s", 1);
+    for_all_output_nodes(flow_, [&](Index k, Index n) {
+        elevation[n] = flow_.bed.exit[k] ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
+        surface[n] = elevation[n];
+        peak_depth[n] = peaks_.depth[k];
+        peak_speed[n] = peaks_.speed[k];
+        peak_pressure[n] = peaks_.pressure[k];
+        peak_dynamic[n] = peaks_.dynamic_pressure[k];
+        arrival[n] = peaks_.depth[k] > footprint_depth_ ? peaks_.arrival[k] : -1.0;
+    });
+    const Motion* motions = flow_.nodes.motions();
+    for_each_output_node(flow_, [&](Index k, Index n) {
+        const double h = flow_.nodes.depth[k], vx = motions[k].vx, vy = motions[k].vy;
+        if (h <= 0.0) return;
+        const double bx = steep_ ? flow_.bed.slope_x[k] : 0.0, by = steep_ ? flow_.bed.slope_y[k] : 0.0;
+        const BedContact contact = bed_contact(flow_, steep_, curved_, k, vx, vy);
+        depth[n] = h;
+        thickness[n] = h / std::sqrt(1.0 + bx * bx + by * by);
+        surface[n] += h;
+        velocity[3 * n] = vx;
+        velocity[3 * n + 1] = vy;
+        velocity[3 * n + 2] = vx * bx + vy * by;
+        speed[n] = contact.speed;
+        pressure[n] = contact.pressure;
+    });
+}
+
+/// Stress of the rheology at the points and, mass-weighted, on the nodes; effective_stress adds the depth-averaged
+/// pressure: sigma - rho g h / 2 (Fois et al. 2024, before eq. 10).
+void DepthAveraged::stress_fields(Frame& frame) {
+    const Columns& c = flow_.columns;
+    const Index count = c.count(), nodes = flow_.grid.geometry().size();
+    double* at_points = const_cast<double*>(add_field(frame.particles, "stress", "Pa", 3, count).data);
+    double* effective = const_cast<double*>(add_field(frame.particles, "effective_stress", "Pa", 3, count).data);
+    double* at_nodes = const_cast<double*>(add_field(frame.nodes, "stress", "Pa", 3, nodes).data);
+    double* effective_nodes = const_cast<double*>(add_field(frame.nodes, "effective_stress", "Pa", 3, nodes).data);
+    std::vector<double> weight(static_cast<std::size_t>(nodes), 0.0);
+    const double kick = status_.dt > 0.0 ? status_.dt : longest_step();
+    const double cap = flow_.scheme.stress_cap * flow_.density * flow_.area / kick;
+    const double half_weight = 0.5 * flow_.density * flow_.gravity;
+    for (Index p = 0; p < count; ++p) {
+        const Plane rate{probe_.cxx[p], probe_.cyy[p], 0.5 * (probe_.cxy[p] + probe_.cyx[p])};
+        Plane sigma;
+        const double h = probe_.depth[p];
+        if (h > flow_.dry_depth())
+            std::visit(
+                [&](const auto& law) {
+                    if constexpr (!std::is_same_v<std::decay_t<decltype(law)>, rheology::None>)
+                        sigma = stress(law, {rate, std::hypot(probe_.vx[p], probe_.vy[p]), h,
+                                             flow_.scheme.strain_rate_floor, cap});
+                },
+                rheology_);
+        const double s[3] = {sigma.xx, sigma.yy, sigma.xy};
+        for (int n = 0; n < 3; ++n) {
+            at_points[3 * p + n] = s[n];
+            effective[3 * p + n] = s[n] - (n < 2 ? half_weight * std::max(h, 0.0) : 0.0);
+        }
+        const Quadratic sx(c.x[p]), sy(c.y[p]);
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const Index ni = sx.base + i, nj = sy.base + j;
+                if (ni < 0 || nj < 0 || ni >= flow_.grid.nx() || nj >= flow_.grid.ny()) continue;
+                const Index to = nj * flow_.grid.nx() + ni;
+                const double w = c.mass[p] * sx.w[i] * sy.w[j];
+                weight[to] += w;
+                for (int n = 0; n < 3; ++n) at_nodes[3 * to + n] += w * s[n];
+            }
+    }
+    for_each_output_node(flow_, [&](Index k, Index to) {
+        for (int n = 0; n < 3; ++n) {
+            if (weight[to] > 0.0) at_nodes[3 * to + n] /= weight[to];
+            effective_nodes[3 * to + n] = at_nodes[3 * to + n] - (n < 2 ? half_weight * flow_.nodes.depth[k] : 0.0);
+        }
+    });
+}
+
+}  // namespace frana

@@ -1,0 +1,73 @@
+#pragma once
+// Everything the phases of a depth-averaged step share.
+#include "base/error.h"
+#include "grid/tile_grid.h"
+#include "scene/scene.h"
+#include "solver/bed_geometry.h"
+#include "solver/columns.h"
+#include "solver/nodes.h"
+
+namespace frana {
+
+/// The state of a depth-averaged run. Phases are free functions on it (transfer.h, surface.h, kick.h, split.h).
+struct Flow {
+    explicit Flow(const Scene& scene)
+        : grid(scene.bed.geometry), bed(make_bed_geometry(scene, grid)),
+          nodes(grid, scene.rheology.index() != 0 || scene.scheme.paper_pressure), density(scene.density),
+          gravity(scene.gravity), cell(grid.cell()), area(cell * cell), walls(scene.sides == Sides::wall),
+          scheme(scene.scheme) {}
+
+    TileGrid grid;
+    BedGeometry bed;
+    Nodes nodes;
+    Columns columns;
+    ActiveTiles active;
+    double density;  ///< [kg/m^3]
+    double gravity;  ///< [m/s^2]
+    double cell;     ///< [m]
+    double area;     ///< of a node's cell, the same for all nodes [m^2]
+    bool walls;      ///< sides are mirrors; otherwise open
+    Scheme scheme;
+    double dry_depth() const { return 1e-14 * cell; }  ///< round-off of a depth [m]
+
+    /// Share of a node that lies inside walls: 1, 1/2 on a wall, 1/4 in a corner, 0 beyond. 1 at open sides.
+    double share(Index i, Index j) const {
+        if (!walls) return 1.0;
+        const auto along = [](Index k, Index n) { return k < 0 || k >= n ? 0.0 : k == 0 || k == n - 1 ? 0.5 : 1.0; };
+        return along(i, grid.nx()) * along(j, grid.ny());
+    }
+};
+
+/// Calls body(storage index, i, j) for the nodes of a tile.
+template <class Body>
+void for_each_node_of(const TileGrid& grid, Index tile, Body&& body) {
+    const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+    for (Index j = j0; j < j0 + kTile; ++j) {
+        const Index row = grid.at(i0, j);
+        for (Index n = 0; n < kTile; ++n) body(row + n, i0 + n, j);
+    }
+}
+
+/// Calls body(ghost, mirror) for the node pairs on both ends of one axis (0: x, 1: y), layers `first` to kGhosts;
+/// layer 0 is the wall node with itself. Only near material.
+template <class Body>
+void for_each_wall_pair(const Flow& flow, int axis, Index first, Body&& body) {
+    const TileGrid& grid = flow.grid;
+    const Index last = (axis == 0 ? grid.nx() : grid.ny()) - 1;
+    const Index step = axis == 0 ? 1 : grid.stride();
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        const Index from = axis == 0 ? grid.tile_i(tile) : grid.tile_j(tile);
+        const auto along_wall = [&](Index wall, Index inward) {
+            if (wall < from || wall >= from + kTile) return;
+            for (Index n = 0; n < kTile; ++n) {
+                const Index k = axis == 0 ? grid.at(wall, grid.tile_j(tile) + n) : grid.at(grid.tile_i(tile) + n, wall);
+                for (Index layer = first; layer <= kGhosts; ++layer)
+                    body(k - inward * layer * step, k + inward * layer * step);
+            }
+        };
+        along_wall(0, 1);
+        along_wall(last, -1);
+    });
+}
+
+}  // namespace frana

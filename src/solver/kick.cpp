@@ -1,0 +1,243 @@
+#include "solver/kick.h"
+
+#include <algorithm>
+
+#include "law/bed_law.h"
+
+namespace frana {
+namespace {
+
+/// Slope of the free surface at a node with material, along one axis. Uniform depth gives the bed's own slope, a lake gives
+/// zero, whatever the bed. A dry neighbour that stands higher is a shore and takes no part; a dry neighbour that
+/// lies lower enters with its bed, and drives the front.
+double surface_gradient(const Nodes& nodes, Index k, Index step, bool wide, double cell) {
+    const double* e = nodes.surface.data() + k;
+    if (wide) return (8.0 * (e[step] - e[-step]) - (e[2 * step] - e[-2 * step])) / (12.0 * cell);
+    const auto shore = [&](Index n) { return !(nodes.flags[k + n] & kWet) && e[n] > e[0]; };
+    const bool ahead = shore(step), behind = shore(-step);
+    if (ahead && !behind) return (e[0] - e[-step]) / cell;
+    if (behind && !ahead) return (e[step] - e[0]) / cell;
+    return ((ahead ? 0.0 : e[step] - e[0]) - (behind ? 0.0 : e[-step] - e[0])) / (2.0 * cell);
+}
+
+/// Momentum flux of the limited artificial viscosity through the face between k and k + step [m^2/s^2]: acts in
+/// compression only, zero for linear velocities.
+double viscous_flux(const Flow& flow, const double* u, Index k, Index step) {
+    const Nodes& nodes = flow.nodes;
+    const auto known = [&](Index n) { return (nodes.flags[n] & (kWet | kMoving)) == (kWet | kMoving); };
+    if (!known(k) || !known(k + step)) return 0.0;
+    const Index s = 2 * step;  // u points into an array of pairs
+    const double d = u[2 * k + s] - u[2 * k];
+    if (!(d < 0.0)) return 0.0;
+    const double left = known(k - step) ? (u[2 * k] - u[2 * k - s]) / d : 1.0;
+    const double right = known(k + 2 * step) ? (u[2 * k + 2 * s] - u[2 * k + s]) / d : 1.0;
+    const double limit = std::max(0.0, std::min({0.5 * (left + right), 2.0 * left, 2.0 * right, 1.0}));
+    const double e = -d * (1.0 - limit), a = nodes.depth[k], b = nodes.depth[k + step];
+    const double h = 2.0 * a * b / (a + b);
+    return h * e * (flow.scheme.viscosity_linear * std::sqrt(flow.gravity * h) + flow.scheme.viscosity_quadratic * e);
+}
+
+/// P1's terrain: gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.
+struct Gentle {
+    explicit Gentle(const Flow&, Index) {}
+    static constexpr bool kSteep = false;
+};
+
+/// Steep terrain. kCurvature: none, inertia (v.H.v in the acceleration only), full (in the friction too).
+template <Curvature kCurvature>
+struct Steep {
+    static constexpr bool kSteep = true;
+    double bx, by, hxx = 0.0, hxy = 0.0, hyy = 0.0;
+    Steep(const Flow& flow, Index k) : bx(flow.bed.slope_x[k]), by(flow.bed.slope_y[k]) {
+        if constexpr (kCurvature != Curvature::none) {
+            hxx = flow.bed.hxx[k];
+            hxy = flow.bed.hxy[k];
+            hyy = flow.bed.hyy[k];
+        }
+    }
+    /// Gravity plus the bed's own vertical acceleration along the path, (g + v.H.v)+
+    double gravity(double g, double vx, double vy) const {
+        if constexpr (kCurvature == Curvature::none) return g;
+        return std::max(0.0, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
+    }
+};
+
+struct Node {
+    double vx, vy;      ///< before the kick [m/s]
+    double ex, ey;      ///< gradient of the free surface [1]
+    double depth, mass;
+    double push_x, push_y;  ///< viscosity and stress [m/s^2]
+};
+
+struct Kicked {
+    double vx, vy, kinetic, dissipated, wave_gravity;
+};
+
+template <class Law, class Terrain>
+class Kernel final : public KickKernel {
+public:
+    Kernel(const Law& law, bool on_points) : law_(law), pressure_on_points_(on_points) {}
+
+    KickSums kick(Flow& flow, double dt) override {
+        parts_.assign(flow.active.work.size(), {});
+        for_each_work_tile(flow.active, [&](Index n, Index tile) {
+            KickSums sums;
+            for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) { kick_node(flow, k, i, j, dt, sums); });
+            parts_[n] = sums;
+        });
+        KickSums total;
+        for (const KickSums& part : parts_) {
+            total.kinetic += part.kinetic;
+            total.dissipated += part.dissipated;
+            total.impulse_x += part.impulse_x;
+            total.impulse_y += part.impulse_y;
+            total.max_signal = std::max(total.max_signal, part.max_signal);
+        }
+        return total;
+    }
+
+private:
+    void kick_node(Flow& flow, Index k, Index i, Index j, double dt, KickSums& sums) {
+        const Nodes& nodes = flow.nodes;
+        Motion& motion = flow.nodes.motions()[k];
+        motion = {0.0, 0.0, nodes.depth[k], 0.0};
+        if (!(nodes.flags[k] & kMoving)) return;
+        const double mass = nodes.deposits()[k].mass;
+        const double share = flow.share(i, j);
+        if (share == 0.0) return;
+        Node node = prepared(flow, k, mass);
+        if (flow.walls) {  // what a mirror cancels, it cancels exactly
+            if (i == 0 || i == flow.grid.nx() - 1) node.ex = node.push_x = node.vx = 0.0;
+            if (j == 0 || j == flow.grid.ny() - 1) node.ey = node.push_y = node.vy = 0.0;
+        }
+        const Kicked after = dt > 0.0 ? kicked(flow, Terrain(flow, k), node, dt) : resting_clock(node);
+        motion.vx = after.vx;
+        motion.vy = after.vy;
+        sums.kinetic += share * mass * after.kinetic;
+        sums.dissipated += share * mass * after.dissipated;
+        sums.impulse_x += share * mass * (after.vx - node.vx);
+        sums.impulse_y += share * mass * (after.vy - node.vy);
+        sums.max_signal = std::max(sums.max_signal, std::sqrt(after.vx * after.vx + after.vy * after.vy) +
+                                                        std::sqrt(after.wave_gravity * node.depth));
+    }
+
+    /// A kick of no length: the start of a run.
+    static Kicked resting_clock(const Node& n) {
+        return {n.vx, n.vy, 0.5 * (n.vx * n.vx + n.vy * n.vy), 0.0, 0.0};
+    }
+
+    Node prepared(const Flow& flow, Index k, double mass) const {
+        const Nodes& nodes = flow.nodes;
+        const Index up = flow.grid.stride();
+        Node node{nodes.before[k].x, nodes.before[k].y, 0.0, 0.0, nodes.depth[k], mass, 0.0, 0.0};
+        if (!pressure_on_points_) {
+            node.ex = surface_gradient(nodes, k, 1, nodes.flags[k] & kWideX, flow.cell);
+            node.ey = surface_gradient(nodes, k, up, nodes.flags[k] & kWideY, flow.cell);
+        }
+        if (viscous(flow) && node.depth > 1e-12 * flow.cell) {  // a rotated domain's centre may reach beyond its mass
+            const double* u = &nodes.before[0].x;
+            const double* v = &nodes.before[0].y;
+            const double scale = 1.0 / (flow.cell * node.depth);
+            node.push_x = scale * (viscous_flux(flow, u, k - 1, 1) - viscous_flux(flow, u, k, 1));
+            node.push_y = scale * (viscous_flux(flow, v, k - up, up) - viscous_flux(flow, v, k, up));
+        }
+        if (nodes.force) {
+            node.push_x += nodes.force[k].x / mass;
+            node.push_y += nodes.force[k].y / mass;
+        }
+        return node;
+    }
+
+    static bool viscous(const Flow& flow) {
+        return flow.scheme.viscosity_linear > 0.0 || flow.scheme.viscosity_quadratic > 0.0;
+    }
+
+    /// Gentle terrain: a = -g grad(eta), friction with N = g.
+    Kicked kicked(const Flow& flow, const Gentle&, const Node& n, double dt) const {
+        const double g = flow.gravity;
+        const double dx = n.vx + dt * (n.push_x - g * n.ex), dy = n.vy + dt * (n.push_y - g * n.ey);
+        const BedState state{g, std::max(n.depth, 1e-9), 1.0, 1.0, g, flow.density};
+        return braked(state, n, dx, dy, 0.0, 0.0, g, dt);
+    }
+
+    /// Steep terrain: a = -g_c grad(eta) / (1 + gradZ . grad(eta)), g_c = (g + v.H.v)+ at the middle of the step
+    /// (model: a column that accelerates vertically with its bed). The continuation 1/(1 - q) for q < 0 keeps the
+    /// factor positive where the surface slopes against a steep bed.
+    template <Curvature kCurvature>
+    Kicked kicked(const Flow& flow, const Steep<kCurvature>& bed, const Node& n, double dt) const {
+        const double g = flow.gravity, q = bed.bx * n.ex + bed.by * n.ey;
+        const double reduce = q >= 0.0 ? 1.0 / (1.0 + q) : 1.0 - q;
+        const double cosine = 1.0 / std::sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
+        double gravity = bed.gravity(g, n.vx, n.vy);
+        if constexpr (kCurvature != Curvature::none) {
+            const auto [mx, my] = midpoint(bed, n, gravity * reduce, g, cosine, dt);
+            gravity = bed.gravity(g, mx, my);
+        }
+        const double drive = gravity * reduce;
+        const double dx = n.vx + dt * (n.push_x - drive * n.ex), dy = n.vy + dt * (n.push_y - drive * n.ey);
+        const double speed = std::sqrt(dx * dx + dy * dy);
+        const double rise = speed > 0.0 ? (dx * bed.bx + dy * bed.by) / speed : 0.0;
+        const double kappa = std::sqrt(1.0 + rise * rise);
+        const double normal = kCurvature == Curvature::full ? gravity : g;
+        const BedState state{normal * cosine / kappa, std::max(n.depth * cosine, 1e-9), kappa, cosine, g, flow.density};
+        return braked(state, n, dx, dy, bed.bx, bed.by, std::max(g, gravity), dt);
+    }
+
+    /// Velocity in the middle of the step, driven and braked by Coulomb friction: makes v.H.v second order.
+    template <Curvature kCurvature>
+    std::pair<double, double> midpoint(const Steep<kCurvature>& bed, const Node& n, double drive, double g,
+                                       double cosine, double dt) const {
+        double mx = n.vx - 0.5 * dt * drive * n.ex, my = n.vy - 0.5 * dt * drive * n.ey;
+        const double speed = std::sqrt(mx * mx + my * my);
+        if (speed == 0.0) return {0.0, 0.0};
+        const double rise = (mx * bed.bx + my * bed.by) / speed;
+        const double normal = kCurvature == Curvature::full ? bed.gravity(g, n.vx, n.vy) : g;
+        const double left = speed - 0.5 * dt * coulomb(law_) * normal * cosine / std::sqrt(1.0 + rise * rise);
+        const double keep = std::max(0.0, left) / speed;
+        return {mx * keep, my * keep};
+    }
+
+    Kicked braked(const BedState& state, const Node& n, double dx, double dy, double bx, double by,
+                  double wave_gravity, double dt) const {
+        const double driven = std::sqrt(dx * dx + dy * dy);
+        if (driven == 0.0) return {0.0, 0.0, 0.0, 0.0, wave_gravity};
+        const double s0 = std::max(0.0, (n.vx * dx + n.vy * dy) / driven);
+        const double speed = speed_after(law_, state, s0, driven, dt);
+        const double keep = speed / driven, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
+        const double kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
+        const double kappa2 = state.kappa * state.kappa;
+        return {vx, vy, kinetic, 0.5 * kappa2 * (driven * driven - speed * speed), wave_gravity};
+    }
+
+    static double coulomb(const bed::None&) { return 0.0; }
+    static double coulomb(const bed::Pouliquen& law) { return law.mu_s; }
+    template <class Other>
+    static double coulomb(const Other& law) { return law.mu; }
+
+    Law law_;
+    bool pressure_on_points_;
+    std::vector<KickSums> parts_;
+};
+
+template <class Terrain>
+std::unique_ptr<KickKernel> with_law(const Scene& scene) {
+    return std::visit(
+        [&](const auto& law) -> std::unique_ptr<KickKernel> {
+            return std::make_unique<Kernel<std::decay_t<decltype(law)>, Terrain>>(law, scene.scheme.paper_pressure);
+        },
+        scene.bed_law);
+}
+
+}  // namespace
+
+std::unique_ptr<KickKernel> make_kick(const Scene& scene) {
+    if (scene.terrain == TerrainModel::shallow) return with_law<Gentle>(scene);
+    switch (scene.curvature) {
+        case Curvature::none: return with_law<Steep<Curvature::none>>(scene);
+        case Curvature::inertia: return with_law<Steep<Curvature::inertia>>(scene);
+        case Curvature::full: return with_law<Steep<Curvature::full>>(scene);
+    }
+    throw InternalError("unknown curvature");
+}
+
+}  // namespace frana

@@ -1,0 +1,190 @@
+#include "solver/mass_fit.h"
+
+#include <algorithm>
+
+#include "grid/stencil.h"
+#include "solver/surface.h"
+
+namespace frana {
+namespace {
+
+/// The nodes that a point's column mass goes to and their weights, walls folded in: one row of B^T.
+struct Reach {
+    static constexpr int kMost = 36;
+    Index node[kMost];
+    double weight[kMost];
+};
+
+/// Node index with walls mirrored; wall nodes count their own image too.
+struct Folded { Index k; double factor; };
+
+Folded folded(const Flow& flow, Index i, Index j) {
+    double factor = 1.0;
+    if (flow.walls) {
+        const auto fold = [&](Index& n, Index last) {
+            if (n < 0) n = -n;
+            else if (n > last) n = 2 * last - n;
+            if (n == 0 || n == last) factor *= 2.0;
+        };
+        fold(i, flow.grid.nx() - 1);
+        fold(j, flow.grid.ny() - 1);
+    }
+    return {flow.grid.at(i, j), factor};
+}
+
+Reach reach_of(const Flow& flow, Index p) {
+    const Columns& c = flow.columns;
+    Reach reach;
+    int n = 0;
+    for (int sub = 0; sub < 4; ++sub) {
+        const double s1 = sub & 1 ? 0.25 : -0.25, s2 = sub & 2 ? 0.25 : -0.25;
+        double x = c.x[p] + s1 * c.r1x[p] + s2 * c.r2x[p], y = c.y[p] + s1 * c.r1y[p] + s2 * c.r2y[p];
+        if (!flow.walls) {
+            x = std::clamp(x, 0.0, static_cast<double>(flow.grid.nx() - 1));
+            y = std::clamp(y, 0.0, static_cast<double>(flow.grid.ny() - 1));
+        }
+        const Quadratic sx(x), sy(y);
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const Folded to = folded(flow, sx.base + i, sy.base + j);
+                reach.node[n] = to.k;
+                reach.weight[n++] = 0.25 * to.factor * sx.w[i] * sy.w[j];
+            }
+    }
+    return reach;
+}
+
+/// The system B W B^T on the chosen rows, applied without being stored.
+class FitSystem {
+public:
+    FitSystem(const Flow& flow, const std::vector<double>& weight) : weight_(weight), row_(flow.grid.size()) {
+        reach_.reserve(static_cast<std::size_t>(flow.columns.count()));
+        for (Index p = 0; p < flow.columns.count(); ++p) reach_.push_back(reach_of(flow, p));
+    }
+    void set_rows(const std::vector<Index>& nodes) {
+        for (std::size_t r = 0; r < nodes.size(); ++r) row_[nodes[r]] = static_cast<Index>(r) + 1;
+        rows_ = static_cast<Index>(nodes.size());
+    }
+    /// W B^T y: the change of each point's mass.
+    void spread(const std::vector<double>& y, std::vector<double>& change) const {
+        const Index count = static_cast<Index>(reach_.size());
+        change.resize(reach_.size());
+#pragma omp parallel for schedule(static)
+        for (Index p = 0; p < count; ++p) {
+            double sum = 0.0;
+            for (int n = 0; n < Reach::kMost; ++n)
+                if (const Index r = row_[reach_[p].node[n]]) sum += reach_[p].weight[n] * y[r - 1];
+            change[p] = weight_[p] * sum;
+        }
+    }
+    /// B m on the rows.
+    void collect(const std::vector<double>& mass, std::vector<double>& sums) const {
+        sums.assign(static_cast<std::size_t>(rows_), 0.0);
+        for (std::size_t p = 0; p < reach_.size(); ++p)
+            for (int n = 0; n < Reach::kMost; ++n)
+                if (const Index r = row_[reach_[p].node[n]]) sums[r - 1] += reach_[p].weight[n] * mass[p];
+    }
+
+private:
+    const std::vector<double>& weight_;
+    std::vector<Reach> reach_;
+    LazyArray<Index> row_;  ///< row number + 1 of a node, 0: none
+    Index rows_ = 0;
+};
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+    return sum;
+}
+
+/// Conjugate gradients for (B W B^T) y = rhs, to round-off or 1000 iterations. Returns the iterations.
+Index solve(const FitSystem& system, std::vector<double> residual, std::vector<double>& y) {
+    std::vector<double> direction = residual, change, applied;
+    y.assign(residual.size(), 0.0);
+    double rr = dot(residual, residual);
+    const double goal = 1e-30 * rr;
+    Index iteration = 0;
+    for (; iteration < 1000 && rr > goal && rr > 0.0; ++iteration) {
+        system.spread(direction, change);
+        system.collect(change, applied);
+        const double step = rr / dot(direction, applied);
+        for (std::size_t k = 0; k < y.size(); ++k) {
+            y[k] += step * direction[k];
+            residual[k] -= step * applied[k];
+        }
+        const double next = dot(residual, residual);
+        for (std::size_t k = 0; k < y.size(); ++k) direction[k] = residual[k] + next / rr * direction[k];
+        rr = next;
+    }
+    return iteration;
+}
+
+/// Deposits the columns' mass alone and finds wetness and margin.
+void deposit_columns(Flow& flow) {
+    Deposit* deposits = flow.nodes.deposits();
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { deposits[k] = {}; });
+    });
+    for (Index p = 0; p < flow.columns.count(); ++p) {
+        const Reach reach = reach_of(flow, p);
+        for (int n = 0; n < Reach::kMost; ++n)
+            deposits[reach.node[n]].column_mass += flow.columns.mass[p] * reach.weight[n];
+    }
+    depth_pass(flow, {0.0, Vec2(0, 0)});
+}
+
+bool inside(const Flow& flow, Index i, Index j) {
+    return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
+}
+
+}  // namespace
+
+MassFit fit_masses(Flow& flow, double level) {
+    MassFit fit;
+    const std::vector<double> start = flow.columns.mass;
+    FitSystem system(flow, start);
+    const double column = flow.density * flow.area;
+
+    deposit_columns(flow);
+    mark_margin(flow);
+    std::vector<Index> rows;
+    const auto gather_rows = [&](bool margin, double below) {
+        std::size_t added = 0;
+        for (const Index tile : flow.active.work)
+            for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+                if (!inside(flow, i, j) || !(flow.nodes.flags[k] & kWet)) return;
+                if (static_cast<bool>(flow.nodes.flags[k] & kMargin) != margin) return;
+                if (margin && !(flow.nodes.depth[k] + flow.bed.z[k] < below)) return;
+                if (std::find(rows.begin(), rows.end(), k) != rows.end() && margin) return;
+                rows.push_back(k);
+                ++added;
+            });
+        return added;
+    };
+    gather_rows(false, 0.0);
+    for (int round = 0; round < 4; ++round) {
+        system.set_rows(rows);
+        std::vector<double> rhs, y, change;
+        system.collect(start, rhs);
+        for (std::size_t r = 0; r < rows.size(); ++r) rhs[r] = column * (level - flow.bed.z[rows[r]]) - rhs[r];
+        fit.iterations += solve(system, rhs, y);
+        system.spread(y, change);
+        fit.clipped = 0;
+        fit.largest_change = 0.0;
+        for (std::size_t p = 0; p < start.size(); ++p) {
+            const double wanted = start[p] + change[p];
+            flow.columns.mass[p] = std::clamp(wanted, 0.03 * start[p], 5.0 * start[p]);
+            fit.clipped += flow.columns.mass[p] != wanted;
+            fit.largest_change = std::max(fit.largest_change, std::abs(flow.columns.mass[p] / start[p] - 1.0));
+        }
+        deposit_columns(flow);
+        mark_margin(flow);
+        // A margin node that would stand below the level pulls the surface down (the margin takes a minimum).
+        if (gather_rows(true, level - 1e-13 * std::max(1.0, std::abs(level))) == 0) break;
+    }
+    fit.rows = static_cast<Index>(rows.size());
+    return fit;
+}
+
+}  // namespace frana

@@ -1,0 +1,60 @@
+#pragma once
+// Node arrays of the depth-averaged step, on the storage of a TileGrid.
+#include "grid/tile_grid.h"
+
+namespace frana {
+
+/// What points deposit on a node; four numbers side by side, so that one vector add serves a node.
+struct alignas(32) Deposit {
+    double mass;         ///< sum of m_p N_i [kg]
+    double px, py;       ///< sum of m_p N_i (v_p + C_p d) [kg m/s]
+    double column_mass;  ///< mass deposited from the points' sub-points: what the depth is made of [kg]
+};
+
+/// What points gather from a node.
+struct alignas(32) Motion {
+    double vx, vy;  ///< velocity after the kick [m/s]
+    double depth;   ///< [m]
+    double unused;
+};
+
+/// A pair of numbers per node.
+struct Pair { double x, y; };
+
+enum NodeFlag : std::uint8_t {
+    kWet = 1,      ///< depth above round-off
+    kMargin = 2,   ///< wet with a dry node within two layers, surface not yet extrapolated
+    kWideX = 4,    ///< this node and two neighbours each way in x are wet
+    kWideY = 8,    ///< the same in y
+    kTreated = 16, ///< the surface of a margin node has been extrapolated
+    kMoving = 32,  ///< has momentum of its own: more than round-off of mass, not only sub-points
+};
+
+struct Nodes {
+    explicit Nodes(const TileGrid& grid, bool with_force)
+        : deposit(grid.size() + 1), force(with_force ? grid.size() : 0), depth(grid.size()), surface(grid.size()),
+          surface_next(grid.size()), before(grid.size()), motion(grid.size() + 1), flags(grid.size()) {}
+
+    Deposit* deposits() { return aligned(deposit.data()); }
+    const Deposit* deposits() const { return aligned(deposit.data()); }
+    Motion* motions() { return aligned(motion.data()); }
+    const Motion* motions() const { return aligned(motion.data()); }
+
+    LazyArray<Deposit> deposit;      ///< use deposits(): the start is moved to a 32-byte boundary
+    LazyArray<Pair> force;           ///< stress (and paper pressure) force [N]; empty without rheology
+    LazyArray<double> depth;         ///< column_mass / (rho A) [m]
+    LazyArray<double> surface;       ///< free surface, bed where dry [m]
+    LazyArray<double> surface_next;  ///< scratch of the surface passes
+    LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]
+    LazyArray<Motion> motion;        ///< use motions(), for the same reason
+    LazyArray<std::uint8_t> flags;   ///< NodeFlag bits
+
+private:
+    template <class T>
+    static T* aligned(T* p) {  // calloc promises 16 bytes only
+        const auto address = reinterpret_cast<std::uintptr_t>(p);
+        return reinterpret_cast<T*>((address + 31) / 32 * 32);
+    }
+};
+
+}  // namespace frana

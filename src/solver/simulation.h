@@ -1,0 +1,29 @@
+#pragma once
+// The one abstract face of every solver: step, look, sample.
+#include <memory>
+#include <vector>
+
+#include "observe/frame.h"
+#include "observe/observer.h"
+
+namespace frana {
+
+struct Scene;
+
+class Simulation : public Probe {
+public:
+    /// One time step, never past `until` [s]. Throws NumericsError when a number stops being finite.
+    virtual void advance(double until) = 0;
+    virtual const Status& status() const = 0;
+    /// Every particle stands still, or the mean speed fell below the scene's fraction of its peak.
+    virtual bool at_rest() const = 0;
+    /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
+    virtual Frame frame() = 0;
+    /// Wall time by phase since the start.
+    virtual std::vector<PhaseTime> timings() const = 0;
+};
+
+/// Chooses physics and scheme once, as types, and builds the solver of a scene.
+std::unique_ptr<Simulation> make_simulation(const Scene& scene);
+
+}  // namespace frana

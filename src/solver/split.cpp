@@ -1,0 +1,78 @@
+#include "solver/split.h"
+
+#include <algorithm>
+
+namespace frana {
+namespace {
+
+/// Long thin domains of points that may not split would throw their sub-points far ahead of the mass.
+void clamp_edge(double& x, double& y) {
+    const double length = std::sqrt(x * x + y * y);
+    if (length <= 1.0) return;
+    x /= length;
+    y /= length;
+}
+
+bool must_split(const Columns& c, Index p, double split_length, double least_mass) {
+    const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
+    const double area = std::abs(c.r1x[p] * c.r2y[p] - c.r1y[p] * c.r2x[p]);
+    return std::max(l1, l2) >= split_length * split_length && area >= 0.1 && c.mass[p] > least_mass;
+}
+
+/// Halves point p; the second half becomes point q.
+void halve(Flow& flow, Index p, Index q) {
+    Columns& c = flow.columns;
+    const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
+    double& rx = l1 >= l2 ? c.r1x[p] : c.r2x[p];
+    double& ry = l1 >= l2 ? c.r1y[p] : c.r2y[p];
+    const double dx = 0.25 * rx, dy = 0.25 * ry;
+    rx *= 0.5;
+    ry *= 0.5;
+    c.mass[p] *= 0.5;
+    c.each([&](std::vector<double>& column) { column[q] = column[p]; });
+    const double dvx = flow.cell * (c.cxx[p] * dx + c.cxy[p] * dy), dvy = flow.cell * (c.cyx[p] * dx + c.cyy[p] * dy);
+    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
+    c.x[q] = std::clamp(c.x[p] - dx, 0.0, x_max);
+    c.y[q] = std::clamp(c.y[p] - dy, 0.0, y_max);
+    c.vx[q] -= dvx;
+    c.vy[q] -= dvy;
+    c.x[p] = std::clamp(c.x[p] + dx, 0.0, x_max);
+    c.y[p] = std::clamp(c.y[p] + dy, 0.0, y_max);
+    c.vx[p] += dvx;
+    c.vy[p] += dvy;
+}
+
+}  // namespace
+
+Index Splitter::split(Flow& flow) {
+    Columns& c = flow.columns;
+    const Index count = c.count();
+    const double length = flow.scheme.split_length;
+    tile_first_.assign(static_cast<std::size_t>(flow.active.count()) + 1, 0);
+    for_each_tile(flow.active, [&](Index n) {
+        Index found = 0;
+        for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+            clamp_edge(c.r1x[p], c.r1y[p]);
+            clamp_edge(c.r2x[p], c.r2y[p]);
+            found += must_split(c, p, length, least_mass_);
+        }
+        tile_first_[n + 1] = found;
+    });
+    for (Index n = 0; n < flow.active.count(); ++n) tile_first_[n + 1] += tile_first_[n];
+    const Index added = tile_first_.back();
+    if (added == 0) return 0;
+    c.resize(count + added);
+    for_each_tile(flow.active, [&](Index n) {
+        Index next = tile_first_[n];
+        for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+            if (!must_split(c, p, length, least_mass_)) continue;
+            c.id[count + next] = next_id_ + next;
+            halve(flow, p, count + next);
+            ++next;
+        }
+    });
+    next_id_ += added;
+    return added;
+}
+
+}  // namespace frana

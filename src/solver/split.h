@@ -1,0 +1,24 @@
+#pragma once
+#include "solver/flow.h"
+
+namespace frana {
+
+/// Splits points whose domain has grown, so that spreading material does not fall apart (numerical fracture).
+class Splitter {
+public:
+    /// `least_mass`: no point lighter than this is split [kg].
+    explicit Splitter(double least_mass) : least_mass_(least_mass) {}
+    /// Clamps domain edges to one cell, then halves every point whose longer edge reaches scheme.split_length
+    /// cells: children at +- r/4 along that edge, with the velocity there. Mass and momentum are kept exactly.
+    /// New points are appended; returns how many. The caller sorts afterwards.
+    Index split(Flow& flow);
+    Index next_id() const { return next_id_; }
+    void set_next_id(Index id) { next_id_ = id; }
+
+private:
+    double least_mass_;
+    Index next_id_ = 0;
+    std::vector<Index> tile_first_;
+};
+
+}  // namespace frana

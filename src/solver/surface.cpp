@@ -1,0 +1,190 @@
+#include "solver/surface.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace frana {
+namespace {
+
+/// Ghost nodes beyond walls take the surface, depth and wetness of their mirror images.
+void mirror_surface(Flow& flow) {
+    if (!flow.walls) return;
+    Nodes& nodes = flow.nodes;
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
+            nodes.depth[ghost] = nodes.depth[mirror];
+            nodes.surface[ghost] = nodes.surface[mirror];
+            nodes.surface_next[ghost] = nodes.surface_next[mirror];
+            nodes.flags[ghost] = nodes.flags[mirror];
+        });
+}
+
+/// Wetness of a tile and two nodes around it: one bit a node, bit n + 2 of row n + 2 is node (n, n).
+struct WetRows {
+    std::uint32_t row[kTile + 4];
+    bool any = false;
+    WetRows(const Flow& flow, Index tile) {
+        const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+        std::uint32_t seen = 0;
+        for (Index j = 0; j < kTile + 4; ++j) {
+            row[j] = 0;
+            const Index jj = j0 + j - 2;
+            const Index first = flow.grid.at(i0, jj) - 2;
+            if (first < 0 || first + kTile + 4 > flow.grid.size()) continue;  // beyond the spare ring: dry
+            const std::uint8_t* flags = flow.nodes.flags.data() + first;
+            for (Index i = 0; i < kTile + 4; ++i)
+                row[j] |= static_cast<std::uint32_t>(flags[i] & kWet) << i;
+            seen |= row[j];
+        }
+        any = seen != 0;
+    }
+};
+
+/// One extrapolated surface value from up to eight directions, or nothing.
+bool extrapolate(const Flow& flow, Index k, double& value) {
+    const Nodes& nodes = flow.nodes;
+    const auto known = [&](Index n) { return (nodes.flags[n] & (kWet | kMargin)) == kWet; };
+    const Index up = flow.grid.stride();
+    double sum = 0.0, weights = 0.0;
+    for (int dj = -1; dj <= 1; ++dj)
+        for (int di = -1; di <= 1; ++di) {
+            if (di == 0 && dj == 0) continue;
+            const Index step = dj * up + di, p = k + step, q = p + step, r = q + step;
+            if (!known(p) || !known(q)) continue;
+            double e = 2.0 * nodes.surface[p] - nodes.surface[q];
+            const double limit = flow.scheme.margin_limit * nodes.depth[p];
+            if (known(r))
+                e += std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r], -limit, limit);
+            const double weight = di == 0 || dj == 0 ? nodes.depth[p] : 0.25 * nodes.depth[p];
+            sum += weight * e;
+            weights += weight;
+        }
+    if (weights <= 0.0) return false;
+    value = std::min(nodes.surface[k], std::max(sum / weights, flow.bed.z_min[k]));
+    return true;
+}
+
+void shoreline_sweep(Flow& flow) {
+    Nodes& nodes = flow.nodes;
+    const auto inside = [&](Index i, Index j) {
+        return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
+    };
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+            if (!(nodes.flags[k] & kMargin) || !inside(i, j)) return;
+            double value;
+            if (extrapolate(flow, k, value)) nodes.surface_next[k] = value;
+            else nodes.surface_next[k] = std::numeric_limits<double>::quiet_NaN();  // no candidate: stays flagged
+        });
+    });
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+            if (!(nodes.flags[k] & kMargin) || !inside(i, j)) return;
+            if (std::isnan(nodes.surface_next[k])) return;
+            nodes.surface[k] = nodes.surface_next[k];
+            nodes.flags[k] = static_cast<std::uint8_t>((nodes.flags[k] & ~kMargin) | kTreated);
+        });
+    });
+}
+
+/// One direction of the filter; reads `from`, writes `to`.
+void filter_along(Flow& flow, Index step, std::uint8_t wide, const LazyArray<double>& from, LazyArray<double>& to) {
+    const double strength = flow.scheme.filter / 16.0;
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+            const double* e = from.data() + k;
+            to[k] = e[0];
+            if (flow.nodes.flags[k] & wide)
+                to[k] -= strength * ((e[-2 * step] + e[2 * step]) - 4.0 * (e[-step] + e[step]) + 6.0 * e[0]);
+        });
+    });
+}
+
+}  // namespace
+
+NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
+    Nodes& nodes = flow.nodes;
+    const Deposit* deposits = nodes.deposits();
+    const double column = flow.density * flow.area, dry = flow.dry_depth(), least_mass = dry * column;
+    std::vector<NodeSums> parts(flow.active.work.size());
+    for_each_work_tile(flow.active, [&](Index n, Index tile) {
+        NodeSums sums;
+        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+            const Deposit d = deposits[k];
+            double h = d.column_mass / column;
+            const bool moving = d.mass > least_mass;
+            nodes.flags[k] = static_cast<std::uint8_t>((h > dry ? kWet : 0) | (moving ? kMoving : 0));
+            if (!(h > dry)) h = 0.0;
+            nodes.depth[k] = h;
+            nodes.surface[k] = flow.bed.z[k] + h;
+            nodes.before[k] = {moving ? d.px / d.mass : 0.0, moving ? d.py / d.mass : 0.0};
+            if (h == 0.0) return;
+            const double share = flow.share(i, j);
+            sums.potential += share * column * flow.gravity * h * (flow.bed.z[k] + 0.5 * h);
+            sums.max_depth = std::max(sums.max_depth, h);
+            if (h > request.footprint_depth) {
+                sums.covered_area += share * flow.area;
+                const double dx = static_cast<double>(i) - request.centre.x();
+                const double dy = static_cast<double>(j) - request.centre.y();
+                sums.front2 = std::max(sums.front2, (dx * dx + dy * dy) * flow.area);
+            }
+        });
+        parts[n] = sums;
+    });
+    NodeSums total;
+    for (const NodeSums& part : parts) {
+        total.potential += part.potential;
+        total.max_depth = std::max(total.max_depth, part.max_depth);
+        total.covered_area += part.covered_area;
+        total.front2 = std::max(total.front2, part.front2);
+    }
+    mirror_surface(flow);
+    return total;
+}
+
+void mark_margin(Flow& flow) {
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        const WetRows wet(flow, tile);
+        if (!wet.any) return;
+        std::uint32_t across[kTile + 4];  // this node and two each way in x
+        for (Index j = 0; j < kTile + 4; ++j) {
+            const std::uint32_t r = wet.row[j];
+            across[j] = r & (r << 1) & (r << 2) & (r >> 1) & (r >> 2);
+        }
+        const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+        for (Index j = 0; j < kTile; ++j) {
+            const std::uint32_t* r = wet.row + j;
+            const std::uint32_t wide_y = r[0] & r[1] & r[2] & r[3] & r[4];
+            const std::uint32_t* a = across + j;
+            const std::uint32_t inner = a[0] & a[1] & a[2] & a[3] & a[4];
+            std::uint8_t* flags = flow.nodes.flags.data() + flow.grid.at(i0, j0 + j);
+            for (Index i = 0; i < kTile; ++i) {
+                const std::uint32_t bit = 1u << (i + 2);
+                if (!(r[2] & bit)) continue;
+                std::uint8_t flag = flags[i] & (kWet | kMoving);
+                if (!(inner & bit)) flag |= kMargin;
+                if (a[2] & bit) flag |= kWideX;
+                if (wide_y & bit) flag |= kWideY;
+                flags[i] = flag;
+            }
+        }
+    });
+}
+
+void shoreline(Flow& flow) {
+    mark_margin(flow);
+    mirror_surface(flow);
+    for (int sweep = 0; sweep < 2; ++sweep) {
+        shoreline_sweep(flow);
+        mirror_surface(flow);
+    }
+}
+
+void filter(Flow& flow) {
+    if (flow.scheme.filter <= 0.0) return;
+    filter_along(flow, 1, kWideX, flow.nodes.surface, flow.nodes.surface_next);
+    filter_along(flow, flow.grid.stride(), kWideY, flow.nodes.surface_next, flow.nodes.surface);
+    mirror_surface(flow);
+}
+
+}  // namespace frana

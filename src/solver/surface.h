@@ -1,0 +1,36 @@
+#pragma once
+// From the deposited mass to the free surface: `depth`, `shoreline` (margin extrapolation), `filter`.
+// After these three a lake at rest has one and the same surface number on every wet node.
+#include "solver/flow.h"
+
+namespace frana {
+
+/// Sums over nodes, made tile by tile in a fixed order.
+struct NodeSums {
+    double potential = 0.0;     ///< sum of rho g A h (z + h/2) [J]
+    double max_depth = 0.0;     ///< [m]
+    double covered_area = 0.0;  ///< deeper than the footprint depth [m2]
+    double front2 = 0.0;        ///< squared largest distance of such a node from `centre` [m2]
+};
+
+/// What depth_pass needs beyond the flow.
+struct DepthRequest {
+    double footprint_depth;  ///< [m]
+    Vec2 centre;             ///< of the release, in cells
+};
+
+/// Nodal depth h = column mass / (rho A), wetness, surface = z + h (z where dry), velocity before the kick = P / M.
+/// Wetness is decided by the depth alone: nodes that only sub-points reach have depth and no momentum.
+NodeSums depth_pass(Flow& flow, const DepthRequest& request);
+
+/// Flags the wet nodes that have a dry one within two layers, and those with five wet nodes in a row in x or y.
+void mark_margin(Flow& flow);
+
+/// Wet nodes near a dry one have depth and bed averaged over partly dry supports, which lifts h + z. Their
+/// surface is extrapolated from the inside in two sweeps, never above h + z and never below the bed nearby.
+void shoreline(Flow& flow);
+
+/// Removes the 2-cell wave from the surface where five wet nodes stand in a row; exact on linear surfaces.
+void filter(Flow& flow);
+
+}  // namespace frana

@@ -1,0 +1,401 @@
+#include "solver/transfer.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/simd.h"
+#include "grid/stencil.h"
+#include "law/rheology.h"
+
+namespace frana {
+
+void PointSums::add(const PointSums& o) {
+    mass += o.mass;
+    px += o.px;
+    py += o.py;
+    p_abs += o.p_abs;
+    max_speed = std::max(max_speed, o.max_speed);
+    max_signal = std::max(max_signal, o.max_signal);
+    max_shift = std::max(max_shift, o.max_shift);
+    stress_power += o.stress_power;
+    left_mass += o.left_mass;
+    left_px += o.left_px;
+    left_py += o.left_py;
+    left_energy += o.left_energy;
+    left_count += o.left_count;
+    if (bad < 0) bad = o.bad;
+}
+
+namespace {
+
+PointSums total(const std::vector<PointSums>& parts) {
+    PointSums sum;
+    for (const PointSums& part : parts) sum.add(part);
+    return sum;
+}
+
+Double4 load(const void* p) {
+    Double4 value;
+    std::memcpy(&value, p, sizeof value);
+    return value;
+}
+void store(void* p, Double4 value) { std::memcpy(p, &value, sizeof value); }
+
+void clear_nodes(Flow& flow) {
+    Deposit* deposits = flow.nodes.deposits();
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for (Index j = 0; j < kTile; ++j) {
+            const Index row = flow.grid.at(flow.grid.tile_i(tile), flow.grid.tile_j(tile) + j);
+            std::memset(deposits + row, 0, kTile * sizeof(Deposit));
+            if (flow.nodes.force) std::memset(&flow.nodes.force[row], 0, kTile * sizeof(Pair));
+        }
+    });
+}
+
+/// The four sub-points of a domain at +- r1/4 +- r2/4 carry a quarter of the column each. At open sides they are
+/// held inside the domain, so that no mass waits beyond the edge.
+template <class S>
+void deposit_sub_points(const Flow& flow, Deposit* deposits, Index p) {
+    const Columns& c = flow.columns;
+    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
+    const double quarter = 0.25 * c.mass[p];
+    for (int k = 0; k < 4; ++k) {
+        const double s1 = k & 1 ? 0.25 : -0.25, s2 = k & 2 ? 0.25 : -0.25;
+        // Domains are held below one cell when they are split; between two such times 3/4 is out of their reach.
+        double x = c.x[p] + std::clamp(s1 * c.r1x[p] + s2 * c.r2x[p], -0.75, 0.75);
+        double y = c.y[p] + std::clamp(s1 * c.r1y[p] + s2 * c.r2y[p], -0.75, 0.75);
+        if (!flow.walls) {
+            x = std::clamp(x, 0.0, x_max);
+            y = std::clamp(y, 0.0, y_max);
+        }
+        const S sx(x), sy(y);
+        for (int j = 0; j < S::kNodes; ++j) {
+            Deposit* row = deposits + flow.grid.at(sx.base, sy.base + j);
+            const double weight = quarter * sy.w[j];
+            for (int i = 0; i < S::kNodes; ++i) row[i].column_mass += weight * sx.w[i];
+        }
+    }
+}
+
+/// -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21).
+template <class S>
+void deposit_stress(Flow& flow, const S& sx, const S& sy, double volume, const Plane& sigma) {
+    const double scale = volume / flow.cell;
+    for (int j = 0; j < S::kNodes; ++j) {
+        Pair* row = &flow.nodes.force[flow.grid.at(sx.base, sy.base + j)];
+        for (int i = 0; i < S::kNodes; ++i) {
+            const double dx = sx.slope(i) * sy.w[j], dy = sx.w[i] * sy.slope(j);
+            row[i].x -= scale * (sigma.xx * dx + sigma.xy * dy);
+            row[i].y -= scale * (sigma.xy * dx + sigma.yy * dy);
+        }
+    }
+}
+
+/// Pressure and weight on points, as Fois et al. 2024 have them: eq. 13, or eq. 33 when a still level is known.
+template <class S>
+void deposit_paper_pressure(Flow& flow, const S& sx, const S& sy, double mass, double depth) {
+    double z = 0.0, zx = 0.0, zy = 0.0;
+    for (int j = 0; j < S::kNodes; ++j)
+        for (int i = 0; i < S::kNodes; ++i) {
+            const double zi = flow.bed.z[flow.grid.at(sx.base + i, sy.base + j)];
+            z += sx.w[i] * sy.w[j] * zi;
+            zx += sx.slope(i) * sy.w[j] * zi / flow.cell;
+            zy += sx.w[i] * sy.slope(j) * zi / flow.cell;
+        }
+    const double still = flow.scheme.still_level ? *flow.scheme.still_level - z : 0.0;
+    const double push = 0.5 * flow.gravity * mass * (depth * depth - still * still) / (depth * flow.cell);
+    const double weight = flow.gravity * mass * (depth - still) / depth;
+    for (int j = 0; j < S::kNodes; ++j) {
+        Pair* row = &flow.nodes.force[flow.grid.at(sx.base, sy.base + j)];
+        for (int i = 0; i < S::kNodes; ++i) {
+            const double w = sx.w[i] * sy.w[j];
+            row[i].x += push * sx.slope(i) * sy.w[j] - weight * zx * w;
+            row[i].y += push * sx.w[i] * sy.slope(j) - weight * zy * w;
+        }
+    }
+}
+
+/// S: shape. kTransfer: how velocity travels. Law: rheology. kPaper: pressure on points, depth carried by them.
+template <class S, Transfer kTransfer, class Law, bool kPaper>
+class Kernel final : public TransferKernel {
+    static constexpr bool kAffine = kTransfer == Transfer::tpic || kTransfer == Transfer::apic;
+    static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
+
+public:
+    explicit Kernel(const Law& law) : law_(law) {}
+
+    PointSums deposit(Flow& flow, double kick) override {
+        clear_nodes(flow);
+        tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
+        const double cap = flow.scheme.stress_cap * flow.density * flow.area / kick;
+        for_each_tile_coloured(flow.active, [&](Index n) {
+            PointSums sums;
+            for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) deposit_point(flow, p, cap, sums);
+            tile_sums_[n] = sums;
+        });
+        return total(tile_sums_);
+    }
+
+    PointSums gather(Flow& flow, double dt) override {
+        tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
+        gone_.assign(static_cast<std::size_t>(flow.columns.count()), 0);
+        for_each_tile(flow.active, [&](Index n) {
+            PointSums sums;
+            for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) gather_point(flow, p, dt, sums);
+            tile_sums_[n] = sums;
+        });
+        return total(tile_sums_);
+    }
+
+    void probe(Flow& flow, Probe& out) override {
+        const std::size_t count = static_cast<std::size_t>(flow.columns.count());
+        for (auto* column : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth})
+            column->resize(count);
+        for_each_tile(flow.active, [&](Index n) {
+            for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+                const Gathered g = gathered(flow, p);
+                const auto [vx, vy] = velocity_of(flow, p, g);
+                out.vx[p] = vx;
+                out.vy[p] = vy;
+                out.cxx[p] = g.cxx;
+                out.cxy[p] = g.cxy;
+                out.cyx[p] = g.cyx;
+                out.cyy[p] = g.cyy;
+                out.depth[p] = kPaper ? flow.columns.depth[p] : g.depth;
+            }
+        });
+    }
+
+private:
+    struct Gathered { double vx, vy, cxx, cxy, cyx, cyy, depth, old_x, old_y; };
+
+    void deposit_point(Flow& flow, Index p, double cap, PointSums& sums) {
+        const Columns& c = flow.columns;
+        const S sx(c.x[p]), sy(c.y[p]);
+        const double m = c.mass[p], vx = c.vx[p], vy = c.vy[p];
+        Deposit* deposits = flow.nodes.deposits();
+        Double4 base = {m, m * vx, m * vy, kPaper ? m : 0.0}, along_x = {}, along_y = {};
+        if constexpr (kAffine) {
+            const double mc = m * flow.cell;
+            along_x = Double4{0.0, mc * c.cxx[p], mc * c.cyx[p], 0.0};
+            along_y = Double4{0.0, mc * c.cxy[p], mc * c.cyy[p], 0.0};
+            base -= sx.offset * along_x + sy.offset * along_y;
+        }
+        for (int j = 0; j < S::kNodes; ++j) {
+            Deposit* row = deposits + flow.grid.at(sx.base, sy.base + j);
+            const Double4 value = base + static_cast<double>(j) * along_y;
+            for (int i = 0; i < S::kNodes; ++i)
+                store(row + i, load(row + i) + (sx.w[i] * sy.w[j]) * (value + static_cast<double>(i) * along_x));
+        }
+        if constexpr (!kPaper) deposit_sub_points<S>(flow, deposits, p);
+        if constexpr (kStress) {
+            if (c.depth[p] > flow.dry_depth()) {
+                const double volume = m / flow.density;
+                const Plane rate{c.cxx[p], c.cyy[p], 0.5 * (c.cxy[p] + c.cyx[p])};
+                const Plane sigma =
+                    stress(law_, {rate, std::hypot(vx, vy), c.depth[p], flow.scheme.strain_rate_floor, cap});
+                deposit_stress(flow, sx, sy, volume, sigma);
+                sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
+            }
+        }
+        if constexpr (kPaper) deposit_paper_pressure(flow, sx, sy, m, c.depth[p]);
+        sums.mass += m;
+        sums.px += m * vx;
+        sums.py += m * vy;
+        sums.p_abs += m * std::hypot(vx, vy);
+    }
+
+    Gathered gathered(const Flow& flow, Index p) const {
+        const Columns& c = flow.columns;
+        const S sx(c.x[p]), sy(c.y[p]);
+        const Motion* motions = flow.nodes.motions();
+        Double4 value = {}, by_x = {}, by_y = {};
+        double old_x = 0.0, old_y = 0.0;
+        for (int j = 0; j < S::kNodes; ++j) {
+            const Index k = flow.grid.at(sx.base, sy.base + j);
+            Double4 row = {}, row_x = {};
+            for (int i = 0; i < S::kNodes; ++i) {
+                const Double4 node = load(motions + k + i);
+                row += sx.w[i] * node;
+                if constexpr (kTransfer == Transfer::apic)
+                    row_x += (sx.w[i] * (static_cast<double>(i) - sx.offset)) * node;
+                else row_x += sx.slope(i) * node;
+                if constexpr (kTransfer == Transfer::flip) {
+                    old_x += sx.w[i] * sy.w[j] * flow.nodes.before[k + i].x;
+                    old_y += sx.w[i] * sy.w[j] * flow.nodes.before[k + i].y;
+                }
+            }
+            value += sy.w[j] * row;
+            by_x += sy.w[j] * row_x;
+            if constexpr (kTransfer == Transfer::apic)
+                by_y += (sy.w[j] * (static_cast<double>(j) - sy.offset)) * row;
+            else by_y += sy.slope(j) * row;
+        }
+        // APIC: C = 4/cell^2 sum N v (x) d (Jiang et al. 2015, quadratic); TPIC: C = sum v (x) grad N.
+        const double scale = (kTransfer == Transfer::apic ? 4.0 : 1.0) / flow.cell;
+        return {value[0], value[1], scale * by_x[0], scale * by_y[0], scale * by_x[1], scale * by_y[1],
+                value[2], old_x, old_y};
+    }
+
+    std::pair<double, double> velocity_of(const Flow& flow, Index p, const Gathered& g) const {
+        if constexpr (kTransfer == Transfer::flip) {
+            const double keep = flow.scheme.flip_ratio;
+            return {keep * (flow.columns.vx[p] + g.vx - g.old_x) + (1.0 - keep) * g.vx,
+                    keep * (flow.columns.vy[p] + g.vy - g.old_y) + (1.0 - keep) * g.vy};
+        } else {
+            return {g.vx, g.vy};
+        }
+    }
+
+    void gather_point(Flow& flow, Index p, double dt, PointSums& sums) {
+        Columns& c = flow.columns;
+        const Gathered g = gathered(flow, p);
+        const auto [vx, vy] = velocity_of(flow, p, g);
+        const double shift_x = dt * g.vx / flow.cell, shift_y = dt * g.vy / flow.cell;
+        const double shift = std::max(std::abs(shift_x), std::abs(shift_y));
+        if (!(shift <= 4.0)) {  // also catches what is not finite
+            if (sums.bad < 0) sums.bad = p;
+            return;
+        }
+        c.vx[p] = vx;
+        c.vy[p] = vy;
+        c.cxx[p] = g.cxx;
+        c.cxy[p] = g.cxy;
+        c.cyx[p] = g.cyx;
+        c.cyy[p] = g.cyy;
+        c.x[p] += shift_x;
+        c.y[p] += shift_y;
+        if constexpr (kPaper) {
+            c.depth[p] /= 1.0 + dt * (g.cxx + g.cyy);  // Fois et al. 2024, eq. 30
+        } else {
+            c.depth[p] = g.depth;
+            stretch(c.r1x[p], c.r1y[p], g, dt);
+            stretch(c.r2x[p], c.r2y[p], g, dt);
+        }
+        meet_side(flow, p, sums);
+        const double speed = std::hypot(vx, vy), m = c.mass[p];
+        sums.max_shift = std::max(sums.max_shift, shift);
+        sums.max_speed = std::max(sums.max_speed, speed);
+        sums.max_signal = std::max(sums.max_signal, speed + std::sqrt(flow.gravity * std::max(c.depth[p], 0.0)));
+        if (gone_[p]) return;
+        sums.mass += m;
+        sums.px += m * c.vx[p];
+        sums.py += m * c.vy[p];
+        sums.p_abs += m * speed;
+    }
+
+    static void stretch(double& rx, double& ry, const Gathered& g, double dt) {
+        const double x = rx, y = ry;
+        rx += dt * (g.cxx * x + g.cxy * y);
+        ry += dt * (g.cyx * x + g.cyy * y);
+    }
+
+    /// Walls reflect a point; beyond open sides, and where the elevation model has no data, it leaves.
+    void meet_side(Flow& flow, Index p, PointSums& sums) {
+        Columns& c = flow.columns;
+        const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
+        const bool outside_x = !(c.x[p] >= 0.0 && c.x[p] <= x_max), outside_y = !(c.y[p] >= 0.0 && c.y[p] <= y_max);
+        if (flow.walls) {
+            if (outside_x) {
+                c.x[p] = c.x[p] < 0.0 ? -c.x[p] : 2.0 * x_max - c.x[p];
+                for (auto* odd : {&c.vx[p], &c.cxy[p], &c.cyx[p], &c.r1x[p], &c.r2x[p]}) *odd = -*odd;
+            }
+            if (outside_y) {
+                c.y[p] = c.y[p] < 0.0 ? -c.y[p] : 2.0 * y_max - c.y[p];
+                for (auto* odd : {&c.vy[p], &c.cxy[p], &c.cyx[p], &c.r1y[p], &c.r2y[p]}) *odd = -*odd;
+            }
+        }
+        const Index k = flow.grid.at(static_cast<Index>(std::floor(c.x[p] + 0.5)),
+                                     static_cast<Index>(std::floor(c.y[p] + 0.5)));
+        if ((!flow.walls && (outside_x || outside_y)) || flow.bed.exit[k]) leave(flow, p, k, sums);
+    }
+
+    void leave(Flow& flow, Index p, Index k, PointSums& sums) {
+        const Columns& c = flow.columns;
+        const double m = c.mass[p], vx = c.vx[p], vy = c.vy[p];
+        gone_[p] = 1;
+        sums.left_count += 1;
+        sums.left_mass += m;
+        sums.left_px += m * vx;
+        sums.left_py += m * vy;
+        sums.left_energy += m * (0.5 * (vx * vx + vy * vy) +
+                                 flow.gravity * (flow.bed.z[k] + 0.5 * std::max(c.depth[p], 0.0)));
+    }
+
+    Law law_;
+};
+
+template <class S, Transfer kTransfer>
+std::unique_ptr<TransferKernel> with_rheology(const Scene& scene) {
+    return std::visit(
+        [&](const auto& law) -> std::unique_ptr<TransferKernel> {
+            using Law = std::decay_t<decltype(law)>;
+            if (scene.scheme.paper_pressure) return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
+            return std::make_unique<Kernel<S, kTransfer, Law, false>>(law);
+        },
+        scene.rheology);
+}
+
+template <class S>
+std::unique_ptr<TransferKernel> with_transfer(const Scene& scene) {
+    switch (scene.scheme.transfer) {
+        case Transfer::tpic: return with_rheology<S, Transfer::tpic>(scene);
+        case Transfer::apic: return with_rheology<S, Transfer::apic>(scene);
+        case Transfer::flip: return with_rheology<S, Transfer::flip>(scene);
+        case Transfer::pic: return with_rheology<S, Transfer::pic>(scene);
+    }
+    throw InternalError("unknown transfer");
+}
+
+}  // namespace
+
+std::unique_ptr<TransferKernel> make_transfer(const Scene& scene) {
+    return scene.scheme.shape == Shape::quadratic ? with_transfer<Quadratic>(scene) : with_transfer<Linear>(scene);
+}
+
+PointSums node_sums(const Flow& flow) {
+    std::vector<PointSums> parts(flow.active.work.size());
+    const Deposit* deposits = flow.nodes.deposits();
+    for_each_work_tile(flow.active, [&](Index n, Index tile) {
+        PointSums sums;
+        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+            sums.mass += deposits[k].mass;
+            sums.px += deposits[k].px;
+            sums.py += deposits[k].py;
+        });
+        parts[n] = sums;
+    });
+    return total(parts);
+}
+
+void fold_walls(Flow& flow) {
+    if (!flow.walls) return;
+    Deposit* deposits = flow.nodes.deposits();
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 0, [&](Index ghost, Index mirror) {
+            const Deposit image = deposits[ghost];
+            Deposit& node = deposits[mirror];
+            node.mass += image.mass;
+            node.column_mass += image.column_mass;
+            node.px += axis == 0 ? -image.px : image.px;
+            node.py += axis == 1 ? -image.py : image.py;
+            if (!flow.nodes.force) return;
+            const Pair pull = flow.nodes.force[ghost];
+            flow.nodes.force[mirror].x += axis == 0 ? -pull.x : pull.x;
+            flow.nodes.force[mirror].y += axis == 1 ? -pull.y : pull.y;
+        });
+}
+
+void mirror_motion(Flow& flow) {
+    if (!flow.walls) return;
+    Motion* motions = flow.nodes.motions();
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
+            motions[ghost] = motions[mirror];
+            flow.nodes.before[ghost] = flow.nodes.before[mirror];
+            (axis == 0 ? motions[ghost].vx : motions[ghost].vy) *= -1.0;
+            (axis == 0 ? flow.nodes.before[ghost].x : flow.nodes.before[ghost].y) *= -1.0;
+        });
+}
+
+}  // namespace frana

@@ -1,0 +1,58 @@
+#pragma once
+// Points to nodes and back: `deposit` (mass, momentum, sub-point depth, stress) and `gather` (velocity, gradient,
+// positions, domains). The choices (shape, transfer, rheology, paper pressure) become types once, at the start.
+#include <memory>
+#include <vector>
+
+#include "solver/flow.h"
+
+namespace frana {
+
+/// Sums over points, made tile by tile in a fixed order.
+struct PointSums {
+    double mass = 0.0;               ///< [kg]
+    double px = 0.0, py = 0.0;       ///< momentum [kg m/s]
+    double p_abs = 0.0;              ///< sum of m |v| [kg m/s]
+    double max_speed = 0.0;          ///< [m/s]
+    double max_signal = 0.0;         ///< largest |v| + sqrt(g h) [m/s]
+    double max_shift = 0.0;          ///< largest displacement of the step [cells]
+    double stress_power = 0.0;       ///< sum of V sigma : eps [W]
+    double left_mass = 0.0, left_px = 0.0, left_py = 0.0, left_energy = 0.0;  ///< removed in this step
+    Index left_count = 0;
+    Index bad = -1;                  ///< a point whose state is not finite, or that jumped more than 4 cells
+
+    void add(const PointSums& other);
+};
+
+class TransferKernel {
+public:
+    virtual ~TransferKernel() = default;
+    /// Clears the nodes near material and deposits all points. `kick` is the longest time step the result will be
+    /// used for [s]: it caps the explicit stress (scheme.stress_cap).
+    virtual PointSums deposit(Flow& flow, double kick) = 0;
+    /// Moves all points by `dt` [s] with the nodes' velocities; points outside are marked in gone().
+    virtual PointSums gather(Flow& flow, double dt) = 0;
+    /// The points' velocities gathered from the nodes, without moving anything: v and grad v at the points.
+    struct Probe { std::vector<double> vx, vy, cxx, cxy, cyx, cyy, depth; };
+    virtual void probe(Flow& flow, Probe& out) = 0;
+    /// One byte per point, 1: it left the domain in the last gather.
+    const std::vector<std::uint8_t>& gone() const { return gone_; }
+
+protected:
+    std::vector<std::uint8_t> gone_;
+    std::vector<PointSums> tile_sums_;
+};
+
+std::unique_ptr<TransferKernel> make_transfer(const Scene& scene);
+
+/// Sums of the nodes' deposits before folding, to be held against PointSums (partition of unity).
+PointSums node_sums(const Flow& flow);
+
+/// Closes the domain at walls by adding to each node what its mirror image would bring (mirror-image particles);
+/// nothing at open sides.
+void fold_walls(Flow& flow);
+
+/// Copies motion to the ghosts of walls, mirrored.
+void mirror_motion(Flow& flow);
+
+}  // namespace frana

@@ -1,0 +1,107 @@
+#include "analytic_scene.h"
+#include "catch.h"
+#include "law/bed_law.h"
+#include "law/rheology.h"
+
+using namespace frana;
+
+namespace {
+BedState flat(double thickness, double density = 1000.0) { return {9.81, thickness, 1.0, 1.0, 9.81, density}; }
+constexpr double kRoundOff = 1e-12;
+}  // namespace
+
+TEST_CASE("Coulomb friction takes mu g dt off the driven speed and stops exactly", "[law]") {
+    const bed::Coulomb law{0.4};
+    CHECK(speed_after(law, flat(1.0), 3.0, 3.0, 0.1) == Approx(3.0 - 0.4 * 9.81 * 0.1).epsilon(kRoundOff));
+    CHECK(speed_after(law, flat(1.0), 0.0, 0.39, 0.1) == 0.0);
+    CHECK(speed_after(law, flat(1.0), 0.1, 0.1, 0.1) == 0.0);
+}
+
+TEST_CASE("Voellmy friction follows tanh from rest and holds its terminal speed", "[law]") {
+    const bed::Voellmy law{0.2, 1000.0};
+    const double drive = 5.0, net = drive - 0.2 * 9.81, terminal = std::sqrt(net * 1000.0 * 2.0 / 9.81);
+    double speed = 0.0;
+    const double dt = 0.25;
+    for (int step = 1; step <= 400; ++step) {
+        speed = speed_after(law, flat(2.0), speed, speed + drive * dt, dt);
+        // exact for a constant drive, so only round-off of 400 steps may stand between
+        REQUIRE(speed == Approx(terminal * std::tanh(net * dt * step / terminal)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("A decelerating Voellmy block follows tan and stops within the step that holds its end", "[law]") {
+    const bed::Voellmy law{0.3, 500.0};
+    const double coulomb = 0.3 * 9.81, quadratic = 9.81 / (500.0 * 1.0);
+    const double scale = std::sqrt(coulomb / quadratic), rate = std::sqrt(coulomb * quadratic);
+    const double end = std::atan(10.0 / scale) / rate;
+    double speed = 10.0, time = 0.0;
+    while (speed > 0.0) {
+        speed = speed_after(law, flat(1.0), speed, speed, 0.05);
+        time += 0.05;
+        if (speed > 0.0)
+            REQUIRE(speed == Approx(scale * std::tan(rate * (end - time))).epsilon(1e-10));  // round-off of tan near 0
+    }
+    CHECK(time - end < 0.05);
+    CHECK(time >= end);
+}
+
+TEST_CASE("No law speeds a node up or turns it round", "[law]") {
+    const BedLaw laws[] = {bed::Coulomb{0.5}, bed::Voellmy{0.1, 300.0}, bed::Manning{0.1, 0.05},
+                           bed::Bingham{100.0, 500.0, 0.1}, bed::Pouliquen{}};
+    for (const BedLaw& law : laws)
+        for (const double thickness : {1e-9, 1e-3, 1.0, 100.0})
+            for (const double driven : {0.0, 1e-12, 0.1, 30.0})
+                for (const double before : {0.0, 0.05, 40.0})
+                    for (const double dt : {1e-6, 0.1, 10.0})
+                        std::visit(
+                            [&](const auto& chosen) {
+                                const double s0 = std::min(before, driven);
+                                const double speed = speed_after(chosen, flat(thickness), s0, driven, dt);
+                                CAPTURE(law.index(), thickness, driven, s0, dt, speed);
+                                CHECK(speed >= 0.0);
+                                CHECK(speed <= driven * (1.0 + 1e-14));  // one rounding
+                            },
+                            law);
+}
+
+TEST_CASE("The Bingham closure inverts |v| = tau_B h / (6 mu) (2 + zeta)(1 - zeta)^2", "[law]") {
+    const double mu = 20.0, tau_y = 50.0, h = 0.4;
+    for (const double zeta : {0.05, 0.3, 0.7, 0.95}) {
+        const double speed = tau_y / zeta * h / (6.0 * mu) * (2.0 + zeta) * (1.0 - zeta) * (1.0 - zeta);
+        CHECK(bingham_zeta(6.0 * mu * speed / (tau_y * h), 0.0) == Approx(zeta).epsilon(1e-12));
+    }
+    CHECK(bingham_zeta(0.0, 0.0) == Approx(1.0).margin(1e-7));  // a double root: half the digits
+}
+
+TEST_CASE("A Bingham sheet reaches its uniform speed and yields exactly", "[law]") {
+    const bed::Bingham law{1000.0, 300.0, 0.0};
+    const double h = 1.0, rho = 1500.0, drive = 9.81 * std::sin(0.26), shear = rho * drive * h;
+    const double plug = law.yield_stress / shear;  // share of the depth that does not shear
+    const double exact = shear * h / (3.0 * law.viscosity) * (1 - plug) * (1 - plug) * (1 + 0.5 * plug);
+    double speed = 0.0;
+    for (int step = 0; step < 2000; ++step) speed = speed_after(law, flat(h, rho), speed, speed + 0.1 * drive, 0.1);
+    CHECK(speed == Approx(exact).epsilon(1e-12));  // the fixed point of backward Euler is the exact one
+    const double just_below = law.yield_stress / (rho * h) * 0.1;
+    CHECK(speed_after(law, flat(h, rho), 0.0, just_below * (1 - 1e-12), 0.1) == 0.0);
+    CHECK(speed_after(law, flat(h, rho), 0.0, just_below * 1.01, 0.1) > 0.0);
+}
+
+TEST_CASE("A mu(I) sheet reaches Bagnold's mean speed", "[law]") {
+    const double slope = 26.0 * M_PI / 180.0;
+    const bed::Pouliquen law{std::tan(21.0 * M_PI / 180.0), std::tan(33.0 * M_PI / 180.0), 0.3, 1e-3, 0.6};
+    BedState bed{9.81 * std::cos(slope), 0.02, 1.0, std::cos(slope), 9.81, 1500.0};
+    double speed = 0.0;
+    for (int step = 0; step < 20000; ++step)
+        speed = speed_after(law, bed, speed, speed + 1e-3 * 9.81 * std::sin(slope), 1e-3);
+    CHECK(speed == Approx(0.50154241).epsilon(1e-7));  // computed from the closed form to eight digits
+}
+
+TEST_CASE("Bingham stress in plane strain equals 2 mu eps plus the yield stress over sqrt(I2)", "[law]") {
+    const rheology::Bingham law{10.0, 100.0};
+    const Plane rate{0.3, -0.3, 0.4};  // no vertical part, at rest no vertical shear: I2 = 0.09 + 0.16
+    const Plane sigma = stress(law, {rate, 0.0, 1.0, 0.0, 1e9});
+    CHECK(sigma.xx == Approx((20.0 + 100.0 / 0.5) * 0.3).epsilon(kRoundOff));
+    CHECK(sigma.xy == Approx((20.0 + 100.0 / 0.5) * 0.4).epsilon(kRoundOff));
+    const Plane capped = stress(law, {rate, 0.0, 1.0, 0.0, 7.0});
+    CHECK(capped.yy == Approx(-7.0 * 0.3).epsilon(kRoundOff));
+}
