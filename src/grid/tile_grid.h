@@ -88,10 +88,13 @@ struct ActiveTiles {
     Index count() const { return static_cast<Index>(tile.size()); }
 };
 
+/// Fewer tiles than this are not worth waking other threads for.
+constexpr Index kTilesForThreads = 4;
+
 /// Runs body(position) for all particle tiles, colour after colour.
 template <class Body>
 void for_each_tile_coloured(const ActiveTiles& active, Body&& body) {
-#pragma omp parallel
+#pragma omp parallel if (active.count() >= kTilesForThreads)
     for (const auto& positions : active.colour) {
         const Index count = static_cast<Index>(positions.size());
 #pragma omp for schedule(dynamic, 1)
@@ -103,7 +106,7 @@ void for_each_tile_coloured(const ActiveTiles& active, Body&& body) {
 template <class Body>
 void for_each_tile(const ActiveTiles& active, Body&& body) {
     const Index count = active.count();
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) body(n);
 }
 
@@ -111,7 +114,7 @@ void for_each_tile(const ActiveTiles& active, Body&& body) {
 template <class Body>
 void for_each_work_tile(const ActiveTiles& active, Body&& body) {
     const Index count = static_cast<Index>(active.work.size());
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) body(n, active.work[static_cast<std::size_t>(n)]);
 }
 

@@ -1,0 +1,178 @@
+#include "io/gdal_crs.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+
+namespace frana::gdal {
+namespace {
+
+constexpr double us_foot = 1200.0 / 3937.0;  // [m]
+constexpr double unit_tolerance = 1e-9;      // a US survey foot differs from a foot by 2e-6
+
+std::string authority(const OGRSpatialReference& crs) {
+    const char* name = crs.GetAuthorityName(nullptr);
+    const char* code = crs.GetAuthorityCode(nullptr);
+    return name && code ? fmt::format("{}:{}", name, code) : std::string();
+}
+
+OGRSpatialReference horizontal(const OGRSpatialReference& crs) {
+    OGRSpatialReference flat(crs);
+    if (flat.IsCompound()) flat.StripVertical();
+    if (flat.GetAxesCount() == 3) flat.DemoteTo2D(nullptr);
+    flat.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    return flat;
+}
+
+/// Metric CRS for the place, "EPSG:32632"; a placeholder where it cannot be told.
+std::string metric_crs(const Place& place) {
+    const Messages quiet;
+    OGRSpatialReference degrees;
+    degrees.importFromEPSG(4326);
+    degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const OGRSpatialReference flat = horizontal(*place.crs);
+    const Transformation to_degrees(OGRCreateCoordinateTransformation(&flat, &degrees));
+    double lon = place.centre[0], lat = place.centre[1];
+    if (!to_degrees || !to_degrees->Transform(1, &lon, &lat) || !std::isfinite(lon) || !std::isfinite(lat))
+        return "EPSG:CODE_OF_A_METRIC_CRS";
+    return fmt::format("EPSG:{}", utm_code(lon, lat));
+}
+
+struct Unit {
+    double metres = 1.0;
+    std::string name;
+};
+
+/// The unit of elevations when it is not the metre: declared by the vertical part of the CRS, else by the
+/// band.
+Unit vertical_unit(const Place& place) {
+    if (!place.elevation) return {};
+    if (place.crs && place.crs->IsCompound()) {
+        const char* name = nullptr;
+        const double metres = place.crs->GetTargetLinearUnits("VERT_CS", &name);
+        return std::abs(metres - 1.0) > unit_tolerance ? Unit{metres, name ? name : "unknown"} : Unit{};
+    }
+    std::string unit = place.band_unit;
+    std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
+    static const std::map<std::string, double> known = {
+        {"ft", 0.3048},       {"foot", 0.3048},           {"feet", 0.3048},  {"cm", 0.01},
+        {"centimetre", 0.01}, {"centimeter", 0.01},       {"dm", 0.1},       {"mm", 0.001},
+        {"km", 1000.0},       {"us-ft", us_foot},         {"ftus", us_foot}, {"us survey foot", us_foot},
+        {"foot_us", us_foot}, {"us_survey_foot", us_foot}};
+    const auto found = known.find(unit);
+    return found == known.end() ? Unit{} : Unit{found->second, place.band_unit};
+}
+
+/// Turns elevations into metres. The detour over a VRT drops the old unit, which gdal_translate alone would
+/// carry on, and the vertical CRS.
+std::string scale_line(const Place& place, const Unit& unit) {
+    std::string crs;
+    if (place.crs && place.crs->IsCompound()) {
+        const OGRSpatialReference flat = horizontal(*place.crs);
+        crs = authority(flat);
+        if (crs.empty()) {
+            const Messages quiet;
+            char* proj = nullptr;
+            if (flat.exportToProj4(&proj) == OGRERR_NONE && proj) crs = proj;
+            CPLFree(proj);
+        }
+        if (!crs.empty()) crs = "-a_srs " + shell(crs) + " ";
+    }
+    const std::string target = beside(place.file, "_metres");
+    const std::string between = std::filesystem::path(target).replace_extension(".vrt").string();
+    return fmt::format(
+        "gdalbuildvrt {}{} {} && gdal_translate -ot Float32 -scale 0 1 0 {:.12g} -a_nodata -9999 "
+        "{} {}",
+        crs, shell(between), shell(place.file.string()), unit.metres, shell(between), shell(target));
+}
+
+[[noreturn]] void refuse_plane(const Place& place, const std::string& found) {
+    const Unit up = vertical_unit(place);
+    const bool metres = up.name.empty();
+    const std::filesystem::path input =
+        metres ? place.file : std::filesystem::path(beside(place.file, "_metres"));
+    throw UserError(
+        fmt::format("{}: {}{}; expected a projected CRS in metres; run: {}{}{}", place.file.string(), found,
+                    metres ? "" : ", and its elevations are in " + up.name,
+                    metres ? "" : scale_line(place, up) + " && ", warp_line(input, metric_crs(place), "_utm"),
+                    metres && place.elevation ? " (its elevations are taken as metres)" : ""));
+}
+
+}  // namespace
+
+OGRSpatialReference crs_from_wkt(const std::string& wkt) {
+    OGRSpatialReference crs;
+    const Messages messages;
+    if (crs.importFromWkt(wkt.c_str()) != OGRERR_NONE)
+        throw UserError("\"" + wkt.substr(0, 60) + "\": not a coordinate reference system in WKT (" +
+                        messages.reason("no reason given") + ")");
+    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    return crs;
+}
+
+std::string horizontal_wkt(const OGRSpatialReference& crs) {
+    if (crs.IsEmpty() || crs.IsLocal()) return {};
+    const char* const options[] = {"FORMAT=WKT2_2018", nullptr};
+    char* text = nullptr;
+    const Messages quiet;
+    horizontal(crs).exportToWkt(&text, options);
+    std::string wkt(text ? text : "");
+    CPLFree(text);
+    return wkt;
+}
+
+bool same_crs(const OGRSpatialReference& a, const OGRSpatialReference& b) {
+    const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
+                                   "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
+    const Messages quiet;
+    const OGRSpatialReference flat_b = horizontal(b);
+    return horizontal(a).IsSame(&flat_b, options);
+}
+
+std::string crs_name(const OGRSpatialReference& crs) {
+    const std::string code = authority(crs);
+    const char* name = crs.GetName();
+    if (code.empty()) return name ? name : "unnamed CRS";
+    return name ? fmt::format("{} ({})", code, name) : code;
+}
+
+int utm_code(double longitude, double latitude) {
+    if (latitude > 84.0) return 32661;
+    if (latitude < -80.0) return 32761;
+    const int zone = 1 + static_cast<int>(std::floor((longitude + 180.0) / 6.0)) % 60;
+    return (latitude < 0.0 ? 32700 : 32600) + (zone < 1 ? zone + 60 : zone);
+}
+
+void require_metres(const Place& place, std::vector<std::string>& log) {
+    const std::string name = place.file.filename().string();
+    if (!place.crs || place.crs->IsEmpty()) {
+        log.push_back(name + ": no CRS; its coordinates are taken as local metres");
+    } else if (place.crs->IsLocal()) {
+        log.push_back(name + ": local CRS; its coordinates are taken as local metres");
+    } else if (place.crs->IsGeographic() || place.crs->IsGeocentric() || !place.crs->IsProjected()) {
+        refuse_plane(place, fmt::format("its CRS is {}, which is {}", crs_name(*place.crs),
+                                        place.crs->IsGeographic() ? "geographic (degrees)" : "not a map"));
+    } else {
+        const char* unit = nullptr;
+        const double metres = place.crs->GetLinearUnits(&unit);
+        if (std::abs(metres - 1.0) > unit_tolerance)
+            refuse_plane(place, fmt::format("its CRS is {}, whose unit is {}", crs_name(*place.crs),
+                                            unit ? unit : "not the metre"));
+    }
+    if (const Unit up = vertical_unit(place); !up.name.empty())
+        throw UserError(fmt::format("{}: its elevations are declared in {}; expected metres; run: {}",
+                                    place.file.string(), up.name, scale_line(place, up)));
+}
+
+std::string warp_line(const std::filesystem::path& file, const std::string& target_crs,
+                      const std::string& suffix) {
+    return fmt::format("gdalwarp {}-r cubic -ot Float32 -dstnodata -9999 {} {}",
+                       target_crs.empty() ? "" : "-t_srs " + target_crs + " ", shell(file.string()),
+                       shell(beside(file, suffix)));
+}
+
+}  // namespace frana::gdal

@@ -1,0 +1,46 @@
+#pragma once
+// Coordinate reference systems: what the program can compute in, and the command line that makes it so.
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/gdal_support.h"
+
+namespace frana::gdal {
+
+/// The CRS that a WKT text describes, x (east) first whatever its authority says. UserError when it is no
+/// CRS.
+OGRSpatialReference crs_from_wkt(const std::string& wkt);
+
+/// WKT2 of its horizontal part; empty for an empty or local (engineering) CRS.
+std::string horizontal_wkt(const OGRSpatialReference& crs);
+
+/// Same horizontal CRS for our purpose: axis order and authority names left aside.
+bool same_crs(const OGRSpatialReference& a, const OGRSpatialReference& b);
+
+/// "EPSG:32632 (WGS 84 / UTM zone 32N)", as much of it as is known.
+std::string crs_name(const OGRSpatialReference& crs);
+
+/// Code of the UTM zone (WGS 84) of a longitude and latitude in degrees, beyond 84 degrees the polar
+/// stereographic.
+int utm_code(double longitude, double latitude);
+
+/// A raster as far as its CRS is concerned.
+struct Place {
+    std::filesystem::path file;
+    const OGRSpatialReference* crs = nullptr;  ///< null: unknown
+    std::array<double, 2> centre{};            ///< in the CRS
+    std::string band_unit;                     ///< unit of the elevations that the band declares, or empty
+    bool elevation = true;                     ///< false: a depth, a mask; its vertical unit is not looked at
+};
+
+/// Checks that map coordinates (and elevations) are metres. UserError with a gdalwarp or gdal_translate line
+/// that cures it: geographic CRS, other unit than metre, vertical unit other than metre. Remarks go to `log`.
+void require_metres(const Place& place, std::vector<std::string>& log);
+
+/// Arguments after the program's name of a gdalwarp that leaves no pixel looking like terrain that is none.
+std::string warp_line(const std::filesystem::path& file, const std::string& target_crs,
+                      const std::string& suffix);
+
+}  // namespace frana::gdal

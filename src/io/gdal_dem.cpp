@@ -1,0 +1,110 @@
+// Elevation models: window, spacing, units.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "io/gdal_crs.h"
+#include "io/gdal_onto.h"
+#include "io/gdal_reader.h"
+
+namespace frana {
+namespace {
+
+using gdal::extent_text;
+using gdal::RasterFile;
+
+constexpr double round_off = 1e-6;  // of a pixel or cell
+constexpr double same_cell = 1e-9;  // relative; closer spacings are the same spacing
+constexpr double most_nodes = 5e8;  // 4 GB for the elevations alone
+
+/// The window asked for, or the whole raster; UserError when it is not inside.
+std::array<double, 4> checked_window(const RasterFile& raster, const DemRequest& request) {
+    const std::array<double, 4> all = raster.extent();
+    if (!request.window) return all;
+    const std::array<double, 4>& w = *request.window;
+    const double slack_x = round_off * raster.x_axis().size, slack_y = round_off * raster.y_axis().size;
+    const bool inside = w[0] >= all[0] - slack_x && w[1] >= all[1] - slack_y && w[2] <= all[2] + slack_x &&
+                        w[3] <= all[3] + slack_y;
+    if (!(w[0] < w[2] && w[1] < w[3]) || !inside)
+        throw UserError(
+            fmt::format("{}: the window {} is not inside the raster, which covers {}; expected [xmin, "
+                        "ymin, xmax, ymax] in the raster's map coordinates and inside it; move or shrink "
+                        "the window",
+                        raster.file().string(), extent_text(w), extent_text(all)));
+    return w;
+}
+
+void check_size(const RasterFile& raster, double nx, double ny) {
+    if (nx * ny <= most_nodes) return;
+    throw UserError(
+        fmt::format("{}: {:.0f} x {:.0f} nodes are more than the {:g} that a run can hold; choose a "
+                    "smaller window or a larger cell",
+                    raster.file().string(), nx, ny, most_nodes));
+}
+
+/// The pixels that the window touches, as they are.
+Raster copied(const RasterFile& raster, const std::array<double, 4>& window, bool cut,
+              std::vector<std::string>& log) {
+    const auto [i, nx] = gdal::touched(raster.x_axis(), window[0], window[2]);
+    const auto [j, ny] = gdal::touched(raster.y_axis(), window[1], window[3]);
+    check_size(raster, double(nx), double(ny));
+    Raster dem = raster.read_raster(i, j, nx, ny);
+    const auto extent = dem.geometry.pixel_extent();
+    double moved = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) moved = std::max(moved, std::abs(extent[k] - window[k]));
+    if (cut && moved > 2.0 * round_off * dem.geometry.cell)
+        log.push_back(
+            fmt::format("{}: window widened to whole pixels: {}", raster.name(), extent_text(extent)));
+    return dem;
+}
+
+/// Cells counted from the window's south-west corner.
+Raster resampled(const RasterFile& raster, const std::array<double, 4>& window, double cell,
+                 std::vector<std::string>& log) {
+    const double width = window[2] - window[0], height = window[3] - window[1];
+    const double nx = std::floor(width / cell + round_off), ny = std::floor(height / cell + round_off);
+    if (nx < 1.0 || ny < 1.0)
+        throw UserError(
+            fmt::format("{}: the window {} is smaller than one cell of {:g} m; choose a smaller cell",
+                        raster.file().string(), extent_text(window), cell));
+    check_size(raster, nx, ny);
+    Raster dem;
+    dem.geometry = {Index(nx), Index(ny), window[0] + 0.5 * cell, window[1] + 0.5 * cell, cell};
+    dem.values = gdal::onto_grid(raster, dem.geometry);
+    dem.crs_wkt = gdal::horizontal_wkt(raster.crs());
+    dem.source = raster.file().string();
+    log.push_back(raster.name() + ": " + gdal::how_resampled(raster, cell));
+    const double east = width - nx * cell, north = height - ny * cell;
+    if (std::max(east, north) > 2.0 * round_off * cell)
+        log.push_back(fmt::format("{}: whole cells leave out {:.6g} m in the east and {:.6g} m in the north",
+                                  raster.name(), std::max(0.0, east), std::max(0.0, north)));
+    return dem;
+}
+
+}  // namespace
+
+Raster GdalReader::read_dem(const std::filesystem::path& file, const DemRequest& request,
+                            std::vector<std::string>& log) const {
+    const RasterFile raster(file, gdal::Meaning::elevation, log);
+    const auto all = raster.extent();
+    gdal::Place place{
+        file, &raster.crs(), {0.5 * (all[0] + all[2]), 0.5 * (all[1] + all[3])}, raster.unit(), true};
+    gdal::require_metres(place, log);
+    const auto window = checked_window(raster, request);
+    const double pixel = std::min(raster.x_axis().size, raster.y_axis().size);
+    const double cell = request.cell.value_or(pixel);
+    if (!(cell > 0.0) || !std::isfinite(cell))
+        throw UserError(fmt::format("{}: a cell of {:g} m; expected a positive length", file.string(), cell));
+    const bool as_is =
+        raster.square() && (!request.cell || std::abs(cell - raster.x_axis().size) <= same_cell * cell);
+    Raster dem = as_is ? copied(raster, window, request.window.has_value(), log)
+                       : resampled(raster, window, cell, log);
+    if (std::all_of(dem.values.begin(), dem.values.end(), [](double z) { return std::isnan(z); }))
+        throw UserError(fmt::format("{}: holds no data in {}; expected elevations there; move the window",
+                                    file.string(), extent_text(window)));
+    return dem;
+}
+
+}  // namespace frana

@@ -1,0 +1,41 @@
+#pragma once
+#include <string>
+
+#include "scene/toolbox.h"
+
+namespace frana {
+
+/// GIS files through GDAL and OGR. Their own messages never reach stderr: they are part of ours. Safe to use
+/// from several threads at once; each call opens and closes its file.
+class GdalReader : public GisReader {
+public:
+    /// Nodes on the raster's pixels when `cell` is the pixel (within 1e-9 of it; a window is widened to whole
+    /// pixels), otherwise on cells counted from the south-west corner of the window. Reads the window's
+    /// pixels only. UserError besides those of GisReader: window not inside the raster, no data in it,
+    /// rotated raster, values that must be nodata but are not declared so, more nodes than memory holds.
+    Raster read_dem(const std::filesystem::path& file, const DemRequest& request,
+                    std::vector<std::string>& log) const override;
+
+    /// A reprojected raster comes in square pixels of the mean area of its own, bilinear.
+    Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                       const std::string& crs_wkt, std::vector<std::string>& log) const override;
+
+    /// Nodes that the raster does not cover by half a cell are NaN; UserError when it covers none.
+    Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
+                     std::vector<std::string>& log) const override;
+
+    /// Z and M are dropped, curves become chords, multipolygons and collections are flattened, all layers are
+    /// read. Outlines that cross themselves are repaired and named in the log. A GeoJSON without a crs member
+    /// counts as WGS 84 only where that makes sense: not when `crs_wkt` is empty or a coordinate is no
+    /// longitude or latitude. UserError when there is no polygon. Polygons may overlap one another.
+    Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                           std::vector<std::string>& log) const override;
+
+    std::vector<Polyline> read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
+                                     std::vector<std::string>& log) const override;
+};
+
+/// Version of the GDAL library in use, such as "3.6.2".
+std::string gdal_version();
+
+}  // namespace frana

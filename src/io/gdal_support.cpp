@@ -1,0 +1,90 @@
+#include "io/gdal_support.h"
+
+#include <fmt/core.h>
+
+#include <mutex>
+
+#include "base/error.h"
+
+namespace frana::gdal {
+
+Messages::Messages() { CPLPushErrorHandlerEx(hear, this); }
+
+Messages::~Messages() {
+    CPLPopErrorHandler();
+    CPLErrorReset();
+}
+
+void Messages::hear(CPLErr kind, CPLErrorNum, const char* text) {
+    auto& self = *static_cast<Messages*>(CPLGetErrorHandlerUserData());
+    std::string line(text ? text : "");
+    if (const auto end = line.find_first_of("\r\n"); end != std::string::npos) line.resize(end);
+    if (kind == CE_Warning) self.warning_ = line;
+    if (kind < CE_Failure) return;
+    if (!self.failed_) self.failure_ = line;
+    self.failed_ = true;
+}
+
+std::string Messages::reason(const std::string& otherwise) const {
+    if (!failure_.empty()) return failure_;
+    return warning_.empty() ? otherwise : warning_;
+}
+
+void Messages::clear() {
+    failed_ = false;
+    failure_.clear();
+    warning_.clear();
+}
+
+void register_drivers() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        const Messages quiet;
+        GDALAllRegister();
+    });
+}
+
+Dataset open(const std::filesystem::path& file, unsigned kind) {
+    register_drivers();
+    const Messages messages;
+    Dataset dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+    if (dataset) return dataset;
+    const bool raster = kind == GDAL_OF_RASTER;
+    const char* wanted = raster ? "a raster that GDAL can read (GeoTIFF, ESRI ASCII grid, ...)"
+                                : "a vector file that GDAL can read (GeoJSON, GeoPackage, Shapefile, ...)";
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+        throw UserError(
+            fmt::format("{}: no such file; expected {}; check the name, which is taken relative to the "
+                        "case file's folder",
+                        file.string(), wanted));
+    throw UserError(fmt::format("{}: cannot be opened ({}); expected {}; try `{} {}`", file.string(),
+                                messages.reason("unknown format"), wanted,
+                                raster ? "gdalinfo" : "ogrinfo -al -so", shell(file.string())));
+}
+
+Dataset warp(const std::string& target, GDALDataset& source, const std::vector<std::string>& arguments) {
+    CPLStringList list;
+    for (const std::string& argument : arguments) list.AddString(argument.c_str());
+    const std::unique_ptr<GDALWarpAppOptions, decltype(&GDALWarpAppOptionsFree)> options(
+        GDALWarpAppOptionsNew(list.List(), nullptr), GDALWarpAppOptionsFree);
+    if (!options) return nullptr;
+    GDALDatasetH sources[] = {GDALDataset::ToHandle(&source)};
+    int misuse = 0;
+    return Dataset(
+        GDALDataset::FromHandle(GDALWarp(target.c_str(), nullptr, 1, sources, options.get(), &misuse)));
+}
+
+std::string shell(const std::string& text) {
+    const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:,=@%";
+    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+std::string beside(const std::filesystem::path& file, const std::string& suffix) {
+    return (file.parent_path() / (file.stem().string() + suffix + ".tif")).string();
+}
+
+}  // namespace frana::gdal

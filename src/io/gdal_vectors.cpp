@@ -1,0 +1,273 @@
+// Outlines and lines from vector files.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "base/error.h"
+#include "io/gdal_crs.h"
+#include "io/gdal_reader.h"
+
+namespace frana {
+namespace {
+
+using gdal::crs_name;
+using Geometry = std::unique_ptr<OGRGeometry>;
+
+/// A layer's geometries in the terrain's coordinates, and how they got there.
+struct Source {
+    std::filesystem::path file;
+    gdal::Dataset dataset;
+    std::optional<OGRSpatialReference> terrain;  ///< nothing: unknown
+    std::vector<std::string>& log;
+    std::string name() const { return file.filename().string(); }
+};
+
+/// What was found, for the error that nothing of use was.
+struct Census {
+    Index features = 0, polygons = 0, lines = 0, points = 0;
+    std::string text() const {
+        std::string words;
+        const auto add = [&](Index n, const char* one, const char* many) {
+            if (n > 0) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", n, n == 1 ? one : many);
+        };
+        add(polygons, "polygon", "polygons");
+        add(lines, "line", "lines");
+        add(points, "point", "points");
+        return words.empty() ? "nothing" : words;
+    }
+};
+
+bool degrees_possible(const OGREnvelope& e) {
+    return e.MinX >= -360.0 && e.MaxX <= 360.0 && e.MinY >= -90.0 && e.MaxY <= 90.0;
+}
+
+/// How to bring a layer's coordinates to the terrain's; null when they are taken as they are (said in the
+/// log).
+gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
+    const OGRSpatialReference* declared = layer.GetSpatialRef();
+    const std::string name = source.name();
+    if (!declared || declared->IsEmpty() || declared->IsLocal()) {
+        if (source.terrain)
+            source.log.push_back(name + ": no CRS; its coordinates are taken as the terrain's own");
+        return nullptr;
+    }
+    // By its standard (RFC 7946) a GeoJSON without a crs member is WGS 84; local coordinates say nothing of
+    // it.
+    if (!source.terrain) {
+        source.log.push_back(
+            fmt::format("{}: its coordinates are taken as the terrain's own, since the terrain has "
+                        "no CRS (the file's is {})",
+                        name, crs_name(*declared)));
+        return nullptr;
+    }
+    OGREnvelope envelope;
+    const bool known = layer.GetExtent(&envelope, 1) == OGRERR_NONE;
+    if (declared->IsGeographic() && known && !degrees_possible(envelope)) {
+        source.log.push_back(
+            fmt::format("{}: its coordinates are taken as the terrain's own, since they are no "
+                        "degrees, which {} would ask for",
+                        name, crs_name(*declared)));
+        return nullptr;
+    }
+    if (gdal::same_crs(*declared, *source.terrain)) return nullptr;
+    OGRSpatialReference from(*declared);
+    from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const gdal::Messages messages;
+    gdal::Transformation made(OGRCreateCoordinateTransformation(&from, &*source.terrain));
+    if (!made)
+        throw UserError(
+            fmt::format("{}: cannot be brought from {} to the terrain's {} ({}); reproject it with "
+                        "ogr2ogr -t_srs",
+                        source.file.string(), crs_name(from), crs_name(*source.terrain),
+                        messages.reason("no transformation known")));
+    source.log.push_back(
+        fmt::format("{}: reprojected from {} to {}", name, crs_name(from), crs_name(*source.terrain)));
+    return made;
+}
+
+Source open_source(const std::filesystem::path& file, const std::string& crs_wkt,
+                   std::vector<std::string>& log) {
+    Source source{file, gdal::open(file, GDAL_OF_VECTOR), std::nullopt, log};
+    if (!crs_wkt.empty()) source.terrain = gdal::crs_from_wkt(crs_wkt);
+    return source;
+}
+
+/// Calls `use(geometry, "feature 3")` for each geometry of each layer: flat, without curves, in terrain
+/// coordinates.
+void for_each_geometry(Source& source, Census& census,
+                       const std::function<void(const OGRGeometry&, const std::string&)>& use) {
+    const int layers = source.dataset->GetLayerCount();
+    for (int l = 0; l < layers; ++l) {
+        OGRLayer& layer = *source.dataset->GetLayer(l);
+        gdal::Messages messages;
+        if (layer.GetFeatureCount() == 0) continue;
+        const gdal::Transformation transformation = to_terrain(source, layer);
+        layer.ResetReading();
+        while (const OGRFeatureUniquePtr feature{layer.GetNextFeature()}) {
+            ++census.features;
+            const OGRGeometry* stored = feature->GetGeometryRef();
+            if (!stored || stored->IsEmpty()) continue;
+            const std::string where =
+                (layers > 1 ? fmt::format("layer {}, ", layer.GetName()) : std::string()) +
+                fmt::format("feature {}", feature->GetFID());
+            const Geometry flat(stored->hasCurveGeometry() ? stored->getLinearGeometry() : stored->clone());
+            flat->flattenTo2D();
+            if (transformation && flat->transform(transformation.get()) != OGRERR_NONE)
+                throw UserError(
+                    fmt::format("{}: {} lies where its CRS cannot be brought to the terrain's ({}); check "
+                                "its coordinates and its CRS",
+                                source.file.string(), where, messages.reason("no reason given")));
+            use(*flat, where);
+        }
+        if (messages.failed())
+            throw UserError(
+                fmt::format("{}: cannot be read to its end ({}); the file is damaged or incomplete: copy "
+                            "or export it again",
+                            source.file.string(), messages.reason("")));
+    }
+}
+
+/// Vertices without the closing one and without repetitions; UserError when one is not finite.
+std::vector<Vec2> vertices(const OGRSimpleCurve& curve, bool ring, const std::string& place) {
+    std::vector<Vec2> points;
+    points.reserve(std::size_t(curve.getNumPoints()));
+    for (int k = 0; k < curve.getNumPoints(); ++k) {
+        const Vec2 point(curve.getX(k), curve.getY(k));
+        if (!point.allFinite())
+            throw UserError(place +
+                            ": has a vertex that is no number; expected finite coordinates; draw it again");
+        if (points.empty() || points.back() != point) points.push_back(point);
+    }
+    while (ring && points.size() > 1 && points.front() == points.back()) points.pop_back();
+    return points;
+}
+
+void append_polygon(const OGRPolygon& polygon, const std::string& place, std::vector<Polygon>& parts) {
+    if (polygon.IsEmpty()) return;
+    Polygon part;
+    for (const OGRLinearRing* ring : polygon) {
+        std::vector<Vec2> points = vertices(*ring, true, place);
+        if (points.size() >= 3)
+            part.rings.push_back(std::move(points));
+        else if (part.rings.empty())
+            return;  // without an outer boundary there are no holes either
+    }
+    if (!part.rings.empty()) parts.push_back(std::move(part));
+}
+
+/// Takes a geometry apart into polygons; counts the rest.
+void collect_polygons(const OGRGeometry& geometry, Census& census,
+                      const std::function<void(const OGRPolygon&)>& use) {
+    const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+    if (type == wkbPolygon || type == wkbTriangle) {
+        ++census.polygons;
+        use(*geometry.toPolygon());
+    } else if (OGR_GT_IsSubClassOf(type, wkbPolyhedralSurface)) {
+        for (const OGRPolygon* part : *geometry.toPolyhedralSurface()) collect_polygons(*part, census, use);
+    } else if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection)) {
+        for (const OGRGeometry* part : *geometry.toGeometryCollection()) collect_polygons(*part, census, use);
+    } else {
+        ++(type == wkbPoint ? census.points : census.lines);
+    }
+}
+
+/// A valid polygon as it is; one that crosses itself repaired, with a remark.
+void append_valid(const OGRPolygon& polygon, const std::string& where, Source& source,
+                  std::vector<Polygon>& parts) {
+    const std::string place = fmt::format("{}: {}", source.file.string(), where);
+    std::vector<Polygon> raw;
+    append_polygon(polygon, place, raw);  // refuses what is not finite before GEOS sees it
+    gdal::Messages messages;
+    if (polygon.IsValid()) {
+        parts.insert(parts.end(), raw.begin(), raw.end());
+        return;
+    }
+    const std::string reason = messages.reason("it is not valid");
+    const Geometry repaired(polygon.MakeValid());
+    if (!repaired)
+        throw UserError(
+            fmt::format("{}: is not a valid polygon ({}); expected an outline that does not cross "
+                        "itself; draw it again",
+                        place, reason));
+    Census rest;
+    const std::size_t before = parts.size();
+    double area = 0.0;
+    collect_polygons(*repaired, rest, [&](const OGRPolygon& part) {
+        area += part.get_Area();
+        append_polygon(part, place, parts);
+    });
+    if (parts.size() == before)
+        throw UserError(
+            fmt::format("{}: encloses no area ({}); expected an outline; draw it again", place, reason));
+    source.log.push_back(fmt::format("{}: {} was not a valid polygon ({}); repaired, it covers {:.6g} m2",
+                                     source.name(), where, reason, area));
+}
+
+void collect_lines(const OGRGeometry& geometry, Census& census, const std::string& place,
+                   std::vector<Polyline>& lines) {
+    const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+    if (type == wkbLineString) {
+        ++census.lines;
+        Polyline line = vertices(*geometry.toLineString(), false, place);
+        if (line.size() >= 2) lines.push_back(std::move(line));
+    } else if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection)) {
+        for (const OGRGeometry* part : *geometry.toGeometryCollection())
+            collect_lines(*part, census, place, lines);
+    } else {
+        ++(type == wkbPoint ? census.points : census.polygons);
+    }
+}
+
+[[noreturn]] void refuse_content(const Source& source, const Census& census, const char* wanted,
+                                 const char* way_out) {
+    throw UserError(fmt::format(
+        "{}: {}; expected at least one {}; {}", source.file.string(),
+        census.features == 0 ? "holds no features" : "holds " + census.text() + " only", wanted, way_out));
+}
+
+void note_layers(const Source& source) {
+    if (source.dataset->GetLayerCount() > 1)
+        source.log.push_back(
+            fmt::format("{}: has {} layers, all are used", source.name(), source.dataset->GetLayerCount()));
+}
+
+}  // namespace
+
+Polygons GdalReader::read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                   std::vector<std::string>& log) const {
+    Source source = open_source(file, crs_wkt, log);
+    note_layers(source);
+    Polygons polygons;
+    polygons.crs_wkt = crs_wkt;
+    polygons.source = file.string();
+    Census census;
+    for_each_geometry(source, census, [&](const OGRGeometry& geometry, const std::string& where) {
+        collect_polygons(geometry, census, [&](const OGRPolygon& polygon) {
+            append_valid(polygon, where, source, polygons.parts);
+        });
+    });
+    if (polygons.parts.empty())
+        refuse_content(source, census, "polygon", "draw the outline as a polygon and export it again");
+    if (census.points + census.lines > 0)
+        log.push_back(fmt::format("{}: only polygons are used; it holds {}", source.name(), census.text()));
+    return polygons;
+}
+
+std::vector<Polyline> GdalReader::read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
+                                             std::vector<std::string>& log) const {
+    Source source = open_source(file, crs_wkt, log);
+    note_layers(source);
+    std::vector<Polyline> lines;
+    Census census;
+    for_each_geometry(source, census, [&](const OGRGeometry& geometry, const std::string& where) {
+        collect_lines(geometry, census, fmt::format("{}: {}", file.string(), where), lines);
+    });
+    if (lines.empty()) refuse_content(source, census, "line", "draw the path as a line and export it again");
+    if (census.points + census.polygons > 0)
+        log.push_back(fmt::format("{}: only lines are used; it holds {}", source.name(), census.text()));
+    return lines;
+}
+
+}  // namespace frana

@@ -1,0 +1,177 @@
+#include "io/gdal_writer.h"
+
+#include <fmt/core.h>
+#include <gdal_alg.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "io/gdal_crs.h"
+
+namespace frana {
+namespace {
+
+constexpr float nodata = -9999.0F;
+
+[[noreturn]] void refuse_write(const std::filesystem::path& target, const gdal::Messages& messages) {
+    throw UserError(
+        fmt::format("{}: cannot be written ({}); check that the folder exists, its permissions and free "
+                    "space",
+                    target.string(), messages.reason("no reason given")));
+}
+
+GDALDriver& driver(const char* name) {
+    gdal::register_drivers();
+    GDALDriver* found = GetGDALDriverManager()->GetDriverByName(name);
+    expect(found != nullptr, "a driver that every GDAL has");
+    return *found;
+}
+
+/// North row first, NaN as nodata.
+std::vector<float> file_values(const std::filesystem::path& target, const Raster& raster) {
+    const GridGeometry& g = raster.geometry;
+    expect(g.nx > 0 && g.ny > 0 && Index(raster.values.size()) == g.size(),
+           "a raster has a value for each node");
+    std::vector<float> values(raster.values.size());
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const double value = raster.at(i, g.ny - 1 - j);
+            const float stored = std::isnan(value) ? nodata : float(value);
+            if (!std::isfinite(stored))
+                throw NumericsError(
+                    fmt::format("{}: the value {} at ({:.12g}, {:.12g}) is no number that a raster "
+                                "can hold",
+                                target.string(), value, g.x(i), g.y(g.ny - 1 - j)));
+            values[std::size_t(j * g.nx + i)] = stored;
+        }
+    return values;
+}
+
+/// Georeference of a dataset with the north row first.
+void place(GDALDataset& dataset, const Raster& raster) {
+    const GridGeometry& g = raster.geometry;
+    const auto extent = g.pixel_extent();
+    double transform[6] = {extent[0], g.cell, 0.0, extent[3], 0.0, -g.cell};
+    dataset.SetGeoTransform(transform);
+    if (raster.crs_wkt.empty()) return;
+    const OGRSpatialReference crs = gdal::crs_from_wkt(raster.crs_wkt);
+    dataset.SetSpatialRef(&crs);
+}
+
+/// The raster's CRS with the code of an authority, which is the only way GeoJSON can name it; empty without
+/// one.
+OGRSpatialReference coded_crs(const std::string& wkt) {
+    if (wkt.empty()) return OGRSpatialReference();
+    OGRSpatialReference crs = gdal::crs_from_wkt(wkt);
+    if (crs.GetAuthorityCode(nullptr)) return crs;
+    const gdal::Messages quiet;
+    const std::unique_ptr<OGRSpatialReference, void (*)(OGRSpatialReference*)> match(
+        crs.FindBestMatch(90, "EPSG", nullptr), [](OGRSpatialReference* found) {
+            if (found) found->Release();
+        });
+    if (!match) return OGRSpatialReference();
+    OGRSpatialReference named(*match);
+    named.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    return named;
+}
+
+/// One polygon per 4-connected patch of pixels deeper than the threshold, in map coordinates, largest first.
+std::vector<std::unique_ptr<OGRPolygon>> patches(const Raster& depth, double threshold) {
+    const GridGeometry& g = depth.geometry;
+    const int nx = int(g.nx), ny = int(g.ny);
+    std::vector<GByte> mask(depth.values.size());
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i)
+            mask[std::size_t(j * g.nx + i)] = depth.at(i, g.ny - 1 - j) > threshold;
+    const gdal::Messages messages;
+    const gdal::Dataset raster(driver("MEM").Create("", nx, ny, 1, GDT_Byte, nullptr));
+    const gdal::Dataset memory(driver("Memory").Create("", 0, 0, 0, GDT_Unknown, nullptr));
+    expect(raster && memory, "datasets in memory");
+    place(*raster, depth);
+    GDALRasterBand* band = raster->GetRasterBand(1);
+    OGRLayer* layer = memory->CreateLayer("patches", nullptr, wkbPolygon, nullptr);
+    const bool done =
+        band->RasterIO(GF_Write, 0, 0, nx, ny, mask.data(), nx, ny, GDT_Byte, 0, 0, nullptr) == CE_None &&
+        GDALPolygonize(band, band, OGRLayer::ToHandle(layer), -1, nullptr, nullptr, nullptr) == CE_None;
+    expect(done, "a mask becomes polygons");
+    std::vector<std::unique_ptr<OGRPolygon>> polygons;
+    for (const OGRFeatureUniquePtr& feature : *layer)
+        polygons.emplace_back(feature->StealGeometry()->toPolygon());
+    std::stable_sort(polygons.begin(), polygons.end(),
+                     [](const auto& a, const auto& b) { return a->get_Area() > b->get_Area(); });
+    return polygons;
+}
+
+void write_features(GDALDataset& dataset, const std::vector<std::unique_ptr<OGRPolygon>>& outlines,
+                    const std::string& name, const Raster& depth,
+                    const std::map<std::string, double>& attributes) {
+    OGRSpatialReference crs = coded_crs(depth.crs_wkt);
+    const double pixel_area = depth.geometry.cell * depth.geometry.cell;
+    // 1e-9 m, of the order of a map coordinate's round-off: shared edges stay shared, numbers stay short.
+    const char* const options[] = {"RFC7946=NO", "COORDINATE_PRECISION=9", "SIGNIFICANT_FIGURES=15", nullptr};
+    OGRLayer* layer = dataset.CreateLayer(name.c_str(), crs.IsEmpty() ? nullptr : &crs, wkbPolygon,
+                                          const_cast<char**>(options));
+    if (!layer) return;  // the caller sees GDAL's complaint
+    OGRFieldDefn area("area_m2", OFTReal);
+    layer->CreateField(&area);
+    for (const auto& [key, value] : attributes) {
+        OGRFieldDefn field(key.c_str(), OFTReal);
+        layer->CreateField(&field);
+    }
+    for (const auto& outline : outlines) {
+        const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+        // Whole pixels: free of the cancellation of large map coordinates.
+        feature->SetField("area_m2", std::round(outline->get_Area() / pixel_area) * pixel_area);
+        for (const auto& [key, value] : attributes) feature->SetField(key.c_str(), value);
+        feature->SetGeometry(outline.get());
+        if (layer->CreateFeature(feature.get()) != OGRERR_NONE) return;
+    }
+}
+
+}  // namespace
+
+void write_geotiff(const std::filesystem::path& target, const Raster& raster, const std::string& unit,
+                   const std::string& description) {
+    std::vector<float> values = file_values(target, raster);
+    const int nx = int(raster.geometry.nx), ny = int(raster.geometry.ny);
+    const char* const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER",
+                                   nullptr};
+    AtomicFile file(target);
+    const gdal::Messages messages;
+    gdal::Dataset dataset(
+        driver("GTiff").Create(file.path().c_str(), nx, ny, 1, GDT_Float32, const_cast<char**>(options)));
+    if (!dataset) refuse_write(target, messages);
+    place(*dataset, raster);
+    GDALRasterBand* band = dataset->GetRasterBand(1);
+    band->SetNoDataValue(nodata);
+    band->SetUnitType(unit.c_str());
+    band->SetDescription(description.c_str());
+    const CPLErr written =
+        band->RasterIO(GF_Write, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float32, 0, 0, nullptr);
+    dataset.reset();  // flushes; a full disk shows here
+    if (written != CE_None || messages.failed()) refuse_write(target, messages);
+    file.commit();
+}
+
+void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
+                     const std::map<std::string, double>& attributes) {
+    std::map<std::string, double> fields = attributes;
+    fields["threshold_m"] = threshold;
+    for (const auto& [key, value] : fields)
+        if (!std::isfinite(value))
+            throw NumericsError(
+                fmt::format("{}: the attribute {} is {}, no finite number", target.string(), key, value));
+    const auto outlines = patches(covered_depth, threshold);
+    AtomicFile file(target);
+    const gdal::Messages messages;
+    gdal::Dataset dataset(driver("GeoJSON").Create(file.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    if (!dataset) refuse_write(target, messages);
+    write_features(*dataset, outlines, target.stem().string(), covered_depth, fields);
+    dataset.reset();
+    if (messages.failed()) refuse_write(target, messages);
+    file.commit();
+}
+
+}  // namespace frana

@@ -1,0 +1,24 @@
+#pragma once
+// Rasters and outlines for a GIS. Files appear whole or not at all; nothing that is not finite is written.
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// GeoTIFF of one float32 band on the pixels of `raster` (north row first, tiled, DEFLATE with predictor 3),
+/// CRS, nodata -9999 for NaN. `unit` ("m", "m/s", "Pa", "s") and `description` become the band's. Throws
+/// NumericsError for a value that is infinite or too large for float32, UserError when the disk refuses.
+void write_geotiff(const std::filesystem::path& target, const Raster& raster, const std::string& unit,
+                   const std::string& description);
+
+/// GeoJSON with the outlines, holes kept, of the nodes' pixels deeper than `threshold` [m], largest first.
+/// Pixels that touch only at a corner belong to different outlines. Attributes: area_m2, threshold_m and the
+/// given ones. Written with a `crs` member when the raster's CRS has an authority's code (what RFC 7946
+/// dropped and every GIS still reads). NaN counts as not covered. Throws as write_geotiff.
+void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,
+                     const std::map<std::string, double>& attributes = {});
+
+}  // namespace frana

@@ -1,0 +1,149 @@
+// Coordinate systems that a run cannot use are refused with a line that works.
+#include <cmath>
+
+#include "fresh_folder.h"
+#include "io/gdal_reader.h"
+#include "io_gdal_make.h"
+#include "shared_data.h"
+
+#include "catch.h"
+
+using namespace frana;
+
+namespace {
+
+Raster read(const std::filesystem::path& file) {
+    std::vector<std::string> log;
+    return GdalReader().read_dem(file, {}, log);
+}
+
+double range(const Raster& dem, bool high) {
+    double best = high ? -1e300 : 1e300;
+    for (const double z : dem.values)
+        if (!std::isnan(z)) best = high ? std::max(best, z) : std::min(best, z);
+    return best;
+}
+
+/// 60 by 60 pixels of degrees around a place, 500 m to 559 m high.
+RasterSpec degrees_at(double lon, double lat) {
+    RasterSpec spec;
+    spec.crs = "EPSG:4326";
+    spec.columns = spec.rows = 60;
+    spec.transform = {lon - 0.006, 0.0002, 0.0, lat + 0.006, 0.0, -0.0002};
+    spec.value = [](int column, int) { return 500.0 + column; };
+    return spec;
+}
+
+}  // namespace
+
+TEST_CASE("Degrees are refused with a gdalwarp to the UTM zone of the place, and it works", "[gdal]") {
+    struct Place {
+        double lon, lat;
+        const char* code;
+    };
+    const Place places[] = {{7.27, 61.97, "EPSG:32632"},
+                            {-84.2, 36.6, "EPSG:32616"},
+                            {-70.1, -33.4, "EPSG:32719"},
+                            {174.8, -36.9, "EPSG:32760"},
+                            {-179.5, 10.0, "EPSG:32601"}};
+    for (const Place& place : places) {
+        const FreshFolder folder;
+        make_raster(folder.path() / "dem.tif", degrees_at(place.lon, place.lat));
+        const std::string message = user_error([&] { read(folder.path() / "dem.tif"); });
+        INFO(message);
+        CHECK(contains(message, "degrees"));
+        CHECK(contains(message, std::string("gdalwarp -t_srs ") + place.code + " "));
+        run_gdal_line(cure_in(message));
+        const Raster dem = read(folder.path() / "dem_utm.tif");
+        CHECK(contains(dem.crs_wkt, "WGS 84 / UTM zone"));
+        CHECK(range(dem, false) >=
+              499.5);  // corners are nodata, not 0 m; one-sided kernels at the rim of a slope
+        CHECK(range(dem, true) <= 559.5);  // of 1 m a pixel stay within half a pixel
+    }
+}
+
+TEST_CASE("Feet on the map are refused, US survey feet and international feet alike", "[gdal]") {
+    for (const char* crs : {"EPSG:2263", "EPSG:2222"}) {  // New York (ftUS), Arizona East (ft)
+        const FreshFolder folder;
+        RasterSpec spec;
+        spec.crs = crs;
+        spec.columns = spec.rows = 40;
+        spec.transform = {980000.0, 30.0, 0.0, 200000.0, 0.0, -30.0};
+        spec.value = [](int column, int row) { return 100.0 + column + row; };
+        make_raster(folder.path() / "dem.tif", spec);
+        const std::string message = user_error([&] { read(folder.path() / "dem.tif"); });
+        INFO(message);
+        CHECK(contains(message, "foot"));
+        run_gdal_line(cure_in(message));
+        const Raster dem = read(folder.path() / "dem_utm.tif");
+        CHECK(dem.geometry.cell == Approx(30.0 * 0.3048).epsilon(0.01));  // scale of the two map projections
+        CHECK(range(dem, true) == Approx(178.0).margin(2.0));             // the corner pixel rises by 2 m
+    }
+}
+
+TEST_CASE("Elevations declared in feet are refused and cured, with or without metres on the map", "[gdal]") {
+    struct Kind {
+        const char* crs;
+        const char* unit;
+        double metres;
+    };
+    const Kind kinds[] = {{"EPSG:32618+6360", "", 1200.0 / 3937.0},  // NAVD88 height (ftUS)
+                          {"EPSG:2263+6360", "", 1200.0 / 3937.0},
+                          {"EPSG:32618", "ft", 0.3048}};
+    for (const Kind& kind : kinds) {
+        INFO(kind.crs << " " << kind.unit);
+        const FreshFolder folder;
+        RasterSpec spec;
+        spec.crs = kind.crs;
+        spec.unit = kind.unit;
+        spec.nodata = -9999.0;
+        spec.columns = spec.rows = 40;
+        spec.transform = {580000.0, 30.0, 0.0, 200000.0, 0.0, -30.0};
+        spec.value = [](int column, int row) { return row < 5 ? -9999.0 : 1000.0 + column; };
+        make_raster(folder.path() / "dem.tif", spec);
+        const std::string message = user_error([&] { read(folder.path() / "dem.tif"); });
+        INFO(message);
+        const std::string line = cure_in(message);
+        run_gdal_line(line);
+        const Raster dem = read(line.substr(line.rfind(' ') + 1));
+        CHECK(range(dem, false) ==
+              Approx(1000.0 * kind.metres).margin(0.2));  // half a pixel of 1 ft, as above
+        CHECK(range(dem, true) == Approx(1039.0 * kind.metres).margin(0.2));
+    }
+}
+
+TEST_CASE("A compound CRS in metres is accepted and only its map part is carried on", "[gdal]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.crs = "EPSG:32632+5773";
+    make_raster(folder.path() / "dem.tif", spec);
+    const Raster dem = read(folder.path() / "dem.tif");
+    CHECK(contains(dem.crs_wkt, "PROJCRS[\"WGS 84 / UTM zone 32N\""));
+    CHECK_FALSE(contains(dem.crs_wkt, "COMPOUNDCRS"));
+    CHECK_FALSE(contains(dem.crs_wkt, "VERTCRS"));
+}
+
+TEST_CASE("A raster without a CRS is taken as local metres, and the log says so", "[gdal]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.crs = "";
+    make_raster(folder.path() / "dem.tif", spec);
+    std::vector<std::string> log;
+    CHECK(GdalReader().read_dem(folder.path() / "dem.tif", {}, log).crs_wkt.empty());
+    CHECK(any_contains(log, "local metres"));
+}
+
+TEST_CASE("A real elevation model in degrees is refused with a way out that leads to a terrain", "[gdal]") {
+    const auto file = shared_data("small_dems/jacksboro_fault_tennessee.tif");
+    if (!file) return;
+    const FreshFolder folder;
+    const auto copy = folder.path() / "jacksboro.tif";
+    std::filesystem::copy_file(*file, copy);
+    const std::string message = user_error([&] { read(copy); });
+    CHECK(contains(message, "gdalwarp -t_srs EPSG:32616 "));
+    run_gdal_line(cure_in(message));
+    const Raster dem = read(folder.path() / "jacksboro_utm.tif");
+    CHECK(dem.geometry.cell > 70.0);  // 3 arc seconds: 92.5 m north, 74.4 m east at 36.6 degrees
+    CHECK(dem.geometry.cell < 95.0);
+    CHECK(range(dem, false) > 200.0);  // Tennessee, not a frame of 0 m
+}
