@@ -1,0 +1,230 @@
+#include "scene/build_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/problems.h"
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+constexpr double degrees = 180.0 / 3.14159265358979323846;
+constexpr Index nodata_reach = 3;  ///< cells; the stencils of the first steps read no further
+
+class Builder {
+public:
+    Builder(const CaseFile& file, const GisReader& reader)
+        : case_(file), reader_(reader), scene_(built_.scene) {}
+
+    BuiltScene build() {
+        scene_.name = case_.name();
+        scene_.title = case_.given("case.title") ? case_.word("case.title") : scene_.name;
+        scene_.case_file = case_.file();
+        scene_.log = case_.log();
+        set_physics(case_, scene_);
+        read_terrain();
+        problems_.throw_if_any();  // nothing below can be judged without terrain
+        read_releases();
+        read_survey();
+        read_profiles_and_gauges();
+        if (problems_.empty()) make_particles();
+        problems_.throw_if_any();
+        cut_releases();
+        return std::move(built_);
+    }
+
+private:
+    void read_terrain() {
+        DemRequest request;
+        if (case_.given("terrain.window")) {
+            const auto& w = case_.numbers("terrain.window");
+            request.window = {w[0], w[1], w[2], w[3]};
+        }
+        if (case_.given("grid.cell")) request.cell = case_.number("grid.cell");
+        const std::string place = case_.place("terrain.dem");
+        const bool read = problems_.attempt(
+            place, [&] { scene_.bed = reader_.read_dem(case_.path("terrain.dem"), request, scene_.log); });
+        if (!read) return;
+        const GridGeometry& grid = scene_.bed.geometry;
+        if (grid.nx < 4 || grid.ny < 4)
+            problems_.add(place, fmt::format("found {} x {} nodes", grid.nx, grid.ny),
+                          "expected at least 4 x 4", "choose a smaller grid.cell or a larger terrain.window");
+        note_nodata();
+    }
+
+    void note_nodata() {
+        const auto& values = scene_.bed.values;
+        const auto holes =
+            std::count_if(values.begin(), values.end(), [](double z) { return std::isnan(z); });
+        if (holes > 0)
+            scene_.log.push_back(
+                fmt::format("{} of {} nodes have no elevation: an exit, mass that enters is counted "
+                            "as left",
+                            holes, values.size()));
+    }
+
+    void read_releases() {
+        for (Index i = 0; i < case_.count("release"); ++i) {
+            std::optional<Release> release =
+                read_release(case_, i, scene_.bed, reader_, scene_.log, problems_);
+            if (!release) continue;
+            problems_.attempt(release->name, [&] {
+                const NodeMarks marks = nodes_under(*release, scene_.bed.geometry);
+                if (std::count(marks.begin(), marks.end(), 1) == 0) throw UserError(no_material(*release));
+                refuse_nodata(marks, scene_.bed, nodata_reach);
+                releases_.push_back(std::move(*release));
+                summarise(i, marks);
+            });
+        }
+    }
+
+    static std::string no_material(const Release& release) {
+        const char* both = release.outline ? "where the outline and the depth overlap" : "in its depth";
+        return fmt::format(
+            "found no material {}; expected a volume above 0; check depth or surface, and the CRS and "
+            "place of the files",
+            both);
+    }
+
+    void summarise(Index i, const NodeMarks& marks) {
+        ReleaseSummary summary;
+        summary.name = fmt::format("release.{}", i);
+        for (const char* name : {"outline", "mask", "depth", "surface"}) {
+            const std::string key = fmt::format("release.{}.{}", i, name);
+            if (case_.given(key) && case_.is_text(key)) summary.name += fmt::format(" ({})", case_.word(key));
+        }
+        const GridGeometry& grid = scene_.bed.geometry;
+        double steepest = 0.0;
+        double flattest = INFINITY;
+        double sum = 0.0;
+        Index count = 0;
+        for (Index k = 0; k < grid.size(); ++k) {
+            if (!marks[static_cast<std::size_t>(k)]) continue;
+            const double slope =
+                std::atan(node_gradient(scene_.bed, k % grid.nx, k / grid.nx).norm()) * degrees;
+            steepest = std::max(steepest, slope);
+            flattest = std::min(flattest, slope);
+            sum += slope;
+            ++count;
+        }
+        summary.slope_max_deg = steepest;
+        summary.slope_min_deg = flattest;
+        summary.slope_mean_deg = sum / double(count);
+        built_.releases.push_back(summary);
+    }
+
+    void make_particles() {
+        ParticleOptions options;
+        if (case_.given("particles.count"))
+            options.count = case_.integer("particles.count");
+        else
+            options.per_cell = case_.number("particles.per_cell");
+        const std::string& placement = case_.word("particles.placement");
+        if (placement == "r2") options.placement = Placement::r2;
+        if (placement == "slope") options.placement = Placement::slope;
+        std::vector<ReleaseReport> reports;
+        const bool made = problems_.attempt(case_.file().string(), [&] {
+            scene_.particles = make_seeds(releases_, scene_.bed, options, reports, scene_.log);
+        });
+        if (!made) return;
+        expect(reports.size() == releases_.size(), "make_seeds reports on every release");
+        note_lake();
+        Index p = 0;  // particles come release after release
+        for (std::size_t i = 0; i < reports.size(); ++i) {
+            built_.releases[i].report = reports[i];
+            double& deepest = built_.releases[i].max_depth;
+            for (Index end = p + reports[i].count; p < end; ++p)
+                deepest = std::max(deepest, scene_.particles.depth[static_cast<std::size_t>(p)]);
+            check_volume(i, reports[i]);
+        }
+    }
+
+    /// One release, over the whole window, up to one level, at rest: a lake, which the solver starts at exact
+    /// rest.
+    void note_lake() {
+        const auto given = [&](const char* key) { return case_.given(std::string("release.0.") + key); };
+        if (case_.count("release") != 1 || !given("surface") || case_.is_text("release.0.surface")) return;
+        if (given("outline") || given("mask") || given("velocity")) return;
+        scene_.still_surface = case_.number("release.0.surface");
+    }
+
+    void check_volume(std::size_t i, const ReleaseReport& report) {
+        if (report.volume > 0.0 && report.particle_volume > 0.0) return;
+        problems_.add(releases_[i].name, fmt::format("found a volume of {} m3", report.volume),
+                      "expected a volume above 0", "check depth or surface, and the place of the files");
+    }
+
+    void cut_releases() {
+        for (std::size_t i = 0; i < releases_.size(); ++i) {
+            if (!case_.flag(fmt::format("release.{}.included_in_dem", i))) continue;
+            const double volume = cut_release(releases_[i], scene_.bed);
+            scene_.log.push_back(
+                fmt::format("release.{}: its {:.6g} m3 are cut out of the bed (included_in_dem)", i, volume));
+        }
+    }
+
+    void read_survey() {
+        if (!case_.given("survey.footprint")) return;
+        scene_.footprint = case_.path("survey.footprint");
+        problems_.attempt(case_.place("survey.footprint"), [&] {
+            scene_.survey = reader_.read_polygons(scene_.footprint, scene_.bed.crs_wkt, scene_.log);
+        });
+    }
+
+    bool inside(const Vec2& point) const {
+        const auto extent = scene_.bed.geometry.pixel_extent();
+        return point.x() >= extent[0] && point.x() <= extent[2] && point.y() >= extent[1] &&
+               point.y() <= extent[3];
+    }
+
+    std::string extent_text() const {
+        const auto e = scene_.bed.geometry.pixel_extent();
+        return fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1],
+                           e[3]);
+    }
+
+    void read_profiles_and_gauges() {
+        const std::string way_out = "correct the coordinates, or widen terrain.window";
+        for (Index i = 0; i < case_.count("profile"); ++i) {
+            const std::string prefix = fmt::format("profile.{}.", i);
+            const Polyline& line = case_.points(prefix + "line");
+            if (std::none_of(line.begin(), line.end(), [&](const Vec2& point) { return inside(point); }))
+                problems_.add(case_.place(prefix + "line"), "found no point of it on the terrain",
+                              extent_text(), way_out);
+            scene_.profiles.push_back({case_.word(prefix + "name"), line});
+        }
+        for (Index i = 0; i < case_.count("gauge"); ++i) {
+            const std::string prefix = fmt::format("gauge.{}.", i);
+            const auto& xy = case_.numbers(prefix + "point");
+            const Vec2 point(xy[0], xy[1]);
+            if (!inside(point))
+                problems_.add(case_.place(prefix + "point"),
+                              fmt::format("found {}, {} off the terrain", xy[0], xy[1]), extent_text(),
+                              way_out);
+            scene_.gauges.push_back({case_.word(prefix + "name"), point});
+        }
+    }
+
+    const CaseFile& case_;
+    const GisReader& reader_;
+    BuiltScene built_;
+    Scene& scene_;
+    Problems problems_;
+    std::vector<Release> releases_;
+};
+
+}  // namespace
+
+BuiltScene build_scene_in_detail(const CaseFile& file, const GisReader& reader) {
+    return Builder(file, reader).build();
+}
+
+Scene build_scene(const CaseFile& file, const GisReader& reader) {
+    return build_scene_in_detail(file, reader).scene;
+}
+
+}  // namespace frana

@@ -1,0 +1,36 @@
+#pragma once
+// From a checked case file to a Scene: terrain, releases, particles, laws.
+#include <string>
+#include <vector>
+
+#include "particles/generate.h"
+#include "scene/case_file.h"
+#include "scene/scene.h"
+#include "scene/toolbox.h"
+
+namespace frana {
+
+/// One release as it was understood, for `frana check` and reports.
+struct ReleaseSummary {
+    std::string name;            ///< "release.0 (release.geojson)"
+    ReleaseReport report;        ///< area, volume, particles: particles/generate.h
+    double max_depth = 0.0;      ///< vertical [m]
+    double slope_min_deg = 0.0;  ///< bed slope at the nodes under the release [degrees]
+    double slope_mean_deg = 0.0;
+    double slope_max_deg = 0.0;
+};
+
+struct BuiltScene {
+    Scene scene;
+    std::vector<ReleaseSummary> releases;
+};
+
+/// Reads the terrain and the releases through `reader`, makes the particles, and checks all of it: outlines
+/// that leave the terrain, releases without volume, nodata within three cells of material. Throws one
+/// UserError with every problem found.
+BuiltScene build_scene_in_detail(const CaseFile& file, const GisReader& reader);
+
+/// The same without the summaries.
+Scene build_scene(const CaseFile& file, const GisReader& reader);
+
+}  // namespace frana

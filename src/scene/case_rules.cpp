@@ -1,0 +1,188 @@
+// The rules of a case that tie several keys together.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "scene/case_reader.h"
+
+namespace frana {
+namespace {
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// "release.0." + "depth" for the parameter release.depth.
+std::string concrete(const std::string& prefix, const std::string& key) {
+    return prefix + key.substr(key.rfind('.') + 1);
+}
+
+std::vector<std::string> files_of(const Parameter& parameter, const Value& value) {
+    const bool files = parameter.kind == Kind::path || parameter.kind == Kind::number_or_path ||
+                       parameter.kind == Kind::numbers_or_paths;
+    if (!files) return {};
+    if (const auto* one = std::get_if<std::string>(&value)) return {*one};
+    if (const auto* several = std::get_if<std::vector<std::string>>(&value)) return *several;
+    return {};
+}
+
+}  // namespace
+
+int CaseReader::line_of(const std::string& key) const {
+    const auto setting = case_.settings_.find(key);
+    if (setting != case_.settings_.end() && setting->second.from_set) return Problems::no_line;
+    const auto line = lines_.find(key);
+    if (line != lines_.end()) return line->second;
+    const auto table = case_.table_lines_.find(key.substr(0, key.rfind('.')));
+    return table != case_.table_lines_.end() ? table->second : 1;
+}
+
+void CaseReader::wrong(const std::string& key, const std::string& found, const std::string& expected,
+                       const std::string& way_out) {
+    problems_.add(line_of(key), case_.place(key), found, expected, way_out);
+}
+
+void CaseReader::missing(const std::string& key, const Parameter& parameter, const std::string& why) {
+    const bool repeated = contains(repeated_tables(), parameter.table());
+    const std::string header = fmt::format(repeated ? "[[{}]]" : "[{}]", parameter.table());
+    wrong(key, "not given" + why, fmt::format("expected {}, {}", parameter.expected(), parameter.meaning),
+          fmt::format("add {} = ... under {}", parameter.name(), header));
+}
+
+void CaseReader::check_rules() {
+    check_tables();
+    for (const char* table : {"profile", "gauge"}) check_line_names(table);
+    check_meaning();
+}
+
+void CaseReader::check_tables() {
+    if (case_.count("release") == 0 && !misread_.count("release"))
+        problems_.add(1, place_of("release", 1), "not given", "expected at least one [[release]]",
+                      "add [[release]] with outline and depth below");
+    std::set<std::string> done;
+    for (const Parameter& parameter : parameters()) {
+        const std::string table = parameter.table();
+        if (!done.insert(table).second) continue;
+        const bool repeated = contains(repeated_tables(), table);
+        for (Index i = 0; i < (repeated ? case_.count(table) : 1); ++i) {
+            const std::string prefix = table + "." + (repeated ? std::to_string(i) + "." : "");
+            check_missing(prefix, table);
+            check_alternatives(prefix, table);
+            check_unused(prefix, table);
+            if (table == "release") check_release(prefix);
+        }
+    }
+}
+
+void CaseReader::check_missing(const std::string& prefix, const std::string& table) {
+    for (const Parameter& parameter : parameters()) {
+        if (parameter.table() != table) continue;
+        const std::string key = concrete(prefix, parameter.key);
+        const auto there = [&](const std::string& k) { return case_.given(k) || misread_.count(k) > 0; };
+        if (there(key)) continue;
+        if (parameter.required) missing(key, parameter, "");
+        if (parameter.required_by.empty() || misread_.count(parameter.switch_key)) continue;
+        const std::string& chosen = case_.word(parameter.switch_key);
+        if (!contains(parameter.required_by, chosen)) continue;
+        const std::string other = parameter.instead_of.empty() ? "" : concrete(prefix, parameter.instead_of);
+        if (!other.empty() && (there(other) || other < key)) continue;  // of two ways, one complaint
+        const std::string either =
+            other.empty() ? "" : fmt::format(" (or {})", find_parameter(other)->name());
+        missing(key, parameter,
+                fmt::format(", but {} = \"{}\" needs it{}", parameter.switch_key, chosen, either));
+    }
+}
+
+void CaseReader::check_alternatives(const std::string& prefix, const std::string& table) {
+    for (const Parameter& parameter : parameters()) {
+        if (parameter.table() != table || parameter.instead_of.empty()) continue;
+        const std::string key = concrete(prefix, parameter.key);
+        const std::string other = concrete(prefix, parameter.instead_of);
+        if (other > key || !case_.given(key) || !case_.given(other)) continue;
+        wrong(key, fmt::format("found together with {}", case_.place(other)), "expected only one of the two",
+              "remove one of them");
+    }
+}
+
+void CaseReader::check_unused(const std::string& prefix, const std::string& table) {
+    for (const Parameter& parameter : parameters()) {
+        if (parameter.table() != table || parameter.switch_key.empty()) continue;
+        const std::string key = concrete(prefix, parameter.key);
+        if (!case_.given(key) || misread_.count(parameter.switch_key)) continue;
+        const std::string& chosen = case_.word(parameter.switch_key);
+        if (contains(parameter.used_by, chosen)) continue;
+        std::string users;
+        for (const std::string& user : parameter.used_by) users += (users.empty() ? "" : " or ") + user;
+        wrong(key, fmt::format("found, but {} = \"{}\" does not use it", parameter.switch_key, chosen),
+              fmt::format("expected with {} only", users),
+              fmt::format("remove it, or choose {}", parameter.switch_key));
+    }
+}
+
+void CaseReader::check_release(const std::string& prefix) {
+    const auto there = [&](const char* name) {
+        return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
+    };
+    if (!there("depth") && !there("surface"))
+        wrong(prefix + "depth", "not given, and no surface either",
+              "expected the depth of the release [m] or its surface",
+              "add depth = ... or surface = ... under [[release]]");
+    if (!case_.given(prefix + "surface")) return;
+    if (case_.word(prefix + "thickness") == "normal")
+        wrong(prefix + "thickness", "found \"normal\" together with surface",
+              "expected \"vertical\": depth = surface - bed is vertical", "remove thickness, or give depth");
+    if (case_.flag(prefix + "included_in_dem"))
+        wrong(prefix + "included_in_dem", "found true together with surface",
+              "expected depth, since the elevation model is the surface already",
+              "give depth = ..., a number or a raster of the thickness");
+}
+
+void CaseReader::check_line_names(const std::string& table) {
+    std::map<std::string, std::string> seen;
+    for (Index i = 0; i < case_.count(table); ++i) {
+        const std::string key = fmt::format("{}.{}.name", table, i);
+        if (!case_.given(key)) continue;
+        const auto [first, is_new] = seen.emplace(case_.word(key), case_.place(key));
+        if (!is_new)
+            wrong(key, fmt::format("found \"{}\" again", first->first),
+                  fmt::format("expected a name other than that at {}", first->second), "rename one of them");
+    }
+}
+
+void CaseReader::check_meaning() {
+    if (case_.given("terrain.window")) {
+        const std::vector<double>& w = case_.numbers("terrain.window");
+        if (w[0] >= w[2] || w[1] >= w[3])
+            wrong("terrain.window", "found " + toml_text(w),
+                  "expected [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax",
+                  "put the smaller coordinates first");
+    }
+    if (case_.given("terrain.curvature") && !misread_.count("terrain.model") &&
+        case_.word("terrain.model") == "shallow" && case_.word("terrain.curvature") != "none")
+        wrong("terrain.curvature",
+              fmt::format("found \"{}\" with terrain.model = \"shallow\"", case_.word("terrain.curvature")),
+              "expected \"none\", since that model has no curvature",
+              "remove it, or set terrain.model = \"steep\"");
+    if (case_.given("material.bed.mu_s") && case_.given("material.bed.mu_2") &&
+        case_.number("material.bed.mu_2") <= case_.number("material.bed.mu_s"))
+        wrong("material.bed.mu_2", fmt::format("found {}", case_.number("material.bed.mu_2")),
+              fmt::format("expected more than mu_s = {}", case_.number("material.bed.mu_s")),
+              "mu_s is the friction of slow flow, mu_2 that of fast flow; correct one");
+}
+
+void CaseReader::check_files() {
+    for (const auto& [key, setting] : case_.settings_) {
+        for (const std::string& file : files_of(*find_parameter(key), setting.value)) {
+            const std::filesystem::path path = case_.resolve(file);
+            // Names such as /vsizip/a.zip/dem.tif or NETCDF:a.nc:z are GDAL's own; only GDAL can look for
+            // them.
+            const bool virtual_name = file.rfind("/vsi", 0) == 0 || file.find(':') != std::string::npos;
+            if (virtual_name || std::filesystem::exists(path)) continue;
+            wrong(key, fmt::format("found no file \"{}\"", path.string()), "expected an existing file",
+                  "correct the name (it is relative to the case file), or put the file there");
+        }
+    }
+}
+
+}  // namespace frana

@@ -1,0 +1,307 @@
+// The table itself: every key a case file can have. The order is that of the documentation.
+#include <cmath>
+
+#include "scene/parameters.h"
+
+namespace frana {
+namespace {
+
+const double infinity = std::numeric_limits<double>::infinity();
+const Range any{};
+const Range positive{0.0, infinity, true, false};
+const Range not_negative{0.0, infinity, false, false};
+const Range fraction{0.0, 1.0, false, false};
+
+Range between(double low, double high) { return {low, high, false, false}; }
+Range above_to(double low, double high) { return {low, high, true, false}; }
+
+Value text(const char* value) { return std::string(value); }
+
+Parameter make(const char* key, Kind kind, const char* unit, const char* meaning) {
+    Parameter parameter;
+    parameter.key = key;
+    parameter.kind = kind;
+    parameter.unit = unit;
+    parameter.meaning = meaning;
+    return parameter;
+}
+
+Parameter number(const char* key, const char* unit, Range range, const char* meaning) {
+    Parameter parameter = make(key, Kind::number, unit, meaning);
+    parameter.range = range;
+    return parameter;
+}
+
+Parameter number(const char* key, const char* unit, Range range, double fallback, const char* meaning) {
+    Parameter parameter = number(key, unit, range, meaning);
+    parameter.fallback = fallback;
+    return parameter;
+}
+
+Parameter flag(const char* key, bool fallback, const char* meaning) {
+    Parameter parameter = make(key, Kind::flag, "", meaning);
+    parameter.fallback = fallback;
+    return parameter;
+}
+
+Parameter choice(const char* key, std::vector<std::string> choices, const char* fallback,
+                 const char* meaning) {
+    Parameter parameter = make(key, Kind::choice, "", meaning);
+    parameter.choices = std::move(choices);
+    parameter.fallback = text(fallback);
+    return parameter;
+}
+
+Parameter required(Parameter parameter) {
+    parameter.required = true;
+    return parameter;
+}
+
+Parameter absent(Parameter parameter, const char* consequence) {
+    parameter.absent = consequence;
+    return parameter;
+}
+
+Parameter instead(Parameter parameter, const char* other) {
+    parameter.instead_of = other;
+    return parameter;
+}
+
+/// Another default under the preset "paper", the choices of Fois et al. (2024).
+Parameter paper(Parameter parameter, Value value) {
+    parameter.otherwise.push_back({"scheme.preset", "paper", std::move(value)});
+    return parameter;
+}
+
+/// Used with these choices of `key` only, and needed with those of `needed_by`.
+Parameter with(Parameter parameter, const char* key, std::vector<std::string> used_by,
+               std::vector<std::string> needed_by = {}) {
+    parameter.switch_key = key;
+    parameter.used_by = std::move(used_by);
+    parameter.required_by = std::move(needed_by);
+    return parameter;
+}
+
+using Table = std::vector<Parameter>;
+
+void add_terrain(Table& table) {
+    table.push_back(
+        absent(make("case.title", Kind::text, "", "title of reports and figures"), "the case's name"));
+    table.push_back(required(
+        make("terrain.dem", Kind::path, "", "elevation model: any GDAL raster, CRS projected in metres")));
+    Parameter window =
+        make("terrain.window", Kind::numbers, "m",
+             "part of the elevation model to use: [xmin, ymin, xmax, ymax] in map coordinates");
+    window.length = 4;
+    table.push_back(absent(window, "the whole elevation model"));
+    table.push_back(paper(choice("terrain.model", {"steep", "shallow"}, "steep",
+                                 "steep: exact on any slope; shallow: gentle slopes (Fois et al. 2024)"),
+                          text("shallow")));
+    Parameter curvature =
+        choice("terrain.curvature", {"full", "inertia", "none"}, "full",
+               "bed curvature: full; inertia: in the acceleration, not in the friction; none");
+    curvature.otherwise.push_back({"terrain.model", "shallow", text("none")});
+    table.push_back(curvature);
+    table.push_back(
+        number("terrain.gravity", "m/s^2", above_to(0.0, 300.0), 9.81, "acceleration of gravity"));
+    table.push_back(absent(number("grid.cell", "m", positive, "node distance of the grid"),
+                           "the pixel of the elevation model"));
+}
+
+void add_release(Table& table) {
+    table.push_back(
+        absent(instead(make("release.outline", Kind::path, "",
+                            "polygons of the release, with or without holes: any OGR vector file"),
+                       "release.mask"),
+               "the mask, or the whole terrain"));
+    table.push_back(absent(
+        instead(make("release.mask", Kind::path, "", "raster of the release: material where it is above 0"),
+                "release.outline"),
+        "the outline, or the whole terrain"));
+    Parameter depth =
+        make("release.depth", Kind::number_or_path, "m", "depth of the release, or a raster of it");
+    depth.range = positive;
+    table.push_back(absent(instead(depth, "release.surface"), "surface is needed"));
+    table.push_back(absent(
+        instead(make("release.surface", Kind::number_or_path, "m",
+                     "elevation of the release's upper surface, or a raster of it; depth = surface - bed"),
+                "release.depth"),
+        "depth is needed"));
+    table.push_back(choice("release.thickness", {"vertical", "normal"}, "vertical",
+                           "whether depth is measured along gravity or normal to the slope"));
+    Parameter velocity = make("release.velocity", Kind::numbers_or_paths, "m/s",
+                              "horizontal velocity at the start, to the east and north; or two rasters");
+    velocity.length = 2;
+    velocity.fallback = std::vector<double>{0.0, 0.0};
+    table.push_back(velocity);
+    table.push_back(flag("release.included_in_dem", false,
+                         "the mass still stands in the elevation model and is cut out of the bed"));
+    Parameter per_cell =
+        make("particles.per_cell", Kind::integer, "1", "particles in a full cell of the grid");
+    per_cell.range = between(1.0, 400.0);
+    per_cell.fallback = 4.0;
+    table.push_back(instead(per_cell, "particles.count"));
+    Parameter count =
+        make("particles.count", Kind::integer, "1", "particles in all releases together, about");
+    count.range = between(1.0, 2.0e9);
+    table.push_back(absent(instead(count, "particles.per_cell"), "particles.per_cell decides"));
+    table.push_back(choice("particles.placement", {"lattice", "r2", "slope"}, "lattice",
+                           "lattice; r2: quasi-random sequence; slope: denser where the bed is steeper"));
+}
+
+void add_material(Table& table) {
+    const char* law = "material.bed.law";
+    table.push_back(number("material.density", "kg/m^3", positive, 1000.0, "density of the mass"));
+    table.push_back(choice(law, {"none", "coulomb", "voellmy", "manning", "bingham", "pouliquen"}, "none",
+                           "friction between the mass and its bed; pouliquen is mu(I)"));
+    table.push_back(instead(with(number("material.bed.friction_angle_deg", "degree", {0.0, 90.0, false, true},
+                                        "friction angle at the bed"),
+                                 law, {"coulomb", "voellmy", "manning", "bingham"}, {"coulomb", "voellmy"}),
+                            "material.bed.mu"));
+    table.push_back(instead(with(number("material.bed.mu", "1", between(0.0, 10.0),
+                                        "friction coefficient at the bed, the tangent of the friction angle"),
+                                 law, {"coulomb", "voellmy", "manning", "bingham"}, {"coulomb", "voellmy"}),
+                            "material.bed.friction_angle_deg"));
+    table.push_back(with(
+        number("material.bed.xi", "m/s^2", positive, "Voellmy's turbulence coefficient: larger runs faster"),
+        law, {"voellmy"}, {"voellmy"}));
+    table.push_back(
+        with(number("material.bed.manning_n", "s/m^(1/3)", above_to(0.0, 1.0), "Manning's roughness"), law,
+             {"manning"}, {"manning"}));
+    table.push_back(with(number("material.bed.viscosity", "Pa s", positive, "viscosity of the sheared layer"),
+                         law, {"bingham"}, {"bingham"}));
+    table.push_back(with(number("material.bed.yield_stress", "Pa", not_negative,
+                                "stress below which the layer does not shear"),
+                         law, {"bingham"}, {"bingham"}));
+    table.push_back(
+        with(number("material.bed.mu_s", "1", above_to(0.0, 10.0), "friction of the slowest flow"), law,
+             {"pouliquen"}, {"pouliquen"}));
+    table.push_back(
+        with(number("material.bed.mu_2", "1", above_to(0.0, 10.0), "friction of the fastest flow"), law,
+             {"pouliquen"}, {"pouliquen"}));
+    table.push_back(
+        with(number("material.bed.i0", "1", positive, 0.3, "inertial number between slow and fast"), law,
+             {"pouliquen"}));
+    table.push_back(with(number("material.bed.grain_diameter", "m", positive, "diameter of the grains"), law,
+                         {"pouliquen"}, {"pouliquen"}));
+    table.push_back(with(number("material.bed.solid_fraction", "1", {0.0, 1.0, true, true}, 0.6,
+                                "share of the volume that is grains"),
+                         law, {"pouliquen"}));
+    const char* rheology = "material.rheology.law";
+    table.push_back(choice(rheology, {"none", "newtonian", "bingham"}, "none", "stress inside the mass"));
+    table.push_back(with(number("material.rheology.viscosity", "Pa s", not_negative, "viscosity"), rheology,
+                         {"newtonian", "bingham"}, {"newtonian", "bingham"}));
+    table.push_back(with(number("material.rheology.yield_stress", "Pa", not_negative,
+                                "stress below which the mass does not flow"),
+                         rheology, {"bingham"}, {"bingham"}));
+}
+
+void add_scheme(Table& table) {
+    const Range small = above_to(0.0, 1.0);
+    table.push_back(choice("scheme.preset", {"default", "paper"}, "default",
+                           "default; paper: the choices of Fois et al. (2024), single keys override them"));
+    table.push_back(paper(choice("scheme.shape", {"linear", "quadratic"}, "quadratic", "shape functions"),
+                          text("linear")));
+    table.push_back(paper(choice("scheme.transfer", {"tpic", "apic", "flip", "pic"}, "tpic",
+                                 "how velocity passes between particles and grid"),
+                          text("pic")));
+    table.push_back(with(number("scheme.flip_ratio", "1", fraction, 0.99, "share of FLIP, the rest is PIC"),
+                         "scheme.transfer", {"flip"}));
+    table.push_back(
+        paper(number("scheme.cfl", "1", small, 0.5, "largest way in one time step, in cells"), 0.25));
+    table.push_back(
+        paper(number("scheme.filter", "1", fraction, 1.0, "strength of the surface filter"), 0.0));
+    table.push_back(number("scheme.margin_limit", "1", between(0.0, 4.0), 1.0,
+                           "limit of the quadratic part of the extrapolation at margins, in depths"));
+    table.push_back(paper(number("scheme.viscosity_linear", "1", not_negative, 0.1,
+                                 "artificial viscosity, coefficient of the wave speed"),
+                          0.0));
+    table.push_back(paper(number("scheme.viscosity_quadratic", "1", not_negative, 1.0,
+                                 "artificial viscosity, coefficient of the velocity jump"),
+                          0.0));
+    table.push_back(paper(flag("scheme.split", true, "split particles whose domain grows too long"), false));
+    table.push_back(number("scheme.split_length", "cells", above_to(0.0, 2.0), 0.8,
+                           "edge of a particle's domain that makes it split"));
+    table.push_back(number("scheme.split_min_mass", "1", fraction, 0.05,
+                           "no split below this share of the largest mass at the start"));
+    table.push_back(paper(
+        flag("scheme.mass_fit", true, "fit the masses so that a smooth release starts at rest"), false));
+    table.push_back(number("scheme.curvature_length", "m", not_negative, 10.0,
+                           "smoothing of the bed for its curvature; 0: none"));
+    table.push_back(number("scheme.strain_rate_floor", "1/s", positive, 1e-3,
+                           "strain rate below which the yield stress is regularised"));
+    table.push_back(number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
+                           "largest diffusion number of the rheology in one step"));
+    table.push_back(
+        absent(with(number("scheme.still_level", "m", any, "known level of a lake at rest (eq. 33)"),
+                    "scheme.preset", {"paper"}),
+               "no still level is used"));
+}
+
+void add_run(Table& table) {
+    table.push_back(choice("boundary.sides", {"open", "wall"}, "open",
+                           "open: mass leaves and is counted; wall: it is held back"));
+    table.push_back(required(number("time.end", "s", positive, "simulated time")));
+    table.push_back(flag("time.stop_at_rest", false, "stop when the mass has come to rest"));
+    table.push_back(number("time.rest_fraction", "1", {0.0, 1.0, true, true}, 0.05,
+                           "mean speed, as a share of its peak, that counts as rest"));
+    table.push_back(number("output.every", "s", positive, 1.0, "time between frames, which are hit exactly"));
+    Parameter formats = make("output.formats", Kind::words, "", "what is written");
+    formats.choices = {"vtk", "xdmf", "geotiff", "png"};
+    formats.fallback = std::vector<std::string>{"vtk", "geotiff", "png"};
+    table.push_back(formats);
+    Parameter fields = make("output.fields", Kind::words_or_all, "", "quantities in the frames");
+    fields.choices = {"depth",       "thickness",        "velocity",      "speed",
+                      "stress",      "effective_stress", "surface",       "elevation",
+                      "mass",        "volume",           "pressure",      "id",
+                      "peak_depth",  "peak_speed",       "peak_pressure", "peak_dynamic_pressure",
+                      "arrival_time"};
+    fields.fallback = std::vector<std::string>{};
+    table.push_back(fields);
+    table.push_back(
+        number("output.footprint_depth", "m", positive, 0.1, "deeper than this counts as covered"));
+    table.push_back(
+        choice("output.history", {"step", "output"}, "step", "history.csv has a line per step or frame"));
+    table.push_back(required(make("profile.name", Kind::name, "", "name of the profile's file and figure")));
+    Parameter line = make("profile.line", Kind::points, "m", "the profile's line: [[x, y], [x, y], ...]");
+    line.length = 2;
+    table.push_back(required(line));
+    table.push_back(required(make("gauge.name", Kind::name, "", "name of the gauge's file")));
+    Parameter point = make("gauge.point", Kind::numbers, "m", "where the gauge stands: [x, y]");
+    point.length = 2;
+    table.push_back(required(point));
+    table.push_back(absent(make("survey.footprint", Kind::path, "",
+                                "polygons of the surveyed extent, drawn in figures: any OGR vector file"),
+                           "no survey"));
+}
+
+Table make_table() {
+    Table table;
+    add_terrain(table);
+    add_release(table);
+    add_material(table);
+    add_scheme(table);
+    add_run(table);
+    return table;
+}
+
+}  // namespace
+
+const std::vector<Parameter>& parameters() {
+    static const Table table = make_table();
+    return table;
+}
+
+const std::vector<std::string>& repeated_tables() {
+    static const std::vector<std::string> names = {"release", "profile", "gauge"};
+    return names;
+}
+
+const std::vector<UnbuiltTable>& unbuilt_tables() {
+    static const std::vector<UnbuiltTable> tables = {{"barrier", "barriers"},
+                                                     {"stage", "stages with other laws or loads"},
+                                                     {"insitu", "rendering in situ"}};
+    return tables;
+}
+
+}  // namespace frana

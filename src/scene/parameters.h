@@ -1,0 +1,100 @@
+#pragma once
+// The one table of case keys. Parser, checks, `frana describe`, resolved.toml and --set all read it.
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/types.h"
+
+namespace frana {
+
+/// What a case key can hold.
+using Value =
+    std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>, std::vector<Vec2>>;
+
+enum class Kind {
+    number,            ///< double
+    integer,           ///< double without fraction
+    flag,              ///< bool
+    text,              ///< std::string
+    name,              ///< std::string fit for a file name
+    choice,            ///< std::string, one of Parameter::choices
+    path,              ///< std::string
+    number_or_path,    ///< double or std::string (a raster)
+    numbers,           ///< Parameter::length doubles
+    numbers_or_paths,  ///< Parameter::length doubles or as many std::string (rasters)
+    points,            ///< Vec2, at least Parameter::length
+    words,             ///< std::string, each one of Parameter::choices
+    words_or_all       ///< the same, or the text "all" (held as an empty list)
+};
+
+/// Interval of numbers; an open end excludes its limit.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_open = false;
+    bool high_open = false;
+
+    bool holds(double value) const;
+    bool is_all() const;
+    std::string text() const;  ///< "above 0 and at most 1", empty for all numbers
+};
+
+/// Another default that holds when the key `when` has the value `is`.
+struct OtherDefault {
+    std::string when;
+    std::string is;
+    Value value;
+};
+
+/// One case key.
+struct Parameter {
+    std::string key;  ///< "release.depth"; repeated tables are named without a number
+    Kind kind = Kind::number;
+    std::string unit;  ///< "m", "1", ...; empty when it has none
+    std::string meaning;
+    Range range = {};
+    std::vector<std::string> choices = {};
+    std::size_t length = 0;                    ///< of lists
+    std::optional<Value> fallback = {};        ///< the default
+    std::vector<OtherDefault> otherwise = {};  ///< defaults that depend on another choice, such as the preset
+    std::string absent = {};                   ///< without default: what happens when the key is not given
+    bool required = false;
+    std::string switch_key = {};                ///< key of the choice that decides whether this one is used
+    std::vector<std::string> used_by = {};      ///< choices of switch_key that use this key
+    std::vector<std::string> required_by = {};  ///< choices of switch_key that need this key
+    std::string instead_of = {};  ///< key that says the same in another way: only one of both may be given
+
+    std::string table() const;     ///< "release" of "release.depth"
+    std::string name() const;      ///< "depth" of "release.depth"
+    std::string expected() const;  ///< "a number above 0 [m]"
+};
+
+/// A table of the contract that this version does not read.
+struct UnbuiltTable {
+    std::string name;
+    std::string meaning;
+};
+
+/// All keys, grouped by table, in the order of the documentation.
+const std::vector<Parameter>& parameters();
+/// The key's parameter ("release.0.depth" and "release.depth" are the same), or nullptr.
+const Parameter* find_parameter(const std::string& key);
+/// "release.0.depth" -> "release.depth".
+std::string without_numbers(const std::string& key);
+/// Tables that are written [[name]] and may come several times.
+const std::vector<std::string>& repeated_tables();
+const std::vector<UnbuiltTable>& unbuilt_tables();
+/// The closest of `known` to `word` when it is close enough to be meant, otherwise empty.
+std::string closest(const std::string& word, const std::vector<std::string>& known);
+
+/// A value as TOML text; numbers with as many digits as it takes to read the same number back.
+std::string toml_text(const Value& value);
+
+/// The table for people: the key, every key of a table or every key that begins with `prefix`; empty: all.
+/// Throws UserError with the closest key when nothing matches.
+std::string describe(const std::string& prefix);
+
+}  // namespace frana

@@ -1,0 +1,42 @@
+#pragma once
+// The steps of build_scene, one subject each. Private to this room and its tests.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "particles/release.h"
+#include "scene/case_file.h"
+#include "scene/problems.h"
+#include "scene/scene.h"
+#include "scene/toolbox.h"
+
+namespace frana {
+
+/// Which nodes of a grid hold (or touch) material; geometry.size() entries, 1 or 0, order as in Raster.
+using NodeMarks = std::vector<char>;
+
+/// Laws, scheme, boundary, time and output of the case; no files are read.
+void set_physics(const CaseFile& file, Scene& scene);
+
+/// [[release]] number `i` in the terms of the particle generation: depth vertical, rasters read, outline read
+/// and within the terrain. A pixel that is material by outline or mask, but over nodata of the bed, has
+/// infinite depth. What is wrong with its files goes to `problems`, and nothing comes back.
+std::optional<Release> read_release(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
+                                    std::vector<std::string>& log, Problems& problems);
+
+/// Nodes under a release: those inside the outline or next to its edge, where the depth field has material.
+NodeMarks nodes_under(const Release& release, const GridGeometry& grid);
+
+/// Throws UserError, naming the pixel, when the bed has nodata within `reach` cells of a marked node.
+void refuse_nodata(const NodeMarks& marks, const Raster& bed, Index reach);
+
+/// Lowers the bed by the release's depth (mean over each node's pixel). Returns the volume cut out [m^3].
+double cut_release(const Release& release, Raster& bed);
+
+/// Value between the nodes, bilinear; NaN where a node with weight is NaN or the point lies beyond the
+/// pixels.
+double bilinear(const Raster& raster, const Vec2& point);
+/// Gradient at a node by central differences, one-sided beside nodata and at the edge [unit of raster per m].
+Vec2 node_gradient(const Raster& raster, Index i, Index j);
+
+}  // namespace frana

@@ -1,0 +1,111 @@
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Friction coefficient from either of its keys; 0 where the law can do without and none is given.
+double friction(const CaseFile& file) {
+    if (file.given("material.bed.friction_angle_deg"))
+        return std::tan(file.number("material.bed.friction_angle_deg") * pi / 180.0);
+    return file.given("material.bed.mu") ? file.number("material.bed.mu") : 0.0;
+}
+
+BedLaw bed_law(const CaseFile& file) {
+    const auto value = [&](const char* name) { return file.number(std::string("material.bed.") + name); };
+    const std::string& law = file.word("material.bed.law");
+    if (law == "none") return bed::None{};
+    if (law == "coulomb") return bed::Coulomb{friction(file)};
+    if (law == "voellmy") return bed::Voellmy{friction(file), value("xi")};
+    if (law == "manning") return bed::Manning{value("manning_n"), friction(file)};
+    if (law == "bingham") return bed::Bingham{value("viscosity"), value("yield_stress"), friction(file)};
+    expect(law == "pouliquen", "a bed law of the parameter table that the scene does not know");
+    return bed::Pouliquen{value("mu_s"), value("mu_2"), value("i0"), value("grain_diameter"),
+                          value("solid_fraction")};
+}
+
+Rheology rheology_of(const CaseFile& file) {
+    const std::string& law = file.word("material.rheology.law");
+    if (law == "none") return rheology::None{};
+    const double viscosity = file.number("material.rheology.viscosity");
+    if (law == "newtonian") return rheology::Newtonian{viscosity};
+    expect(law == "bingham", "a rheology of the parameter table that the scene does not know");
+    return rheology::Bingham{viscosity, file.number("material.rheology.yield_stress")};
+}
+
+Transfer transfer_of(const std::string& word) {
+    if (word == "tpic") return Transfer::tpic;
+    if (word == "apic") return Transfer::apic;
+    if (word == "flip") return Transfer::flip;
+    return Transfer::pic;
+}
+
+Scheme scheme_of(const CaseFile& file) {
+    const auto value = [&](const char* name) { return file.number(std::string("scheme.") + name); };
+    Scheme scheme;
+    scheme.preset = file.word("scheme.preset");
+    scheme.shape = file.word("scheme.shape") == "linear" ? Shape::linear : Shape::quadratic;
+    scheme.transfer = transfer_of(file.word("scheme.transfer"));
+    scheme.flip_ratio = value("flip_ratio");
+    scheme.cfl = value("cfl");
+    scheme.filter = value("filter");
+    scheme.margin_limit = value("margin_limit");
+    scheme.viscosity_linear = value("viscosity_linear");
+    scheme.viscosity_quadratic = value("viscosity_quadratic");
+    scheme.split = file.flag("scheme.split");
+    scheme.split_length = value("split_length");
+    scheme.split_min_mass = value("split_min_mass");
+    scheme.mass_fit = file.flag("scheme.mass_fit");
+    scheme.curvature_length = value("curvature_length");
+    scheme.strain_rate_floor = value("strain_rate_floor");
+    scheme.stress_cap = value("stress_cap");
+    if (file.given("scheme.still_level")) scheme.still_level = value("still_level");
+    scheme.paper_pressure = scheme.preset == "paper";
+    return scheme;
+}
+
+Output output_of(const CaseFile& file) {
+    Output output;
+    output.every = file.number("output.every");
+    output.vtk = output.xdmf = output.geotiff = output.png = false;
+    for (const std::string& format : file.words("output.formats")) {
+        output.vtk |= format == "vtk";
+        output.xdmf |= format == "xdmf";
+        output.geotiff |= format == "geotiff";
+        output.png |= format == "png";
+    }
+    output.fields = file.words("output.fields");
+    output.footprint_depth = file.number("output.footprint_depth");
+    output.history_per_step = file.word("output.history") == "step";
+    return output;
+}
+
+Curvature curvature_of(const std::string& word) {
+    if (word == "full") return Curvature::full;
+    return word == "inertia" ? Curvature::inertia : Curvature::none;
+}
+
+}  // namespace
+
+void set_physics(const CaseFile& file, Scene& scene) {
+    scene.gravity = file.number("terrain.gravity");
+    scene.density = file.number("material.density");
+    scene.terrain = file.word("terrain.model") == "shallow" ? TerrainModel::shallow : TerrainModel::steep;
+    scene.curvature = curvature_of(file.word("terrain.curvature"));
+    scene.sides = file.word("boundary.sides") == "wall" ? Sides::wall : Sides::open;
+    scene.bed_law = bed_law(file);
+    scene.rheology = rheology_of(file);
+    scene.scheme = scheme_of(file);
+    scene.end = file.number("time.end");
+    scene.stop_at_rest = file.flag("time.stop_at_rest");
+    scene.rest_fraction = file.number("time.rest_fraction");
+    scene.output = output_of(file);
+    if (!file.given("material.bed.law"))
+        scene.log.push_back("material.bed.law is not given: the bed is without friction");
+}
+
+}  // namespace frana

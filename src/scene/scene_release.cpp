@@ -1,0 +1,174 @@
+// [[release]] of the case file -> Release of the particle generation.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+constexpr double unknown_depth = std::numeric_limits<double>::infinity();
+
+class ReleaseReader {
+public:
+    ReleaseReader(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
+                  std::vector<std::string>& log)
+        : case_(file),
+          table_(fmt::format("release.{}", i)),
+          prefix_(table_ + "."),
+          bed_(bed),
+          reader_(reader),
+          log_(log) {}
+
+    std::optional<Release> read(Problems& problems) {
+        Release release;
+        release.name = case_.table_place(table_);
+        bool good = true;
+        if (given("outline"))
+            good &= problems.attempt(place("outline"), [&] { release.outline = outline(); });
+        const char* depth_key = given("mask") ? "mask" : given("surface") ? "surface" : "depth";
+        good &= problems.attempt(place(depth_key), [&] { set_depth(release); });
+        good &= problems.attempt(place("velocity"), [&] { set_velocity(release); });
+        if (!good) return std::nullopt;
+        return release;
+    }
+
+private:
+    bool given(const char* name) const { return case_.given(prefix_ + name); }
+    std::string key(const char* name) const { return prefix_ + name; }
+    bool is_file(const char* name) const { return given(name) && case_.is_text(key(name)); }
+
+    Raster raster(const std::filesystem::path& path) const {
+        return reader_.read_raster(path, bed_.geometry.pixel_extent(), bed_.crs_wkt, log_);
+    }
+
+    Polygons outline() const {
+        Polygons polygons = reader_.read_polygons(case_.path(key("outline")), bed_.crs_wkt, log_);
+        const auto extent = bed_.geometry.pixel_extent();
+        const double slack = 1e-9 * (std::abs(extent[2]) + std::abs(extent[3]) + 1.0);
+        Index outside = 0;
+        Index vertices = 0;
+        Vec2 example{0, 0};
+        for (const Polygon& polygon : polygons.parts) {
+            for (const auto& ring : polygon.rings) {
+                for (const Vec2& v : ring) {
+                    ++vertices;
+                    const bool in = v.x() >= extent[0] - slack && v.x() <= extent[2] + slack &&
+                                    v.y() >= extent[1] - slack && v.y() <= extent[3] + slack;
+                    if (!in && outside++ == 0) example = v;
+                }
+            }
+        }
+        if (vertices == 0)
+            throw UserError(
+                fmt::format("{}: found no polygon; expected the outline of a release; export it as polygons",
+                            polygons.source));
+        if (outside == 0) return polygons;
+        throw UserError(fmt::format(
+            "found {} of {} vertices outside the terrain, such as {:.10g}, {:.10g}; expected all within x "
+            "{:.10g} to {:.10g}, y {:.10g} "
+            "to {:.10g}; correct the outline or its CRS, or widen terrain.window",
+            outside, vertices, example.x(), example.y(), extent[0], extent[2], extent[1], extent[3]));
+    }
+
+    std::string place(const char* name) const { return case_.place(key(name)); }
+
+    void set_depth(Release& release) const {
+        const bool normal = case_.word(key("thickness")) == "normal";
+        if (given("mask")) {
+            const Raster mask = raster(case_.path(key("mask")));
+            release.depth_field = depth_on(mask.geometry, true);
+            for (std::size_t k = 0; k < mask.values.size(); ++k)
+                if (!(mask.values[k] > 0.0)) release.depth_field->values[k] = Raster::nodata;
+        } else if (is_file("depth")) {
+            release.depth_field = raster(case_.path(key("depth")));
+        } else if (given("surface") || normal) {
+            release.depth_field = depth_on(bed_.geometry, given("outline"));
+        } else {
+            release.depth = case_.number(key("depth"));
+        }
+        if (normal) make_vertical(*release.depth_field);
+    }
+
+    /// Depth, or surface minus bed, at the pixels of `grid`. Over nodata of the bed the depth is unknown when
+    /// the case claims material there, and none otherwise.
+    Raster depth_on(const GridGeometry& grid, bool claimed) const {
+        const char* name = given("surface") ? "surface" : "depth";
+        Raster field = is_file(name) ? reader_.read_onto(case_.path(key(name)), grid, bed_.crs_wkt, log_)
+                                     : Raster::filled(grid, case_.number(key(name)));
+        if (field.source.empty()) field.source = key(name);
+        if (!given("surface")) return field;
+        for (Index j = 0; j < grid.ny; ++j) {
+            for (Index i = 0; i < grid.nx; ++i) {
+                const double bed = bed_at(grid, i, j);
+                double& value = field.at(i, j);
+                if (std::isnan(bed))
+                    value = claimed && !std::isnan(value) ? unknown_depth : Raster::nodata;
+                else
+                    value -= bed;
+            }
+        }
+        return field;
+    }
+
+    double bed_at(const GridGeometry& grid, Index i, Index j) const {
+        if (grid == bed_.geometry) return bed_.at(i, j);
+        return bilinear(bed_, within_terrain(Vec2(grid.x(i), grid.y(j))));
+    }
+
+    /// Pixels at the rim of a mask may have their centre beyond the terrain that they overlap.
+    Vec2 within_terrain(const Vec2& point) const {
+        const auto extent = bed_.geometry.pixel_extent();
+        return {std::clamp(point.x(), extent[0], extent[2]), std::clamp(point.y(), extent[1], extent[3])};
+    }
+
+    /// depth = thickness / cos(slope) = thickness sqrt(1 + |grad Z|^2)
+    void make_vertical(Raster& field) const {
+        Raster stretch = bed_;
+        for (Index j = 0; j < bed_.geometry.ny; ++j)
+            for (Index i = 0; i < bed_.geometry.nx; ++i)
+                stretch.at(i, j) = std::isnan(bed_.at(i, j))
+                                       ? Raster::nodata
+                                       : std::sqrt(1.0 + node_gradient(bed_, i, j).squaredNorm());
+        const bool same = field.geometry == bed_.geometry;
+        for (Index j = 0; j < field.geometry.ny; ++j) {
+            for (Index i = 0; i < field.geometry.nx; ++i) {
+                double& value = field.at(i, j);
+                if (!(value > 0.0)) continue;
+                const Vec2 centre(field.geometry.x(i), field.geometry.y(j));
+                const double factor = same ? stretch.at(i, j) : bilinear(stretch, within_terrain(centre));
+                value = std::isnan(factor) ? unknown_depth : value * factor;
+            }
+        }
+    }
+
+    void set_velocity(Release& release) const {
+        const std::string velocity = key("velocity");
+        if (case_.is_text(velocity)) {
+            release.velocity_x = raster(case_.resolve(case_.words(velocity)[0]));
+            release.velocity_y = raster(case_.resolve(case_.words(velocity)[1]));
+        } else {
+            release.velocity = Vec2(case_.numbers(velocity)[0], case_.numbers(velocity)[1]);
+        }
+    }
+
+    const CaseFile& case_;
+    std::string table_;
+    std::string prefix_;
+    const Raster& bed_;
+    const GisReader& reader_;
+    std::vector<std::string>& log_;
+};
+
+}  // namespace
+
+std::optional<Release> read_release(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
+                                    std::vector<std::string>& log, Problems& problems) {
+    return ReleaseReader(file, i, bed, reader, log).read(problems);
+}
+
+}  // namespace frana

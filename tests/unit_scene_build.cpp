@@ -1,0 +1,333 @@
+// From case file to Scene, with files that exist in memory only.
+#include <numeric>
+
+#include "base/error.h"
+#include "catch.h"
+#include "fake_gis.h"
+#include "scene/build_scene.h"
+
+using namespace frana;
+
+namespace {
+
+/// 40 x 30 nodes, 5 m apart, on a plane that rises 1 in 2 to the east.
+const GridGeometry grid{40, 30, 1002.5, 2002.5, 5.0};
+double plane(double x, double) { return 100.0 + 0.5 * (x - 1000.0); }
+
+FakeGis slope_gis() {
+    FakeGis gis;
+    gis.rasters["dem.tif"] = sampled(grid, plane);
+    gis.rasters["dem.tif"].source = "dem.tif";
+    gis.polygons["release.geojson"] = rectangle(1050, 2050, 1100, 2080);
+    return gis;
+}
+
+/// Case text around the keys of one release.
+std::string with_release(const std::string& release, const std::string& rest = "") {
+    return "[terrain]\ndem = \"dem.tif\"\n[[release]]\n" + release + "\n[time]\nend = 20\n" + rest;
+}
+
+BuiltScene built(const std::string& text, const FakeGis& gis) {
+    return build_scene_in_detail(CaseFile::parse(text, "slide/case.toml"), gis);
+}
+
+std::vector<std::string> problems_of(const std::string& text, const FakeGis& gis) {
+    try {
+        built(text, gis);
+    } catch (const UserError& error) {
+        return error.problems();
+    }
+    return {};
+}
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+/// Sums of about a thousand terms carry a rounding of some 1e-13 relative.
+const double round_off = 1e-12;
+
+}  // namespace
+
+TEST_CASE("A polygon of constant depth becomes particles of that volume", "[scene]") {
+    const BuiltScene result =
+        built(with_release("outline = \"release.geojson\"\ndepth = 2.0\nvelocity = [1, -3]"), slope_gis());
+    const Scene& scene = result.scene;
+    CHECK(scene.name == "slide");
+    CHECK(scene.bed.geometry == grid);
+    CHECK(sum(scene.particles.volume) == Approx(50 * 30 * 2.0).epsilon(round_off));
+    CHECK(scene.particles.count() == 50 * 30 / 25 * 4);
+    CHECK(scene.particles.vx[7] == 1.0);
+    CHECK(scene.particles.vy[7] == -3.0);
+    REQUIRE(result.releases.size() == 1);
+    CHECK(result.releases[0].name == "release.0 (release.geojson)");
+    CHECK(result.releases[0].max_depth == Approx(2.0).epsilon(round_off));
+    // atan(1/2); central differences are exact on a plane
+    CHECK(result.releases[0].slope_min_deg == Approx(26.56505117707799).epsilon(1e-9));
+    CHECK(result.releases[0].slope_max_deg == Approx(26.56505117707799).epsilon(1e-9));
+}
+
+TEST_CASE("A thickness normal to the slope is longer along gravity", "[scene]") {
+    const BuiltScene result = built(
+        with_release("outline = \"release.geojson\"\ndepth = 2.0\nthickness = \"normal\""), slope_gis());
+    CHECK(result.releases[0].report.volume == Approx(50 * 30 * 2.0 * std::sqrt(1.25)).epsilon(round_off));
+    CHECK(sum(result.scene.particles.volume) == Approx(50 * 30 * 2.0 * std::sqrt(1.25)).epsilon(round_off));
+}
+
+TEST_CASE("A depth raster keeps its own pixels, within an outline or without", "[scene]") {
+    FakeGis gis = slope_gis();
+    const GridGeometry pixels{6, 4, 1045, 2045, 10};  // covers x 1040..1100, y 2040..2080
+    gis.rasters["depth.tif"] =
+        sampled(pixels, [](double x, double) { return x > 1075 ? 3.0 : Raster::nodata; });
+    CHECK(sum(built(with_release("depth = \"depth.tif\""), gis).scene.particles.volume) ==
+          Approx(2 * 40 * 10 * 3.0).epsilon(round_off));  // two columns of pixels begin at x = 1080
+    CHECK(sum(built(with_release("depth = \"depth.tif\"\noutline = \"release.geojson\""), gis)
+                  .scene.particles.volume) == Approx(20 * 30 * 3.0).epsilon(round_off));
+}
+
+TEST_CASE("A mask says where, in its own pixels, and a number or raster says how deep", "[scene]") {
+    FakeGis gis = slope_gis();
+    const GridGeometry pixels{3, 2, 1055, 2055, 10};
+    gis.rasters["mask.tif"] = sampled(pixels, [](double x, double) { return x < 1070 ? 1.0 : 0.0; });
+    gis.rasters["depth.tif"] = sampled(grid, [](double x, double) { return x > 1060 ? 4.0 : 2.0; });
+    CHECK(sum(built(with_release("mask = \"mask.tif\"\ndepth = 1.5"), gis).scene.particles.volume) ==
+          Approx(20 * 20 * 1.5).epsilon(round_off));
+    CHECK(
+        sum(built(with_release("mask = \"mask.tif\"\ndepth = \"depth.tif\""), gis).scene.particles.volume) ==
+        Approx(10 * 20 * (2.0 + 4.0)).epsilon(round_off));
+}
+
+TEST_CASE("A lake fills the whole window up to its surface", "[scene]") {
+    FakeGis gis;
+    gis.rasters["dem.tif"] =
+        sampled({20, 20, 0.5, 0.5, 1.0}, [](double x, double) { return x < 10 ? 8.0 : 12.0; });
+    const Scene scene = built(with_release("surface = 10.0"), gis).scene;
+    // Material lives between the outer nodes; the pixels of the left half hold 2 m.
+    CHECK(sum(scene.particles.volume) == Approx(9.5 * 19 * 2.0).epsilon(round_off));
+    for (const double depth : scene.particles.depth) CHECK(depth == Approx(2.0).epsilon(round_off));
+}
+
+TEST_CASE("A surface raster over an outline gives depth = surface - bed", "[scene]") {
+    FakeGis gis = slope_gis();
+    gis.rasters["before.tif"] = sampled(grid, [](double x, double y) { return plane(x, y) + 6.0; });
+    const Scene scene =
+        built(with_release("outline = \"release.geojson\"\nsurface = \"before.tif\""), gis).scene;
+    CHECK(sum(scene.particles.volume) == Approx(50 * 30 * 6.0).epsilon(1e-12));
+}
+
+TEST_CASE("A mass that stands in the DEM is cut out of the bed with its whole volume", "[scene]") {
+    const std::string keys = "outline = \"release.geojson\"\ndepth = 2.0\nincluded_in_dem = ";
+    const Scene cut = built(with_release(keys + "true"), slope_gis()).scene;
+    const Scene whole = built(with_release(keys + "false"), slope_gis()).scene;
+    CHECK(cut.particles.x == whole.particles.x);
+    CHECK(cut.particles.volume == whole.particles.volume);
+    double removed = 0.0;
+    for (std::size_t k = 0; k < cut.bed.values.size(); ++k)
+        removed += whole.bed.values[k] - cut.bed.values[k];
+    // Elevations of some 150 m lose 1e-14 each; 60 pixels of 2 m are removed.
+    CHECK(removed * 25.0 == Approx(50 * 30 * 2.0).epsilon(1e-11));
+    CHECK(whole.bed.at(12, 12) - cut.bed.at(12, 12) == Approx(2.0).epsilon(1e-12));
+    CHECK(whole.bed.at(2, 2) == cut.bed.at(2, 2));
+    REQUIRE(cut.log.size() == whole.log.size() + 1);
+    CHECK(cut.log.back() == "release.0: its 3000 m3 are cut out of the bed (included_in_dem)");
+}
+
+TEST_CASE("Nodata near the material is an error that names the pixel; elsewhere it is an exit", "[scene]") {
+    FakeGis gis = slope_gis();
+    const std::string text = with_release("outline = \"release.geojson\"\ndepth = 2.0");
+    gis.rasters["dem.tif"].at(1, 1) = Raster::nodata;
+    const Scene scene = built(text, gis).scene;
+    CHECK(std::isnan(scene.bed.at(1, 1)));
+    CHECK(scene.log.front().find("material.bed.law is not given") == 0);
+    CHECK(scene.log[1] == "1 of 1200 nodes have no elevation: an exit, mass that enters is counted as left");
+
+    gis.rasters["dem.tif"].at(12, 18) =
+        Raster::nodata;  // 2 cells north of the edge at y = 2080 (node row 15)
+    CHECK(problems_of(text, gis) ==
+          std::vector<std::string>{
+              "slide/case.toml:3: release.0: found nodata under or within 3 cells of the material at 1 "
+              "pixel, the first at "
+              "row 11, column 12 (from the north-west, counted from 0; map 1062.5, 2092.5); expected "
+              "elevations there; fill "
+              "the gaps (gdal_fillnodata.py dem.tif filled.tif), or move the release away from them"});
+    gis.rasters["dem.tif"].at(12, 18) = 0.0;
+    gis.rasters["dem.tif"].at(12, 20) = Raster::nodata;
+    CHECK(problems_of(text, gis).empty());
+}
+
+TEST_CASE("A surface over nodata inside its outline is refused, not skipped", "[scene]") {
+    FakeGis gis = slope_gis();
+    gis.rasters["dem.tif"].at(15, 12) = Raster::nodata;
+    const auto problems = problems_of(with_release("outline = \"release.geojson\"\nsurface = 500"), gis);
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].find("at 1 pixel, the first at row 17, column 15") != std::string::npos);
+}
+
+TEST_CASE("Releases off the terrain or without volume are refused", "[scene]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["outside.geojson"] = rectangle(1150, 2050, 1250, 2080);
+    gis.polygons["outside.geojson"].source = "outside.geojson";
+    CHECK(problems_of(with_release("outline = \"outside.geojson\"\ndepth = 1"), gis) ==
+          std::vector<std::string>{"slide/case.toml:4: release.0.outline: found 2 of 4 vertices outside the "
+                                   "terrain, such as 1250, 2050; expected "
+                                   "all within x 1000 to 1200, y 2000 to 2150; correct the outline or its "
+                                   "CRS, or widen terrain.window"});
+    CHECK(problems_of(with_release("surface = 50"), gis) ==
+          std::vector<std::string>{"slide/case.toml:3: release.0: found no material in its depth; expected a "
+                                   "volume above 0; check depth or "
+                                   "surface, and the CRS and place of the files"});
+}
+
+TEST_CASE("Problems of several files and places are listed together", "[scene]") {
+    const std::string rest =
+        "[[release]]\noutline = \"none.geojson\"\ndepth = 1\n[[gauge]]\nname = \"g\"\npoint = [0, 0]\n"
+        "[[profile]]\nname = \"p\"\nline = [[0, 0], [1, 1]]\n[survey]\nfootprint = \"gone.geojson\"\n";
+    const auto problems = problems_of(with_release("surface = 50", rest), slope_gis());
+    CAPTURE(problems);
+    REQUIRE(problems.size() == 5);
+    CHECK(problems[0].find("slide/case.toml:3: release.0: found no material") == 0);
+    CHECK(problems[1].find("slide/case.toml:8: release.1.outline: slide/none.geojson: no such polygons") ==
+          0);
+    CHECK(problems[2].find("slide/case.toml:17: survey.footprint: slide/gone.geojson: no such polygons") ==
+          0);
+    CHECK(problems[3].find("slide/case.toml:15: profile.0.line: found no point of it on the terrain") == 0);
+    CHECK(problems[4] ==
+          "slide/case.toml:12: gauge.0.point: found 0, 0 off the terrain; expected it within x 1000 to 1200, "
+          "y 2000 to "
+          "2150; correct the coordinates, or widen terrain.window");
+    CHECK(problems_of("[terrain]\ndem = \"x.tif\"\n[[release]]\ndepth = 1\n[time]\nend = 1\n", slope_gis()) ==
+          std::vector<std::string>{"slide/case.toml:2: terrain.dem: slide/x.tif: no such raster"});
+}
+
+TEST_CASE("Laws, scheme, time and output arrive in the scene", "[scene]") {
+    const std::string text = R"([case]
+title = "All of it"
+[terrain]
+dem = "dem.tif"
+gravity = 9.8
+curvature = "inertia"
+[[release]]
+outline = "release.geojson"
+depth = 2
+[particles]
+count = 100
+placement = "r2"
+[material]
+density = 1291
+[material.bed]
+law = "voellmy"
+friction_angle_deg = 45
+xi = 200
+[material.rheology]
+law = "bingham"
+viscosity = 2000
+yield_stress = 50
+[scheme]
+transfer = "flip"
+flip_ratio = 0.9
+split_length = 0.7
+[boundary]
+sides = "wall"
+[time]
+end = 20
+stop_at_rest = true
+[output]
+every = 0.5
+formats = ["xdmf"]
+fields = ["depth"]
+history = "output"
+[[gauge]]
+name = "bridge"
+point = [1100, 2050]
+)";
+    const Scene scene = built(text, slope_gis()).scene;
+    CHECK(scene.title == "All of it");
+    CHECK(scene.gravity == 9.8);
+    CHECK(scene.curvature == Curvature::inertia);
+    CHECK(scene.terrain == TerrainModel::steep);
+    CHECK(scene.particles.count() == 100);
+    CHECK(scene.density == 1291.0);
+    REQUIRE(std::holds_alternative<bed::Voellmy>(scene.bed_law));
+    CHECK(std::get<bed::Voellmy>(scene.bed_law).mu == Approx(1.0).epsilon(1e-14));
+    CHECK(std::get<bed::Voellmy>(scene.bed_law).xi == 200.0);
+    REQUIRE(std::holds_alternative<rheology::Bingham>(scene.rheology));
+    CHECK(std::get<rheology::Bingham>(scene.rheology).yield_stress == 50.0);
+    CHECK(scene.scheme.transfer == Transfer::flip);
+    CHECK(scene.scheme.flip_ratio == 0.9);
+    CHECK(scene.scheme.split_length == 0.7);
+    CHECK_FALSE(scene.scheme.paper_pressure);
+    CHECK(scene.sides == Sides::wall);
+    CHECK(scene.end == 20.0);
+    CHECK(scene.stop_at_rest);
+    CHECK(scene.output.every == 0.5);
+    CHECK(scene.output.xdmf);
+    CHECK_FALSE(scene.output.vtk);
+    CHECK(scene.output.fields == std::vector<std::string>{"depth"});
+    CHECK_FALSE(scene.output.history_per_step);
+    REQUIRE(scene.gauges.size() == 1);
+    CHECK(scene.gauges[0].point == Vec2(1100, 2050));
+}
+
+TEST_CASE("The defaults of the table are the defaults of the scene", "[scene]") {
+    const Scene scene = built(with_release("outline = \"release.geojson\"\ndepth = 2"), slope_gis()).scene;
+    const Scheme plain;
+    CHECK(scene.scheme.shape == plain.shape);
+    CHECK(scene.scheme.transfer == plain.transfer);
+    CHECK(scene.scheme.flip_ratio == plain.flip_ratio);
+    CHECK(scene.scheme.cfl == plain.cfl);
+    CHECK(scene.scheme.filter == plain.filter);
+    CHECK(scene.scheme.margin_limit == plain.margin_limit);
+    CHECK(scene.scheme.viscosity_linear == plain.viscosity_linear);
+    CHECK(scene.scheme.viscosity_quadratic == plain.viscosity_quadratic);
+    CHECK(scene.scheme.split == plain.split);
+    CHECK(scene.scheme.split_length == plain.split_length);
+    CHECK(scene.scheme.split_min_mass == plain.split_min_mass);
+    CHECK(scene.scheme.mass_fit == plain.mass_fit);
+    CHECK(scene.scheme.curvature_length == plain.curvature_length);
+    CHECK(scene.scheme.strain_rate_floor == plain.strain_rate_floor);
+    CHECK(scene.scheme.stress_cap == plain.stress_cap);
+    CHECK(scene.scheme.paper_pressure == plain.paper_pressure);
+    const Output output;
+    CHECK(scene.output.every == output.every);
+    CHECK(scene.output.vtk == output.vtk);
+    CHECK(scene.output.xdmf == output.xdmf);
+    CHECK(scene.output.geotiff == output.geotiff);
+    CHECK(scene.output.png == output.png);
+    CHECK(scene.output.footprint_depth == output.footprint_depth);
+    CHECK(scene.output.history_per_step == output.history_per_step);
+    const Scene empty;
+    CHECK(scene.gravity == empty.gravity);
+    CHECK(scene.density == empty.density);
+    CHECK(scene.rest_fraction == empty.rest_fraction);
+    CHECK(scene.stop_at_rest == empty.stop_at_rest);
+}
+
+TEST_CASE("resolved.toml gives the same scene as the case it came from", "[scene][resolved]") {
+    const std::string text =
+        with_release("outline = \"release.geojson\"\ndepth = 2\nthickness = \"normal\"",
+                     "[material.bed]\nlaw = \"pouliquen\"\nmu_s = 0.38\nmu_2 = 0.65\ngrain_diameter = 7e-4\n"
+                     "[scheme]\npreset = \"paper\"\nstill_level = 0.1\n[[profile]]\nname = \"p\"\nline = "
+                     "[[1010, 2010], [1100.1, 2100]]\n");
+    const CaseFile file = CaseFile::parse(text, "slide/case.toml");
+    const Scene a = build_scene(file, slope_gis());
+    const Scene b = build_scene(CaseFile::parse(resolved_toml(file), "out/slide/resolved.toml"), slope_gis());
+    CHECK(a.name == b.name);
+    CHECK(a.bed.values == b.bed.values);
+    CHECK(a.particles.x == b.particles.x);
+    CHECK(a.particles.volume == b.particles.volume);
+    CHECK(a.bed_law.index() == b.bed_law.index());
+    CHECK(std::get<bed::Pouliquen>(a.bed_law).grain_diameter ==
+          std::get<bed::Pouliquen>(b.bed_law).grain_diameter);
+    CHECK(std::get<bed::Pouliquen>(a.bed_law).i0 == std::get<bed::Pouliquen>(b.bed_law).i0);
+    CHECK(a.terrain == b.terrain);
+    CHECK(a.curvature == b.curvature);
+    CHECK(a.scheme.preset == b.scheme.preset);
+    CHECK(a.scheme.cfl == b.scheme.cfl);
+    CHECK(a.scheme.shape == b.scheme.shape);
+    CHECK(a.scheme.transfer == b.scheme.transfer);
+    CHECK(a.scheme.split == b.scheme.split);
+    CHECK(a.scheme.still_level == b.scheme.still_level);
+    CHECK(a.scheme.paper_pressure == b.scheme.paper_pressure);
+    CHECK(a.end == b.end);
+    CHECK(a.output.vtk == b.output.vtk);
+    CHECK(a.output.xdmf == b.output.xdmf);
+    CHECK(a.profiles[0].line == b.profiles[0].line);
+}
