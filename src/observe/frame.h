@@ -27,7 +27,8 @@ struct Status {
     double mass = 0.0;               ///< [kg]
     double mass_left = 0.0;          ///< left through open sides or exits since the start [kg]
     std::array<double, 2> momentum{};          ///< [kg m/s]
-    std::array<double, 2> impulse{};           ///< impulse of all forces since the start [kg m/s]
+    std::array<double, 2> impulse{};           ///< of all forces since the start [kg m/s]; with walls their push
+                                               ///< is booked as what closes the balance
     std::array<double, 2> momentum_left{};     ///< carried out by what left [kg m/s]
     double kinetic = 0.0;            ///< [J]
     double potential = 0.0;          ///< sum of rho g A h (Z + h/2) [J]

@@ -43,6 +43,7 @@ DepthAveraged::DepthAveraged(const Scene& scene)
         !scene.scheme.paper_pressure)
         fit_ = fit_masses(flow_, *scene.still_surface);
     arrive();
+    start_momentum_ = status_.momentum;
     signal_ += std::sqrt(flow_.gravity * status_.max_depth);
 }
 
@@ -157,6 +158,11 @@ void DepthAveraged::book_points(const PointSums& sums) {
     signal_ = std::max(signal_, sums.max_signal);
     drift_ += sums.max_shift;
     status_.max_speed = sums.max_speed;
+    if (flow_.walls)  // what walls push is not seen on the nodes: it is what else the points gained
+        for (int axis = 0; axis < 2; ++axis) {
+            const double gathered = axis == 0 ? sums.px + sums.left_px : sums.py + sums.left_py;
+            status_.impulse[axis] = gathered + status_.momentum_left[axis] - start_momentum_[axis];
+        }
     status_.mass_left += sums.left_mass;
     status_.momentum_left[0] += sums.left_px;
     status_.momentum_left[1] += sums.left_py;

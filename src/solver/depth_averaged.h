@@ -78,6 +78,7 @@ private:
     Rheology rheology_;
     bool steep_, curved_;
     double footprint_depth_, rest_fraction_;
+    std::array<double, 2> start_momentum_{};  ///< [kg m/s]
     double signal_ = 0.0;       ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]
     double drift_ = 0.0;        ///< largest distance since the last sort [cells]
     double peak_mean_speed_ = 0.0;

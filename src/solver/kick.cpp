@@ -205,8 +205,9 @@ private:
         const double speed = speed_after(law_, state, s0, driven, dt);
         const double keep = speed / driven, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
         const double kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
-        const double kappa2 = state.kappa * state.kappa;
-        return {vx, vy, kinetic, 0.5 * kappa2 * (driven * driven - speed * speed), wave_gravity};
+        // Work of friction: its impulse times the mean speed of the step; none where nothing moves.
+        const double work = state.kappa * state.kappa * (driven - speed) * 0.5 * (s0 + speed);
+        return {vx, vy, kinetic, work, wave_gravity};
     }
 
     static double coulomb(const bed::None&) { return 0.0; }

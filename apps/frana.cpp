@@ -1,0 +1,185 @@
+// The program: command line in, exit code out. 0 done, 1 our bug, 2 case, data or command line, 3 numerics,
+// 130 interrupted.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <new>
+
+#include "base/error.h"
+#include "base/version.h"
+#include "frana_commands.h"
+#include "io/gdal_reader.h"
+#include "io/hdf5_version.h"
+#include "scene/parameters.h"
+#include "vtk_io/vtk_version.h"
+
+namespace frana {
+namespace {
+
+using Action = std::function<int()>;  ///< what the chosen subcommand does
+
+std::string version_text() {
+    const char* arch = FRANA_ARCH[0] ? FRANA_ARCH : "compiler's default";
+    std::string text = fmt::format("frana {}\n", FRANA_VERSION);
+    text += fmt::format("build {}, {}, march {}\n", FRANA_BUILD_TYPE, FRANA_COMPILER, arch);
+    return text + fmt::format("VTK {}, GDAL {}, HDF5 {}", vtk_version(), gdal_version(), hdf5_version());
+}
+
+void add_case(CLI::App& command, std::filesystem::path& file, std::vector<std::string>& sets) {
+    command.add_option("CASE", file, "case file (TOML)")->required();
+    command.add_option("--set", sets, "override a key: key=value, as often as wanted")
+        ->type_name("key=value")
+        ->allow_extra_args(false);
+}
+
+void add_run(CLI::App& app, RunOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("run", "run a case");
+    add_case(*command, options.case_file, options.sets);
+    command->add_option("--out", options.out, "folder of the results; default out/<case name>");
+    command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")
+        ->check(CLI::Range(1, 4096));
+    command->add_option("--until", options.until, "stop at this simulated time [s]");
+    command->add_flag("--resume", options.resume, "go on from the last state");
+    command->add_flag("--quiet", options.quiet, "no progress");
+    command->callback([&] {
+        action = [&] {
+            if (options.resume)
+                throw UserError(
+                    "--resume: found on the command line; expected a run from the start, since this version "
+                    "keeps no state to go on from; run without --resume");
+            return run_command(options);
+        };
+    });
+}
+
+void add_check(CLI::App& app, CheckOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("check", "read and build the whole scene without running it");
+    add_case(*command, options.case_file, options.sets);
+    command->callback([&] { action = [&] { return check_command(options); }; });
+}
+
+void add_describe(CLI::App& app, std::string& key, Action& action) {
+    CLI::App* command = app.add_subcommand("describe", "case keys: meaning, unit, range, default");
+    command->add_option("key", key, "a key, a table or the beginning of either; default all");
+    command->callback([&] { action = [&] { return describe_command(key); }; });
+}
+
+void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("particles", "particle generation alone");
+    add_case(*command, options.case_file, options.sets);
+    command->add_option("--out", options.out, "file to write: .h5, .json, .csv or .vtp")->required();
+    command->add_option("--count", options.count, "number of particles, as particles.count");
+    command->callback([&] { action = [&] { return particles_command(options); }; });
+}
+
+/// "1600x1200" into width and height.
+void read_size(const std::string& text, FiguresOptions& options) {
+    int end = 0;
+    const int read = std::sscanf(text.c_str(), "%5dx%5d%n", &options.width, &options.height, &end);
+    const bool whole = read == 2 && end == static_cast<int>(text.size());
+    if (!whole || options.width < 100 || options.height < 100 || options.width > 16384 ||
+        options.height > 16384)
+        throw UserError(
+            fmt::format("--size: found \"{}\"; expected WIDTHxHEIGHT in pixels, each 100 to 16384; write it "
+                        "like 1600x1200",
+                        text));
+}
+
+void add_figures(CLI::App& app, FiguresOptions& options, std::string& size, Action& action) {
+    CLI::App* command = app.add_subcommand("figures", "render the figures of a run again, headless");
+    command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
+    command->add_option("--time", options.time, "simulated time [s]; default the last frame");
+    command->add_option("--size", size, "pixels; default 1600x1200")->type_name("WxH");
+    command->callback([&] {
+        action = [&] {
+            if (!size.empty()) read_size(size, options);
+            return figures_command(options);
+        };
+    });
+}
+
+int complain(const std::string& text, int code) {
+    std::cout << std::flush;
+    std::cerr << text << '\n';
+    return code;
+}
+
+int complain(const UserError& error) {
+    const std::size_t count = error.problems().size();
+    const std::string sum = count > 1 ? fmt::format("\n{} problems", count) : "";
+    return complain(error.what() + sum, 2);
+}
+
+/// CLI11 alone would only say that a command is missing.
+void refuse_unknown(const CLI::App& app, const std::string& word) {
+    std::vector<std::string> names;
+    std::string listed;
+    for (const CLI::App* command : app.get_subcommands(nullptr)) {
+        names.push_back(command->get_name());
+        listed += (listed.empty() ? "" : ", ") + command->get_name();
+    }
+    const bool known = std::find(names.begin(), names.end(), word) != names.end();
+    if (known || word.empty() || word[0] == '-') return;
+    const std::string near = closest(word, names);
+    throw UserError(fmt::format("command line: found the unknown command \"{}\"; expected one of {}; {}",
+                                word, listed,
+                                near.empty() ? "see `frana --help`" : "did you mean " + near + "?"));
+}
+
+/// Parses the command line and does what it says.
+int run_program(int argc, char** argv) {
+    CLI::App app("frana: landslides with the depth-averaged material point method", "frana");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", version_text);
+    RunOptions run;
+    CheckOptions check;
+    std::string key;
+    ParticlesOptions particles;
+    FiguresOptions figures;
+    std::string size;
+    Action action;
+    add_run(app, run, action);
+    add_check(app, check, action);
+    add_describe(app, key, action);
+    add_particles(app, particles, action);
+    add_figures(app, figures, size, action);
+    if (argc > 1) refuse_unknown(app, argv[1]);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {  // also how CLI11 asks for help or version to be printed
+        if (error.get_exit_code() == 0) return app.exit(error);
+        throw UserError(
+            fmt::format("command line: found a mistake: {}; expected a command with its arguments; see "
+                        "`frana --help`, or --help behind the command",
+                        error.what()));
+    }
+    return action();
+}
+
+}  // namespace
+}  // namespace frana
+
+int main(int argc, char** argv) {
+    using namespace frana;
+    try {
+        return run_program(argc, argv);
+    } catch (const UserError& error) {
+        return complain(error);
+    } catch (const NumericsError& error) {
+        return complain(error.what(), 3);
+    } catch (const Interrupted& error) {
+        return complain(error.what(), 130);
+    } catch (const std::bad_alloc&) {
+        return complain(
+            "memory: found too little for this case; expected what `frana check` tells; use fewer particles "
+            "or a larger grid.cell",
+            2);
+    } catch (const std::exception& error) {
+        return complain(
+            fmt::format("{} (a mistake of the program; please report it with the case)", error.what()), 1);
+    }
+}

@@ -1,0 +1,135 @@
+// `frana check`: the whole scene, built but not run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "frana_commands.h"
+#include "io/gdal_reader.h"
+#include "scene/build_scene.h"
+
+namespace frana {
+namespace {
+
+/// Assumptions of the forecast, said in its text.
+constexpr double seconds_per_particle_step = 150e-9;  ///< whole step on one core
+constexpr double bytes_per_particle = 300.0;
+constexpr double bytes_per_node = 400.0;
+
+std::string crs_name(const std::string& wkt) {
+    const std::size_t begin = wkt.find('"');
+    if (begin == std::string::npos) return "unknown";
+    return wkt.substr(begin + 1, wkt.find('"', begin + 1) - begin - 1);
+}
+
+std::string grid_text(const Scene& scene) {
+    const GridGeometry& grid = scene.bed.geometry;
+    const auto e = grid.pixel_extent();
+    double low = INFINITY;
+    double high = -INFINITY;
+    for (const double z : scene.bed.values) {
+        if (std::isnan(z)) continue;
+        low = std::min(low, z);
+        high = std::max(high, z);
+    }
+    std::string text = fmt::format("grid        {} x {} nodes, {} m apart\n", grid.nx, grid.ny, grid.cell);
+    text +=
+        fmt::format("            x {:.10g} to {:.10g}, y {:.10g} to {:.10g}, elevation {:.6g} to {:.6g} m\n",
+                    e[0], e[2], e[1], e[3], low, high);
+    return text + fmt::format("            CRS {}\n", crs_name(scene.bed.crs_wkt));
+}
+
+std::string release_text(const ReleaseSummary& release) {
+    const ReleaseReport& r = release.report;
+    std::string text = fmt::format("{}\n", release.name);
+    text += fmt::format("            {} particles on {:.6g} m2, depth up to {:.4g} m\n", r.count, r.area,
+                        release.max_depth);
+    text += fmt::format(
+        "            volume {:.9g} m3 from raster or polygon, {:.9g} m3 in particles, difference {:.1e}\n",
+        r.volume, r.particle_volume, r.relative_error);
+    return text + fmt::format("            bed slope {:.1f} to {:.1f} degrees, {:.1f} on average\n",
+                              release.slope_min_deg, release.slope_max_deg, release.slope_mean_deg);
+}
+
+std::string total_text(const BuiltScene& built) {
+    double volume = 0.0;
+    double particle_volume = 0.0;
+    for (const ReleaseSummary& release : built.releases) {
+        volume += release.report.volume;
+        particle_volume += release.report.particle_volume;
+    }
+    return fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n",
+                       built.scene.particles.count(), particle_volume, volume,
+                       particle_volume * built.scene.density);
+}
+
+struct Forecast {
+    double fewest_steps = 0.0;  ///< at the speeds of the start
+    double most_steps = 0.0;    ///< at free-fall speed all the time
+    double fall_speed = 0.0;    ///< [m/s]
+    double bytes = 0.0;
+};
+
+Forecast forecast(const Scene& scene) {
+    const Seeds& seeds = scene.particles;
+    const auto& bed = scene.bed;
+    double lowest = INFINITY;
+    for (const double z : bed.values)
+        if (!std::isnan(z)) lowest = std::min(lowest, z);
+    double speed = 0.0;
+    double depth = 0.0;
+    double top = lowest;
+    for (std::size_t p = 0; p < seeds.x.size(); ++p) {
+        const auto i = std::clamp<Index>(std::lround((seeds.x[p] - bed.geometry.x0) / bed.geometry.cell), 0,
+                                         bed.geometry.nx - 1);
+        const auto j = std::clamp<Index>(std::lround((seeds.y[p] - bed.geometry.y0) / bed.geometry.cell), 0,
+                                         bed.geometry.ny - 1);
+        speed = std::max(speed, std::hypot(seeds.vx[p], seeds.vy[p]));
+        depth = std::max(depth, seeds.depth[p]);
+        if (!std::isnan(bed.at(i, j))) top = std::max(top, bed.at(i, j) + seeds.depth[p]);
+    }
+    Forecast result;
+    const double wave = std::sqrt(scene.gravity * depth);
+    result.fall_speed = std::sqrt(speed * speed + 2.0 * scene.gravity * (top - lowest));
+    const double reach = scene.scheme.cfl * bed.geometry.cell;
+    result.fewest_steps = std::ceil(scene.end * (speed + wave) / reach);
+    result.most_steps = std::ceil(scene.end * (result.fall_speed + wave) / reach);
+    result.bytes = bytes_per_particle * double(seeds.count()) + bytes_per_node * double(bed.geometry.size());
+    return result;
+}
+
+std::string seconds_text(double seconds) {
+    if (seconds < 120.0) return fmt::format("{:.2g} s", seconds);
+    return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0)
+                            : fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+std::string forecast_text(const Scene& scene) {
+    const Forecast f = forecast(scene);
+    const double per_step = double(scene.particles.count()) * seconds_per_particle_step;
+    std::string text = fmt::format(
+        "steps       {:.0f} (as fast as at the start) to {:.0f} (in free fall, {:.3g} m/s), for {} s\n",
+        f.fewest_steps, f.most_steps, f.fall_speed, scene.end);
+    text += fmt::format("memory      about {:.3g} MB\n", f.bytes / 1e6);
+    return text +
+           fmt::format(
+               "time        {} to {} on one core, assuming {:.0f} ns per particle and step, output apart\n",
+               seconds_text(f.fewest_steps * per_step), seconds_text(f.most_steps * per_step),
+               seconds_per_particle_step * 1e9);
+}
+
+}  // namespace
+
+int check_command(const CheckOptions& options) {
+    const CaseFile file = CaseFile::read(options.case_file, options.sets);
+    const BuiltScene built = build_scene_in_detail(file, GdalReader());
+    std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
+    for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
+    std::cout << total_text(built) << forecast_text(built.scene);
+    for (const std::string& remark : built.scene.log) std::cout << "remark      " << remark << '\n';
+    std::cout << "ready to run\n";
+    return 0;
+}
+
+}  // namespace frana

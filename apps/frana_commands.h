@@ -1,0 +1,50 @@
+#pragma once
+// The subcommands of the program: what the command line asks for, and the functions that do it.
+// Each returns an exit code or throws (base/error.h); main() in frana.cpp is the only one that catches.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace frana {
+
+/// `frana run CASE [--out DIR] [--set key=value]... [--threads N] [--until T] [--resume] [--quiet]`
+struct RunOptions {
+    std::filesystem::path case_file;
+    std::filesystem::path out;      ///< empty: out/<case name>
+    std::vector<std::string> sets;  ///< "key=value" overrides, in order
+    int threads = 0;                ///< 0: as OMP_NUM_THREADS or the machine says
+    std::optional<double> until;    ///< stop at this simulated time instead of time.end [s]
+    bool resume = false;            ///< refused before run_command is called
+    bool quiet = false;
+};
+
+/// `frana figures RUN_DIR [--time T] [--size WxH]`
+struct FiguresOptions {
+    std::filesystem::path run_dir;
+    std::optional<double> time;  ///< simulated time [s]; nothing: the last frame
+    int width = 1600;            ///< [pixels]
+    int height = 1200;           ///< [pixels]
+};
+
+/// `frana check CASE [--set key=value]...`
+struct CheckOptions {
+    std::filesystem::path case_file;
+    std::vector<std::string> sets;
+};
+
+/// `frana particles CASE --out FILE [--count N] [--set key=value]...`
+struct ParticlesOptions {
+    std::filesystem::path case_file;
+    std::filesystem::path out;
+    std::vector<std::string> sets;
+    std::optional<long long> count;  ///< as particles.count
+};
+
+int run_command(const RunOptions& options);              // frana_run.cpp
+int figures_command(const FiguresOptions& options);      // frana_figures.cpp
+int check_command(const CheckOptions& options);          // frana_check.cpp
+int describe_command(const std::string& key);            // frana_describe.cpp; empty: every key
+int particles_command(const ParticlesOptions& options);  // frana_particles.cpp
+
+}  // namespace frana

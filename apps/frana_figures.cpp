@@ -1,0 +1,129 @@
+// `frana figures RUN_DIR`: the pictures of a finished run, drawn again from its files.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/error.h"
+#include "frana_commands.h"
+#include "frana_run_figures.h"
+#include "io/gdal_reader.h"
+#include "scene/case_file.h"
+#include "vtk_io/reader.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream)
+        throw UserError(
+            fmt::format("{}: cannot be read; expected the folder of a finished run, such as the one after "
+                        "--out of frana run",
+                        file.string()));
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+/// The part of run.json that figures need.
+void read_record(const fs::path& run_dir, FigureSource& source) {
+    const fs::path file = run_dir / "run.json";
+    try {
+        const auto json = nlohmann::json::parse(text_of(file));
+        source.title = json.at("title").get<std::string>();
+        source.footer = json.at("caption").get<std::string>();
+        source.footprint_depth = json.at("results").at("footprint_depth").get<double>();
+    } catch (const nlohmann::json::exception& error) {
+        throw UserError(fmt::format("{}: {}; expected the record of a finished run; run the case again",
+                                    file.string(), error.what()));
+    }
+}
+
+/// Lines, points and the survey, from the case in full. Files that it names may have gone; a survey that has
+/// is left out.
+void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::string>& warnings) {
+    const fs::path file = run_dir / "resolved.toml";
+    const CaseFile run_case = CaseFile::parse(text_of(file), file);
+    for (Index i = 0; i < run_case.count("profile"); ++i) {
+        const std::string table = fmt::format("profile.{}.", i);
+        source.profiles.push_back({run_case.word(table + "name"), run_case.points(table + "line")});
+    }
+    for (Index i = 0; i < run_case.count("gauge"); ++i) {
+        const std::string table = fmt::format("gauge.{}.", i);
+        const std::vector<double>& point = run_case.numbers(table + "point");
+        source.gauges.push_back({run_case.word(table + "name"), Vec2(point[0], point[1])});
+    }
+    if (!run_case.has("survey.footprint")) return;
+    const fs::path survey = run_case.path("survey.footprint");
+    if (!fs::exists(survey)) {
+        warnings.push_back(
+            fmt::format("{}: the survey is not there any more and is left out", survey.string()));
+        return;
+    }
+    source.survey = GdalReader().read_polygons(survey, source.bed.crs_wkt, warnings);
+}
+
+/// A node field of a frame as a raster; without terrain nodata.
+ProductRaster from_frame(const LoadedFrame& frame, const std::string& field, const std::string& name) {
+    ProductRaster product{name, frame.units.at(field), field, Raster::filled(frame.grid, Raster::nodata)};
+    const std::vector<double>& values = frame.nodes.at(field);
+    const std::vector<double>& elevation = frame.nodes.at("elevation");
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (!std::isnan(elevation[i])) product.raster.values[i] = values[i];
+    return product;
+}
+
+FigureSource read_run(const FiguresOptions& options, std::vector<std::string>& warnings) {
+    FigureSource source;
+    source.run_dir = options.run_dir;
+    source.width = options.width;
+    source.height = options.height;
+    source.time = options.time;
+    read_record(options.run_dir, source);
+    source.rasters = read_rasters(options.run_dir);
+    if (fs::exists(options.run_dir / "terrain.vti")) {
+        const LoadedFrame terrain = read_terrain(options.run_dir);
+        source.bed = from_frame(terrain, "elevation", "terrain").raster;
+    } else {
+        warnings.push_back(
+            fmt::format("{}: no terrain.vti, so no maps; add \"vtk\" to output.formats and run again",
+                        options.run_dir.string()));
+        source.rasters.clear();
+    }
+    if (!source.rasters.empty()) source.bed.crs_wkt = source.rasters.front().raster.crs_wkt;
+    read_case(options.run_dir, source, warnings);
+    return source;
+}
+
+/// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png and map_speed_t12.5s.png.
+void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigure>& figures,
+                 std::vector<std::string>& warnings) {
+    const LoadedFrame frame = read_frame(source.run_dir, nearest_frame(source.run_dir, time));
+    for (const char* field : {"depth", "speed"}) {
+        if (!frame.has(field)) {
+            warnings.push_back(fmt::format("no {} in the frames of this run, so no map of it", field));
+            continue;
+        }
+        const ProductRaster product = from_frame(frame, field, fmt::format("{}_t{:.6g}s", field, frame.time));
+        draw_map(source, product, fmt::format("{} at t = {:.6g} s", field, frame.time), figures, warnings);
+    }
+}
+
+}  // namespace
+
+int figures_command(const FiguresOptions& options) {
+    std::vector<std::string> warnings;
+    const FigureSource source = read_run(options, warnings);
+    std::vector<DrawnFigure> figures = draw_figures(source, warnings);
+    if (options.time) draw_moment(source, *options.time, figures, warnings);
+    for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
+    for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+    return 0;
+}
+
+}  // namespace frana

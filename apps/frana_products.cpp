@@ -1,0 +1,108 @@
+#include "frana_products.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "io/gdal_reader.h"
+#include "io/gdal_writer.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// How a node field becomes a raster.
+struct ProductRule {
+    const char* name;
+    const char* field;
+    int component;
+    const char* unit;
+    const char* description;
+};
+
+constexpr ProductRule rules[] = {
+    {"peak_depth", "peak_depth", 0, "m", "largest depth during the run, along gravity"},
+    {"peak_speed", "peak_speed", 0, "m/s", "largest speed during the run"},
+    {"peak_pressure", "peak_pressure", 0, "Pa", "largest pressure on the bed during the run"},
+    {"peak_dynamic_pressure", "peak_dynamic_pressure", 0, "Pa", "largest density * speed^2 during the run"},
+    {"arrival_time", "arrival_time", 0, "s", "time when the flow first arrived"},
+    {"final_depth", "depth", 0, "m", "depth at the end of the run, along gravity"},
+    {"final_velocity_x", "velocity", 0, "m/s", "velocity to the east at the end of the run"},
+    {"final_velocity_y", "velocity", 1, "m/s", "velocity to the north at the end of the run"},
+};
+
+Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string& crs_wkt) {
+    const Field* field = frame.node(rule.field);
+    const Field* elevation = frame.node("elevation");
+    expect(field != nullptr && elevation != nullptr && rule.component < field->components,
+           "a frame has the node fields that the rasters show");
+    Raster raster = Raster::filled(frame.grid, Raster::nodata);
+    raster.crs_wkt = crs_wkt;
+    raster.source = rule.name;
+    const bool time = std::string(rule.field) == "arrival_time";
+    for (Index node = 0; node < frame.grid.size(); ++node) {
+        const double value = field->data[node * field->components + rule.component];
+        const bool never = time && !(value >= 0.0);
+        if (!std::isnan(elevation->data[node]) && !never)
+            raster.values[static_cast<std::size_t>(node)] = value;
+    }
+    return raster;
+}
+
+/// Not every solver knows it; all others must be there.
+bool needed(const std::string& name) { return name != "peak_dynamic_pressure"; }
+
+fs::path raster_file(const fs::path& run_dir, const std::string& name) {
+    return run_dir / "rasters" / (name + ".tif");
+}
+
+}  // namespace
+
+void LastFields::end(const Frame& last) { into_ = product_rasters(last, crs_wkt_); }
+
+std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt) {
+    std::vector<ProductRaster> rasters;
+    for (const ProductRule& rule : rules)
+        if (last.node(rule.field) != nullptr || needed(rule.name))
+            rasters.push_back({rule.name, rule.unit, rule.description, raster_of(last, rule, crs_wkt)});
+    return rasters;
+}
+
+const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, const std::string& name) {
+    const auto found = std::find_if(rasters.begin(), rasters.end(),
+                                    [&](const ProductRaster& product) { return product.name == name; });
+    return found == rasters.end() ? nullptr : &*found;
+}
+
+double area_deeper(const Raster& depth, double limit) {
+    const auto deeper =
+        std::count_if(depth.values.begin(), depth.values.end(), [&](double h) { return h > limit; });
+    return static_cast<double>(deeper) * depth.geometry.cell * depth.geometry.cell;
+}
+
+void write_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& rasters) {
+    fs::create_directories(run_dir / "rasters");
+    for (const ProductRaster& product : rasters)
+        write_geotiff(raster_file(run_dir, product.name), product.raster, product.unit, product.description);
+}
+
+std::vector<ProductRaster> read_rasters(const fs::path& run_dir) {
+    std::vector<ProductRaster> rasters;
+    const GdalReader reader;
+    const double far = 1e300;
+    for (const ProductRule& rule : rules) {
+        const fs::path file = raster_file(run_dir, rule.name);
+        if (!fs::exists(file)) continue;
+        std::vector<std::string> log;
+        Raster raster = reader.read_raster(file, {-far, -far, far, far}, "", log);
+        rasters.push_back({rule.name, rule.unit, rule.description, std::move(raster)});
+    }
+    return rasters;
+}
+
+void write_outline(const fs::path& run_dir, const Raster& peak_depth, double limit) {
+    write_footprint(run_dir / "footprint.geojson", peak_depth, limit);
+}
+
+}  // namespace frana

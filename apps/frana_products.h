@@ -1,0 +1,54 @@
+#pragma once
+// What a run leaves for a GIS: peak and final rasters, and the outline of everything ever covered.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "observe/observer.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// A raster of the run folder.
+struct ProductRaster {
+    std::string name;         ///< "peak_depth": rasters/peak_depth.tif
+    std::string unit;         ///< "m"
+    std::string description;  ///< for the file's band and for people
+    Raster raster;            ///< NaN: no terrain, or never reached
+};
+
+/// Keeps the rasters of the last frame; they are written once the run is over (write_products).
+class LastFields : public Observer {
+public:
+    /// `crs_wkt` goes into every raster.
+    LastFields(std::string crs_wkt, std::vector<ProductRaster>& into)
+        : crs_wkt_(std::move(crs_wkt)), into_(into) {}
+    std::string name() const override { return "last fields"; }
+    void end(const Frame& last) override;
+
+private:
+    std::string crs_wkt_;
+    std::vector<ProductRaster>& into_;
+};
+
+/// The rasters of a run as its frame has them: peak_depth, peak_speed, peak_pressure, peak_dynamic_pressure
+/// (when the solver has it), arrival_time, final_depth, final_velocity_x, final_velocity_y. Negative arrival
+/// times and all nodes without terrain become nodata.
+std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
+
+/// The raster of that name, or nullptr.
+const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, const std::string& name);
+
+/// Area of a depth raster that is deeper than `limit` [m] [m2].
+double area_deeper(const Raster& depth, double limit);
+
+/// Writes rasters/<name>.tif. Throws UserError.
+void write_rasters(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters);
+
+/// Reads rasters/<name>.tif back, those that are there. Throws UserError when a file cannot be read.
+std::vector<ProductRaster> read_rasters(const std::filesystem::path& run_dir);
+
+/// Writes footprint.geojson: where peak_depth exceeds `limit` [m]. Throws UserError.
+void write_outline(const std::filesystem::path& run_dir, const Raster& peak_depth, double limit);
+
+}  // namespace frana

@@ -1,0 +1,183 @@
+// report.md and the closing lines: the run for people.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/version.h"
+#include "frana_run_folder.h"
+#include "frana_run_record.h"
+
+namespace frana {
+namespace {
+
+/// A text as a cell of a Markdown table.
+std::string cell(const std::string& text) {
+    std::string result;
+    for (const char letter : text) {
+        if (letter == '|') result += '\\';
+        result += letter == '\n' ? ' ' : letter;
+    }
+    return result;
+}
+
+std::string row(const std::string& name, const std::string& value) {
+    return fmt::format("| {} | {} |\n", name, cell(value));
+}
+
+std::string heading(const RunRecord& r) {
+    const RunSummary& s = r.summary;
+    std::string text = fmt::format("# {}\n\n", r.title);
+    text += fmt::format(
+        "Case `{}`, frana {}, {} to {} UTC, {} thread{}. The run ended at t = {:.6g} s: {}.\n\n", r.name,
+        FRANA_VERSION, s.started, s.ended, r.threads, r.threads == 1 ? "" : "s", s.last.time, reason_text(s));
+    if (!r.command_line.empty())
+        text += fmt::format("The case file was overridden by `{}`.\n\n", r.command_line);
+    return text;
+}
+
+std::string results(const RunRecord& r) {
+    const RunSummary& s = r.summary;
+    std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
+    text += row("release volume", fmt::format("{:.6g} m3", r.release_volume));
+    text += row("simulated time", fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end,
+                                              s.steps, s.frames));
+    text += row("deepest flow",
+                fmt::format("{:.4g} m at t = {:.4g} s", s.extremes.max_depth, s.extremes.max_depth_time));
+    text += row("fastest particle",
+                fmt::format("{:.4g} m/s at t = {:.4g} s", s.extremes.max_speed, s.extremes.max_speed_time));
+    text += row("largest bed pressure", fmt::format("{:.4g} Pa", r.peak_pressure));
+    text += row("farthest front from the release's centre", fmt::format("{:.5g} m", s.extremes.max_front));
+    text += row(fmt::format("area ever deeper than {:.3g} m", r.footprint_depth),
+                fmt::format("{:.5g} m2", r.footprint_area));
+    text += row("deepest at the end", fmt::format("{:.4g} m", r.final_depth));
+    text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
+    text += row("left the domain", fmt::format("{:.6g} m3", s.last.mass_left / r.density));
+    return text + "\n";
+}
+
+std::string budgets(const RunRecord& r) {
+    const RunSummary& s = r.summary;
+    const Budget b = budget(s.first, s.last);
+    std::string text =
+        "## Budgets\n\n| Balance | At the start | At the end | Left the domain | Residual |\n"
+        "|---|---|---|---|---|\n";
+    text += fmt::format("| mass [kg] | {:.8g} | {:.8g} | {:.4g} | {:.1e} of the initial mass |\n",
+                        s.first.mass, s.last.mass, s.last.mass_left, b.mass_error);
+    for (const std::size_t axis : {0, 1})
+        text += fmt::format("| momentum {} [kg m/s] | {:.4g} | {:.4g} (impulse {:.4g}) | {:.4g} | {:.1e} |\n",
+                            axis == 0 ? "x" : "y", s.first.momentum[axis], s.last.momentum[axis],
+                            s.last.impulse[axis], s.last.momentum_left[axis], b.momentum_residual[axis]);
+    text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {:.4g} | {:.2e} |\n",
+                        s.first.kinetic + s.first.potential, s.last.kinetic + s.last.potential,
+                        s.last.energy_left, b.energy_residual);
+    text += fmt::format(
+        "\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated. Particles to grid, "
+        "worst step: mass {:.1e}, momentum {:.1e} (relative).\n\n",
+        s.last.kinetic, s.last.dissipated, s.extremes.p2g_mass_error, s.extremes.p2g_momentum_error);
+    return text;
+}
+
+std::string figures(const RunRecord& r) {
+    if (r.figures.empty()) return "";
+    std::string text = "## Figures\n\n";
+    for (const DrawnFigure& figure : r.figures)
+        text += fmt::format("![{}]({})\n\n*{}*\n\n", figure.caption, figure.path, figure.caption);
+    return text;
+}
+
+std::string parameter_table(const RunRecord& r) {
+    std::string text = "## What was run\n\n| Key | Value | Unit |\n|---|---|---|\n";
+    for (const GivenKey& key : r.given)
+        text += fmt::format("| `{}` | {} | {} |\n", key.key, cell(key.value), key.unit);
+    text += fmt::format(
+        "\nThe grid has {} x {} nodes, {:.6g} m apart; {} particles at the start, {} at the end. "
+        "Keys that are not listed have their defaults: see `resolved.toml`.\n\n",
+        r.grid.nx, r.grid.ny, r.grid.cell, r.particles, r.summary.last.particles);
+    return text;
+}
+
+bool is_there(const std::vector<Product>& products, const std::string& path) {
+    return std::any_of(products.begin(), products.end(), [&](const Product& p) { return p.path == path; });
+}
+
+std::string files(const RunRecord& r, const std::vector<Product>& products) {
+    std::string text = "## Files\n\n";
+    if (is_there(products, "grid.pvd"))
+        text +=
+            "ParaView: open `grid.pvd` and `particles.pvd`, press Apply; the play button runs through the "
+            "frames. "
+            "`terrain.vti` with Warp By Scalar (elevation) is the ground.\n\n";
+    if (is_there(products, "run.xdmf")) text += "Other readers of XDMF: open `run.xdmf`.\n\n";
+    if (is_there(products, "footprint.geojson"))
+        text += fmt::format("QGIS: drag `rasters/*.tif` and `footprint.geojson` into the map; {}.\n\n",
+                            r.has_crs ? "they carry the coordinate system of the elevation model"
+                                      : "the elevation model named no coordinate system, so neither do they");
+    text += "| File | What |\n|---|---|\n";
+    for (const Product& product : products)
+        text += product.files > 1 || product.path.back() == '/'
+                    ? fmt::format("| `{}` | {} ({} files) |\n", product.path, product.meaning, product.files)
+                    : fmt::format("| [{0}]({0}) | {1} |\n", product.path, product.meaning);
+    return text + "\n";
+}
+
+std::string times(const RunSummary& s) {
+    std::string text = "## Wall time\n\n| Part | Seconds | Share |\n|---|---|---|\n";
+    const double total = std::max(s.wall_seconds, 1e-9);
+    const auto add = [&](const std::string& name, double seconds) {
+        text += fmt::format("| {} | {:.2f} | {:.1f} % |\n", name, seconds, 100.0 * seconds / total);
+    };
+    for (const PhaseTime& part : s.solver) add(part.name, part.seconds);
+    for (const PhaseTime& part : s.output) add("output: " + part.name, part.seconds);
+    add("all output", s.output_seconds());
+    add("**whole run**", s.wall_seconds);
+    text += fmt::format("\n{:.3g} million particle-steps a second.\n\n", 1e-6 * s.particle_steps / total);
+    return text;
+}
+
+std::string remarks(const RunRecord& r) {
+    if (r.warnings.empty()) return "";
+    std::string text = "## Remarks\n\n";
+    for (const std::string& warning : r.warnings) text += fmt::format("- {}\n", warning);
+    return text + "\n";
+}
+
+}  // namespace
+
+std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir) {
+    const std::vector<Product> products = products_in(run_dir);
+    return heading(record) + results(record) + budgets(record) + figures(record) + parameter_table(record) +
+           files(record, products) + times(record.summary) + remarks(record);
+}
+
+std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_dir) {
+    const RunSummary& s = r.summary;
+    const std::vector<Product> products = products_in(run_dir);
+    const auto place = [&](const char* path) {
+        return is_there(products, path) ? (run_dir / path).string() : std::string("-");
+    };
+    std::string text;
+    text += fmt::format("{}: {} (t = {:.6g} s)\n", r.title, reason_text(s), s.last.time);
+    text += fmt::format(
+        "  computed   {} steps, {} particles, {:.3g} M particle-steps/s, {} ({:.0f} % output)\n", s.steps,
+        s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
+        clock_text(s.wall_seconds), 100.0 * s.output_share());
+    text += fmt::format("  released   {:.6g} m3; {:.6g} m3 left the domain; mass error {:.1e}\n",
+                        r.release_volume, s.last.mass_left / r.density, budget(s.first, s.last).mass_error);
+    text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n",
+                        s.extremes.max_depth, s.extremes.max_speed, s.extremes.max_front);
+    text += fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m\n",
+                        r.footprint_area, r.footprint_depth, r.final_depth);
+    text += fmt::format("  report     {}\n", place("report.md"));
+    text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());
+    text += fmt::format("  ParaView   {}\n", place("grid.pvd"));
+    text += fmt::format("  QGIS       {}\n", is_there(products, "rasters/peak_depth.tif")
+                                                 ? (run_dir / "rasters").string()
+                                                 : place("footprint.geojson"));
+    text += fmt::format("  remarks    {}\n",
+                        r.warnings.empty() ? std::string("none")
+                                           : fmt::format("{}, listed in the report", r.warnings.size()));
+    return text;
+}
+
+}  // namespace frana

@@ -1,0 +1,82 @@
+#include <fmt/core.h>
+#include <omp.h>
+
+#include <iostream>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "frana_commands.h"
+#include "frana_run_folder.h"
+#include "frana_run_job.h"
+#include "io/gdal_reader.h"
+#include "scene/build_scene.h"
+#include "solver/simulation.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+void shorten(Scene& scene, const std::optional<double>& until) {
+    if (!until) return;
+    if (!(*until > 0.0 && *until <= scene.end))
+        throw UserError(
+            fmt::format("--until: found {:.10g} s; expected a time above 0 and at most time.end = {:.10g} s; "
+                        "--set time.end={:.10g} runs longer",
+                        *until, scene.end, *until));
+    scene.end = *until;
+}
+
+std::string overrides(const RunOptions& options) {
+    std::string text;
+    for (const std::string& set : options.sets)
+        text += fmt::format("{}--set {}", text.empty() ? "" : " ", set);
+    if (options.until) text += fmt::format("{}--until {}", text.empty() ? "" : " ", *options.until);
+    return text;
+}
+
+/// A failed run folder must not lose the case it was made from, so both come before the first step.
+void keep_case(const CaseFile& file, const fs::path& run_dir) {
+    std::error_code not_there;
+    if (!fs::equivalent(file.file(), run_dir / "case.toml", not_there))
+        write_text(run_dir / "case.toml", file.text());
+    write_text(run_dir / "resolved.toml", resolved_toml(file));
+}
+
+void say_what_runs(const RunRecord& record, const fs::path& run_dir) {
+    std::cout << fmt::format(
+        "{}: {} x {} nodes of {:.6g} m, {} particles, {:.6g} m3, {:.6g} s, {} thread{}; into {}\n",
+        record.title, record.grid.nx, record.grid.ny, record.grid.cell, record.particles,
+        record.release_volume, record.end, record.threads, record.threads == 1 ? "" : "s", run_dir.string());
+    for (const std::string& remark : record.warnings) std::cout << "  " << remark << '\n';
+    std::cout << std::flush;
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options) {
+    if (options.threads > 0) omp_set_num_threads(options.threads);
+    const CaseFile file = CaseFile::read(options.case_file, options.sets);
+    Scene scene = build_scene(file, GdalReader());
+    shorten(scene, options.until);
+    const std::unique_ptr<Simulation> simulation = make_simulation(scene);
+
+    // Only now is the folder touched: what lies there survives a case that cannot run.
+    const fs::path run_dir = options.out.empty() ? fs::path("out") / scene.name : options.out;
+    prepare_run_folder(run_dir);
+    keep_case(file, run_dir);
+
+    RunRecord record = begin_record(scene, file);
+    record.command_line = overrides(options);
+    record.threads = omp_get_max_threads();
+    if (!options.quiet) say_what_runs(record, run_dir);
+
+    const Interrupt interrupt(Interrupt::Listen::signals);
+    Progress progress(std::cout, Progress::fitting(options.quiet), scene.density);
+    record = carry_out(scene, *simulation, run_dir, std::move(record), interrupt, progress);
+
+    if (!options.quiet) std::cout << closing_lines(record, run_dir) << std::flush;
+    if (record.summary.failure) std::rethrow_exception(record.summary.failure);
+    return record.summary.reason == "interrupted" ? 130 : 0;
+}
+
+}  // namespace frana

@@ -1,0 +1,190 @@
+#include "frana_run_charts.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "observe/table.h"
+#include "vtk_io/chart_figure.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+using Column = std::vector<double>;
+
+ChartFigure chart(const FigureSource& source, const std::string& what, const std::string& x_label) {
+    ChartFigure figure;
+    figure.title = fmt::format("{}: {}", source.title, what);
+    figure.x_label = x_label;
+    figure.footer = source.footer;
+    figure.width = source.width;
+    figure.height = std::max(source.width * 3 / 5, 300);
+    return figure;
+}
+
+/// Every n-th value, and the last: a picture has no use for more points than pixels.
+Column thinned(const Column& values) {
+    constexpr std::size_t most = 2000;
+    const std::size_t stride = values.size() / most + 1;
+    Column result;
+    for (std::size_t i = 0; i < values.size(); i += stride) result.push_back(values[i]);
+    if (!values.empty() && (values.size() - 1) % stride != 0) result.push_back(values.back());
+    return result;
+}
+
+Curve curve(const std::string& name, const Column& x, const Column& y) {
+    return {name, thinned(x), thinned(y), {}};
+}
+
+/// First row of every output of a profile's table, and one past the end.
+std::vector<std::size_t> outputs_of(const Column& t) {
+    std::vector<std::size_t> starts;
+    for (std::size_t i = 0; i < t.size(); ++i)
+        if (i == 0 || t[i] != t[i - 1]) starts.push_back(i);
+    starts.push_back(t.size());
+    return starts;
+}
+
+/// Outputs to be shown: first, last, and the one nearest to `time` or two between.
+std::vector<std::size_t> moments(const Column& t, const std::vector<std::size_t>& starts,
+                                 std::optional<double> time) {
+    const std::size_t last = starts.size() - 2;
+    std::vector<std::size_t> chosen = {0, last / 3, 2 * last / 3, last};
+    if (time) {
+        const auto nearer = [&](std::size_t a, std::size_t b) {
+            return std::abs(t[a] - *time) < std::abs(t[b] - *time);
+        };
+        const auto nearest = std::min_element(starts.begin(), starts.end() - 1, nearer);
+        chosen = {0, static_cast<std::size_t>(nearest - starts.begin()), last};
+    }
+    std::sort(chosen.begin(), chosen.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    return chosen;
+}
+
+Column part(const Column& values, std::size_t begin, std::size_t end) {
+    return Column(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                  values.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+ChartFigure profile_chart(const FigureSource& source, const std::string& name, const Table& table) {
+    const Column &t = table.column("t"), &distance = table.column("distance");
+    const std::vector<std::size_t> starts = outputs_of(t);
+    ChartFigure figure = chart(source, "profile " + name, "distance along the line [m]");
+    figure.height = std::max(source.width * 4 / 5, 300);
+    ChartPanel ground{"elevation [m]", {}, false, {}, 1.4}, depth{"depth [m]", {}, false, {}, 1.0},
+        speed{"velocity along [m/s]", {}, false, {}, 1.0};
+    const Column x = part(distance, 0, starts[1]);
+    ground.curves.push_back({"bed", x, part(table.column("bed"), 0, starts[1]), Curve::Kind::ground});
+    for (const std::size_t k : moments(t, starts, source.time)) {
+        const std::string label = fmt::format("t = {:.4g} s", t[starts[k]]);
+        const auto add = [&](ChartPanel& panel, const char* column) {
+            panel.curves.push_back(
+                {label, x, part(table.column(column), starts[k], starts[k + 1]), Curve::Kind::line});
+        };
+        add(ground, "surface");
+        add(depth, "depth");
+        add(speed, "velocity_along");
+    }
+    figure.panels = {ground, depth, speed};
+    return figure;
+}
+
+Column relative_to_start(const Column& values) {
+    Column result = values;
+    for (double& value : result) value -= values.front();
+    return result;
+}
+
+/// Sizes for a logarithmic axis; what is zero stands at the lower edge, below round-off.
+Column sizes(const Column& values) {
+    Column result = values;
+    for (double& value : result) value = std::max(std::abs(value), 1e-17);
+    return result;
+}
+
+ChartFigure energy_chart(const FigureSource& source, const Table& history) {
+    const Column& t = history.column("t");
+    ChartFigure figure = chart(source, "energy", "time [s]");
+    ChartPanel energy{"energy [J]", {}, false, {}, 1.0};
+    energy.curves = {curve("kinetic", t, history.column("kinetic")),
+                     curve("potential, from the start", t, relative_to_start(history.column("potential"))),
+                     curve("dissipated", t, history.column("dissipated")),
+                     curve("left the domain", t, history.column("energy_left")),
+                     curve("residual", t, history.column("energy_residual"))};
+    figure.panels = {energy};
+    return figure;
+}
+
+ChartFigure motion_chart(const FigureSource& source, const Table& history) {
+    const Column& t = history.column("t");
+    ChartFigure figure = chart(source, "motion and balances", "time [s]");
+    figure.height = std::max(source.width * 4 / 5, 300);
+    ChartPanel speed{"speed [m/s]", {}, false, {}, 1.0}, front{"front [m]", {}, false, {}, 1.0},
+        errors{"relative error [1]", {}, true, {}, 1.0};
+    speed.curves = {curve("fastest", t, history.column("max_speed")),
+                    curve("mean", t, history.column("mean_speed"))};
+    front.curves = {curve("from the release's centre", t, history.column("front"))};
+    errors.curves = {curve("mass", t, sizes(history.column("mass_error"))),
+                     curve("mass, particles to grid", t, sizes(history.column("p2g_mass_error"))),
+                     curve("momentum, particles to grid", t, sizes(history.column("p2g_momentum_error")))};
+    figure.panels = {speed, front, errors};
+    return figure;
+}
+
+ChartFigure gauge_chart(const FigureSource& source) {
+    ChartFigure figure = chart(source, "gauges", "time [s]");
+    ChartPanel depth{"depth [m]", {}, false, {}, 1.0}, speed{"speed [m/s]", {}, false, {}, 1.0};
+    for (const Gauge& gauge : source.gauges) {
+        const Table table = read_table(source.run_dir / "gauges" / (gauge.name + ".csv"));
+        depth.curves.push_back(curve(gauge.name, table.column("t"), table.column("depth")));
+        speed.curves.push_back(curve(gauge.name, table.column("t"), table.column("speed")));
+    }
+    figure.panels = {depth, speed};
+    return figure;
+}
+
+}  // namespace
+
+void draw_profile(const FigureSource& source, const std::string& name, std::vector<DrawnFigure>& figures,
+                  std::vector<std::string>& warnings) {
+    attempt(source, {fmt::format("figures/profile_{}.png", name), fmt::format("profile {}", name)}, figures,
+            warnings, [&](const fs::path& png, std::string& why_not) {
+                const Table table = read_table(source.run_dir / "profiles" / (name + ".csv"));
+                if (table.rows() == 0) {
+                    why_not = "its table has no rows";
+                    return false;
+                }
+                return render_chart(profile_chart(source, name, table), png, why_not);
+            });
+}
+
+void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                 std::vector<std::string>& warnings) {
+    if (source.gauges.empty()) return;
+    attempt(source, {"figures/gauges_flow.png", "depth and speed at the gauges"}, figures, warnings,
+            [&](const fs::path& png, std::string& why_not) {
+                return render_chart(gauge_chart(source), png, why_not);
+            });
+}
+
+void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                  std::vector<std::string>& warnings) {
+    const auto draw = [&](const DrawnFigure& figure,
+                          ChartFigure (*chart_of)(const FigureSource&, const Table&)) {
+        attempt(source, figure, figures, warnings, [&](const fs::path& png, std::string& why_not) {
+            const Table history = read_table(source.run_dir / "history.csv");
+            if (history.rows() == 0) {
+                why_not = "history.csv has no rows";
+                return false;
+            }
+            return render_chart(chart_of(source, history), png, why_not);
+        });
+    };
+    draw({"figures/budget_energy.png", "energy over time"}, energy_chart);
+    draw({"figures/budget_motion.png", "speed, front and balances over time"}, motion_chart);
+}
+
+}  // namespace frana

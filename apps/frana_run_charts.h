@@ -1,0 +1,23 @@
+#pragma once
+// The line charts of a run: profiles, gauges and budgets, drawn from the tables in its folder.
+#include <string>
+#include <vector>
+
+#include "frana_run_figures.h"
+
+namespace frana {
+
+/// figures/profile_<name>.png: surface, depth and velocity along a line at the start, at the end, and between
+/// (at source.time when it is given).
+void draw_profile(const FigureSource& source, const std::string& name, std::vector<DrawnFigure>& figures,
+                  std::vector<std::string>& warnings);
+
+/// figures/gauges_flow.png: depth and speed of all gauges over time; nothing without gauges.
+void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                 std::vector<std::string>& warnings);
+
+/// figures/budget_energy.png and budget_motion.png, from history.csv.
+void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                  std::vector<std::string>& warnings);
+
+}  // namespace frana

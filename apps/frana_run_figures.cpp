@@ -1,0 +1,86 @@
+#include "frana_run_figures.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "frana_run_charts.h"
+#include "vtk_io/map_figure.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// Where the flow was never deep enough to count, other fields say nothing. Zero and not nodata, so that the
+/// outline stays smooth.
+void flatten_shallow(std::vector<double>& field, const std::vector<ProductRaster>& rasters, double limit) {
+    const ProductRaster* peak = find_product(rasters, "peak_depth");
+    if (peak == nullptr || peak->raster.values.size() != field.size()) return;
+    for (std::size_t i = 0; i < field.size(); ++i)
+        if (!(peak->raster.values[i] > limit)) field[i] = 0.0;
+}
+
+MapFigure map_of(const FigureSource& source, const ProductRaster& product, const std::string& what) {
+    const bool depth = product.unit == "m";
+    MapFigure map;
+    map.bed = source.bed;
+    map.field = product.raster.values;
+    if (!depth) flatten_shallow(map.field, source.rasters, source.footprint_depth);
+    map.shown_above = depth ? source.footprint_depth : 0.1;  // [m] or [m/s]
+    map.title = fmt::format("{}: {}", source.title, what);
+    map.field_label =
+        fmt::format("{} [{}]", what.substr(0, what.find(" at ")), product.unit);  // the title has the moment
+    map.survey = source.survey;
+    for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
+    for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});
+    map.footer = source.footer;
+    map.width = source.width;
+    map.height = source.height;
+    return map;
+}
+
+}  // namespace
+
+void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
+              std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+    const std::string caption = source.survey ? what + ", with the surveyed outline" : what;
+    attempt(source, {fmt::format("figures/map_{}.png", product.name), caption}, figures, warnings,
+            [&](const fs::path& png, std::string& why_not) {
+                return render_map(map_of(source, product, what), png, why_not);
+            });
+}
+
+std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<std::string>& warnings) {
+    struct MapRule {
+        const char* name;
+        const char* what;
+    };
+    std::vector<DrawnFigure> figures;
+    for (const MapRule& rule : {MapRule{"peak_depth", "peak depth"}, MapRule{"peak_speed", "peak speed"},
+                                MapRule{"final_depth", "depth at the end"}})
+        if (const ProductRaster* product = find_product(source.rasters, rule.name))
+            draw_map(source, *product, rule.what, figures, warnings);
+    for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
+    draw_gauges(source, figures, warnings);
+    draw_budgets(source, figures, warnings);
+    return figures;
+}
+
+void attempt(const FigureSource& source, const DrawnFigure& figure, std::vector<DrawnFigure>& figures,
+             std::vector<std::string>& warnings, const Draw& draw) {
+    const fs::path png = source.run_dir / figure.path;
+    std::string why_not;
+    try {
+        fs::create_directories(png.parent_path());
+        if (draw(png, why_not)) {
+            figures.push_back(figure);
+            return;
+        }
+    } catch (const std::exception& error) {
+        why_not = error.what();
+    }
+    warnings.push_back(fmt::format("{} was not drawn: {}", figure.path, why_not));
+}
+
+}  // namespace frana

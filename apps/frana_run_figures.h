@@ -1,0 +1,45 @@
+#pragma once
+// The pictures of a run: drawn at its end, and again by `frana figures`.
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frana_products.h"
+#include "frana_run_record.h"
+#include "scene/scene.h"
+
+namespace frana {
+
+/// What there is to draw. Histories, profiles and gauges are read from the tables in the folder.
+struct FigureSource {
+    std::filesystem::path run_dir;
+    std::string title;
+    std::string footer;  ///< parameters in a line
+    Raster bed;
+    std::vector<ProductRaster> rasters;  ///< peak_depth, peak_speed, final_depth are drawn
+    double footprint_depth = 0.1;        ///< [m]
+    std::optional<Polygons> survey;
+    std::vector<Profile> profiles;
+    std::vector<Gauge> gauges;
+    std::optional<double> time;       ///< of the profiles besides the first and the last [s]
+    int width = 1400, height = 1200;  ///< of the maps; charts are as wide and 0.6 as high [pixels]
+};
+
+/// Draws all figures into figures/ and returns those that were made. A picture that cannot be drawn is one
+/// line in `warnings` and never more: the run is worth more than its pictures.
+std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<std::string>& warnings);
+
+/// A map of one raster on the terrain: figures/map_<name>.png. `what` is its name for people.
+void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
+              std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+
+/// Draws into a PNG; false with a reason when that is not possible.
+using Draw = std::function<bool(const std::filesystem::path& png, std::string& why_not)>;
+
+/// Makes one figure and notes it down, or a warning with the reason why there is none.
+void attempt(const FigureSource& source, const DrawnFigure& figure, std::vector<DrawnFigure>& figures,
+             std::vector<std::string>& warnings, const Draw& draw);
+
+}  // namespace frana

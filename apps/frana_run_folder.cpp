@@ -1,0 +1,95 @@
+#include "frana_run_folder.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+
+const std::vector<ProductKind>& product_kinds() {
+    static const std::vector<ProductKind> kinds = {
+        {"", "report\\.md", "this page", false},
+        {"", "case\\.toml", "the case as given", false},
+        {"", "resolved\\.toml", "every key in SI, defaults marked", false},
+        {"", "run\\.json", "version, times, budgets, reason of the end", false},
+        {"", "history\\.csv", "time series of budgets and extremes (SI units)", false},
+        {"", "particles\\.pvd", "particles over time, for ParaView", false},
+        {"particles", "particles_\\d+\\.vtp", "frames of the particles", true},
+        {"", "grid\\.pvd", "fields on the grid over time, for ParaView", false},
+        {"grid", "grid_\\d+\\.vti", "frames of the grid", true},
+        {"", "terrain\\.vti", "bed elevation, slope and hillshade", false},
+        {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
+        {"rasters",
+         "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]))\\.tif",
+         "GeoTIFF", false},
+        {"", "footprint\\.geojson", "outline of everything ever covered", false},
+        {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
+        {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
+        {"figures", "(map|profile|gauges|budget)_[^.].*\\.png", "figure", false},
+        {"states", ".*\\.pvsm", "ParaView state", false},
+        {"", "compare\\.json", "comparison with a survey", false},
+        {"", "checkpoint\\.h5", "last state", false}};
+    return kinds;
+}
+
+namespace {
+
+std::vector<fs::path> files_of(const fs::path& run_dir, const ProductKind& kind) {
+    const std::regex pattern(kind.pattern);
+    std::vector<fs::path> found;
+    std::error_code none;  // a folder that is not there holds nothing
+    for (const auto& entry : fs::directory_iterator(run_dir / kind.folder, none))
+        if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), pattern))
+            found.push_back(entry.path());
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+/// A UserError with the way out that is the same for every trouble with the folder.
+UserError trouble(const fs::path& run_dir, const std::string& what) {
+    return UserError(
+        fmt::format("{}: {}; expected a folder that can be written to; choose another one with --out",
+                    run_dir.string(), what));
+}
+
+}  // namespace
+
+std::vector<Product> products_in(const fs::path& run_dir) {
+    std::vector<Product> products;
+    for (const ProductKind& kind : product_kinds()) {
+        const std::vector<fs::path> files = files_of(run_dir, kind);
+        if (files.empty()) continue;
+        if (kind.one_of_many)
+            products.push_back({kind.folder + "/", kind.meaning, files.size()});
+        else
+            for (const fs::path& file : files)
+                products.push_back(
+                    {(fs::path(kind.folder) / file.filename()).generic_string(), kind.meaning, 1});
+    }
+    return products;
+}
+
+void prepare_run_folder(const fs::path& run_dir) {
+    std::error_code failure;
+    if (fs::exists(run_dir) && !fs::is_directory(run_dir)) throw trouble(run_dir, "this is a file");
+    fs::create_directories(run_dir, failure);
+    if (failure) throw trouble(run_dir, "cannot be made: " + failure.message());
+    write_text(run_dir / "run.json",
+               "{\"exit_reason\": \"running\"}\n");  // also shows that the folder is writable
+    for (const ProductKind& kind : product_kinds())
+        for (const fs::path& file : files_of(run_dir, kind)) {
+            const std::string name = file.filename().string();
+            if (name == "run.json" || name == "case.toml") continue;  // case.toml may be the case itself
+            fs::remove(file, failure);
+            if (failure)
+                throw trouble(run_dir, fmt::format("{} of an earlier run cannot be removed: {}", name,
+                                                   failure.message()));
+        }
+}
+
+}  // namespace frana

@@ -1,0 +1,110 @@
+#include "frana_run_job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "frana_run_figures.h"
+#include "io/xdmf_writer.h"
+#include "observe/gauges.h"
+#include "observe/history.h"
+#include "observe/only_fields.h"
+#include "observe/profiles.h"
+#include "solver/simulation.h"
+#include "vtk_io/writers.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// Work after the time loop, counted as output of the run.
+template <class Work>
+void timed(RunSummary& summary, const char* name, const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    summary.output.push_back({name, seconds});
+    summary.wall_seconds += seconds;
+    summary.ended = utc_now();
+}
+
+double largest(const std::vector<ProductRaster>& rasters, const char* name) {
+    double result = 0.0;
+    if (const ProductRaster* product = find_product(rasters, name))
+        for (const double value : product->raster.values)
+            if (value > result) result = value;
+    return result;
+}
+
+void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) {
+    if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
+        record.footprint_area = area_deeper(peak->raster, record.footprint_depth);
+    record.peak_depth = largest(rasters, "peak_depth");
+    record.peak_speed = largest(rasters, "peak_speed");
+    record.peak_pressure = largest(rasters, "peak_pressure");
+    record.final_depth = largest(rasters, "final_depth");
+}
+
+FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const RunRecord& record,
+                           const std::vector<ProductRaster>& rasters) {
+    FigureSource source;
+    source.run_dir = run_dir;
+    source.title = record.title;
+    source.footer = record.caption;
+    source.bed = scene.bed;
+    source.rasters = rasters;
+    source.footprint_depth = scene.output.footprint_depth;
+    source.survey = scene.survey;
+    source.profiles = scene.profiles;
+    source.gauges = scene.gauges;
+    return source;
+}
+
+}  // namespace
+
+Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vector<ProductRaster>& rasters) {
+    const Output& output = scene.output;
+    Observers observers;
+    const auto lines = output.history_per_step ? History::Lines::per_step : History::Lines::per_output;
+    observers.push_back(std::make_unique<History>(run_dir, lines));
+    std::vector<GaugePoint> gauges;
+    for (const Gauge& gauge : scene.gauges) gauges.push_back({gauge.name, gauge.point});
+    if (!gauges.empty()) observers.push_back(std::make_unique<Gauges>(run_dir, gauges));
+    std::vector<ProfileLine> profiles;
+    for (const Profile& profile : scene.profiles) profiles.push_back({profile.name, profile.line});
+    if (!profiles.empty()) observers.push_back(std::make_unique<Profiles>(run_dir, profiles));
+    if (output.vtk) {
+        observers.push_back(only_fields(make_particle_writer(run_dir), output.fields));
+        observers.push_back(only_fields(make_grid_writer(run_dir), output.fields));
+    }
+    if (output.xdmf) observers.push_back(only_fields(make_xdmf_writer(run_dir), output.fields));
+    observers.push_back(std::make_unique<LastFields>(scene.bed.crs_wkt, rasters));
+    return observers;
+}
+
+RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& run_dir, RunRecord record,
+                    const Interrupt& interrupt, Progress& progress) {
+    std::vector<ProductRaster> rasters;
+    Observers observers = make_observers(scene, run_dir, rasters);
+    if (scene.output.vtk) write_terrain(run_dir, scene.bed);
+
+    const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest};
+    record.summary = run(simulation, plan, observers, interrupt, progress);
+    note_results(record, rasters);
+
+    timed(record.summary, "rasters", [&] {
+        if (scene.output.geotiff) write_rasters(run_dir, rasters);
+        if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
+            write_outline(run_dir, peak->raster, scene.output.footprint_depth);
+    });
+    timed(record.summary, "figures", [&] {
+        if (scene.output.png)
+            record.figures = draw_figures(figure_source(scene, run_dir, record, rasters), record.warnings);
+    });
+    write_text(run_dir / "run.json", run_json(record));
+    write_text(run_dir / "report.md", report_markdown(record, run_dir));
+    return record;
+}
+
+}  // namespace frana

@@ -1,0 +1,22 @@
+#pragma once
+// A run once the scene stands and the folder is ready: look on, run, and leave products, figures and report.
+#include <filesystem>
+
+#include "frana_products.h"
+#include "frana_run_record.h"
+#include "observe/run_loop.h"
+#include "scene/scene.h"
+
+namespace frana {
+
+/// The observers that the scene's output asks for, writing into `run_dir`. `rasters` is filled at the end.
+Observers make_observers(const Scene& scene, const std::filesystem::path& run_dir,
+                         std::vector<ProductRaster>& rasters);
+
+/// Runs `simulation` to the scene's end in a prepared folder and leaves everything a run leaves there;
+/// `record` comes from begin_record(). The returned record has the summary, figures and warnings. A
+/// NumericsError of the simulation is kept in its summary; UserError when a file cannot be written.
+RunRecord carry_out(const Scene& scene, Simulation& simulation, const std::filesystem::path& run_dir,
+                    RunRecord record, const Interrupt& interrupt, Progress& progress);
+
+}  // namespace frana

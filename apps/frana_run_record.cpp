@@ -1,0 +1,168 @@
+#include "frana_run_record.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/version.h"
+#include "scene/case_file.h"
+
+namespace frana {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Values of a given key as text, with its unit from the parameter table.
+std::vector<GivenKey> given_keys(const CaseFile& file) {
+    std::vector<GivenKey> rows;
+    const auto add = [&](const std::string& key, const Parameter& parameter) {
+        if (file.given(key)) rows.push_back({key, toml_text(*file.find(key)), parameter.unit});
+    };
+    for (const Parameter& parameter : parameters()) {
+        bool repeated = false;
+        for (const std::string& table : repeated_tables()) {
+            if (parameter.table() != table) continue;
+            repeated = true;
+            for (Index i = 0; i < file.count(table); ++i)
+                add(fmt::format("{}.{}.{}", table, i, parameter.name()), parameter);
+        }
+        if (!repeated) add(parameter.key, parameter);
+    }
+    return rows;
+}
+
+/// "law = voellmy, friction_angle_deg = 34 degree, ...; steep terrain, cells of 5 m".
+std::string caption_of(const Scene& scene, const std::vector<GivenKey>& given) {
+    std::string text;
+    for (const GivenKey& key : given) {
+        if (key.key.rfind("material.", 0) != 0) continue;
+        std::string value = key.value;
+        value.erase(std::remove(value.begin(), value.end(), '"'), value.end());
+        if (value.size() > 2 && value.compare(value.size() - 2, 2, ".0") == 0) value.resize(value.size() - 2);
+        const bool has_unit = !key.unit.empty() && key.unit != "1";
+        text += fmt::format("{} {}{}{}, ", key.key.substr(9), value, has_unit ? " " : "",
+                            has_unit ? key.unit : "");
+    }
+    const char* model = scene.terrain == TerrainModel::steep ? "steep" : "shallow";
+    return text + fmt::format("terrain model {}, cells of {:.6g} m", model, scene.bed.geometry.cell);
+}
+
+Json phases(const std::vector<PhaseTime>& parts) {
+    Json result = Json::object();
+    for (const PhaseTime& part : parts) result[part.name] = part.seconds;
+    return result;
+}
+
+Json time_json(const RunSummary& s) {
+    return {{"total", s.wall_seconds},
+            {"solver", phases(s.solver)},
+            {"output", phases(s.output)},
+            {"output_total", s.output_seconds()},
+            {"output_share", s.output_share()}};
+}
+
+Json mass_json(const RunSummary& s) {
+    return {{"unit", "kg"},
+            {"initial", s.first.mass},
+            {"final", s.last.mass},
+            {"left_domain", s.last.mass_left},
+            {"relative_error", budget(s.first, s.last).mass_error}};
+}
+
+Json momentum_json(const RunSummary& s) {
+    return {{"unit", "kg m/s"},          {"initial", s.first.momentum},
+            {"final", s.last.momentum},  {"left_domain", s.last.momentum_left},
+            {"impulse", s.last.impulse}, {"residual", budget(s.first, s.last).momentum_residual}};
+}
+
+Json energy_json(const RunSummary& s) {
+    return {{"unit", "J"},
+            {"kinetic", s.last.kinetic},
+            {"potential", s.last.potential},
+            {"dissipated", s.last.dissipated},
+            {"left_domain", s.last.energy_left},
+            {"potential_initial", s.first.potential},
+            {"kinetic_initial", s.first.kinetic},
+            {"residual", budget(s.first, s.last).energy_residual}};
+}
+
+Json results_json(const RunRecord& record) {
+    const Extremes& most = record.summary.extremes;
+    return {{"max_depth", most.max_depth},
+            {"max_depth_time", most.max_depth_time},
+            {"max_speed", most.max_speed},
+            {"max_speed_time", most.max_speed_time},
+            {"max_front", most.max_front},
+            {"footprint_area", record.footprint_area},
+            {"footprint_depth", record.footprint_depth},
+            {"final_max_depth", record.final_depth},
+            {"peak_pressure", record.peak_pressure}};
+}
+
+}  // namespace
+
+RunRecord begin_record(const Scene& scene, const CaseFile& file) {
+    RunRecord record;
+    record.name = scene.name;
+    record.title = scene.title.empty() ? scene.name : scene.title;
+    record.case_file = scene.case_file.string();
+    record.given = given_keys(file);
+    record.caption = caption_of(scene, record.given);
+    record.grid = scene.bed.geometry;
+    record.has_crs = !scene.bed.crs_wkt.empty();
+    record.density = scene.density;
+    record.particles = scene.particles.count();
+    for (const double volume : scene.particles.volume) record.release_volume += volume;
+    record.end = scene.end;
+    record.footprint_depth = scene.output.footprint_depth;
+    record.warnings = scene.log;
+    return record;
+}
+
+std::string reason_text(const RunSummary& summary) {
+    if (summary.reason == "end") return "the simulated time is over";
+    if (summary.reason == "rest") return "the mass came to rest";
+    if (summary.reason == "left") return "no material is left in the domain";
+    if (summary.reason == "interrupted") return "interrupted; everything up to here is valid";
+    return "numerics: " + summary.failure_text;
+}
+
+std::string run_json(const RunRecord& record) {
+    const RunSummary& s = record.summary;
+    const double per_second = s.wall_seconds > 0.0 ? s.particle_steps / s.wall_seconds : 0.0;
+    Json figures = Json::array();
+    for (const DrawnFigure& figure : record.figures) figures.push_back(figure.path);
+    const Json json = {
+        {"version", FRANA_VERSION},
+        {"build", {{"type", FRANA_BUILD_TYPE}, {"compiler", FRANA_COMPILER}, {"arch", FRANA_ARCH}}},
+        {"case", record.name},
+        {"title", record.title},
+        {"caption", record.caption},
+        {"case_file", record.case_file},
+        {"overrides", record.command_line},
+        {"started", s.started},
+        {"ended", s.ended},
+        {"host_threads", std::thread::hardware_concurrency()},
+        {"threads", record.threads},
+        {"exit_reason", s.reason},
+        {"failure", s.failure_text},
+        {"simulated_time", s.last.time},
+        {"steps", s.steps},
+        {"frames", s.frames},
+        {"grid", {{"nx", record.grid.nx}, {"ny", record.grid.ny}, {"cell", record.grid.cell}}},
+        {"particles", {{"initial", record.particles}, {"final", s.last.particles}}},
+        {"release_volume", record.release_volume},
+        {"wall_seconds", time_json(s)},
+        {"particle_steps", s.particle_steps},
+        {"particle_steps_per_second", per_second},
+        {"budgets", {{"mass", mass_json(s)}, {"momentum", momentum_json(s)}, {"energy", energy_json(s)}}},
+        {"results", results_json(record)},
+        {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},
+        {"figures", figures},
+        {"warnings", record.warnings}};
+    return json.dump(2) + "\n";
+}
+
+}  // namespace frana

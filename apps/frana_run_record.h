@@ -1,0 +1,62 @@
+#pragma once
+// Everything run.json and report.md tell about a run.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "observe/run_loop.h"
+#include "scene/scene.h"
+
+namespace frana {
+
+class CaseFile;
+
+/// A figure that was drawn.
+struct DrawnFigure {
+    std::string path;  ///< relative to the run folder: "figures/map_peak_depth.png"
+    std::string caption;
+};
+
+/// A key that the case file or --set gives, for the report's table.
+struct GivenKey {
+    std::string key, value, unit;
+};
+
+struct RunRecord {
+    std::string name, title;
+    std::string case_file;
+    std::string caption;  ///< material, terrain model and cell in a line, for figures
+    std::vector<GivenKey> given;
+    std::string command_line;  ///< overrides of the case: "--set a=b --until 5"; empty when none
+    GridGeometry grid;
+    bool has_crs = false;
+    double density = 1000.0;       ///< [kg/m^3]
+    Index particles = 0;           ///< at the start
+    double release_volume = 0.0;   ///< [m^3]
+    double end = 0.0;              ///< planned [s]
+    double footprint_depth = 0.1;  ///< [m]
+    double footprint_area = 0.0;   ///< ever deeper than footprint_depth [m2]
+    double peak_depth = 0.0, peak_speed = 0.0, peak_pressure = 0.0;  ///< of the rasters [m], [m/s], [Pa]
+    double final_depth = 0.0;                                        ///< deepest at the end [m]
+    int threads = 1;
+    RunSummary summary;
+    std::vector<DrawnFigure> figures;
+    std::vector<std::string> warnings;
+};
+
+/// What the scene and its case file contribute.
+RunRecord begin_record(const Scene& scene, const CaseFile& file);
+
+/// "the end of the simulated time", "interrupted", ... for people.
+std::string reason_text(const RunSummary& summary);
+
+/// run.json as text: contract in the README; numbers in SI, with all their digits.
+std::string run_json(const RunRecord& record);
+
+/// report.md as text: the run on one page. Files and figures are those that lie in the folder now.
+std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir);
+
+/// The ten lines at the end of a run on the console: figures of the result, and where to look.
+std::string closing_lines(const RunRecord& record, const std::filesystem::path& run_dir);
+
+}  // namespace frana

@@ -1,0 +1,92 @@
+#include "terrain_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frana {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+double squared(double a) { return a * a; }
+
+std::vector<Vec2> rectangle(double x0, double y0, double x1, double y1) {
+    return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
+
+std::vector<Vec2> ellipse(const Vec2& centre, double half_x, double half_y) {
+    std::vector<Vec2> ring;
+    const int corners = 72;
+    for (int k = 0; k < corners; ++k) {
+        const double angle = 360.0 * kDegree * k / corners;
+        ring.emplace_back(centre.x() + half_x * std::cos(angle), centre.y() + half_y * std::sin(angle));
+    }
+    return ring;
+}
+
+}  // namespace
+
+MadeScene lake_z1() {
+    const auto z = [](double x, double y) { return 5.0 * std::exp(-0.4 * (squared(x - 5.0) + squared(y - 5.0))); };
+    return {{{"z1.tif", on_nodes(10.0, 10.0, 0.2, z)}}, {{"lake.geojson", rectangle(0.0, 0.0, 10.0, 10.0)}}};
+}
+
+MadeScene lake_z2() {
+    const double rim = 1e-9;  // the nodes at 4 and 8 belong to the plateau, whatever 20 * 0.2 rounds to
+    const auto inside = [rim](double a) { return a > 4.0 - rim && a < 8.0 + rim; };
+    const auto z = [inside](double x, double y) { return inside(x) && inside(y) ? 4.0 : 0.0; };
+    return {{{"z2.tif", on_nodes(10.0, 10.0, 0.2, z)}}, {}};
+}
+
+MadeScene obstacle() {
+    const auto z = [](double x, double y) {
+        return 60.0 - x / 3.0 + 15.0 * std::exp(-(squared(x - 50.0) + squared(y - 10.0)) / 7.0);
+    };
+    return {{{"dem.tif", on_nodes(150.0, 20.0, 1.0, z)}}, {{"release.geojson", rectangle(5.0, 3.0, 42.5, 17.0)}}};
+}
+
+MadeScene tiff_particles() {
+    // The ground reaches 5 m beyond the picture, so that the picture's outer half pixels lie on it as well.
+    Raster ground = on_nodes(109.0, 109.0, 1.0, [](double, double) { return 0.0; });
+    ground.geometry.x0 = ground.geometry.y0 = -4.5;
+    Raster depth = on_nodes(99.0, 99.0, 1.0, [](double column, double row) {
+        const double x = column + 0.5, y = row + 0.5;
+        return 1.0 + 2.0 * std::exp(-(squared(x - 50.0) + squared(y - 50.0)) / 150.0);
+    });
+    depth.geometry.x0 = depth.geometry.y0 = 0.5;
+    return {{{"dem.tif", ground}, {"depth.tif", depth}}, {}};
+}
+
+MadeScene avalanche_track() {
+    const double width = 2000.0, height = 800.0, middle = 400.0, cell = 5.0;
+    const double foot = 1200.0;  // from here the slope fades into flat ground within 150 m
+    const double head_slope = std::tan(34.0 * kDegree), foot_slope = std::tan(12.0 * kDegree);
+    const auto slope = [=](double x) {
+        const double parabola = head_slope + (foot_slope - head_slope) * std::min(x / foot, 1.0);
+        return parabola * (1.0 - smooth_step((x - foot) / 150.0));
+    };
+    std::vector<double> drop{0.0};  // below x = 0, on the nodes
+    for (double x = 0.5 * cell; x < width; x += cell) drop.push_back(drop.back() + cell * slope(x));
+    const auto z = [&](double x, double y) {
+        // The channel gathers the snow below the release, is 160 m wide, and opens before the foot.
+        const double depth = 14.0 * smooth_step((x - 100.0) / 200.0) * smooth_step((foot + 50.0 - x) / 350.0);
+        const double across = std::min(std::abs(y - middle) / 80.0, 1.0);
+        const double below = drop[static_cast<std::size_t>(std::lround(x / cell))];
+        return 1000.0 + (drop.back() - below) - depth * squared(1.0 - squared(across));
+    };
+    return {{{"dem.tif", on_nodes(width, height, cell, z)}},
+            {{"release.geojson", ellipse({150.0, middle}, 60.0, 65.0)}}};
+}
+
+const std::vector<NamedScene>& made_scenes() {
+    static const std::vector<NamedScene> scenes = {
+        {"lake_z1", "lake at rest over a smooth hill (Fois et al. 2024, 4.1)", lake_z1},
+        {"lake_z2", "lake at rest over a step (Fois et al. 2024, 4.1)", lake_z2},
+        {"obstacle", "collapse onto an obstacle (Fois et al. 2024, 4.2)", obstacle},
+        {"bindo", "mountainside with river, after Fois et al. 2024, 4.3", bindo},
+        {"tiff_particles", "picture of 100 x 100 pixels (Fois et al. 2025, 4.1)", tiff_particles},
+        {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track}};
+    return scenes;
+}
+
+}  // namespace frana

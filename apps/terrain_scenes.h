@@ -1,0 +1,73 @@
+#pragma once
+// The made-up ground of the cases: formulas on nodes, no files.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// A raster that a case reads, with the name of its file.
+struct MadeRaster {
+    std::string file;   ///< "dem.tif"
+    Raster raster;
+};
+
+/// An outline that a case reads: one ring, not closed.
+struct MadeOutline {
+    std::string file;   ///< "release.geojson"
+    std::vector<Vec2> ring;
+};
+
+/// Everything that is generated for one case.
+struct MadeScene {
+    std::vector<MadeRaster> rasters;
+    std::vector<MadeOutline> outlines;
+};
+
+/// Lake at rest of Fois et al. (2024), section 4.1, first bed: Z = 5 exp(-2/5 |x - (5, 5)|^2) on [0, 10]^2, 50 x 50
+/// cells (eq. 34).
+MadeScene lake_z1();
+/// The second bed: 4 on [4, 8]^2, otherwise 0 (eq. 34).
+MadeScene lake_z2();
+/// Collapse onto an obstacle, section 4.2: Z = 60 - x/3 + 15 exp(-((x - 50)^2 + (y - 10)^2)/7) on [0, 150] x [0, 20]
+/// (eq. 37), with a block of 37.5 x 14 m upstream of the obstacle.
+MadeScene obstacle();
+/// Section 4.3 on made-up ground: a mountainside of 28 degrees above a valley floor with a river, 1500 x 1350 m, and
+/// 1.2e6 m3 of rock, 38 m deep and 400 m long, standing on it (terrain_bindo.cpp has the design).
+MadeScene bindo();
+/// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on flat ground.
+MadeScene tiff_particles();
+/// A parabola of 34 degrees at its head and 12 at its foot, then flat ground, with a channel down its middle; 5 m
+/// cells.
+MadeScene avalanche_track();
+
+/// A scene by name.
+struct NamedScene {
+    const char* name;
+    const char* meaning;
+    MadeScene (*make)();
+};
+const std::vector<NamedScene>& made_scenes();
+
+/// f(x, y) on the nodes of [0, width] x [0, height].
+template <class Formula>
+Raster on_nodes(double width, double height, double cell, const Formula& f) {
+    GridGeometry geometry;
+    geometry.cell = cell;
+    geometry.nx = static_cast<Index>(std::lround(width / cell)) + 1;
+    geometry.ny = static_cast<Index>(std::lround(height / cell)) + 1;
+    Raster raster = Raster::filled(geometry, 0.0);
+    for (Index j = 0; j < geometry.ny; ++j)
+        for (Index i = 0; i < geometry.nx; ++i) raster.at(i, j) = f(geometry.x(i), geometry.y(j));
+    return raster;
+}
+
+/// 0 below 0, 1 above 1, a cubic with level ends between.
+inline double smooth_step(double s) {
+    s = s < 0.0 ? 0.0 : s > 1.0 ? 1.0 : s;
+    return s * s * (3.0 - 2.0 * s);
+}
+
+}  // namespace frana

@@ -1,0 +1,49 @@
+#pragma once
+// What a run has gained or lost that no force and no open side accounts for.
+#include <algorithm>
+#include <array>
+
+#include "observe/frame.h"
+
+namespace frana {
+
+/// Residuals of the three balances between a first status and a later one of the same run.
+struct Budget {
+    double mass_error = 0.0;                    ///< (m + m_left - m_0) / m_0 [1]
+    std::array<double, 2> momentum_residual{};  ///< P + P_left - P_0 - impulse [kg m/s]
+    double energy_residual = 0.0;               ///< (K + E_p + D + E_left) - (K_0 + E_p0) [J]
+};
+
+inline Budget budget(const Status& first, const Status& now) {
+    Budget result;
+    const double lost = (now.mass - first.mass) + (now.mass_left - first.mass_left);
+    result.mass_error = first.mass > 0.0 ? lost / first.mass : 0.0;
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        result.momentum_residual[axis] = (now.momentum[axis] - first.momentum[axis]) +
+                                         (now.momentum_left[axis] - first.momentum_left[axis]) -
+                                         (now.impulse[axis] - first.impulse[axis]);
+    // Differences first: the potential energy of a mountain is far larger than what a flow turns over.
+    result.energy_residual = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
+                             (now.dissipated - first.dissipated) + (now.energy_left - first.energy_left);
+    return result;
+}
+
+/// The largest values over a run, and when they were reached.
+struct Extremes {
+    double max_depth = 0.0, max_depth_time = 0.0;           ///< [m], [s]
+    double max_speed = 0.0, max_speed_time = 0.0;           ///< [m/s], [s]
+    double max_covered_area = 0.0;                          ///< covered at one time [m2]
+    double max_front = 0.0;                                 ///< [m]
+    double p2g_mass_error = 0.0, p2g_momentum_error = 0.0;  ///< worst step [1]
+
+    void note(const Status& now) {
+        if (now.max_depth > max_depth) max_depth = now.max_depth, max_depth_time = now.time;
+        if (now.max_speed > max_speed) max_speed = now.max_speed, max_speed_time = now.time;
+        max_covered_area = std::max(max_covered_area, now.covered_area);
+        max_front = std::max(max_front, now.front);
+        p2g_mass_error = std::max(p2g_mass_error, now.p2g_mass_error);
+        p2g_momentum_error = std::max(p2g_momentum_error, now.p2g_momentum_error);
+    }
+};
+
+}  // namespace frana

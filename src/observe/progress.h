@@ -1,0 +1,45 @@
+#pragma once
+// What a person sees while a case runs: a bar on a terminal, a line per frame in a log, or nothing.
+#include <chrono>
+#include <ostream>
+#include <string>
+
+#include "observe/frame.h"
+
+namespace frana {
+
+class Progress {
+public:
+    enum class Style { bar, lines, silent };
+    /// `density` [kg/m^3] turns masses into volumes.
+    Progress(std::ostream& stream, Style style, double density)
+        : stream_(stream), style_(style), density_(density) {}
+
+    void begin(const Status& first, double end);
+    /// After every step; the bar is redrawn at most five times a second.
+    void step(const Status& now);
+    /// After every frame that was written.
+    void output(Index number, const Status& now);
+    void end(const Status& last, const std::string& reason);
+
+    /// Bar when standard output is a terminal, lines when it is not.
+    static Style fitting(bool quiet);
+
+private:
+    std::string bar(const Status& now, double wall) const;
+    double remaining(const Status& now, double wall) const;
+    double wall_seconds() const;
+
+    std::ostream& stream_;
+    Style style_;
+    double density_;
+    double start_time_ = 0.0;
+    double end_time_ = 0.0;
+    double last_drawn_ = -1.0;  ///< [s] of wall time since begin()
+    std::chrono::steady_clock::time_point began_;
+};
+
+/// Wall time for people: "0:07", "12:40", "3:05:00"; "-:--" when not yet known (not finite).
+std::string clock_text(double seconds);
+
+}  // namespace frana

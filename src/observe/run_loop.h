@@ -1,0 +1,58 @@
+#pragma once
+// The time loop: advance, look, stop. It knows solvers and observers only by their abstract faces.
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "observe/budget.h"
+#include "observe/interrupt.h"
+#include "observe/observer.h"
+#include "observe/progress.h"
+
+namespace frana {
+
+class Simulation;
+struct PhaseTime;
+
+/// When a run is looked at, and when it is over.
+struct RunPlan {
+    double end = 0.0;    ///< [s]
+    double every = 1.0;  ///< frames at k * every [s], and one at the end
+    bool stop_at_rest = false;
+};
+
+/// What happened, for run.json and the report.
+struct RunSummary {
+    /// "end", "rest", "interrupted", "left" (no material remains) or "numerics"
+    std::string reason;
+    std::exception_ptr failure;  ///< the NumericsError, when that is the reason
+    std::string failure_text;    ///< its message; says also when no last frame could be written
+    Status first, last;          ///< of the first and the last frame; without a last frame, of the last step
+    Extremes extremes;
+    Index steps = 0;
+    Index frames = 0;
+    double particle_steps = 0.0;  ///< sum of the particles over the steps
+    double wall_seconds = 0.0;
+    std::vector<PhaseTime> solver;  ///< wall time by the solver's phases but "frame"
+    std::vector<PhaseTime> output;  ///< wall time by observer, and "frame": gathering what they look at
+    std::string started, ended;     ///< wall clock, UTC, ISO 8601
+
+    double output_seconds() const;
+    double output_share() const { return wall_seconds > 0.0 ? output_seconds() / wall_seconds : 0.0; }
+};
+
+using Observers = std::vector<std::unique_ptr<Observer>>;
+
+/// Runs `simulation` from its present time to the plan's end. Observers' step() is called at the start and
+/// after every step; see() at the start, at every k * every exactly and at the end; end() once, after the
+/// last see(). An interruption finishes the step and ends the run as usual. A NumericsError ends it too: if
+/// the state can still be shown it is the last frame; the error is kept in the summary for the caller to
+/// throw once the products are written. Errors of observers (a full disk) pass through.
+RunSummary run(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
+               Progress& progress);
+
+/// The present wall clock as "2024-05-01T12:00:00Z".
+std::string utc_now();
+
+}  // namespace frana

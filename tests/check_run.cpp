@@ -1,0 +1,120 @@
+// check_run RUN_DIR EXPECTED.csv: compares what a run left with the case's expected figures.
+// Lines of EXPECTED.csv: quantity,value,tolerance,unit,source. A quantity is
+//   budgets.mass.relative_error           a number of run.json
+//   history/max_speed/max                 largest absolute value (or: last) of a column of history.csv
+//   profile/x675/length/last              stretch deeper than 0.1 m (or: depth, the largest) of a profile, last or first
+//   raster/final_depth/mirror_y           largest difference between a raster and its north-south mirror image
+#include <gdal_priv.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Row = std::vector<std::string>;
+
+Row split(const std::string& line, char separator) {
+    Row parts;
+    std::stringstream stream(line);
+    for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+    return parts;
+}
+
+std::vector<Row> read_csv(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    if (!stream) throw std::runtime_error(file.string() + ": is not there");
+    std::vector<Row> rows;
+    for (std::string line; std::getline(stream, line);)
+        if (!line.empty()) rows.push_back(split(line, ','));
+    if (rows.size() < 2) throw std::runtime_error(file.string() + ": has no lines");
+    return rows;
+}
+
+double from_json(const std::filesystem::path& run, const std::string& quantity) {
+    std::ifstream stream(run / "run.json");
+    nlohmann::json value = nlohmann::json::parse(stream);
+    for (const std::string& key : split(quantity, '.')) value = nlohmann::json(value.at(key));
+    return value.get<double>();
+}
+
+double from_history(const std::filesystem::path& run, const Row& path) {
+    const std::vector<Row> rows = read_csv(run / "history.csv");
+    const auto column = std::find(rows[0].begin(), rows[0].end(), path.at(1));
+    if (column == rows[0].end()) throw std::runtime_error("history.csv has no column " + path.at(1));
+    const auto place = static_cast<std::size_t>(column - rows[0].begin());
+    if (path.at(2) == "last") return std::stod(rows.back().at(place));
+    if (path.at(2) != "max") throw std::runtime_error(path.at(2) + ": expected max or last");
+    double largest = 0.0;
+    for (std::size_t i = 1; i < rows.size(); ++i) largest = std::max(largest, std::abs(std::stod(rows[i].at(place))));
+    return largest;
+}
+
+/// Columns of a profile: t, distance, x, y, bed, depth, ...
+double from_profile(const std::filesystem::path& run, const Row& path) {
+    const std::vector<Row> rows = read_csv(run / "profiles" / (path.at(1) + ".csv"));
+    const std::string time = path.at(3) == "first" ? rows[1][0] : rows.back()[0];
+    double begin = NAN, end = NAN, deepest = 0.0;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const double distance = std::stod(rows[i].at(1)), depth = std::stod(rows[i].at(5));
+        if (rows[i][0] != time) continue;
+        deepest = std::max(deepest, depth);
+        if (depth > 0.1) begin = std::isnan(begin) ? distance : begin, end = distance;
+    }
+    return path.at(2) == "length" ? end - begin : deepest;
+}
+
+double from_raster(const std::filesystem::path& run, const Row& path) {
+    GDALAllRegister();
+    const std::string file = (run / "rasters" / (path.at(1) + ".tif")).string();
+    const std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> raster(
+        GDALDataset::Open(file.c_str()), [](GDALDataset* dataset) { GDALClose(dataset); });
+    if (!raster) throw std::runtime_error(file + ": cannot be read");
+    const int nx = raster->GetRasterXSize(), ny = raster->GetRasterYSize();
+    std::vector<double> values(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
+    if (raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float64, 0, 0) != CE_None)
+        throw std::runtime_error(file + ": cannot be read");
+    double largest = 0.0;
+    for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i)
+            largest = std::max(largest, std::abs(values[static_cast<std::size_t>(j * nx + i)] -
+                                                 values[static_cast<std::size_t>((ny - 1 - j) * nx + i)]));
+    return largest;
+}
+
+double obtained(const std::filesystem::path& run, const std::string& quantity) {
+    const Row path = split(quantity, '/');
+    if (path[0] == "history") return from_history(run, path);
+    if (path[0] == "profile") return from_profile(run, path);
+    if (path[0] == "raster") return from_raster(run, path);
+    return from_json(run, quantity);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 3) return std::fprintf(stderr, "check_run RUN_DIR EXPECTED.csv\n"), 2;
+    int failures = 0;
+    try {
+        const std::vector<Row> rows = read_csv(argv[2]);
+        for (std::size_t i = 1; i < rows.size(); ++i) {
+            const double value = std::stod(rows[i].at(1)), tolerance = std::stod(rows[i].at(2));
+            const double found = obtained(argv[1], rows[i][0]);
+            const bool good = std::abs(found - value) <= tolerance;  // false for NaN
+            std::printf("%-6s %-40s expected %.10g +- %.3g %s, obtained %.10g\n", good ? "ok" : "FAILED",
+                        rows[i][0].c_str(), value, tolerance, rows[i].at(3).c_str(), found);
+            failures += good ? 0 : 1;
+        }
+    } catch (const std::exception& error) {
+        return std::fprintf(stderr, "%s\n", error.what()), 1;
+    }
+    return failures == 0 ? 0 : 1;
+}

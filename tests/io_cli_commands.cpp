@@ -1,0 +1,161 @@
+// The program as a person calls it: exit codes, what goes to stdout and what to stderr.
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "base/atomic_file.h"
+#include "catch.h"
+#include "fresh_folder.h"
+
+namespace fs = std::filesystem;
+using Catch::Contains;
+
+namespace {
+
+struct Outcome {
+    int code = -1;
+    std::string out, err;
+};
+
+/// A plane of 30 x 20 nodes, 5 m apart, with a release; files that need no GIS to write.
+class Case {
+public:
+    Case() {
+        std::ostringstream dem;
+        dem << "ncols 30\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n";
+        for (int row = 0; row < 20; ++row)
+            for (int column = 0; column < 30; ++column)
+                dem << 100.0 - 0.5 * column << (column < 29 ? ' ' : '\n');
+        frana::write_text(folder_.path() / "dem.asc", dem.str());
+        frana::write_text(folder_.path() / "release.geojson",
+                          R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {},
+                          "geometry": {"type": "Polygon", "coordinates":
+                          [[[20, 30], [50, 30], [50, 70], [20, 70], [20, 30]]]}}]})");
+        write("");
+    }
+    void write(const std::string& rest) const {
+        frana::write_text(file(),
+                          "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"release.geojson\"\n"
+                          "depth = 1.5\n[time]\nend = 2\n" +
+                              rest);
+    }
+    fs::path file() const { return folder_.path() / "case.toml"; }
+    const fs::path& folder() const { return folder_.path(); }
+
+    /// Calls the program, which is built beside this test; CASE in the arguments stands for the case file.
+    Outcome frana(std::string arguments) const {
+        const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
+        INFO("the test needs the target `frana` built beside it");
+        REQUIRE(fs::exists(program));
+        const std::size_t place = arguments.find("CASE");
+        if (place != std::string::npos) arguments.replace(place, 4, file().string());
+        const std::string command =
+            "cd " + folder().string() + " && " + program.string() + " " + arguments + " > out.txt 2> err.txt";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(folder() / "out.txt"),
+                text_of(folder() / "err.txt")};
+    }
+
+private:
+    FreshFolder folder_;
+};
+
+}  // namespace
+
+TEST_CASE("--version names the libraries, --help the commands, and both leave with 0", "[cli]") {
+    const Case scene;
+    const Outcome version = scene.frana("--version");
+    CHECK(version.code == 0);
+    CHECK_THAT(version.out,
+               Contains("frana ") && Contains("VTK 9") && Contains("GDAL 3") && Contains("HDF5 1"));
+    const Outcome help = scene.frana("--help");
+    CHECK(help.code == 0);
+    CHECK_THAT(help.out, Contains("run") && Contains("check") && Contains("describe") &&
+                             Contains("particles") && Contains("figures"));
+}
+
+TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr", "[cli]") {
+    const Case scene;
+    CHECK(scene.frana("").code == 2);
+    const Outcome unknown = scene.frana("chekc CASE");
+    CHECK(unknown.code == 2);
+    CHECK(unknown.out.empty());
+    CHECK(unknown.err ==
+          "command line: found the unknown command \"chekc\"; expected one of run, check, describe, "
+          "particles, figures; did you mean check?\n");
+    const Outcome threads = scene.frana("run CASE --threads 0");
+    CHECK(threads.code == 2);
+    CHECK_THAT(threads.err, Contains("--threads"));
+    const Outcome resume = scene.frana("run CASE --resume");
+    CHECK(resume.code == 2);
+    CHECK_THAT(resume.err, Contains("run without --resume"));
+    const Outcome size = scene.frana("figures . --size 12");
+    CHECK(size.code == 2);
+    CHECK_THAT(size.err, Contains("WIDTHxHEIGHT"));
+    CHECK(scene.frana("check no_such.toml").code == 2);
+}
+
+TEST_CASE("describe explains a key, and leaves with 2 for one that does not exist", "[cli]") {
+    const Case scene;
+    const Outcome cell = scene.frana("describe grid.cell");
+    CHECK(cell.code == 0);
+    CHECK_THAT(cell.out, Contains("grid.cell [m]") && Contains("the pixel of the elevation model"));
+    const Outcome typo = scene.frana("describe grid.cel1");
+    CHECK(typo.code == 2);
+    CHECK_THAT(typo.err, Contains("did you mean grid.cell?"));
+}
+
+TEST_CASE("check tells grid, particles and volume of a good case without running it", "[cli]") {
+    const Case scene;
+    const Outcome check = scene.frana("check CASE");
+    CHECK(check.err.empty());
+    CHECK(check.code == 0);
+    CHECK_THAT(check.out, Contains("30 x 20 nodes, 5 m apart"));
+    CHECK_THAT(check.out, Contains("192 particles on 1200 m2, depth up to 1.5 m"));  // 48 cells of 4
+    CHECK_THAT(check.out, Contains("volume 1800 m3 from raster or polygon, 1800 m3 in particles"));
+    CHECK_THAT(check.out, Contains("bed slope 5.7 to 5.7 degrees"));  // atan(0.1)
+    CHECK_THAT(check.out, Contains("150 ns per particle and step"));
+    CHECK_THAT(check.out, Contains("remark      material.bed.law is not given"));
+    CHECK_THAT(check.out, Catch::EndsWith("ready to run\n"));
+    CHECK_FALSE(fs::exists(scene.folder() / "out"));
+}
+
+TEST_CASE("check lists all problems of a bad case on stderr and is not ready", "[cli]") {
+    const Case scene;
+    scene.write("[grid]\ncel = 3\n[survey]\nfootprint = \"none.geojson\"\n");
+    const Outcome check = scene.frana("check CASE --set scheme.cfl=7");
+    CHECK(check.code == 2);
+    CHECK(check.out.empty());
+    const std::string name = scene.file().string();
+    CHECK(
+        check.err ==
+        name +
+            ":9: grid.cel: found an unknown key; expected a key of [grid]: cell; did you mean grid.cell?\n" +
+            name + ":11: survey.footprint: found no file \"" + (scene.folder() / "none.geojson").string() +
+            "\"; expected an existing file; correct the name (it is relative to the case file), or put "
+            "the file there\n"
+            "--set scheme.cfl: found 7; expected a number above 0 and at most 1; choose a value in this "
+            "range\n3 problems\n");
+}
+
+TEST_CASE("particles writes every format, with the count asked for", "[cli]") {
+    const Case scene;
+    for (const char* name : {"p.csv", "p.json", "p.h5", "deep/p.vtp"}) {
+        CAPTURE(name);
+        const Outcome outcome =
+            scene.frana(std::string("particles CASE --set particles.placement=r2 --count 500 --out ") + name);
+        CHECK(outcome.err.empty());
+        CHECK(outcome.code == 0);
+        CHECK_THAT(outcome.out, Contains("500 particles in"));
+        CHECK(fs::file_size(scene.folder() / name) > 500 * 8);
+    }
+    const std::string csv = text_of(scene.folder() / "p.csv");
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 501);
+    const Outcome wrong = scene.frana("particles CASE --out p.xyz");
+    CHECK(wrong.code == 2);
+    CHECK_THAT(wrong.err, Contains("expected .h5, .json, .csv or .vtp"));
+}

@@ -1,0 +1,212 @@
+// Maps: what is drawn, where, in which colour, and what happens when nothing can be drawn.
+#include "io_figures_scene.h"
+#include "vtk_io/map_figure_layout.h"
+#include "vtk_io/map_figure_paint.h"
+
+#include <fstream>
+
+#include "base/error.h"
+
+using namespace frana;
+using figures::cannot_draw;
+
+namespace {
+
+Pixels drawn(const MapFigure& figure) {
+    const figures::Folder folder;
+    std::string why_not;
+    const bool done = render_map(figure, folder / "map.png", why_not);
+    INFO(why_not);
+    REQUIRE(done);
+    CHECK(folder.files() == 1);  // nothing temporary is left
+    return read_png(folder / "map.png");
+}
+
+Colour at(const Pixels& picture, const Vec2& pixel) {
+    return picture.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+}
+
+/// Smallest distance of a pixel to the colour of a value on any ground the relief can have.
+int off_colour(const Colour& seen, double value, const MapFigure& figure) {
+    const FieldStyle style{
+        figure.colormap, {figure.range->first, figure.range->second, false, false}, figure.shown_above, 0.0};
+    int best = 255;
+    for (double grey = 0.42; grey <= 0.98; grey += 0.02)
+        best = std::min(best, figures::distance(seen, on_ground(value, grey, style)));
+    return best;
+}
+
+/// Middle of the coloured pixels inside a part of the picture.
+Vec2 middle_of_colour(const Pixels& picture, const Rectangle& part) {
+    Vec2 sum(0, 0);
+    double weight = 0.0;
+    for (int y = static_cast<int>(part.y0); y < static_cast<int>(part.y1); ++y)
+        for (int x = static_cast<int>(part.x0); x < static_cast<int>(part.x1); ++x) {
+            if (figures::saturation(picture.at(x, y)) < 60) continue;
+            sum += Vec2(x + 0.5, y + 0.5);
+            weight += 1.0;
+        }
+    REQUIRE(weight > 100.0);
+    return sum / weight;
+}
+
+double resident_megabytes() {
+    std::ifstream statm("/proc/self/statm");
+    double total = 0.0, resident = 0.0;
+    statm >> total >> resident;
+    return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
+}  // namespace
+
+TEST_CASE("A map has the size asked for, and the deposit lies north and east where it is", "[figures]") {
+    if (cannot_draw()) return;
+    MapFigure figure = figures::valley();
+    const Pixels picture = drawn(figure);
+    CHECK(picture.width == figure.width);
+    CHECK(picture.height == figure.height);
+
+    const MapLayout layout = lay_out(figure);
+    const Vec2 seen = middle_of_colour(picture, layout.frame);
+    // the frame shows 2000 x 1600 m: the deposit's middle as a share of it, without asking the layout
+    const Vec2 share((seen.x() - layout.frame.x0) / layout.frame.width(),
+                     (seen.y() - layout.frame.y0) / layout.frame.height());
+    const double tolerance = 0.01;  // contours on top of the colour take away pixels, not symmetrically
+    CHECK(share.x() == Approx(figures::deposit.x() / 2000.0).margin(tolerance));
+    CHECK(share.y() == Approx(figures::deposit.y() / 1600.0).margin(tolerance));
+}
+
+TEST_CASE("The colour at a map position is that of the value there", "[figures]") {
+    if (cannot_draw()) return;
+    const MapFigure figure = figures::valley();
+    const Pixels picture = drawn(figure);
+    const MapLayout layout = lay_out(figure);
+    for (const double r : {0.0, 0.4, 0.8, 1.2}) {  // in widths of the deposit, to the west-south-west
+        const Vec2 place = figures::deposit - figures::kWidth * r * Vec2(0.8, 0.6);
+        const double value = figures::kDeepest * std::exp(-r * r);
+        int best = 255;  // a contour line may cross one of the pixels
+        for (int dx = -3; dx <= 3; ++dx)
+            best = std::min(best, off_colour(at(picture, layout.pixel(place) + Vec2(dx, 0)), value, figure));
+        INFO("at " << r << " widths, value " << value << " m");
+        CHECK(best <= 8);  // half a pixel of the gradient and the rounding of the picture
+        CHECK(off_colour(at(picture, layout.pixel(place)), value + 1.5, figure) > 8);  // the measure can tell
+    }
+    const Vec2 dry = layout.pixel({300.0, 300.0});
+    CHECK(figures::saturation(at(picture, dry)) < 40);
+    CHECK(brightness(at(picture, dry)) > 0.35);
+}
+
+TEST_CASE("The colour bar runs from the first to the last colour beside the map", "[figures]") {
+    if (cannot_draw()) return;
+    const MapFigure figure = figures::valley();
+    const Pixels picture = drawn(figure);
+    const Rectangle frame = lay_out(figure).frame;
+    const auto mid = [](double a, double b) { return static_cast<int>(0.5 * (a + b)); };
+    int x = static_cast<int>(frame.x1) + 4;
+    while (x < picture.width && figures::saturation(picture.at(x, mid(frame.y0, frame.y1))) < 40) ++x;
+    REQUIRE(x + 4 < picture.width);
+    x += 4;
+    for (const double t : {0.02, 0.25, 0.5, 0.75, 0.98}) {
+        const int y = static_cast<int>(frame.y0 + t * frame.height());
+        CHECK(figures::distance(picture.at(x, y), colour_at(Colormap::depth, t)) <=
+              6);  // one pixel of the bar
+    }
+}
+
+TEST_CASE("The surveyed outline is drawn on its line and nowhere else", "[figures]") {
+    if (cannot_draw()) return;
+    MapFigure figure = figures::valley();
+    figure.survey = Polygons{{Polygon{{{{400, 300}, {800, 300}, {800, 700}, {400, 700}}}}}, "", ""};
+    const Pixels picture = drawn(figure);
+    const MapLayout layout = lay_out(figure);
+    for (const Vec2& on : {Vec2(600, 300), Vec2(800, 500), Vec2(600, 700), Vec2(400, 500)})
+        CHECK(figures::distance(at(picture, layout.pixel(on)), colours::survey) <= 10);
+    for (const Vec2& off : {Vec2(600, 500), Vec2(900, 500), Vec2(600, 200)})
+        CHECK(figures::saturation(at(picture, layout.pixel(off))) < 40);
+
+    figure.survey.reset();
+    CHECK(figures::count(picture, colours::survey, 3) > 200);
+    CHECK(figures::count(drawn(figure), colours::survey, 3) == 0);
+}
+
+TEST_CASE("Terrain without data is plain light grey", "[figures]") {
+    if (cannot_draw()) return;
+    MapFigure figure = figures::valley();
+    for (Index j = 0; j < 60; ++j)
+        for (Index i = 0; i < 60; ++i) figure.bed.at(i, j) = Raster::nodata;
+    const Pixels picture = drawn(figure);
+    const MapLayout layout = lay_out(figure);
+    for (const Vec2& place : {Vec2(100, 100), Vec2(300, 300), Vec2(560, 560), Vec2(40, 560)})
+        CHECK(figures::distance(at(picture, layout.pixel(place)), colours::no_data) == 0);
+    CHECK(figures::distance(at(picture, layout.pixel({700, 700})), colours::no_data) > 0);
+}
+
+TEST_CASE("Small, large, narrow, dry, even and empty terrain all make a map", "[figures]") {
+    if (cannot_draw()) return;
+    struct Shape {
+        Index nx, ny;
+        double cell, slope;
+        bool wet, data;
+    };
+    for (const Shape& shape : {Shape{2, 2, 1.0, 0.1, true, true}, Shape{87, 61, 10.0, 0.2, true, true},
+                               Shape{300, 40, 0.5, 0.5, true, true}, Shape{40, 300, 0.5, 0.5, true, true},
+                               Shape{500, 5, 1.0, 0.1, true, true}, Shape{1500, 1200, 2.0, 0.3, true, true},
+                               Shape{50, 50, 1.0, 0.2, false, true}, Shape{50, 50, 1.0, 0.0, true, true},
+                               Shape{50, 50, 1.0, 0.0, false, false}}) {
+        MapFigure figure;
+        figure.width = 700;
+        figure.height = 600;
+        figure.bed = Raster::filled(GridGeometry{shape.nx, shape.ny, 0.0, 0.0, shape.cell}, Raster::nodata);
+        const GridGeometry& g = figure.bed.geometry;
+        for (Index j = 0; j < g.ny; ++j)
+            for (Index i = 0; i < g.nx; ++i) {
+                if (shape.data) figure.bed.at(i, j) = shape.slope * (g.x(i) + g.y(j));
+                figure.field.push_back(shape.wet && i > g.nx / 3 ? 1.0 : 0.0);
+            }
+        INFO(shape.nx << " x " << shape.ny << ", wet " << shape.wet << ", data " << shape.data);
+        const Pixels picture = drawn(figure);
+        CHECK(picture.width <= figure.width);
+        CHECK(picture.height <= figure.height);
+        CHECK(picture.width >= figure.width / 2);
+        const MapLayout layout = lay_out(figure);
+        CHECK(layout.frame.x0 > 0.0);
+        CHECK(layout.frame.x1 < picture.width);
+        CHECK(layout.frame.y0 > 0.0);
+        CHECK(layout.frame.y1 < picture.height);
+        CHECK(layout.x_ticks.at.size() >= 2);
+        CHECK(layout.y_ticks.at.size() >= 2);
+    }
+}
+
+TEST_CASE("Twenty maps in a row leave the memory flat", "[figures]") {
+    if (cannot_draw()) return;
+    const figures::Folder folder;
+    std::string why_not;
+    const MapFigure figure = figures::valley();
+    for (int i = 0; i < 6; ++i) REQUIRE(render_map(figure, folder / "map.png", why_not));  // caches fill
+    const double before = resident_megabytes();
+    for (int i = 0; i < 20; ++i) REQUIRE(render_map(figure, folder / "map.png", why_not));
+    const double growth = resident_megabytes() - before;
+    CHECK(growth < 15.0);  // [MB]; a picture leaked each time, 900 x 800 in four bytes, would be 55
+}
+
+TEST_CASE("Without a renderer a map is refused with a reason and leaves no file", "[figures]") {
+    const figures::Folder folder;
+    std::string why_not;
+    ::setenv("FRANA_NO_RENDER", "1", 1);
+    const bool done = render_map(figures::valley(), folder / "map.png", why_not);
+    ::unsetenv("FRANA_NO_RENDER");
+    CHECK_FALSE(done);
+    CHECK(why_not == "FRANA_NO_RENDER is set");
+    CHECK(folder.files() == 0);
+}
+
+TEST_CASE("A map for a folder that does not exist names the file", "[figures]") {
+    if (cannot_draw()) return;
+    const figures::Folder folder;
+    std::string why_not;
+    CHECK_THROWS_AS(render_map(figures::valley(), folder / "no/map.png", why_not), UserError);
+    CHECK_THROWS_WITH(render_map(figures::valley(), folder / "no/map.png", why_not),
+                      Catch::Matchers::Contains("no/map.png: cannot be written"));
+    CHECK(folder.files() == 0);
+}

@@ -1,0 +1,307 @@
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "catch.h"
+#include "fake_simulation.h"
+#include "frana_commands.h"
+#include "frana_run_folder.h"
+#include "frana_run_job.h"
+#include "fresh_folder.h"
+#include "io/gdal_writer.h"
+#include "observe/table.h"
+#include "scene/case_file.h"
+#include "vtk_io/reader.h"
+
+using namespace frana;
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+const char* const utm32 =
+    R"(PROJCS["WGS 84 / UTM zone 32N",GEOGCS["WGS 84",DATUM["WGS_1984",)"
+    R"(SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],)"
+    R"(UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],)"
+    R"(PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],)"
+    R"(PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],)"
+    R"(PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","32632"]])";
+
+const char* const case_text = R"(
+[case]
+title = "A hill that slides"
+[terrain]
+dem = "dem.tif"
+[[release]]
+outline = "release.geojson"
+depth = 2.0
+[material]
+density = 1000.0
+[material.bed]
+law = "coulomb"
+mu = 0.4
+[time]
+end = 2.0
+[output]
+every = 0.5
+formats = ["vtk", "xdmf", "geotiff", "png"]
+[[profile]]
+name = "along"
+line = [[1002, 2022], [1030, 2013]]
+[[gauge]]
+name = "bridge"
+point = [1014, 2018]
+)";
+
+Scene fake_scene(const FakeSimulation& simulation) {
+    Scene scene;
+    scene.name = "hill";
+    scene.title = "A hill that slides";
+    scene.case_file = "hill/case.toml";
+    scene.bed = Raster::filled(simulation.grid(), 0.0);
+    for (Index j = 0; j < scene.bed.geometry.ny; ++j)
+        for (Index i = 0; i < scene.bed.geometry.nx; ++i)
+            scene.bed.at(i, j) = FakeSimulation::bed({scene.bed.geometry.x(i), scene.bed.geometry.y(j)});
+    scene.bed.crs_wkt = utm32;
+    scene.particles.x.assign(25, 1010.0);
+    scene.particles.volume.assign(25, 1.0);
+    scene.end = 2.0;
+    scene.output.every = 0.5;
+    scene.output.xdmf = true;
+    scene.profiles = {{"along", {{1002, 2022}, {1030, 2013}}}};
+    scene.gauges = {{"bridge", {1014, 2018}}};
+    scene.log = {"a remark | made while building"};
+    return scene;
+}
+
+/// Pictures take most of a run's time here, so only tests that look at them ask for them.
+enum class Pictures { no, yes };
+
+/// A run of the fake in a folder of its own.
+struct FakeRun {
+    FreshFolder folder;
+    RunRecord record;
+    Scene scene;
+
+    explicit FakeRun(FakeScript script = {}, const Interrupt& interrupt = Interrupt(),
+                     Pictures pictures = Pictures::no) {
+        FakeSimulation simulation(std::move(script));
+        scene = fake_scene(simulation);
+        scene.output.png = pictures == Pictures::yes;
+        prepare_run_folder(dir());
+        const CaseFile file = CaseFile::parse(case_text, "hill/case.toml");
+        write_text(dir() / "case.toml", case_text);
+        write_text(dir() / "resolved.toml", resolved_toml(file));
+        std::ostringstream stream;
+        Progress progress(stream, Progress::Style::silent, scene.density);
+        record = carry_out(scene, simulation, dir(), begin_record(scene, file), interrupt, progress);
+    }
+    const fs::path& dir() const { return folder.path(); }
+    Json json() const { return Json::parse(text_of(dir() / "run.json")); }
+};
+
+}  // namespace
+
+TEST_CASE("a run leaves every product, and the report mentions each of them") {
+    const FakeRun run({}, Interrupt(), Pictures::yes);
+    const std::string report = text_of(run.dir() / "report.md");
+    for (const char* name : {"history.csv", "particles.pvd", "grid.pvd", "terrain.vti", "run.xdmf", "run.h5",
+                             "footprint.geojson", "rasters/peak_depth.tif", "rasters/peak_speed.tif",
+                             "rasters/peak_pressure.tif", "rasters/arrival_time.tif",
+                             "rasters/final_depth.tif", "rasters/final_velocity_x.tif",
+                             "rasters/final_velocity_y.tif", "profiles/along.csv", "gauges/bridge.csv"})
+        CHECK(fs::exists(run.dir() / name));
+    std::size_t mentioned = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(run.dir())) {
+        if (!entry.is_regular_file() || entry.path().filename() == "report.md") continue;
+        const fs::path path = fs::relative(entry.path(), run.dir());
+        const std::string folder = path.parent_path().generic_string();
+        const bool frame = folder == "particles" || folder == "grid";
+        INFO(path);
+        CHECK(report.find(frame ? "`" + folder + "/`" : path.generic_string()) != std::string::npos);
+        ++mentioned;
+    }
+    CHECK(mentioned > 20);
+    CHECK(report.find("# A hill that slides") == 0);
+    CHECK(report.find("| `material.bed.mu` | 0.4 | 1 |") != std::string::npos);
+    CHECK(report.find("- a remark | made while building") != std::string::npos);
+    for (const DrawnFigure& figure : run.record.figures) {
+        CHECK(report.find("](" + figure.path + ")") != std::string::npos);
+        CHECK(fs::file_size(run.dir() / figure.path) > 1000);
+    }
+}
+
+TEST_CASE("run.json has the contract's keys with the simulation's numbers") {
+    const FakeRun run;
+    const Json json = run.json();
+    const Status &first = run.record.summary.first, &last = run.record.summary.last;
+    CHECK(json["exit_reason"] == "end");
+    CHECK(json["case"] == "hill");
+    CHECK(json["title"] == "A hill that slides");
+    CHECK(json["steps"] == run.record.summary.steps);
+    CHECK(json["simulated_time"] == 2.0);
+    CHECK(json["host_threads"].get<int>() >= 1);
+    CHECK(json["particle_steps"].get<double>() == 25.0 * static_cast<double>(run.record.summary.steps));
+    const Json& mass = json["budgets"]["mass"];
+    CHECK(mass["initial"] == first.mass);
+    CHECK(mass["final"] == last.mass);
+    CHECK(mass["left_domain"] == last.mass_left);
+    // 0.5e-3 kg/s for 2 s of 25 t; the sums keep 16 digits of 25e3
+    CHECK(mass["relative_error"].get<double>() == Approx(4e-8).epsilon(1e-6));
+    CHECK(json["budgets"]["momentum"]["residual"][0].get<double>() == Approx(2.0).epsilon(1e-9));
+    CHECK(json["budgets"]["momentum"]["residual"][1].get<double>() == Approx(2.0).epsilon(1e-9));
+    const Json& energy = json["budgets"]["energy"];
+    CHECK(energy["kinetic"] == last.kinetic);
+    CHECK(energy["potential"] == last.potential);
+    CHECK(energy["dissipated"] == last.dissipated);
+    CHECK(energy["residual"].get<double>() == Approx(-8.0).epsilon(1e-6));
+    CHECK(json["wall_seconds"]["solver"]["kick"] == 0.5);
+    for (const char* part : {"history", "gauges", "profiles", "frame", "rasters", "figures"})
+        CHECK(json["wall_seconds"]["output"].contains(part));
+    CHECK(json["wall_seconds"]["output_share"].get<double>() > 0.0);
+    CHECK(json["wall_seconds"]["output_share"].get<double>() <= 1.0);
+    CHECK(json["warnings"][0] == "a remark | made while building");
+}
+
+TEST_CASE("rasters read back as the fields of the last frame, with nodata where nothing arrived") {
+    const FakeRun run;
+    const std::vector<ProductRaster> rasters = read_rasters(run.dir());
+    REQUIRE(rasters.size() == 7);
+    const Raster& depth = find_product(rasters, "final_depth")->raster;
+    const Raster& arrival = find_product(rasters, "arrival_time")->raster;
+    const Raster& velocity = find_product(rasters, "final_velocity_y")->raster;
+    REQUIRE(depth.geometry == run.scene.bed.geometry);
+    int arrived = 0, never = 0;
+    for (Index j = 0; j < depth.geometry.ny; ++j)
+        for (Index i = 0; i < depth.geometry.nx; ++i) {
+            const double exact = FakeSimulation::depth({depth.geometry.x(i), depth.geometry.y(j)}, 2.0);
+            // single precision in the file, and the fake's cut below 1e-6 m
+            CHECK(depth.at(i, j) == Approx(exact).margin(1.1e-6).epsilon(1e-6));
+            if (exact > 1e-3) CHECK(velocity.at(i, j) == FakeSimulation::v);
+            if (exact > FakeSimulation::threshold) CHECK(std::isfinite(arrival.at(i, j)));
+            std::isnan(arrival.at(i, j)) ? ++never : ++arrived;
+        }
+    CHECK(never > 100);
+    CHECK(arrived > 100);
+    CHECK_FALSE(depth.crs_wkt.empty());
+    const Raster& peak = find_product(rasters, "peak_depth")->raster;
+    CHECK(area_deeper(peak, 0.1) == run.record.footprint_area);
+}
+
+TEST_CASE("an interrupted run is whole: frames, tables, rasters and report can be read") {
+    Interrupt interrupt;
+    FakeScript script;
+    script.on_step = [&](Index step) {
+        if (step == 30) interrupt.request();
+    };
+    const FakeRun run(script, interrupt);
+    CHECK(run.json()["exit_reason"] == "interrupted");
+    const double last = run.record.summary.last.time;
+    const std::vector<double> times = frame_times(run.dir());
+    REQUIRE(times.size() == 3);
+    CHECK(times == std::vector<double>{0.0, 0.5, last});
+    CHECK(read_frame(run.dir(), -1).time == last);
+    CHECK(read_particles(run.dir(), -1).count == 25);
+    CHECK(read_table(run.dir() / "history.csv").column("t").back() == last);
+    CHECK(read_table(run.dir() / "gauges" / "bridge.csv").column("t").back() == last);
+    CHECK(read_table(run.dir() / "profiles" / "along.csv").column("t").back() == last);
+    CHECK(read_rasters(run.dir()).size() == 7);
+    CHECK(text_of(run.dir() / "report.md").find("interrupted") != std::string::npos);
+}
+
+TEST_CASE("a numerics error leaves the products of its last frame, and run.json says why") {
+    FakeScript script;
+    script.fail_time = 0.7;
+    const FakeRun run(script);
+    CHECK(run.record.summary.failure);
+    CHECK(run.json()["exit_reason"] == "numerics");
+    CHECK(run.json()["failure"] == "step 7: the depth of particle 3 is not finite");
+    CHECK(frame_times(run.dir()).back() >= 0.7);
+    CHECK(read_rasters(run.dir()).size() == 7);
+}
+
+TEST_CASE("a state that is not finite leaves no rasters but a report of what was computed before") {
+    FakeScript script;
+    script.fail_time = 0.7;
+    script.fail_with_nan = true;
+    const FakeRun run(script);
+    CHECK(frame_times(run.dir()).size() == 2);
+    CHECK_FALSE(fs::exists(run.dir() / "rasters" / "peak_depth.tif"));
+    CHECK(run.json()["failure"].get<std::string>().find("no last frame") != std::string::npos);
+    CHECK(text_of(run.dir() / "report.md").find("no last frame") != std::string::npos);
+}
+
+TEST_CASE("only the fields that the case names reach the frames") {
+    const FreshFolder folder;
+    FakeSimulation simulation;
+    Scene scene = fake_scene(simulation);
+    scene.output.fields = {"depth"};
+    scene.output.png = false;
+    prepare_run_folder(folder.path());
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::silent, scene.density);
+    carry_out(scene, simulation, folder.path(),
+              begin_record(scene, CaseFile::parse(case_text, "hill/case.toml")), Interrupt(), progress);
+    const LoadedFrame frame = read_frame(folder.path(), -1);
+    CHECK(frame.has("depth"));
+    CHECK(frame.has("elevation"));
+    CHECK_FALSE(frame.has("velocity"));
+    CHECK_FALSE(fs::exists(folder.path() / "figures"));
+}
+
+TEST_CASE("the closing lines are ten and name the report, the pictures and the series") {
+    const FakeRun run({}, Interrupt(), Pictures::yes);
+    const std::string text = closing_lines(run.record, run.dir());
+    CHECK(std::count(text.begin(), text.end(), '\n') == 10);
+    for (const char* place : {"report.md", "grid.pvd", "rasters", "figures"})
+        CHECK(text.find((run.dir() / place).string()) != std::string::npos);
+}
+
+TEST_CASE("figures are drawn again from a finished run, and maps at a time on request") {
+    const FakeRun run({}, Interrupt(), Pictures::yes);
+    if (run.record.figures.empty()) {
+        WARN("no renderer here: " << run.record.warnings.back());
+        return;
+    }
+    const fs::path first = run.dir() / run.record.figures.front().path;
+    fs::remove_all(run.dir() / "figures");
+    FiguresOptions options;
+    options.run_dir = run.dir();
+    options.time = 1.1;
+    options.width = 900;
+    options.height = 800;
+    CHECK(figures_command(options) == 0);
+    CHECK(fs::exists(first));
+    CHECK(fs::exists(run.dir() / "figures" / "map_depth_t1s.png"));
+    options.run_dir = run.dir() / "figures";
+    CHECK_THROWS_WITH(figures_command(options), Catch::Contains("run.json"));
+}
+
+TEST_CASE("earlier results survive a run that cannot start") {
+    const FakeRun earlier;
+    const FreshFolder folder;
+    Raster dem = earlier.scene.bed;
+    write_geotiff(folder.path() / "dem.tif", dem, "m", "elevation");
+    write_text(folder.path() / "release.geojson",
+               R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry":
+               {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}}]})");
+    write_text(folder.path() / "case.toml", case_text);
+    std::map<std::string, std::string> before;
+    for (const auto& entry : fs::recursive_directory_iterator(earlier.dir()))
+        if (entry.is_regular_file()) before[entry.path().string()] = text_of(entry.path());
+
+    RunOptions options;
+    options.case_file = folder.path() / "case.toml";
+    options.out = earlier.dir();
+    options.quiet = true;
+    // the terrain can be read, the release lies beside it: only the whole scene shows that nothing can start
+    CHECK_THROWS_WITH(run_command(options), Catch::Contains("release"));
+
+    std::map<std::string, std::string> after;
+    for (const auto& entry : fs::recursive_directory_iterator(earlier.dir()))
+        if (entry.is_regular_file()) after[entry.path().string()] = text_of(entry.path());
+    CHECK(before == after);
+    CHECK(before.size() > 20);
+}

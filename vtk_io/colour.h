@@ -1,0 +1,59 @@
+#pragma once
+// Colours of figures: perceptual maps for fields, colour-blind safe colours for curves.
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace frana {
+
+/// One sRGB colour; a = 255 is opaque.
+struct Colour {
+    std::uint8_t r = 0, g = 0, b = 0, a = 255;
+};
+
+/// An RGB image; row 0 is the lowest one, three bytes a pixel.
+struct Pixels {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgb;
+
+    Pixels() = default;
+    Pixels(int w, int h) : width(w), height(h), rgb(static_cast<std::size_t>(w) * h * 3, 255) {}
+    void set(int x, int y, const Colour& c);
+    Colour at(int x, int y) const;
+};
+
+/// How a value becomes a colour.
+enum class Colormap {
+    depth,      ///< viridis (van der Walt & Smith 2015) reversed: small is light, large is dark, also in grey
+    diverging,  ///< cool to warm (Moreland 2009): blue below, grey at the middle, red above; for signed
+                ///< fields
+};
+
+/// Colour at t in [0, 1] (clamped; NaN counts as 0).
+Colour colour_at(Colormap map, double t);
+
+/// (1 - share) a + share b, channel by channel; alpha of `a`.
+Colour mixed(const Colour& a, const Colour& b, double share);
+
+/// Each channel times `factor`, clamped.
+Colour scaled(const Colour& colour, double factor);
+
+/// Perceived brightness of a colour in [0, 1] (Rec. 709 weights on the sRGB values).
+double brightness(const Colour& colour);
+
+/// Colour of the i-th curve, distinguishable for the colour-blind (Okabe & Ito 2008); repeats after six.
+Colour curve_colour(std::size_t i);
+
+namespace colours {
+inline constexpr Colour black{0, 0, 0};
+inline constexpr Colour white{255, 255, 255};
+inline constexpr Colour no_data{226, 226, 226};  ///< map where there is no terrain
+inline constexpr Colour contour{92, 74, 58};     ///< elevation contours
+inline constexpr Colour survey{230, 0, 60};      ///< surveyed outline; drawn on a white casing
+inline constexpr Colour grid{218, 218, 218};     ///< grid lines of charts
+inline constexpr Colour note{70, 70, 70};        ///< footers
+inline constexpr Colour ground{205, 195, 182};   ///< filled terrain in charts
+}  // namespace colours
+
+}  // namespace frana

@@ -1,0 +1,317 @@
+#include "vtk_io/map_figure_perspective.h"
+
+#include <fmt/core.h>
+#include <vtkActor.h>
+#include <vtkCamera.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkRenderer.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "vtk_io/hillshade.h"
+#include "vtk_io/map_figure_block.h"
+#include "vtk_io/map_figure_contours.h"
+#include "vtk_io/map_figure_furniture.h"
+#include "vtk_io/map_figure_paint.h"
+#include "vtk_io/offscreen.h"
+
+namespace frana {
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+using Box = std::array<double, 4>;
+using Vec3 = Eigen::Vector3d;
+
+Eigen::Vector4d with_one(const Vec3& p) { return {p.x(), p.y(), p.z(), 1.0}; }
+
+/// The block to show: the material and the survey with a broad margin, at least 40 % of the terrain.
+Box block_of(const PerspectiveFigure& figure) {
+    const GridGeometry& g = figure.bed.geometry;
+    const Box all{g.x0, g.y0, g.x_max(), g.y_max()};
+    auto covered = figure.focus ? figure.focus : covered_extent(g, figure.field, figure.shown_above);
+    if (!covered) return all;
+    Box box = *covered;
+    if (!figure.focus) {
+        if (figure.survey && !figure.survey->parts.empty()) box = united(box, extent_of(*figure.survey));
+        const double margin = 0.22 * std::max(box[2] - box[0], box[3] - box[1]);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double wanted = std::max(box[k + 2] - box[k] + 2.0 * margin, 0.4 * (all[k + 2] - all[k]));
+            const double middle = 0.5 * (box[k] + box[k + 2]);
+            box[k] = middle - 0.5 * wanted;
+            box[k + 2] = middle + 0.5 * wanted;
+        }
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        box[k] = std::max(box[k], all[k]);
+        box[k + 2] = std::min(box[k + 2], all[k + 2]);
+        if (!(box[k] < box[k + 2])) box[k] = all[k], box[k + 2] = all[k + 2];
+    }
+    return box;
+}
+
+/// Nodes over the block, `along` of them on its longer side but not much finer than the raster's own.
+GridGeometry block_grid(const Box& box, double along) {
+    const double w = box[2] - box[0], h = box[3] - box[1];
+    GridGeometry grid;
+    grid.cell = std::max(w, h) / (along - 1.0);
+    grid.nx = std::max<Index>(2, static_cast<Index>(w / grid.cell + 1e-6) + 1);
+    grid.ny = std::max<Index>(2, static_cast<Index>(h / grid.cell + 1e-6) + 1);
+    grid.x0 = box[0];
+    grid.y0 = box[1];
+    return grid;
+}
+
+/// Mean uphill direction under the material (of the whole block without any), as an azimuth [radians].
+double uphill_azimuth(const Raster& bed, const Raster& field, double shown_above) {
+    Vec2 shown(0, 0), all(0, 0);
+    const GridGeometry& g = bed.geometry;
+    for (Index j = 0; j + 1 < g.ny; ++j)
+        for (Index i = 0; i + 1 < g.nx; ++i) {
+            const Vec2 up(bed.at(i + 1, j) - bed.at(i, j), bed.at(i, j + 1) - bed.at(i, j));
+            if (!up.allFinite()) continue;
+            all += up;
+            if (std::abs(field.at(i, j)) > shown_above) shown += up;
+        }
+    const Vec2 up = shown.norm() > 0.0 ? shown : all;
+    return up.norm() > 0.0 ? std::atan2(up.x(), up.y()) : 0.0;
+}
+
+class BlockDrawing {
+public:
+    explicit BlockDrawing(const PerspectiveFigure& figure)
+        : figure_(figure),
+          unit_(text_unit(figure.width, figure.height)),
+          colours_(colour_range(figure.field, figure.shown_above, figure.colormap, figure.range)),
+          captions_(make_captions(figure.title, figure.footer, unit_, figure.width)) {
+        const Box box = block_of(figure);
+        origin_ = {0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])};
+        build(box);
+    }
+
+    void scene(vtkRenderer* renderer);
+    void explanations(Canvas& canvas) const;
+
+private:
+    void build(const Box& box);
+    void lines(vtkRenderer* renderer) const;
+    void aim(vtkRenderer* renderer);
+    std::vector<Vec3> silhouette() const;
+    Vec2 on_picture(const Vec3& point) const;
+    void edge_length(Canvas& canvas, const Vec3& a, const Vec3& b, double metres) const;
+
+    const PerspectiveFigure& figure_;
+    double unit_;
+    ColourRange colours_;
+    Captions captions_;
+    Vec2 origin_{0, 0};
+    Raster surface_, field_;  ///< on the mesh
+    Pixels skin_;
+    double foot_ = 0.0, azimuth_ = 0.0;
+    Vec3 eye_{0, 0, 0};
+    Rectangle room_;  ///< of the picture, for the block [px]
+    Eigen::Matrix4d to_unit_square_ = Eigen::Matrix4d::Identity();
+};
+
+void BlockDrawing::build(const Box& box) {
+    const double longest = std::max(box[2] - box[0], box[3] - box[1]);
+    const double cells = longest / figure_.bed.geometry.cell;
+    const Raster field{figure_.bed.geometry, figure_.field, "", ""};
+    const auto raised = [&](const GridGeometry& grid, Raster& field_there) {
+        Raster ground = resampled(figure_.bed, grid, Between::smooth);
+        field_there = resampled(field, grid, Between::linear);
+        if (!figure_.raised) return ground;
+        for (std::size_t i = 0; i < ground.values.size(); ++i)
+            if (field_there.values[i] > figure_.shown_above) ground.values[i] += field_there.values[i];
+        return ground;
+    };
+    surface_ = raised(block_grid(box, std::clamp(4.0 * cells, 60.0, 500.0)), field_);
+    Raster field_fine;
+    const Raster fine = raised(block_grid(box, 1500.0), field_fine);
+    double low = 1e300;
+    for (const double z : surface_.values)
+        if (!std::isnan(z)) low = std::min(low, z);
+    foot_ = (low < 1e300 ? low : 0.0) - 0.05 * longest;
+    const double up = uphill_azimuth(surface_, field_, figure_.shown_above);
+    azimuth_ = figure_.look_azimuth_deg ? *figure_.look_azimuth_deg * kDegree : up + 25.0 * kDegree;
+    const double from_the_left = azimuth_ - 30.0 * kDegree;  // the eye expects light from the upper left
+    skin_ = painted(fine, field_fine, {figure_.colormap, colours_, figure_.shown_above, from_the_left});
+    const double left = 1.5 * unit_, right = 9.0 * unit_;
+    room_ = {left, captions_.footer_height() + 2.5 * unit_, figure_.width - right,
+             figure_.height - captions_.title_height() - 1.2 * unit_};
+}
+
+void BlockDrawing::lines(vtkRenderer* renderer) const {
+    const GridGeometry& g = surface_.geometry;
+    const double lift = 0.0015 * g.cell * static_cast<double>(std::max(g.nx, g.ny));
+    Raster shown = field_;
+    for (double& value : shown.values) value = std::isnan(value) ? 0.0 : std::abs(value);
+    renderer->AddActor(draped_actor(level_lines(shown, figure_.shown_above), surface_, lift, origin_,
+                                    colours::black, 0.1 * unit_));
+    double low = 1e300, high = -1e300;
+    for (const double z : surface_.values)
+        if (!std::isnan(z)) low = std::min(low, z), high = std::max(high, z);
+    const double interval = high > low ? round_up_125((high - low) / 25.0) : 0.0;
+    std::vector<Polyline> contours;
+    for (double n = std::ceil(low / interval); interval > 0.0 && n * interval <= high; ++n)
+        for (const auto& line : level_lines(surface_, (n + 1e-4) * interval)) contours.push_back(line);
+    Colour faint = colours::contour;
+    faint.a = 110;
+    renderer->AddActor(draped_actor(contours, surface_, lift, origin_, faint, 1.0));
+    const double x1 = g.x_max(), y1 = g.y_max();
+    renderer->AddActor(draped_actor({{{g.x0, g.y0}, {x1, g.y0}, {x1, y1}, {g.x0, y1}, {g.x0, g.y0}}},
+                                    surface_, 0.0, origin_, colours::note, 1.5));
+    if (!figure_.survey) return;
+    std::vector<Polyline> rings;
+    for (const Polygon& part : figure_.survey->parts)
+        for (Polyline ring : part.rings) {
+            if (ring.empty()) continue;
+            ring.push_back(ring.front());
+            rings.push_back(ring);
+        }
+    renderer->AddActor(draped_actor(rings, surface_, lift, origin_, colours::white, 0.32 * unit_));
+    renderer->AddActor(draped_actor(rings, surface_, 1.6 * lift, origin_, colours::survey, 0.16 * unit_));
+}
+
+std::vector<Vec3> BlockDrawing::silhouette() const {
+    std::vector<Vec3> points;
+    const GridGeometry& g = surface_.geometry;
+    const Index stride = std::max<Index>(1, std::max(g.nx, g.ny) / 60);
+    for (Index j = 0; j < g.ny; j += stride)
+        for (Index i = 0; i < g.nx; i += stride)
+            if (!std::isnan(surface_.at(i, j)))
+                points.emplace_back(g.x(i) - origin_.x(), g.y(j) - origin_.y(), surface_.at(i, j));
+    for (const double x : {g.x0, g.x_max()})
+        for (const double y : {g.y0, g.y_max()}) points.emplace_back(x - origin_.x(), y - origin_.y(), foot_);
+    return points;
+}
+
+/// Moves the camera back and sideways until the block just fills its room.
+void BlockDrawing::aim(vtkRenderer* renderer) {
+    const GridGeometry& g = surface_.geometry;
+    const double down = figure_.look_down_deg * kDegree;
+    const Vec3 ahead(std::sin(azimuth_) * std::cos(down), std::cos(azimuth_) * std::cos(down),
+                     -std::sin(down));
+    const Vec3 right(std::cos(azimuth_), -std::sin(azimuth_), 0.0);
+    const Vec3 up = right.cross(ahead);
+    const double size = g.cell * static_cast<double>(g.nx + g.ny);
+    const double aspect = room_.width() / room_.height();
+    const auto points = silhouette();
+    Vec3 target(0.0, 0.0, foot_);
+    double distance = 3.0 * size;
+    vtkCamera* camera = renderer->GetActiveCamera();
+    camera->SetViewAngle(24.0);
+    const double half = std::tan(12.0 * kDegree);
+    for (int pass = 0; pass < 12; ++pass) {
+        eye_ = target - distance * ahead;
+        camera->SetFocalPoint(target.x(), target.y(), target.z());
+        camera->SetPosition(eye_.x(), eye_.y(), eye_.z());
+        camera->SetViewUp(0.0, 0.0, 1.0);
+        camera->SetClippingRange(0.05 * distance, distance + 4.0 * size);
+        const double* m = camera->GetCompositeProjectionTransformMatrix(aspect, -1.0, 1.0)->GetData();
+        to_unit_square_ = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m);
+        Vec2 low(1e9, 1e9), high(-1e9, -1e9);
+        for (const Vec3& p : points) {
+            const Eigen::Vector4d q = to_unit_square_ * with_one(p);
+            const Vec2 seen = q.head<2>() / q.w();
+            low = low.cwiseMin(seen);
+            high = high.cwiseMax(seen);
+        }
+        const Vec2 middle = 0.5 * (low + high);
+        target += distance * half * (middle.x() * aspect * right + middle.y() * up);
+        distance *= std::clamp(0.5 * (high - low).maxCoeff() / 0.97, 0.5, 2.0);
+    }
+}
+
+void BlockDrawing::scene(vtkRenderer* renderer) {
+    renderer->SetViewport(room_.x0 / figure_.width, room_.y0 / figure_.height, room_.x1 / figure_.width,
+                          room_.y1 / figure_.height);
+    renderer->AddActor(skin_actor(surface_, skin_, origin_));
+    renderer->AddActor(wall_actor(surface_, foot_, origin_));
+    lines(renderer);
+    aim(renderer);
+}
+
+Vec2 BlockDrawing::on_picture(const Vec3& point) const {
+    const Eigen::Vector4d q = to_unit_square_ * with_one(point);
+    return {room_.x0 + 0.5 * (1.0 + q.x() / q.w()) * room_.width(),
+            room_.y0 + 0.5 * (1.0 + q.y() / q.w()) * room_.height()};
+}
+
+/// The length of a bottom edge written along it, below.
+void BlockDrawing::edge_length(Canvas& canvas, const Vec3& a, const Vec3& b, double metres) const {
+    Vec2 from = on_picture(a), to = on_picture(b);
+    if (from.x() > to.x()) std::swap(from, to);
+    const Vec2 along = (to - from).normalized();
+    if ((to - from).norm() < 5.0 * unit_) return;
+    TextStyle style{0.9 * unit_, Across::centre, Upward::top, 0.0, false, false, colours::note};
+    style.angle = std::atan2(along.y(), along.x()) / kDegree;
+    const std::string text =
+        metres >= 1000.0 ? fmt::format("{:.2g} km", 1e-3 * metres) : fmt::format("{:.3g} m", metres);
+    canvas.text(text, 0.5 * (from + to) + 0.4 * unit_ * Vec2(along.y(), -along.x()), style);
+}
+
+void BlockDrawing::explanations(Canvas& canvas) const {
+    const double u = unit_, w = figure_.width, h = figure_.height;
+    const double tall = std::min(0.5 * room_.height(), 24.0 * u);
+    const double middle = 0.5 * (room_.y0 + room_.y1);
+    draw_colour_bar(canvas,
+                    {std::round(w - 7.0 * u), std::round(middle - 0.5 * tall), std::round(w - 5.9 * u),
+                     std::round(middle + 0.5 * tall)},
+                    colours_, figure_.colormap, figure_.field_label, u);
+    if (figure_.survey) {
+        LegendEntry entry;
+        entry.kind = LegendEntry::Kind::cased_line;
+        entry.pen.colour = colours::survey;
+        entry.pen.width = 0.16 * u;
+        entry.text = "surveyed outline";
+        draw_legend_entry(canvas, entry, {u, captions_.footer_height() + 1.6 * u}, u);
+    }
+    const GridGeometry& g = surface_.geometry;
+    const double x = 0.5 * g.cell * static_cast<double>(g.nx - 1),
+                 y = 0.5 * g.cell * static_cast<double>(g.ny - 1);
+    for (const double side : {-1.0, 1.0}) {  // walls that face the eye
+        if (side * eye_.y() > y) edge_length(canvas, {-x, side * y, foot_}, {x, side * y, foot_}, 2.0 * x);
+        if (side * eye_.x() > x) edge_length(canvas, {side * x, -y, foot_}, {side * x, y, foot_}, 2.0 * y);
+    }
+
+    const Vec3 centre(0.0, 0.0, foot_);
+    const Vec2 north = on_picture(centre + Vec3(0, 0.1 * (x + y), 0)) - on_picture(centre);
+    const Vec2 along = north.norm() > 0.0 ? Vec2(north.normalized()) : Vec2(0, 1),
+               across(-along.y(), along.x());
+    const Vec2 at(w - 5.0 * u, std::max(middle - 0.5 * tall - 5.0 * u, 3.5 * u));
+    const Vec2 tip = at + 1.2 * u * along, foot = at - 0.9 * u * along, notch = at - 0.45 * u * along;
+    const Vec2 left = foot + 0.6 * u * across, right = foot - 0.6 * u * across;
+    canvas.fill({left, notch, tip}, colours::black);
+    canvas.stroke({left, notch, right, tip, left}, {colours::black, 0.08 * u, {}});
+    canvas.text("N", tip + 0.7 * u * along, {0.9 * u, Across::centre, Upward::middle, 0.0, true, false, {}});
+    draw_captions(canvas, captions_, static_cast<int>(w), static_cast<int>(h));
+}
+
+}  // namespace
+
+bool render_perspective(const PerspectiveFigure& figure, const std::filesystem::path& png,
+                        std::string& why_not) {
+    expect(figure.field.size() == figure.bed.values.size(),
+           "the field of a view has one value per node of the bed");
+    why_not = no_renderer_reason();
+    if (!why_not.empty()) return false;
+    BlockDrawing drawing(figure);
+    const auto window = Offscreen::open(figure.width, figure.height, why_not);
+    if (!window) return false;
+    vtkNew<vtkRenderer> paper, block, sheet;
+    drawing.scene(block);
+    Canvas canvas;
+    drawing.explanations(canvas);
+    canvas.show(sheet);
+    window->add(paper, 0);  // a viewport leaves what is outside it black
+    window->add(block, 1);
+    window->add(sheet, 2);
+    return window->save(png, why_not);
+}
+
+}  // namespace frana

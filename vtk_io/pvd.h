@@ -1,0 +1,40 @@
+#pragma once
+// ParaView's collection file: a list of times and the file of each.
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace frana {
+
+/// One line of a .pvd: a time [s] and the file that holds it, relative to the .pvd's folder.
+struct PvdEntry {
+    double time = 0.0;
+    std::string file;
+};
+
+/// Writes a .pvd whole by atomic rename; times keep all their digits. Throws UserError with path and reason.
+void write_pvd(const std::filesystem::path& pvd, const std::vector<PvdEntry>& entries);
+
+/// Reads a .pvd. Throws UserError when it is missing or not a .pvd.
+std::vector<PvdEntry> read_pvd(const std::filesystem::path& pvd);
+
+/// A series that grows while a run goes on: each new file is listed at once, a number given again replaces
+/// its line. Whoever opens the .pvd meanwhile finds only files that exist.
+class PvdSeries {
+public:
+    /// `pvd` stands in the run directory; files are `stem`/`stem`_NNNNNN`extension` beside it.
+    PvdSeries(std::filesystem::path pvd, std::string stem, std::string extension);
+    /// Where the file of this frame goes; makes the folder. Throws UserError when that fails.
+    std::filesystem::path file(std::int64_t number) const;
+    /// Call after the file was written.
+    void add(std::int64_t number, double time);
+
+private:
+    std::string relative(std::int64_t number) const;
+    std::filesystem::path pvd_;
+    std::string stem_, extension_;
+    std::vector<PvdEntry> entries_;
+};
+
+}  // namespace frana

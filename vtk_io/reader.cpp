@@ -1,0 +1,153 @@
+#include "vtk_io/reader.h"
+
+#include <fmt/core.h>
+#include <vtkCallbackCommand.h>
+#include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkErrorCode.h>
+#include <vtkExecutive.h>
+#include <vtkFieldData.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkStringArray.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "vtk_io/pvd.h"
+
+namespace frana {
+namespace {
+
+/// Runs a VTK reader on a file, turning its complaints into a UserError.
+void read_file(vtkXMLReader* reader, const std::filesystem::path& file) {
+    const UserError unreadable(
+        fmt::format("{}: cannot be read as a VTK file; run the case again", file.string()));
+    if (!std::filesystem::exists(file)) throw UserError(file.string() + ": not found; run the case again");
+    bool complained = false;
+    vtkNew<vtkCallbackCommand> listener;
+    listener->SetClientData(&complained);
+    listener->SetCallback(
+        [](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
+    reader->AddObserver("ErrorEvent", listener);
+    reader->GetExecutive()->AddObserver("ErrorEvent", listener);
+    reader->SetParserErrorObserver(listener);
+    if (!reader->CanReadFile(file.string().c_str())) throw unreadable;
+    reader->SetFileName(file.string().c_str());
+    reader->Update();
+    if (complained || reader->GetErrorCode() != vtkErrorCode::NoError) throw unreadable;
+}
+
+std::vector<double> numbers_of(vtkDataArray* array) {
+    std::vector<double> numbers(static_cast<std::size_t>(array->GetNumberOfValues()));
+    for (vtkIdType k = 0; k < array->GetNumberOfTuples(); ++k)
+        array->GetTuple(k, numbers.data() + k * array->GetNumberOfComponents());
+    return numbers;
+}
+
+/// Columns and units, whatever there is; `Loaded` names them as members `components` and `units`.
+template <class Loaded>
+void take_columns(vtkDataSet* data, Loaded& loaded, std::map<std::string, std::vector<double>>& columns) {
+    vtkPointData* arrays = data->GetPointData();
+    for (int k = 0; k < arrays->GetNumberOfArrays(); ++k) {
+        vtkDataArray* array = arrays->GetArray(k);
+        if (!array || !array->GetName() ||
+            array->GetName() == std::string(vtkDataSetAttributes::GhostArrayName()))
+            continue;
+        columns[array->GetName()] = numbers_of(array);
+        loaded.components[array->GetName()] = array->GetNumberOfComponents();
+    }
+    const std::string tail = "_unit";
+    for (int k = 0; k < data->GetFieldData()->GetNumberOfArrays(); ++k) {
+        vtkStringArray* text = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray(k));
+        if (!text || !text->GetName() || text->GetNumberOfValues() != 1) continue;
+        const std::string name = text->GetName();
+        if (name.size() > tail.size() && name.compare(name.size() - tail.size(), tail.size(), tail) == 0)
+            loaded.units[name.substr(0, name.size() - tail.size())] = text->GetValue(0);
+    }
+}
+
+LoadedFrame frame_of(vtkImageData* image) {
+    LoadedFrame frame;
+    int dimensions[3];
+    image->GetDimensions(dimensions);
+    const double* origin = image->GetOrigin();
+    frame.grid = {dimensions[0], dimensions[1], origin[0], origin[1], image->GetSpacing()[0]};
+    take_columns(image, frame, frame.nodes);
+    if (frame.has("elevation") && frame.has("outside")) {
+        auto& elevation = frame.nodes["elevation"];
+        const auto& outside = frame.nodes["outside"];
+        for (std::size_t k = 0; k < elevation.size(); ++k)
+            if (outside[k] != 0.0) elevation[k] = Raster::nodata;
+    }
+    return frame;
+}
+
+LoadedFrame read_image(const std::filesystem::path& file) {
+    vtkNew<vtkXMLImageDataReader> reader;
+    read_file(reader, file);
+    return frame_of(reader->GetOutput());
+}
+
+/// Entry `number` of a .pvd (negative: from the end) and its position.
+std::pair<PvdEntry, Index> entry_of(const std::filesystem::path& pvd, Index number) {
+    const auto entries = read_pvd(pvd);
+    const auto count = static_cast<Index>(entries.size());
+    const Index k = number < 0 ? count + number : number;
+    if (k < 0 || k >= count)
+        throw UserError(
+            fmt::format("{}: has no frame {}; it has {} frames, ask for 0 to {} or -1 for the last one",
+                        pvd.string(), number, count, count - 1));
+    return {entries[static_cast<std::size_t>(k)], k};
+}
+
+}  // namespace
+
+std::vector<double> frame_times(const std::filesystem::path& run_dir) {
+    std::vector<double> times;
+    for (const PvdEntry& entry : read_pvd(run_dir / "grid.pvd")) times.push_back(entry.time);
+    return times;
+}
+
+Index nearest_frame(const std::filesystem::path& run_dir, double time) {
+    const auto times = frame_times(run_dir);
+    if (times.empty())
+        throw UserError((run_dir / "grid.pvd").string() + ": lists no frame; run the case again");
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < times.size(); ++k)
+        if (std::abs(times[k] - time) < std::abs(times[nearest] - time)) nearest = k;
+    return static_cast<Index>(nearest);
+}
+
+LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number) {
+    const auto [entry, position] = entry_of(run_dir / "grid.pvd", number);
+    LoadedFrame frame = read_image(run_dir / entry.file);
+    frame.number = position;
+    frame.time = entry.time;
+    return frame;
+}
+
+LoadedParticles read_particles(const std::filesystem::path& run_dir, Index number) {
+    const auto [entry, position] = entry_of(run_dir / "particles.pvd", number);
+    vtkNew<vtkXMLPolyDataReader> reader;
+    read_file(reader, run_dir / entry.file);
+    LoadedParticles particles;
+    particles.number = position;
+    particles.time = entry.time;
+    particles.count = reader->GetOutput()->GetNumberOfPoints();
+    take_columns(reader->GetOutput(), particles, particles.columns);
+    if (particles.count > 0)
+        particles.columns["position"] = numbers_of(reader->GetOutput()->GetPoints()->GetData());
+    else
+        particles.columns["position"] = {};
+    particles.components["position"] = 3;
+    return particles;
+}
+
+LoadedFrame read_terrain(const std::filesystem::path& run_dir) { return read_image(run_dir / "terrain.vti"); }
+
+}  // namespace frana

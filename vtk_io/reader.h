@@ -1,0 +1,54 @@
+#pragma once
+// Frames read back from the VTK files of a run directory, for figures and comparisons made after the run.
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// Node columns of one output frame, as stored (float32 precision).
+struct LoadedFrame {
+    Index number = 0;   ///< 0, 1, 2, ... position in grid.pvd
+    double time = 0.0;  ///< [s]
+    GridGeometry grid;
+    /// grid.size() * components numbers per name, components interleaved, row 0 = south. "elevation" is NaN
+    /// where there is no terrain, as it was in the run; other arrays hold their stand-in there, and "outside"
+    /// is 1 (writers.h).
+    std::map<std::string, std::vector<double>> nodes;
+    std::map<std::string, int> components;
+    std::map<std::string, std::string> units;
+
+    bool has(const std::string& name) const { return nodes.count(name) != 0; }
+};
+
+/// Particle columns of one output frame; "position" holds x, y, z.
+struct LoadedParticles {
+    Index number = 0;
+    double time = 0.0;
+    Index count = 0;
+    std::map<std::string, std::vector<double>> columns;  ///< count * components numbers, interleaved
+    std::map<std::string, int> components;
+    std::map<std::string, std::string> units;
+};
+
+/// Times [s] of the frames in RUN_DIR/grid.pvd, in order. Throws UserError when it is missing or not a .pvd.
+std::vector<double> frame_times(const std::filesystem::path& run_dir);
+
+/// Position in frame_times of the frame nearest to `time`. Throws UserError when there is no frame.
+Index nearest_frame(const std::filesystem::path& run_dir, double time);
+
+/// Frame `number` of RUN_DIR/grid.pvd; negative counts from the end (-1 is the last one).
+/// Throws UserError when there is no such frame or its file cannot be read.
+LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number);
+
+/// The same frame of RUN_DIR/particles.pvd.
+LoadedParticles read_particles(const std::filesystem::path& run_dir, Index number);
+
+/// RUN_DIR/terrain.vti as a frame at time 0: "elevation" (NaN: no terrain), "slope", "hillshade".
+LoadedFrame read_terrain(const std::filesystem::path& run_dir);
+
+}  // namespace frana

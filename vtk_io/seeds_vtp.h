@@ -1,0 +1,14 @@
+#pragma once
+#include <filesystem>
+
+#include "particles/export.h"
+
+namespace frana {
+
+/// Particles as vtkPolyData (.vtp, appended raw, LZ4): points on the free surface (bed elevation + depth),
+/// one vertex cell per particle, point arrays depth, elevation, size, volume, mass, velocity (3) and id, the
+/// unit of array `name` in the field data as `name_unit`, beside density [kg/m3] and crs_wkt. The file
+/// appears whole or not at all. Throws UserError when it cannot be written.
+void write_seeds_vtp(const std::filesystem::path& file, const SeedsExport& data);
+
+}  // namespace frana

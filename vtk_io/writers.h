@@ -1,0 +1,32 @@
+#pragma once
+// VTK files of a run, written while it goes on: .vtp particles, .vti grid and terrain, .pvd series. Numbers
+// are appended raw with LZ4; every array `name` has its unit in the field data as `name_unit`, and each file
+// its time as TimeValue. Every file appears whole or not at all.
+//
+// Where some nodes have no terrain (NaN elevation) the grid gets two more arrays: `outside` (uint8, 1 there)
+// and vtkGhostType HIDDENPOINT. ParaView's surfaces and warped surfaces leave out the cells that touch hidden
+// nodes by themselves; its Slice representation and Threshold do not look at them and need `outside`. The
+// elevation of such nodes in the file is the smallest of the window, so that ranges stay those of the
+// terrain.
+#include <filesystem>
+#include <memory>
+
+#include "observe/observer.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// particles.pvd and particles/particles_NNNNNN.vtp: vtkPolyData, points in double at "position", one vertex
+/// cell a particle, every other particle column as an array. see() throws UserError when a file cannot be
+/// written (path and reason), NumericsError for a number that is not finite.
+std::unique_ptr<Observer> make_particle_writer(const std::filesystem::path& run_dir);
+
+/// grid.pvd and grid/grid_NNNNNN.vti: vtkImageData of one layer, point data at the nodes (z = 0). Errors as
+/// above.
+std::unique_ptr<Observer> make_grid_writer(const std::filesystem::path& run_dir);
+
+/// terrain.vti: "elevation" [m], "slope" [degree], "hillshade" [1, 0 dark to 1 bright] at the nodes of the
+/// bed.
+void write_terrain(const std::filesystem::path& run_dir, const Raster& bed);
+
+}  // namespace frana

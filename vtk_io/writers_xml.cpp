@@ -1,0 +1,122 @@
+#include "vtk_io/writers_xml.h"
+
+#include <fmt/core.h>
+#include <vtkCallbackCommand.h>
+#include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkExecutive.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkStringArray.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "observe/file_columns.h"
+
+namespace frana {
+namespace {
+
+template <class Array>
+vtkSmartPointer<vtkDataArray> filled(const Field& field, const std::vector<std::uint8_t>& outside) {
+    auto array = vtkSmartPointer<Array>::New();
+    array->SetNumberOfComponents(field.components);
+    array->SetNumberOfTuples(field.count);
+    copy_column(field, outside, array->GetPointer(0));
+    return array;
+}
+
+vtkSmartPointer<vtkDataArray> ids(const Field& field, const std::vector<std::uint8_t>& outside) {
+    std::vector<std::int64_t> values(static_cast<std::size_t>(field.count * field.components));
+    copy_column(field, outside, values.data());
+    auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+    array->SetNumberOfComponents(field.components);
+    array->SetNumberOfTuples(field.count);
+    std::copy(values.begin(), values.end(), array->GetPointer(0));
+    return array;
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkDataArray> to_vtk(const Field& field, const std::vector<std::uint8_t>& outside) {
+    vtkSmartPointer<vtkDataArray> array;
+    switch (storage_of(field)) {
+        case Storage::int64:
+            array = ids(field, outside);
+            break;
+        case Storage::float64:
+            array = filled<vtkDoubleArray>(field, outside);
+            break;
+        case Storage::float32:
+            array = filled<vtkFloatArray>(field, outside);
+            break;
+    }
+    array->SetName(field.name.c_str());
+    const auto names = component_names(field);
+    for (std::size_t c = 0; c < names.size(); ++c)
+        array->SetComponentName(static_cast<vtkIdType>(c), names[c].c_str());
+    return array;
+}
+
+void add_unit(vtkFieldData* data, const std::string& name, const std::string& unit) {
+    vtkNew<vtkStringArray> text;
+    text->SetName((name + "_unit").c_str());
+    text->InsertNextValue(unit);
+    data->AddArray(text);
+}
+
+void add_time(vtkFieldData* data, double time) {
+    vtkNew<vtkDoubleArray> value;
+    value->SetName("TimeValue");
+    value->InsertNextValue(time);
+    data->AddArray(value);
+}
+
+vtkSmartPointer<vtkImageData> image_of(const GridGeometry& grid) {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetDimensions(static_cast<int>(grid.nx), static_cast<int>(grid.ny), 1);
+    image->SetOrigin(grid.x0, grid.y0, 0.0);
+    image->SetSpacing(grid.cell, grid.cell, grid.cell);
+    return image;
+}
+
+void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside) {
+    if (outside.empty()) return;
+    vtkNew<vtkUnsignedCharArray> marks, ghosts;
+    marks->SetName("outside");
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    for (auto* array : {marks.Get(), ghosts.Get()})
+        array->SetNumberOfTuples(static_cast<vtkIdType>(outside.size()));
+    for (std::size_t k = 0; k < outside.size(); ++k) {
+        const unsigned char ghost = vtkDataSetAttributes::HIDDENPOINT;
+        marks->SetValue(static_cast<vtkIdType>(k), outside[k]);
+        ghosts->SetValue(static_cast<vtkIdType>(k), outside[k] ? ghost : static_cast<unsigned char>(0));
+    }
+    image->GetPointData()->AddArray(marks);
+    image->GetPointData()->AddArray(ghosts);
+    add_unit(image->GetFieldData(), "outside", "1");
+}
+
+void write_xml(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem::path& target) {
+    AtomicFile file(target);
+    vtkNew<vtkCallbackCommand> quiet;  // without an observer VTK prints its errors; ours is thrown below
+    writer->AddObserver("ErrorEvent", quiet);
+    writer->GetExecutive()->AddObserver("ErrorEvent", quiet);
+    writer->SetInputDataObject(data);
+    writer->SetFileName(file.path().string().c_str());
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    writer->SetHeaderTypeToUInt64();
+    writer->SetCompressorTypeToLZ4();
+    const bool written = writer->Write() == 1;
+    const unsigned long code = writer->GetErrorCode();
+    if (!written || code != vtkErrorCode::NoError)
+        throw UserError(
+            fmt::format("{}: cannot be written: {}; check the folder's permissions and free space",
+                        target.string(), vtkErrorCode::GetStringFromErrorCode(code)));
+    file.commit();
+}
+
+}  // namespace frana
