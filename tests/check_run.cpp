@@ -2,8 +2,12 @@
 // Lines of EXPECTED.csv: quantity,value,tolerance,unit,source. A quantity is
 //   budgets.mass.relative_error           a number of run.json
 //   history/max_speed/max                 largest absolute value (or: last) of a column of history.csv
-//   profile/x675/length/last              stretch deeper than 0.1 m (or: depth, the largest) of a profile, last or first
-//   raster/final_depth/mirror_y           largest difference between a raster and its north-south mirror image
+//   profile/x675/length/last              of a profile, at the last (or first) output: stretch from the first
+//   to the last
+//                                         station deeper than 0.1 m; or gap: widest way between two of them;
+//                                         or depth
+//   raster/final_depth/mirror_y           largest difference between a raster and its north-south mirror
+//   image
 #include <gdal_priv.h>
 
 #include <algorithm>
@@ -54,7 +58,8 @@ double from_history(const std::filesystem::path& run, const Row& path) {
     if (path.at(2) == "last") return std::stod(rows.back().at(place));
     if (path.at(2) != "max") throw std::runtime_error(path.at(2) + ": expected max or last");
     double largest = 0.0;
-    for (std::size_t i = 1; i < rows.size(); ++i) largest = std::max(largest, std::abs(std::stod(rows[i].at(place))));
+    for (std::size_t i = 1; i < rows.size(); ++i)
+        largest = std::max(largest, std::abs(std::stod(rows[i].at(place))));
     return largest;
 }
 
@@ -62,14 +67,20 @@ double from_history(const std::filesystem::path& run, const Row& path) {
 double from_profile(const std::filesystem::path& run, const Row& path) {
     const std::vector<Row> rows = read_csv(run / "profiles" / (path.at(1) + ".csv"));
     const std::string time = path.at(3) == "first" ? rows[1][0] : rows.back()[0];
-    double begin = NAN, end = NAN, deepest = 0.0;
+    double begin = NAN, end = NAN, deepest = 0.0, gap = 0.0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
         const double distance = std::stod(rows[i].at(1)), depth = std::stod(rows[i].at(5));
         if (rows[i][0] != time) continue;
         deepest = std::max(deepest, depth);
-        if (depth > 0.1) begin = std::isnan(begin) ? distance : begin, end = distance;
+        if (depth <= 0.1) continue;
+        if (std::isnan(begin)) begin = end = distance;
+        gap = std::max(gap, distance - end);
+        end = distance;
     }
-    return path.at(2) == "length" ? end - begin : deepest;
+    if (path.at(2) == "length") return end - begin;
+    if (path.at(2) == "gap") return gap;
+    if (path.at(2) != "depth") throw std::runtime_error(path.at(2) + ": expected length, gap or depth");
+    return deepest;
 }
 
 double from_raster(const std::filesystem::path& run, const Row& path) {
@@ -80,7 +91,8 @@ double from_raster(const std::filesystem::path& run, const Row& path) {
     if (!raster) throw std::runtime_error(file + ": cannot be read");
     const int nx = raster->GetRasterXSize(), ny = raster->GetRasterYSize();
     std::vector<double> values(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
-    if (raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float64, 0, 0) != CE_None)
+    if (raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float64, 0, 0) !=
+        CE_None)
         throw std::runtime_error(file + ": cannot be read");
     double largest = 0.0;
     for (int j = 0; j < ny; ++j)

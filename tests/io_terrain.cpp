@@ -41,7 +41,8 @@ constexpr double kRounding = 1e-11;
 
 }  // namespace
 
-TEST_CASE("The lakes' beds are those of Fois et al. (2024), eq. 34, on 50 x 50 cells of [0, 10]^2", "[terrain]") {
+TEST_CASE("The lakes' beds are those of Fois et al. (2024), eq. 34, on 50 x 50 cells of [0, 10]^2",
+          "[terrain]") {
     const Raster hill = read("lake_at_rest/data/z1.tif"), step = read("lake_at_rest/data/z2.tif");
     for (const Raster* bed : {&hill, &step}) {
         CHECK(bed->geometry.nx == 51);
@@ -99,7 +100,8 @@ TEST_CASE("The rock slide has the paper's volume, depth, length and slope", "[te
             area += 1.0;
         }
     CHECK(deepest == Approx(38.0).margin(0.1));  // of the formula, whose top need not be a node
-    CHECK(static_cast<double>(last - first) * bed.geometry.cell == Approx(400.0).margin(2 * bed.geometry.cell));
+    CHECK(static_cast<double>(last - first) * bed.geometry.cell ==
+          Approx(400.0).margin(2 * bed.geometry.cell));
     CHECK(slope / area * 180.0 / 3.14159265358979 == Approx(28.0).margin(0.5));  // the paper says "about 28"
     CHECK(area == Approx(6.9e4 / 4).epsilon(0.01));  // nodes of 4 m^2; 4 particles each
 }

@@ -23,8 +23,10 @@ bool must_split(const Columns& c, Index p, double split_length, double least_mas
 void halve(Flow& flow, Index p, Index q) {
     Columns& c = flow.columns;
     const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
-    double& rx = l1 >= l2 ? c.r1x[p] : c.r2x[p];
-    double& ry = l1 >= l2 ? c.r1y[p] : c.r2y[p];
+    // Both edges may have been clamped to one cell: then round-off must not choose, or mirror images part.
+    const bool first = l1 >= l2 * (1.0 - 1e-9);
+    double& rx = first ? c.r1x[p] : c.r2x[p];
+    double& ry = first ? c.r1y[p] : c.r2y[p];
     const double dx = 0.25 * rx, dy = 0.25 * ry;
     rx *= 0.5;
     ry *= 0.5;
