@@ -1,4 +1,5 @@
-# The walls between the rooms: fails on an include that a room must not have. cmake -DROOT=... -P includes.cmake
+# The walls between the rooms: fails on an include that a room must not have.
+# cmake -DROOT=... -P includes.cmake
 set(outside "gdal|ogr|cpl_|proj|vtk|hdf5|H5|CLI/|nlohmann/|io/|vtk_io/|apps/|frana_")
 function(wall folder forbidden)
   file(GLOB_RECURSE files ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.cpp)

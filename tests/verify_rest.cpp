@@ -56,14 +56,6 @@ TEST_CASE("The paper preset keeps a lake of known level at rest", "[lake][paper]
         scene.scheme.split = false;
         scene.scheme.filter = scene.scheme.viscosity_linear = scene.scheme.viscosity_quadratic = 0.0;
         scene.scheme.still_level = 10.0;
-        scene.still_surface.reset();
-        // depth at the points from the level and the bilinear bed, as the paper's particles have it
-        DepthAveraged probe(scene);
-        for (Index p = 0; p < scene.particles.count(); ++p) {
-            const double bed = probe.at(Vec2(scene.particles.x[p], scene.particles.y[p])).elevation;
-            scene.particles.depth[p] = 10.0 - bed;
-            scene.particles.volume[p] = scene.particles.depth[p] * 0.01;
-        }
         DepthAveraged simulation(scene);
         run_to(simulation, 1.0);
         CHECK(simulation.frame().status.max_speed <= 1e-12);

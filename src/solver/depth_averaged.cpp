@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/flush_denormals.h"
+#include "grid/stencil.h"
 
 namespace frana {
 namespace {
@@ -39,8 +40,8 @@ DepthAveraged::DepthAveraged(const Scene& scene)
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
     place(scene.particles);
-    if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape == Shape::quadratic &&
-        !scene.scheme.paper_pressure)
+    if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
+    else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape == Shape::quadratic)
         fit_ = fit_masses(flow_, *scene.still_surface);
     arrive();
     start_momentum_ = status_.momentum;
@@ -70,6 +71,21 @@ void DepthAveraged::place(const Seeds& seeds) {
     if (mass > 0.0) centre_ /= mass;
     splitter_.set_next_id(seeds.count());
     sorter_.sort(c, flow_.grid, {}, flow_.active);
+}
+
+/// Depths of a lake's points up to the level from the bilinear bed beneath each, as the paper's points have them.
+void DepthAveraged::level_points(double level) {
+    Columns& c = flow_.columns;
+    for (Index p = 0; p < c.count(); ++p) {
+        const Linear sx(c.x[p]), sy(c.y[p]);
+        double bed = 0.0;
+        for (int j = 0; j < 2; ++j)
+            for (int i = 0; i < 2; ++i) bed += sx.w[i] * sy.w[j] * flow_.bed.z[flow_.grid.at(sx.base + i, sy.base + j)];
+        const double depth = level - bed;
+        if (!(depth > 0.0) || !(c.depth[p] > 0.0)) continue;
+        c.mass[p] *= depth / c.depth[p];
+        c.depth[p] = depth;
+    }
 }
 
 /// One step: the nodes are kicked and braked, the points are carried, then they deposit where they arrived.

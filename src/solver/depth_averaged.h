@@ -52,6 +52,7 @@ public:
 
 private:
     void place(const Seeds& seeds);
+    void level_points(double level);
     void arrive();
     void adapt_points(bool points_left);
     double longest_step() const;
