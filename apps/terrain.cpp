@@ -1,4 +1,5 @@
-// frana_terrain: writes the made-up ground and releases of the cases. The build calls it; see apps/CMakeLists.txt.
+// frana_terrain: writes the made-up ground and releases of the cases. The build calls it; see
+// apps/CMakeLists.txt.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>

@@ -1,6 +1,7 @@
-// Made-up ground with the figures of Fois et al. (2024), section 4.3. The elevation model of the paper is not public.
-// Friction at the bed is 34 degrees, the slope only 28: a slab would stand. What moves is the front, so the bed is
-// 31.5 degrees steep under it (25 under the rest, 28 in the mean) and the mass is deepest near it.
+// Made-up ground with the figures of Fois et al. (2024), section 4.3. The elevation model of the paper is not
+// public. Friction at the bed is 34 degrees, the slope only 28: a slab would stand. What moves is the front,
+// so the bed is 31.5 degrees steep under it (25 under the rest, 28 in the mean) and the mass is deepest near
+// it.
 #include <algorithm>
 #include <cmath>
 
@@ -10,23 +11,24 @@ namespace frana {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
-constexpr double kWidth = 1500.0, kHeight = 1350.0, kCell = 2.0;   // [m]; the slope falls to the south
-constexpr double kMiddle = 675.0;      // x of the mass's axis: the paper's profile line [m]
-constexpr double kToe = 520.0;         // y of the mass's lower end [m]
-constexpr double kLength = 400.0;      // of the mass along the slope, on the map [m]
-constexpr double kVolume = 1.2e6;      // [m^3]
-constexpr double kDepth = 38.0;        // [m]
-constexpr double kShape = 1.7;         // depth = kDepth (1 - r^kShape)
-constexpr double kDeepest = 0.15;      // where it is deepest, in lengths from the toe
-constexpr double kFloor = 480.0;       // elevation of the valley floor [m]
-constexpr double kFloorEdge = 440.0;   // y where the slope meets the floor, +- 40 m
-constexpr double kRiver = 365.0;       // y of the river's axis at kMiddle [m]
+constexpr double kWidth = 1500.0, kHeight = 1350.0, kCell = 2.0;  // [m]; the slope falls to the south
+constexpr double kMiddle = 675.0;     // x of the mass's axis: the paper's profile line [m]
+constexpr double kToe = 520.0;        // y of the mass's lower end [m]
+constexpr double kLength = 400.0;     // of the mass along the slope, on the map [m]
+constexpr double kVolume = 1.2e6;     // [m^3]
+constexpr double kDepth = 38.0;       // [m]
+constexpr double kShape = 1.7;        // depth = kDepth (1 - r^kShape)
+constexpr double kDeepest = 0.15;     // where it is deepest, in lengths from the toe
+constexpr double kFloor = 480.0;      // elevation of the valley floor [m]
+constexpr double kFloorEdge = 440.0;  // y where the slope meets the floor, +- 40 m
+constexpr double kRiver = 365.0;      // y of the river's axis at kMiddle [m]
 
 /// Slope along the fall line [1].
 double slope_at(double y) {
     const double s = (y - kToe) / kLength;
     const double front = std::tan(31.5 * kDegree), back = std::tan(25.0 * kDegree);
-    const double slope = front + (back - front) * smooth_step((s - 0.2) / 0.4) - 0.25 * smooth_step((s - 1.4) / 0.6);
+    const double slope =
+        front + (back - front) * smooth_step((s - 0.2) / 0.4) - 0.25 * smooth_step((s - 1.4) / 0.6);
     return 0.01 + (slope - 0.01) * smooth_step((y - (kFloorEdge - 40.0)) / 80.0);
 }
 
@@ -34,7 +36,8 @@ double slope_at(double y) {
 class FallLine {
 public:
     FallLine() {
-        for (double y = 0.0; y < kHeight + 100.0; y += kCell) z_.push_back(z_.back() + kCell * slope_at(y + 0.5 * kCell));
+        for (int k = 0; k * kCell < kHeight + 100.0; ++k)
+            z_.push_back(z_.back() + kCell * slope_at((k + 0.5) * kCell));
     }
     double at(double y) const {
         const double place = std::max(0.0, y / kCell);
@@ -54,7 +57,8 @@ double valley_floor(double x, double y) {
     return 0.0016 * other_side * other_side - 4.0 * std::exp(-std::pow(from_axis, 4));
 }
 
-/// A hollow along the mass's axis, a scarp of 14 m around its head, and spurs and swells on the slope beside it.
+/// A hollow along the mass's axis, a scarp of 14 m around its head, and spurs and swells on the slope beside
+/// it.
 double slope_relief(double x, double y) {
     const double across = x - kMiddle;
     const double beside = smooth_step((std::abs(across) - 120.0) / 250.0);
@@ -76,7 +80,8 @@ double ground(const FallLine& line, double x, double y) {
 /// Depth of the standing mass, up to the factor that makes the volume right.
 double mass_shape(double x, double y) {
     // Width such that the integral over the ellipse, kDepth * area * kShape/(kShape + 2), is the volume.
-    const double width = 4.0 * kVolume * (kShape + 2.0) / (kDepth * kShape * 3.14159265358979323846 * kLength);
+    const double width =
+        4.0 * kVolume * (kShape + 2.0) / (kDepth * kShape * 3.14159265358979323846 * kLength);
     const double s = (y - kToe) / kLength;
     const double along = s < kDeepest ? 1.0 - s / kDeepest : (s - kDeepest) / (1.0 - kDeepest);
     const double across = (x - kMiddle) / (0.5 * width);

@@ -27,7 +27,9 @@ std::vector<Vec2> ellipse(const Vec2& centre, double half_x, double half_y) {
 }  // namespace
 
 MadeScene lake_z1() {
-    const auto z = [](double x, double y) { return 5.0 * std::exp(-0.4 * (squared(x - 5.0) + squared(y - 5.0))); };
+    const auto z = [](double x, double y) {
+        return 5.0 * std::exp(-0.4 * (squared(x - 5.0) + squared(y - 5.0)));
+    };
     return {{{"z1.tif", on_nodes(10.0, 10.0, 0.2, z)}}, {{"lake.geojson", rectangle(0.0, 0.0, 10.0, 10.0)}}};
 }
 
@@ -42,7 +44,8 @@ MadeScene obstacle() {
     const auto z = [](double x, double y) {
         return 60.0 - x / 3.0 + 15.0 * std::exp(-(squared(x - 50.0) + squared(y - 10.0)) / 7.0);
     };
-    return {{{"dem.tif", on_nodes(150.0, 20.0, 1.0, z)}}, {{"release.geojson", rectangle(5.0, 3.0, 42.5, 17.0)}}};
+    return {{{"dem.tif", on_nodes(150.0, 20.0, 1.0, z)}},
+            {{"release.geojson", rectangle(5.0, 3.0, 42.5, 17.0)}}};
 }
 
 MadeScene tiff_particles() {
@@ -66,7 +69,7 @@ MadeScene avalanche_track() {
         return parabola * (1.0 - smooth_step((x - foot) / 150.0));
     };
     std::vector<double> drop{0.0};  // below x = 0, on the nodes
-    for (double x = 0.5 * cell; x < width; x += cell) drop.push_back(drop.back() + cell * slope(x));
+    for (int k = 0; k * cell < width; ++k) drop.push_back(drop.back() + cell * slope((k + 0.5) * cell));
     const auto z = [&](double x, double y) {
         // The channel gathers the snow below the release, is 160 m wide, and opens before the foot.
         const double depth = 14.0 * smooth_step((x - 100.0) / 200.0) * smooth_step((foot + 50.0 - x) / 350.0);

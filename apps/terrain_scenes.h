@@ -10,13 +10,13 @@ namespace frana {
 
 /// A raster that a case reads, with the name of its file.
 struct MadeRaster {
-    std::string file;   ///< "dem.tif"
+    std::string file;  ///< "dem.tif"
     Raster raster;
 };
 
 /// An outline that a case reads: one ring, not closed.
 struct MadeOutline {
-    std::string file;   ///< "release.geojson"
+    std::string file;  ///< "release.geojson"
     std::vector<Vec2> ring;
 };
 
@@ -26,21 +26,22 @@ struct MadeScene {
     std::vector<MadeOutline> outlines;
 };
 
-/// Lake at rest of Fois et al. (2024), section 4.1, first bed: Z = 5 exp(-2/5 |x - (5, 5)|^2) on [0, 10]^2, 50 x 50
-/// cells (eq. 34).
+/// Lake at rest of Fois et al. (2024), section 4.1, first bed: Z = 5 exp(-2/5 |x - (5, 5)|^2) on [0, 10]^2,
+/// 50 x 50 cells (eq. 34).
 MadeScene lake_z1();
 /// The second bed: 4 on [4, 8]^2, otherwise 0 (eq. 34).
 MadeScene lake_z2();
-/// Collapse onto an obstacle, section 4.2: Z = 60 - x/3 + 15 exp(-((x - 50)^2 + (y - 10)^2)/7) on [0, 150] x [0, 20]
-/// (eq. 37), with a block of 37.5 x 14 m upstream of the obstacle.
+/// Collapse onto an obstacle, section 4.2: Z = 60 - x/3 + 15 exp(-((x - 50)^2 + (y - 10)^2)/7) on [0, 150] x
+/// [0, 20] (eq. 37), with a block of 37.5 x 14 m upstream of the obstacle.
 MadeScene obstacle();
-/// Section 4.3 on made-up ground: a mountainside of 28 degrees above a valley floor with a river, 1500 x 1350 m, and
-/// 1.2e6 m3 of rock, 38 m deep and 400 m long, standing on it (terrain_bindo.cpp has the design).
+/// Section 4.3 on made-up ground: a mountainside of 28 degrees above a valley floor with a river, 1500 x 1350
+/// m, and 1.2e6 m3 of rock, 38 m deep and 400 m long, standing on it (terrain_bindo.cpp has the design).
 MadeScene bindo();
-/// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on flat ground.
+/// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on
+/// flat ground.
 MadeScene tiff_particles();
-/// A parabola of 34 degrees at its head and 12 at its foot, then flat ground, with a channel down its middle; 5 m
-/// cells.
+/// A parabola of 34 degrees at its head and 12 at its foot, then flat ground, with a channel down its middle;
+/// 5 m cells.
 MadeScene avalanche_track();
 
 /// A scene by name.

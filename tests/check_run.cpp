@@ -2,8 +2,8 @@
 // Lines of EXPECTED.csv: quantity,value,tolerance,unit,source. A quantity is
 //   budgets.mass.relative_error     a number of run.json
 //   history/max_speed/max           largest absolute value (or: last) of a column of history.csv
-//   profile/x675/length/last        of a profile, at the last (or first) output: way from the first to the last
-//                                   station deeper than 0.1 m; or gap: widest way between two of them; or depth
+//   profile/x675/length/last        of a profile, last (or first) output: way from the first to the last
+//                                   station deeper than 0.1 m; gap: widest way between two of them; depth
 //   raster/final_depth/mirror_y     largest difference between a raster and its north-south mirror image
 #include <gdal_priv.h>
 
