@@ -89,7 +89,7 @@ struct ActiveTiles {
 };
 
 /// Fewer tiles than this are not worth waking other threads for.
-constexpr Index kTilesForThreads = 4;
+constexpr Index kTilesForThreads = 8;
 
 /// Runs body(position) for all particle tiles, colour after colour.
 template <class Body>

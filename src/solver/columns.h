@@ -45,7 +45,7 @@ private:
     std::vector<Index> key_, order_;
     std::vector<Index> tile_count_;   ///< per tile of the domain; only entries in `used_` are non-zero
     std::vector<Index> used_;
-    std::vector<double> scratch_;
+    std::vector<std::vector<double>> scratch_;  ///< one per field: they are permuted side by side
     std::vector<std::int64_t> id_scratch_;
 };
 

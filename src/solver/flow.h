@@ -49,13 +49,13 @@ void for_each_node_of(const TileGrid& grid, Index tile, Body&& body) {
 }
 
 /// Calls body(ghost, mirror) for the node pairs on both ends of one axis (0: x, 1: y), layers `first` to kGhosts;
-/// layer 0 is the wall node with itself. Only near material.
+/// layer 0 is the wall node with itself. Only near material; serial, since a side has few nodes.
 template <class Body>
 void for_each_wall_pair(const Flow& flow, int axis, Index first, Body&& body) {
     const TileGrid& grid = flow.grid;
     const Index last = (axis == 0 ? grid.nx() : grid.ny()) - 1;
     const Index step = axis == 0 ? 1 : grid.stride();
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
+    for (const Index tile : flow.active.work) {
         const Index from = axis == 0 ? grid.tile_i(tile) : grid.tile_j(tile);
         const auto along_wall = [&](Index wall, Index inward) {
             if (wall < from || wall >= from + kTile) return;
@@ -67,7 +67,7 @@ void for_each_wall_pair(const Flow& flow, int axis, Index first, Body&& body) {
         };
         along_wall(0, 1);
         along_wall(last, -1);
-    });
+    }
 }
 
 }  // namespace frana
