@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <new>
@@ -173,6 +174,8 @@ int main(int argc, char** argv) {
         return complain(error.what(), 3);
     } catch (const Interrupted& error) {
         return complain(error.what(), 130);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return complain(fmt::format("{}; check the folder, its permissions and free space", error.what()), 2);
     } catch (const std::bad_alloc&) {
         return complain(
             "memory: found too little for this case; expected what `frana check` tells; use fewer particles "

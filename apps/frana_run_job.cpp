@@ -90,6 +90,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 
     const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest};
+    for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
+    record.release_volume = simulation.status().mass / scene.density;
     record.summary = run(simulation, plan, observers, interrupt, progress);
     note_results(record, rasters);
 

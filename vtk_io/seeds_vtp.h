@@ -5,7 +5,7 @@
 
 namespace frana {
 
-/// Particles as vtkPolyData (.vtp, appended raw, LZ4): points on the free surface (bed elevation + depth),
+/// Particles as vtkPolyData (.vtp, LZ4 in inline base64): points on the free surface (bed elevation + depth),
 /// one vertex cell per particle, point arrays depth, elevation, size, volume, mass, velocity (3) and id, the
 /// unit of array `name` in the field data as `name_unit`, beside density [kg/m3] and crs_wkt. The file
 /// appears whole or not at all. Throws UserError when it cannot be written.

@@ -1,6 +1,6 @@
 #pragma once
 // VTK files of a run, written while it goes on: .vtp particles, .vti grid and terrain, .pvd series. Numbers
-// are appended raw with LZ4; every array `name` has its unit in the field data as `name_unit`, and each file
+// are written with LZ4 in inline base64; every array `name` has its unit in the field data as `name_unit`, and each file
 // its time as TimeValue. Every file appears whole or not at all.
 //
 // Where some nodes have no terrain (NaN elevation) the grid gets two more arrays: `outside` (uint8, 1 there)

@@ -100,23 +100,23 @@ void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside) {
 }
 
 void write_xml(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem::path& target) {
-    AtomicFile file(target);
     vtkNew<vtkCallbackCommand> quiet;  // without an observer VTK prints its errors; ours is thrown below
     writer->AddObserver("ErrorEvent", quiet);
     writer->GetExecutive()->AddObserver("ErrorEvent", quiet);
     writer->SetInputDataObject(data);
-    writer->SetFileName(file.path().string().c_str());
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
+    // To memory first: VTK 9.1 does not survive a full disk in this mode.
+    writer->WriteToOutputStringOn();
+    // Inline base64, a third larger than appended bytes: ParaView 5.11 cannot read appended data of either encoding
+    // with the expat of Debian's security updates since 2024 (its reparse deferral).
+    writer->SetDataModeToBinary();
     writer->SetHeaderTypeToUInt64();
     writer->SetCompressorTypeToLZ4();
     const bool written = writer->Write() == 1;
     const unsigned long code = writer->GetErrorCode();
     if (!written || code != vtkErrorCode::NoError)
-        throw UserError(
-            fmt::format("{}: cannot be written: {}; check the folder's permissions and free space",
-                        target.string(), vtkErrorCode::GetStringFromErrorCode(code)));
-    file.commit();
+        throw UserError(fmt::format("{}: cannot be made: {}; report it with the case", target.string(),
+                                    vtkErrorCode::GetStringFromErrorCode(code)));
+    write_text(target, writer->GetOutputString());
 }
 
 }  // namespace frana

@@ -31,7 +31,7 @@ vtkSmartPointer<vtkImageData> image_of(const GridGeometry& grid);
 /// Adds `outside`, and HIDDENPOINT where it is 1 (why both: writers.h); nothing when it is empty.
 void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside);
 
-/// Writes atomically, appended raw LZ4. Throws UserError with path and reason.
+/// Writes atomically, LZ4 in inline base64. Throws UserError with path and reason.
 void write_xml(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem::path& target);
 
 }  // namespace frana

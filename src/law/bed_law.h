@@ -37,7 +37,7 @@ inline double riccati_speed(double s0, double driven, double coulomb, double qua
     return std::max(0.0, scale * (s0 - scale * t) / (scale + s0 * t));
 }
 
-/// The root in (0, 1] of z^3 - (3 + a) z + 2 + b = 0 with b < 1 + a, a, b >= 0: yield stress over bed stress of a
+/// The root in (0, 1] of z^3 - (3 + a) z + 2 + b = 0 with 0 <= b < a (or a = b = 0): yield stress over bed stress of a
 /// Bingham sheet (Fois et al. 2024, eq. 5, corrected: |v| = tau_B h / (6 mu) (2 + z)(1 - z)^2). Newton from the
 /// left is monotone since the cubic is convex there.
 inline double bingham_zeta(double a, double b) {

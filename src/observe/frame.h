@@ -18,7 +18,8 @@ struct Field {
     Index count = 0;
 };
 
-/// Scalars of one step: budgets and extremes. Sums run over all material still in the domain.
+/// Scalars of one step: budgets and extremes. Sums run over all material still in the domain. Between frames
+/// velocities (momentum, kinetic energy, speeds) stand half a step behind the time; in a frame they are at it.
 struct Status {
     Index step = 0;
     double time = 0.0;               ///< [s]

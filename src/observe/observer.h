@@ -12,11 +12,11 @@ struct Sample {
     Vec2 velocity{0, 0};     ///< [m/s]
 };
 
-/// Answers questions about the state between frames, cheaply.
+/// Answers questions about the state between frames, cheaply: velocities are half a step behind.
 class Probe {
 public:
     virtual ~Probe() = default;
-    virtual Sample at(const Vec2& point) const = 0;  ///< bilinear between nodes; zero depth outside
+    virtual Sample at(const Vec2& point) const = 0;  ///< bilinear between nodes; beyond them the nearest
 };
 
 /// Looks on while a case runs; never changes it.

@@ -164,6 +164,16 @@ void CaseReader::check_meaning() {
               fmt::format("found \"{}\" with terrain.model = \"shallow\"", case_.word("terrain.curvature")),
               "expected \"none\", since that model has no curvature",
               "remove it, or set terrain.model = \"steep\"");
+    const auto chose = [&](const char* key, const char* word) {
+        return !misread_.count(key) && case_.word(key) == word;
+    };
+    if (chose("scheme.preset", "paper") && chose("terrain.model", "steep"))
+        wrong("terrain.model", "found \"steep\" with scheme.preset = \"paper\"",
+              "expected \"shallow\", the only terrain that preset has", "remove it, or use the default preset");
+    if (chose("scheme.shape", "linear") && chose("scheme.transfer", "apic"))
+        wrong("scheme.transfer", "found \"apic\" with scheme.shape = \"linear\"",
+              "expected \"tpic\", \"flip\" or \"pic\", since apic here is the one of quadratic shapes",
+              "choose one of them, or scheme.shape = \"quadratic\"");
     if (case_.given("material.bed.mu_s") && case_.given("material.bed.mu_2") &&
         case_.number("material.bed.mu_2") <= case_.number("material.bed.mu_s"))
         wrong("material.bed.mu_2", fmt::format("found {}", case_.number("material.bed.mu_2")),

@@ -82,10 +82,20 @@ void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& s
     for_each_node(grid, 2, [&](Index, Index, Index k) { field[k] = scratch[k]; });
 }
 
-void fill_curvature(const Scene& scene, const TileGrid& grid, BedGeometry& bed) {
+constexpr double kSplineAverage[3] = {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
+
+/// The bed's Hessian, from the bed extended linearly whatever the sides: a slope that meets a wall is mirrored for
+/// the pressure, but it has no curvature there.
+void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<double>& z, BedGeometry& bed) {
     const double cell = grid.cell(), length = scene.scheme.curvature_length;
     LazyArray<double> smoothed(grid.size()), scratch(grid.size());
-    for (Index k = 0; k < grid.size(); ++k) smoothed[k] = bed.z[k];
+    for_each_node(grid, 0, [&](Index i, Index j, Index k) {
+        smoothed[k] = extended(z, grid.nx(), grid.ny(), i, j, false);
+    });
+    if (scene.scheme.shape == Shape::quadratic) {
+        smooth(grid, smoothed, scratch, 1, kSplineAverage);
+        smooth(grid, smoothed, scratch, grid.stride(), kSplineAverage);
+    }
     // A pass of the binomial filter adds variance cell^2/2 (scheme: sigma = cell sqrt(passes / 2)).
     const Index passes = std::min<Index>(static_cast<Index>(std::lround(2.0 * length * length / (cell * cell))), 400);
     const double binomial[3] = {0.5, 0.25, 0.0};
@@ -98,10 +108,10 @@ void fill_curvature(const Scene& scene, const TileGrid& grid, BedGeometry& bed) 
     bed.hyy = LazyArray<double>(grid.size());
     const Index up = grid.stride();
     for_each_node(grid, 3, [&](Index, Index, Index k) {
-        const double* z = smoothed.data() + k;
-        bed.hxx[k] = (z[1] - 2.0 * z[0] + z[-1]) / (cell * cell);
-        bed.hyy[k] = (z[up] - 2.0 * z[0] + z[-up]) / (cell * cell);
-        bed.hxy[k] = (z[up + 1] - z[up - 1] - z[-up + 1] + z[-up - 1]) / (4.0 * cell * cell);
+        const double* c = smoothed.data() + k;
+        bed.hxx[k] = (c[1] - 2.0 * c[0] + c[-1]) / (cell * cell);
+        bed.hyy[k] = (c[up] - 2.0 * c[0] + c[-up]) / (cell * cell);
+        bed.hxy[k] = (c[up + 1] - c[up - 1] - c[-up + 1] + c[-up - 1]) / (4.0 * cell * cell);
     });
 }
 
@@ -121,9 +131,8 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     });
     LazyArray<double> scratch(grid.size());
     if (scene.scheme.shape == Shape::quadratic) {
-        const double average[3] = {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
-        smooth(grid, bed.z, scratch, 1, average);
-        smooth(grid, bed.z, scratch, up, average);
+        smooth(grid, bed.z, scratch, 1, kSplineAverage);
+        smooth(grid, bed.z, scratch, up, kSplineAverage);
     }
     bed.z_min = LazyArray<double>(grid.size());
     bed.slope_x = LazyArray<double>(grid.size());
@@ -138,7 +147,7 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
             for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);
         bed.z_min[k] = least;
     });
-    if (scene.curvature != Curvature::none && scene.terrain == TerrainModel::steep) fill_curvature(scene, grid, bed);
+    if (scene.curvature != Curvature::none && scene.terrain == TerrainModel::steep) fill_curvature(scene, grid, z, bed);
     return bed;
 }
 

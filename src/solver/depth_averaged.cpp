@@ -135,13 +135,13 @@ void DepthAveraged::arrive() {
 
 /// Every few steps points split where they spread; points that left are dropped; tiles are kept up to date.
 void DepthAveraged::adapt_points(bool points_left) {
-    const bool may_split = flow_.scheme.split && !flow_.scheme.paper_pressure;
+    const bool has_domains = !flow_.scheme.paper_pressure;
     const bool due = status_.step % kStepsBetweenSplits == 0;
     const std::vector<std::uint8_t> none;
     if (points_left)
         timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, transfer_->gone(), flow_.active); });
     Index born = 0;
-    if (may_split && due) born = timed_("split", [&] { return splitter_.split(flow_); });
+    if (has_domains && due) born = timed_("split", [&] { return splitter_.split(flow_); });
     if (born > 0 || drift_ > kDriftLimit || (due && !points_left)) {
         timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, none, flow_.active); });
         drift_ = 0.0;
@@ -203,10 +203,10 @@ bool DepthAveraged::at_rest() const {
 
 Sample DepthAveraged::at(const Vec2& point) const {
     const GridGeometry& g = flow_.grid.geometry();
-    const double u = (point.x() - g.x0) / g.cell, v = (point.y() - g.y0) / g.cell;
+    // A point in the outer half pixel shows its rim.
+    const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
+    const double v = std::clamp((point.y() - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
     Sample sample;
-    if (!(u >= 0.0 && v >= 0.0 && u <= static_cast<double>(g.nx - 1) && v <= static_cast<double>(g.ny - 1)))
-        return sample;
     const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
     const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
     for (Index dj = 0; dj < 2; ++dj)
@@ -219,6 +219,13 @@ Sample DepthAveraged::at(const Vec2& point) const {
             sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
         }
     return sample;
+}
+
+std::vector<std::string> DepthAveraged::remarks() const {
+    if (!fit_) return {};
+    return {fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
+                        "{} points at their limits",
+                        fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped)};
 }
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene) { return std::make_unique<DepthAveraged>(scene); }

@@ -45,6 +45,7 @@ public:
     Frame frame() override;
     std::vector<PhaseTime> timings() const override { return timed_.times(); }
     Sample at(const Vec2& point) const override;
+    std::vector<std::string> remarks() const override;
 
     const Flow& flow() const { return flow_; }
     /// What the fit of initial masses did; nothing when there was none.

@@ -72,6 +72,10 @@ Frame DepthAveraged::frame() {
             frame.status.momentum[1] += flow_.columns.mass[p] * probe_.vy[p];
             frame.status.max_speed = std::max(frame.status.max_speed, std::hypot(probe_.vx[p], probe_.vy[p]));
         }
+        if (flow_.walls)
+            for (int axis = 0; axis < 2; ++axis)
+                frame.status.impulse[axis] =
+                    frame.status.momentum[axis] + frame.status.momentum_left[axis] - start_momentum_[axis];
         particle_fields(frame);
         node_fields(frame);
         if (rheology_.index() != 0) stress_fields(frame);

@@ -9,13 +9,16 @@
 
 namespace frana {
 
+/// Up to four sums of one tile.
+using TileSums = std::array<double, 4>;
+
 /// The state of a depth-averaged run. Phases are free functions on it (transfer.h, surface.h, kick.h, split.h).
 struct Flow {
     explicit Flow(const Scene& scene)
         : grid(scene.bed.geometry), bed(make_bed_geometry(scene, grid)),
           nodes(grid, scene.rheology.index() != 0 || scene.scheme.paper_pressure), density(scene.density),
           gravity(scene.gravity), cell(grid.cell()), area(cell * cell), walls(scene.sides == Sides::wall),
-          scheme(scene.scheme) {}
+          steep(scene.terrain == TerrainModel::steep), scheme(scene.scheme) {}
 
     TileGrid grid;
     BedGeometry bed;
@@ -27,7 +30,9 @@ struct Flow {
     double cell;     ///< [m]
     double area;     ///< of a node's cell, the same for all nodes [m^2]
     bool walls;      ///< sides are mirrors; otherwise open
+    bool steep;      ///< velocities follow the bed; otherwise they are horizontal
     Scheme scheme;
+    std::vector<TileSums> tile_sums;  ///< scratch of the node loops, so that a step allocates nothing
     double dry_depth() const { return 1e-14 * cell; }  ///< round-off of a depth [m]
 
     /// Share of a node that lies inside walls: 1, 1/2 on a wall, 1/4 in a corner, 0 beyond. 1 at open sides.
@@ -49,7 +54,8 @@ void for_each_node_of(const TileGrid& grid, Index tile, Body&& body) {
 }
 
 /// Calls body(ghost, mirror) for the node pairs on both ends of one axis (0: x, 1: y), layers `first` to kGhosts;
-/// layer 0 is the wall node with itself. Only near material; serial, since a side has few nodes.
+/// layer 0 is the wall node with itself. Only near material, and only where the ghosts' tile is near material too
+/// (elsewhere they hold what an earlier step left); serial, since a side has few nodes.
 template <class Body>
 void for_each_wall_pair(const Flow& flow, int axis, Index first, Body&& body) {
     const TileGrid& grid = flow.grid;
@@ -59,6 +65,11 @@ void for_each_wall_pair(const Flow& flow, int axis, Index first, Body&& body) {
         const Index from = axis == 0 ? grid.tile_i(tile) : grid.tile_j(tile);
         const auto along_wall = [&](Index wall, Index inward) {
             if (wall < from || wall >= from + kTile) return;
+            const Index ghosts = wall - inward * kGhosts < from              ? -1
+                                 : wall - inward * kGhosts >= from + kTile ? 1
+                                                                           : 0;
+            const Index beyond = tile + ghosts * (axis == 0 ? 1 : grid.tiles_x());
+            if (!flow.active.in_work[beyond]) return;
             for (Index n = 0; n < kTile; ++n) {
                 const Index k = axis == 0 ? grid.at(wall, grid.tile_j(tile) + n) : grid.at(grid.tile_i(tile) + n, wall);
                 for (Index layer = first; layer <= kGhosts; ++layer)

@@ -142,8 +142,11 @@ private:
             node.push_y = scale * (viscous_flux(flow, v, k - up, up) - viscous_flux(flow, v, k, up));
         }
         if (nodes.force) {
-            node.push_x += nodes.force[k].x / mass;
-            node.push_y += nodes.force[k].y / mass;
+            // At the rim of a stencil mass vanishes faster than force: a node that has depth counts half of it at
+            // least, or a point's stress would drive it (and the time step) without bound.
+            const double inertia = std::max(mass, 0.5 * flow.density * flow.area * node.depth);
+            node.push_x += nodes.force[k].x / inertia;
+            node.push_y += nodes.force[k].y / inertia;
         }
         return node;
     }

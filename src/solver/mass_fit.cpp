@@ -156,7 +156,7 @@ MassFit fit_masses(Flow& flow, double level) {
                 if (!inside(flow, i, j) || !(flow.nodes.flags[k] & kWet)) return;
                 if (static_cast<bool>(flow.nodes.flags[k] & kMargin) != margin) return;
                 if (margin && !(flow.nodes.depth[k] + flow.bed.z[k] < below)) return;
-                if (std::find(rows.begin(), rows.end(), k) != rows.end() && margin) return;
+                if (margin && std::find(rows.begin(), rows.end(), k) != rows.end()) return;
                 rows.push_back(k);
                 ++added;
             });

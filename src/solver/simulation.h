@@ -19,6 +19,8 @@ public:
     virtual bool at_rest() const = 0;
     /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
     virtual Frame frame() = 0;
+    /// What the user should know of how the run was set up.
+    virtual std::vector<std::string> remarks() const { return {}; }
     /// Wall time by phase since the start.
     virtual std::vector<PhaseTime> timings() const = 0;
 };

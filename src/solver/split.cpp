@@ -6,11 +6,11 @@ namespace frana {
 namespace {
 
 /// Long thin domains of points that may not split would throw their sub-points far ahead of the mass.
-void clamp_edge(double& x, double& y) {
+void clamp_edge(double& x, double& y, double longest) {
     const double length = std::sqrt(x * x + y * y);
-    if (length <= 1.0) return;
-    x /= length;
-    y /= length;
+    if (length <= longest) return;
+    x *= longest / length;
+    y *= longest / length;
 }
 
 bool must_split(const Columns& c, Index p, double split_length, double least_mass) {
@@ -49,14 +49,15 @@ void halve(Flow& flow, Index p, Index q) {
 Index Splitter::split(Flow& flow) {
     Columns& c = flow.columns;
     const Index count = c.count();
-    const double length = flow.scheme.split_length;
+    const double length = flow.scheme.split_length, longest = std::max(1.0, length);
+    const bool may_split = flow.scheme.split;
     tile_first_.assign(static_cast<std::size_t>(flow.active.count()) + 1, 0);
     for_each_tile(flow.active, [&](Index n) {
         Index found = 0;
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-            clamp_edge(c.r1x[p], c.r1y[p]);
-            clamp_edge(c.r2x[p], c.r2y[p]);
-            found += must_split(c, p, length, least_mass_);
+            clamp_edge(c.r1x[p], c.r1y[p], longest);
+            clamp_edge(c.r2x[p], c.r2y[p], longest);
+            found += may_split && must_split(c, p, length, least_mass_);
         }
         tile_first_[n + 1] = found;
     });

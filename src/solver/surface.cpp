@@ -19,6 +19,17 @@ void mirror_surface(Flow& flow) {
         });
 }
 
+/// The velocity before the kick beyond walls: mirrored, the normal component turned round.
+void mirror_velocity(Flow& flow) {
+    if (!flow.walls) return;
+    Nodes& nodes = flow.nodes;
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
+            nodes.before[ghost] = nodes.before[mirror];
+            (axis == 0 ? nodes.before[ghost].x : nodes.before[ghost].y) *= -1.0;
+        });
+}
+
 /// Wetness of a tile and two nodes around it: one bit a node, bit n + 2 of row n + 2 is node (n, n).
 struct WetRows {
     std::uint32_t row[kTile + 4];
@@ -31,9 +42,10 @@ struct WetRows {
             const Index jj = j0 + j - 2;
             const Index first = flow.grid.at(i0, jj) - 2;
             if (first < 0 || first + kTile + 4 > flow.grid.size()) continue;  // beyond the spare ring: dry
-            const std::uint8_t* flags = flow.nodes.flags.data() + first;
+            // Depth and not the flags, which other threads write at the same time.
+            const double* depth = flow.nodes.depth.data() + first;
             for (Index i = 0; i < kTile + 4; ++i)
-                row[j] |= static_cast<std::uint32_t>(flags[i] & kWet) << i;
+                row[j] |= static_cast<std::uint32_t>(depth[i] > 0.0) << i;
             seen |= row[j];
         }
         any = seen != 0;
@@ -106,7 +118,8 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
     Nodes& nodes = flow.nodes;
     const Deposit* deposits = nodes.deposits();
     const double column = flow.density * flow.area, dry = flow.dry_depth(), least_mass = dry * column;
-    std::vector<NodeSums> parts(flow.active.work.size());
+    std::vector<TileSums>& parts = flow.tile_sums;
+    parts.assign(flow.active.work.size(), {});
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
         NodeSums sums;
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
@@ -129,16 +142,17 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
                 sums.front2 = std::max(sums.front2, (dx * dx + dy * dy) * flow.area);
             }
         });
-        parts[n] = sums;
+        parts[n] = {sums.potential, sums.max_depth, sums.covered_area, sums.front2};
     });
     NodeSums total;
-    for (const NodeSums& part : parts) {
-        total.potential += part.potential;
-        total.max_depth = std::max(total.max_depth, part.max_depth);
-        total.covered_area += part.covered_area;
-        total.front2 = std::max(total.front2, part.front2);
+    for (const TileSums& part : parts) {
+        total.potential += part[0];
+        total.max_depth = std::max(total.max_depth, part[1]);
+        total.covered_area += part[2];
+        total.front2 = std::max(total.front2, part[3]);
     }
     mirror_surface(flow);
+    mirror_velocity(flow);
     return total;
 }
 

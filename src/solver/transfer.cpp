@@ -318,7 +318,8 @@ private:
         sums.left_mass += m;
         sums.left_px += m * vx;
         sums.left_py += m * vy;
-        sums.left_energy += m * (0.5 * (vx * vx + vy * vy) +
+        const double vz = flow.steep ? vx * flow.bed.slope_x[k] + vy * flow.bed.slope_y[k] : 0.0;
+        sums.left_energy += m * (0.5 * (vx * vx + vy * vy + vz * vz) +
                                  flow.gravity * (flow.bed.z[k] + 0.5 * std::max(c.depth[p], 0.0)));
     }
 
@@ -353,19 +354,26 @@ std::unique_ptr<TransferKernel> make_transfer(const Scene& scene) {
     return scene.scheme.shape == Shape::quadratic ? with_transfer<Quadratic>(scene) : with_transfer<Linear>(scene);
 }
 
-PointSums node_sums(const Flow& flow) {
-    std::vector<PointSums> parts(flow.active.work.size());
+PointSums node_sums(Flow& flow) {
+    std::vector<TileSums>& parts = flow.tile_sums;
+    parts.assign(flow.active.work.size(), {});
     const Deposit* deposits = flow.nodes.deposits();
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
-        PointSums sums;
+        TileSums sums{};
         for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            sums.mass += deposits[k].mass;
-            sums.px += deposits[k].px;
-            sums.py += deposits[k].py;
+            sums[0] += deposits[k].mass;
+            sums[1] += deposits[k].px;
+            sums[2] += deposits[k].py;
         });
         parts[n] = sums;
     });
-    return total(parts);
+    PointSums all;
+    for (const TileSums& part : parts) {
+        all.mass += part[0];
+        all.px += part[1];
+        all.py += part[2];
+    }
+    return all;
 }
 
 void fold_walls(Flow& flow) {
@@ -392,9 +400,7 @@ void mirror_motion(Flow& flow) {
     for (int axis = 0; axis < 2; ++axis)
         for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
             motions[ghost] = motions[mirror];
-            flow.nodes.before[ghost] = flow.nodes.before[mirror];
             (axis == 0 ? motions[ghost].vx : motions[ghost].vy) *= -1.0;
-            (axis == 0 ? flow.nodes.before[ghost].x : flow.nodes.before[ghost].y) *= -1.0;
         });
 }
 

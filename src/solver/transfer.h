@@ -46,7 +46,7 @@ protected:
 std::unique_ptr<TransferKernel> make_transfer(const Scene& scene);
 
 /// Sums of the nodes' deposits before folding, to be held against PointSums (partition of unity).
-PointSums node_sums(const Flow& flow);
+PointSums node_sums(Flow& flow);
 
 /// Closes the domain at walls by adding to each node what its mirror image would bring (mirror-image particles);
 /// nothing at open sides.
