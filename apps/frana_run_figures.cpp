@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "frana_run_charts.h"
 #include "vtk_io/map_figure.h"
+#include "vtk_io/map_figure_perspective.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -40,6 +41,23 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     return map;
 }
 
+/// The peak depth on the terrain, seen up the slope.
+void draw_view(const FigureSource& source, const ProductRaster& peak_depth, std::vector<DrawnFigure>& figures,
+               std::vector<std::string>& warnings) {
+    PerspectiveFigure view;
+    view.bed = source.bed;
+    view.field = peak_depth.raster.values;
+    view.shown_above = source.footprint_depth;
+    view.title = source.title + ": peak depth";
+    view.field_label = "peak depth [m]";
+    view.survey = source.survey;
+    view.footer = source.footer;
+    view.width = source.width;
+    view.height = source.height;
+    attempt(source, {"figures/view_peak_depth.png", "peak depth, seen up the slope"}, figures, warnings,
+            [&](const fs::path& png, std::string& why_not) { return render_perspective(view, png, why_not); });
+}
+
 }  // namespace
 
 void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
@@ -61,6 +79,8 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
                                 MapRule{"final_depth", "depth at the end"}})
         if (const ProductRaster* product = find_product(source.rasters, rule.name))
             draw_map(source, *product, rule.what, figures, warnings);
+    if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
+        draw_view(source, *peak, figures, warnings);
     for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
     draw_gauges(source, figures, warnings);
     draw_budgets(source, figures, warnings);
