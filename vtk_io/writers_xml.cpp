@@ -106,8 +106,8 @@ void write_xml(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem:
     writer->SetInputDataObject(data);
     // To memory first: VTK 9.1 does not survive a full disk in this mode.
     writer->WriteToOutputStringOn();
-    // Inline base64, a third larger than appended bytes: ParaView 5.11 cannot read appended data of either encoding
-    // with the expat of Debian's security updates since 2024 (its reparse deferral).
+    // Inline base64, a third larger than appended bytes: Debian 12's ParaView 5.11 reads appended data (raw or base64)
+    // with libexpat1 2.5.0-1+deb12u1, but no longer with the security update 2.5.0-1+deb12u5.
     writer->SetDataModeToBinary();
     writer->SetHeaderTypeToUInt64();
     writer->SetCompressorTypeToLZ4();
