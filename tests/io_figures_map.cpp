@@ -178,16 +178,19 @@ TEST_CASE("Small, large, narrow, dry, even and empty terrain all make a map", "[
     }
 }
 
-TEST_CASE("Twenty maps in a row leave the memory flat", "[figures]") {
+// A leak grows the process in every row of ten; caches and allocator arenas, which fill when they please, do not.
+TEST_CASE("Maps in a row leave the memory flat", "[figures]") {
     if (cannot_draw()) return;
     const figures::Folder folder;
     std::string why_not;
     const MapFigure figure = figures::valley();
-    for (int i = 0; i < 6; ++i) REQUIRE(render_map(figure, folder / "map.png", why_not));  // caches fill
-    const double before = resident_megabytes();
-    for (int i = 0; i < 20; ++i) REQUIRE(render_map(figure, folder / "map.png", why_not));
-    const double growth = resident_megabytes() - before;
-    CHECK(growth < 15.0);  // [MB]; a picture leaked each time, 900 x 800 in four bytes, would be 55
+    double least_growth = 1e9;  // [MB]
+    for (int row = 0; row < 4; ++row) {
+        const double before = resident_megabytes();
+        for (int i = 0; i < 10; ++i) REQUIRE(render_map(figure, folder / "map.png", why_not));
+        least_growth = std::min(least_growth, resident_megabytes() - before);
+    }
+    CHECK(least_growth < 14.0);  // half of ten pictures of 900 x 800 in four bytes
 }
 
 TEST_CASE("Without a renderer a map is refused with a reason and leaves no file", "[figures]") {
