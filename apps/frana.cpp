@@ -103,6 +103,19 @@ void add_figures(CLI::App& app, FiguresOptions& options, std::string& size, Acti
     });
 }
 
+void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("verify", "problems with exact answers: errors, order, run time");
+    command->add_option("NAME", options.names, "problems; default all");
+    command->add_flag("--list", options.list, "list the problems");
+    command->add_option("--cells", options.cells, "grids: N,N,...")->delimiter(',')->check(CLI::Range(4, 100000));
+    command->add_option("--preset", options.preset, "default or paper")->check(CLI::IsMember({"default", "paper"}));
+    command->add_option("--points", options.per_cell, "points a cell")->check(CLI::IsMember({1, 4, 9, 16}));
+    command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
+    command->add_option("--json", options.json, "write the results as JSON");
+    command->add_option("--table", options.table, "write the table as text, without times");
+    command->callback([&] { action = [&] { return verify_command(options); }; });
+}
+
 int complain(const std::string& text, int code) {
     std::cout << std::flush;
     std::cerr << text << '\n';
@@ -142,12 +155,14 @@ int run_program(int argc, char** argv) {
     ParticlesOptions particles;
     FiguresOptions figures;
     std::string size;
+    VerifyOptions verify;
     Action action;
     add_run(app, run, action);
     add_check(app, check, action);
     add_describe(app, key, action);
     add_particles(app, particles, action);
     add_figures(app, figures, size, action);
+    add_verify(app, verify, action);
     if (argc > 1) refuse_unknown(app, argv[1]);
     try {
         app.parse(argc, argv);

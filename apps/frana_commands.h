@@ -41,6 +41,18 @@ struct ParticlesOptions {
     std::optional<long long> count;  ///< as particles.count
 };
 
+/// `frana verify [NAME...] [--list] [--cells N,N,...] [--preset P] [--points N] [--json FILE] [--table FILE]`
+struct VerifyOptions {
+    std::vector<std::string> names;  ///< empty: all
+    bool list = false;
+    std::vector<long long> cells;    ///< empty: each problem's own grids
+    std::string preset = "default";
+    int per_cell = 4;                ///< points a cell: 1, 4, 9 or 16
+    int threads = 0;
+    std::filesystem::path json, table;  ///< files to write, or empty
+};
+
+int verify_command(const VerifyOptions& options);        // frana_verify.cpp
 int run_command(const RunOptions& options);              // frana_run.cpp
 int figures_command(const FiguresOptions& options);      // frana_figures.cpp
 int check_command(const CheckOptions& options);          // frana_check.cpp

@@ -1,0 +1,22 @@
+#include "verify/library.h"
+
+namespace frana::verify {
+
+const std::vector<Problem>& library() {
+    static const std::vector<Problem> all = [] {
+        std::vector<Problem> problems;
+        for (const auto& room : {dam_break_problems}) {
+            for (Problem& problem : room()) problems.push_back(std::move(problem));
+        }
+        return problems;
+    }();
+    return all;
+}
+
+const Problem* find_problem(const std::string& name) {
+    for (const Problem& problem : library())
+        if (problem.name == name) return &problem;
+    return nullptr;
+}
+
+}  // namespace frana::verify
