@@ -213,16 +213,23 @@ void add_scheme(Table& table) {
         paper(number("scheme.filter", "1", fraction, 1.0, "strength of the surface filter"), 0.0));
     table.push_back(number("scheme.margin_limit", "1", between(0.0, 4.0), 1.0,
                            "limit of the quadratic part of the extrapolation at margins, in depths"));
-    table.push_back(paper(number("scheme.viscosity_linear", "1", not_negative, 0.1,
+    table.push_back(paper(number("scheme.viscosity_linear", "1", not_negative, 0.5,
                                  "artificial viscosity, coefficient of the wave speed"),
                           0.0));
     table.push_back(paper(number("scheme.viscosity_quadratic", "1", not_negative, 1.0,
                                  "artificial viscosity, coefficient of the velocity jump"),
                           0.0));
+    table.push_back(number("scheme.shock_gate", "1", not_negative, 0.2,
+                           "velocity jump between nodes, in wave speeds, that counts as a bore for the viscosity; 0: none"));
+    table.push_back(number("scheme.shock_sensor", "1", not_negative, 0.1,
+                           "jump, in wave speeds, from which the surface filter is held back; 0: never"));
     table.push_back(paper(flag("scheme.split", true, "split particles whose domain grows too long"), false));
+    table.push_back(paper(flag("scheme.merge", true, "merge particles where convergence crowds them"), false));
+    table.push_back(paper(
+        flag("scheme.reset_domains", true, "give a strongly sheared particle a rectangular domain again"), false));
     table.push_back(number("scheme.split_length", "cells", above_to(0.0, 2.0), 0.8,
                            "edge of a particle's domain that makes it split"));
-    table.push_back(number("scheme.split_min_mass", "1", fraction, 0.05,
+    table.push_back(number("scheme.split_min_mass", "1", fraction, 0.02,
                            "no split below this share of the largest mass at the start"));
     table.push_back(paper(
         flag("scheme.mass_fit", true, "fit the masses so that a smooth release starts at rest"), false));

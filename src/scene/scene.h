@@ -52,11 +52,15 @@ struct Scheme {
     double cfl = 0.5;                  ///< fraction of a cell per step [1]
     double filter = 1.0;               ///< strength of the surface filter, 0 = off [1]
     double margin_limit = 1.0;         ///< clamp of the quadratic part of the margin extrapolation [1]
-    double viscosity_linear = 0.1;     ///< c1 of the artificial viscosity [1]
+    double shock_gate = 0.2;           ///< velocity jump, in wave speeds, from which the limiter fades; 0: never [1]
+    double shock_sensor = 0.1;         ///< unlimited jump, in wave speeds, from which the filter is held back; 0: never
+    double viscosity_linear = 0.5;     ///< c1 of the artificial viscosity [1]
     double viscosity_quadratic = 1.0;  ///< c2 [1]
     double split_length = 0.8;         ///< domain edge that triggers a split, in cells [1]
-    double split_min_mass = 0.05;      ///< no split below this fraction of the largest initial mass [1]
+    double split_min_mass = 0.02;      ///< no split below this fraction of the largest initial mass [1]
     bool split = true;
+    bool merge = true;                 ///< merge points where convergence crowds them
+    bool reset_domains = true;         ///< replace strongly sheared domains by rectangles
     bool mass_fit = true;              ///< fit initial masses to the nodal release depth
     double curvature_length = 10.0;    ///< smoothing length of the bed's Hessian, 0 = none [m]
     double strain_rate_floor = 1e-3;   ///< regularisation of the yield stress [1/s]

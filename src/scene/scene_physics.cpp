@@ -56,7 +56,11 @@ Scheme scheme_of(const CaseFile& file) {
     scheme.margin_limit = value("margin_limit");
     scheme.viscosity_linear = value("viscosity_linear");
     scheme.viscosity_quadratic = value("viscosity_quadratic");
+    scheme.shock_gate = value("shock_gate");
+    scheme.shock_sensor = value("shock_sensor");
     scheme.split = file.flag("scheme.split");
+    scheme.merge = file.flag("scheme.merge");
+    scheme.reset_domains = file.flag("scheme.reset_domains");
     scheme.split_length = value("split_length");
     scheme.split_min_mass = value("split_min_mass");
     scheme.mass_fit = file.flag("scheme.mass_fit");

@@ -6,6 +6,7 @@
 
 #include "base/flush_denormals.h"
 #include "grid/stencil.h"
+#include "solver/shock.h"
 
 namespace frana {
 namespace {
@@ -43,6 +44,7 @@ DepthAveraged::DepthAveraged(const Scene& scene)
     if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape == Shape::quadratic)
         fit_ = fit_masses(flow_, *scene.still_surface);
+    if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(flow_);
     arrive();
     start_momentum_ = status_.momentum;
     signal_ += std::sqrt(flow_.gravity * status_.max_depth);
@@ -118,7 +120,10 @@ void DepthAveraged::arrive() {
         return depth_pass(flow_, {footprint_depth_, centre_});
     });
     timed_("shoreline", [&] { shoreline(flow_); });
-    timed_("filter", [&] { filter(flow_); });
+    timed_("filter", [&] {
+        shock_pass(flow_);
+        filter(flow_);
+    });
     timed_("peaks", [&] { update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_); });
 
     stress_power_ = points.stress_power;
@@ -146,6 +151,8 @@ void DepthAveraged::adapt_points(bool points_left) {
         timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, none, flow_.active); });
         drift_ = 0.0;
     }
+    if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_); }) > 0)
+        timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, merger_->gone(), flow_.active); });
 }
 
 /// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs

@@ -2,9 +2,11 @@
 // The depth-averaged material point method: scheme S2 on steep, curved terrain, or the choices of Fois et al. 2024.
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "solver/kick.h"
 #include "solver/mass_fit.h"
+#include "solver/merge.h"
 #include "solver/peaks.h"
 #include "solver/simulation.h"
 #include "solver/split.h"
@@ -71,6 +73,7 @@ private:
     std::unique_ptr<TransferKernel> transfer_;
     std::unique_ptr<KickKernel> kick_;
     Splitter splitter_;
+    std::optional<Merger> merger_;  ///< nothing when the scheme does not merge
     TileSorter sorter_;
     Peaks peaks_;
     StepClock timed_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "law/bed_law.h"
+#include "solver/shock.h"
 
 namespace frana {
 namespace {
@@ -18,23 +19,6 @@ double surface_gradient(const Nodes& nodes, Index k, Index step, bool wide, doub
     if (ahead && !behind) return (e[0] - e[-step]) / cell;
     if (behind && !ahead) return (e[step] - e[0]) / cell;
     return ((ahead ? 0.0 : e[step] - e[0]) - (behind ? 0.0 : e[-step] - e[0])) / (2.0 * cell);
-}
-
-/// Momentum flux of the limited artificial viscosity through the face between k and k + step [m^2/s^2]: acts in
-/// compression only, zero for linear velocities.
-double viscous_flux(const Flow& flow, const double* u, Index k, Index step) {
-    const Nodes& nodes = flow.nodes;
-    const auto known = [&](Index n) { return (nodes.flags[n] & (kWet | kMoving)) == (kWet | kMoving); };
-    if (!known(k) || !known(k + step)) return 0.0;
-    const Index s = 2 * step;  // u points into an array of pairs
-    const double d = u[2 * k + s] - u[2 * k];
-    if (!(d < 0.0)) return 0.0;
-    const double left = known(k - step) ? (u[2 * k] - u[2 * k - s]) / d : 1.0;
-    const double right = known(k + 2 * step) ? (u[2 * k + 2 * s] - u[2 * k + s]) / d : 1.0;
-    const double limit = std::max(0.0, std::min({0.5 * (left + right), 2.0 * left, 2.0 * right, 1.0}));
-    const double e = -d * (1.0 - limit), a = nodes.depth[k], b = nodes.depth[k + step];
-    const double h = 2.0 * a * b / (a + b);
-    return h * e * (flow.scheme.viscosity_linear * std::sqrt(flow.gravity * h) + flow.scheme.viscosity_quadratic * e);
 }
 
 /// P1's terrain: gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.
@@ -134,12 +118,10 @@ private:
             node.ex = surface_gradient(nodes, k, 1, nodes.flags[k] & kWideX, flow.cell);
             node.ey = surface_gradient(nodes, k, up, nodes.flags[k] & kWideY, flow.cell);
         }
-        if (viscous(flow) && node.depth > 1e-12 * flow.cell) {  // a rotated domain's centre may reach beyond its mass
-            const double* u = &nodes.before[0].x;
-            const double* v = &nodes.before[0].y;
+        if (has_viscosity(flow.scheme) && node.depth > 1e-12 * flow.cell) {  // a rotated domain's centre may reach beyond its mass
             const double scale = 1.0 / (flow.cell * node.depth);
-            node.push_x = scale * (viscous_flux(flow, u, k - 1, 1) - viscous_flux(flow, u, k, 1));
-            node.push_y = scale * (viscous_flux(flow, v, k - up, up) - viscous_flux(flow, v, k, up));
+            node.push_x = scale * (nodes.viscous_flux[k - 1].x - nodes.viscous_flux[k].x);
+            node.push_y = scale * (nodes.viscous_flux[k - up].y - nodes.viscous_flux[k].y);
         }
         if (nodes.force) {
             // At the rim of a stencil mass vanishes faster than force: a node that has depth counts half of it at
@@ -149,10 +131,6 @@ private:
             node.push_y += nodes.force[k].y / inertia;
         }
         return node;
-    }
-
-    static bool viscous(const Flow& flow) {
-        return flow.scheme.viscosity_linear > 0.0 || flow.scheme.viscosity_quadratic > 0.0;
     }
 
     /// Gentle terrain: a = -g grad(eta), friction with N = g.

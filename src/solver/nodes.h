@@ -33,7 +33,8 @@ enum NodeFlag : std::uint8_t {
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
         : deposit(grid.size() + 1), force(with_force ? grid.size() : 0), depth(grid.size()), surface(grid.size()),
-          surface_next(grid.size()), before(grid.size()), motion(grid.size() + 1), flags(grid.size()) {}
+          surface_next(grid.size()), before(grid.size()), motion(grid.size() + 1), viscous_flux(grid.size()),
+          shock(grid.size()), flags(grid.size()) {}
 
     Deposit* deposits() { return aligned(deposit.data()); }
     const Deposit* deposits() const { return aligned(deposit.data()); }
@@ -47,6 +48,8 @@ struct Nodes {
     LazyArray<double> surface_next;  ///< scratch of the surface passes
     LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]
     LazyArray<Motion> motion;        ///< use motions(), for the same reason
+    LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^2/s^2]
+    LazyArray<Pair> shock;           ///< sensor of those two faces, 0 (smooth) to 1 (bore) [1]
     LazyArray<std::uint8_t> flags;   ///< NodeFlag bits
 
 private:

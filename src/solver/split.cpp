@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/domain.h"
+
 namespace frana {
 namespace {
 
@@ -11,6 +13,15 @@ void clamp_edge(double& x, double& y, double longest) {
     if (length <= longest) return;
     x *= longest / length;
     y *= longest / length;
+}
+
+/// A strongly sheared domain, all edge and no area, gives way to the rectangle with the same second moments.
+void straighten(Columns& c, Index p) {
+    const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
+    const double area = c.r1x[p] * c.r2y[p] - c.r1y[p] * c.r2x[p];
+    if (l1 * l2 <= 16.0 * area * area) return;
+    const Edges edges = rectangle_of(Moments::of(c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]));
+    c.r1x[p] = edges.r1x, c.r1y[p] = edges.r1y, c.r2x[p] = edges.r2x, c.r2y[p] = edges.r2y;
 }
 
 bool must_split(const Columns& c, Index p, double split_length, double least_mass) {
@@ -57,6 +68,7 @@ Index Splitter::split(Flow& flow) {
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
             clamp_edge(c.r1x[p], c.r1y[p], longest);
             clamp_edge(c.r2x[p], c.r2y[p], longest);
+            if (flow.scheme.reset_domains) straighten(c, p);
             found += may_split && must_split(c, p, length, least_mass_);
         }
         tile_first_[n + 1] = found;

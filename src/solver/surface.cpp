@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "solver/shock.h"
+
 namespace frana {
 namespace {
 
@@ -102,12 +104,15 @@ void shoreline_sweep(Flow& flow) {
 /// One direction of the filter; reads `from`, writes `to`.
 void filter_along(Flow& flow, Index step, std::uint8_t wide, const LazyArray<double>& from, LazyArray<double>& to) {
     const double strength = flow.scheme.filter / 16.0;
+    const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
+    const Index up = flow.grid.stride();
     for_each_work_tile(flow.active, [&](Index, Index tile) {
         for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
             const double* e = from.data() + k;
             to[k] = e[0];
-            if (flow.nodes.flags[k] & wide)
-                to[k] -= strength * ((e[-2 * step] + e[2 * step]) - 4.0 * (e[-step] + e[step]) + 6.0 * e[0]);
+            if (!(flow.nodes.flags[k] & wide)) return;
+            const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(flow.nodes, k, up)) : 1.0;
+            to[k] -= held * strength * ((e[-2 * step] + e[2 * step]) - 4.0 * (e[-step] + e[step]) + 6.0 * e[0]);
         });
     });
 }

@@ -30,7 +30,8 @@ void mark_margin(Flow& flow);
 /// surface is extrapolated from the inside in two sweeps, never above h + z and never below the bed nearby.
 void shoreline(Flow& flow);
 
-/// Removes the 2-cell wave from the surface where five wet nodes stand in a row; exact on linear surfaces.
+/// Removes the 2-cell wave from the surface where five wet nodes stand in a row; exact on linear surfaces. Held back at
+/// bores (shock_pass), where that wave must stay visible to the pressure that undoes it.
 void filter(Flow& flow);
 
 }  // namespace frana

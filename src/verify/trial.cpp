@@ -96,7 +96,7 @@ void set_preset(Scene& scene, const std::string& preset) {
     s.transfer = Transfer::pic;
     s.cfl = 0.25;
     s.filter = s.viscosity_linear = s.viscosity_quadratic = 0.0;
-    s.split = s.mass_fit = false;
+    s.split = s.merge = s.reset_domains = s.mass_fit = false;
     s.paper_pressure = true;
 }
 

@@ -1,0 +1,30 @@
+#pragma once
+#include "solver/flow.h"
+
+namespace frana {
+
+/// Merges points that convergence has crowded together, so that splitting does not let their number grow for ever.
+class Merger {
+public:
+    /// A half-cell square may hold as many points as it ever does at the start, and at least two, unmerged.
+    explicit Merger(const Flow& flow);
+    /// In every half-cell square with more points than that, the two whose union adds least to the second moments
+    /// (m_a m_b / (m_a + m_b) |x_a - x_b|^2; Ward 1963) become one: mass, place, velocity and its gradient are the
+    /// mass-weighted means, the domain is the rectangle with the union's second moments. Mass and momentum are kept
+    /// exactly. No union when its domain would be nearly long enough to split again. Where two unions
+    /// tie, none is made: round-off must not choose, or mirror images part.
+    /// Needs columns sorted by tile. Marks merged-away points in gone(); returns how many. The caller drops them.
+    Index merge(Flow& flow);
+    const std::vector<std::uint8_t>& gone() const { return gone_; }
+
+private:
+    Index merge_tile(Flow& flow, Index n);
+    bool unite(Flow& flow, Index a, Index b, double longest);
+
+    Index most_ = 2;  ///< points that a half-cell square may hold
+    std::vector<std::uint8_t> gone_;
+    std::vector<Index> order_;   ///< points by tile and square
+    std::vector<Index> merged_;  ///< per tile
+};
+
+}  // namespace frana
