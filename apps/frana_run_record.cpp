@@ -45,7 +45,9 @@ std::string caption_of(const Scene& scene, const std::vector<GivenKey>& given) {
         text += fmt::format("{} {}{}{}, ", key.key.substr(9), value, has_unit ? " " : "",
                             has_unit ? key.unit : "");
     }
-    const char* model = scene.terrain == TerrainModel::steep ? "steep" : "shallow";
+    const char* model = scene.terrain == TerrainModel::steep     ? "steep"
+                        : scene.terrain == TerrainModel::shallow ? "shallow"
+                                                                 : "linearised";
     return text + fmt::format("terrain model {}, cells of {:.6g} m", model, scene.bed.geometry.cell);
 }
 

@@ -26,6 +26,28 @@ struct Quadratic {
     double offset;  ///< u - base
 };
 
+/// Cubic B-spline in one direction: 4 nodes from `base`, f = u - base in [1, 2).
+struct Cubic {
+    static constexpr int kNodes = 4;
+    Index base;
+    double w[4];
+    explicit Cubic(double u) {
+        const double first = std::floor(u) - 1.0;
+        base = static_cast<Index>(first);
+        offset = u - first;
+        const double t = offset - 1.0, s = 1.0 - t;
+        w[0] = s * s * s / 6.0;
+        w[1] = 2.0 / 3.0 - t * t * (1.0 - 0.5 * t);
+        w[2] = 2.0 / 3.0 - s * s * (1.0 - 0.5 * s);
+        w[3] = t * t * t / 6.0;
+    }
+    double slope(int n) const {
+        const double t = offset - 1.0, s = 1.0 - t;
+        return n == 0 ? -0.5 * s * s : n == 1 ? t * (1.5 * t - 2.0) : n == 2 ? s * (2.0 - 1.5 * s) : 0.5 * t * t;
+    }
+    double offset;  ///< u - base
+};
+
 /// Linear shape function (bilinear in the plane), the choice of Fois et al. 2024, eq. 14: 2 nodes from `base`.
 struct Linear {
     static constexpr int kNodes = 2;

@@ -33,7 +33,7 @@ struct Status {
     std::array<double, 2> momentum_left{};     ///< carried out by what left [kg m/s]
     double kinetic = 0.0;            ///< [J]
     double potential = 0.0;          ///< sum of rho g A h (Z + h/2) [J]
-    double dissipated = 0.0;         ///< by bed friction and rheology since the start [J]
+    double dissipated = 0.0;         ///< by bed friction, rheology and bores since the start [J]
     double energy_left = 0.0;        ///< carried out by what left [J]
     double p2g_mass_error = 0.0;     ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
     double p2g_momentum_error = 0.0; ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]

@@ -167,9 +167,12 @@ void CaseReader::check_meaning() {
     const auto chose = [&](const char* key, const char* word) {
         return !misread_.count(key) && case_.word(key) == word;
     };
-    if (chose("scheme.preset", "paper") && chose("terrain.model", "steep"))
-        wrong("terrain.model", "found \"steep\" with scheme.preset = \"paper\"",
+    if (chose("scheme.preset", "paper") && !misread_.count("terrain.model") && !chose("terrain.model", "shallow"))
+        wrong("terrain.model", "found \"" + case_.word("terrain.model") + "\" with scheme.preset = \"paper\"",
               "expected \"shallow\", the only terrain that preset has", "remove it, or use the default preset");
+    if (chose("scheme.preset", "paper") && chose("scheme.shape", "cubic"))
+        wrong("scheme.shape", "found \"cubic\" with scheme.preset = \"paper\"", "expected \"linear\" or \"quadratic\"",
+              "choose one of them, or scheme.preset = \"default\"");
     if (chose("scheme.shape", "linear") && chose("scheme.transfer", "apic"))
         wrong("scheme.transfer", "found \"apic\" with scheme.shape = \"linear\"",
               "expected \"tpic\", \"flip\" or \"pic\", since apic here is the one of quadratic shapes",

@@ -94,8 +94,9 @@ void add_terrain(Table& table) {
              "part of the elevation model to use: [xmin, ymin, xmax, ymax] in map coordinates");
     window.length = 4;
     table.push_back(absent(window, "the whole elevation model"));
-    table.push_back(paper(choice("terrain.model", {"steep", "shallow"}, "steep",
-                                 "steep: exact on any slope; shallow: gentle slopes (Fois et al. 2024)"),
+    table.push_back(paper(choice("terrain.model", {"steep", "shallow", "linearised"}, "steep",
+                                 "steep: exact on any slope; shallow: gentle slopes (Fois et al. 2024); linearised: "
+                                 "Savage and Hutter's theory, for comparison with its solutions"),
                           text("shallow")));
     Parameter curvature =
         choice("terrain.curvature", {"full", "inertia", "none"}, "full",
@@ -200,7 +201,7 @@ void add_scheme(Table& table) {
     const Range small = above_to(0.0, 1.0);
     table.push_back(choice("scheme.preset", {"default", "paper"}, "default",
                            "default; paper: the choices of Fois et al. (2024), single keys override them"));
-    table.push_back(paper(choice("scheme.shape", {"linear", "quadratic"}, "quadratic", "shape functions"),
+    table.push_back(paper(choice("scheme.shape", {"linear", "quadratic", "cubic"}, "quadratic", "shape functions"),
                           text("linear")));
     table.push_back(paper(choice("scheme.transfer", {"tpic", "apic", "flip", "pic"}, "tpic",
                                  "how velocity passes between particles and grid"),

@@ -12,11 +12,13 @@
 
 namespace frana {
 
-enum class TerrainModel { shallow, steep };
+/// shallow: gentle slopes (Fois et al. 2024). steep: exact on any slope, lakes rest. linearised: steep to first order in
+/// the depth gradient, which is Savage and Hutter's slope-normal theory in map coordinates; lakes do not rest.
+enum class TerrainModel { shallow, steep, linearised };
 enum class Curvature { none, inertia, full };
 enum class Sides { open, wall };
 enum class Transfer { tpic, apic, flip, pic };
-enum class Shape { linear, quadratic };
+enum class Shape { linear, quadratic, cubic };
 
 /// Bed laws: shear stress between the flow and its bed (law/bed_law.h has the formulas).
 namespace bed {

@@ -44,11 +44,16 @@ Transfer transfer_of(const std::string& word) {
     return Transfer::pic;
 }
 
+Shape shape_of(const std::string& word) {
+    if (word == "linear") return Shape::linear;
+    return word == "cubic" ? Shape::cubic : Shape::quadratic;
+}
+
 Scheme scheme_of(const CaseFile& file) {
     const auto value = [&](const char* name) { return file.number(std::string("scheme.") + name); };
     Scheme scheme;
     scheme.preset = file.word("scheme.preset");
-    scheme.shape = file.word("scheme.shape") == "linear" ? Shape::linear : Shape::quadratic;
+    scheme.shape = shape_of(file.word("scheme.shape"));
     scheme.transfer = transfer_of(file.word("scheme.transfer"));
     scheme.flip_ratio = value("flip_ratio");
     scheme.cfl = value("cfl");
@@ -88,6 +93,11 @@ Output output_of(const CaseFile& file) {
     return output;
 }
 
+TerrainModel terrain_of(const std::string& word) {
+    if (word == "shallow") return TerrainModel::shallow;
+    return word == "linearised" ? TerrainModel::linearised : TerrainModel::steep;
+}
+
 Curvature curvature_of(const std::string& word) {
     if (word == "full") return Curvature::full;
     return word == "inertia" ? Curvature::inertia : Curvature::none;
@@ -98,7 +108,7 @@ Curvature curvature_of(const std::string& word) {
 void set_physics(const CaseFile& file, Scene& scene) {
     scene.gravity = file.number("terrain.gravity");
     scene.density = file.number("material.density");
-    scene.terrain = file.word("terrain.model") == "shallow" ? TerrainModel::shallow : TerrainModel::steep;
+    scene.terrain = terrain_of(file.word("terrain.model"));
     scene.curvature = curvature_of(file.word("terrain.curvature"));
     scene.sides = file.word("boundary.sides") == "wall" ? Sides::wall : Sides::open;
     scene.bed_law = bed_law(file);

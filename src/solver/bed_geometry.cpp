@@ -82,7 +82,15 @@ void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& s
     for_each_node(grid, 2, [&](Index, Index, Index k) { field[k] = scratch[k]; });
 }
 
-constexpr double kSplineAverage[3] = {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
+/// Averages a bilinear bed with the scheme's own shape function: B-splines of two degrees more at whole numbers.
+void average(const Scene& scene, const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch) {
+    constexpr double quadratic[3] = {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
+    constexpr double cubic[3] = {66.0 / 120.0, 26.0 / 120.0, 1.0 / 120.0};
+    if (scene.scheme.shape == Shape::linear) return;
+    const auto& weights = scene.scheme.shape == Shape::cubic ? cubic : quadratic;
+    smooth(grid, field, scratch, 1, weights);
+    smooth(grid, field, scratch, grid.stride(), weights);
+}
 
 /// The bed's Hessian, from the bed extended linearly whatever the sides: a slope that meets a wall is mirrored for
 /// the pressure, but it has no curvature there.
@@ -92,10 +100,7 @@ void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<
     for_each_node(grid, 0, [&](Index i, Index j, Index k) {
         smoothed[k] = extended(z, grid.nx(), grid.ny(), i, j, false);
     });
-    if (scene.scheme.shape == Shape::quadratic) {
-        smooth(grid, smoothed, scratch, 1, kSplineAverage);
-        smooth(grid, smoothed, scratch, grid.stride(), kSplineAverage);
-    }
+    average(scene, grid, smoothed, scratch);
     // A pass of the binomial filter adds variance cell^2/2 (scheme: sigma = cell sqrt(passes / 2)).
     const Index passes = std::min<Index>(static_cast<Index>(std::lround(2.0 * length * length / (cell * cell))), 400);
     const double binomial[3] = {0.5, 0.25, 0.0};
@@ -130,10 +135,7 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
         bed.exit[k] = inside && std::isnan(scene.bed.at(i, j));
     });
     LazyArray<double> scratch(grid.size());
-    if (scene.scheme.shape == Shape::quadratic) {
-        smooth(grid, bed.z, scratch, 1, kSplineAverage);
-        smooth(grid, bed.z, scratch, up, kSplineAverage);
-    }
+    average(scene, grid, bed.z, scratch);
     bed.z_min = LazyArray<double>(grid.size());
     bed.slope_x = LazyArray<double>(grid.size());
     bed.slope_y = LazyArray<double>(grid.size());
@@ -147,7 +149,7 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
             for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);
         bed.z_min[k] = least;
     });
-    if (scene.curvature != Curvature::none && scene.terrain == TerrainModel::steep) fill_curvature(scene, grid, z, bed);
+    if (scene.curvature != Curvature::none && scene.terrain != TerrainModel::shallow) fill_curvature(scene, grid, z, bed);
     return bed;
 }
 

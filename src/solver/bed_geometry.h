@@ -18,7 +18,7 @@ struct BedGeometry {
 
 /// Fills the geometry of scene.bed for the scheme's shape function (quadratic: the elevation model is taken
 /// bilinear between nodes, and its average with the B-spline is exact: weights (1, 76, 230, 76, 1)/384 in each
-/// direction; linear: z is the nodal elevation itself, as Fois et al. 2024 have it).
+/// direction; cubic: (1, 26, 66, 26, 1)/120; linear: z is the nodal elevation itself, as Fois et al. 2024 have it).
 /// Throws UserError when scene.bed holds no data at all.
 BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid);
 

@@ -35,14 +35,14 @@ void StepClock::add(const char* phase, double seconds) {
 
 DepthAveraged::DepthAveraged(const Scene& scene)
     : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
-      peaks_(flow_.grid), rheology_(scene.rheology), steep_(scene.terrain == TerrainModel::steep),
+      peaks_(flow_.grid), rheology_(scene.rheology), steep_(scene.terrain != TerrainModel::shallow),
       curved_(steep_ && scene.curvature == Curvature::full), footprint_depth_(scene.output.footprint_depth),
       rest_fraction_(scene.rest_fraction) {
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
     place(scene.particles);
     if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
-    else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape == Shape::quadratic)
+    else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear)
         fit_ = fit_masses(flow_, *scene.still_surface);
     if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(flow_);
     arrive();

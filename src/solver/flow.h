@@ -18,7 +18,7 @@ struct Flow {
         : grid(scene.bed.geometry), bed(make_bed_geometry(scene, grid)),
           nodes(grid, scene.rheology.index() != 0 || scene.scheme.paper_pressure), density(scene.density),
           gravity(scene.gravity), cell(grid.cell()), area(cell * cell), walls(scene.sides == Sides::wall),
-          steep(scene.terrain == TerrainModel::steep), scheme(scene.scheme) {}
+          steep(scene.terrain != TerrainModel::shallow), scheme(scene.scheme) {}
 
     TileGrid grid;
     BedGeometry bed;

@@ -27,8 +27,11 @@ struct Gentle {
     static constexpr bool kSteep = false;
 };
 
-/// Steep terrain. kCurvature: none, inertia (v.H.v in the acceleration only), full (in the friction too).
-template <Curvature kCurvature>
+/// Driving slope of the surface, times its gravity: a = -gravity * (x, y).
+struct Drive { double x, y; };
+
+/// Steep terrain. kLinear: to first order in the depth gradient. kCurvature: none, inertia (v.H.v in the acceleration only), full (in the friction too).
+template <Curvature kCurvature, bool kLinear>
 struct Steep {
     static constexpr bool kSteep = true;
     double bx, by, hxx = 0.0, hxy = 0.0, hyy = 0.0;
@@ -44,13 +47,26 @@ struct Steep {
         if constexpr (kCurvature == Curvature::none) return g;
         return std::max(0.0, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
     }
+    /// grad(eta) / (1 + gradZ . grad(eta)): a column that accelerates vertically with its bed. The continuation
+    /// 1/(1 - q) for q < 0 keeps the factor positive where the surface slopes against a steep bed. Linear:
+    /// c^2 (gradZ + grad h - c^2 gradZ (gradZ . grad h)), the first terms of its series in grad h.
+    Drive drive(double ex, double ey, double cosine) const {
+        if constexpr (kLinear) {
+            const double c2 = cosine * cosine, hx = ex - bx, hy = ey - by, along = c2 * (bx * hx + by * hy);
+            return {c2 * (ex - bx * along), c2 * (ey - by * along)};
+        } else {
+            const double q = bx * ex + by * ey, reduce = q >= 0.0 ? 1.0 / (1.0 + q) : 1.0 - q;
+            return {reduce * ex, reduce * ey};
+        }
+    }
 };
 
 struct Node {
     double vx, vy;      ///< before the kick [m/s]
     double ex, ey;      ///< gradient of the free surface [1]
     double depth, mass;
-    double push_x, push_y;  ///< viscosity and stress [m/s^2]
+    double push_x, push_y;  ///< artificial viscosity and stress [m/s^2]
+    double loss_x = 0.0, loss_y = 0.0;  ///< the viscosity's part, whose work is lost [m/s^2]
 };
 
 struct Kicked {
@@ -91,8 +107,8 @@ private:
         if (share == 0.0) return;
         Node node = prepared(flow, k, mass);
         if (flow.walls) {  // what a mirror cancels, it cancels exactly
-            if (i == 0 || i == flow.grid.nx() - 1) node.ex = node.push_x = node.vx = 0.0;
-            if (j == 0 || j == flow.grid.ny() - 1) node.ey = node.push_y = node.vy = 0.0;
+            if (i == 0 || i == flow.grid.nx() - 1) node.ex = node.push_x = node.loss_x = node.vx = 0.0;
+            if (j == 0 || j == flow.grid.ny() - 1) node.ey = node.push_y = node.loss_y = node.vy = 0.0;
         }
         const Kicked after = dt > 0.0 ? kicked(flow, Terrain(flow, k), node, dt) : resting_clock(node);
         motion.vx = after.vx;
@@ -122,6 +138,8 @@ private:
             const double scale = 1.0 / (flow.cell * node.depth);
             node.push_x = scale * (nodes.viscous_flux[k - 1].x - nodes.viscous_flux[k].x);
             node.push_y = scale * (nodes.viscous_flux[k - up].y - nodes.viscous_flux[k].y);
+            node.loss_x = node.push_x;
+            node.loss_y = node.push_y;
         }
         if (nodes.force) {
             // At the rim of a stencil mass vanishes faster than force: a node that has depth counts half of it at
@@ -141,21 +159,18 @@ private:
         return braked(state, n, dx, dy, 0.0, 0.0, g, dt);
     }
 
-    /// Steep terrain: a = -g_c grad(eta) / (1 + gradZ . grad(eta)), g_c = (g + v.H.v)+ at the middle of the step
-    /// (model: a column that accelerates vertically with its bed). The continuation 1/(1 - q) for q < 0 keeps the
-    /// factor positive where the surface slopes against a steep bed.
-    template <Curvature kCurvature>
-    Kicked kicked(const Flow& flow, const Steep<kCurvature>& bed, const Node& n, double dt) const {
-        const double g = flow.gravity, q = bed.bx * n.ex + bed.by * n.ey;
-        const double reduce = q >= 0.0 ? 1.0 / (1.0 + q) : 1.0 - q;
+    /// Steep terrain: a = -g_c drive, g_c = (g + v.H.v)+ at the middle of the step.
+    template <Curvature kCurvature, bool kLinear>
+    Kicked kicked(const Flow& flow, const Steep<kCurvature, kLinear>& bed, const Node& n, double dt) const {
+        const double g = flow.gravity;
         const double cosine = 1.0 / std::sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
+        const Drive slope = bed.drive(n.ex, n.ey, cosine);
         double gravity = bed.gravity(g, n.vx, n.vy);
         if constexpr (kCurvature != Curvature::none) {
-            const auto [mx, my] = midpoint(bed, n, gravity * reduce, g, cosine, dt);
+            const auto [mx, my] = midpoint(bed, n, {gravity * slope.x, gravity * slope.y}, g, cosine, dt);
             gravity = bed.gravity(g, mx, my);
         }
-        const double drive = gravity * reduce;
-        const double dx = n.vx + dt * (n.push_x - drive * n.ex), dy = n.vy + dt * (n.push_y - drive * n.ey);
+        const double dx = n.vx + dt * (n.push_x - gravity * slope.x), dy = n.vy + dt * (n.push_y - gravity * slope.y);
         const double speed = std::sqrt(dx * dx + dy * dy);
         const double rise = speed > 0.0 ? (dx * bed.bx + dy * bed.by) / speed : 0.0;
         const double kappa = std::sqrt(1.0 + rise * rise);
@@ -165,10 +180,10 @@ private:
     }
 
     /// Velocity in the middle of the step, driven and braked by Coulomb friction: makes v.H.v second order.
-    template <Curvature kCurvature>
-    std::pair<double, double> midpoint(const Steep<kCurvature>& bed, const Node& n, double drive, double g,
+    template <Curvature kCurvature, bool kLinear>
+    std::pair<double, double> midpoint(const Steep<kCurvature, kLinear>& bed, const Node& n, const Drive& pull, double g,
                                        double cosine, double dt) const {
-        double mx = n.vx - 0.5 * dt * drive * n.ex, my = n.vy - 0.5 * dt * drive * n.ey;
+        double mx = n.vx - 0.5 * dt * pull.x, my = n.vy - 0.5 * dt * pull.y;
         const double speed = std::sqrt(mx * mx + my * my);
         if (speed == 0.0) return {0.0, 0.0};
         const double rise = (mx * bed.bx + my * bed.by) / speed;
@@ -186,8 +201,11 @@ private:
         const double speed = speed_after(law_, state, s0, driven, dt);
         const double keep = speed / driven, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
         const double kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
-        // Work of friction: its impulse times the mean speed of the step; none where nothing moves.
-        const double work = state.kappa * state.kappa * (driven - speed) * 0.5 * (s0 + speed);
+        // Work of friction: its impulse times the mean speed of the step; none where nothing moves. And what bores
+        // lose through the artificial viscosity, which moves a node along its bed.
+        const double mx = 0.5 * (n.vx + vx), my = 0.5 * (n.vy + vy), mz = mx * bx + my * by;
+        const double bore = -dt * (n.loss_x * (mx + bx * mz) + n.loss_y * (my + by * mz));
+        const double work = state.kappa * state.kappa * (driven - speed) * 0.5 * (s0 + speed) + bore;
         return {vx, vy, kinetic, work, wave_gravity};
     }
 
@@ -210,16 +228,25 @@ std::unique_ptr<KickKernel> with_law(const Scene& scene) {
         scene.bed_law);
 }
 
+template <bool kLinear>
+std::unique_ptr<KickKernel> with_curvature(const Scene& scene) {
+    switch (scene.curvature) {
+        case Curvature::none: return with_law<Steep<Curvature::none, kLinear>>(scene);
+        case Curvature::inertia: return with_law<Steep<Curvature::inertia, kLinear>>(scene);
+        case Curvature::full: return with_law<Steep<Curvature::full, kLinear>>(scene);
+    }
+    throw InternalError("unknown curvature");
+}
+
 }  // namespace
 
 std::unique_ptr<KickKernel> make_kick(const Scene& scene) {
-    if (scene.terrain == TerrainModel::shallow) return with_law<Gentle>(scene);
-    switch (scene.curvature) {
-        case Curvature::none: return with_law<Steep<Curvature::none>>(scene);
-        case Curvature::inertia: return with_law<Steep<Curvature::inertia>>(scene);
-        case Curvature::full: return with_law<Steep<Curvature::full>>(scene);
+    switch (scene.terrain) {
+        case TerrainModel::shallow: return with_law<Gentle>(scene);
+        case TerrainModel::steep: return with_curvature<false>(scene);
+        case TerrainModel::linearised: return with_curvature<true>(scene);
     }
-    throw InternalError("unknown curvature");
+    throw InternalError("unknown terrain model");
 }
 
 }  // namespace frana

@@ -10,7 +10,8 @@ namespace {
 
 /// The nodes that a point's column mass goes to and their weights, walls folded in: one row of B^T.
 struct Reach {
-    static constexpr int kMost = 36;
+    static constexpr int kMost = 64;  // four sub-points, 4 x 4 nodes of a cubic
+    int count = 0;
     Index node[kMost];
     double weight[kMost];
 };
@@ -32,10 +33,10 @@ Folded folded(const Flow& flow, Index i, Index j) {
     return {flow.grid.at(i, j), factor};
 }
 
-Reach reach_of(const Flow& flow, Index p) {
+template <class S>
+Reach reach_with(const Flow& flow, Index p) {
     const Columns& c = flow.columns;
     Reach reach;
-    int n = 0;
     for (int sub = 0; sub < 4; ++sub) {
         const double s1 = sub & 1 ? 0.25 : -0.25, s2 = sub & 2 ? 0.25 : -0.25;
         double x = c.x[p] + s1 * c.r1x[p] + s2 * c.r2x[p], y = c.y[p] + s1 * c.r1y[p] + s2 * c.r2y[p];
@@ -43,15 +44,19 @@ Reach reach_of(const Flow& flow, Index p) {
             x = std::clamp(x, 0.0, static_cast<double>(flow.grid.nx() - 1));
             y = std::clamp(y, 0.0, static_cast<double>(flow.grid.ny() - 1));
         }
-        const Quadratic sx(x), sy(y);
-        for (int j = 0; j < 3; ++j)
-            for (int i = 0; i < 3; ++i) {
+        const S sx(x), sy(y);
+        for (int j = 0; j < S::kNodes; ++j)
+            for (int i = 0; i < S::kNodes; ++i) {
                 const Folded to = folded(flow, sx.base + i, sy.base + j);
-                reach.node[n] = to.k;
-                reach.weight[n++] = 0.25 * to.factor * sx.w[i] * sy.w[j];
+                reach.node[reach.count] = to.k;
+                reach.weight[reach.count++] = 0.25 * to.factor * sx.w[i] * sy.w[j];
             }
     }
     return reach;
+}
+
+Reach reach_of(const Flow& flow, Index p) {
+    return flow.scheme.shape == Shape::cubic ? reach_with<Cubic>(flow, p) : reach_with<Quadratic>(flow, p);
 }
 
 /// The system B W B^T on the chosen rows, applied without being stored.
@@ -72,7 +77,7 @@ public:
 #pragma omp parallel for schedule(static)
         for (Index p = 0; p < count; ++p) {
             double sum = 0.0;
-            for (int n = 0; n < Reach::kMost; ++n)
+            for (int n = 0; n < reach_[p].count; ++n)
                 if (const Index r = row_[reach_[p].node[n]]) sum += reach_[p].weight[n] * y[r - 1];
             change[p] = weight_[p] * sum;
         }
@@ -81,7 +86,7 @@ public:
     void collect(const std::vector<double>& mass, std::vector<double>& sums) const {
         sums.assign(static_cast<std::size_t>(rows_), 0.0);
         for (std::size_t p = 0; p < reach_.size(); ++p)
-            for (int n = 0; n < Reach::kMost; ++n)
+            for (int n = 0; n < reach_[p].count; ++n)
                 if (const Index r = row_[reach_[p].node[n]]) sums[r - 1] += reach_[p].weight[n] * mass[p];
     }
 
@@ -128,7 +133,7 @@ void deposit_columns(Flow& flow) {
     });
     for (Index p = 0; p < flow.columns.count(); ++p) {
         const Reach reach = reach_of(flow, p);
-        for (int n = 0; n < Reach::kMost; ++n)
+        for (int n = 0; n < reach.count; ++n)
             deposits[reach.node[n]].column_mass += flow.columns.mass[p] * reach.weight[n];
     }
     depth_pass(flow, {0.0, Vec2(0, 0)});

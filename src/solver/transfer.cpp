@@ -231,8 +231,10 @@ private:
                 by_y += (sy.w[j] * (static_cast<double>(j) - sy.offset)) * row;
             else by_y += sy.slope(j) * row;
         }
-        // APIC: C = 4/cell^2 sum N v (x) d (Jiang et al. 2015, quadratic); TPIC: C = sum v (x) grad N.
-        const double scale = (kTransfer == Transfer::apic ? 4.0 : 1.0) / flow.cell;
+        // APIC: C = D^-1 sum N v (x) d, D = cell^2/4 (quadratic) or cell^2/3 (cubic; Jiang et al. 2015);
+        // TPIC: C = sum v (x) grad N.
+        constexpr double inertia = std::is_same_v<S, Cubic> ? 3.0 : 4.0;
+        const double scale = (kTransfer == Transfer::apic ? inertia : 1.0) / flow.cell;
         return {value[0], value[1], scale * by_x[0], scale * by_y[0], scale * by_x[1], scale * by_y[1],
                 value[2], old_x, old_y};
     }
@@ -331,7 +333,8 @@ std::unique_ptr<TransferKernel> with_rheology(const Scene& scene) {
     return std::visit(
         [&](const auto& law) -> std::unique_ptr<TransferKernel> {
             using Law = std::decay_t<decltype(law)>;
-            if (scene.scheme.paper_pressure) return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
+            if constexpr (std::is_same_v<S, Cubic>) expect(!scene.scheme.paper_pressure, "cubic shapes with pressure on points");
+            else if (scene.scheme.paper_pressure) return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
             return std::make_unique<Kernel<S, kTransfer, Law, false>>(law);
         },
         scene.rheology);
@@ -351,7 +354,12 @@ std::unique_ptr<TransferKernel> with_transfer(const Scene& scene) {
 }  // namespace
 
 std::unique_ptr<TransferKernel> make_transfer(const Scene& scene) {
-    return scene.scheme.shape == Shape::quadratic ? with_transfer<Quadratic>(scene) : with_transfer<Linear>(scene);
+    switch (scene.scheme.shape) {
+        case Shape::linear: return with_transfer<Linear>(scene);
+        case Shape::quadratic: return with_transfer<Quadratic>(scene);
+        case Shape::cubic: return with_transfer<Cubic>(scene);
+    }
+    throw InternalError("unknown shape");
 }
 
 PointSums node_sums(Flow& flow) {
