@@ -41,7 +41,8 @@ struct ParticlesOptions {
     std::optional<long long> count;  ///< as particles.count
 };
 
-/// `frana verify [NAME...] [--list] [--cells N,N,...] [--preset P] [--points N] [--json FILE] [--table FILE]`
+/// `frana verify [NAME...] [--list] [--cells N,N,...] [--preset P] [--points N] [--json FILE] [--table FILE]
+/// [--figure FILE.png] [--study]`
 struct VerifyOptions {
     std::vector<std::string> names;  ///< empty: all
     bool list = false;
@@ -50,6 +51,8 @@ struct VerifyOptions {
     int per_cell = 4;                ///< points a cell: 1, 4, 9 or 16
     int threads = 0;
     std::filesystem::path json, table;  ///< files to write, or empty
+    std::filesystem::path figure;       ///< PNG of error over run time beside other codes, or empty
+    bool study = false;                 ///< what each component of the scheme is worth
 };
 
 int verify_command(const VerifyOptions& options);        // frana_verify.cpp

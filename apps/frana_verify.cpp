@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "frana_commands.h"
+#include "frana_verify_figure.h"
 #include "scene/parameters.h"
 #include "verify/library.h"
 #include "verify/table.h"
@@ -60,6 +61,14 @@ int verify_command(const VerifyOptions& options) {
         return 0;
     }
     if (options.threads > 0) omp_set_num_threads(options.threads);
+    if (options.study) {
+        print_study(options.table);
+        return 0;
+    }
+    if (!options.figure.empty()) {
+        draw_work_precision(options.names.empty() ? std::vector<const Problem*>{} : chosen(options.names), options.figure);
+        return 0;
+    }
     verify::Setup setup;
     setup.preset = options.preset;
     setup.per_side = static_cast<int>(std::lround(std::sqrt(options.per_cell)));

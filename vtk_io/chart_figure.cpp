@@ -104,6 +104,16 @@ std::vector<double> small_ticks(const Axis& axis) {
     return at;
 }
 
+/// A disc that marks a point.
+void draw_mark(Canvas& canvas, const Vec2& at, double unit, const Colour& colour) {
+    std::vector<Vec2> disc;
+    for (int k = 0; k < 16; ++k) {
+        const double turn = 2.0 * 3.14159265358979323846 * k / 16.0;
+        disc.push_back(at + 0.3 * unit * Vec2(std::cos(turn), std::sin(turn)));
+    }
+    canvas.fill(disc, colour);
+}
+
 /// The look of the i-th line.
 Pen curve_pen(std::size_t i, double unit) {
     Pen pen;
@@ -201,7 +211,10 @@ void ChartDrawing::set_axes() {
         for (const auto& label : axis.ticks.labels)
             label_width_ = std::max(label_width_, text_size(label, {unit_, {}, {}, 0, false, false, {}}).x());
     }
-    x_axis_ = axis_over(range_of(all_x, figure_.log_x), figure_.x_range, figure_.log_x, 0.0);
+    bool marks = false;  // a disc needs room beyond its point
+    for (const auto& panel : figure_.panels)
+        for (const auto& curve : panel.curves) marks = marks || curve.marks;
+    x_axis_ = axis_over(range_of(all_x, figure_.log_x), figure_.x_range, figure_.log_x, marks ? 0.04 : 0.0);
     set_ticks(x_axis_, static_cast<int>(std::clamp(figure_.width / (7.0 * unit_), 2.0, 9.0)));
     left_ = std::round(label_width_ + 3.6 * unit_);
 }
@@ -218,10 +231,15 @@ double ChartDrawing::draw_legend(const ChartPanel& panel, double top) {
         widths.push_back(2.6 * unit_ + text_size(entries.back().text, style).x());
     }
     if (entries.empty()) return 0.5 * unit_;
+    std::vector<bool> marked;
+    for (const Curve& curve : panel.curves)
+        if (!curve.name.empty()) marked.push_back(curve.marks);
     const Rows rows = in_rows(widths, 1.6 * unit_, figure_.width - 1.6 * unit_ - left_);
-    for (std::size_t i = 0; i < entries.size(); ++i)
-        draw_legend_entry(canvas_, entries[i],
-                          {left_ + rows.places[i].first, top - row * (rows.places[i].second + 0.5)}, unit_);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const Vec2 at(left_ + rows.places[i].first, top - row * (rows.places[i].second + 0.5));
+        draw_legend_entry(canvas_, entries[i], at, unit_);
+        if (marked[i]) draw_mark(canvas_, at + Vec2(1.05 * unit_, 0.0), unit_, entries[i].pen.colour);
+    }
     return row * rows.count + 0.2 * unit_;
 }
 
@@ -309,8 +327,12 @@ void ChartDrawing::draw_panel(const ChartPanel& panel, const Axis& y_axis, const
     for (const auto& curve : panel.curves)
         if (curve.kind == Curve::Kind::ground) fill_below(curve, y_axis, frame, colours::ground);
     for (std::size_t i = 0; i < panel.curves.size(); ++i)
-        for (const auto& line : pieces(panel.curves[i], y_axis, frame))
+        for (const auto& line : pieces(panel.curves[i], y_axis, frame)) {
             for (const auto& part : clipped(line, frame)) canvas_.stroke(part, look(panel, i).pen);
+            if (!panel.curves[i].marks) continue;
+            for (const Vec2& at : line)
+                if (frame.holds(at)) draw_mark(canvas_, at, unit_, look(panel, i).pen.colour);
+        }
     draw_labels(panel, y_axis, frame, last);
 }
 

@@ -18,6 +18,7 @@ struct Curve {
     std::string name;
     std::vector<double> x, y;
     Kind kind = Kind::line;
+    bool marks = false;  ///< a disc at each point of the line
 };
 
 struct ChartPanel {

@@ -212,6 +212,9 @@ void add_scheme(Table& table) {
         paper(number("scheme.cfl", "1", small, 0.5, "largest way in one time step, in cells"), 0.25));
     table.push_back(
         paper(number("scheme.filter", "1", fraction, 1.0, "strength of the surface filter"), 0.0));
+    table.push_back(flag("scheme.margin", true, "extrapolate the surface at margins from the inside"));
+    table.push_back(number("scheme.sub_point_reach", "1", between(0.0, 0.5), 0.25,
+                           "place of a particle's four sub-points, in edges of its domain; 0: all at its centre"));
     table.push_back(number("scheme.margin_limit", "1", between(0.0, 4.0), 1.0,
                            "limit of the quadratic part of the extrapolation at margins, in depths"));
     table.push_back(paper(number("scheme.viscosity_linear", "1", not_negative, 0.5,

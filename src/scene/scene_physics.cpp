@@ -58,6 +58,8 @@ Scheme scheme_of(const CaseFile& file) {
     scheme.flip_ratio = value("flip_ratio");
     scheme.cfl = value("cfl");
     scheme.filter = value("filter");
+    scheme.margin = file.flag("scheme.margin");
+    scheme.sub_point_reach = value("sub_point_reach");
     scheme.margin_limit = value("margin_limit");
     scheme.viscosity_linear = value("viscosity_linear");
     scheme.viscosity_quadratic = value("viscosity_quadratic");

@@ -37,8 +37,9 @@ template <class S>
 Reach reach_with(const Flow& flow, Index p) {
     const Columns& c = flow.columns;
     Reach reach;
+    const double sub_reach = flow.scheme.sub_point_reach;
     for (int sub = 0; sub < 4; ++sub) {
-        const double s1 = sub & 1 ? 0.25 : -0.25, s2 = sub & 2 ? 0.25 : -0.25;
+        const double s1 = sub & 1 ? sub_reach : -sub_reach, s2 = sub & 2 ? sub_reach : -sub_reach;
         double x = c.x[p] + s1 * c.r1x[p] + s2 * c.r2x[p], y = c.y[p] + s1 * c.r1y[p] + s2 * c.r2y[p];
         if (!flow.walls) {
             x = std::clamp(x, 0.0, static_cast<double>(flow.grid.nx() - 1));

@@ -193,7 +193,7 @@ void mark_margin(Flow& flow) {
 void shoreline(Flow& flow) {
     mark_margin(flow);
     mirror_surface(flow);
-    for (int sweep = 0; sweep < 2; ++sweep) {
+    for (int sweep = 0; sweep < (flow.scheme.margin ? 2 : 0); ++sweep) {
         shoreline_sweep(flow);
         mirror_surface(flow);
     }

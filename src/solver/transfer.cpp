@@ -52,15 +52,15 @@ void clear_nodes(Flow& flow) {
     });
 }
 
-/// The four sub-points of a domain at +- r1/4 +- r2/4 carry a quarter of the column each. At open sides they are
+/// The four sub-points of a domain at +- r1/4 +- r2/4 (scheme.sub_point_reach) carry a quarter of the column each. At open sides they are
 /// held inside the domain, so that no mass waits beyond the edge.
 template <class S>
 void deposit_sub_points(const Flow& flow, Deposit* deposits, Index p) {
     const Columns& c = flow.columns;
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-    const double quarter = 0.25 * c.mass[p];
+    const double quarter = 0.25 * c.mass[p], reach = flow.scheme.sub_point_reach;
     for (int k = 0; k < 4; ++k) {
-        const double s1 = k & 1 ? 0.25 : -0.25, s2 = k & 2 ? 0.25 : -0.25;
+        const double s1 = k & 1 ? reach : -reach, s2 = k & 2 ? reach : -reach;
         // Domains are held below one cell when they are split; between two such times 3/4 is out of their reach.
         double x = c.x[p] + std::clamp(s1 * c.r1x[p] + s2 * c.r2x[p], -0.75, 0.75);
         double y = c.y[p] + std::clamp(s1 * c.r1y[p] + s2 * c.r2y[p], -0.75, 0.75);

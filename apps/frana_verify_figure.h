@@ -1,0 +1,18 @@
+#pragma once
+// Error over run time, and the worth of the scheme's components.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "verify/problem.h"
+
+namespace frana {
+
+/// Runs the problems (default: those that other codes were measured on) with several presets and points a cell, each on
+/// its own grids, and draws their errors over wall time beside the other codes' into a PNG. Prints what it measures.
+void draw_work_precision(std::vector<const verify::Problem*> problems, const std::filesystem::path& png);
+
+/// Prints the table of the component study; also into `table` unless that is empty.
+void print_study(const std::filesystem::path& table);
+
+}  // namespace frana
