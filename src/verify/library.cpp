@@ -5,7 +5,8 @@ namespace frana::verify {
 const std::vector<Problem>& library() {
     static const std::vector<Problem> all = [] {
         std::vector<Problem> problems;
-        for (const auto& room : {dam_break_problems}) {
+        for (const auto& room : {dam_break_problems, bowl_problems, lake_problems, paper_problems, pile_problems,
+                                 radial_dam_problems}) {
             for (Problem& problem : room()) problems.push_back(std::move(problem));
         }
         return problems;

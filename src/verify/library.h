@@ -11,5 +11,10 @@ const Problem* find_problem(const std::string& name);
 
 // The rooms of the library, one file each.
 std::vector<Problem> dam_break_problems();  // problems_dam_break.cpp
+std::vector<Problem> bowl_problems();       // problems_bowl.cpp
+std::vector<Problem> lake_problems();       // problems_lake.cpp
+std::vector<Problem> paper_problems();      // problems_paper.cpp
+std::vector<Problem> pile_problems();       // problems_pile.cpp
+std::vector<Problem> radial_dam_problems(); // problems_radial_dam.cpp
 
 }  // namespace frana::verify

@@ -107,7 +107,7 @@ Trial::Trial(Scene scene, const Setup& setup, bool keep_terrain) : scene_(std::m
     if (keep_terrain) scene_.terrain = terrain, scene_.curvature = curvature;
     if (setup.edit) setup.edit(scene_);
     simulation_ = std::make_unique<DepthAveraged>(scene_);
-    first_ = simulation_->status();
+    first_ = simulation_->frame().status;  // a frame knows the kinetic energy before the first step
 }
 
 void Trial::run_to(double end, const std::function<void(const Status&)>& each) {
