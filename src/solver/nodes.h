@@ -33,7 +33,7 @@ enum NodeFlag : std::uint8_t {
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
         : deposit(grid.size() + 1), force(with_force ? grid.size() : 0), depth(grid.size()), surface(grid.size()),
-          surface_next(grid.size()), before(grid.size()), motion(grid.size() + 1), viscous_flux(grid.size()),
+          surface_next(grid.size()), wave_x(grid.size()), before(grid.size()), motion(grid.size() + 1), viscous_flux(grid.size()),
           shock(grid.size()), flags(grid.size()) {}
 
     Deposit* deposits() { return aligned(deposit.data()); }
@@ -46,6 +46,7 @@ struct Nodes {
     LazyArray<double> depth;         ///< column_mass / (rho A) [m]
     LazyArray<double> surface;       ///< free surface, bed where dry [m]
     LazyArray<double> surface_next;  ///< scratch of the surface passes
+    LazyArray<double> wave_x;        ///< part of the 2-cell wave in x, scratch of the filter [m]
     LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]
     LazyArray<Motion> motion;        ///< use motions(), for the same reason
     LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^2/s^2]

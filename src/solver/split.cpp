@@ -24,18 +24,23 @@ void straighten(Columns& c, Index p) {
     c.r1x[p] = edges.r1x, c.r1y[p] = edges.r1y, c.r2x[p] = edges.r2x, c.r2y[p] = edges.r2y;
 }
 
-bool must_split(const Columns& c, Index p, double split_length, double least_mass) {
+/// How many points p becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one, or
+/// mirror images part.
+int parts_of(const Columns& c, Index p, double split_length, double least_mass) {
     const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
     const double area = std::abs(c.r1x[p] * c.r2y[p] - c.r1y[p] * c.r2x[p]);
-    return std::max(l1, l2) >= split_length * split_length && area >= 0.1 && c.mass[p] > least_mass;
+    const bool splits = std::max(l1, l2) >= split_length * split_length && area >= 0.1 && c.mass[p] > least_mass;
+    if (!splits) return 1;
+    return std::abs(l1 - l2) <= 1e-9 * std::max(l1, l2) ? 4 : 2;
 }
 
-/// Halves point p; the second half becomes point q.
-void halve(Flow& flow, Index p, Index q) {
+bool first_is_longer(const Columns& c, Index p) {
+    return c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p] >= c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
+}
+
+/// Halves point p along one of its edges; the second half becomes point q.
+void halve(Flow& flow, Index p, Index q, bool first) {
     Columns& c = flow.columns;
-    const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
-    // Both edges may have been clamped to one cell: then round-off must not choose, or mirror images part.
-    const bool first = l1 >= l2 * (1.0 - 1e-9);
     double& rx = first ? c.r1x[p] : c.r2x[p];
     double& ry = first ? c.r1y[p] : c.r2y[p];
     const double dx = 0.25 * rx, dy = 0.25 * ry;
@@ -69,7 +74,7 @@ Index Splitter::split(Flow& flow) {
             clamp_edge(c.r1x[p], c.r1y[p], longest);
             clamp_edge(c.r2x[p], c.r2y[p], longest);
             if (flow.scheme.reset_domains) straighten(c, p);
-            found += may_split && must_split(c, p, length, least_mass_);
+            if (may_split) found += parts_of(c, p, length, least_mass_) - 1;
         }
         tile_first_[n + 1] = found;
     });
@@ -80,10 +85,15 @@ Index Splitter::split(Flow& flow) {
     for_each_tile(flow.active, [&](Index n) {
         Index next = tile_first_[n];
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-            if (!must_split(c, p, length, least_mass_)) continue;
-            c.id[count + next] = next_id_ + next;
-            halve(flow, p, count + next);
-            ++next;
+            const int parts = parts_of(c, p, length, least_mass_);
+            if (parts == 1) continue;
+            const Index q = count + next;
+            for (int part = 1; part < parts; ++part, ++next) c.id[count + next] = next_id_ + next;
+            halve(flow, p, q, first_is_longer(c, p));
+            if (parts == 2) continue;
+            const bool other = first_is_longer(c, p);  // the edge that is still whole
+            halve(flow, p, q + 1, other);
+            halve(flow, q, q + 2, other);
         }
     });
     next_id_ += added;

@@ -8,8 +8,10 @@ class Splitter {
 public:
     /// `least_mass`: no point lighter than this is split [kg].
     explicit Splitter(double least_mass) : least_mass_(least_mass) {}
-    /// Clamps domain edges to one cell (or scheme.split_length, if longer), then, when scheme.split is on, halves every point whose longer edge reaches scheme.split_length
-    /// cells: children at +- r/4 along that edge, with the velocity there. Mass and momentum are kept exactly.
+    /// Clamps domain edges to one cell (or scheme.split_length, if longer) and gives strongly sheared domains a
+    /// rectangle; then, when scheme.split is on, halves every point whose longer edge reaches scheme.split_length
+    /// cells (both ways where both are equally long): children at +- r/4 along that edge, with the velocity there.
+    /// Mass and momentum are kept exactly.
     /// New points are appended; returns how many. The caller sorts afterwards.
     Index split(Flow& flow);
     Index next_id() const { return next_id_; }

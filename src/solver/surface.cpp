@@ -101,20 +101,9 @@ void shoreline_sweep(Flow& flow) {
     });
 }
 
-/// One direction of the filter; reads `from`, writes `to`.
-void filter_along(Flow& flow, Index step, std::uint8_t wide, const LazyArray<double>& from, LazyArray<double>& to) {
-    const double strength = flow.scheme.filter / 16.0;
-    const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
-    const Index up = flow.grid.stride();
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            const double* e = from.data() + k;
-            to[k] = e[0];
-            if (!(flow.nodes.flags[k] & wide)) return;
-            const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(flow.nodes, k, up)) : 1.0;
-            to[k] -= held * strength * ((e[-2 * step] + e[2 * step]) - 4.0 * (e[-step] + e[step]) + 6.0 * e[0]);
-        });
-    });
+/// Part of the 2-cell wave along one direction: a sixteenth of the fourth difference.
+double wave(const double* e, Index step) {
+    return ((e[-2 * step] + e[2 * step]) - 4.0 * (e[-step] + e[step]) + 6.0 * e[0]) / 16.0;
 }
 
 }  // namespace
@@ -201,8 +190,29 @@ void shoreline(Flow& flow) {
 
 void filter(Flow& flow) {
     if (flow.scheme.filter <= 0.0) return;
-    filter_along(flow, 1, kWideX, flow.nodes.surface, flow.nodes.surface_next);
-    filter_along(flow, flow.grid.stride(), kWideY, flow.nodes.surface_next, flow.nodes.surface);
+    Nodes& nodes = flow.nodes;
+    const Index up = flow.grid.stride();
+    const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+            nodes.wave_x[k] = nodes.flags[k] & kWideX ? wave(nodes.surface.data() + k, 1) : 0.0;
+        });
+    });
+    // (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; the product only where all of it is known.
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+            const std::uint8_t flags = nodes.flags[k];
+            nodes.surface_next[k] = nodes.surface[k];
+            if (!(flags & (kWideX | kWideY))) return;
+            const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
+            const double strength = flow.scheme.filter * held;
+            const double wave_y = flags & kWideY ? wave(nodes.surface.data() + k, up) : 0.0;
+            const bool inner = !(flags & (kMargin | kTreated));
+            const double both = inner ? strength * wave(nodes.wave_x.data() + k, up) : 0.0;
+            nodes.surface_next[k] -= strength * (nodes.wave_x[k] + wave_y - both);
+        });
+    });
+    std::swap(nodes.surface, nodes.surface_next);
     mirror_surface(flow);
 }
 
