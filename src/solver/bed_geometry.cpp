@@ -74,7 +74,7 @@ double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index
 
 /// Applies the symmetric weights w[0] (centre), w[1], w[2] along one direction (step 1: x, stride: y).
 void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch, Index step,
-            const double (&w)[3]) {
+            const std::array<double, 3>& w) {
     for_each_node(grid, 2, [&](Index, Index, Index k) {
         scratch[k] = w[0] * field[k] + w[1] * (field[k - step] + field[k + step]) +
                      w[2] * (field[k - 2 * step] + field[k + 2 * step]);
@@ -82,14 +82,20 @@ void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& s
     for_each_node(grid, 2, [&](Index, Index, Index k) { field[k] = scratch[k]; });
 }
 
-/// Averages a bilinear bed with the scheme's own shape function: B-splines of two degrees more at whole numbers.
+/// Average of a bilinear bed with the scheme's own shape function: B-splines of two degrees more at whole numbers.
+std::array<double, 3> averaging(const Scene& scene) {
+    switch (scene.scheme.shape) {
+        case Shape::linear: return {1.0, 0.0, 0.0};
+        case Shape::quadratic: return {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
+        case Shape::cubic: return {66.0 / 120.0, 26.0 / 120.0, 1.0 / 120.0};
+    }
+    throw InternalError("unknown shape");
+}
+
 void average(const Scene& scene, const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch) {
-    constexpr double quadratic[3] = {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
-    constexpr double cubic[3] = {66.0 / 120.0, 26.0 / 120.0, 1.0 / 120.0};
     if (scene.scheme.shape == Shape::linear) return;
-    const auto& weights = scene.scheme.shape == Shape::cubic ? cubic : quadratic;
-    smooth(grid, field, scratch, 1, weights);
-    smooth(grid, field, scratch, grid.stride(), weights);
+    smooth(grid, field, scratch, 1, averaging(scene));
+    smooth(grid, field, scratch, grid.stride(), averaging(scene));
 }
 
 /// The bed's Hessian, from the bed extended linearly whatever the sides: a slope that meets a wall is mirrored for
@@ -103,7 +109,7 @@ void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<
     average(scene, grid, smoothed, scratch);
     // A pass of the binomial filter adds variance cell^2/2 (scheme: sigma = cell sqrt(passes / 2)).
     const Index passes = std::min<Index>(static_cast<Index>(std::lround(2.0 * length * length / (cell * cell))), 400);
-    const double binomial[3] = {0.5, 0.25, 0.0};
+    const std::array<double, 3> binomial{0.5, 0.25, 0.0};
     for (Index pass = 0; pass < passes; ++pass) {
         smooth(grid, smoothed, scratch, 1, binomial);
         smooth(grid, smoothed, scratch, grid.stride(), binomial);
@@ -127,10 +133,12 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     const Index nx = grid.nx(), ny = grid.ny(), up = grid.stride();
     const bool wall = scene.sides == Sides::wall;
     const std::vector<double> z = filled(scene.bed);
+    bed.averaging = averaging(scene);
     bed.z = LazyArray<double>(grid.size());
+    bed.ground = LazyArray<double>(grid.size());
     bed.exit = LazyArray<std::uint8_t>(grid.size());
     for_each_node(grid, 0, [&](Index i, Index j, Index k) {
-        bed.z[k] = extended(z, nx, ny, i, j, wall);
+        bed.z[k] = bed.ground[k] = extended(z, nx, ny, i, j, wall);
         const bool inside = i >= 0 && i < nx && j >= 0 && j < ny;
         bed.exit[k] = inside && std::isnan(scene.bed.at(i, j));
     });

@@ -1,5 +1,7 @@
 #pragma once
 // The bed as the solver sees it: static, computed once, one number per node and quantity.
+#include <array>
+
 #include "grid/tile_grid.h"
 #include "scene/scene.h"
 
@@ -9,6 +11,8 @@ namespace frana {
 /// extended linearly, over nodata by the nearest known value).
 struct BedGeometry {
     LazyArray<double> z;        ///< bed averaged with the node's own shape function, (1/A) int N_i Z dx [m]
+    LazyArray<double> ground;   ///< the elevation model's own elevation at the node [m]
+    std::array<double, 3> averaging{1.0, 0.0, 0.0};  ///< weights that make z of ground: centre, one, two nodes away
     LazyArray<double> z_min;    ///< least z of the 5 x 5 neighbourhood [m]
     LazyArray<double> slope_x;  ///< dz/dx by the 4th-order stencil that also differentiates the free surface [1]
     LazyArray<double> slope_y;  ///< [1]

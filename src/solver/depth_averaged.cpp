@@ -119,11 +119,12 @@ void DepthAveraged::arrive() {
         fold_walls(flow_);
         return depth_pass(flow_, {footprint_depth_, centre_});
     });
-    timed_("shoreline", [&] { shoreline(flow_); });
+    mark_margin(flow_);
     timed_("filter", [&] {
         shock_pass(flow_);
         filter(flow_);
     });
+    timed_("shoreline", [&] { shoreline(flow_); });
     timed_("peaks", [&] { update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_); });
 
     stress_power_ = points.stress_power;

@@ -26,14 +26,13 @@ enum NodeFlag : std::uint8_t {
     kMargin = 2,   ///< wet with a dry node within two layers, surface not yet extrapolated
     kWideX = 4,    ///< this node and two neighbours each way in x are wet
     kWideY = 8,    ///< the same in y
-    kTreated = 16, ///< the surface of a margin node has been extrapolated
     kMoving = 32,  ///< has momentum of its own: more than round-off of mass, not only sub-points
 };
 
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
         : deposit(grid.size() + 1), force(with_force ? grid.size() : 0), depth(grid.size()), surface(grid.size()),
-          surface_next(grid.size()), wave_x(grid.size()), before(grid.size()), motion(grid.size() + 1), viscous_flux(grid.size()),
+          surface_next(grid.size()), wave_x(grid.size()), row_known(grid.size()), before(grid.size()), motion(grid.size() + 1), viscous_flux(grid.size()),
           shock(grid.size()), flags(grid.size()) {}
 
     Deposit* deposits() { return aligned(deposit.data()); }
@@ -47,6 +46,7 @@ struct Nodes {
     LazyArray<double> surface;       ///< free surface, bed where dry [m]
     LazyArray<double> surface_next;  ///< scratch of the surface passes
     LazyArray<double> wave_x;        ///< part of the 2-cell wave in x, scratch of the filter [m]
+    LazyArray<std::uint8_t> row_known;  ///< 1: the wave in x is known there
     LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]
     LazyArray<Motion> motion;        ///< use motions(), for the same reason
     LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^2/s^2]

@@ -1,6 +1,7 @@
 #include "solver/surface.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 #include "solver/shock.h"
@@ -54,6 +55,19 @@ struct WetRows {
     }
 };
 
+/// How much of the ground around a node stands above `level`, averaged as the bed is: by so much a surface at that
+/// level comes out too high there, at most (the ground is taken at nodes: Jensen). Linear shapes: no bound.
+double emerging(const Flow& flow, Index k, double level) {
+    const auto& w = flow.bed.averaging;
+    if (w[0] == 1.0) return std::numeric_limits<double>::infinity();
+    const Index up = flow.grid.stride();
+    double sum = 0.0;
+    for (Index dj = -2; dj <= 2; ++dj)
+        for (Index di = -2; di <= 2; ++di)
+            sum += w[std::abs(dj)] * w[std::abs(di)] * std::max(0.0, flow.bed.ground[k + dj * up + di] - level);
+    return sum;
+}
+
 /// One extrapolated surface value from up to eight directions, or nothing.
 bool extrapolate(const Flow& flow, Index k, double& value) {
     const Nodes& nodes = flow.nodes;
@@ -74,7 +88,10 @@ bool extrapolate(const Flow& flow, Index k, double& value) {
             weights += weight;
         }
     if (weights <= 0.0) return false;
-    value = std::min(nodes.surface[k], std::max(sum / weights, flow.bed.z_min[k]));
+    value = std::max(sum / weights, flow.bed.z_min[k]);
+    if (value >= nodes.surface[k]) value = nodes.surface[k];
+    else  // a heap stays seen
+        value = std::max(value, nodes.surface[k] - emerging(flow, k, value) - (value - flow.bed.z_min[k]));
     return true;
 }
 
@@ -96,9 +113,17 @@ void shoreline_sweep(Flow& flow) {
             if (!(nodes.flags[k] & kMargin) || !inside(i, j)) return;
             if (std::isnan(nodes.surface_next[k])) return;
             nodes.surface[k] = nodes.surface_next[k];
-            nodes.flags[k] = static_cast<std::uint8_t>((nodes.flags[k] & ~kMargin) | kTreated);
+            nodes.flags[k] = static_cast<std::uint8_t>(nodes.flags[k] & ~kMargin);
         });
     });
+}
+
+/// Whether a node and two each way are wet and not of the margin.
+bool five_known(const Nodes& nodes, Index k, Index step) {
+    const std::uint8_t* f = nodes.flags.data() + k;
+    const int all = f[0] & f[step] & f[-step] & f[2 * step] & f[-2 * step];
+    const int any = f[0] | f[step] | f[-step] | f[2 * step] | f[-2 * step];
+    return (all & kWet) && !(any & kMargin);
 }
 
 /// Part of the 2-cell wave along one direction: a sixteenth of the fourth difference.
@@ -177,11 +202,10 @@ void mark_margin(Flow& flow) {
             }
         }
     });
+    mirror_surface(flow);
 }
 
 void shoreline(Flow& flow) {
-    mark_margin(flow);
-    mirror_surface(flow);
     for (int sweep = 0; sweep < (flow.scheme.margin ? 2 : 0); ++sweep) {
         shoreline_sweep(flow);
         mirror_surface(flow);
@@ -195,21 +219,25 @@ void filter(Flow& flow) {
     const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
     for_each_work_tile(flow.active, [&](Index, Index tile) {
         for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            nodes.wave_x[k] = nodes.flags[k] & kWideX ? wave(nodes.surface.data() + k, 1) : 0.0;
+            nodes.row_known[k] = five_known(nodes, k, 1);
+            nodes.wave_x[k] = nodes.row_known[k] ? wave(nodes.surface.data() + k, 1) : 0.0;
         });
     });
-    // (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; the product only where all of it is known.
+    // (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; where the product is not known, two thirds
+    // of each: the waves along one axis and the chequerboard then both keep a third.
     for_each_work_tile(flow.active, [&](Index, Index tile) {
         for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            const std::uint8_t flags = nodes.flags[k];
             nodes.surface_next[k] = nodes.surface[k];
-            if (!(flags & (kWideX | kWideY))) return;
+            const bool x = nodes.row_known[k], y = five_known(nodes, k, up);
+            if (!x && !y) return;
             const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
             const double strength = flow.scheme.filter * held;
-            const double wave_y = flags & kWideY ? wave(nodes.surface.data() + k, up) : 0.0;
-            const bool inner = !(flags & (kMargin | kTreated));
-            const double both = inner ? strength * wave(nodes.wave_x.data() + k, up) : 0.0;
-            nodes.surface_next[k] -= strength * (nodes.wave_x[k] + wave_y - both);
+            const double wave_y = y ? wave(nodes.surface.data() + k, up) : 0.0;
+            const std::uint8_t* row = nodes.row_known.data() + k;
+            const bool all = x && y && row[up] && row[-up] && row[2 * up] && row[-2 * up];
+            const double both = all ? strength * wave(nodes.wave_x.data() + k, up) : 0.0;
+            const double share = x && y && !all ? 2.0 / 3.0 : 1.0;
+            nodes.surface_next[k] -= share * strength * (nodes.wave_x[k] + wave_y - both);
         });
     });
     std::swap(nodes.surface, nodes.surface_next);

@@ -1,6 +1,7 @@
 #pragma once
-// From the deposited mass to the free surface: `depth`, `shoreline` (margin extrapolation), `filter`.
-// After these three a lake at rest has one and the same surface number on every wet node.
+// From the deposited mass to the free surface: `depth_pass`, `mark_margin`, `filter`, `shoreline` (margin extrapolation).
+// The margin comes last: a filter that saw extrapolated values would feed them back and make a shore unstable.
+// After these a lake at rest has one and the same surface number on every wet node.
 #include "solver/flow.h"
 
 namespace frana {
@@ -27,10 +28,11 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request);
 void mark_margin(Flow& flow);
 
 /// Wet nodes near a dry one have depth and bed averaged over partly dry supports, which lifts h + z. Their
-/// surface is extrapolated from the inside in two sweeps, never above h + z and never below the bed nearby.
+/// surface is extrapolated from the inside in two sweeps, never above h + z, never below the bed nearby, and
+/// lowered by no more than the ground that emerges around the node can have lifted it and the depth that it is given.
 void shoreline(Flow& flow);
 
-/// Removes the 2-cell wave from the surface where five wet nodes stand in a row; exact on linear surfaces. Held back at
+/// Removes the 2-cell wave from the surface where five wet nodes away from the margin stand in a row; exact on linear surfaces. Held back at
 /// bores (shock_pass), where that wave must stay visible to the pressure that undoes it.
 void filter(Flow& flow);
 
