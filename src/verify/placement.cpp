@@ -1,7 +1,5 @@
 #include "verify/placement.h"
 
-#include <cstdint>
-
 #include "particles/generate.h"
 #include "verify/trial.h"
 
@@ -10,26 +8,11 @@ namespace {
 
 constexpr double kShiftX = 0.13, kShiftY = 0.29;  ///< [cells], no simple fraction of the spacing
 
-/// Numbers in [-1, 1) from a counter by the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
-class Jitter {
-public:
-    double next() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        z ^= z >> 31;
-        return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
-    }
-
-private:
-    std::uint64_t state_ = 0;
-};
-
 void jitter(Seeds& seeds, double share) {
-    Jitter random;
+    Noise noise;
     for (Index p = 0; p < seeds.count(); ++p) {
-        seeds.x[p] += 0.5 * share * seeds.size[p] * random.next();
-        seeds.y[p] += 0.5 * share * seeds.size[p] * random.next();
+        seeds.x[p] += 0.5 * share * seeds.size[p] * noise.next();
+        seeds.y[p] += 0.5 * share * seeds.size[p] * noise.next();
     }
 }
 
@@ -52,6 +35,14 @@ void cover(Scene& scene, Placement placement, int per_side) {
 }
 
 }  // namespace
+
+double Noise::next() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
+}
 
 const char* name_of(Placement placement) {
     switch (placement) {

@@ -1,5 +1,7 @@
 #pragma once
 // Where points may stand: lattices in and out of phase with the grid, jittered, or quasi-random.
+#include <cstdint>
+
 #include "verify/problem.h"
 
 namespace frana::verify {
@@ -14,6 +16,15 @@ enum class Placement {
 constexpr Placement kPlacements[] = {Placement::aligned, Placement::shifted, Placement::r2, Placement::half_jitter,
                                      Placement::full_jitter};
 const char* name_of(Placement placement);
+
+/// Numbers in [-1, 1) from a counter by the finaliser of SplitMix64 (Steele, Lea, Flood 2014); always the same ones.
+class Noise {
+public:
+    double next();
+
+private:
+    std::uint64_t state_ = 0;
+};
 
 /// Fills the grid with about per_side^2 points a cell wherever the depth is positive, each with the depth at its own
 /// place and the volume depth * patch area. Same arguments, same bits.
