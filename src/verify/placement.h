@@ -9,7 +9,7 @@ namespace frana::verify {
 enum class Placement {
     aligned,      ///< lattice that fits the grid
     shifted,      ///< the same, moved by 0.13 cells in x and 0.29 in y
-    r2,           ///< quasi-random (Roberts 2018), volumes from patches
+    r2,           ///< quasi-random (Roberts 2018), equal patches
     half_jitter,  ///< aligned, each point moved at random by up to a quarter of the spacing each way
     full_jitter   ///< by up to half the spacing: anywhere in its own square
 };
