@@ -1,6 +1,7 @@
 #include "solver/kick.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "law/bed_law.h"
 #include "solver/shock.h"
@@ -11,7 +12,7 @@ namespace {
 /// Slope of the free surface at a node with material, along one axis. Uniform depth gives the bed's own slope, a lake gives
 /// zero, whatever the bed. A dry neighbour that stands higher is a shore and takes no part; a dry neighbour that
 /// lies lower enters with its bed, and drives the front.
-double surface_gradient(const Nodes& nodes, Index k, Index step, bool wide, double cell) {
+double raw_gradient(const Nodes& nodes, Index k, Index step, bool wide, double cell) {
     const double* e = nodes.surface.data() + k;
     if (wide) return (8.0 * (e[step] - e[-step]) - (e[2 * step] - e[-2 * step])) / (12.0 * cell);
     const auto shore = [&](Index n) { return !(nodes.flags[k + n] & kWet) && e[n] > e[0]; };
@@ -19,6 +20,14 @@ double surface_gradient(const Nodes& nodes, Index k, Index step, bool wide, doub
     if (ahead && !behind) return (e[0] - e[-step]) / cell;
     if (behind && !ahead) return (e[step] - e[0]) / cell;
     return ((ahead ? 0.0 : e[step] - e[0]) - (behind ? 0.0 : e[-step] - e[0])) / (2.0 * cell);
+}
+
+/// The same without the round-off of the surface's own height: a difference of some units in the last place over a
+/// cell is none, so that a lake rests to the last bit.
+double surface_gradient(const Nodes& nodes, Index k, Index step, bool wide, double cell) {
+    constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon();
+    const double slope = raw_gradient(nodes, k, step, wide, cell);
+    return std::abs(slope) * cell <= round_off * std::abs(nodes.surface[k]) ? 0.0 : slope;
 }
 
 /// P1's terrain: gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.

@@ -149,7 +149,9 @@ bool inside(const Flow& flow, Index i, Index j) {
 MassFit fit_masses(Flow& flow, double level) {
     MassFit fit;
     const std::vector<double> start = flow.columns.mass;
-    FitSystem system(flow, start);
+    // A mass that meets its limits stays there, with no weight of its own, and the others are fitted again.
+    std::vector<double> from = start, weight = start;
+    FitSystem system(flow, weight);
     const double column = flow.density * flow.area;
 
     deposit_columns(flow);
@@ -169,21 +171,28 @@ MassFit fit_masses(Flow& flow, double level) {
         return added;
     };
     gather_rows(false, 0.0);
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0, refits = 0; round < 4;) {
         system.set_rows(rows);
         std::vector<double> rhs, y, change;
-        system.collect(start, rhs);
+        system.collect(from, rhs);
         for (std::size_t r = 0; r < rows.size(); ++r) rhs[r] = column * (level - flow.bed.z[rows[r]]) - rhs[r];
         fit.iterations += solve(system, rhs, y);
         system.spread(y, change);
-        fit.clipped = 0;
         fit.largest_change = 0.0;
+        Index clipped = 0;
         for (std::size_t p = 0; p < start.size(); ++p) {
-            const double wanted = start[p] + change[p];
+            const double wanted = from[p] + change[p];
             flow.columns.mass[p] = std::clamp(wanted, 0.03 * start[p], 5.0 * start[p]);
-            fit.clipped += flow.columns.mass[p] != wanted;
+            if (flow.columns.mass[p] != wanted) {
+                from[p] = flow.columns.mass[p];
+                weight[p] = 0.0;
+                ++clipped;
+            }
             fit.largest_change = std::max(fit.largest_change, std::abs(flow.columns.mass[p] / start[p] - 1.0));
         }
+        fit.clipped += clipped;
+        if (clipped > 0 && ++refits < 20) continue;
+        ++round;
         deposit_columns(flow);
         mark_margin(flow);
         // A margin node that would stand below the level pulls the surface down (the margin takes a minimum).

@@ -55,6 +55,8 @@ struct WetRows {
     }
 };
 
+constexpr int kSweeps = 3;  ///< a ragged shore is flagged three nodes deep
+
 /// How much of the ground around a node stands above `level`, averaged as the bed is: by so much a surface at that
 /// level comes out too high there, at most (the ground is taken at nodes: Jensen). Linear shapes: no bound.
 double emerging(const Flow& flow, Index k, double level) {
@@ -206,7 +208,7 @@ void mark_margin(Flow& flow) {
 }
 
 void shoreline(Flow& flow) {
-    for (int sweep = 0; sweep < (flow.scheme.margin ? 2 : 0); ++sweep) {
+    for (int sweep = 0; sweep < (flow.scheme.margin ? kSweeps : 0); ++sweep) {
         shoreline_sweep(flow);
         mirror_surface(flow);
     }

@@ -28,7 +28,7 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request);
 void mark_margin(Flow& flow);
 
 /// Wet nodes near a dry one have depth and bed averaged over partly dry supports, which lifts h + z. Their
-/// surface is extrapolated from the inside in two sweeps, never above h + z, never below the bed nearby, and
+/// surface is extrapolated from the inside in three sweeps, never above h + z, never below the bed nearby, and
 /// lowered by no more than the ground that emerges around the node can have lifted it and the depth that it is given.
 void shoreline(Flow& flow);
 

@@ -1,8 +1,7 @@
 #include "verify/placement.h"
 
-#include <cstdint>
+#include <cmath>
 
-#include "particles/generate.h"
 #include "verify/trial.h"
 
 namespace frana::verify {
@@ -10,48 +9,49 @@ namespace {
 
 constexpr double kShiftX = 0.13, kShiftY = 0.29;  ///< [cells], no simple fraction of the spacing
 
-/// Numbers in [-1, 1) from a counter by the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
-class Jitter {
-public:
-    double next() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        z ^= z >> 31;
-        return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
-    }
-
-private:
-    std::uint64_t state_ = 0;
-};
-
 void jitter(Seeds& seeds, double share) {
-    Jitter random;
+    Noise noise;
     for (Index p = 0; p < seeds.count(); ++p) {
-        seeds.x[p] += 0.5 * share * seeds.size[p] * random.next();
-        seeds.y[p] += 0.5 * share * seeds.size[p] * random.next();
+        seeds.x[p] += 0.5 * share * seeds.size[p] * noise.next();
+        seeds.y[p] += 0.5 * share * seeds.size[p] * noise.next();
+    }
+}
+
+/// 1 m deep, as many points as the lattice has at the first places of Roberts' (2018) additive sequence: x and y grow
+/// by 1/g and 1/g^2 modulo one, g^3 = g + 1. Equal patches.
+void cover_r2(Scene& scene, int per_side) {
+    const GridGeometry& grid = scene.bed.geometry;
+    const double width = grid.x_max() - grid.x0, height = grid.y_max() - grid.y0, size = grid.cell / per_side;
+    const double g = 1.32471795724474602596;
+    const Index count = (grid.nx - 1) * (grid.ny - 1) * per_side * per_side;
+    const auto fraction = [](double x) { return x - std::floor(x); };
+    Seeds& seeds = scene.particles;
+    for (Index n = 1; n <= count; ++n) {
+        seeds.x.push_back(grid.x0 + width * fraction(0.5 + static_cast<double>(n) / g));
+        seeds.y.push_back(grid.y0 + height * fraction(0.5 + static_cast<double>(n) / (g * g)));
+        seeds.volume.push_back(size * size);
+        seeds.size.push_back(size);
     }
 }
 
 /// Everywhere on the grid, 1 m deep.
 void cover(Scene& scene, Placement placement, int per_side) {
-    const auto one = [](double, double) { return 1.0; };
-    if (placement == Placement::shifted) return fill(scene, one, {per_side, kShiftX, kShiftY});
-    if (placement != Placement::r2) {
-        fill(scene, one, {per_side});
-        if (placement != Placement::aligned) jitter(scene.particles, placement == Placement::half_jitter ? 0.5 : 1.0);
-        return;
-    }
-    Release everywhere;
-    everywhere.depth = 1.0;
-    ParticleOptions options;
-    options.per_cell = per_side * per_side;
-    options.placement = frana::Placement::r2;
-    std::vector<ReleaseReport> reports;
-    scene.particles = make_seeds({everywhere}, scene.bed, options, reports, scene.log);
+    if (placement == Placement::r2) return cover_r2(scene, per_side);
+    const bool shifted = placement == Placement::shifted;
+    fill(scene, [](double, double) { return 1.0; }, {per_side, shifted ? kShiftX : 0.0, shifted ? kShiftY : 0.0});
+    if (placement == Placement::half_jitter) jitter(scene.particles, 0.5);
+    if (placement == Placement::full_jitter) jitter(scene.particles, 1.0);
 }
 
 }  // namespace
+
+double Noise::next() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
+}
 
 const char* name_of(Placement placement) {
     switch (placement) {
