@@ -113,6 +113,8 @@ void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
     command->add_option("--json", options.json, "write the results as JSON");
     command->add_option("--table", options.table, "write the table as text, without times");
+    command->add_option("--against", options.against, "compare with a table written before: fails where one differs")
+        ->check(CLI::ExistingFile);
     command->add_option("--figure", options.figure, "draw error over run time beside other codes (PNG)");
     command->add_flag("--study", options.study, "change one component of the scheme at a time");
     command->callback([&] { action = [&] { return verify_command(options); }; });

@@ -42,6 +42,7 @@ struct ParticlesOptions {
 };
 
 /// `frana verify [NAME...] [--list] [--cells N,N,...] [--preset P] [--points N] [--json FILE] [--table FILE]
+/// [--against FILE]
 /// [--figure FILE.png] [--study]`
 struct VerifyOptions {
     std::vector<std::string> names;  ///< empty: all
@@ -51,6 +52,7 @@ struct VerifyOptions {
     int per_cell = 4;                ///< points a cell: 1, 4, 9 or 16
     int threads = 0;
     std::filesystem::path json, table;  ///< files to write, or empty
+    std::filesystem::path against;      ///< table to compare with, or empty
     std::filesystem::path figure;       ///< PNG of error over run time beside other codes, or empty
     bool study = false;                 ///< what each component of the scheme is worth
 };

@@ -1,9 +1,12 @@
 // `frana verify`: runs problems with exact answers and prints what the scheme makes of them.
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <omp.h>
 
-#include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <fstream>
+#include <iterator>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -53,6 +56,39 @@ std::vector<std::string> wrong_references(const Problem& problem) {
     return wrong;
 }
 
+std::string today() {
+    const std::time_t now = std::time(nullptr);
+    return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
+}
+
+/// Runs one problem, prints its rows and adds them to the table, gates that it misses below them.
+std::vector<Measurement> run_problem(const Problem& problem, const verify::Setup& setup, const std::vector<Index>& grids,
+                                     std::string& table, std::vector<std::string>& complaints) {
+    for (std::string& text : wrong_references(problem)) complaints.push_back(std::move(text));
+    const auto measured = verify::measure(problem, setup, grids.empty() ? problem.grids : grids);
+    for (const Measurement& m : measured) {
+        fmt::print("{}\n", verify::table_row(m, true));
+        table += verify::table_row(m, false) + "\n";
+    }
+    std::fflush(stdout);
+    for (std::string& text : verify::missed_gates(problem, measured)) {
+        table += "missed: " + text + "\n";
+        complaints.push_back(std::move(text));
+    }
+    return measured;
+}
+
+/// Prints how the table differs from an earlier one; 1 when it does.
+int compare(const std::string& table, const std::filesystem::path& against) {
+    constexpr double tolerance = 0.05;  // another compiler's round-off, grown by splitting; not another scheme
+    std::ifstream file(against);
+    const std::string reference{std::istreambuf_iterator<char>(file), {}};
+    const auto found = verify::differences(table, reference, tolerance);
+    for (const std::string& text : found) fmt::print(stderr, "{}\n", text);
+    fmt::print("{} lines differ from {}\n", found.size(), against.string());
+    return found.empty() ? 0 : 1;
+}
+
 }  // namespace
 
 int verify_command(const VerifyOptions& options) {
@@ -65,33 +101,28 @@ int verify_command(const VerifyOptions& options) {
         print_study(options.table);
         return 0;
     }
+    const std::vector<const Problem*> problems = chosen(options.names);
     if (!options.figure.empty()) {
-        draw_work_precision(options.names.empty() ? std::vector<const Problem*>{} : chosen(options.names), options.figure);
+        draw_work_precision(options.names.empty() ? std::vector<const Problem*>{} : problems, options.figure);
         return 0;
     }
     verify::Setup setup;
     setup.preset = options.preset;
     setup.per_side = static_cast<int>(std::lround(std::sqrt(options.per_cell)));
+    const std::vector<Index> grids(options.cells.begin(), options.cells.end());
     const std::string head = verify::table_head();
-    std::string table = "frana " FRANA_VERSION "\n" + head + "\n";
+    std::string table = fmt::format("# frana {} {}, {}\n{}\n", FRANA_VERSION, FRANA_COMMIT, today(), head);
     std::vector<Measurement> all;
     std::vector<std::string> complaints;
     fmt::print("{}\n", head);
-    for (const Problem* problem : chosen(options.names)) {
-        for (std::string& text : wrong_references(*problem)) complaints.push_back(std::move(text));
-        const std::vector<Index> grids(options.cells.begin(), options.cells.end());
-        const auto measured = verify::measure(*problem, setup, grids.empty() ? problem->grids : grids);
-        for (const Measurement& m : measured) {
-            fmt::print("{}\n", verify::table_row(m, true));
-            table += verify::table_row(m, false) + "\n";
-        }
-        std::fflush(stdout);
-        for (std::string& text : verify::missed_gates(*problem, measured)) complaints.push_back(std::move(text));
+    for (const Problem* problem : problems) {
+        const auto measured = run_problem(*problem, setup, grids, table, complaints);
         all.insert(all.end(), measured.begin(), measured.end());
     }
     if (!options.json.empty()) write_text(options.json, verify::json_of(all));
     if (!options.table.empty()) write_text(options.table, table);
     for (const std::string& text : complaints) fmt::print(stderr, "{}\n", text);
+    if (!options.against.empty()) return compare(table, options.against);
     return complaints.empty() ? 0 : 1;
 }
 

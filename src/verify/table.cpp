@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 
 namespace frana::verify {
 namespace {
@@ -11,7 +14,42 @@ std::string number(double value) { return std::isnan(value) ? "-" : fmt::format(
 
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", value) : "null"; }
 
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);)
+        if (!line.empty() && line[0] != '#') lines.push_back(line);
+    return lines;
+}
+
+bool alike(const std::string& a, const std::string& b, double tolerance) {
+    if (a == b) return true;
+    char *end_a = nullptr, *end_b = nullptr;
+    const double x = std::strtod(a.c_str(), &end_a), y = std::strtod(b.c_str(), &end_b);
+    if (*end_a != '\0' || *end_b != '\0') return false;
+    const double larger = std::max(std::abs(x), std::abs(y));
+    return larger <= 1e-10 || std::abs(x - y) <= tolerance * larger;
+}
+
+bool alike_lines(const std::string& a, const std::string& b, double tolerance) {
+    std::istringstream in_a(a), in_b(b);
+    std::string word_a, word_b;
+    while (in_a >> word_a)
+        if (!(in_b >> word_b) || !alike(word_a, word_b, tolerance)) return false;
+    return !(in_b >> word_b);
+}
+
 }  // namespace
+
+std::vector<std::string> differences(const std::string& table, const std::string& reference, double tolerance) {
+    const std::vector<std::string> now = lines_of(table), then = lines_of(reference);
+    std::vector<std::string> found;
+    for (std::size_t k = 0; k < std::max(now.size(), then.size()); ++k) {
+        if (k < now.size() && k < then.size() && alike_lines(now[k], then[k], tolerance)) continue;
+        found.push_back("was " + (k < then.size() ? then[k] : "nothing") + "\nnow " + (k < now.size() ? now[k] : "nothing"));
+    }
+    return found;
+}
 
 std::string table_head() {
     return fmt::format("{:16} {:7} {:>5} {:>3} {:>8} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10} {:>9} {:>10} {:>6}", "problem",

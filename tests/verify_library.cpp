@@ -1,0 +1,65 @@
+// The references themselves: a wrong exact answer must not hide behind a small error. And what `frana verify` makes of
+// tables. The scheme's own figures are in verification.txt, which the test "verification" runs again.
+#include <set>
+
+#include "catch.h"
+#include "scene/build_scene.h"
+#include "scene/case_file.h"
+#include "verify/library.h"
+#include "verify/table.h"
+#include "verify/trial.h"
+
+using namespace frana;
+
+TEST_CASE("Every exact answer satisfies its own equations", "[verify]") {
+    int checked = 0;
+    for (const verify::Problem& problem : verify::library()) {
+        if (!problem.residuals) continue;
+        for (const verify::Residual& residual : problem.residuals()) {
+            CAPTURE(problem.name, residual.what);
+            CHECK(std::abs(residual.value) <= residual.bound);
+            ++checked;
+        }
+    }
+    CHECK(checked > 50);
+}
+
+TEST_CASE("Problems have names of their own, grids, and gates on quantities that they measure", "[verify]") {
+    std::set<std::string> names;
+    for (const verify::Problem& problem : verify::library()) {
+        CAPTURE(problem.name);
+        CHECK(names.insert(problem.name).second);
+        CHECK_FALSE(problem.grids.empty());
+        CHECK_FALSE(problem.title.empty());
+        for (const verify::Gate& gate : problem.gates) CHECK_FALSE(gate.source.empty());
+    }
+    for (const char* name : {"lake_z1", "lake_z2", "lake_island", "ritter", "stoker", "thacker_planar", "thacker_radial",
+                             "radial_dam", "pile", "obstacle"})
+        CHECK(names.count(name) == 1);
+}
+
+TEST_CASE("A gate is missed by what is too large, missing or not a number, and only by that", "[verify]") {
+    verify::Problem problem;
+    problem.name = "p";
+    problem.gates = {{100, "l1_depth", 1e-2, "s"}, {0, "extra", 1.0, "s"}};
+    verify::Measurement m;
+    m.preset = "default";
+    m.cells = 100;
+    m.l1_depth = 0.9e-2;
+    m.add("extra", -0.5);
+    CHECK(verify::missed_gates(problem, {m}).empty());
+    m.l1_depth = 1.1e-2;
+    CHECK(verify::missed_gates(problem, {m}).size() == 1);
+    m.l1_depth = verify::kNone;
+    m.extras.clear();
+    CHECK(verify::missed_gates(problem, {m}).size() == 2);
+}
+
+TEST_CASE("Tables differ by more than the tolerance, by another word and by another line", "[verify]") {
+    const std::string table = "# a date\nstoker 100 1.00e-02 -  4.0e-14\n";
+    CHECK(verify::differences(table, "# another\nstoker  100 1.03e-02 - 9.0e-15\n", 0.05).empty());
+    CHECK(verify::differences(table, "stoker 100 1.10e-02 - 4.0e-14\n", 0.05).size() == 1);
+    CHECK(verify::differences(table, "ritter 100 1.00e-02 - 4.0e-14\n", 0.05).size() == 1);
+    CHECK(verify::differences(table, table + "missed: stoker\n", 0.05).size() == 1);
+    CHECK(verify::differences(table, "stoker 100 1.00e-02 -\n", 0.05).size() == 1);
+}
