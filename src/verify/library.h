@@ -16,5 +16,12 @@ std::vector<Problem> lake_problems();       // problems_lake.cpp
 std::vector<Problem> paper_problems();      // problems_paper.cpp
 std::vector<Problem> pile_problems();       // problems_pile.cpp
 std::vector<Problem> radial_dam_problems(); // problems_radial_dam.cpp
+std::vector<Problem> slope_flow_problems();  // problems_slope_flow.cpp
+std::vector<Problem> similarity_problems();  // problems_similarity.cpp
+std::vector<Problem> block_problems();       // problems_blocks.cpp
+std::vector<Problem> track_problems();       // problems_tracks.cpp
+std::vector<Problem> sheet_problems();       // problems_sheet.cpp
+std::vector<Problem> deposit_problems();     // problems_deposit.cpp
+std::vector<Problem> spreading_problems();   // problems_spreading.cpp
 
 }  // namespace frana::verify

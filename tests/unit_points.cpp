@@ -1,0 +1,139 @@
+// Points that split, merge and touch nodes: what each must keep.
+#include <random>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "grid/stencil.h"
+#include "solver/domain.h"
+#include "solver/merge.h"
+#include "solver/split.h"
+
+using namespace frana;
+
+namespace {
+
+struct Sums {
+    double mass = 0, px = 0, py = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    explicit Sums(const Columns& c) {
+        for (Index p = 0; p < c.count(); ++p) {
+            const Moments m = Moments::of(c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
+            mass += c.mass[p], px += c.mass[p] * c.vx[p], py += c.mass[p] * c.vy[p];
+            x += c.mass[p] * c.x[p], y += c.mass[p] * c.y[p];
+            xx += c.mass[p] * (m.xx + c.x[p] * c.x[p]);
+            xy += c.mass[p] * (m.xy + c.x[p] * c.y[p]);
+            yy += c.mass[p] * (m.yy + c.y[p] * c.y[p]);
+        }
+    }
+    void check_equal(const Sums& o) const {  // round-off of sums over some tens of points
+        for (const auto& [a, b] : {std::pair{mass, o.mass}, {px, o.px}, {py, o.py}, {x, o.x}, {y, o.y}, {xx, o.xx},
+                                   {xy, o.xy}, {yy, o.yy}})
+            CHECK(std::abs(a - b) <= 1e-12 * (1.0 + std::abs(a)));
+    }
+};
+
+/// A flow without points on 20 x 20 nodes a metre apart, and a place to add them.
+struct Pool {
+    Scene scene = test::scene_on(20, 20, 1.0, [](double, double) { return 0.0; });
+    Flow flow{scene};
+    TileSorter sorter;
+    void add(double x, double y, double mass, double size) {
+        Columns& c = flow.columns;
+        const Index p = c.count();
+        c.resize(p + 1);
+        c.x[p] = x, c.y[p] = y, c.mass[p] = mass, c.r1x[p] = c.r2y[p] = size, c.id[p] = p;
+        c.vx[p] = 0.3 * x, c.vy[p] = -0.1 * y;
+    }
+    void sort(const std::vector<std::uint8_t>& gone = {}) { sorter.sort(flow.columns, flow.grid, gone, flow.active); }
+};
+
+template <class S>
+void check_partition(int degree) {
+    for (double u = 5.0; u < 7.0; u += 0.0625) {
+        const S s(u);
+        double one = 0, place = 0, slope = 0, slope_of_place = 0;
+        for (int n = 0; n < S::kNodes; ++n) {
+            one += s.w[n], place += s.w[n] * static_cast<double>(s.base + n);
+            slope += s.slope(n), slope_of_place += s.slope(n) * static_cast<double>(s.base + n);
+        }
+        CAPTURE(degree, u);
+        CHECK(std::abs(one - 1) <= 1e-14);
+        CHECK(std::abs(place - u) <= 1e-13);
+        CHECK(std::abs(slope) <= 1e-14);
+        CHECK(std::abs(slope_of_place - 1) <= 1e-13);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("Shape functions sum to one and carry places and slopes exactly", "[points]") {
+    check_partition<Linear>(1);
+    check_partition<Quadratic>(2);
+    check_partition<Cubic>(3);
+}
+
+TEST_CASE("The rectangle of given second moments has them, and a square lies along the grid", "[points]") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> edge(-1, 1);
+    for (int k = 0; k < 200; ++k) {
+        const Moments m = Moments::of(edge(random), edge(random), edge(random), edge(random));
+        const Edges e = rectangle_of(m);
+        const Moments again = Moments::of(e.r1x, e.r1y, e.r2x, e.r2y);
+        CHECK(std::abs(again.xx - m.xx) + std::abs(again.xy - m.xy) + std::abs(again.yy - m.yy) <= 1e-15);
+        CHECK(std::abs(e.r1x * e.r2x + e.r1y * e.r2y) <= 1e-14);
+        CHECK(e.r1x * e.r1x + e.r1y * e.r1y >= e.r2x * e.r2x + e.r2y * e.r2y);
+    }
+    const double turned = std::sqrt(0.5);
+    const Edges square = rectangle_of(Moments::of(turned, turned, -turned, turned));
+    CHECK(square.r1y == 0.0);
+    CHECK(square.r1x == Approx(1.0).epsilon(1e-14));
+}
+
+TEST_CASE("Merging thins a crowd and keeps mass, momentum, centre and second moments", "[points]") {
+    Pool pool;
+    pool.sort();
+    Merger merger(pool.flow);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> place(5.01, 5.49), mass(1, 2);
+    for (int k = 0; k < 9; ++k) pool.add(place(random), place(random), mass(random), 0.2);
+    pool.add(12.3, 12.3, 1.0, 0.2);  // alone in its square
+    pool.sort();
+    const Sums before(pool.flow.columns);
+    Index gone = 0;
+    for (int pass = 0; pass < 20; ++pass) {
+        gone += merger.merge(pool.flow);
+        pool.sort(merger.gone());
+        before.check_equal(Sums(pool.flow.columns));
+    }
+    CHECK(gone == 7);  // two may stay
+    CHECK(pool.flow.columns.count() == 3);
+}
+
+TEST_CASE("Equal points at the corners of a square are not merged: nothing but round-off would choose", "[points]") {
+    Pool pool;
+    pool.sort();
+    Merger merger(pool.flow);
+    for (const double x : {5.125, 5.375})
+        for (const double y : {5.125, 5.375}) pool.add(x, y, 1.0, 0.25);
+    pool.sort();
+    CHECK(merger.merge(pool.flow) == 0);
+}
+
+TEST_CASE("Splitting keeps mass, momentum and centre: two parts along the longer edge, four of a square", "[points]") {
+    for (const double longer : {0.85, 0.9}) {
+        Pool pool;
+        pool.add(6.2, 6.3, 2.0, 0.85);
+        pool.flow.columns.r1x[0] = longer;
+        pool.flow.columns.cxx[0] = 0.3;  // the children's velocities differ, their sum does not
+        pool.sort();
+        const Sums before(pool.flow.columns);
+        Splitter splitter(0.0);
+        splitter.set_next_id(1);
+        const Index born = splitter.split(pool.flow);
+        CHECK(born == (longer == 0.85 ? 3 : 1));
+        const Sums after(pool.flow.columns);
+        CHECK(after.mass == before.mass);
+        CHECK(std::abs(after.px - before.px) <= 1e-15 * before.mass);
+        CHECK(std::abs(after.x - before.x) <= 1e-14 * before.x);
+        CHECK(std::abs(after.y - before.y) <= 1e-14 * before.y);
+    }
+}
