@@ -10,11 +10,15 @@ const std::vector<Problem>& library();
 const Problem* find_problem(const std::string& name);
 
 // The rooms of the library, one file each.
-std::vector<Problem> dam_break_problems();  // problems_dam_break.cpp
-std::vector<Problem> bowl_problems();       // problems_bowl.cpp
-std::vector<Problem> lake_problems();       // problems_lake.cpp
-std::vector<Problem> paper_problems();      // problems_paper.cpp
-std::vector<Problem> pile_problems();       // problems_pile.cpp
-std::vector<Problem> radial_dam_problems(); // problems_radial_dam.cpp
+std::vector<Problem> dam_break_problems();   // problems_dam_break.cpp
+std::vector<Problem> bowl_problems();        // problems_bowl.cpp
+std::vector<Problem> lake_problems();        // problems_lake.cpp
+std::vector<Problem> paper_problems();       // problems_paper.cpp
+std::vector<Problem> pile_problems();        // problems_pile.cpp
+std::vector<Problem> radial_dam_problems();  // problems_radial_dam.cpp
+std::vector<Problem> slope_flow_problems();  // problems_slope_flow.cpp
+std::vector<Problem> similarity_problems();  // problems_similarity.cpp
+std::vector<Problem> block_problems();       // problems_blocks.cpp
+std::vector<Problem> track_problems();       // problems_tracks.cpp
 
 }  // namespace frana::verify
