@@ -109,7 +109,8 @@ std::vector<Residual> SlidingCap::residuals() const {
     // The printed stretches: 80 m, 4 m normal depth, 35 degrees.
     const SlidingCap pile{4.0, 80.0, 9.81 * std::cos(35 * kDegree), 0.0};
     double worst = 0.0;
-    for (const auto& [time, value] : {std::pair{1.0, 1.00501405}, {2.0, 1.01995712}, {5.0, 1.12073859}, {10.0, 1.43946341}})
+    for (const auto& [time, value] :
+         {std::pair{1.0, 1.00501405}, {2.0, 1.01995712}, {5.0, 1.12073859}, {10.0, 1.43946341}})
         worst = std::max(worst, std::abs(pile.stretch(time) - value));
     list.push_back({"printed stretch at 1, 2, 5, 10 s", worst, 5.1e-9});
     return list;

@@ -113,8 +113,10 @@ std::vector<Residual> track_residuals(const Track& track, double mu, double star
     for (int k = 1; k < 40; ++k) {
         const double s = start + (rest - start) * k / 40.0;
         if (track.curvature(s - d) == 0.0 || track.curvature(s + d) == 0.0) continue;  // not across a jump
-        slope = std::max(slope, std::abs((track.z(s + d) - track.z(s - d)) / (2 * d) - track.slope(s)));
-        curvature = std::max(curvature, std::abs((track.slope(s + d) - track.slope(s - d)) / (2 * d) - track.curvature(s)));
+        const double rise = (track.z(s + d) - track.z(s - d)) / (2 * d);
+        const double bend = (track.slope(s + d) - track.slope(s - d)) / (2 * d);
+        slope = std::max(slope, std::abs(rise - track.slope(s)));
+        curvature = std::max(curvature, std::abs(bend - track.curvature(s)));
     }
     return {{"slope of the track by differences", slope, 1e-8},  // round-off of z over d
             {"curvature of the track by differences", curvature, 1e-8},

@@ -29,7 +29,8 @@ Measurement run_turned(const Setup& setup, double turn) {
     const double cell = kReach / static_cast<double>(setup.cells), c = std::cos(turn), s = std::sin(turn);
     const double low = -std::ceil(96 / cell) * cell;
     const Index nx = static_cast<Index>(std::ceil((120 - low) / cell)) + 1;
-    Scene scene = scene_on(nx, nx, cell, [&](double x, double y) { return -std::tan(kSlope) * (c * x + s * y); }, low, low);
+    const auto bed = [&](double x, double y) { return -std::tan(kSlope) * (c * x + s * y); };
+    Scene scene = scene_on(nx, nx, cell, bed, low, low);
     scene.bed_law = bed::Coulomb{std::tan(25 * M_PI / 180)};
     fill_cut(scene, on_map(turn, 0.0).depth, {setup.per_side});
     Trial trial(std::move(scene), setup);

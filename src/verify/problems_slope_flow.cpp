@@ -40,7 +40,8 @@ Measurement run_slope_dam(const Setup& setup) {
     constexpr double kSlope = 22 * M_PI / 180, kEnd = 5.0;
     const SlopeDam dam = SlopeDam::avaframe();
     const double cosine = std::cos(kSlope);
-    Scene scene = strip(100.0 / static_cast<double>(setup.cells), -160.0, 40.0, std::tan(kSlope), std::tan(21 * M_PI / 180));
+    const double cell = 100.0 / static_cast<double>(setup.cells);
+    Scene scene = strip(cell, -160.0, 40.0, std::tan(kSlope), std::tan(21 * M_PI / 180));
     fill(scene, [&](double x, double) { return x > -120.0 && x < 0.0 ? dam.depth / cosine : 0.0; }, {setup.per_side});
     Trial trial(std::move(scene), setup);
     trial.run_to(kEnd);
@@ -78,7 +79,8 @@ std::vector<Residual> joined(std::vector<Residual> list, const std::vector<Resid
 
 std::vector<Problem> slope_flow_problems() {
     const Gate volume{0, "mass_error", 1e-13, "round-off"};
-    Problem slope{"coulomb_slope", "dry dam break on a slope of 0.4 with friction 0.2, shallow form (Mangeney et al. 2000)",
+    Problem slope{"coulomb_slope",
+                  "dry dam break on a slope of 0.4 with friction 0.2, shallow form (Mangeney et al. 2000)",
                   {100, 200, 400, 800}, [] { return SlopeDam{1.0, 9.81, 9.81 * 0.2}.residuals(); }, run_coulomb_slope};
     slope.gates = {{200, "l1_depth", 3.3e-2, "issue gate; prototype 2.7e-2"},
                    {800, "l1_depth", 9e-3, "issue gate; prototype 7.4e-3"},
@@ -90,8 +92,8 @@ std::vector<Problem> slope_flow_problems() {
     dam.gates = {{100, "l2_depth", 1.5e-2, "issue gate; AvaFrame 1.6e-2, D-Claw 2.6e-2, prototype 1.6e-2"},
                  {100, "l2_momentum", 3e-2, "issue gate; AvaFrame 5.5e-2, D-Claw 3.2e-2"},
                  volume};
-    Problem cap{"sliding_cap", "parabolic cap sliding and spreading on a slope of 0.6, friction 0.3, shallow form "
-                               "(Savage and Hutter 1989)",
+    Problem cap{"sliding_cap",
+                "cap that slides and spreads on a slope of 0.6, friction 0.3, shallow form (Savage and Hutter 1989)",
                 {100, 200, 400, 800}, [] { return kCap.residuals(); }, run_sliding_cap};
     cap.gates = {{200, "l1_depth", 6e-3, "issue gate; prototype 3.9e-3"},
                  {800, "l1_depth", 1.5e-3, "issue gate; prototype 9.2e-4; order 1 from the gate at 200"},

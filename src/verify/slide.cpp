@@ -11,8 +11,11 @@ double Slide::across(double x, double y) const { return std::cos(turn) * y - std
 Scene Slide::scene(const Function& z) const {
     const double c = std::cos(turn), s = std::sin(turn), margin = (radius + 8.0) * cell;
     const auto node = [this](double at) { return std::floor(at / cell) * cell; };
-    const auto count = [this](double low, double high) { return static_cast<Index>(std::ceil((high - low) / cell)) + 1; };
-    const double x0 = node(std::min(c * start, c * reach) - margin), y0 = node(std::min(s * start, s * reach) - margin);
+    const auto count = [this](double low, double high) {
+        return static_cast<Index>(std::ceil((high - low) / cell)) + 1;
+    };
+    const double x0 = node(std::min(c * start, c * reach) - margin);
+    const double y0 = node(std::min(s * start, s * reach) - margin);
     const double x1 = std::max(c * start, c * reach) + margin, y1 = std::max(s * start, s * reach) + margin;
     Scene scene = scene_on(count(x0, x1), count(y0, y1), cell,
                            [&](double x, double y) { return z(along(x, y), across(x, y)); }, x0, y0);
