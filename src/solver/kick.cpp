@@ -5,29 +5,36 @@
 
 #include "law/bed_law.h"
 #include "solver/shock.h"
+#include "solver/surface.h"
 
 namespace frana {
 namespace {
 
 /// Slope of the free surface at a node with material, along one axis. Uniform depth gives the bed's own slope, a lake gives
 /// zero, whatever the bed. A dry neighbour that stands higher is a shore and takes no part; a dry neighbour that
-/// lies lower enters with its bed, and drives the front.
-double raw_gradient(const Nodes& nodes, Index k, Index step, bool wide, double cell) {
-    const double* e = nodes.surface.data() + k;
+/// lies lower enters with its bed, and drives the front. One-sided, a film that follows a curved bed takes the bed's own
+/// slope at the node (the difference to a side has the slope of half a cell away); `slope`: that of the bed.
+double raw_gradient(const Flow& flow, Index k, Index step, bool wide, double slope) {
+    const Nodes& nodes = flow.nodes;
+    const double *e = nodes.surface.data() + k, *z = flow.bed.z.data() + k, cell = flow.cell;
     if (wide) return (8.0 * (e[step] - e[-step]) - (e[2 * step] - e[-2 * step])) / (12.0 * cell);
     const auto shore = [&](Index n) { return !(nodes.flags[k + n] & kWet) && e[n] > e[0]; };
     const bool ahead = shore(step), behind = shore(-step);
-    if (ahead && !behind) return (e[0] - e[-step]) / cell;
-    if (behind && !ahead) return (e[step] - e[0]) / cell;
+    const auto to_side = [&](Index n) {
+        const double rise = (e[n] - e[0]) / cell, ground = (z[n] - z[0]) / cell;
+        return rise + film_share(rise, ground) * ((n > 0 ? slope : -slope) - ground);
+    };
+    if (ahead && !behind) return -to_side(-step);
+    if (behind && !ahead) return to_side(step);
     return ((ahead ? 0.0 : e[step] - e[0]) - (behind ? 0.0 : e[-step] - e[0])) / (2.0 * cell);
 }
 
 /// The same without the round-off of the surface's own height: a difference of some units in the last place over a
 /// cell is none, so that a lake rests to the last bit.
-double surface_gradient(const Nodes& nodes, Index k, Index step, bool wide, double cell) {
+double surface_gradient(const Flow& flow, Index k, Index step, bool wide, double bed_slope) {
     constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon();
-    const double slope = raw_gradient(nodes, k, step, wide, cell);
-    return std::abs(slope) * cell <= round_off * std::abs(nodes.surface[k]) ? 0.0 : slope;
+    const double slope = raw_gradient(flow, k, step, wide, bed_slope);
+    return std::abs(slope) * flow.cell <= round_off * std::abs(flow.nodes.surface[k]) ? 0.0 : slope;
 }
 
 /// P1's terrain: gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.
@@ -140,8 +147,8 @@ private:
         const Index up = flow.grid.stride();
         Node node{nodes.before[k].x, nodes.before[k].y, 0.0, 0.0, nodes.depth[k], mass, 0.0, 0.0};
         if (!pressure_on_points_) {
-            node.ex = surface_gradient(nodes, k, 1, nodes.flags[k] & kWideX, flow.cell);
-            node.ey = surface_gradient(nodes, k, up, nodes.flags[k] & kWideY, flow.cell);
+            node.ex = surface_gradient(flow, k, 1, nodes.flags[k] & kWideX, flow.bed.slope_x[k]);
+            node.ey = surface_gradient(flow, k, up, nodes.flags[k] & kWideY, flow.bed.slope_y[k]);
         }
         if (has_viscosity(flow.scheme) && node.depth > 1e-12 * flow.cell) {  // a rotated domain's centre may reach beyond its mass
             const double scale = 1.0 / (flow.cell * node.depth);

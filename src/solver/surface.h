@@ -2,9 +2,16 @@
 // From the deposited mass to the free surface: `depth_pass`, `mark_margin`, `filter`, `shoreline` (margin extrapolation).
 // The margin comes last: a filter that saw extrapolated values would feed them back and make a shore unstable.
 // After these a lake at rest has one and the same surface number on every wet node.
+#include <algorithm>
+
 #include "solver/flow.h"
 
 namespace frana {
+
+/// How far a surface that rises by `rise` where the bed rises by `ground` follows it: 1 a film on a slope, 0 a lake.
+inline double film_share(double rise, double ground) {
+    return std::clamp(4.0 * rise * ground / (ground * ground + 1e-6) - 2.0, 0.0, 1.0);
+}
 
 /// Sums over nodes, made tile by tile in a fixed order.
 struct NodeSums {
