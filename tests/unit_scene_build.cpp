@@ -5,6 +5,7 @@
 #include "catch.h"
 #include "fake_gis.h"
 #include "scene/build_scene.h"
+#include "verify/trial.h"
 
 using namespace frana;
 
@@ -330,4 +331,26 @@ TEST_CASE("resolved.toml gives the same scene as the case it came from", "[scene
     CHECK(a.output.vtk == b.output.vtk);
     CHECK(a.output.xdmf == b.output.xdmf);
     CHECK(a.profiles[0].line == b.profiles[0].line);
+}
+
+TEST_CASE("The verification's presets are those of the case file", "[scene]") {
+    for (const char* preset : {"default", "paper"}) {
+        const std::string text = std::string("[scheme]\npreset = \"") + preset + "\"\n" +
+                                 with_release("outline = \"release.geojson\"\ndepth = 1.0");
+        const Scene file = built(text, slope_gis()).scene;
+        Scene scene;
+        verify::set_preset(scene, preset);
+        const Scheme &a = file.scheme, &b = scene.scheme;
+        CAPTURE(preset);
+        CHECK(file.terrain == scene.terrain);
+        CHECK(file.curvature == scene.curvature);
+        CHECK(std::tuple(a.preset, a.shape, a.transfer, a.paper_pressure) ==
+              std::tuple(b.preset, b.shape, b.transfer, b.paper_pressure));
+        CHECK(std::tuple(a.split, a.merge, a.reset_domains, a.mass_fit, a.margin) ==
+              std::tuple(b.split, b.merge, b.reset_domains, b.mass_fit, b.margin));
+        CHECK(std::tuple(a.cfl, a.filter, a.margin_limit, a.sub_point_reach, a.shock_gate, a.shock_sensor) ==
+              std::tuple(b.cfl, b.filter, b.margin_limit, b.sub_point_reach, b.shock_gate, b.shock_sensor));
+        CHECK(std::tuple(a.viscosity_linear, a.viscosity_quadratic, a.split_length, a.split_min_mass, a.stress_cap) ==
+              std::tuple(b.viscosity_linear, b.viscosity_quadratic, b.split_length, b.split_min_mass, b.stress_cap));
+    }
 }
