@@ -126,7 +126,7 @@ private:
             if (i == 0 || i == flow.grid.nx() - 1) node.ex = node.push_x = node.loss_x = node.vx = 0.0;
             if (j == 0 || j == flow.grid.ny() - 1) node.ey = node.push_y = node.loss_y = node.vy = 0.0;
         }
-        const Kicked after = dt > 0.0 ? kicked(flow, Terrain(flow, k), node, dt) : resting_clock(node);
+        const Kicked after = dt > 0.0 ? kicked(flow, Terrain(flow, k), node, dt) : resting_clock(Terrain(flow, k), node);
         motion.vx = after.vx;
         motion.vy = after.vy;
         sums.kinetic += share * mass * after.kinetic;
@@ -138,8 +138,10 @@ private:
     }
 
     /// A kick of no length: the start of a run.
-    static Kicked resting_clock(const Node& n) {
-        return {n.vx, n.vy, 0.5 * (n.vx * n.vx + n.vy * n.vy), 0.0, 0.0};
+    static Kicked resting_clock(const Terrain& bed, const Node& n) {
+        double vz = 0.0;
+        if constexpr (Terrain::kSteep) vz = n.vx * bed.bx + n.vy * bed.by;
+        return {n.vx, n.vy, 0.5 * (n.vx * n.vx + n.vy * n.vy + vz * vz), 0.0, 0.0};
     }
 
     Node prepared(const Flow& flow, Index k, double mass) const {
