@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -86,7 +88,7 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     CHECK(unknown.out.empty());
     CHECK(unknown.err ==
           "command line: found the unknown command \"chekc\"; expected one of run, check, describe, "
-          "particles, figures; did you mean check?\n");
+          "particles, figures, verify; did you mean check?\n");
     const Outcome threads = scene.frana("run CASE --threads 0");
     CHECK(threads.code == 2);
     CHECK_THAT(threads.err, Contains("--threads"));
@@ -158,4 +160,22 @@ TEST_CASE("particles writes every format, with the count asked for", "[cli]") {
     const Outcome wrong = scene.frana("particles CASE --out p.xyz");
     CHECK(wrong.code == 2);
     CHECK_THAT(wrong.err, Contains("expected .h5, .json, .csv or .vtp"));
+}
+
+TEST_CASE("verify names the problem that was meant, writes JSON with the contract's keys, and compares tables", "[cli]") {
+    const Case scene;
+    const Outcome unknown = scene.frana("verify stokr");
+    CHECK(unknown.code == 2);
+    CHECK_THAT(unknown.err, Contains("did you mean stoker?"));
+    const Outcome done = scene.frana("verify stoker --cells 50,100 --json v.json --table v.txt");
+    CHECK(done.code == 0);
+    std::ifstream file(scene.folder() / "v.json");
+    const auto list = nlohmann::json::parse(file);
+    REQUIRE(list.size() == 2);
+    for (const char* key : {"name", "preset", "cells", "particles", "steps", "wall_seconds", "l1_depth", "l2_depth",
+                            "linf_depth", "l1_momentum", "front_error", "mass_error", "observed_order"})
+        CHECK(list[1].contains(key));
+    CHECK(list[1]["cells"] == 100);
+    CHECK(scene.frana("verify stoker --cells 50,100 --against v.txt").code == 0);
+    CHECK(scene.frana("verify stoker --cells 50,120 --against v.txt").code == 1);
 }
