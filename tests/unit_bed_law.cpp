@@ -66,11 +66,70 @@ TEST_CASE("No law speeds a node up or turns it round", "[law]") {
 
 TEST_CASE("The Bingham closure inverts |v| = tau_B h / (6 mu) (2 + zeta)(1 - zeta)^2", "[law]") {
     const double mu = 20.0, tau_y = 50.0, h = 0.4;
-    for (const double zeta : {0.05, 0.3, 0.7, 0.95}) {
-        const double speed = tau_y / zeta * h / (6.0 * mu) * (2.0 + zeta) * (1.0 - zeta) * (1.0 - zeta);
-        CHECK(bingham_zeta(6.0 * mu * speed / (tau_y * h), 0.0) == Approx(zeta).epsilon(1e-12));
+    for (const double zeta : {1e-6, 0.05, 0.3, 0.7, 0.95, 1.0 - 1e-7}) {
+        const double y = 1.0 - zeta;
+        const double speed = tau_y / zeta * h / (6.0 * mu) * (2.0 + zeta) * y * y;
+        const SheetShares sheet = bingham_sheet(0.0, 6.0 * mu * speed / (tau_y * h));
+        CHECK(sheet.plug == Approx(zeta).epsilon(1e-14));
+        CHECK(sheet.sheared == Approx(y).epsilon(1e-14));  // to full precision at rest too
     }
-    CHECK(bingham_zeta(0.0, 0.0) == Approx(1.0).margin(1e-7));  // a double root: half the digits
+    CHECK(bingham_sheet(0.0, 0.0).plug == 1.0);
+    CHECK(bingham_sheet(1e9, 0.0).sheared == 0.0);
+}
+
+TEST_CASE("Both shares of a Bingham sheet satisfy their cubic to round-off, from rest to a Newtonian sheet", "[law]") {
+    for (double b = 1e-12; b < 1e13; b *= 10.0)
+        for (double d = 1e-18; d < 1e13; d *= 10.0) {
+            const auto [z, y] = bingham_sheet(b, d);
+            CAPTURE(b, d, z, y);
+            // The smaller share solves a well-conditioned equation; the other is one less it.
+            const double of_y = (3.0 * y * y - y * y * y) + (b + d) * y - d, of_z = z * z * z - (3.0 + b + d) * z + 2.0 + b;
+            REQUIRE((y <= 0.5 ? std::abs(of_y) / d : std::abs(of_z) / (2.0 + b)) < 1e-15);
+            REQUIRE(z + y == Approx(1.0).epsilon(1e-15));
+            REQUIRE(z > 0.0);
+            REQUIRE(y > 0.0);
+        }
+}
+
+TEST_CASE("A Newtonian sheet relaxes exactly, whatever the step", "[law]") {
+    const bed::Bingham law{500.0, 0.0, 0.0};
+    const double h = 0.5, rho = 1500.0, drive = 2.0, rate = 3.0 * law.viscosity / (rho * h * h);
+    for (const double dt : {0.01, 0.3, 5.0}) {
+        double speed = 3.0;
+        for (int step = 1; step <= 20; ++step) {
+            speed = speed_after(law, flat(h, rho), speed, speed + dt * drive, dt);
+            const double terminal = drive / rate;
+            REQUIRE(speed == Approx(terminal + (3.0 - terminal) * std::exp(-rate * dt * step)).epsilon(1e-13));
+        }
+    }
+}
+
+namespace {
+/// Speed of a sheet under a constant drive after `time`, in `steps` steps.
+template <class Law>
+double sheet_speed(const Law& law, const BedState& bed, double start, double drive, double time, int steps) {
+    const double dt = time / steps;
+    double speed = start;
+    for (int step = 0; step < steps; ++step) speed = speed_after(law, bed, speed, speed + dt * drive, dt);
+    return speed;
+}
+
+/// Order of the error at `time`, from 16 and 32 steps against many.
+template <class Law>
+double sheet_order(const Law& law, const BedState& bed, double start, double drive, double time) {
+    const double exact = sheet_speed(law, bed, start, drive, time, 100000);
+    return std::log2(std::abs((sheet_speed(law, bed, start, drive, time, 16) - exact) /
+                              (sheet_speed(law, bed, start, drive, time, 32) - exact)));
+}
+}  // namespace
+
+TEST_CASE("Bingham and mu(I) sheets relax with second order, speeding up and slowing down", "[law]") {
+    const bed::Bingham mud{1000.0, 300.0, 0.0};
+    CHECK(sheet_order(mud, flat(1.0, 1500.0), 0.1, 2.5, 0.8) > 1.8);
+    CHECK(sheet_order(mud, flat(1.0, 1500.0), 3.0, 0.8, 0.8) > 1.8);
+    const bed::Pouliquen grains{0.38, 0.65, 0.3, 1e-3, 0.6};
+    CHECK(sheet_order(grains, flat(0.02), 0.1, 4.7, 0.5) > 1.8);
+    CHECK(sheet_order(grains, flat(0.02), 1.5, 4.7, 0.5) > 1.8);
 }
 
 TEST_CASE("A Bingham sheet reaches its uniform speed and yields exactly", "[law]") {

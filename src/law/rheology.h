@@ -30,7 +30,7 @@ inline Plane stress(const rheology::Newtonian& law, const StrainState& s) {
 /// rate, its incompressible vertical part, and the vertical shear 3/(2 + zeta) |v|/h of a Bingham sheet (eq. 4).
 inline Plane stress(const rheology::Bingham& law, const StrainState& s) {
     if (law.yield_stress <= 0.0) return scaled(s.rate, std::min(2.0 * law.viscosity, s.cap));
-    const double zeta = bingham_zeta(6.0 * law.viscosity * s.speed / (law.yield_stress * s.depth), 0.0);
+    const double zeta = bingham_sheet(0.0, 6.0 * law.viscosity * s.speed / (law.yield_stress * s.depth)).plug;
     const double shear = 3.0 / (2.0 + zeta) * s.speed / s.depth;
     const double zz = s.rate.xx + s.rate.yy;
     const double i2 = 0.5 * (s.rate.xx * s.rate.xx + s.rate.yy * s.rate.yy + zz * zz) + s.rate.xy * s.rate.xy +

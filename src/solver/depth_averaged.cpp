@@ -94,7 +94,7 @@ void DepthAveraged::level_points(double level) {
 void DepthAveraged::advance(double until) {
     const double dt = step_length(until);
     const double kick = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
-    book_kick(timed_("kick and friction", [&] { return kick_->kick(flow_, kick); }), kick);
+    book_kick(timed_("kick and friction", [&] { return kick_->kick(flow_, kick, dt); }), kick);
     timed_("kick and friction", [&] { mirror_motion(flow_); });
     const PointSums moved = timed_("gather", [&] { return transfer_->gather(flow_, dt); });
     require_sound(moved);

@@ -56,7 +56,7 @@ Frame DepthAveraged::frame() {
     Frame frame;
     frame_storage_.clear();
     timed_("frame", [&] {
-        const KickSums sums = kick_->kick(flow_, 0.5 * status_.dt);
+        const KickSums sums = kick_->kick(flow_, 0.5 * status_.dt, 0.0);
         mirror_motion(flow_);
         transfer_->probe(flow_, probe_);
         frame.grid = flow_.grid.geometry();

@@ -94,7 +94,8 @@ class Kernel final : public KickKernel {
 public:
     Kernel(const Law& law, bool on_points) : law_(law), pressure_on_points_(on_points) {}
 
-    KickSums kick(Flow& flow, double dt) override {
+    KickSums kick(Flow& flow, double dt, double drift) override {
+        drift_ = drift;
         parts_.assign(flow.active.work.size(), {});
         for_each_work_tile(flow.active, [&](Index n, Index tile) {
             KickSums sums;
@@ -216,7 +217,7 @@ private:
         const double driven = std::sqrt(dx * dx + dy * dy);
         if (driven == 0.0) return {0.0, 0.0, 0.0, 0.0, wave_gravity};
         const double s0 = std::max(0.0, (n.vx * dx + n.vy * dy) / driven);
-        const double speed = speed_after(law_, state, s0, driven, dt);
+        const double speed = stopping(state, s0, driven, dt, speed_after(law_, state, s0, driven, dt));
         const double keep = speed / driven, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
         const double kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
         // Work of friction: its impulse times the mean speed of the step; none where nothing moves. And what bores
@@ -227,6 +228,17 @@ private:
         return {vx, vy, kinetic, work, wave_gravity};
     }
 
+    /// `speed`, or the mean speed over the coming drift if friction ends the motion in it, and holds: the speed in the
+    /// drift's middle, where the leapfrog stands, would leave the stop short by up to brake drift^2 / 8.
+    double stopping(const BedState& state, double s0, double driven, double dt, double speed) const {
+        const double friction = coulomb(law_) * state.normal_gravity, pull = (driven - s0) / dt;
+        const double brake = friction - pull;
+        if (s0 == 0.0 || friction <= std::abs(pull) || drift_ <= 0.0) return speed;  // a turning point is no stop
+        const double at_start = s0 + brake * (0.5 * drift_ - dt);  // of the drift, half of which the kick has covered
+        if (at_start <= 0.0) return 0.0;
+        return at_start < brake * drift_ ? 0.5 * at_start * at_start / (brake * drift_) : speed;
+    }
+
     static double coulomb(const bed::None&) { return 0.0; }
     static double coulomb(const bed::Pouliquen& law) { return law.mu_s; }
     template <class Other>
@@ -234,6 +246,7 @@ private:
 
     Law law_;
     bool pressure_on_points_;
+    double drift_ = 0.0;  ///< [s]
     std::vector<KickSums> parts_;
 };
 

@@ -18,9 +18,9 @@ struct KickSums {
 class KickKernel {
 public:
     virtual ~KickKernel() = default;
-    /// Velocities of all wet nodes after `dt` [s], from Nodes::before to Nodes::motion. Only writes motion, so it
-    /// may be repeated with another dt (output uses half a step).
-    virtual KickSums kick(Flow& flow, double dt) = 0;
+    /// Velocities of all wet nodes after `dt` [s], from Nodes::before to Nodes::motion, for a drift that takes `drift`
+    /// [s]. Only writes motion, so it may be repeated (output uses half a step and no drift).
+    virtual KickSums kick(Flow& flow, double dt, double drift) = 0;
 };
 
 std::unique_ptr<KickKernel> make_kick(const Scene& scene);

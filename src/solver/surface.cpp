@@ -135,10 +135,14 @@ double wave(const double* e, Index step) {
 
 }  // namespace
 
+/// Mass and momentum of a node vanish together: however little it is, the velocity is right, and points that gather
+/// would miss it. Only denormal numbers are none.
+constexpr double kLeastMass = 1e-200;  ///< [kg]
+
 NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
     Nodes& nodes = flow.nodes;
     const Deposit* deposits = nodes.deposits();
-    const double column = flow.density * flow.area, dry = flow.dry_depth(), least_mass = dry * column;
+    const double column = flow.density * flow.area, dry = flow.dry_depth();
     std::vector<TileSums>& parts = flow.tile_sums;
     parts.assign(flow.active.work.size(), {});
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
@@ -146,7 +150,7 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
             const Deposit d = deposits[k];
             double h = d.column_mass / column;
-            const bool moving = d.mass > least_mass;
+            const bool moving = d.mass > kLeastMass;
             nodes.flags[k] = static_cast<std::uint8_t>((h > dry ? kWet : 0) | (moving ? kMoving : 0));
             if (!(h > dry)) h = 0.0;
             nodes.depth[k] = h;

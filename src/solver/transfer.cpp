@@ -6,6 +6,7 @@
 #include "base/simd.h"
 #include "grid/stencil.h"
 #include "law/rheology.h"
+#include "solver/domain.h"
 
 namespace frana {
 
@@ -177,8 +178,9 @@ private:
         Double4 base = {m, m * vx, m * vy, kPaper ? m : 0.0}, along_x = {}, along_y = {};
         if constexpr (kAffine) {
             const double mc = m * flow.cell;
-            along_x = Double4{0.0, mc * c.cxx[p], mc * c.cyx[p], 0.0};
-            along_y = Double4{0.0, mc * c.cxy[p], mc * c.cyy[p], 0.0};
+            const Gradient g = spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
+            along_x = Double4{0.0, mc * g.xx, mc * g.yx, 0.0};
+            along_y = Double4{0.0, mc * g.xy, mc * g.yy, 0.0};
             base -= sx.offset * along_x + sy.offset * along_y;
         }
         for (int j = 0; j < S::kNodes; ++j) {

@@ -25,12 +25,13 @@ Exact on_map(double turn, double t) {
 }
 
 /// The window holds the pile at the start and at the end, whatever the angle; the pile starts around (0, 0).
-Measurement run_turned(const Setup& setup, double turn) {
+Measurement run_turned(const Setup& setup, double turn, TerrainModel terrain = TerrainModel::steep) {
     const double cell = kReach / static_cast<double>(setup.cells), c = std::cos(turn), s = std::sin(turn);
     const double low = -std::ceil(96 / cell) * cell;
     const Index nx = static_cast<Index>(std::ceil((120 - low) / cell)) + 1;
     const auto bed = [&](double x, double y) { return -std::tan(kSlope) * (c * x + s * y); };
     Scene scene = scene_on(nx, nx, cell, bed, low, low);
+    scene.terrain = terrain;
     scene.bed_law = bed::Coulomb{std::tan(25 * M_PI / 180)};
     fill_cut(scene, on_map(turn, 0.0).depth, {setup.per_side});
     Trial trial(std::move(scene), setup);
@@ -50,6 +51,10 @@ Measurement run_similarity(const Setup& setup) {
         most = std::max(most, error);
     }
     m.add("rotation_spread", most - least);
+    // The theory's own linearisation in the depth gradient: what the steep form's error is without it.
+    const Measurement linear = run_turned(setup, 0.0, TerrainModel::linearised);
+    m.add("linear_l2_depth", linear.l2_depth);
+    m.add("linear_l2_momentum", linear.l2_momentum);
     return m;
 }
 
