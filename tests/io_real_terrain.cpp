@@ -30,22 +30,25 @@ Overlap overlap_with(const Frame& frame, const Raster& survey) {
 }  // namespace
 
 // Ryggfonn, 11 April 2021 (Norwegian Geotechnical Institute, MIT licence): release 1.0 m normal to the slope, the
-// published mu = 0.4 and xi = 9810 m/s^2, nothing tuned. The bounds: intersection over union 0.70 (a prototype had
-// 0.72 with these parameters; the survey is good to 20 m), the fastest particle below the energy line of the drop.
+// published mu = 0.4 and xi = 9810 m/s^2, nothing tuned. The bounds: intersection over union 0.72, with the bed's
+// curvature in the friction too 0.70 (it brakes: the dense-flow codes that have it stop short here as well; the survey
+// is good to 20 m), the fastest particle below the energy line of the drop.
 TEST_CASE("The Ryggfonn avalanche of 2021 covers the mapped extent", "[real]") {
     const auto folder = shared_data("ryggfonn_2021");
     if (!folder) return;
+    const auto [curvature, least_iou] = GENERATE(table<std::string, double>({{"inertia", 0.72}, {"full", 0.70}}));
+    CAPTURE(curvature);
     const std::string text = fmt::format(R"(
         terrain.dem = "{0}/dem.tif"
+        terrain.curvature = "{1}"
         material.density = 250.0
         material.bed = {{ law = "voellmy", mu = 0.4, xi = 9810.0 }}
-        scheme.split_min_mass = 0.3
         time = {{ end = 200.0, stop_at_rest = true }}
         [[release]]
         outline = "{0}/release.geojson"
         depth = 1.0
         thickness = "normal"
-    )", folder->string());
+    )", folder->string(), curvature);
     const GdalReader reader;
     const Scene scene = build_scene(CaseFile::parse(text, *folder / "case.toml", {}), reader);
     const auto simulation = make_simulation(scene);
@@ -66,5 +69,5 @@ TEST_CASE("The Ryggfonn avalanche of 2021 covers the mapped extent", "[real]") {
     const Raster survey = reader.read_onto(*folder / "footprint.tif", end.grid, scene.bed.crs_wkt, log);
     const Overlap overlap = overlap_with(end, survey);
     CAPTURE(overlap.hit, overlap.false_alarm, overlap.miss);
-    CHECK(overlap.iou() >= 0.70);
+    CHECK(overlap.iou() >= least_iou);
 }
