@@ -155,12 +155,22 @@ TEST_CASE("A mu(I) sheet reaches Bagnold's mean speed", "[law]") {
     CHECK(speed == Approx(0.50154241).epsilon(1e-7));  // computed from the closed form to eight digits
 }
 
+TEST_CASE("The plug's share from three Newton steps is the cubic's root to round-off", "[law]") {
+    for (double d = 1e-18; d < 1e15; d *= 7.0) {
+        CAPTURE(d);
+        const double exact = bingham_sheet(0.0, d).plug;
+        // Five roundings of numbers near one, divided by a slope of the equation that is small only with its terms.
+        CHECK(plug_share(d) == Approx(exact).margin(1e-15).epsilon(0.0));
+    }
+    CHECK(plug_share(0.0) == 1.0);
+}
+
 TEST_CASE("Bingham stress in plane strain equals 2 mu eps plus the yield stress over sqrt(I2)", "[law]") {
     const rheology::Bingham law{10.0, 100.0};
     const Plane rate{0.3, -0.3, 0.4};  // no vertical part, at rest no vertical shear: I2 = 0.09 + 0.16
-    const Plane sigma = stress(law, {rate, 0.0, 1.0, 0.0, 1e9});
+    const Plane sigma = stress(law, StrainState<double>{rate, 0.0, 1.0, 0.0, 1e9});
     CHECK(sigma.xx == Approx((20.0 + 100.0 / 0.5) * 0.3).epsilon(kRoundOff));
     CHECK(sigma.xy == Approx((20.0 + 100.0 / 0.5) * 0.4).epsilon(kRoundOff));
-    const Plane capped = stress(law, {rate, 0.0, 1.0, 0.0, 7.0});
+    const Plane capped = stress(law, StrainState<double>{rate, 0.0, 1.0, 0.0, 7.0});
     CHECK(capped.yy == Approx(-7.0 * 0.3).epsilon(kRoundOff));
 }

@@ -3,38 +3,60 @@
 // it may stop it, it never turns it round, and a node at rest stays at rest to the last bit until driven hard enough.
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
+#include "base/simd.h"
 #include "scene/scene.h"
 
 namespace frana {
 
-/// What a bed law sees of a node.
-struct BedState {
-    double normal_gravity;  ///< N / kappa: normal force per mass, over |V|/|v| [m/s^2]
-    double thickness;       ///< normal to the bed, > 0 [m]
-    double kappa;           ///< |V|/|v|, speed along the bed over speed along the map [1]
-    double cosine;          ///< cosine of the bed's slope [1]
-    double gravity;         ///< [m/s^2]
-    double density;         ///< [kg/m^3]
+/// What a bed law sees of a node. Real: double, or Double4 for four nodes at once.
+template <class Real>
+struct BedStateOf {
+    Real normal_gravity;  ///< N / kappa: normal force per mass, over |V|/|v| [m/s^2]
+    Real thickness;       ///< normal to the bed, > 0 [m]
+    Real kappa;           ///< |V|/|v|, speed along the bed over speed along the map [1]
+    Real cosine;          ///< cosine of the bed's slope [1]
+    double gravity;       ///< [m/s^2]
+    double density;       ///< [kg/m^3]
 };
+using BedState = BedStateOf<double>;
 
-/// One step of  ds/dt = drive - coulomb - quadratic s^2, exactly (Riccati). `s0`: speed at the start along the
-/// driven direction, `driven`: speed that the drive alone would give at the end. Returns the speed after dt >= 0.
+/// tanh(sqrt(x)) / sqrt(x), for x < 0 tan(sqrt(-x)) / sqrt(-x); -1 where that would be infinite or negative.
+inline double tangent_ratio(double x) {
+    const double root = std::sqrt(std::abs(x));
+    if (root == 0.0) return 1.0;
+    if (x > 0.0) return std::tanh(root) / root;
+    return root < 1.5 ? std::tan(root) / root : -1.0;
+}
+
+/// Largest |x| for which tangent_series is right to round-off: the next term is 1.5e-3 x^7.
+constexpr double kTangentSeries = 1e-2;
+
+/// The same by its Taylor series.
+template <class Real>
+[[gnu::always_inline]] inline Real tangent_series(Real x) {
+    return 1.0 +
+           x * (-1.0 / 3 +
+                x * (2.0 / 15 + x * (-17.0 / 315 + x * (62.0 / 2835 + x * (-1382.0 / 155925 + x * (21844.0 / 6081075))))));
+}
+
+/// One step of  ds/dt = drive - coulomb - quadratic s^2, exactly (Riccati): with net = drive - coulomb and
+/// T = tangent_ratio(net quadratic dt^2), s = (s0 + net dt T) / (1 + quadratic s0 dt T). `s0`: speed at the start along
+/// the driven direction, `driven`: speed that the drive alone would give at the end. Returns the speed after dt >= 0.
 /// The drive is taken constant over the step: terminal speeds are exact, any dt is stable.
-inline double riccati_speed(double s0, double driven, double coulomb, double quadratic, double dt) {
-    const double net = (driven - s0) / dt - coulomb;  // drive less Coulomb [m/s^2]
-    if (net * dt + s0 <= 0.0) return 0.0;
-    if (quadratic == 0.0) return s0 + net * dt;
-    const double rate = std::sqrt(std::abs(net) * quadratic) * dt;
-    if (rate < 1e-9) return std::max(0.0, (s0 + net * dt) / (1.0 + quadratic * s0 * dt));
-    const double scale = std::sqrt(std::abs(net) / quadratic);
-    if (net > 0.0) {
-        const double t = std::tanh(rate);
-        return scale * (s0 + scale * t) / (scale + s0 * t);
+template <class Real>
+[[gnu::always_inline]] inline Real riccati_speed(Real s0, Real driven, Real coulomb, Real quadratic, double dt) {
+    const Real gain = driven - s0 - dt * coulomb, x = dt * quadratic * gain, none = {};
+    Real ratio = tangent_series(x);
+    if constexpr (std::is_same_v<Real, double>) {
+        if (!(abs(x) < kTangentSeries)) ratio = tangent_ratio(x);
+    } else if (any(abs(x) >= kTangentSeries)) {
+        for (int n = 0; n < 4; ++n)
+            if (!(std::abs(x[n]) < kTangentSeries)) ratio[n] = tangent_ratio(x[n]);
     }
-    if (rate >= 1.5) return 0.0;  // tan: at rest before a quarter period is over
-    const double t = std::tan(rate);
-    return std::max(0.0, scale * (s0 - scale * t) / (scale + s0 * t));
+    const Real speed = max((s0 + gain * ratio) / (1.0 + dt * quadratic * s0 * ratio), none);
+    return select((s0 + gain <= 0.0) | (ratio <= 0.0), none, speed);
 }
 
 /// One step of  ds/dt = drive - f(s)  from s0 with f linear between s0 and the speed that backward Euler found:
@@ -71,16 +93,24 @@ inline SheetShares bingham_sheet(double b, double d) {
     return {z, 1.0 - z};
 }
 
-inline double speed_after(const bed::None&, const BedState&, double, double driven, double) { return driven; }
+template <class Real>
+inline Real speed_after(const bed::None&, const BedStateOf<Real>&, Real, Real driven, double) {
+    return driven;
+}
 
-inline double speed_after(const bed::Coulomb& law, const BedState& bed, double s0, double driven, double dt) {
-    return riccati_speed(s0, driven, law.mu * bed.normal_gravity, 0.0, dt);
+template <class Real>
+[[gnu::always_inline]] inline Real speed_after(const bed::Coulomb& law, const BedStateOf<Real>& bed, Real, Real driven,
+                                               double dt) {
+    const Real none = {};
+    return max(driven - dt * law.mu * bed.normal_gravity, none);
 }
 
 /// tau = mu sigma_n + rho g |V|^2 / xi (Voellmy 1955)
-inline double speed_after(const bed::Voellmy& law, const BedState& bed, double s0, double driven, double dt) {
-    const double quadratic = bed.gravity * bed.kappa / (law.xi * bed.thickness);
-    return riccati_speed(s0, driven, law.mu * bed.normal_gravity, quadratic, dt);
+template <class Real>
+[[gnu::always_inline]] inline Real speed_after(const bed::Voellmy& law, const BedStateOf<Real>& bed, Real s0,
+                                               Real driven, double dt) {
+    const Real quadratic = bed.gravity * bed.kappa / (law.xi * bed.thickness);
+    return riccati_speed<Real>(s0, driven, law.mu * bed.normal_gravity, quadratic, dt);
 }
 
 /// tau = mu sigma_n + rho g n^2 |V|^2 / h^(1/3)
@@ -119,6 +149,26 @@ inline double speed_after(const bed::Pouliquen& law, const BedState& bed, double
     const double b = slow + dt * rise - left, root = std::sqrt(b * b + 4.0 * left * slow);
     const double euler = b > 0.0 ? 2.0 * left * slow / (b + root) : 0.5 * (root - b);
     return relaxed_speed(s0, euler, driven, rest + rise * s0 / (s0 + slow), dt);
+}
+
+/// Four nodes at once by any law.
+template <class Law>
+[[gnu::always_inline]] inline Double4 speeds_after(const Law& law, const BedStateOf<Double4>& bed, Double4 s0,
+                                                   Double4 driven, double dt) {
+    if constexpr (std::is_same_v<Law, bed::None> || std::is_same_v<Law, bed::Coulomb> ||
+                  std::is_same_v<Law, bed::Voellmy>) {
+        return speed_after(law, bed, s0, driven, dt);
+    } else {
+        Double4 speed = {};
+        for (int n = 0; n < 4; ++n)
+            speed[n] = speed_after(law, BedState{bed.normal_gravity[n], bed.thickness[n], bed.kappa[n], bed.cosine[n],
+                                                 bed.gravity, bed.density}, s0[n], driven[n], dt);
+        return speed;
+    }
+}
+template <class Law>
+inline double speeds_after(const Law& law, const BedState& bed, double s0, double driven, double dt) {
+    return speed_after(law, bed, s0, driven, dt);
 }
 
 }  // namespace frana

@@ -142,6 +142,8 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
         const bool inside = i >= 0 && i < nx && j >= 0 && j < ny;
         bed.exit[k] = inside && std::isnan(scene.bed.at(i, j));
     });
+    for (Index j = 0; j < ny; ++j)
+        for (Index i = 0; i < nx; ++i) bed.has_exits = bed.has_exits || std::isnan(scene.bed.at(i, j));
     LazyArray<double> scratch(grid.size());
     average(scene, grid, bed.z, scratch);
     bed.z_min = LazyArray<double>(grid.size());

@@ -18,6 +18,7 @@ struct BedGeometry {
     LazyArray<double> slope_y;  ///< [1]
     LazyArray<double> hxx, hxy, hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
     LazyArray<std::uint8_t> exit;     ///< 1 where the elevation model has no data: material leaves there
+    bool has_exits = false;           ///< any of them
 };
 
 /// Fills the geometry of scene.bed for the scheme's shape function (quadratic: the elevation model is taken

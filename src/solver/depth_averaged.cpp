@@ -13,8 +13,9 @@ namespace {
 
 constexpr Index kStepsBetweenSplits = 3;
 /// Cells a point may have moved since the last sort: same-colour tiles then still share no node
-/// (a point's stencil and sub-points reach 2 cells further; 2 (4 + 2) + 2 < 16).
+/// (sub-points reach from one node before the stencil to one behind it: 16 + d + 2 < 32 - d - 1, d <= 6).
 constexpr double kDriftLimit = 3.0;
+constexpr double kLongestShift = 1.0;  ///< of a sound step [cells]; and 2 (2 + 4) <= 12 holds to the very last one
 
 double least_split_mass(const Scene& scene) {
     double largest = 0.0;
@@ -45,7 +46,8 @@ DepthAveraged::DepthAveraged(const Scene& scene)
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear)
         fit_ = fit_masses(flow_, *scene.still_surface);
     if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(flow_);
-    arrive();
+    const double longest = longest_step();
+    arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest); }));
     start_momentum_ = status_.momentum;
     signal_ += std::sqrt(flow_.gravity * status_.max_depth);
 }
@@ -90,27 +92,28 @@ void DepthAveraged::level_points(double level) {
     }
 }
 
-/// One step: the nodes are kicked and braked, the points are carried, then they deposit where they arrived.
+/// One step: the nodes are kicked and braked, the points are carried and deposit where they arrive.
 void DepthAveraged::advance(double until) {
     const double dt = step_length(until);
     const double kick = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
     book_kick(timed_("kick and friction", [&] { return kick_->kick(flow_, kick, dt); }), kick);
     timed_("kick and friction", [&] { mirror_motion(flow_); });
-    const PointSums moved = timed_("gather", [&] { return transfer_->gather(flow_, dt); });
-    require_sound(moved);
-    book_points(moved);
+    const double next_kick = 0.5 * (dt + longest_step());
+    const bool adapts = (status_.step + 1) % kStepsBetweenSplits == 0 || drift_ + kLongestShift > kDriftLimit;
+    PointSums points = adapts ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
+                              : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_kick); });
+    require_sound(points);
+    book_points(points);
     status_.step += 1;
     status_.time = dt >= until - status_.time ? until : status_.time + dt;
     status_.dt = dt;
-    adapt_points(moved.left_count > 0);
-    arrive();
+    if (adapts || points.left_count > 0) adapt_points(points.left_count > 0);
+    if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_kick); });
+    arrive(points);
 }
 
-/// Deposit at the present positions, and what follows from it: depth, surface, status, peaks.
-void DepthAveraged::arrive() {
-    const double longest = longest_step();
-    const PointSums points =
-        timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * (status_.dt + longest)); });
+/// What follows from a deposit: depth, surface, status, peaks.
+void DepthAveraged::arrive(const PointSums& points) {
     const PointSums nodes = timed_("deposit", [&] { return node_sums(flow_); });
     status_.p2g_mass_error = points.mass > 0.0 ? std::abs(nodes.mass - points.mass) / points.mass : 0.0;
     status_.p2g_momentum_error =

@@ -56,7 +56,7 @@ public:
 private:
     void place(const Seeds& seeds);
     void level_points(double level);
-    void arrive();
+    void arrive(const PointSums& points);
     void adapt_points(bool points_left);
     double longest_step() const;
     double step_length(double until) const;

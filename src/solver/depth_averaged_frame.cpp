@@ -189,8 +189,8 @@ void DepthAveraged::stress_fields(Frame& frame) {
             std::visit(
                 [&](const auto& law) {
                     if constexpr (!std::is_same_v<std::decay_t<decltype(law)>, rheology::None>)
-                        sigma = stress(law, {rate, std::hypot(probe_.vx[p], probe_.vy[p]), h,
-                                             flow_.scheme.strain_rate_floor, cap});
+                        sigma = stress(law, StrainState<double>{rate, std::hypot(probe_.vx[p], probe_.vy[p]), h,
+                                                                flow_.scheme.strain_rate_floor, cap});
                 },
                 rheology_);
         const double s[3] = {sigma.xx, sigma.yy, sigma.xy};

@@ -10,6 +10,8 @@
 namespace frana {
 namespace {
 
+constexpr double kRoundOff = 64.0 * std::numeric_limits<double>::epsilon();  ///< of a surface's height
+
 /// Slope of the free surface at a node with material, along one axis. Uniform depth gives the bed's own slope, a lake gives
 /// zero, whatever the bed. A dry neighbour that stands higher is a shore and takes no part; a dry neighbour that
 /// lies lower enters with its bed, and drives the front. One-sided, a film that follows a curved bed takes the bed's own
@@ -32,62 +34,93 @@ double raw_gradient(const Flow& flow, Index k, Index step, bool wide, double slo
 /// The same without the round-off of the surface's own height: a difference of some units in the last place over a
 /// cell is none, so that a lake rests to the last bit.
 double surface_gradient(const Flow& flow, Index k, Index step, bool wide, double bed_slope) {
-    constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon();
     const double slope = raw_gradient(flow, k, step, wide, bed_slope);
-    return std::abs(slope) * flow.cell <= round_off * std::abs(flow.nodes.surface[k]) ? 0.0 : slope;
+    return std::abs(slope) * flow.cell <= kRoundOff * std::abs(flow.nodes.surface[k]) ? 0.0 : slope;
+}
+
+/// The same for four nodes in a row, all wide.
+Double4 wide_gradients(const Flow& flow, Index k, Index step) {
+    const double* e = flow.nodes.surface.data() + k;
+    const Double4 none = {}, slope = (8.0 * (load(e + step) - load(e - step)) - (load(e + 2 * step) - load(e - 2 * step))) /
+                                     (12.0 * flow.cell);
+    return select(abs(slope) * flow.cell <= kRoundOff * abs(load(e)), none, slope);
 }
 
 /// P1's terrain: gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.
-struct Gentle {
-    explicit Gentle(const Flow&, Index) {}
-    static constexpr bool kSteep = false;
+template <class Real>
+struct GentleBed {
+    GentleBed(const Flow&, Index) {}
 };
 
 /// Driving slope of the surface, times its gravity: a = -gravity * (x, y).
-struct Drive { double x, y; };
+template <class Real>
+struct Drive { Real x, y; };
 
-/// Steep terrain. kLinear: to first order in the depth gradient. kCurvature: none, inertia (v.H.v in the acceleration only), full (in the friction too).
-template <Curvature kCurvature, bool kLinear>
-struct Steep {
-    static constexpr bool kSteep = true;
-    double bx, by, hxx = 0.0, hxy = 0.0, hyy = 0.0;
-    Steep(const Flow& flow, Index k) : bx(flow.bed.slope_x[k]), by(flow.bed.slope_y[k]) {
+/// Steep terrain. kLinear: to first order in the depth gradient. kCurvature: none, inertia (v.H.v in the acceleration
+/// only), full (in the friction too).
+template <class Real, Curvature kCurvature, bool kLinear>
+struct SteepBed {
+    Real bx, by, hxx{}, hxy{}, hyy{};
+    SteepBed(const Flow& flow, Index k) : bx(read<Real>(&flow.bed.slope_x[k])), by(read<Real>(&flow.bed.slope_y[k])) {
         if constexpr (kCurvature != Curvature::none) {
-            hxx = flow.bed.hxx[k];
-            hxy = flow.bed.hxy[k];
-            hyy = flow.bed.hyy[k];
+            hxx = read<Real>(&flow.bed.hxx[k]);
+            hxy = read<Real>(&flow.bed.hxy[k]);
+            hyy = read<Real>(&flow.bed.hyy[k]);
         }
     }
     /// Gravity plus the bed's own vertical acceleration along the path, (g + v.H.v)+
-    double gravity(double g, double vx, double vy) const {
-        if constexpr (kCurvature == Curvature::none) return g;
-        return std::max(0.0, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
+    Real gravity(double g, Real vx, Real vy) const {
+        if constexpr (kCurvature == Curvature::none) return Real{} + g;
+        return max(Real{}, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
     }
     /// grad(eta) / (1 + gradZ . grad(eta)): a column that accelerates vertically with its bed. The continuation
     /// 1/(1 - q) for q < 0 keeps the factor positive where the surface slopes against a steep bed. Linear:
     /// c^2 (gradZ + grad h - c^2 gradZ (gradZ . grad h)), the first terms of its series in grad h.
-    Drive drive(double ex, double ey, double cosine) const {
+    Drive<Real> drive(Real ex, Real ey, Real cosine) const {
         if constexpr (kLinear) {
-            const double c2 = cosine * cosine, hx = ex - bx, hy = ey - by, along = c2 * (bx * hx + by * hy);
+            const Real c2 = cosine * cosine, hx = ex - bx, hy = ey - by, along = c2 * (bx * hx + by * hy);
             return {c2 * (ex - bx * along), c2 * (ey - by * along)};
         } else {
-            const double q = bx * ex + by * ey, reduce = q >= 0.0 ? 1.0 / (1.0 + q) : 1.0 - q;
+            const Real q = bx * ex + by * ey, reduce = select(q >= 0.0, 1.0 / (1.0 + abs(q)), 1.0 - q);
             return {reduce * ex, reduce * ey};
         }
     }
 };
 
-struct Node {
-    double vx, vy;      ///< before the kick [m/s]
-    double ex, ey;      ///< gradient of the free surface [1]
-    double depth, mass;
-    double push_x, push_y;  ///< artificial viscosity and stress [m/s^2]
-    double loss_x = 0.0, loss_y = 0.0;  ///< the viscosity's part, whose work is lost [m/s^2]
+struct Gentle {
+    static constexpr bool kSteep = false;
+    template <class Real>
+    using Bed = GentleBed<Real>;
 };
 
-struct Kicked {
-    double vx, vy, kinetic, dissipated, wave_gravity;
+template <Curvature kCurvature, bool kLinear>
+struct Steep {
+    static constexpr bool kSteep = true;
+    template <class Real>
+    using Bed = SteepBed<Real, kCurvature, kLinear>;
 };
+
+/// A node, or four in a row.
+template <class Real>
+struct Node {
+    Real vx{}, vy{};          ///< before the kick [m/s]
+    Real ex{}, ey{};          ///< gradient of the free surface [1]
+    Real depth{}, mass{};
+    Real push_x{}, push_y{};  ///< artificial viscosity and stress [m/s^2]
+    Real loss_x{}, loss_y{};  ///< the viscosity's part, whose work is lost [m/s^2]
+};
+
+template <class Real>
+struct Kicked {
+    Real vx, vy, kinetic, dissipated, wave_gravity;
+};
+
+/// At the rim of a stencil mass vanishes faster than force: a node that has depth counts half of it at least, or a
+/// point's stress would drive it (and the time step) without bound.
+template <class Real>
+Real inertia_of(const Flow& flow, Real mass, Real depth) {
+    return max(mass, 0.5 * flow.density * flow.area * depth);
+}
 
 template <class Law, class Terrain>
 class Kernel final : public KickKernel {
@@ -98,9 +131,14 @@ public:
         drift_ = drift;
         parts_.assign(flow.active.work.size(), {});
         for_each_work_tile(flow.active, [&](Index n, Index tile) {
-            KickSums sums;
-            for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) { kick_node(flow, k, i, j, dt, sums); });
-            parts_[n] = sums;
+            Sums<double> single;
+            Sums<Double4> four;
+            const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+            for (Index j = j0; j < j0 + kTile; ++j)
+                for (Index i = i0; i < i0 + kTile; i += 4) kick_four(flow, i, j, dt, four, single);
+            parts_[n] = {single.kinetic + sum(four.kinetic), single.dissipated + sum(four.dissipated),
+                         single.impulse_x + sum(four.impulse_x), single.impulse_y + sum(four.impulse_y),
+                         std::max(single.max_signal, largest(four.max_signal))};
         });
         KickSums total;
         for (const KickSums& part : parts_) {
@@ -114,129 +152,193 @@ public:
     }
 
 private:
-    void kick_node(Flow& flow, Index k, Index i, Index j, double dt, KickSums& sums) {
+    template <class Real>
+    struct Sums { Real kinetic{}, dissipated{}, impulse_x{}, impulse_y{}, max_signal{}; };
+
+    /// Four nodes in a row: together where all lie inside the flow, otherwise one by one.
+    void kick_four(Flow& flow, Index i, Index j, double dt, Sums<Double4>& four, Sums<double>& single) {
+        const Index k = flow.grid.at(i, j);
+        const std::uint8_t* f = flow.nodes.flags.data() + k;
+        constexpr int kInside = kMoving | kWideX | kWideY;
+        Motion* motion = flow.nodes.motions() + k;
+        if ((f[0] & f[1] & f[2] & f[3] & kInside) == kInside && !pressure_on_points_ && dt > 0.0 && inside(flow, i, j)) {
+            const Node<Double4> node = prepared_four(flow, k);
+            const auto after = kicked(flow, typename Terrain::template Bed<Double4>(flow, k), node, dt);
+            add(flow, node, after, 1.0, four);
+            Double4 out[4];
+            transpose(after.vx, after.vy, node.depth, Double4{}, out);
+            for (int n = 0; n < 4; ++n) store(motion + n, out[n]);
+        } else {
+            for (Index n = 0; n < 4; ++n) kick_node(flow, k + n, i + n, j, dt, single);
+        }
+    }
+
+    static bool inside(const Flow& flow, Index i, Index j) {
+        return !flow.walls || (i > 0 && j > 0 && i + 4 < flow.grid.nx() && j + 1 < flow.grid.ny());
+    }
+
+    void kick_node(Flow& flow, Index k, Index i, Index j, double dt, Sums<double>& sums) {
         const Nodes& nodes = flow.nodes;
         Motion& motion = flow.nodes.motions()[k];
         motion = {0.0, 0.0, nodes.depth[k], 0.0};
         if (!(nodes.flags[k] & kMoving)) return;
-        const double mass = nodes.deposits()[k].mass;
         const double share = flow.share(i, j);
         if (share == 0.0) return;
-        Node node = prepared(flow, k, mass);
+        Node<double> node = prepared(flow, k);
         if (flow.walls) {  // what a mirror cancels, it cancels exactly
             if (i == 0 || i == flow.grid.nx() - 1) node.ex = node.push_x = node.loss_x = node.vx = 0.0;
             if (j == 0 || j == flow.grid.ny() - 1) node.ey = node.push_y = node.loss_y = node.vy = 0.0;
         }
-        const Kicked after = dt > 0.0 ? kicked(flow, Terrain(flow, k), node, dt) : resting_clock(Terrain(flow, k), node);
+        const typename Terrain::template Bed<double> bed(flow, k);
+        const Kicked<double> after = dt > 0.0 ? kicked(flow, bed, node, dt) : resting_clock(bed, node);
         motion.vx = after.vx;
         motion.vy = after.vy;
-        sums.kinetic += share * mass * after.kinetic;
-        sums.dissipated += share * mass * after.dissipated;
-        sums.impulse_x += share * mass * (after.vx - node.vx);
-        sums.impulse_y += share * mass * (after.vy - node.vy);
-        sums.max_signal = std::max(sums.max_signal, std::sqrt(after.vx * after.vx + after.vy * after.vy) +
-                                                        std::sqrt(after.wave_gravity * node.depth));
+        add(flow, node, after, share, sums);
+    }
+
+    template <class Real>
+    static void add(const Flow&, const Node<Real>& node, const Kicked<Real>& after, double share, Sums<Real>& sums) {
+        const Real mass = share * node.mass;
+        sums.kinetic += mass * after.kinetic;
+        sums.dissipated += mass * after.dissipated;
+        sums.impulse_x += mass * (after.vx - node.vx);
+        sums.impulse_y += mass * (after.vy - node.vy);
+        sums.max_signal =
+            max(sums.max_signal, sqrt(after.vx * after.vx + after.vy * after.vy) + sqrt(after.wave_gravity * node.depth));
     }
 
     /// A kick of no length: the start of a run.
-    static Kicked resting_clock(const Terrain& bed, const Node& n) {
+    template <class Bed>
+    static Kicked<double> resting_clock(const Bed& bed, const Node<double>& n) {
         double vz = 0.0;
         if constexpr (Terrain::kSteep) vz = n.vx * bed.bx + n.vy * bed.by;
         return {n.vx, n.vy, 0.5 * (n.vx * n.vx + n.vy * n.vy + vz * vz), 0.0, 0.0};
     }
 
-    Node prepared(const Flow& flow, Index k, double mass) const {
+    Node<double> prepared(const Flow& flow, Index k) const {
         const Nodes& nodes = flow.nodes;
         const Index up = flow.grid.stride();
-        Node node{nodes.before[k].x, nodes.before[k].y, 0.0, 0.0, nodes.depth[k], mass, 0.0, 0.0};
+        Node<double> node;
+        node.vx = nodes.before[k].x, node.vy = nodes.before[k].y;
+        node.depth = nodes.depth[k], node.mass = nodes.deposits()[k].mass;
         if (!pressure_on_points_) {
             node.ex = surface_gradient(flow, k, 1, nodes.flags[k] & kWideX, flow.bed.slope_x[k]);
             node.ey = surface_gradient(flow, k, up, nodes.flags[k] & kWideY, flow.bed.slope_y[k]);
         }
         if (has_viscosity(flow.scheme) && node.depth > 1e-12 * flow.cell) {  // a rotated domain's centre may reach beyond its mass
             const double scale = 1.0 / (flow.cell * node.depth);
-            node.push_x = scale * (nodes.viscous_flux[k - 1].x - nodes.viscous_flux[k].x);
-            node.push_y = scale * (nodes.viscous_flux[k - up].y - nodes.viscous_flux[k].y);
-            node.loss_x = node.push_x;
-            node.loss_y = node.push_y;
+            node.push_x = node.loss_x = scale * (nodes.viscous_flux[k - 1].x - nodes.viscous_flux[k].x);
+            node.push_y = node.loss_y = scale * (nodes.viscous_flux[k - up].y - nodes.viscous_flux[k].y);
         }
         if (nodes.force) {
-            // At the rim of a stencil mass vanishes faster than force: a node that has depth counts half of it at
-            // least, or a point's stress would drive it (and the time step) without bound.
-            const double inertia = std::max(mass, 0.5 * flow.density * flow.area * node.depth);
+            const double inertia = inertia_of(flow, node.mass, node.depth);
             node.push_x += nodes.force[k].x / inertia;
             node.push_y += nodes.force[k].y / inertia;
         }
         return node;
     }
 
+    /// Four nodes in a row, with five wet ones in a row around each.
+    Node<Double4> prepared_four(const Flow& flow, Index k) const {
+        const Nodes& nodes = flow.nodes;
+        const Index up = flow.grid.stride();
+        Node<Double4> node;
+        unzip(&nodes.before[k], node.vx, node.vy);
+        const Deposit* d = nodes.deposits() + k;
+        node.depth = load(&nodes.depth[k]), node.mass = Double4{d[0].mass, d[1].mass, d[2].mass, d[3].mass};
+        node.ex = wide_gradients(flow, k, 1);
+        node.ey = wide_gradients(flow, k, up);
+        if (has_viscosity(flow.scheme)) {
+            Double4 right, left, above, below, across;
+            unzip(&nodes.viscous_flux[k], right, above);
+            unzip(&nodes.viscous_flux[k - 1], left, across);
+            unzip(&nodes.viscous_flux[k - up], across, below);
+            const Double4 none = {}, scale = select(node.depth > 1e-12 * flow.cell, 1.0 / (flow.cell * node.depth), none);
+            node.push_x = node.loss_x = scale * (left - right);
+            node.push_y = node.loss_y = scale * (below - above);
+        }
+        if (nodes.force) {
+            Double4 fx, fy;
+            unzip(&nodes.force[k], fx, fy);
+            const Double4 share = 1.0 / inertia_of(flow, node.mass, node.depth);
+            node.push_x += fx * share;
+            node.push_y += fy * share;
+        }
+        return node;
+    }
+
     /// Gentle terrain: a = -g grad(eta), friction with N = g.
-    Kicked kicked(const Flow& flow, const Gentle&, const Node& n, double dt) const {
+    template <class Real>
+    Kicked<Real> kicked(const Flow& flow, const GentleBed<Real>&, const Node<Real>& n, double dt) const {
         const double g = flow.gravity;
-        const double dx = n.vx + dt * (n.push_x - g * n.ex), dy = n.vy + dt * (n.push_y - g * n.ey);
-        const BedState state{g, std::max(n.depth, 1e-9), 1.0, 1.0, g, flow.density};
-        return braked(state, n, dx, dy, 0.0, 0.0, g, dt);
+        const Real dx = n.vx + dt * (n.push_x - g * n.ex), dy = n.vy + dt * (n.push_y - g * n.ey);
+        const Real one = Real{} + 1.0, level = Real{} + g;
+        const BedStateOf<Real> state{level, max(n.depth, Real{} + 1e-9), one, one, g, flow.density};
+        return braked(state, n, dx, dy, Real{}, Real{}, level, dt);
     }
 
     /// Steep terrain: a = -g_c drive, g_c = (g + v.H.v)+ at the middle of the step.
-    template <Curvature kCurvature, bool kLinear>
-    Kicked kicked(const Flow& flow, const Steep<kCurvature, kLinear>& bed, const Node& n, double dt) const {
+    template <class Real, Curvature kCurvature, bool kLinear>
+    Kicked<Real> kicked(const Flow& flow, const SteepBed<Real, kCurvature, kLinear>& bed, const Node<Real>& n,
+                        double dt) const {
         const double g = flow.gravity;
-        const double cosine = 1.0 / std::sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
-        const Drive slope = bed.drive(n.ex, n.ey, cosine);
-        double gravity = bed.gravity(g, n.vx, n.vy);
+        const Real cosine = 1.0 / sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
+        const Drive<Real> slope = bed.drive(n.ex, n.ey, cosine);
+        Real gravity = bed.gravity(g, n.vx, n.vy);
         if constexpr (kCurvature != Curvature::none) {
             const auto [mx, my] = midpoint(bed, n, {gravity * slope.x, gravity * slope.y}, g, cosine, dt);
             gravity = bed.gravity(g, mx, my);
         }
-        const double dx = n.vx + dt * (n.push_x - gravity * slope.x), dy = n.vy + dt * (n.push_y - gravity * slope.y);
-        const double speed = std::sqrt(dx * dx + dy * dy);
-        const double rise = speed > 0.0 ? (dx * bed.bx + dy * bed.by) / speed : 0.0;
-        const double kappa = std::sqrt(1.0 + rise * rise);
-        const double normal = kCurvature == Curvature::full ? gravity : g;
-        const BedState state{normal * cosine / kappa, std::max(n.depth * cosine, 1e-9), kappa, cosine, g, flow.density};
-        return braked(state, n, dx, dy, bed.bx, bed.by, std::max(g, gravity), dt);
+        const Real dx = n.vx + dt * (n.push_x - gravity * slope.x), dy = n.vy + dt * (n.push_y - gravity * slope.y);
+        const Real along = dx * bed.bx + dy * bed.by, speed2 = dx * dx + dy * dy;
+        const Real kappa = sqrt(1.0 + select(speed2 > 0.0, along * along / speed2, Real{}));
+        const Real normal = kCurvature == Curvature::full ? gravity : Real{} + g;
+        const BedStateOf<Real> state{normal * cosine / kappa, max(n.depth * cosine, Real{} + 1e-9), kappa, cosine, g,
+                                     flow.density};
+        return braked(state, n, dx, dy, bed.bx, bed.by, max(Real{} + g, gravity), dt);
     }
 
     /// Velocity in the middle of the step, driven and braked by Coulomb friction: makes v.H.v second order.
-    template <Curvature kCurvature, bool kLinear>
-    std::pair<double, double> midpoint(const Steep<kCurvature, kLinear>& bed, const Node& n, const Drive& pull, double g,
-                                       double cosine, double dt) const {
-        double mx = n.vx - 0.5 * dt * pull.x, my = n.vy - 0.5 * dt * pull.y;
-        const double speed = std::sqrt(mx * mx + my * my);
-        if (speed == 0.0) return {0.0, 0.0};
-        const double rise = (mx * bed.bx + my * bed.by) / speed;
-        const double normal = kCurvature == Curvature::full ? bed.gravity(g, n.vx, n.vy) : g;
-        const double left = speed - 0.5 * dt * coulomb(law_) * normal * cosine / std::sqrt(1.0 + rise * rise);
-        const double keep = std::max(0.0, left) / speed;
+    template <class Real, Curvature kCurvature, bool kLinear>
+    std::pair<Real, Real> midpoint(const SteepBed<Real, kCurvature, kLinear>& bed, const Node<Real>& n,
+                                   const Drive<Real>& pull, double g, Real cosine, double dt) const {
+        const Real mx = n.vx - 0.5 * dt * pull.x, my = n.vy - 0.5 * dt * pull.y;
+        const Real along = mx * bed.bx + my * bed.by, speed2 = mx * mx + my * my;
+        const Real normal = kCurvature == Curvature::full ? bed.gravity(g, n.vx, n.vy) : Real{} + g;
+        // Speed lost to friction, over the speed: normal force over kappa is normal * cosine * speed / sqrt(...).
+        const Real lost = 0.5 * dt * coulomb(law_) * normal * cosine;
+        const Real keep = select(speed2 > 0.0, max(Real{}, 1.0 - lost / sqrt(speed2 + along * along)), Real{});
         return {mx * keep, my * keep};
     }
 
-    Kicked braked(const BedState& state, const Node& n, double dx, double dy, double bx, double by,
-                  double wave_gravity, double dt) const {
-        const double driven = std::sqrt(dx * dx + dy * dy);
-        if (driven == 0.0) return {0.0, 0.0, 0.0, 0.0, wave_gravity};
-        const double s0 = std::max(0.0, (n.vx * dx + n.vy * dy) / driven);
-        const double speed = stopping(state, s0, driven, dt, speed_after(law_, state, s0, driven, dt));
-        const double keep = speed / driven, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
-        const double kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
+    template <class Real>
+    Kicked<Real> braked(const BedStateOf<Real>& state, const Node<Real>& n, Real dx, Real dy, Real bx, Real by,
+                        Real wave_gravity, double dt) const {
+        const Real driven = sqrt(dx * dx + dy * dy), unit = select(driven > 0.0, 1.0 / driven, Real{});
+        const Real s0 = max(Real{}, (n.vx * dx + n.vy * dy) * unit);
+        const Real speed = stopping(state, s0, driven, dt, speeds_after(law_, state, s0, driven, dt));
+        const Real keep = speed * unit, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
+        const Real kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
         // Work of friction: its impulse times the mean speed of the step; none where nothing moves. And what bores
         // lose through the artificial viscosity, which moves a node along its bed.
-        const double mx = 0.5 * (n.vx + vx), my = 0.5 * (n.vy + vy), mz = mx * bx + my * by;
-        const double bore = -dt * (n.loss_x * (mx + bx * mz) + n.loss_y * (my + by * mz));
-        const double work = state.kappa * state.kappa * (driven - speed) * 0.5 * (s0 + speed) + bore;
-        return {vx, vy, kinetic, work, wave_gravity};
+        const Real mx = 0.5 * (n.vx + vx), my = 0.5 * (n.vy + vy), mz = mx * bx + my * by;
+        const Real bore = -dt * (n.loss_x * (mx + bx * mz) + n.loss_y * (my + by * mz));
+        const Real work = state.kappa * state.kappa * (driven - speed) * 0.5 * (s0 + speed) + bore;
+        return {vx, vy, kinetic, select(driven > 0.0, work, Real{}), wave_gravity};
     }
 
     /// `speed`, or the mean speed over the coming drift if friction ends the motion in it, and holds: the speed in the
     /// drift's middle, where the leapfrog stands, would leave the stop short by up to brake drift^2 / 8.
-    double stopping(const BedState& state, double s0, double driven, double dt, double speed) const {
-        const double friction = coulomb(law_) * state.normal_gravity, pull = (driven - s0) / dt;
-        const double brake = friction - pull;
-        if (s0 == 0.0 || friction <= std::abs(pull) || drift_ <= 0.0) return speed;  // a turning point is no stop
-        const double at_start = s0 + brake * (0.5 * drift_ - dt);  // of the drift, half of which the kick has covered
-        if (at_start <= 0.0) return 0.0;
-        return at_start < brake * drift_ ? 0.5 * at_start * at_start / (brake * drift_) : speed;
+    template <class Real>
+    Real stopping(const BedStateOf<Real>& state, Real s0, Real driven, double dt, Real speed) const {
+        if constexpr (std::is_same_v<Law, bed::None>) return speed;
+        if (drift_ <= 0.0) return speed;
+        const Real friction = coulomb(law_) * state.normal_gravity, pull = (driven - s0) / dt, brake = friction - pull;
+        const Real at_start = s0 + brake * (0.5 * drift_ - dt);  // of the drift, half of which the kick has covered
+        const auto stops = (s0 > 0.0) & (friction > abs(pull)) & (at_start < brake * drift_);  // a turning point is no stop
+        if (!any(stops)) return speed;
+        const Real mean = select(at_start > 0.0, 0.5 * at_start * at_start / (abs(brake) * drift_ + 1e-300), Real{});
+        return select(stops, mean, speed);
     }
 
     static double coulomb(const bed::None&) { return 0.0; }

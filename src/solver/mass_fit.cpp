@@ -130,12 +130,15 @@ Index solve(const FitSystem& system, std::vector<double> residual, std::vector<d
 void deposit_columns(Flow& flow) {
     Deposit* deposits = flow.nodes.deposits();
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { deposits[k] = {}; });
+        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+            deposits[k] = {};
+            flow.nodes.column_mass[k] = 0.0;
+        });
     });
     for (Index p = 0; p < flow.columns.count(); ++p) {
         const Reach reach = reach_of(flow, p);
         for (int n = 0; n < reach.count; ++n)
-            deposits[reach.node[n]].column_mass += flow.columns.mass[p] * reach.weight[n];
+            flow.nodes.column_mass[reach.node[n]] += flow.columns.mass[p] * reach.weight[n];
     }
     depth_pass(flow, {0.0, Vec2(0, 0)});
 }

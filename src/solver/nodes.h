@@ -6,9 +6,9 @@ namespace frana {
 
 /// What points deposit on a node; four numbers side by side, so that one vector add serves a node.
 struct alignas(32) Deposit {
-    double mass;         ///< sum of m_p N_i [kg]
-    double px, py;       ///< sum of m_p N_i (v_p + C_p d) [kg m/s]
-    double column_mass;  ///< mass deposited from the points' sub-points: what the depth is made of [kg]
+    double mass;    ///< sum of m_p N_i [kg]
+    double px, py;  ///< sum of m_p N_i (v_p + C_p d) [kg m/s]
+    double unused;
 };
 
 /// What points gather from a node.
@@ -31,7 +31,7 @@ enum NodeFlag : std::uint8_t {
 
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
-        : deposit(grid.size() + 1), force(with_force ? grid.size() : 0), depth(grid.size()), surface(grid.size()),
+        : deposit(grid.size() + 1), column_mass(grid.size()), force(with_force ? grid.size() : 0), depth(grid.size()), surface(grid.size()),
           surface_next(grid.size()), wave_x(grid.size()), row_known(grid.size()), before(grid.size()), motion(grid.size() + 1), viscous_flux(grid.size()),
           shock(grid.size()), flags(grid.size()) {}
 
@@ -41,6 +41,9 @@ struct Nodes {
     const Motion* motions() const { return aligned(motion.data()); }
 
     LazyArray<Deposit> deposit;      ///< use deposits(): the start is moved to a 32-byte boundary
+    /// Mass deposited from the points' sub-points: what the depth is made of [kg]. Apart from Deposit, since a vector
+    /// read of a node waits for a narrower write to it.
+    LazyArray<double> column_mass;
     LazyArray<Pair> force;           ///< stress (and paper pressure) force [N]; empty without rheology
     LazyArray<double> depth;         ///< column_mass / (rho A) [m]
     LazyArray<double> surface;       ///< free surface, bed where dry [m]

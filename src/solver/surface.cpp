@@ -149,7 +149,7 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
         NodeSums sums;
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
             const Deposit d = deposits[k];
-            double h = d.column_mass / column;
+            double h = nodes.column_mass[k] / column;
             const bool moving = d.mass > kLeastMass;
             nodes.flags[k] = static_cast<std::uint8_t>((h > dry ? kWet : 0) | (moving ? kMoving : 0));
             if (!(h > dry)) h = 0.0;

@@ -7,76 +7,12 @@
 #include "grid/stencil.h"
 #include "law/rheology.h"
 #include "solver/domain.h"
+#include "solver/sides.h"
+#include "solver/sub_points.h"
 
 namespace frana {
 
-void PointSums::add(const PointSums& o) {
-    mass += o.mass;
-    px += o.px;
-    py += o.py;
-    p_abs += o.p_abs;
-    max_speed = std::max(max_speed, o.max_speed);
-    max_signal = std::max(max_signal, o.max_signal);
-    max_shift = std::max(max_shift, o.max_shift);
-    stress_power += o.stress_power;
-    left_mass += o.left_mass;
-    left_px += o.left_px;
-    left_py += o.left_py;
-    left_energy += o.left_energy;
-    left_count += o.left_count;
-    if (bad < 0) bad = o.bad;
-}
-
 namespace {
-
-PointSums total(const std::vector<PointSums>& parts) {
-    PointSums sum;
-    for (const PointSums& part : parts) sum.add(part);
-    return sum;
-}
-
-Double4 load(const void* p) {
-    Double4 value;
-    std::memcpy(&value, p, sizeof value);
-    return value;
-}
-void store(void* p, Double4 value) { std::memcpy(p, &value, sizeof value); }
-
-void clear_nodes(Flow& flow) {
-    Deposit* deposits = flow.nodes.deposits();
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for (Index j = 0; j < kTile; ++j) {
-            const Index row = flow.grid.at(flow.grid.tile_i(tile), flow.grid.tile_j(tile) + j);
-            std::memset(deposits + row, 0, kTile * sizeof(Deposit));
-            if (flow.nodes.force) std::memset(&flow.nodes.force[row], 0, kTile * sizeof(Pair));
-        }
-    });
-}
-
-/// The four sub-points of a domain at +- r1/4 +- r2/4 (scheme.sub_point_reach) carry a quarter of the column each. At open sides they are
-/// held inside the domain, so that no mass waits beyond the edge.
-template <class S>
-void deposit_sub_points(const Flow& flow, Deposit* deposits, Index p) {
-    const Columns& c = flow.columns;
-    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-    const double quarter = 0.25 * c.mass[p], reach = flow.scheme.sub_point_reach;
-    for (int k = 0; k < 4; ++k) {
-        const double s1 = k & 1 ? reach : -reach, s2 = k & 2 ? reach : -reach;
-        // Domains are held below one cell when they are split; between two such times 3/4 is out of their reach.
-        double x = c.x[p] + std::clamp(s1 * c.r1x[p] + s2 * c.r2x[p], -0.75, 0.75);
-        double y = c.y[p] + std::clamp(s1 * c.r1y[p] + s2 * c.r2y[p], -0.75, 0.75);
-        if (!flow.walls) {
-            x = std::clamp(x, 0.0, x_max);
-            y = std::clamp(y, 0.0, y_max);
-        }
-        const S sx(x), sy(y);
-        for (int j = 0; j < S::kNodes; ++j) {
-            Deposit* row = deposits + flow.grid.at(sx.base, sy.base + j);
-            const double weight = quarter * sy.w[j];
-            for (int i = 0; i < S::kNodes; ++i) row[i].column_mass += weight * sx.w[i];
-        }
-    }
-}
 
 /// -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21).
 template <class S>
@@ -148,6 +84,12 @@ public:
         return total(tile_sums_);
     }
 
+    PointSums carry(Flow& flow, double dt, double kick) override {
+        PointSums sums = gather(flow, dt);
+        if (sums.bad < 0) sums.stress_power = deposit(flow, kick).stress_power;
+        return sums;
+    }
+
     void probe(Flow& flow, Probe& out) override {
         const std::size_t count = static_cast<std::size_t>(flow.columns.count());
         for (auto* column : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth})
@@ -175,7 +117,7 @@ private:
         const S sx(c.x[p]), sy(c.y[p]);
         const double m = c.mass[p], vx = c.vx[p], vy = c.vy[p];
         Deposit* deposits = flow.nodes.deposits();
-        Double4 base = {m, m * vx, m * vy, kPaper ? m : 0.0}, along_x = {}, along_y = {};
+        Double4 base = {m, m * vx, m * vy, 0.0}, along_x = {}, along_y = {};
         if constexpr (kAffine) {
             const double mc = m * flow.cell;
             const Gradient g = spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
@@ -189,13 +131,14 @@ private:
             for (int i = 0; i < S::kNodes; ++i)
                 store(row + i, load(row + i) + (sx.w[i] * sy.w[j]) * (value + static_cast<double>(i) * along_x));
         }
-        if constexpr (!kPaper) deposit_sub_points<S>(flow, deposits, p);
+        if constexpr (kPaper) deposit_column(flow, sx, sy, m);
+        if constexpr (!kPaper) deposit_sub_points<S>(flow, p);
         if constexpr (kStress) {
             if (c.depth[p] > flow.dry_depth()) {
                 const double volume = m / flow.density;
                 const Plane rate{c.cxx[p], c.cyy[p], 0.5 * (c.cxy[p] + c.cyx[p])};
-                const Plane sigma =
-                    stress(law_, {rate, std::hypot(vx, vy), c.depth[p], flow.scheme.strain_rate_floor, cap});
+                const StrainState<double> state{rate, std::hypot(vx, vy), c.depth[p], flow.scheme.strain_rate_floor, cap};
+                const Plane sigma = stress(law_, state);
                 deposit_stress(flow, sx, sy, volume, sigma);
                 sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
             }
@@ -276,7 +219,7 @@ private:
             stretch(c.r1x[p], c.r1y[p], g, dt);
             stretch(c.r2x[p], c.r2y[p], g, dt);
         }
-        meet_side(flow, p, sums);
+        meet_side(flow, p, gone_, sums);
         const double speed = std::hypot(vx, vy), m = c.mass[p];
         sums.max_shift = std::max(sums.max_shift, shift);
         sums.max_speed = std::max(sums.max_speed, speed);
@@ -292,39 +235,6 @@ private:
         const double x = rx, y = ry;
         rx += dt * (g.cxx * x + g.cxy * y);
         ry += dt * (g.cyx * x + g.cyy * y);
-    }
-
-    /// Walls reflect a point; beyond open sides, and where the elevation model has no data, it leaves.
-    void meet_side(Flow& flow, Index p, PointSums& sums) {
-        Columns& c = flow.columns;
-        const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-        const bool outside_x = !(c.x[p] >= 0.0 && c.x[p] <= x_max), outside_y = !(c.y[p] >= 0.0 && c.y[p] <= y_max);
-        if (flow.walls) {
-            if (outside_x) {
-                c.x[p] = c.x[p] < 0.0 ? -c.x[p] : 2.0 * x_max - c.x[p];
-                for (auto* odd : {&c.vx[p], &c.cxy[p], &c.cyx[p], &c.r1x[p], &c.r2x[p]}) *odd = -*odd;
-            }
-            if (outside_y) {
-                c.y[p] = c.y[p] < 0.0 ? -c.y[p] : 2.0 * y_max - c.y[p];
-                for (auto* odd : {&c.vy[p], &c.cxy[p], &c.cyx[p], &c.r1y[p], &c.r2y[p]}) *odd = -*odd;
-            }
-        }
-        const Index k = flow.grid.at(static_cast<Index>(std::floor(c.x[p] + 0.5)),
-                                     static_cast<Index>(std::floor(c.y[p] + 0.5)));
-        if ((!flow.walls && (outside_x || outside_y)) || flow.bed.exit[k]) leave(flow, p, k, sums);
-    }
-
-    void leave(Flow& flow, Index p, Index k, PointSums& sums) {
-        const Columns& c = flow.columns;
-        const double m = c.mass[p], vx = c.vx[p], vy = c.vy[p];
-        gone_[p] = 1;
-        sums.left_count += 1;
-        sums.left_mass += m;
-        sums.left_px += m * vx;
-        sums.left_py += m * vy;
-        const double vz = flow.steep ? vx * flow.bed.slope_x[k] + vy * flow.bed.slope_y[k] : 0.0;
-        sums.left_energy += m * (0.5 * (vx * vx + vy * vy + vz * vz) +
-                                 flow.gravity * (flow.bed.z[k] + 0.5 * std::max(c.depth[p], 0.0)));
     }
 
     Law law_;
@@ -355,7 +265,7 @@ std::unique_ptr<TransferKernel> with_transfer(const Scene& scene) {
 
 }  // namespace
 
-std::unique_ptr<TransferKernel> make_transfer(const Scene& scene) {
+std::unique_ptr<TransferKernel> make_plain_transfer(const Scene& scene) {
     switch (scene.scheme.shape) {
         case Shape::linear: return with_transfer<Linear>(scene);
         case Shape::quadratic: return with_transfer<Quadratic>(scene);
@@ -364,54 +274,9 @@ std::unique_ptr<TransferKernel> make_transfer(const Scene& scene) {
     throw InternalError("unknown shape");
 }
 
-PointSums node_sums(Flow& flow) {
-    std::vector<TileSums>& parts = flow.tile_sums;
-    parts.assign(flow.active.work.size(), {});
-    const Deposit* deposits = flow.nodes.deposits();
-    for_each_work_tile(flow.active, [&](Index n, Index tile) {
-        TileSums sums{};
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            sums[0] += deposits[k].mass;
-            sums[1] += deposits[k].px;
-            sums[2] += deposits[k].py;
-        });
-        parts[n] = sums;
-    });
-    PointSums all;
-    for (const TileSums& part : parts) {
-        all.mass += part[0];
-        all.px += part[1];
-        all.py += part[2];
-    }
-    return all;
-}
-
-void fold_walls(Flow& flow) {
-    if (!flow.walls) return;
-    Deposit* deposits = flow.nodes.deposits();
-    for (int axis = 0; axis < 2; ++axis)
-        for_each_wall_pair(flow, axis, 0, [&](Index ghost, Index mirror) {
-            const Deposit image = deposits[ghost];
-            Deposit& node = deposits[mirror];
-            node.mass += image.mass;
-            node.column_mass += image.column_mass;
-            node.px += axis == 0 ? -image.px : image.px;
-            node.py += axis == 1 ? -image.py : image.py;
-            if (!flow.nodes.force) return;
-            const Pair pull = flow.nodes.force[ghost];
-            flow.nodes.force[mirror].x += axis == 0 ? -pull.x : pull.x;
-            flow.nodes.force[mirror].y += axis == 1 ? -pull.y : pull.y;
-        });
-}
-
-void mirror_motion(Flow& flow) {
-    if (!flow.walls) return;
-    Motion* motions = flow.nodes.motions();
-    for (int axis = 0; axis < 2; ++axis)
-        for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
-            motions[ghost] = motions[mirror];
-            (axis == 0 ? motions[ghost].vx : motions[ghost].vy) *= -1.0;
-        });
+std::unique_ptr<TransferKernel> make_transfer(const Scene& scene) {
+    auto packed = make_packed_transfer(scene);
+    return packed ? std::move(packed) : make_plain_transfer(scene);
 }
 
 }  // namespace frana

@@ -32,6 +32,9 @@ public:
     virtual PointSums deposit(Flow& flow, double kick) = 0;
     /// Moves all points by `dt` [s] with the nodes' velocities; points outside are marked in gone().
     virtual PointSums gather(Flow& flow, double dt) = 0;
+    /// `gather`, then `deposit` with the points as they are: the same bits in one sweep. Points that left deposit
+    /// nothing more. The sums are those of gather, with the deposit's stress power.
+    virtual PointSums carry(Flow& flow, double dt, double kick) = 0;
     /// The points' velocities gathered from the nodes, without moving anything: v and grad v at the points.
     struct Probe { std::vector<double> vx, vy, cxx, cxy, cyx, cyy, depth; };
     virtual void probe(Flow& flow, Probe& out) = 0;
@@ -43,7 +46,17 @@ protected:
     std::vector<PointSums> tile_sums_;
 };
 
+/// The kernel for the scene's choices: a vectorised one for the default scheme, otherwise the plain one.
 std::unique_ptr<TransferKernel> make_transfer(const Scene& scene);
+/// Any choices, one point at a time: the reference of the vectorised kernel.
+std::unique_ptr<TransferKernel> make_plain_transfer(const Scene& scene);
+/// Quadratic shapes and TPIC, four points at a time; nullptr for other schemes.
+std::unique_ptr<TransferKernel> make_packed_transfer(const Scene& scene);
+
+PointSums total(const std::vector<PointSums>& parts);
+
+/// Zeroes the deposits of all nodes near material.
+void clear_nodes(Flow& flow);
 
 /// Sums of the nodes' deposits before folding, to be held against PointSums (partition of unity).
 PointSums node_sums(Flow& flow);

@@ -37,7 +37,7 @@ struct Measurement {
     double l1_momentum = kNone, l2_momentum = kNone;  ///< of depth times velocity
     double front_error = kNone;  ///< [m]
     double mass_error = kNone;   ///< |V + V_left - V_0| / V_0
-    double energy_error = kNone; ///< residual of the energy budget over the largest kinetic energy, signed
+    double energy_error = kNone; ///< residual of the energy budget over the largest kinetic or dissipated energy, signed
     std::vector<Extra> extras;
     double observed_order = kNone;  ///< of Problem::order_of, against the next coarser grid
 

@@ -137,7 +137,9 @@ Measurement Trial::measure(const Exact& exact) {
     m.steps = frame.status.step;
     m.wall_seconds = wall_;
     m.mass_error = std::abs(budget_now.mass_error);
-    if (peak_kinetic_ > 0.0) m.energy_error = budget_now.energy_residual / std::max(peak_kinetic_, first_.kinetic);
+    if (peak_kinetic_ > 0.0)  // what creeps turns over its energy many times without ever holding it as motion
+        m.energy_error = budget_now.energy_residual /
+                         std::max({peak_kinetic_, first_.kinetic, frame.status.dissipated - first_.dissipated});
     if (exact.depth) {
         const Norms depth = depth_norms(frame, exact);
         m.l1_depth = depth.l1, m.l2_depth = depth.l2, m.linf_depth = depth.linf;

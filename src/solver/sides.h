@@ -1,0 +1,11 @@
+#pragma once
+// What happens to points at the sides of the domain and where the elevation model has no data.
+#include "solver/transfer.h"
+
+namespace frana {
+
+/// Walls reflect point p; beyond open sides, and where the elevation model has no data, it leaves: marked in `gone`,
+/// booked in `sums`, without mass from then on.
+void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums);
+
+}  // namespace frana

@@ -1,0 +1,93 @@
+// The nodes' side of the transfers: clearing, sums, walls.
+#include <cstring>
+
+#include "solver/transfer.h"
+
+namespace frana {
+
+void PointSums::add(const PointSums& o) {
+    mass += o.mass;
+    px += o.px;
+    py += o.py;
+    p_abs += o.p_abs;
+    max_speed = std::max(max_speed, o.max_speed);
+    max_signal = std::max(max_signal, o.max_signal);
+    max_shift = std::max(max_shift, o.max_shift);
+    stress_power += o.stress_power;
+    left_mass += o.left_mass;
+    left_px += o.left_px;
+    left_py += o.left_py;
+    left_energy += o.left_energy;
+    left_count += o.left_count;
+    if (bad < 0) bad = o.bad;
+}
+
+PointSums total(const std::vector<PointSums>& parts) {
+    PointSums sum;
+    for (const PointSums& part : parts) sum.add(part);
+    return sum;
+}
+
+void clear_nodes(Flow& flow) {
+    Deposit* deposits = flow.nodes.deposits();
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for (Index j = 0; j < kTile; ++j) {
+            const Index row = flow.grid.at(flow.grid.tile_i(tile), flow.grid.tile_j(tile) + j);
+            std::memset(deposits + row, 0, kTile * sizeof(Deposit));
+            std::memset(&flow.nodes.column_mass[row], 0, kTile * sizeof(double));
+            if (flow.nodes.force) std::memset(&flow.nodes.force[row], 0, kTile * sizeof(Pair));
+        }
+    });
+}
+
+PointSums node_sums(Flow& flow) {
+    std::vector<TileSums>& parts = flow.tile_sums;
+    parts.assign(flow.active.work.size(), {});
+    const Deposit* deposits = flow.nodes.deposits();
+    for_each_work_tile(flow.active, [&](Index n, Index tile) {
+        TileSums sums{};
+        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+            sums[0] += deposits[k].mass;
+            sums[1] += deposits[k].px;
+            sums[2] += deposits[k].py;
+        });
+        parts[n] = sums;
+    });
+    PointSums all;
+    for (const TileSums& part : parts) {
+        all.mass += part[0];
+        all.px += part[1];
+        all.py += part[2];
+    }
+    return all;
+}
+
+void fold_walls(Flow& flow) {
+    if (!flow.walls) return;
+    Deposit* deposits = flow.nodes.deposits();
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 0, [&](Index ghost, Index mirror) {
+            const Deposit image = deposits[ghost];
+            Deposit& node = deposits[mirror];
+            node.mass += image.mass;
+            flow.nodes.column_mass[mirror] += flow.nodes.column_mass[ghost];
+            node.px += axis == 0 ? -image.px : image.px;
+            node.py += axis == 1 ? -image.py : image.py;
+            if (!flow.nodes.force) return;
+            const Pair pull = flow.nodes.force[ghost];
+            flow.nodes.force[mirror].x += axis == 0 ? -pull.x : pull.x;
+            flow.nodes.force[mirror].y += axis == 1 ? -pull.y : pull.y;
+        });
+}
+
+void mirror_motion(Flow& flow) {
+    if (!flow.walls) return;
+    Motion* motions = flow.nodes.motions();
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
+            motions[ghost] = motions[mirror];
+            (axis == 0 ? motions[ghost].vx : motions[ghost].vy) *= -1.0;
+        });
+}
+
+}  // namespace frana

@@ -1,0 +1,394 @@
+// The default scheme's transfers (quadratic B-splines, TPIC), four points at a time: what belongs to a point is computed
+// lane by lane side by side, then each point in turn reaches its nodes, whose numbers lie side by side. Sums are those of
+// transfer.cpp up to round-off.
+#include <algorithm>
+
+#include "base/simd.h"
+#include "law/rheology.h"
+#include "solver/domain.h"
+#include "solver/sides.h"
+#include "solver/sub_points.h"
+
+namespace frana {
+namespace {
+
+/// Quadratic B-splines (grid/stencil.h) of four points in one direction.
+struct Stencils {
+    Int4 first;      ///< node of the first weight, counted from the storage's first
+    Double4 offset;  ///< position minus first node, 1/2 to 3/2
+    Double4 w[3];
+    explicit Stencils(Double4 u) : first(floor_positive(u + (kTile - 0.5))) {
+        const Double4 f = u - (to_double(first) - kTile);
+        offset = f;
+        w[0] = 0.5 * (1.5 - f) * (1.5 - f);
+        w[1] = 0.75 - (f - 1.0) * (f - 1.0);
+        w[2] = 0.5 * (f - 0.5) * (f - 0.5);
+    }
+};
+
+/// One lane of two Stencils: weights and slopes of the 3 x 3 nodes from storage index `node` on.
+struct Reach {
+    Index node;
+    double wx[3], wy[3], sx[3], sy[3];
+    Reach(const Stencils& x, const Stencils& y, Index stride, int lane)
+        : node(y.first[lane] * stride + x.first[lane]) {
+        const double f = x.offset[lane], g = y.offset[lane];
+        for (int n = 0; n < 3; ++n) wx[n] = x.w[n][lane], wy[n] = y.w[n][lane];
+        sx[0] = f - 1.5, sx[1] = 2.0 - 2.0 * f, sx[2] = f - 0.5;
+        sy[0] = g - 1.5, sy[1] = 2.0 - 2.0 * g, sy[2] = g - 0.5;
+    }
+};
+
+/// Weights, times `scale`, of a sub-point at t in [1/2, 5/2) from the first of four nodes.
+[[gnu::always_inline]] inline void window_weights(Double4 t, Double4 scale, Double4 w[4]) {
+    const Mask4 second = t >= 1.5;
+    const Double4 f = second ? t - 1.0 : t, half = 0.5 * scale;
+    const Double4 w0 = half * (1.5 - f) * (1.5 - f), w1 = scale * (0.75 - (f - 1.0) * (f - 1.0)),
+                  w2 = half * (f - 0.5) * (f - 0.5);
+    const Double4 zero = {};
+    w[0] = second ? zero : w0;
+    w[1] = second ? w0 : w1;
+    w[2] = second ? w1 : w2;
+    w[3] = second ? w2 : zero;
+}
+
+template <class Law>
+class PackedKernel final : public TransferKernel {
+    static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
+    static constexpr Index kBatch = 128;  ///< points whose stresses wait on the stack
+
+public:
+    explicit PackedKernel(const Law& law) : law_(law) {}
+
+    PointSums deposit(Flow& flow, double kick) override {
+        const double cap = prepare_deposit(flow, kick);
+        for_each_tile_coloured(flow.active, [&](Index n) {
+            Sums sums;
+            for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
+                deposit_batch(flow, first, end, cap, at_side, sums);
+            });
+            tile_sums_[n] = sums.points();
+        });
+        return total(tile_sums_);
+    }
+
+    PointSums gather(Flow& flow, double dt) override {
+        prepare_gather(flow);
+        for_each_tile(flow.active, [&](Index n) {
+            Sums sums;
+            for_each_four(flow.active.begin[n], flow.active.begin[n + 1],
+                          [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
+            tile_sums_[n] = sums.points();
+        });
+        return total(tile_sums_);
+    }
+
+    /// Points are still in the first cache when they deposit.
+    PointSums carry(Flow& flow, double dt, double kick) override {
+        prepare_gather(flow);
+        const double cap = prepare_deposit(flow, kick);
+        for_each_tile_coloured(flow.active, [&](Index n) {
+            Sums moved, deposited;
+            for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
+                for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, moved); });
+                if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, deposited);
+            });
+            tile_sums_[n] = moved.points();
+            tile_sums_[n].stress_power = sum(deposited.stress_power);
+        });
+        return total(tile_sums_);
+    }
+
+    void probe(Flow& flow, Probe& out) override {
+        const std::size_t count = static_cast<std::size_t>(flow.columns.count());
+        for (auto* column : {&out.vx, &out.vy, &out.cxx, &out.cxy, &out.cyx, &out.cyy, &out.depth})
+            column->resize(count);
+        for_each_tile(flow.active, [&](Index n) {
+            for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
+                const Gathered g(flow, p, lanes);
+                store(&out.vx[p], g.vx, lanes);
+                store(&out.vy[p], g.vy, lanes);
+                store(&out.cxx[p], g.cxx, lanes);
+                store(&out.cxy[p], g.cxy, lanes);
+                store(&out.cyx[p], g.cyx, lanes);
+                store(&out.cyy[p], g.cyy, lanes);
+                store(&out.depth[p], g.depth, lanes);
+            });
+        });
+    }
+
+private:
+    /// PointSums of the lanes, in a fixed order.
+    struct Sums {
+        Double4 mass = {}, px = {}, py = {}, p_abs = {}, speed = {}, signal = {}, shift = {}, stress_power = {};
+        PointSums rare;
+        PointSums points() const {
+            PointSums s = rare;
+            s.mass += sum(mass);
+            s.px += sum(px);
+            s.py += sum(py);
+            s.p_abs += sum(p_abs);
+            s.stress_power += sum(stress_power);
+            s.max_speed = std::max(s.max_speed, largest(speed));
+            s.max_signal = std::max(s.max_signal, largest(signal));
+            s.max_shift = std::max(s.max_shift, largest(shift));
+            return s;
+        }
+    };
+
+    void prepare_gather(const Flow& flow) {
+        tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
+        gone_.assign(static_cast<std::size_t>(flow.columns.count()), 0);
+    }
+
+    /// Clears the nodes; returns the largest 2 mu_eff that is stable explicitly [Pa s].
+    double prepare_deposit(Flow& flow, double kick) {
+        clear_nodes(flow);
+        tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
+        return flow.scheme.stress_cap * flow.density * flow.area / kick;
+    }
+
+    template <class Body>
+    static void for_each_batch(const Flow& flow, Index n, Body&& body) {
+        const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
+        const Index last = flow.active.begin[n + 1];
+        for (Index first = flow.active.begin[n]; first < last; first += kBatch)
+            body(first, std::min(first + kBatch, last), at_side);
+    }
+
+    /// Stresses first: a chain of divisions and roots that points wait for side by side.
+    void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side, Sums& sums) {
+        PlaneOf<Double4> pull[kBatch / 4];
+        if constexpr (kStress)
+            for_each_four(first, end, [&](Index p, int lanes) {
+                pull[(p - first) / 4] = pull_of(flow, p, lanes, cap, sums);
+            });
+        for_each_four(first, end, [&](Index p, int lanes) {
+            deposit_four(flow, p, lanes, pull[(p - first) / 4], at_side, sums);
+        });
+    }
+
+    template <class Body>
+    static void for_each_four(Index p, Index end, Body&& body) {
+        for (; p + 4 <= end; p += 4) body(p, 4);
+        if (p < end) body(p, static_cast<int>(end - p));
+    }
+
+    static bool near_side(const TileGrid& grid, Index tile) {
+        const Index i = grid.tile_i(tile), j = grid.tile_j(tile);
+        return i <= 0 || j <= 0 || i + 2 * kTile > grid.nx() || j + 2 * kTile > grid.ny();
+    }
+
+    void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& pull, bool at_side, Sums& sums) {
+        const Columns& c = flow.columns;
+        const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), m = load(&c.mass[p], lanes);
+        const Double4 vx = load(&c.vx[p], lanes), vy = load(&c.vy[p], lanes);
+        const Double4 r1x = load(&c.r1x[p], lanes), r1y = load(&c.r1y[p], lanes);
+        const Double4 r2x = load(&c.r2x[p], lanes), r2y = load(&c.r2y[p], lanes);
+        Double4 cxx = load(&c.cxx[p], lanes), cxy = load(&c.cxy[p], lanes);
+        Double4 cyx = load(&c.cyx[p], lanes), cyy = load(&c.cyy[p], lanes);
+        const Double4 speed = sqrt(vx * vx + vy * vy);
+        const Stencils sx(x), sy(y);
+        limit_gradient(r1x, r1y, r2x, r2y, cxx, cxy, cyx, cyy);
+
+        const Double4 mc = flow.cell * m, qx = mc * cxx, qy = mc * cxy, sx_ = mc * cyx, sy_ = mc * cyy;
+        const Double4 zero = {};
+        Double4 base[4], along_x[4], along_y[4];
+        transpose(m, m * vx - (sx.offset * qx + sy.offset * qy), m * vy - (sx.offset * sx_ + sy.offset * sy_), zero, base);
+        transpose(zero, qx, sx_, zero, along_x);
+        transpose(zero, qy, sy_, zero, along_y);
+        const Index stride = flow.grid.stride();
+        Deposit* const deposits = flow.nodes.deposits();
+        Pair* const forces = flow.nodes.force.data();
+        for (int lane = 0; lane < lanes; ++lane) {
+            const Reach reach(sx, sy, stride, lane);
+            Deposit* row = deposits + reach.node;
+            Double4 value = base[lane];
+            for (int j = 0; j < 3; ++j, row += stride, value += along_y[lane]) {
+                Double4 weighted = reach.wy[j] * value;
+                const Double4 step = reach.wy[j] * along_x[lane];
+                for (int i = 0; i < 3; ++i, weighted += step)
+                    store(row + i, load(row + i) + reach.wx[i] * weighted);
+            }
+            if constexpr (kStress)
+                deposit_stress(forces + reach.node, stride, reach, {pull.xx[lane], pull.yy[lane], pull.xy[lane]});
+        }
+        deposit_columns(flow, p, lanes, x, y, 0.25 * m, {r1x, r1y, r2x, r2y}, at_side);
+        sums.mass += m;
+        sums.px += m * vx;
+        sums.py += m * vy;
+        sums.p_abs += m * speed;
+    }
+
+    /// Gradients as domains feel them (domain.h): few points are so narrow that it matters.
+    static void limit_gradient(Double4 r1x, Double4 r1y, Double4 r2x, Double4 r2y, Double4& cxx, Double4& cxy,
+                               Double4& cyx, Double4& cyy) {
+        constexpr double least = 1.01 / 256.0;  // of 12 times the smaller moment; a little early
+        const Double4 xx = r1x * r1x + r2x * r2x, yy = r1y * r1y + r2y * r2y, xy = r1x * r1y + r2x * r2y;
+        const Mask4 wide = (xx >= least) & ((xx - least) * (yy - least) >= xy * xy);
+        if (!any(~wide)) return;
+        for (int n = 0; n < 4; ++n) {
+            const Gradient g = spanned({cxx[n], cxy[n], cyx[n], cyy[n]}, r1x[n], r1y[n], r2x[n], r2y[n]);
+            cxx[n] = g.xx, cxy[n] = g.xy, cyx[n] = g.yx, cyy[n] = g.yy;
+        }
+    }
+
+    struct Domains { Double4 r1x, r1y, r2x, r2y; };
+
+    /// The sub-points of four points (sub_points.h). All of a point's lie within four nodes each way if none is farther
+    /// than half a cell; their weights are summed there first.
+    static void deposit_columns(Flow& flow, Index p, int lanes, Double4 x, Double4 y, Double4 quarter,
+                                const Domains& r, bool at_side) {
+        const double reach = flow.scheme.sub_point_reach;
+        const Double4 ax = reach * (r.r1x + r.r2x), bx = reach * (r.r1x - r.r2x);
+        const Double4 ay = reach * (r.r1y + r.r2y), by = reach * (r.r1y - r.r2y);
+        const Double4 far = max(max(abs(ax), abs(bx)), max(abs(ay), abs(by)));
+        if (at_side || any(far > 0.5)) {
+            for (int lane = 0; lane < lanes; ++lane) deposit_sub_points<Quadratic>(flow, p + lane);
+            return;
+        }
+        const Int4 i = floor_positive(x + (kTile - 1.0)), j = floor_positive(y + (kTile - 1.0));
+        const Double4 tx = x - (to_double(i) - kTile), ty = y - (to_double(j) - kTile), one = all(1.0);
+        Double4 wx[4][4], wy[4][4];
+        window_weights(tx + ax, one, wx[0]), window_weights(ty + ay, quarter, wy[0]);
+        window_weights(tx - ax, one, wx[1]), window_weights(ty - ay, quarter, wy[1]);
+        window_weights(tx + bx, one, wx[2]), window_weights(ty + by, quarter, wy[2]);
+        window_weights(tx - bx, one, wx[3]), window_weights(ty - by, quarter, wy[3]);
+        double mass[4][4][4];  // row, column, lane
+        for (int b = 0; b < 4; ++b)
+            for (int a = 0; a < 4; ++a)
+                store(mass[b][a], (wy[0][b] * wx[0][a] + wy[1][b] * wx[1][a]) +
+                                      (wy[2][b] * wx[2][a] + wy[3][b] * wx[3][a]));
+        const Index stride = flow.grid.stride();
+        for (int lane = 0; lane < lanes; ++lane) {
+            double* row = flow.nodes.column_mass.data() + j[lane] * stride + i[lane];
+            for (int b = 0; b < 4; ++b, row += stride)
+                for (int a = 0; a < 4; ++a) row[a] += mass[b][a][lane];
+        }
+    }
+
+    /// V sigma / cell of four points [N], the explicit stress capped (scheme.stress_cap).
+    PlaneOf<Double4> pull_of(const Flow& flow, Index p, int lanes, double cap, Sums& sums) const {
+        const Columns& c = flow.columns;
+        const Double4 vx = load(&c.vx[p], lanes), vy = load(&c.vy[p], lanes), depth = load(&c.depth[p], lanes);
+        const Double4 cxy = load(&c.cxy[p], lanes), cyx = load(&c.cyx[p], lanes), zero = {};
+        const PlaneOf<Double4> rate{load(&c.cxx[p], lanes), load(&c.cyy[p], lanes), 0.5 * (cxy + cyx)};
+        const PlaneOf<Double4> sigma =
+            stress(law_, StrainState<Double4>{rate, sqrt(vx * vx + vy * vy), max(depth, all(flow.dry_depth())),
+                                              flow.scheme.strain_rate_floor, cap});
+        const Double4 volume = depth > flow.dry_depth() ? load(&c.mass[p], lanes) / flow.density : zero;
+        sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
+        return scaled(sigma, volume / flow.cell);
+    }
+
+    /// -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21).
+    [[gnu::always_inline]] static void deposit_stress(Pair* row, Index stride, const Reach& reach, const Plane& pull) {
+        const Double2 along_x = {pull.xx, pull.xy}, along_y = {pull.xy, pull.yy};
+        for (int j = 0; j < 3; ++j, row += stride) {
+            const Double2 a = reach.wy[j] * along_x, b = reach.sy[j] * along_y;
+            for (int i = 0; i < 3; ++i) subtract(row[i], a * reach.sx[i] + b * reach.wx[i]);
+        }
+    }
+
+    static void subtract(Pair& pair, Double2 value) {
+        Double2 old;
+        std::memcpy(&old, &pair, sizeof old);
+        old -= value;
+        std::memcpy(&pair, &old, sizeof old);
+    }
+
+    /// Velocity, its gradient (TPIC: sum v (x) grad N) and depth at four points.
+    struct Gathered {
+        Double4 vx, vy, depth, cxx, cxy, cyx, cyy;
+        Gathered(const Flow& flow, Index p, int lanes) {
+            const Columns& c = flow.columns;
+            const Stencils sx(load(&c.x[p], lanes)), sy(load(&c.y[p], lanes));
+            const Index stride = flow.grid.stride();
+            Double4 value[4], by_x[4], by_y[4];
+            for (int lane = 0; lane < 4; ++lane) {
+                Double4 v = {}, vx_ = {}, vy_ = {};
+                if (lane < lanes) {
+                    const Reach reach(sx, sy, stride, lane);
+                    const Motion* row = flow.nodes.motions() + reach.node;
+                    for (int j = 0; j < 3; ++j, row += stride) {
+                        const Double4 a = load(row), b = load(row + 1), d = load(row + 2);
+                        const Double4 along = reach.wx[0] * a + reach.wx[1] * b + reach.wx[2] * d;
+                        v += reach.wy[j] * along;
+                        vx_ += reach.wy[j] * (reach.sx[0] * a + reach.sx[1] * b + reach.sx[2] * d);
+                        vy_ += reach.sy[j] * along;
+                    }
+                }
+                value[lane] = v, by_x[lane] = vx_, by_y[lane] = vy_;
+            }
+            const double scale = 1.0 / flow.cell;
+            Double4 of[4];
+            transpose(value[0], value[1], value[2], value[3], of);
+            vx = of[0], vy = of[1], depth = of[2];
+            transpose(by_x[0], by_x[1], by_x[2], by_x[3], of);
+            cxx = scale * of[0], cyx = scale * of[1];
+            transpose(by_y[0], by_y[1], by_y[2], by_y[3], of);
+            cxy = scale * of[0], cyy = scale * of[1];
+        }
+    };
+
+    void gather_four(Flow& flow, Index p, int lanes, double dt, Sums& sums) {
+        Columns& c = flow.columns;
+        const Gathered g(flow, p, lanes);
+        const Double4 shift_x = dt / flow.cell * g.vx, shift_y = dt / flow.cell * g.vy;
+        const Double4 shift = max(abs(shift_x), abs(shift_y));
+        const Mask4 sound = shift <= 4.0;  // also catches what is not finite
+        if (any(~sound)) {
+            for (int lane = lanes - 1; lane >= 0; --lane)
+                if (!sound[lane] && sums.rare.bad < 0) sums.rare.bad = p + lane;
+            return;
+        }
+        const Double4 x = load(&c.x[p], lanes) + shift_x, y = load(&c.y[p], lanes) + shift_y;
+        store(&c.vx[p], g.vx, lanes), store(&c.vy[p], g.vy, lanes);
+        store(&c.cxx[p], g.cxx, lanes), store(&c.cxy[p], g.cxy, lanes);
+        store(&c.cyx[p], g.cyx, lanes), store(&c.cyy[p], g.cyy, lanes);
+        store(&c.x[p], x, lanes), store(&c.y[p], y, lanes);
+        store(&c.depth[p], g.depth, lanes);
+        stretch(&c.r1x[p], &c.r1y[p], g, dt, lanes);
+        stretch(&c.r2x[p], &c.r2y[p], g, dt, lanes);
+
+        const Double4 speed = sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
+        sums.shift = max(sums.shift, shift);
+        sums.speed = max(sums.speed, speed);
+        sums.signal = max(sums.signal, speed + sqrt(flow.gravity * max(g.depth, zero)));
+        Double4 m = load(&c.mass[p], lanes), vx = g.vx, vy = g.vy;
+        const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
+        if (flow.bed.has_exits || any((x < 0.0) | (x > x_max) | (y < 0.0) | (y > y_max))) {
+            for (int lane = 0; lane < lanes; ++lane) {
+                meet_side(flow, p + lane, gone_, sums.rare);
+                vx[lane] = c.vx[p + lane], vy[lane] = c.vy[p + lane];
+                if (gone_[p + lane]) m[lane] = 0.0;
+            }
+        }
+        sums.mass += m;
+        sums.px += m * vx;
+        sums.py += m * vy;
+        sums.p_abs += m * speed;
+    }
+
+    static void stretch(double* rx, double* ry, const Gathered& g, double dt, int lanes) {
+        const Double4 x = load(rx, lanes), y = load(ry, lanes);
+        store(rx, x + dt * (g.cxx * x + g.cxy * y), lanes);
+        store(ry, y + dt * (g.cyx * x + g.cyy * y), lanes);
+    }
+
+    Law law_;
+};
+
+}  // namespace
+
+std::unique_ptr<TransferKernel> make_packed_transfer(const Scene& scene) {
+    const Scheme& scheme = scene.scheme;
+    if (scheme.shape != Shape::quadratic || scheme.transfer != Transfer::tpic || scheme.paper_pressure) return nullptr;
+    return std::visit(
+        [](const auto& law) -> std::unique_ptr<TransferKernel> {
+            return std::make_unique<PackedKernel<std::decay_t<decltype(law)>>>(law);
+        },
+        scene.rheology);
+}
+
+}  // namespace frana
