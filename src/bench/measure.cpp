@@ -24,19 +24,6 @@ Phases between(const Phases& before, const Phases& after) {
     return spent;
 }
 
-/// Takes a window's times per particle and step into the least so far.
-void take_least(std::vector<PhaseCost>& best, const std::string& name, double cpu_ns, double wall_ns, double bytes) {
-    const auto found =
-        std::find_if(best.begin(), best.end(), [&](const PhaseCost& phase) { return phase.name == name; });
-    if (found == best.end()) {
-        best.push_back({name, cpu_ns, wall_ns, bytes});
-        return;
-    }
-    found->cpu_ns = std::min(found->cpu_ns, cpu_ns);
-    found->wall_ns = std::min(found->wall_ns, wall_ns);
-    found->bytes = bytes;
-}
-
 class Meter {
 public:
     Meter(const Scene& scene, const Plan& plan) : plan_(plan), clock_(plan.threads), simulation_(scene) {
@@ -76,24 +63,22 @@ private:
         clock_.start();
         const double particle_steps = advance(plan_.window_steps);
         const Lap lap = clock_.stop();
-        const Phases spent = between(before, simulation_.timings());
         const double scale = 1e9 / particle_steps, particles = particle_steps / plan_.window_steps;
-        double bytes = 0.0, cpu = lap.cpu, wall = lap.wall;
-        std::vector<double> phase_bytes;
-        for (const PhaseTime& phase : spent) {
+        PhaseCost full{"full", lap.cpu * scale, lap.wall * scale, 0.0}, other = full;
+        other.name = "other";
+        std::vector<PhaseCost> phases{full};
+        for (const PhaseTime& phase : between(before, simulation_.timings())) {
             const Traffic traffic = traffic_of(phase.name, simulation_.flow());
             // A phase of several clock readings a step (deposit, kick) still goes over its arrays once a step.
             const double calls = std::min<double>(static_cast<double>(phase.calls), plan_.window_steps * often(phase));
-            phase_bytes.push_back((traffic.particle + traffic.node * nodes() / particles) * calls / plan_.window_steps);
-            bytes += phase_bytes.back();
-            cpu -= phase.cpu_seconds;
-            wall -= phase.seconds;
+            phases.push_back({phase.name, phase.cpu_seconds * scale, phase.seconds * scale,
+                              (traffic.particle + traffic.node * nodes() / particles) * calls / plan_.window_steps});
+            phases.front().bytes += phases.back().bytes;
+            other.cpu_ns = std::max(0.0, other.cpu_ns - phases.back().cpu_ns);
+            other.wall_ns = std::max(0.0, other.wall_ns - phases.back().wall_ns);
         }
-        take_least(cost_.phases, "full", lap.cpu * scale, lap.wall * scale, bytes);
-        for (std::size_t n = 0; n < spent.size(); ++n)
-            take_least(cost_.phases, spent[n].name, spent[n].cpu_seconds * scale, spent[n].seconds * scale,
-                       phase_bytes[n]);
-        take_least(cost_.phases, "other", std::max(0.0, cpu) * scale, wall * scale, 0.0);
+        phases.push_back(other);
+        if (cost_.phases.empty() || cost_.ns(full) < cost_.ns(cost_.full())) cost_.phases = std::move(phases);
     }
 
     /// How often in a step a phase may do its work.

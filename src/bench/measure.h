@@ -13,7 +13,7 @@ namespace frana::bench {
 struct Plan {
     int threads = 1;
     int warm_steps = 6;    ///< before the first window: arrays have grown, caches are full
-    int windows = 6;       ///< the least time of these counts
+    int windows = 6;       ///< the fastest of these counts, with its phases
     int window_steps = 6;  ///< a multiple of three, so that each has its share of sorting, splitting and merging
 };
 
