@@ -14,7 +14,8 @@ using namespace frana;
 
 /// A flow after some steps, and its kernels.
 struct Bed {
-    explicit Bed(Index particles) : scene(scene_with(particles)), flow(scene), transfer(make_transfer(scene)), kick(make_kick(scene)) {
+    explicit Bed(Index particles)
+        : scene(scene_with(particles)), flow(scene), transfer(make_transfer(scene)), kick(make_kick(scene)) {
         DepthAveraged simulation(scene);
         for (int n = 0; n < 6; ++n) simulation.advance(1e9);
         flow.columns = simulation.flow().columns;

@@ -121,7 +121,7 @@ void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
 }
 
 void add_bench(CLI::App& app, BenchOptions& options, Action& action) {
-    CLI::App* command = app.add_subcommand("bench", "cost per particle and step by phase, beside the machine's own speed");
+    CLI::App* command = app.add_subcommand("bench", "cost of a step by phase, beside the machine's own speed");
     command->add_option("--json", options.json, "write the results as JSON");
     command->add_option("--particles", options.particles, "N,N,...; default 70000,500000,4000000")->delimiter(',');
     command->add_option("--threads", options.threads, "N,N,...; default 1,2")->delimiter(',');

@@ -63,7 +63,8 @@ TEST_CASE("bench writes the contract's keys with finite numbers above zero", "[b
     const std::string json = bench::json_of(report());
     const std::size_t kernels = occurrences(json, "\"name\": ");
     CHECK(kernels > 50);
-    for (const char* key : {"particles", "threads", "ns_per_particle_step", "bytes_per_particle_step", "fraction_of_stream"}) {
+    for (const char* key :
+         {"particles", "threads", "ns_per_particle_step", "bytes_per_particle_step", "fraction_of_stream"}) {
         CAPTURE(key);
         const std::vector<double> values = numbers(json, key);
         CHECK(values.size() == kernels);

@@ -12,8 +12,8 @@ struct Blob {
     bool topography = true;      ///< an undulating slope of 27 degrees; otherwise level ground
 };
 
-/// Cells of 5 m, up to 4 m of material, 8 m/s downhill and up to 3 m/s outwards. The blob stands on the same tiles of any
-/// grid, with 48 cells of room to each side.
+/// Cells of 5 m, up to 4 m of material, 8 m/s downhill and up to 3 m/s outwards. The blob stands on the same tiles of
+/// any grid, with 48 cells of room to each side.
 Scene blob_scene(const Blob& blob);
 
 }  // namespace frana::bench

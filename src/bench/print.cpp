@@ -24,8 +24,8 @@ std::string name_of(const Timed& timed, const PhaseCost& phase) {
 std::string calibration_lines(const Calibration& c) {
     std::string text;
     for (const auto& [threads, speed] : c.triad_GBps)
-        text += fmt::format("triad, {} thread{}: {:.1f} GB/s by CPU time, {:.1f} by wall time (arrays of {} MB)\n", threads,
-                            threads == 1 ? "" : "s", speed, c.triad_wall_GBps.at(threads), c.array_bytes / 1000000);
+        text += fmt::format("triad, {} thread{}: {:.1f} GB/s by CPU time, {:.1f} by wall time (arrays of {} MB)\n",
+                            threads, threads == 1 ? "" : "s", speed, c.triad_wall_GBps.at(threads), c.array_bytes / 1000000);
     return text + fmt::format("node-touch: {:.1f} ns by CPU time, {:.1f} by wall time\n", c.node_touch_ns,
                               c.node_touch_wall_ns);
 }
@@ -56,7 +56,8 @@ std::string gate_lines(const Report& report) {
 std::string hash_lines(const Report& report) {
     std::string text;
     for (const auto& [threads, hash] : report.hashes) text += fmt::format("{:016x} with {} threads\n", hash, threads);
-    return text + (same_bits(report) ? "same bits for any number of threads\n" : "DIFFERENT BITS: a mistake of the program\n");
+    const char* verdict = same_bits(report) ? "same bits for any number of threads" : "DIFFERENT BITS: our mistake";
+    return fmt::format("{}{}\n", text, verdict);
 }
 
 /// Work of other programs shows as wall time beyond CPU time; with one thread there is nothing else to wait for.
@@ -64,7 +65,7 @@ std::string warning(const Report& report) {
     for (const Timed& timed : report.timed) {
         const PhaseCost& full = timed.cost.full();
         if (timed.cost.threads == 1 && full.wall_ns > 1.1 * full.cpu_ns)
-            return "the machine has other work: numbers by wall time, two threads over one among them, are not its own\n";
+            return "the machine has other work: wall times, and two threads over one, are not its own\n";
     }
     return "";
 }
@@ -79,7 +80,8 @@ std::string json_kernel(const Report& report, const Timed& timed, const PhaseCos
     if (&phase == &cost.full())
         text += fmt::format(R"(, "particles_end": {}, "steps": {}, "bytes_per_particle": {:.6g}, )"
                             R"("nodes_per_particle": {:.6g}, "hash": "{:016x}")",
-                            cost.particles_end, cost.steps, cost.bytes_per_particle, cost.nodes_per_particle, cost.hash);
+                            cost.particles_end, cost.steps, cost.bytes_per_particle, cost.nodes_per_particle,
+                            cost.hash);
     return text + "}";
 }
 

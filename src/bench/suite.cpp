@@ -64,7 +64,8 @@ std::map<int, std::uint64_t> hashes(const Options& options) {
 
 void require_sensible(const Options& options) {
     const auto refuse = [](const char* option, Index found, const std::string& expected) {
-        throw UserError(fmt::format("{}: found {}; expected {}; choose a number in this range", option, found, expected));
+        throw UserError(
+            fmt::format("{}: found {}; expected {}; choose a number in this range", option, found, expected));
     };
     for (const Index count : options.particles)
         if (count < kFewest || count > 100000000)
@@ -114,9 +115,10 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
 }
 
 const Timed* find(const Report& report, const std::string& model, Index particles, int threads) {
-    for (const Timed& timed : report.timed)
-        if (timed.model == model && timed.cost.threads == threads && (particles == 0 || timed.cost.particles == particles))
-            return &timed;
+    for (const Timed& timed : report.timed) {
+        const bool counted = particles == 0 || timed.cost.particles == particles;
+        if (counted && timed.model == model && timed.cost.threads == threads) return &timed;
+    }
     return nullptr;
 }
 

@@ -17,8 +17,8 @@ struct Options {
     Index array_bytes = 0;   ///< of the triad, 0: as the machine's caches ask for
 };
 
-/// A scene that was timed. `model` begins the contract's MODEL/PHASE/PRECISION: "depth_averaged" is the whole physics, with
-/// Voellmy, Bingham and topography; others have a suffix.
+/// A scene that was timed. `model` begins the contract's MODEL/PHASE/PRECISION: "depth_averaged" is the whole physics,
+/// with Voellmy, Bingham and topography; others have a suffix.
 struct Timed {
     std::string model;
     std::string precision = "double";
@@ -32,11 +32,11 @@ struct Report {
     std::map<int, std::uint64_t> hashes;  ///< of one short run, by threads
 };
 
-/// Runs everything; `say` is called with a line of progress before each part. Throws UserError for particles or threads that
-/// cannot be.
+/// Runs everything; `say` is called with a line of progress before each part. Throws UserError for particles or threads
+/// that cannot be.
 Report run(const Options& options, const std::function<void(const std::string&)>& say);
 
-/// The timed scene with that model, particles and threads, or nullptr.
+/// The timed scene with that model, particles (0: any) and threads, or nullptr.
 const Timed* find(const Report& report, const std::string& model, Index particles, int threads);
 
 /// Number of particles that variants and gates refer to: the one of the options that is nearest to 500 000.

@@ -6,8 +6,8 @@
 
 namespace frana::bench {
 
-/// Memory traffic of one call of a phase: every array once per sweep over it, nothing stays in a cache between sweeps. A
-/// number that is written without being read costs its bytes twice (write-allocate), as one that is read and written.
+/// Memory traffic of one call of a phase: every array once per sweep over it, nothing stays in a cache between sweeps.
+/// A number that is written without being read costs its bytes twice (write-allocate), as one that is read and written.
 struct Traffic {
     double particle = 0.0;  ///< bytes per particle
     double node = 0.0;      ///< bytes per node of the work list
