@@ -25,7 +25,8 @@ std::string calibration_lines(const Calibration& c) {
     std::string text;
     for (const auto& [threads, speed] : c.triad_GBps)
         text += fmt::format("triad, {} thread{}: {:.1f} GB/s by CPU time, {:.1f} by wall time (arrays of {} MB)\n",
-                            threads, threads == 1 ? "" : "s", speed, c.triad_wall_GBps.at(threads), c.array_bytes / 1000000);
+                            threads, threads == 1 ? "" : "s", speed, c.triad_wall_GBps.at(threads),
+                            c.array_bytes / 1000000);
     return text + fmt::format("node-touch: {:.1f} ns by CPU time, {:.1f} by wall time\n", c.node_touch_ns,
                               c.node_touch_wall_ns);
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Index kReference = 500000, kFewest = 1000;
 constexpr double kEmptiness = 100.0;     ///< of the wide grid
-constexpr Index kWideParticles = 671089; ///< fill one per cent of 4096 x 4096 cells
+constexpr Index kWideParticles = 671089;  ///< fill one per cent of 4096 x 4096 cells: a larger grid fills the memory
 
 struct Variant {
     const char* model;
@@ -27,7 +27,7 @@ std::vector<Variant> variants(const Options& options) {
     plain.particles = bare.particles = level.particles = reference_particles(options);
     bare.friction = bare.rheology = false;
     level.topography = false;
-    tight.particles = plain.particles == kReference ? kWideParticles : plain.particles;
+    tight.particles = plain.particles >= kReference ? kWideParticles : plain.particles;
     Blob wide = tight;
     wide.emptiness = kEmptiness;
     std::vector<Variant> list{{"depth_averaged_bare", bare}, {"depth_averaged_level", level}};
