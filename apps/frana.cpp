@@ -120,6 +120,15 @@ void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     command->callback([&] { action = [&] { return verify_command(options); }; });
 }
 
+void add_bench(CLI::App& app, BenchOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("bench", "cost of a step by phase, beside the machine's own speed");
+    command->add_option("--json", options.json, "write the results as JSON");
+    command->add_option("--particles", options.particles, "N,N,...; default 70000,500000,4000000")->delimiter(',');
+    command->add_option("--threads", options.threads, "N,N,...; default 1,2")->delimiter(',');
+    command->add_flag("--quick", options.quick, "fewer rounds, no more than 500000 particles, no wide grid");
+    command->callback([&] { action = [&] { return bench_command(options); }; });
+}
+
 int complain(const std::string& text, int code) {
     std::cout << std::flush;
     std::cerr << text << '\n';
@@ -160,6 +169,7 @@ int run_program(int argc, char** argv) {
     FiguresOptions figures;
     std::string size;
     VerifyOptions verify;
+    BenchOptions bench;
     Action action;
     add_run(app, run, action);
     add_check(app, check, action);
@@ -167,6 +177,7 @@ int run_program(int argc, char** argv) {
     add_particles(app, particles, action);
     add_figures(app, figures, size, action);
     add_verify(app, verify, action);
+    add_bench(app, bench, action);
     if (argc > 1) refuse_unknown(app, argv[1]);
     try {
         app.parse(argc, argv);

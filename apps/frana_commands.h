@@ -57,6 +57,15 @@ struct VerifyOptions {
     bool study = false;                 ///< what each component of the scheme is worth
 };
 
+/// `frana bench [--json FILE] [--particles N,N,...] [--threads N,N,...] [--quick]`
+struct BenchOptions {
+    std::filesystem::path json;        ///< file to write, or empty
+    std::vector<long long> particles;  ///< of the full step; empty: 70 000, 500 000 and 4 000 000
+    std::vector<int> threads;          ///< empty: 1 and 2
+    bool quick = false;
+};
+
+int bench_command(const BenchOptions& options);          // frana_bench.cpp
 int verify_command(const VerifyOptions& options);        // frana_verify.cpp
 int run_command(const RunOptions& options);              // frana_run.cpp
 int figures_command(const FiguresOptions& options);      // frana_figures.cpp

@@ -88,7 +88,7 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     CHECK(unknown.out.empty());
     CHECK(unknown.err ==
           "command line: found the unknown command \"chekc\"; expected one of run, check, describe, "
-          "particles, figures, verify; did you mean check?\n");
+          "particles, figures, verify, bench; did you mean check?\n");
     const Outcome threads = scene.frana("run CASE --threads 0");
     CHECK(threads.code == 2);
     CHECK_THAT(threads.err, Contains("--threads"));
@@ -178,4 +178,14 @@ TEST_CASE("verify names the problem that was meant, writes JSON with the contrac
     CHECK(list[1]["cells"] == 100);
     CHECK(scene.frana("verify stoker --cells 50,100 --against v.txt").code == 0);
     CHECK(scene.frana("verify stoker --cells 50,120 --against v.txt").code == 1);
+}
+
+TEST_CASE("bench leaves with 2 and a sentence for numbers that cannot be", "[cli]") {
+    const Case scene;
+    const Outcome few = scene.frana("bench --particles 70000,5 --json b.json");
+    CHECK(few.code == 2);
+    CHECK(few.err == "--particles: found 5; expected 1000 to 100000000; choose a number in this range\n");
+    CHECK(scene.frana("bench --threads 0").code == 2);
+    CHECK(scene.frana("bench --particles many").code == 2);
+    CHECK_FALSE(fs::exists(scene.folder() / "b.json"));
 }

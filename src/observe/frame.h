@@ -44,8 +44,13 @@ struct Status {
     double front = 0.0;              ///< largest map distance of such a node from the release's centre [m]
 };
 
-/// Seconds spent in one named phase of the step.
-struct PhaseTime { std::string name; double seconds = 0.0; };
+/// Time spent in one named phase of the step.
+struct PhaseTime {
+    std::string name;
+    double seconds = 0.0;      ///< wall time
+    double cpu_seconds = 0.0;  ///< of the thread that steps; zero unless the solver was asked to count it
+    Index calls = 0;
+};
 
 /// A state at an output time; valid only during the call that hands it out.
 struct Frame {

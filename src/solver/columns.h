@@ -7,6 +7,10 @@
 
 namespace frana {
 
+/// Memory that an array holds [bytes].
+template <class T>
+Index allocated(const std::vector<T>& array) { return static_cast<Index>(array.capacity() * sizeof(T)); }
+
 /// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI.
 struct Columns {
     std::vector<double> x, y;                ///< position [cells]
@@ -22,13 +26,27 @@ struct Columns {
     /// The one list of floating-point columns: sorting and growing walk it.
     template <class Visit>
     void each(Visit&& visit) {
-        for (std::vector<double>* column : {&x, &y, &vx, &vy, &cxx, &cxy, &cyx, &cyy, &mass, &r1x, &r1y, &r2x,
-                                            &r2y, &depth})
-            visit(*column);
+        for (auto* column : all(*this)) visit(*column);
+    }
+    template <class Visit>
+    void each(Visit&& visit) const {
+        for (auto* column : all(*this)) visit(*column);
+    }
+    Index bytes() const {
+        Index sum = allocated(id);
+        each([&](const std::vector<double>& column) { sum += allocated(column); });
+        return sum;
     }
     void resize(Index count) {
         each([&](std::vector<double>& column) { column.resize(static_cast<std::size_t>(count)); });
         id.resize(static_cast<std::size_t>(count));
+    }
+
+private:
+    template <class Self>
+    static auto all(Self& s) -> std::array<decltype(&s.x), 14> {
+        return {&s.x, &s.y, &s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.mass, &s.r1x, &s.r1y, &s.r2x, &s.r2y,
+                &s.depth};
     }
 };
 
@@ -38,6 +56,12 @@ public:
     /// Sorts `columns` and rebuilds `active`. Same bits for any number of threads.
     /// `gone` (one byte per particle, may be empty) marks particles to drop.
     void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    /// Memory that grows with the points [bytes].
+    Index bytes() const {
+        Index sum = allocated(key_) + allocated(order_) + allocated(id_scratch_);
+        for (const std::vector<double>& column : scratch_) sum += allocated(column);
+        return sum;
+    }
 
 private:
     void list_tiles(const TileGrid& grid, ActiveTiles& active);

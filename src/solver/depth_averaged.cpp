@@ -25,13 +25,15 @@ double least_split_mass(const Scene& scene) {
 
 }  // namespace
 
-void StepClock::add(const char* phase, double seconds) {
+void StepClock::add(const char* phase, double seconds, double cpu_seconds) {
     for (PhaseTime& time : times_)
         if (time.name == phase) {
             time.seconds += seconds;
+            time.cpu_seconds += cpu_seconds;
+            time.calls += 1;
             return;
         }
-    times_.push_back({phase, seconds});
+    times_.push_back({phase, seconds, cpu_seconds, 1});
 }
 
 DepthAveraged::DepthAveraged(const Scene& scene)
@@ -230,6 +232,10 @@ Sample DepthAveraged::at(const Vec2& point) const {
             sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
         }
     return sample;
+}
+
+Index DepthAveraged::particle_bytes() const {
+    return flow_.columns.bytes() + sorter_.bytes() + allocated(transfer_->gone()) + (merger_ ? merger_->bytes() : 0);
 }
 
 std::vector<std::string> DepthAveraged::remarks() const {

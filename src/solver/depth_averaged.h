@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/cpu_time.h"
 #include "solver/kick.h"
 #include "solver/mass_fit.h"
 #include "solver/merge.h"
@@ -15,9 +16,11 @@
 
 namespace frana {
 
-/// Wall time of the named phases of a step.
+/// Wall time of the named phases of a step, and CPU time where asked for.
 class StepClock {
 public:
+    /// Reads the CPU clock too from now on: a system call at both ends of a phase.
+    void count_cpu_time() { counts_cpu_ = true; }
     template <class Body>
     auto operator()(const char* phase, Body&& body) {
         const Lap lap(*this, phase);
@@ -29,12 +32,18 @@ private:
     struct Lap {
         StepClock& clock;
         const char* phase;
+        double cpu_start;
         std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-        Lap(StepClock& c, const char* p) : clock(c), phase(p) {}
-        ~Lap() { clock.add(phase, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()); }
+        Lap(StepClock& c, const char* p) : clock(c), phase(p), cpu_start(c.cpu_now()) {}
+        ~Lap() {
+            const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+            clock.add(phase, wall.count(), clock.cpu_now() - cpu_start);
+        }
     };
-    void add(const char* phase, double seconds);
+    double cpu_now() const { return counts_cpu_ ? thread_cpu_seconds() : 0.0; }
+    void add(const char* phase, double seconds, double cpu_seconds);
     std::vector<PhaseTime> times_;
+    bool counts_cpu_ = false;
 };
 
 class DepthAveraged final : public Simulation {
@@ -50,6 +59,10 @@ public:
     std::vector<std::string> remarks() const override;
 
     const Flow& flow() const { return flow_; }
+    /// timings() tell CPU time too from now on.
+    void count_cpu_time() { timed_.count_cpu_time(); }
+    /// Memory that grows with the points, sort buffers included [bytes].
+    Index particle_bytes() const;
     /// What the fit of initial masses did; nothing when there was none.
     const std::optional<MassFit>& mass_fit() const { return fit_; }
 

@@ -16,6 +16,8 @@ public:
     /// Needs columns sorted by tile. Marks merged-away points in gone(); returns how many. The caller drops them.
     Index merge(Flow& flow);
     const std::vector<std::uint8_t>& gone() const { return gone_; }
+    /// Memory that grows with the points [bytes].
+    Index bytes() const { return allocated(gone_) + allocated(order_); }
 
 private:
     Index merge_tile(Flow& flow, Index n);

@@ -1,0 +1,54 @@
+#include "bench/gates.h"
+
+#include <algorithm>
+
+namespace frana::bench {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+double ratio(const Timed* over, const Timed* under) {
+    return over && under ? over->cost.ns(over->cost.full()) / under->cost.ns(under->cost.full()) : kUnknown;
+}
+
+/// Both by the wall: a team's CPU time alone does not show what waiting costs it.
+double speed_up(const Timed* one, const Timed* two) {
+    return one && two ? one->cost.full().wall_ns / two->cost.full().wall_ns : kUnknown;
+}
+
+}  // namespace
+
+std::vector<Gate> gates(const Report& report) {
+    const Options& options = report.options;
+    const Index reference = reference_particles(options);
+    const Timed* full = find(report, "depth_averaged", reference, 1);
+    const auto [least, most] = std::minmax_element(options.particles.begin(), options.particles.end());
+    const Timed *small = find(report, "depth_averaged", *least, 1), *large = find(report, "depth_averaged", *most, 1);
+
+    std::vector<Gate> list{
+        {"double, one thread: ns x triad GB/s [B]", 640, 400},
+        {"two threads over one (wall)", 1.7, 1.9, true},
+        {"fewest to most particles: growth of ns", 1.35, 1.15},
+        {"blob on 1 % of a grid over a tight grid", 1.10, 1.0},
+        {"no friction, no rheology over full step", 0.75, 0.6},
+        {"memory per particle, double [B]", 200, 120},
+    };
+    if (full) list[0].measured = full->cost.ns(full->cost.full()) * report.calibration.triad_GBps.at(1);
+    list[1].measured = speed_up(full, find(report, "depth_averaged", reference, 2));
+    if (small != large) list[2].measured = ratio(large, small);
+    list[3].measured = ratio(find(report, "depth_averaged_wide", 0, 1), find(report, "depth_averaged_tight", 0, 1));
+    list[4].measured = ratio(find(report, "depth_averaged_bare", reference, 1), full);
+    if (full) list[5].measured = full->cost.bytes_per_particle;
+    return list;
+}
+
+bool same_bits(const Report& report) {
+    for (const auto& entry : report.hashes)
+        if (entry.second != report.hashes.begin()->second) return false;
+    for (const Timed& a : report.timed)
+        for (const Timed& b : report.timed)
+            if (a.model == b.model && a.cost.particles == b.cost.particles && a.cost.hash != b.cost.hash) return false;
+    return true;
+}
+
+}  // namespace frana::bench

@@ -1,0 +1,131 @@
+#include "bench/suite.h"
+
+#include <fmt/core.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "bench/blob.h"
+
+namespace frana::bench {
+namespace {
+
+constexpr Index kReference = 500000, kFewest = 1000;
+constexpr double kEmptiness = 100.0;     ///< of the wide grid
+constexpr Index kWideParticles = 671089;  ///< fill one per cent of 4096 x 4096 cells: a larger grid fills the memory
+
+struct Variant {
+    const char* model;
+    Blob blob;
+};
+
+/// Scenes beside the full one, timed with one thread.
+std::vector<Variant> variants(const Options& options) {
+    Blob plain, bare, level, tight;
+    plain.particles = bare.particles = level.particles = reference_particles(options);
+    bare.friction = bare.rheology = false;
+    level.topography = false;
+    tight.particles = plain.particles >= kReference ? kWideParticles : plain.particles;
+    Blob wide = tight;
+    wide.emptiness = kEmptiness;
+    std::vector<Variant> list{{"depth_averaged_bare", bare}, {"depth_averaged_level", level}};
+    if (!options.quick || tight.particles < kReference) {
+        list.push_back({"depth_averaged_tight", tight});
+        list.push_back({"depth_averaged_wide", wide});
+    }
+    return list;
+}
+
+Plan plan_for(const Options& options, Index particles, int threads) {
+    Plan plan;
+    plan.threads = threads;
+    plan.windows = options.quick ? 3 : particles <= 100000 ? 12 : particles <= 1000000 ? 7 : 3;
+    return plan;
+}
+
+/// The same short run with different numbers of threads.
+std::map<int, std::uint64_t> hashes(const Options& options) {
+    Blob blob;
+    blob.particles = std::min<Index>(20000, reference_particles(options));
+    const Scene scene = blob_scene(blob);
+    Plan plan;
+    plan.windows = 2;
+    std::map<int, std::uint64_t> found;
+    std::vector<int> threads = options.threads;
+    threads.insert(threads.end(), {1, 2, 4});
+    for (const int n : threads) {
+        plan.threads = n;
+        if (!found.count(n)) found[n] = measure(scene, plan).hash;
+    }
+    return found;
+}
+
+void require_sensible(const Options& options) {
+    const auto refuse = [](const char* option, Index found, const std::string& expected) {
+        throw UserError(
+            fmt::format("{}: found {}; expected {}; choose a number in this range", option, found, expected));
+    };
+    for (const Index count : options.particles)
+        if (count < kFewest || count > 100000000)
+            refuse("--particles", count, fmt::format("{} to 100000000", kFewest));
+    for (const int threads : options.threads)
+        if (threads < 1 || threads > 1024) refuse("--threads", threads, "1 to 1024");
+    expect(!options.particles.empty() && !options.threads.empty(), "a bench without particles or threads");
+}
+
+std::vector<int> with_one(std::vector<int> threads) {
+    threads.push_back(1);
+    std::sort(threads.begin(), threads.end());
+    threads.erase(std::unique(threads.begin(), threads.end()), threads.end());
+    return threads;
+}
+
+}  // namespace
+
+Report run(const Options& wanted, const std::function<void(const std::string&)>& say) {
+    require_sensible(wanted);
+    Report report;
+    Options& options = report.options = wanted;
+    options.threads = with_one(options.threads);  // ratios need it
+    CalibrationPlan plan;
+    plan.threads = options.threads;
+    plan.array_bytes = options.array_bytes;
+    if (options.quick) plan.rounds = 5;
+    say("calibrating: triad and node-touch");
+    report.calibration = calibrate(plan);
+
+    const auto time = [&](const std::string& model, const Scene& scene, int threads) {
+        const Index particles = scene.particles.count();
+        say(fmt::format("{}: {} particles, {} threads", model, particles, threads));
+        report.timed.push_back({model, "double", measure(scene, plan_for(options, particles, threads))});
+    };
+    for (const Index particles : options.particles) {
+        if (options.quick && particles > kReference) continue;
+        Blob blob;
+        blob.particles = particles;
+        const Scene scene = blob_scene(blob);
+        for (const int threads : options.threads) time("depth_averaged", scene, threads);
+    }
+    for (const Variant& variant : variants(options)) time(variant.model, blob_scene(variant.blob), 1);
+    say("the same run with different numbers of threads");
+    report.hashes = hashes(options);
+    return report;
+}
+
+const Timed* find(const Report& report, const std::string& model, Index particles, int threads) {
+    for (const Timed& timed : report.timed) {
+        const bool counted = particles == 0 || timed.cost.particles == particles;
+        if (counted && timed.model == model && timed.cost.threads == threads) return &timed;
+    }
+    return nullptr;
+}
+
+Index reference_particles(const Options& options) {
+    return *std::min_element(options.particles.begin(), options.particles.end(), [](Index a, Index b) {
+        return std::abs(a - kReference) < std::abs(b - kReference);
+    });
+}
+
+}  // namespace frana::bench

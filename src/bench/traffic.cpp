@@ -1,0 +1,61 @@
+#include "bench/traffic.h"
+
+namespace frana::bench {
+namespace {
+
+constexpr double kRead = 8.0, kWrite = 16.0;  ///< a double; an update costs the same as a write
+constexpr double kNode4 = 32.0;               ///< Deposit or Motion, read
+
+double hessian(const Flow& flow) { return flow.bed.hxx ? 3.0 * kRead : 0.0; }
+double slopes(const Flow& flow) { return flow.steep ? 2.0 * kRead : 0.0; }
+
+Traffic deposit(const Flow& flow) {
+    const double force = flow.nodes.force ? 2.0 : 0.0;  // numbers a node
+    // Clearing, scattering, and the sums that are held against the points'.
+    return {14.0 * kRead, 2.0 * (2.0 * kNode4 + force * kWrite) + kNode4};
+}
+
+Traffic gather(const Flow&) {
+    const double moved = 6.0 * kWrite, replaced = 7.0 * kWrite, gone = 3.0;  // place and domain; v, grad v, depth
+    return {moved + replaced + kRead + gone, kNode4 + 1.0};
+}
+
+Traffic kick(const Flow& flow) {
+    const double force = flow.nodes.force ? 2.0 * kRead : 0.0;
+    const double state = kNode4 + 3.0 * kRead + 2.0 * kRead + 2.0 * kRead + 1.0;  // deposit; h, eta, z; v; flux; flags
+    return {0.0, 2.0 * kNode4 + state + force + slopes(flow) + hessian(flow)};
+}
+
+Traffic depth(const Flow&) { return {0.0, kNode4 + kRead + 2.0 * kWrite + 2.0 * kWrite + 2.0}; }
+
+Traffic filter(const Flow&) {
+    const double shock = 4.0 * kWrite + 3.0 * kRead + 1.0;
+    const double along_x = 2.0 + kWrite + kRead + 1.0, along_y = kWrite + 4.0 * kRead + 2.0;
+    return {0.0, shock + along_x + along_y};
+}
+
+Traffic peaks(const Flow& flow) { return {0.0, 3.0 * kRead + 5.0 * kRead + slopes(flow) + hessian(flow)}; }
+
+Traffic sort(const Flow&) {
+    const double keys = 2.0 * kRead + kWrite + 2.0 * kRead + kWrite;
+    const double permuted = 15.0 * (2.0 * kRead + kWrite);  // 14 columns and the id, each by the order
+    return {keys + permuted, 0.0};
+}
+
+}  // namespace
+
+Traffic traffic_of(const std::string& phase, const Flow& flow) {
+    if (phase == "deposit") return deposit(flow);
+    if (phase == "gather") return gather(flow);
+    if (phase == "kick and friction") return kick(flow);
+    if (phase == "depth") return depth(flow);
+    if (phase == "filter") return filter(flow);
+    if (phase == "shoreline") return {0.0, 6.0};  // three sweeps of two loops over the flags; margins are few
+    if (phase == "peaks") return peaks(flow);
+    if (phase == "sort") return sort(flow);
+    if (phase == "split") return {10.0 * kRead, 0.0};
+    if (phase == "merge") return {4.0 * kRead + 2.0 * kWrite + 2.0, 0.0};
+    return {};
+}
+
+}  // namespace frana::bench

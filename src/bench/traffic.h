@@ -1,0 +1,19 @@
+#pragma once
+// How many bytes each phase of a step has to move, from what it reads and writes: a model, not a measurement.
+#include <string>
+
+#include "solver/flow.h"
+
+namespace frana::bench {
+
+/// Memory traffic of one call of a phase: every array once per sweep over it, nothing stays in a cache between sweeps.
+/// A number that is written without being read costs its bytes twice (write-allocate), as one that is read and written.
+struct Traffic {
+    double particle = 0.0;  ///< bytes per particle
+    double node = 0.0;      ///< bytes per node of the work list
+};
+
+/// Traffic of the phase that the solver's timings call `phase`; nothing for one that is not known.
+Traffic traffic_of(const std::string& phase, const Flow& flow);
+
+}  // namespace frana::bench

@@ -1,0 +1,144 @@
+// The measuring itself, on scenes far too small to tell anything about speed.
+#include <cmath>
+#include <regex>
+
+#include "base/error.h"
+#include "bench/blob.h"
+#include "bench/print.h"
+#include "bench/traffic.h"
+#include "catch.h"
+#include "solver/depth_averaged.h"
+
+using namespace frana;
+
+namespace {
+
+bench::Options tiny() {
+    bench::Options options;
+    options.particles = {1000, 4000};
+    options.threads = {2};
+    options.quick = true;
+    options.array_bytes = 1 << 20;
+    return options;
+}
+
+const bench::Report& report() {
+    static const bench::Report done = bench::run(tiny(), [](const std::string&) {});
+    return done;
+}
+
+/// Every number that stands behind "key": in the text; numbers with another notation are not found.
+std::vector<double> numbers(const std::string& text, const std::string& key) {
+    const std::regex pattern("\"" + key + "\": ([-+0-9.e]+)[,}]");
+    std::vector<double> found;
+    for (std::sregex_iterator hit(text.begin(), text.end(), pattern), end; hit != end; ++hit)
+        found.push_back(std::stod((*hit)[1]));
+    return found;
+}
+
+std::size_t occurrences(const std::string& text, const std::string& word) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("A blob has as many points as it should, on the same tiles of a tight and of a wide grid", "[bench]") {
+    bench::Blob blob;
+    blob.particles = 3001;
+    const Scene tight = bench::blob_scene(blob);
+    blob.emptiness = 100.0;
+    const Scene wide = bench::blob_scene(blob);
+    CHECK(tight.particles.count() == 3001);
+    CHECK(wide.particles.volume == tight.particles.volume);
+    CHECK(wide.bed.geometry.size() >= 100 * 3001 / 4);
+    const double shift = (wide.particles.x[0] - tight.particles.x[0]) / tight.bed.geometry.cell / kTile;
+    CHECK(shift == std::round(shift));
+    const DepthAveraged a(tight), b(wide);
+    CHECK(a.flow().active.begin == b.flow().active.begin);
+}
+
+TEST_CASE("bench writes the contract's keys with finite numbers above zero", "[bench]") {
+    const std::string json = bench::json_of(report());
+    const std::size_t kernels = occurrences(json, "\"name\": ");
+    CHECK(kernels > 50);
+    for (const char* key :
+         {"particles", "threads", "ns_per_particle_step", "bytes_per_particle_step", "fraction_of_stream"}) {
+        CAPTURE(key);
+        const std::vector<double> values = numbers(json, key);
+        CHECK(values.size() == kernels);
+        for (const double value : values) CHECK((std::isfinite(value) && value > 0.0));
+    }
+    CHECK(numbers(json, "node_touch_ns").size() == 1);
+    CHECK(numbers(json, "node_touch_ns")[0] > 0.0);
+    CHECK(numbers(json, "1").size() == 2);  // both triads, one thread and two
+    CHECK(numbers(json, "2").size() == 2);
+    CHECK(occurrences(json, "\"depth_averaged/full/double\"") == 4);  // two sizes, one thread and two
+    CHECK(occurrences(json, "\"depth_averaged/kick_and_friction/double\"") == 4);
+}
+
+TEST_CASE("bench finds the same bits for one, two and four threads, and other bits in another state", "[bench]") {
+    CHECK(report().hashes.size() == 3);
+    CHECK(bench::same_bits(report()));
+    bench::Report other = report();
+    other.hashes[4] ^= 1;
+    CHECK_FALSE(bench::same_bits(other));
+    bench::Blob blob;
+    blob.particles = 1000;
+    Columns columns = DepthAveraged(bench::blob_scene(blob)).flow().columns;
+    const std::uint64_t before = bench::hash_of(columns);
+    columns.r2y[500] = std::nextafter(columns.r2y[500], 1.0);
+    CHECK(bench::hash_of(columns) != before);
+}
+
+TEST_CASE("Every phase that the solver times has a traffic model, and phases make up the step", "[bench]") {
+    bench::Blob blob;
+    blob.particles = 4000;
+    DepthAveraged simulation(bench::blob_scene(blob));
+    for (int step = 0; step < 6; ++step) simulation.advance(1e9);
+    CHECK(simulation.timings().size() >= 8);
+    for (const PhaseTime& phase : simulation.timings()) {
+        CAPTURE(phase.name);
+        const bench::Traffic traffic = bench::traffic_of(phase.name, simulation.flow());
+        CHECK(traffic.particle + traffic.node > 0.0);
+        CHECK(phase.calls > 0);
+        CHECK(phase.cpu_seconds == 0.0);  // not asked for
+    }
+    const bench::Cost& cost = bench::find(report(), "depth_averaged", 4000, 1)->cost;
+    double sum = 0.0;
+    for (const bench::PhaseCost& phase : cost.phases)
+        if (phase.name != "full") sum += phase.cpu_ns;
+    CHECK(sum == Approx(cost.full().cpu_ns).epsilon(1e-6));
+    CHECK(cost.phases.back().name == "other");
+    CHECK(cost.phases.back().cpu_ns < 0.2 * sum);  // a phase that nobody books would hide there
+}
+
+TEST_CASE("Memory per point counts at least the columns and their copies in the sort", "[bench]") {
+    const bench::Cost& cost = bench::find(report(), "depth_averaged", 4000, 1)->cost;
+    CHECK(cost.bytes_per_particle >= 2 * 15 * 8);
+}
+
+TEST_CASE("A gate that was not measured is not met", "[bench]") {
+    bool seen = false;
+    for (const bench::Gate& gate : bench::gates(report())) {
+        CHECK((!std::isnan(gate.measured) || !gate.met()));
+        seen |= !std::isnan(gate.measured);
+    }
+    CHECK(seen);
+    bench::Options one = tiny();
+    one.particles = {1000};
+    bench::Report alone;
+    alone.options = one;
+    for (const bench::Gate& gate : bench::gates(alone)) CHECK_FALSE(gate.met());
+}
+
+TEST_CASE("bench refuses particles and threads that cannot be", "[bench]") {
+    bench::Options options = tiny();
+    options.particles = {5};
+    CHECK_THROWS_WITH(bench::run(options, [](const std::string&) {}),
+                      "--particles: found 5; expected 1000 to 100000000; choose a number in this range");
+    options = tiny();
+    options.threads = {0};
+    CHECK_THROWS_AS(bench::run(options, [](const std::string&) {}), UserError);
+}
