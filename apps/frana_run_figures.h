@@ -35,6 +35,11 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
 void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
               std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
 
+/// figures/compare.png: the simulated extent (all pixels of peak_depth above footprint_depth) and the surveyed one;
+/// nothing without a survey, the terrain or the peak depth.
+void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                  std::vector<std::string>& warnings);
+
 /// Draws into a PNG; false with a reason when that is not possible.
 using Draw = std::function<bool(const std::filesystem::path& png, std::string& why_not)>;
 

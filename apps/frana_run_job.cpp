@@ -1,10 +1,14 @@
 #include "frana_run_job.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
+#include "frana_comparison.h"
 #include "frana_run_figures.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
@@ -44,6 +48,21 @@ void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) 
     record.peak_speed = largest(rasters, "peak_speed");
     record.peak_pressure = largest(rasters, "peak_pressure");
     record.final_depth = largest(rasters, "final_depth");
+}
+
+/// compare.json, when the case gives a survey. The run is worth more than its scores: trouble is a warning.
+void compare_with_survey(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
+                         RunRecord& record) {
+    if (!scene.survey || find_product(rasters, "peak_depth") == nullptr) return;
+    try {
+        Survey survey;
+        survey.footprint = *scene.survey;
+        Comparison comparison = compare_rasters(rasters, &scene.bed, scene.output.footprint_depth, survey);
+        write_text(run_dir / "compare.json", comparison_json(comparison));
+        record.comparison = std::move(comparison);
+    } catch (const UserError& error) {
+        record.warnings.push_back(fmt::format("the run was not compared with the survey: {}", error.what()));
+    }
 }
 
 FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const RunRecord& record,
@@ -100,6 +119,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
         if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
             write_outline(run_dir, peak->raster, scene.output.footprint_depth);
     });
+    timed(record.summary, "survey", [&] { compare_with_survey(scene, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {
         if (scene.output.png)
             record.figures = draw_figures(figure_source(scene, run_dir, record, rasters), record.warnings);

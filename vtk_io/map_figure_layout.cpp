@@ -200,6 +200,11 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
     using Kind = LegendEntry::Kind;
     const double u = layout.unit;
     std::vector<LegendEntry> legend;
+    if (figure.shows_overlay()) {
+        legend.push_back(entry(Kind::area, colours::hit, 0.0, "both"));
+        legend.push_back(entry(Kind::area, colours::beyond, 0.0, "simulated only"));
+        legend.push_back(entry(Kind::area, colours::missed, 0.0, "surveyed only"));
+    }
     const auto [name, unit] = name_and_unit(figure.field_label);
     legend.push_back(
         entry(Kind::line, colours::black, 0.1 * u,
@@ -238,12 +243,12 @@ struct Margins {
     double left, right, bottom, top;
 };
 
-Margins margins_of(const MapLayout& layout) {
+Margins margins_of(const MapLayout& layout, bool colour_bar) {
     const double u = layout.unit;
     const TextStyle plain = layout.text(Across::left, Upward::bottom);
     const double strip = layout.row_height() * layout.strip.count;
     return {3.4 * u + widest(layout.y_ticks.labels, plain),
-            4.9 * u + widest(colour_ticks(layout.colours).labels, plain),
+            colour_bar ? 4.9 * u + widest(colour_ticks(layout.colours).labels, plain) : 2.0 * u,
             4.1 * u + strip + layout.captions.footer_height(), 1.3 * u + layout.captions.title_height()};
 }
 
@@ -265,7 +270,7 @@ void place(MapLayout& layout, const MapFigure& figure, const std::array<double, 
     const auto all = figure.bed.geometry.pixel_extent();
     const double u = layout.unit;
     layout.captions = make_captions(figure.title, figure.footer, u, layout.width);
-    const Margins m = margins_of(layout);
+    const Margins m = margins_of(layout, !figure.shows_overlay());
     const double room_w = std::max(figure.width - m.left - m.right, 8.0 * u);
     const double room_h = std::max(figure.height - m.bottom - m.top, 8.0 * u);
     const auto view = shaped(wanted, all, room_w / room_h);
