@@ -51,6 +51,7 @@ int compare_command(const CompareOptions& options) {
 
     std::vector<DrawnFigure> figures;
     source.survey = survey.footprint;
+    source.runout_path = comparison.path;
     if (bed_known) draw_overlay(source, figures, warnings);
     const fs::path json = options.json.empty() ? options.run_dir / "compare.json" : options.json;
     write_text(json, comparison_json(comparison));

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-void add_scores(Json& json, const ExtentScores& scores, double surveyed_runout) {
+void add_scores(Json& json, const ExtentScores& scores, const Comparison& c) {
     const Overlap& areas = scores.areas;
     json["true_positive_area"] = areas.hit;
     json["false_positive_area"] = areas.beyond;
@@ -31,9 +31,12 @@ void add_scores(Json& json, const ExtentScores& scores, double surveyed_runout) 
     json["simulated_area"] = areas.simulated();
     json["survey_area"] = areas.surveyed();
     json["survey_area_outside"] = areas.missed_outside;
-    json["runout_difference"] = number(scores.runout - surveyed_runout);
+    json["runout_difference"] = number(scores.runout - c.surveyed_runout);
     json["runout_simulated"] = number(scores.runout);
-    json["runout_survey"] = number(surveyed_runout);
+    json["runout_survey"] = number(c.surveyed_runout);
+    json["reach_difference"] = number(scores.reach - c.surveyed_reach);
+    json["reach_simulated"] = number(scores.reach);
+    json["reach_survey"] = number(c.surveyed_reach);
     json["boundary_distance_mean"] = number(scores.boundary.mean);
     json["boundary_distance_p95"] = number(scores.boundary.p95);
     json["boundary_distance_max"] = number(scores.boundary.max);
@@ -86,6 +89,7 @@ std::string extent_table(const Comparison& c) {
     add("runout, simulated [m]", "{:.1f}", [](E s) { return s.runout; });
     add("runout, surveyed [m]", "{:.1f}", [&](E) { return c.surveyed_runout; });
     add("runout difference [m]", "{:+.1f}", [&](E s) { return s.runout - c.surveyed_runout; });
+    add("straight reach, difference [m]", "{:+.1f}", [&](E s) { return s.reach - c.surveyed_reach; });
     add("distance of the outlines, mean [m]", "{:.1f}", [](E s) { return s.boundary.mean; });
     add("distance of the outlines, 95 % [m]", "{:.1f}", [](E s) { return s.boundary.p95; });
     return text + "\n";
@@ -149,13 +153,13 @@ std::string comparison_json(const Comparison& c) {
     json["survey"] = c.survey;
     json["threshold"] = c.limit;
     json["cell"] = c.cell;
-    add_scores(json, c.trace, c.surveyed_runout);
+    add_scores(json, c.trace, c);
     json["runout_path"] = c.path_source;
     if (c.deposit) {
         json["deposit"] = c.deposit_source;
         add_deposit(json, *c.deposit);
     }
-    if (c.final) add_scores(json["final_extent"], *c.final, c.surveyed_runout);
+    if (c.final) add_scores(json["final_extent"], *c.final, c);
     json["remarks"] = c.remarks;
     return json.dump(2) + "\n";
 }
@@ -165,7 +169,7 @@ std::string comparison_section(const Comparison& c) {
     text += fmt::format(
         "Survey: `{}`. Simulated is every pixel of {:.6g} m deeper than {:.6g} m; the survey's area in each pixel is "
         "exact. The survey is the reference (true positive + false negative). Runout is the horizontal length along "
-        "{} to the farthest point of each outline.\n\n",
+        "{} to the farthest point of each outline; reach is the straight distance from the path's start.\n\n",
         c.survey, c.cell, c.limit,
         c.path.empty() ? std::string("no known path")
                        : (c.path_source.find("steepest") == 0 ? "the " + c.path_source : "`" + c.path_source + "`"));

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "compare/outline.h"
+#include "compare/overlap.h"
 #include "frana_run_charts.h"
 #include "vtk_io/map_figure.h"
 #include "vtk_io/map_figure_perspective.h"
@@ -96,7 +96,14 @@ void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
     attempt(source, {"figures/compare.png", "simulated and surveyed extent"}, figures, warnings,
             [&](const fs::path& png, std::string& why_not) {
                 MapFigure map = map_of(source, *peak, "simulated and surveyed extent");
+                map.field_label = "peak depth [m]";
+                map.profiles.clear();
+                if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
                 map.simulated = pixel_outline(peak->raster, source.footprint_depth);
+                const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
+                map.footer = fmt::format("both {:.4g} m2, simulated only {:.4g} m2, surveyed only {:.4g} m2, IoU {:.3f}; ",
+                                         areas.hit, areas.beyond, areas.missed, areas.iou()) +
+                             source.footer;
                 return render_map(map, png, why_not);
             });
 }

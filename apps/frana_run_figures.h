@@ -21,6 +21,7 @@ struct FigureSource {
     std::vector<ProductRaster> rasters;  ///< peak_depth, peak_speed, final_depth are drawn
     double footprint_depth = 0.1;        ///< [m]
     std::optional<Polygons> survey;
+    Polyline runout_path;  ///< drawn in the overlay with the survey; empty: none
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::optional<double> time;       ///< of the profiles besides the first and the last [s]

@@ -75,6 +75,7 @@ FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const Ru
     source.rasters = rasters;
     source.footprint_depth = scene.output.footprint_depth;
     source.survey = scene.survey;
+    if (record.comparison) source.runout_path = record.comparison->path;
     source.profiles = scene.profiles;
     source.gauges = scene.gauges;
     return source;

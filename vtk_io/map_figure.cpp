@@ -139,7 +139,7 @@ private:
         const double u = layout_.unit;
         if (figure_.survey)
             for (const Polyline& ring : all_rings(*figure_.survey))
-                closed_line(ring, {colours::survey, 0.16 * u, {}}, true);
+                closed_line(ring, {colours::survey, figure_.survey_pen() * u, {}}, true);
         for (const NamedLine& profile : figure_.profiles) {
             const auto pieces = on_sheet(profile.line);
             for (const auto& piece : pieces)

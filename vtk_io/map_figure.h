@@ -41,6 +41,8 @@ struct MapFigure {
     int height = 1200;                           ///< at most [px]
 
     bool shows_overlay() const { return simulated && survey; }
+    /// Thickness of the surveyed outline, in sizes of ordinary text: thinner where areas beside it are looked at.
+    double survey_pen() const { return shows_overlay() ? 0.1 : 0.16; }
 };
 
 /// Draws the map into a PNG. Where `focus` is not given, the covered area and the survey are in view with a

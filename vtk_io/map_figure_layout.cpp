@@ -146,13 +146,15 @@ std::array<double, 4> wanted_view(const MapFigure& figure) {
     if (!covered) return all;
     if (figure.survey && !figure.survey->parts.empty()) covered = united(*covered, extent_of(*figure.survey));
     std::array<double, 4> view = *covered;
+    // Two outlines are compared where they are, however little of the terrain that is.
+    const double least = figure.shows_overlay() ? 0.0 : 0.3;
     const double margin = 0.1 * std::max(view[2] - view[0], view[3] - view[1]);
     for (std::size_t k = 0; k < 2; ++k) {
         const double whole = all[k + 2] - all[k];
         view[k] = std::max(view[k] - margin, all[k]);
         view[k + 2] = std::min(view[k + 2] + margin, all[k + 2]);
         if (view[k] >= view[k + 2]) view[k] = all[k], view[k + 2] = all[k + 2];
-        stretch(view[k], view[k + 2], 0.3 * whole, all[k], all[k + 2]);
+        stretch(view[k], view[k + 2], least * whole, all[k], all[k + 2]);
     }
     return view;
 }
@@ -210,9 +212,11 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
         entry(Kind::line, colours::black, 0.1 * u,
               fmt::format("{} {:g}{}{}", name, figure.shown_above, unit.empty() ? "" : " ", unit)));
     if (figure.survey)
-        legend.push_back(entry(Kind::cased_line, colours::survey, 0.16 * u, "surveyed outline"));
+        legend.push_back(
+            entry(Kind::cased_line, colours::survey, figure.survey_pen() * u, "surveyed outline"));
     if (!figure.profiles.empty()) {
-        legend.push_back(entry(Kind::cased_line, colours::black, 0.12 * u, "profile"));
+        legend.push_back(entry(Kind::cased_line, colours::black, 0.12 * u,
+                               figure.shows_overlay() ? "runout path" : "profile"));
         legend.back().pen.dash = {0.55 * u, 0.3 * u};
     }
     if (!figure.gauges.empty()) legend.push_back(entry(Kind::point, colours::black, 1.0, "gauge"));

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -32,7 +33,10 @@ public:
         result_.trace = scores(*run_.peak_depth, result_.outline);
         if (run_.final_depth)
             result_.final = scores(*run_.final_depth, pixel_outline(*run_.final_depth, run_.limit));
-        if (!result_.path.empty()) result_.surveyed_runout = reach_along(result_.path, rings_, step_);
+        if (!result_.path.empty()) {
+            result_.surveyed_runout = reach_along(result_.path, rings_, step_);
+            result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
+        }
         if (survey_.deposit && run_.final_depth)
             result_.deposit = deposit_errors(*run_.final_depth, *survey_.deposit, run_.limit);
         make_remarks();
@@ -73,7 +77,10 @@ private:
         ExtentScores scores;
         scores.areas = overlap(depth, run_.limit, rings_);
         scores.boundary = distance_between(outline, rings_, step_);
-        if (!result_.path.empty()) scores.runout = reach_along(result_.path, outline, step_);
+        if (!result_.path.empty()) {
+            scores.runout = reach_along(result_.path, outline, step_);
+            scores.reach = farthest_from(result_.path.front(), outline);
+        }
         return scores;
     }
 
@@ -93,6 +100,7 @@ private:
         const double farthest = std::fmax(result_.surveyed_runout, result_.trace.runout);
         if (farthest > length * (1.0 + 1e-9))
             remark("the path ends {:.4g} m before the farther front and goes on straight there", farthest - length);
+        doubt_path();
         if (!result_.deposit) return;
         const DepositErrors& deposit = *result_.deposit;
         if (deposit.unsurveyed_volume > 0.0)
@@ -102,6 +110,18 @@ private:
         if (deposit.negative > 0)
             remark("{} pixels of {} are below zero and are taken as they are", deposit.negative,
                    result_.deposit_source);
+    }
+
+    /// A flow that runs up an opposite slope or over a dam leaves the path that water would take.
+    void doubt_path() {
+        if (survey_.path || result_.path.empty()) return;
+        const double along = result_.trace.runout - result_.surveyed_runout;
+        const double straight = result_.trace.reach - result_.surveyed_reach;
+        constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
+        if (std::abs(along - straight) > noticeable * result_.cell)
+            remark("the steepest path may turn away from the fronts: they differ by {:+.4g} m along it, but by {:+.4g} "
+                   "m straight from the release; give the track of the flow with --path",
+                   along, straight);
     }
 
     const SimulatedRun& run_;

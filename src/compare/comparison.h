@@ -33,6 +33,7 @@ struct ExtentScores {
     Overlap areas;
     OutlineDistance boundary;  ///< NaN when nothing was simulated
     double runout = Raster::nodata;  ///< along the path [m]; NaN without path or extent
+    double reach = Raster::nodata;   ///< straight from the path's start to the farthest point of the extent [m]
 };
 
 struct Comparison {
@@ -42,7 +43,7 @@ struct Comparison {
     ExtentScores trace;                 ///< everything ever covered, as Fois et al. (2024), section 4.3
     std::optional<ExtentScores> final;  ///< what is covered at the end
     Polyline path;                      ///< empty: none
-    double surveyed_runout = Raster::nodata;
+    double surveyed_runout = Raster::nodata, surveyed_reach = Raster::nodata;
     std::optional<DepositErrors> deposit;
     Rings outline;  ///< of the trace
     std::vector<std::string> remarks;

@@ -173,6 +173,14 @@ double reach_along(const Polyline& path, const Rings& outline, double step) {
     return reach;
 }
 
+double farthest_from(const Vec2& start, const Rings& outline) {
+    double farthest = Raster::nodata;
+    for (const auto& ring : outline)
+        for (const Vec2& v : ring)
+            if (!(farthest >= (v - start).norm())) farthest = (v - start).norm();
+    return farthest;
+}
+
 double length_of(const Polyline& path) {
     double length = 0.0;
     for (std::size_t k = 0; k + 1 < path.size(); ++k) length += (path[k + 1] - path[k]).norm();

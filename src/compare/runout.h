@@ -21,6 +21,9 @@ std::optional<Vec2> release_middle(const Raster& arrival_time);
 /// on straight. NaN without rings. `step` [m]: how closely the outline's edges are looked at.
 double reach_along(const Polyline& path, const Rings& outline, double step);
 
+/// Straight horizontal distance from a point to the farthest one of an outline [m]; NaN without rings.
+double farthest_from(const Vec2& start, const Rings& outline);
+
 double length_of(const Polyline& path);
 
 }  // namespace frana
