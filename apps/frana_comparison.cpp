@@ -180,8 +180,8 @@ std::string comparison_section(const Comparison& c) {
 
 std::string comparison_line(const Comparison& c) {
     const Overlap& areas = c.trace.areas;
-    return fmt::format("IoU {} with the survey, area {} of it, runout {} m", value(areas.iou(), "{:.3f}"),
-                       value(areas.area_ratio(), "{:.3g}"), value(c.trace.runout - c.surveyed_runout, "{:+.3g}"));
+    return fmt::format("IoU {}, simulated over surveyed area {}, runout {} m", value(areas.iou(), "{:.3f}"),
+                       value(areas.area_ratio(), "{:.3g}"), value(c.trace.runout - c.surveyed_runout, "{:+.0f}"));
 }
 
 }  // namespace frana

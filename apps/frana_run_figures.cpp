@@ -101,7 +101,7 @@ void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
                 if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
                 map.simulated = pixel_outline(peak->raster, source.footprint_depth);
                 const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
-                map.footer = fmt::format("both {:.4g} m2, simulated only {:.4g} m2, surveyed only {:.4g} m2, IoU {:.3f}; ",
+                map.footer = fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
                                          areas.hit, areas.beyond, areas.missed, areas.iou()) +
                              source.footer;
                 return render_map(map, png, why_not);
