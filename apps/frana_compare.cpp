@@ -49,12 +49,12 @@ int compare_command(const CompareOptions& options) {
     const Comparison comparison =
         compare_rasters(source.rasters, bed_known ? &source.bed : nullptr, source.footprint_depth, survey);
 
+    const fs::path json = options.json.empty() ? options.run_dir / "compare.json" : options.json;
+    write_text(json, comparison_json(comparison));  // before the picture: scores are worth more
     std::vector<DrawnFigure> figures;
     source.survey = survey.footprint;
     source.runout_path = comparison.path;
     if (bed_known) draw_overlay(source, figures, warnings);
-    const fs::path json = options.json.empty() ? options.run_dir / "compare.json" : options.json;
-    write_text(json, comparison_json(comparison));
     write_text(options.run_dir / "compare.md", page(source, comparison, figures));
 
     std::cout << comparison_section(comparison) << json.string() << '\n'

@@ -193,3 +193,34 @@ TEST_CASE("What cannot be compared leaves with 2, one sentence, and the run as i
     CHECK(slope.frana("compare run").code == 2);
     CHECK(contents(slope.run_dir()) == before);
 }
+
+TEST_CASE("A survey that says nothing stops a run before its first step, with the case's line", "[compare]") {
+    const Slope slope;
+    const auto before = contents(slope.run_dir());
+    REQUIRE(before.size() > 5);
+    write_text(slope.path() / "away.geojson", feature("Polygon", "[[[915,15],[990,15],[990,85],[915,15]]]"));
+    write_text(slope.path() / "line.geojson", feature("LineString", "[[15,15],[100,15]]"));
+    const std::string given = text_of(slope.path() / "case.toml");
+    for (const auto& [name, what] : {std::pair{"away", "does not touch the terrain"}, {"line", "holds 1 line only"}}) {
+        write_text(slope.path() / "case.toml", given + "[survey]\nfootprint = \"" + name + ".geojson\"\n");
+        for (const char* command : {"run case.toml --out run --quiet", "check case.toml"}) {
+            const Outcome outcome = slope.frana(command);
+            CAPTURE(command, outcome.err);
+            CHECK(outcome.code == 2);
+            CHECK_THAT(outcome.err, Contains("case.toml:14: survey.footprint: ") && Contains(what));
+        }
+    }
+    CHECK(contents(slope.run_dir()) == before);
+}
+
+TEST_CASE("A picture that cannot be drawn is a warning; scores that cannot be written are an error", "[compare]") {
+    const Slope slope(R"(["geotiff"])");
+    write_text(slope.run_dir() / "figures", "a file where the folder should be");
+    const Outcome no_picture = slope.frana("compare run --survey footprint.geojson");
+    CHECK(no_picture.code == 0);
+    CHECK_THAT(no_picture.err, Contains("figures/compare.png was not drawn"));
+    CHECK(fs::exists(slope.run_dir() / "compare.json"));
+    const Outcome no_scores = slope.frana("compare run --survey footprint.geojson --json nowhere/scores.json");
+    CHECK(no_scores.code == 2);
+    CHECK_THAT(no_scores.err, Contains("nowhere/scores.json"));
+}

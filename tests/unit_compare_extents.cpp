@@ -82,6 +82,22 @@ TEST_CASE("A square of 100 m moved by 20 m has IoU 2/3, and its outlines lie 10 
     CHECK(distance.max == exactly(20));
 }
 
+TEST_CASE("Distances are taken both ways: a small square in the middle of a large one") {
+    const Rings small = {box(40, 40, 60, 60)}, large = {box(0, 0, 100, 100)};
+    const double step = 1.25;
+    for (const OutlineDistance& distance : {distance_between(small, large, step), distance_between(large, small, step)}) {
+        // 40 m from each point of the small one; from the large one 40 m over 20 m of each side, and beyond that
+        // sqrt(40^2 + d^2), whose integral over d from 0 to 40 is 800 (sqrt 2 + ln(1 + sqrt 2)).
+        const double slanting = 800.0 * (std::sqrt(2.0) + std::log(1.0 + std::sqrt(2.0)));
+        const double exact = (80.0 * 40.0 + 4.0 * (20.0 * 40.0 + 2.0 * slanting)) / (80.0 + 400.0);
+        // midpoint rule: step^2 / 24 times the largest second derivative, 1/40
+        CHECK(distance.mean == Approx(exact).margin(step * step / 24.0 / 40.0));
+        CHECK(distance.max == Approx(40.0 * std::sqrt(2.0)).margin(0.5 * step));  // a corner, half a step off
+        CHECK(distance.p95 < distance.max);
+        CHECK(distance.p95 > 40.0);
+    }
+}
+
 TEST_CASE("The area of slanting edges in pixels is exact") {
     const Rings triangle = survey_of({Polygon{{{{0, 0}, {100, 0}, {0, 100}}}}});
     const Overlap areas = overlap(flooded(0, 0, 80, 80), 0.1, triangle);
