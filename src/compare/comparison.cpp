@@ -10,7 +10,7 @@
 namespace frana {
 namespace {
 
-/// Outlines are looked at four times a pixel, which keeps the sampling well below the pixels' own coarseness.
+/// Distances are taken four times a pixel, which keeps the sampling well below the pixels' own coarseness.
 constexpr double steps_per_cell = 4.0;
 
 class Comparing {
@@ -34,7 +34,7 @@ public:
         if (run_.final_depth)
             result_.final = scores(*run_.final_depth, pixel_outline(*run_.final_depth, run_.limit));
         if (!result_.path.empty()) {
-            result_.surveyed_runout = reach_along(result_.path, rings_, step_);
+            result_.surveyed_runout = reach_along(result_.path, rings_, result_.cell);
             result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
         }
         if (survey_.deposit && run_.final_depth)
@@ -78,7 +78,7 @@ private:
         scores.areas = overlap(depth, run_.limit, rings_);
         scores.boundary = distance_between(outline, rings_, step_);
         if (!result_.path.empty()) {
-            scores.runout = reach_along(result_.path, outline, step_);
+            scores.runout = reach_along(result_.path, outline, result_.cell);
             scores.reach = farthest_from(result_.path.front(), outline);
         }
         return scores;
