@@ -103,6 +103,17 @@ void add_figures(CLI::App& app, FiguresOptions& options, std::string& size, Acti
     });
 }
 
+void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("compare", "hold a finished run against a survey");
+    command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
+    command->add_option("--survey", options.survey, "surveyed extent: polygons, or a raster that is above 0 there")
+        ->required();
+    command->add_option("--deposit", options.deposit, "raster of the surveyed deposit's thickness [m]");
+    command->add_option("--path", options.path, "line for the runout; default the steepest from the release");
+    command->add_option("--json", options.json, "file of the scores; default RUN_DIR/compare.json");
+    command->callback([&] { action = [&] { return compare_command(options); }; });
+}
+
 void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("verify", "problems with exact answers: errors, order, run time");
     command->add_option("NAME", options.names, "problems; default all");
@@ -168,6 +179,7 @@ int run_program(int argc, char** argv) {
     ParticlesOptions particles;
     FiguresOptions figures;
     std::string size;
+    CompareOptions compare;
     VerifyOptions verify;
     BenchOptions bench;
     Action action;
@@ -176,6 +188,7 @@ int run_program(int argc, char** argv) {
     add_describe(app, key, action);
     add_particles(app, particles, action);
     add_figures(app, figures, size, action);
+    add_compare(app, compare, action);
     add_verify(app, verify, action);
     add_bench(app, bench, action);
     if (argc > 1) refuse_unknown(app, argv[1]);

@@ -27,6 +27,13 @@ struct FiguresOptions {
     int height = 1200;           ///< [pixels]
 };
 
+/// `frana compare RUN_DIR --survey FOOTPRINT [--deposit RASTER] [--path LINE] [--json FILE]`
+struct CompareOptions {
+    std::filesystem::path run_dir, survey;
+    std::filesystem::path deposit, path;  ///< or empty
+    std::filesystem::path json;           ///< empty: RUN_DIR/compare.json
+};
+
 /// `frana check CASE [--set key=value]...`
 struct CheckOptions {
     std::filesystem::path case_file;
@@ -69,6 +76,7 @@ int bench_command(const BenchOptions& options);          // frana_bench.cpp
 int verify_command(const VerifyOptions& options);        // frana_verify.cpp
 int run_command(const RunOptions& options);              // frana_run.cpp
 int figures_command(const FiguresOptions& options);      // frana_figures.cpp
+int compare_command(const CompareOptions& options);      // frana_compare.cpp
 int check_command(const CheckOptions& options);          // frana_check.cpp
 int describe_command(const std::string& key);            // frana_describe.cpp; empty: every key
 int particles_command(const ParticlesOptions& options);  // frana_particles.cpp

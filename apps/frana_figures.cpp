@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "frana_commands.h"
-#include "frana_run_figures.h"
+#include "frana_figures.h"
 #include "io/gdal_reader.h"
 #include "scene/case_file.h"
 #include "vtk_io/reader.h"
@@ -58,14 +58,14 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         const std::vector<double>& point = run_case.numbers(table + "point");
         source.gauges.push_back({run_case.word(table + "name"), Vec2(point[0], point[1])});
     }
-    if (!run_case.has("survey.footprint")) return;
+    if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;
     const fs::path survey = run_case.path("survey.footprint");
     if (!fs::exists(survey)) {
         warnings.push_back(
             fmt::format("{}: the survey is not there any more and is left out", survey.string()));
         return;
     }
-    source.survey = GdalReader().read_polygons(survey, source.bed.crs_wkt, warnings);
+    source.survey = GdalReader().read_survey(survey, source.bed.geometry.pixel_extent(), source.bed.crs_wkt, warnings);
 }
 
 /// A node field of a frame as a raster; without terrain nodata.
@@ -78,26 +78,49 @@ ProductRaster from_frame(const LoadedFrame& frame, const std::string& field, con
     return product;
 }
 
-FigureSource read_run(const FiguresOptions& options, std::vector<std::string>& warnings) {
-    FigureSource source;
-    source.run_dir = options.run_dir;
-    source.width = options.width;
-    source.height = options.height;
-    source.time = options.time;
-    read_record(options.run_dir, source);
-    source.rasters = read_rasters(options.run_dir);
-    if (fs::exists(options.run_dir / "terrain.vti")) {
-        const LoadedFrame terrain = read_terrain(options.run_dir);
-        source.bed = from_frame(terrain, "elevation", "terrain").raster;
-    } else {
-        warnings.push_back(
-            fmt::format("{}: no terrain.vti, so no maps; add \"vtk\" to output.formats and run again",
-                        options.run_dir.string()));
-        source.rasters.clear();
+/// The elevation model that the case names, for runs that wrote no VTK files.
+Raster bed_of_case(const fs::path& run_dir) {
+    const fs::path file = run_dir / "resolved.toml";
+    const CaseFile run_case = CaseFile::parse(text_of(file), file);
+    DemRequest request;
+    if (run_case.has("terrain.window")) {
+        const auto& w = run_case.numbers("terrain.window");
+        request.window = {w[0], w[1], w[2], w[3]};
     }
-    if (!source.rasters.empty()) source.bed.crs_wkt = source.rasters.front().raster.crs_wkt;
-    read_case(options.run_dir, source, warnings);
-    return source;
+    if (run_case.has("grid.cell")) request.cell = run_case.number("grid.cell");
+    std::vector<std::string> said_by_the_run;
+    return GdalReader().read_dem(run_case.path("terrain.dem"), request, said_by_the_run);
+}
+
+/// Where the run's files have the same nodes to round-off, the rasters' are taken.
+bool brought_onto(Raster& bed, const GridGeometry& grid) {
+    const GridGeometry& g = bed.geometry;
+    constexpr double round_off = 1e-6;  // of a cell
+    const bool same = g.nx == grid.nx && g.ny == grid.ny && std::abs(g.x0 - grid.x0) < round_off * grid.cell &&
+                      std::abs(g.y0 - grid.y0) < round_off * grid.cell &&
+                      std::abs(g.cell - grid.cell) < round_off * grid.cell;
+    if (same) bed.geometry = grid;
+    return same;
+}
+
+void read_bed(FigureSource& source, std::vector<std::string>& warnings) {
+    if (fs::exists(source.run_dir / "terrain.vti")) {
+        source.bed = from_frame(read_terrain(source.run_dir), "elevation", "terrain").raster;
+        if (!source.rasters.empty()) source.bed.crs_wkt = source.rasters.front().raster.crs_wkt;
+        return;
+    }
+    try {
+        Raster bed = bed_of_case(source.run_dir);
+        const bool fits = source.rasters.empty() || brought_onto(bed, source.rasters.front().raster.geometry);
+        if (fits) source.bed = std::move(bed);
+    } catch (const UserError&) {
+        source.bed = Raster();  // said below
+    }
+    if (source.bed.values.empty())
+        warnings.push_back(
+            fmt::format("{}: no terrain.vti, and the case's elevation model is not there any more, so no maps; add "
+                        "\"vtk\" to output.formats and run again",
+                        source.run_dir.string()));
 }
 
 /// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png and map_speed_t12.5s.png.
@@ -116,9 +139,23 @@ void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigur
 
 }  // namespace
 
+FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>& warnings) {
+    FigureSource source;
+    source.run_dir = run_dir;
+    read_record(run_dir, source);
+    source.rasters = read_rasters(run_dir);
+    read_bed(source, warnings);
+    return source;
+}
+
 int figures_command(const FiguresOptions& options) {
     std::vector<std::string> warnings;
-    const FigureSource source = read_run(options, warnings);
+    FigureSource source = read_finished_run(options.run_dir, warnings);
+    source.width = options.width;
+    source.height = options.height;
+    source.time = options.time;
+    if (source.bed.values.empty()) source.rasters.clear();
+    read_case(options.run_dir, source, warnings);
     std::vector<DrawnFigure> figures = draw_figures(source, warnings);
     if (options.time) draw_moment(source, *options.time, figures, warnings);
     for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';

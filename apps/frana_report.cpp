@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/version.h"
+#include "frana_comparison.h"
 #include "frana_run_folder.h"
 #include "frana_run_record.h"
 
@@ -146,7 +147,8 @@ std::string remarks(const RunRecord& r) {
 
 std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir) {
     const std::vector<Product> products = products_in(run_dir);
-    return heading(record) + results(record) + budgets(record) + figures(record) + parameter_table(record) +
+    const std::string survey = record.comparison ? comparison_section(*record.comparison) : "";
+    return heading(record) + results(record) + survey + budgets(record) + figures(record) + parameter_table(record) +
            files(record, products) + times(record.summary) + remarks(record);
 }
 
@@ -168,6 +170,7 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
                         s.extremes.max_depth, s.extremes.max_speed, s.extremes.max_front);
     text += fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m\n",
                         r.footprint_area, r.footprint_depth, r.final_depth);
+    if (r.comparison) text += fmt::format("  survey     {}\n", comparison_line(*r.comparison));
     text += fmt::format("  report     {}\n", place("report.md"));
     text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());
     text += fmt::format("  ParaView   {}\n", place("grid.pvd"));

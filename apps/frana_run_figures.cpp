@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "compare/overlap.h"
 #include "frana_run_charts.h"
 #include "vtk_io/map_figure.h"
 #include "vtk_io/map_figure_perspective.h"
@@ -81,10 +82,30 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
             draw_map(source, *product, rule.what, figures, warnings);
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
         draw_view(source, *peak, figures, warnings);
+    draw_overlay(source, figures, warnings);
     for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
     draw_gauges(source, figures, warnings);
     draw_budgets(source, figures, warnings);
     return figures;
+}
+
+void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                  std::vector<std::string>& warnings) {
+    const ProductRaster* peak = find_product(source.rasters, "peak_depth");
+    if (!source.survey || peak == nullptr || source.bed.values.empty()) return;
+    attempt(source, {"figures/compare.png", "simulated and surveyed extent"}, figures, warnings,
+            [&](const fs::path& png, std::string& why_not) {
+                MapFigure map = map_of(source, *peak, "simulated and surveyed extent");
+                map.field_label = "peak depth [m]";
+                map.profiles.clear();
+                if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
+                map.simulated = pixel_outline(peak->raster, source.footprint_depth);
+                const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
+                map.footer = fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
+                                         areas.hit, areas.beyond, areas.missed, areas.iou()) +
+                             source.footer;
+                return render_map(map, png, why_not);
+            });
 }
 
 void attempt(const FigureSource& source, const DrawnFigure& figure, std::vector<DrawnFigure>& figures,

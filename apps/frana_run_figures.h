@@ -21,6 +21,7 @@ struct FigureSource {
     std::vector<ProductRaster> rasters;  ///< peak_depth, peak_speed, final_depth are drawn
     double footprint_depth = 0.1;        ///< [m]
     std::optional<Polygons> survey;
+    Polyline runout_path;  ///< drawn in the overlay with the survey; empty: none
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::optional<double> time;       ///< of the profiles besides the first and the last [s]
@@ -34,6 +35,11 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
 /// A map of one raster on the terrain: figures/map_<name>.png. `what` is its name for people.
 void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
               std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+
+/// figures/compare.png: the simulated extent (all pixels of peak_depth above footprint_depth) and the surveyed one;
+/// nothing without a survey, the terrain or the peak depth.
+void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                  std::vector<std::string>& warnings);
 
 /// Draws into a PNG; false with a reason when that is not possible.
 using Draw = std::function<bool(const std::filesystem::path& png, std::string& why_not)>;

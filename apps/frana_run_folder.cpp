@@ -30,9 +30,9 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
-        {"figures", "(map|profile|gauges|budget)_[^.].*\\.png", "figure", false},
+        {"figures", "((map|profile|gauges|budget)_[^.].*|compare)\\.png", "figure", false},
         {"states", ".*\\.pvsm", "ParaView state", false},
-        {"", "compare\\.json", "comparison with a survey", false},
+        {"", "compare\\.(json|md)", "comparison with a survey", false},
         {"", "checkpoint\\.h5", "last state", false}};
     return kinds;
 }

@@ -1,10 +1,14 @@
 #include "frana_run_job.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
+#include "frana_comparison.h"
 #include "frana_run_figures.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
@@ -46,6 +50,21 @@ void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) 
     record.final_depth = largest(rasters, "final_depth");
 }
 
+/// compare.json, when the case gives a survey. The run is worth more than its scores: trouble is a warning.
+void compare_with_survey(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
+                         RunRecord& record) {
+    if (!scene.survey || find_product(rasters, "peak_depth") == nullptr) return;
+    try {
+        Survey survey;
+        survey.footprint = *scene.survey;
+        Comparison comparison = compare_rasters(rasters, &scene.bed, scene.output.footprint_depth, survey);
+        write_text(run_dir / "compare.json", comparison_json(comparison));
+        record.comparison = std::move(comparison);
+    } catch (const UserError& error) {
+        record.warnings.push_back(fmt::format("the run was not compared with the survey: {}", error.what()));
+    }
+}
+
 FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const RunRecord& record,
                            const std::vector<ProductRaster>& rasters) {
     FigureSource source;
@@ -56,6 +75,7 @@ FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const Ru
     source.rasters = rasters;
     source.footprint_depth = scene.output.footprint_depth;
     source.survey = scene.survey;
+    if (record.comparison) source.runout_path = record.comparison->path;
     source.profiles = scene.profiles;
     source.gauges = scene.gauges;
     return source;
@@ -100,6 +120,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
         if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
             write_outline(run_dir, peak->raster, scene.output.footprint_depth);
     });
+    timed(record.summary, "survey", [&] { compare_with_survey(scene, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {
         if (scene.output.png)
             record.figures = draw_figures(figure_source(scene, run_dir, record, rasters), record.warnings);

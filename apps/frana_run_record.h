@@ -1,9 +1,11 @@
 #pragma once
 // Everything run.json and report.md tell about a run.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "compare/comparison.h"
 #include "observe/run_loop.h"
 #include "scene/scene.h"
 
@@ -39,6 +41,7 @@ struct RunRecord {
     double peak_depth = 0.0, peak_speed = 0.0, peak_pressure = 0.0;  ///< of the rasters [m], [m/s], [Pa]
     double final_depth = 0.0;                                        ///< deepest at the end [m]
     int threads = 1;
+    std::optional<Comparison> comparison;  ///< with the survey, when the case gives one
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<std::string> warnings;

@@ -1,8 +1,5 @@
 // The program as a person calls it: exit codes, what goes to stdout and what to stderr.
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,17 +8,12 @@
 
 #include "base/atomic_file.h"
 #include "catch.h"
-#include "fresh_folder.h"
+#include "program.h"
 
 namespace fs = std::filesystem;
 using Catch::Contains;
 
 namespace {
-
-struct Outcome {
-    int code = -1;
-    std::string out, err;
-};
 
 /// A plane of 30 x 20 nodes, 5 m apart, with a release; files that need no GIS to write.
 class Case {
@@ -50,16 +42,9 @@ public:
 
     /// Calls the program, which is built beside this test; CASE in the arguments stands for the case file.
     Outcome frana(std::string arguments) const {
-        const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
-        INFO("the test needs the target `frana` built beside it");
-        REQUIRE(fs::exists(program));
         const std::size_t place = arguments.find("CASE");
         if (place != std::string::npos) arguments.replace(place, 4, file().string());
-        const std::string command =
-            "cd " + folder().string() + " && " + program.string() + " " + arguments + " > out.txt 2> err.txt";
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(folder() / "out.txt"),
-                text_of(folder() / "err.txt")};
+        return call_frana(folder(), arguments);
     }
 
 private:
@@ -77,7 +62,7 @@ TEST_CASE("--version names the libraries, --help the commands, and both leave wi
     const Outcome help = scene.frana("--help");
     CHECK(help.code == 0);
     CHECK_THAT(help.out, Contains("run") && Contains("check") && Contains("describe") &&
-                             Contains("particles") && Contains("figures"));
+                             Contains("particles") && Contains("figures") && Contains("compare"));
 }
 
 TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr", "[cli]") {
@@ -88,7 +73,7 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     CHECK(unknown.out.empty());
     CHECK(unknown.err ==
           "command line: found the unknown command \"chekc\"; expected one of run, check, describe, "
-          "particles, figures, verify, bench; did you mean check?\n");
+          "particles, figures, compare, verify, bench; did you mean check?\n");
     const Outcome threads = scene.frana("run CASE --threads 0");
     CHECK(threads.code == 2);
     CHECK_THAT(threads.err, Contains("--threads"));

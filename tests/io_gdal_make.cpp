@@ -85,6 +85,16 @@ void run_command(const std::vector<std::string>& words) {
 
 }  // namespace
 
+std::string wkt_of(const char* code) {
+    OGRSpatialReference crs;
+    REQUIRE(crs.SetFromUserInput(code) == OGRERR_NONE);
+    char* text = nullptr;
+    crs.exportToWkt(&text);
+    std::string wkt(text);
+    CPLFree(text);
+    return wkt;
+}
+
 void make_raster(const std::filesystem::path& file, const RasterSpec& spec) {
     GDALAllRegister();
     GDALDriver* wanted = GetGDALDriverManager()->GetDriverByName(spec.driver.c_str());

@@ -28,6 +28,9 @@ struct RasterSpec {
     bool alpha = false;                              ///< the last band is alpha
 };
 
+/// WKT of a CRS by its code, "EPSG:32632".
+std::string wkt_of(const char* code);
+
 /// Makes the file; formats that GDAL cannot create but copy to (ESRI ASCII, COG) are copied from memory.
 void make_raster(const std::filesystem::path& file, const RasterSpec& spec);
 

@@ -14,16 +14,6 @@ using namespace frana;
 
 namespace {
 
-std::string wkt_of(const char* code) {
-    OGRSpatialReference crs;
-    REQUIRE(crs.SetFromUserInput(code) == OGRERR_NONE);
-    char* text = nullptr;
-    crs.exportToWkt(&text);
-    std::string wkt(text);
-    CPLFree(text);
-    return wkt;
-}
-
 std::string crs_member(const char* code) {
     return std::string(R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)") + code +
            "\"}},";

@@ -1,8 +1,11 @@
 // A real avalanche on its real terrain, against the mapped extent (data read where it lies, skipped when absent).
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "analytic_scene.h"
 #include "catch.h"
+#include "compare/overlap.h"
 #include "io/gdal_reader.h"
 #include "scene/build_scene.h"
 #include "shared_data.h"
@@ -11,14 +14,14 @@ using namespace frana;
 
 namespace {
 
-struct Overlap {
+struct Count {
     double hit = 0, false_alarm = 0, miss = 0;
     double iou() const { return hit / (hit + false_alarm + miss); }
 };
 
 /// Nodes ever deeper than 0.1 m against a raster that is positive where the survey is.
-Overlap overlap_with(const Frame& frame, const Raster& survey) {
-    Overlap overlap;
+Count count_with(const Frame& frame, const Raster& survey) {
+    Count overlap;
     const Field& peak = *frame.node("peak_depth");
     for (Index k = 0; k < peak.count; ++k) {
         const bool here = peak.data[k] > 0.1, there = survey.values[k] > 0.0;
@@ -67,7 +70,23 @@ TEST_CASE("The Ryggfonn avalanche of 2021 covers the mapped extent", "[real]") {
     CHECK(fastest < std::sqrt(2 * 9.81 * 941.0));                                       // free fall from crown to toe
     std::vector<std::string> log;
     const Raster survey = reader.read_onto(*folder / "footprint.tif", end.grid, scene.bed.crs_wkt, log);
-    const Overlap overlap = overlap_with(end, survey);
+    const Count overlap = count_with(end, survey);
     CAPTURE(overlap.hit, overlap.false_alarm, overlap.miss);
     CHECK(overlap.iou() >= least_iou);
+
+    // The comparison gives what counting pixels gives, where survey and grid have the same ones.
+    const auto read = [&](const char* name) {
+        const auto extent = end.grid.pixel_extent();
+        return rings_of(reader.read_survey(*folder / name, extent, scene.bed.crs_wkt, log));
+    };
+    Raster peak = Raster::filled(end.grid, 0.0);
+    const Field& deepest = *end.node("peak_depth");
+    std::copy(deepest.data, deepest.data + deepest.count, peak.values.begin());
+    const Rings mask = read("footprint.tif"), outline = read("footprint.geojson");
+    const double pixel = end.grid.cell * end.grid.cell;
+    const frana::Overlap areas = frana::overlap(peak, 0.1, mask);
+    CHECK(areas.hit == Approx(overlap.hit * pixel).epsilon(1e-9));
+    CHECK(areas.beyond == Approx(overlap.false_alarm * pixel).epsilon(1e-9));
+    CHECK(areas.missed == Approx(overlap.miss * pixel).epsilon(1e-9));
+    CHECK(distance_between(mask, outline, 1.0).max <= 2.6);  // the outline is the raster's, simplified to 2.6 m
 }

@@ -10,6 +10,7 @@
 #include "vtk_io/hillshade.h"
 #include "vtk_io/map_figure_contours.h"
 #include "vtk_io/map_figure_furniture.h"
+#include "vtk_io/map_figure_overlay.h"
 #include "vtk_io/map_figure_paint.h"
 #include "vtk_io/offscreen.h"
 
@@ -47,8 +48,11 @@ private:
         const Raster field{figure_.bed.geometry, figure_.field, "", ""};
         field_ = resampled(field, pixels, Between::linear);
         const Raster bed = resampled(figure_.bed, pixels, Between::smooth);
-        canvas_.image(painted(bed, field_, {figure_.colormap, layout_.colours, figure_.shown_above, 0.0}),
-                      static_cast<int>(layout_.frame.x0), static_cast<int>(layout_.frame.y0));
+        const Pixels picture =
+            figure_.shows_overlay()
+                ? painted_overlay(bed, *figure_.simulated, all_rings(*figure_.survey))
+                : painted(bed, field_, {figure_.colormap, layout_.colours, figure_.shown_above, 0.0});
+        canvas_.image(picture, static_cast<int>(layout_.frame.x0), static_cast<int>(layout_.frame.y0));
     }
 
     std::vector<std::vector<Vec2>> on_sheet(const Polyline& line) const {
@@ -111,7 +115,18 @@ private:
         return true;
     }
 
+    void closed_line(Polyline ring, const Pen& pen, bool cased) {
+        if (ring.empty()) return;
+        ring.push_back(ring.front());
+        for (const auto& piece : on_sheet(ring)) cased ? stroke_cased(canvas_, piece, pen) : canvas_.stroke(piece, pen);
+    }
+
     void outline() {
+        if (figure_.shows_overlay()) {
+            for (const Polyline& ring : *figure_.simulated)
+                closed_line(ring, {colours::black, 0.1 * layout_.unit, {}}, false);
+            return;
+        }
         Raster field{figure_.bed.geometry, figure_.field, "", ""};
         for (double& value : field.values) value = std::isnan(value) ? 0.0 : std::abs(value);
         const Raster seen = resampled(field, coarser(layout_.pixel_grid(), 1), Between::linear);
@@ -123,13 +138,8 @@ private:
     void overlays() {
         const double u = layout_.unit;
         if (figure_.survey)
-            for (const Polygon& part : figure_.survey->parts)
-                for (Polyline ring : part.rings) {
-                    if (ring.empty()) continue;
-                    ring.push_back(ring.front());
-                    for (const auto& piece : on_sheet(ring))
-                        stroke_cased(canvas_, piece, {colours::survey, 0.16 * u, {}});
-                }
+            for (const Polyline& ring : all_rings(*figure_.survey))
+                closed_line(ring, {colours::survey, figure_.survey_pen() * u, {}}, true);
         for (const NamedLine& profile : figure_.profiles) {
             const auto pieces = on_sheet(profile.line);
             for (const auto& piece : pieces)
@@ -185,8 +195,9 @@ private:
     void explanations() {
         const double u = layout_.unit;
         const Rectangle& f = layout_.frame;
-        draw_colour_bar(canvas_, {std::round(f.x1 + u), f.y0, std::round(f.x1 + 2.1 * u), f.y1},
-                        layout_.colours, figure_.colormap, figure_.field_label, u);
+        if (!figure_.shows_overlay())
+            draw_colour_bar(canvas_, {std::round(f.x1 + u), f.y0, std::round(f.x1 + 2.1 * u), f.y1},
+                            layout_.colours, figure_.colormap, figure_.field_label, u);
         for (std::size_t i = 0; i < layout_.strip.places.size(); ++i) {
             const auto [x, row] = layout_.strip.places[i];
             const Vec2 at(u + x, layout_.strip_top - (row + 0.5) * layout_.row_height());

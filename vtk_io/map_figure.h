@@ -30,12 +30,19 @@ struct MapFigure {
     std::optional<std::pair<double, double>> range;  ///< of the colours; default: from the field
     Colormap colormap = Colormap::depth;
     std::optional<Polygons> survey;  ///< mapped outline
+    /// Rings of the simulated extent: with a survey, areas of both, of this one and of the survey only are coloured
+    /// instead of the field, which then only says what has to be in view.
+    std::optional<std::vector<Polyline>> simulated;
     std::vector<NamedLine> profiles;
     std::vector<NamedPoint> gauges;
     std::string footer;                          ///< model, parameters; wrapped
     std::optional<std::array<double, 4>> focus;  ///< xmin, ymin, xmax, ymax to be in view [m]
     int width = 1400;                            ///< at most [px]
     int height = 1200;                           ///< at most [px]
+
+    bool shows_overlay() const { return simulated && survey; }
+    /// Thickness of the surveyed outline, in sizes of ordinary text: thinner where areas beside it are looked at.
+    double survey_pen() const { return shows_overlay() ? 0.1 : 0.16; }
 };
 
 /// Draws the map into a PNG. Where `focus` is not given, the covered area and the survey are in view with a

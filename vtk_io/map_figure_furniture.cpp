@@ -66,6 +66,11 @@ void draw_legend_entry(Canvas& canvas, const LegendEntry& entry, const Vec2& at,
     const std::vector<Vec2> line{at, {at.x() + sample, at.y()}};
     if (entry.kind == LegendEntry::Kind::line) canvas.stroke(line, entry.pen);
     if (entry.kind == LegendEntry::Kind::cased_line) stroke_cased(canvas, line, entry.pen);
+    if (entry.kind == LegendEntry::Kind::area) {
+        const Rectangle swatch{at.x(), at.y() - 0.5 * unit, at.x() + sample, at.y() + 0.5 * unit};
+        canvas.fill(swatch, entry.pen.colour);
+        canvas.frame(swatch, {colours::black, 0.08 * unit, {}});
+    }
     if (entry.kind == LegendEntry::Kind::point)
         draw_gauge(canvas, {at.x() + 0.5 * sample, at.y() - 0.25 * unit}, unit);
     canvas.text(entry.text, {at.x() + 2.6 * unit, at.y()},

@@ -146,13 +146,15 @@ std::array<double, 4> wanted_view(const MapFigure& figure) {
     if (!covered) return all;
     if (figure.survey && !figure.survey->parts.empty()) covered = united(*covered, extent_of(*figure.survey));
     std::array<double, 4> view = *covered;
+    // Two outlines are compared where they are, however little of the terrain that is.
+    const double least = figure.shows_overlay() ? 0.0 : 0.3;
     const double margin = 0.1 * std::max(view[2] - view[0], view[3] - view[1]);
     for (std::size_t k = 0; k < 2; ++k) {
         const double whole = all[k + 2] - all[k];
         view[k] = std::max(view[k] - margin, all[k]);
         view[k + 2] = std::min(view[k + 2] + margin, all[k + 2]);
         if (view[k] >= view[k + 2]) view[k] = all[k], view[k + 2] = all[k + 2];
-        stretch(view[k], view[k + 2], 0.3 * whole, all[k], all[k + 2]);
+        stretch(view[k], view[k + 2], least * whole, all[k], all[k + 2]);
     }
     return view;
 }
@@ -200,14 +202,21 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
     using Kind = LegendEntry::Kind;
     const double u = layout.unit;
     std::vector<LegendEntry> legend;
+    if (figure.shows_overlay()) {
+        legend.push_back(entry(Kind::area, colours::hit, 0.0, "both"));
+        legend.push_back(entry(Kind::area, colours::beyond, 0.0, "simulated only"));
+        legend.push_back(entry(Kind::area, colours::missed, 0.0, "surveyed only"));
+    }
     const auto [name, unit] = name_and_unit(figure.field_label);
     legend.push_back(
         entry(Kind::line, colours::black, 0.1 * u,
               fmt::format("{} {:g}{}{}", name, figure.shown_above, unit.empty() ? "" : " ", unit)));
     if (figure.survey)
-        legend.push_back(entry(Kind::cased_line, colours::survey, 0.16 * u, "surveyed outline"));
+        legend.push_back(
+            entry(Kind::cased_line, colours::survey, figure.survey_pen() * u, "surveyed outline"));
     if (!figure.profiles.empty()) {
-        legend.push_back(entry(Kind::cased_line, colours::black, 0.12 * u, "profile"));
+        legend.push_back(entry(Kind::cased_line, colours::black, 0.12 * u,
+                               figure.shows_overlay() ? "runout path" : "profile"));
         legend.back().pen.dash = {0.55 * u, 0.3 * u};
     }
     if (!figure.gauges.empty()) legend.push_back(entry(Kind::point, colours::black, 1.0, "gauge"));
@@ -238,12 +247,12 @@ struct Margins {
     double left, right, bottom, top;
 };
 
-Margins margins_of(const MapLayout& layout) {
+Margins margins_of(const MapLayout& layout, bool colour_bar) {
     const double u = layout.unit;
     const TextStyle plain = layout.text(Across::left, Upward::bottom);
     const double strip = layout.row_height() * layout.strip.count;
     return {3.4 * u + widest(layout.y_ticks.labels, plain),
-            4.9 * u + widest(colour_ticks(layout.colours).labels, plain),
+            colour_bar ? 4.9 * u + widest(colour_ticks(layout.colours).labels, plain) : 2.0 * u,
             4.1 * u + strip + layout.captions.footer_height(), 1.3 * u + layout.captions.title_height()};
 }
 
@@ -265,7 +274,7 @@ void place(MapLayout& layout, const MapFigure& figure, const std::array<double, 
     const auto all = figure.bed.geometry.pixel_extent();
     const double u = layout.unit;
     layout.captions = make_captions(figure.title, figure.footer, u, layout.width);
-    const Margins m = margins_of(layout);
+    const Margins m = margins_of(layout, !figure.shows_overlay());
     const double room_w = std::max(figure.width - m.left - m.right, 8.0 * u);
     const double room_h = std::max(figure.height - m.bottom - m.top, 8.0 * u);
     const auto view = shaped(wanted, all, room_w / room_h);

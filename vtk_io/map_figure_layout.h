@@ -20,7 +20,7 @@ void draw_captions(Canvas& canvas, const Captions& captions, int width, int heig
 
 /// An entry of the legend under the picture.
 struct LegendEntry {
-    enum class Kind { line, cased_line, point } kind = Kind::line;
+    enum class Kind { line, cased_line, point, area } kind = Kind::line;
     Pen pen;
     std::string text;
 };

@@ -6,11 +6,14 @@
 
 namespace frana {
 
+Colour colour_on_ground(const Colour& colour, double grey) {
+    return mixed(scaled(colours::white, grey), scaled(colour, 0.62 + 0.45 * grey), 0.88);
+}
+
 Colour on_ground(double value, double grey, const FieldStyle& style) {
-    const Colour ground = scaled(colours::white, grey);
-    if (!(std::abs(value) > style.shown_above)) return ground;
+    if (!(std::abs(value) > style.shown_above)) return scaled(colours::white, grey);
     const double t = (value - style.range.low) / (style.range.high - style.range.low);
-    return mixed(ground, scaled(colour_at(style.colormap, t), 0.62 + 0.45 * grey), 0.88);
+    return colour_on_ground(colour_at(style.colormap, t), grey);
 }
 
 Pixels painted(const Raster& bed, const Raster& field, const FieldStyle& style) {

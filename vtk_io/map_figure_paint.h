@@ -17,6 +17,9 @@ struct FieldStyle {
 /// 0.12 r: relief shows through, and the colour stays that of the colour bar within a few per cent.
 Pixels painted(const Raster& bed, const Raster& field, const FieldStyle& style);
 
+/// Colour of something opaque on ground of the given grey (`painted` has the formula).
+Colour colour_on_ground(const Colour& colour, double grey);
+
 /// Colour of one value on ground of the given grey in [0, 1] (`painted` has the formula).
 Colour on_ground(double value, double grey, const FieldStyle& style);
 

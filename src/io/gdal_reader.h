@@ -31,6 +31,19 @@ public:
     Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                            std::vector<std::string>& log) const override;
 
+    /// Polygons or, where the file is a raster, the outlines of its pixels above 0 (along the pixels' edges, then
+    /// reprojected). Stricter than read_polygons, since a survey in the wrong place would still give scores:
+    /// UserError also when the terrain has a CRS and the file has none (or claims degrees for coordinates that are
+    /// none), and when nothing of it lies within `extent`. What lies outside is kept. Overlapping polygons are
+    /// united.
+    Polygons read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                         const std::string& crs_wkt, std::vector<std::string>& log) const override;
+
+    /// Thickness of a surveyed deposit on the pixels of `grid`, which is widened by whole pixels to all of the
+    /// raster, so that no volume is lost. UserError as read_onto and read_survey.
+    Raster read_deposit(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
+                        std::vector<std::string>& log) const;
+
     std::vector<Polyline> read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
                                      std::vector<std::string>& log) const override;
 };

@@ -8,12 +8,17 @@
 #include "base/error.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_reader.h"
+#include "io/gdal_shapes.h"
 
 namespace frana {
 namespace {
 
 using gdal::crs_name;
-using Geometry = std::unique_ptr<OGRGeometry>;
+using gdal::append_polygon;
+using gdal::Census;
+using gdal::collect_polygons;
+using gdal::Geometry;
+using gdal::vertices;
 
 /// A layer's geometries in the terrain's coordinates, and how they got there.
 struct Source {
@@ -23,25 +28,6 @@ struct Source {
     std::vector<std::string>& log;
     std::string name() const { return file.filename().string(); }
 };
-
-/// What was found, for the error that nothing of use was.
-struct Census {
-    Index features = 0, polygons = 0, lines = 0, points = 0;
-    std::string text() const {
-        std::string words;
-        const auto add = [&](Index n, const char* one, const char* many) {
-            if (n > 0) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", n, n == 1 ? one : many);
-        };
-        add(polygons, "polygon", "polygons");
-        add(lines, "line", "lines");
-        add(points, "point", "points");
-        return words.empty() ? "nothing" : words;
-    }
-};
-
-bool degrees_possible(const OGREnvelope& e) {
-    return e.MinX >= -360.0 && e.MaxX <= 360.0 && e.MinY >= -90.0 && e.MaxY <= 90.0;
-}
 
 /// How to bring a layer's coordinates to the terrain's; null when they are taken as they are (said in the
 /// log).
@@ -64,7 +50,7 @@ gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
     }
     OGREnvelope envelope;
     const bool known = layer.GetExtent(&envelope, 1) == OGRERR_NONE;
-    if (declared->IsGeographic() && known && !degrees_possible(envelope)) {
+    if (declared->IsGeographic() && known && !gdal::degrees_possible(envelope)) {
         source.log.push_back(
             fmt::format("{}: its coordinates are taken as the terrain's own, since they are no "
                         "degrees, which {} would ask for",
@@ -126,50 +112,6 @@ void for_each_geometry(Source& source, Census& census,
                 fmt::format("{}: cannot be read to its end ({}); the file is damaged or incomplete: copy "
                             "or export it again",
                             source.file.string(), messages.reason("")));
-    }
-}
-
-/// Vertices without the closing one and without repetitions; UserError when one is not finite.
-std::vector<Vec2> vertices(const OGRSimpleCurve& curve, bool ring, const std::string& place) {
-    std::vector<Vec2> points;
-    points.reserve(std::size_t(curve.getNumPoints()));
-    for (int k = 0; k < curve.getNumPoints(); ++k) {
-        const Vec2 point(curve.getX(k), curve.getY(k));
-        if (!point.allFinite())
-            throw UserError(place +
-                            ": has a vertex that is no number; expected finite coordinates; draw it again");
-        if (points.empty() || points.back() != point) points.push_back(point);
-    }
-    while (ring && points.size() > 1 && points.front() == points.back()) points.pop_back();
-    return points;
-}
-
-void append_polygon(const OGRPolygon& polygon, const std::string& place, std::vector<Polygon>& parts) {
-    if (polygon.IsEmpty()) return;
-    Polygon part;
-    for (const OGRLinearRing* ring : polygon) {
-        std::vector<Vec2> points = vertices(*ring, true, place);
-        if (points.size() >= 3)
-            part.rings.push_back(std::move(points));
-        else if (part.rings.empty())
-            return;  // without an outer boundary there are no holes either
-    }
-    if (!part.rings.empty()) parts.push_back(std::move(part));
-}
-
-/// Takes a geometry apart into polygons; counts the rest.
-void collect_polygons(const OGRGeometry& geometry, Census& census,
-                      const std::function<void(const OGRPolygon&)>& use) {
-    const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
-    if (type == wkbPolygon || type == wkbTriangle) {
-        ++census.polygons;
-        use(*geometry.toPolygon());
-    } else if (OGR_GT_IsSubClassOf(type, wkbPolyhedralSurface)) {
-        for (const OGRPolygon* part : *geometry.toPolyhedralSurface()) collect_polygons(*part, census, use);
-    } else if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection)) {
-        for (const OGRGeometry* part : *geometry.toGeometryCollection()) collect_polygons(*part, census, use);
-    } else {
-        ++(type == wkbPoint ? census.points : census.lines);
     }
 }
 

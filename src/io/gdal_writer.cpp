@@ -1,7 +1,6 @@
 #include "io/gdal_writer.h"
 
 #include <fmt/core.h>
-#include <gdal_alg.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/gdal_crs.h"
+#include "io/gdal_shapes.h"
 
 namespace frana {
 namespace {
@@ -79,29 +79,13 @@ OGRSpatialReference coded_crs(const std::string& wkt) {
 
 /// One polygon per 4-connected patch of pixels deeper than the threshold, in map coordinates, largest first.
 std::vector<std::unique_ptr<OGRPolygon>> patches(const Raster& depth, double threshold) {
+    gdal::register_drivers();
+    std::vector<std::uint8_t> mask(depth.values.size());
+    std::transform(depth.values.begin(), depth.values.end(), mask.begin(),
+                   [&](double h) { return static_cast<std::uint8_t>(h > threshold); });
     const GridGeometry& g = depth.geometry;
-    const int nx = int(g.nx), ny = int(g.ny);
-    std::vector<GByte> mask(depth.values.size());
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i)
-            mask[std::size_t(j * g.nx + i)] = depth.at(i, g.ny - 1 - j) > threshold;
-    const gdal::Messages messages;
-    const gdal::Dataset raster(driver("MEM").Create("", nx, ny, 1, GDT_Byte, nullptr));
-    const gdal::Dataset memory(driver("Memory").Create("", 0, 0, 0, GDT_Unknown, nullptr));
-    expect(raster && memory, "datasets in memory");
-    place(*raster, depth);
-    GDALRasterBand* band = raster->GetRasterBand(1);
-    OGRLayer* layer = memory->CreateLayer("patches", nullptr, wkbPolygon, nullptr);
-    const bool done =
-        band->RasterIO(GF_Write, 0, 0, nx, ny, mask.data(), nx, ny, GDT_Byte, 0, 0, nullptr) == CE_None &&
-        GDALPolygonize(band, band, OGRLayer::ToHandle(layer), -1, nullptr, nullptr, nullptr) == CE_None;
-    expect(done, "a mask becomes polygons");
-    std::vector<std::unique_ptr<OGRPolygon>> polygons;
-    for (const OGRFeatureUniquePtr& feature : *layer)
-        polygons.emplace_back(feature->StealGeometry()->toPolygon());
-    std::stable_sort(polygons.begin(), polygons.end(),
-                     [](const auto& a, const auto& b) { return a->get_Area() > b->get_Area(); });
-    return polygons;
+    const auto extent = g.pixel_extent();
+    return gdal::outlines_of(mask, g.nx, g.ny, {extent[0], g.cell, 0.0, extent[1], 0.0, g.cell});
 }
 
 void write_features(GDALDataset& dataset, const std::vector<std::unique_ptr<OGRPolygon>>& outlines,

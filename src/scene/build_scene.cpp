@@ -171,7 +171,8 @@ private:
         if (!case_.given("survey.footprint")) return;
         scene_.footprint = case_.path("survey.footprint");
         problems_.attempt(case_.place("survey.footprint"), [&] {
-            scene_.survey = reader_.read_polygons(scene_.footprint, scene_.bed.crs_wkt, scene_.log);
+            scene_.survey = reader_.read_survey(scene_.footprint, scene_.bed.geometry.pixel_extent(),
+                                                scene_.bed.crs_wkt, scene_.log);
         });
     }
 

@@ -282,7 +282,8 @@ void add_run(Table& table) {
     point.length = 2;
     table.push_back(required(point));
     table.push_back(absent(make("survey.footprint", Kind::path, "",
-                                "polygons of the surveyed extent, drawn in figures: any OGR vector file"),
+                                "surveyed extent that the run is compared with: any OGR vector file of polygons, or a "
+                                "raster that is above 0 there"),
                            "no survey"));
 }
 

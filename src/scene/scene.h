@@ -113,7 +113,7 @@ struct Scene {
     Output output;
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
-    std::optional<Polygons> survey;    ///< surveyed footprint, for figures
+    std::optional<Polygons> survey;    ///< surveyed footprint, to compare with
 
     std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)
 };

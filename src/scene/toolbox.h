@@ -38,6 +38,13 @@ public:
     /// All polygons of a vector file, reprojected to `crs_wkt` when both are known and differ.
     virtual Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                    std::vector<std::string>& log) const = 0;
+    /// A surveyed extent on the terrain of `extent` (xmin, ymin, xmax, ymax). Polygons that do not overlap one
+    /// another; readers that can also take a raster whose pixels above 0 are the extent.
+    virtual Polygons read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                                 const std::string& crs_wkt, std::vector<std::string>& log) const {
+        static_cast<void>(extent);
+        return read_polygons(file, crs_wkt, log);
+    }
     /// All lines of a vector file, likewise.
     virtual std::vector<Polyline> read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
                                              std::vector<std::string>& log) const = 0;

@@ -1,0 +1,67 @@
+// `frana compare RUN_DIR --survey FOOTPRINT`: a finished run held against a survey, from the run's own files.
+#include <fmt/core.h>
+
+#include <iostream>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "frana_commands.h"
+#include "frana_comparison.h"
+#include "frana_figures.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// The rasters that scores are made of, on one grid.
+void require_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& rasters) {
+    const ProductRaster* peak = find_product(rasters, "peak_depth");
+    if (peak == nullptr)
+        throw UserError(
+            fmt::format("{}: is not there; expected the rasters of a finished run; add \"geotiff\" to output.formats "
+                        "and run again",
+                        (run_dir / "rasters" / "peak_depth.tif").string()));
+    for (const ProductRaster& product : rasters)
+        if (!(product.raster.geometry == peak->raster.geometry))
+            throw UserError(fmt::format("{}: has other pixels than peak_depth.tif; expected the rasters of one run; "
+                                        "run the case again",
+                                        (run_dir / "rasters" / (product.name + ".tif")).string()));
+}
+
+/// compare.md: the comparison on one page, with its picture.
+std::string page(const FigureSource& source, const Comparison& comparison, const std::vector<DrawnFigure>& figures) {
+    std::string text = fmt::format("# {}\n\n", source.title) + comparison_section(comparison);
+    for (const DrawnFigure& figure : figures)
+        text += fmt::format("![{0}]({1})\n\n*{0}*\n\n", figure.caption, figure.path);
+    return text + source.footer + "\n";
+}
+
+}  // namespace
+
+int compare_command(const CompareOptions& options) {
+    std::vector<std::string> warnings;
+    FigureSource source = read_finished_run(options.run_dir, warnings);
+    require_rasters(options.run_dir, source.rasters);
+    const Raster& peak = find_product(source.rasters, "peak_depth")->raster;
+
+    const Survey survey = read_survey_files({options.survey, options.deposit, options.path}, peak, warnings);
+    const bool bed_known = !source.bed.values.empty();
+    const Comparison comparison =
+        compare_rasters(source.rasters, bed_known ? &source.bed : nullptr, source.footprint_depth, survey);
+
+    const fs::path json = options.json.empty() ? options.run_dir / "compare.json" : options.json;
+    write_text(json, comparison_json(comparison));  // before the picture: scores are worth more
+    std::vector<DrawnFigure> figures;
+    source.survey = survey.footprint;
+    source.runout_path = comparison.path;
+    if (bed_known) draw_overlay(source, figures, warnings);
+    write_text(options.run_dir / "compare.md", page(source, comparison, figures));
+
+    std::cout << comparison_section(comparison) << json.string() << '\n'
+              << (options.run_dir / "compare.md").string() << '\n';
+    for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
+    for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+    return 0;
+}
+
+}  // namespace frana

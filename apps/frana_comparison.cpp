@@ -1,0 +1,187 @@
+#include "frana_comparison.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "io/gdal_reader.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+void add_scores(Json& json, const ExtentScores& scores, const Comparison& c) {
+    const Overlap& areas = scores.areas;
+    json["true_positive_area"] = areas.hit;
+    json["false_positive_area"] = areas.beyond;
+    json["false_negative_area"] = areas.missed;
+    json["iou"] = number(areas.iou());
+    json["precision"] = number(areas.precision());
+    json["recall"] = number(areas.recall());
+    json["f1"] = number(areas.f1());
+    json["area_ratio"] = number(areas.area_ratio());
+    json["area_difference_percent"] = number(areas.area_difference_percent());
+    json["symmetric_difference_percent"] = number(areas.symmetric_difference_percent());
+    json["simulated_area"] = areas.simulated();
+    json["survey_area"] = areas.surveyed();
+    json["survey_area_outside"] = areas.missed_outside;
+    json["runout_difference"] = number(scores.runout - c.surveyed_runout);
+    json["runout_simulated"] = number(scores.runout);
+    json["runout_survey"] = number(c.surveyed_runout);
+    json["reach_difference"] = number(scores.reach - c.surveyed_reach);
+    json["reach_simulated"] = number(scores.reach);
+    json["reach_survey"] = number(c.surveyed_reach);
+    json["boundary_distance_mean"] = number(scores.boundary.mean);
+    json["boundary_distance_p95"] = number(scores.boundary.p95);
+    json["boundary_distance_max"] = number(scores.boundary.max);
+}
+
+void add_deposit(Json& json, const DepositErrors& deposit) {
+    json["volume_error"] = number(deposit.volume_error());
+    json["depth_mae"] = number(deposit.mae);
+    json["depth_rmse"] = number(deposit.rmse);
+    json["deposit_volume_simulated"] = deposit.simulated_volume;
+    json["deposit_volume_survey"] = deposit.surveyed_volume;
+    json["deposit_volume_unsurveyed"] = deposit.unsurveyed_volume;
+    json["deposit_compared_area"] = deposit.compared_area;
+}
+
+const Raster* raster_named(const std::vector<ProductRaster>& rasters, const char* name) {
+    const ProductRaster* product = find_product(rasters, name);
+    return product ? &product->raster : nullptr;
+}
+
+std::string value(double number, const char* form) {
+    return std::isfinite(number) ? fmt::format(fmt::runtime(form), number) : "-";
+}
+
+/// A row of a table with a column for the trace and, when it is known, one for the final state.
+template <class Score>
+std::string row(const Comparison& c, const char* name, const char* form, const Score& score) {
+    std::string text = fmt::format("| {} | {} |", name, value(score(c.trace), form));
+    if (c.final) text += fmt::format(" {} |", value(score(*c.final), form));
+    return text + "\n";
+}
+
+std::string extent_table(const Comparison& c) {
+    std::string text = c.final ? "| Score | everything ever covered | covered at the end |\n|---|---|---|\n"
+                               : "| Score | everything ever covered |\n|---|---|\n";
+    const auto add = [&](const char* name, const char* form, const auto& score) { text += row(c, name, form, score); };
+    using E = const ExtentScores&;
+    add("simulated area [m2]", "{:.6g}", [](E s) { return s.areas.simulated(); });
+    add("surveyed area [m2]", "{:.6g}", [](E s) { return s.areas.surveyed(); });
+    add("both: true positive [m2]", "{:.6g}", [](E s) { return s.areas.hit; });
+    add("simulated only: false positive [m2]", "{:.6g}", [](E s) { return s.areas.beyond; });
+    add("surveyed only: false negative [m2]", "{:.6g}", [](E s) { return s.areas.missed; });
+    add("IoU (critical success index)", "{:.3f}", [](E s) { return s.areas.iou(); });
+    add("precision", "{:.3f}", [](E s) { return s.areas.precision(); });
+    add("recall", "{:.3f}", [](E s) { return s.areas.recall(); });
+    add("F1", "{:.3f}", [](E s) { return s.areas.f1(); });
+    add("simulated over surveyed area", "{:.3f}", [](E s) { return s.areas.area_ratio(); });
+    add("area difference [%]", "{:.1f}", [](E s) { return s.areas.area_difference_percent(); });
+    add("symmetric difference [%]", "{:.1f}", [](E s) { return s.areas.symmetric_difference_percent(); });
+    add("runout, simulated [m]", "{:.1f}", [](E s) { return s.runout; });
+    add("runout, surveyed [m]", "{:.1f}", [&](E) { return c.surveyed_runout; });
+    add("runout difference [m]", "{:+.1f}", [&](E s) { return s.runout - c.surveyed_runout; });
+    add("straight reach, difference [m]", "{:+.1f}", [&](E s) { return s.reach - c.surveyed_reach; });
+    add("distance of the outlines, mean [m]", "{:.1f}", [](E s) { return s.boundary.mean; });
+    add("distance of the outlines, 95 % [m]", "{:.1f}", [](E s) { return s.boundary.p95; });
+    return text + "\n";
+}
+
+std::string deposit_table(const Comparison& c) {
+    if (!c.deposit) return "";
+    const DepositErrors& d = *c.deposit;
+    std::string text = fmt::format("| Deposit against `{}` | Value |\n|---|---|\n", c.deposit_source);
+    text += fmt::format("| simulated volume [m3] | {:.6g} |\n", d.simulated_volume);
+    text += fmt::format("| surveyed volume [m3] | {:.6g} |\n", d.surveyed_volume);
+    text += fmt::format("| volume error [%] | {} |\n", value(100.0 * d.volume_error(), "{:+.1f}"));
+    text += fmt::format("| mean absolute thickness error [m] | {} |\n", value(d.mae, "{:.3g}"));
+    text += fmt::format("| root mean square thickness error [m] | {} |\n", value(d.rmse, "{:.3g}"));
+    return text + "\n";
+}
+
+Polyline only_line(const fs::path& file, const std::string& crs_wkt, std::vector<std::string>& log) {
+    const std::vector<Polyline> lines = GdalReader().read_lines(file, crs_wkt, log);
+    if (lines.size() != 1)
+        throw UserError(fmt::format("{}: holds {} lines; expected one, the path from the release to the toe; export "
+                                    "that one alone",
+                                    file.string(), lines.size()));
+    if (!(length_of(lines.front()) > 0.0))
+        throw UserError(fmt::format("{}: its line has no length; expected the path from the release to the toe; draw "
+                                    "it again",
+                                    file.string()));
+    return lines.front();
+}
+
+}  // namespace
+
+Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
+                           const Survey& survey) {
+    SimulatedRun run;
+    run.peak_depth = raster_named(rasters, "peak_depth");
+    run.final_depth = raster_named(rasters, "final_depth");
+    run.arrival_time = raster_named(rasters, "arrival_time");
+    run.bed = bed;
+    run.limit = limit;
+    return compare(run, survey);
+}
+
+Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vector<std::string>& log) {
+    const GdalReader reader;
+    Survey survey;
+    survey.footprint = reader.read_survey(files.footprint, like.geometry.pixel_extent(), like.crs_wkt, log);
+    if (!files.path.empty()) {
+        survey.path = only_line(files.path, like.crs_wkt, log);
+        survey.path_source = files.path.string();
+    }
+    if (!files.deposit.empty()) {
+        survey.deposit = reader.read_deposit(files.deposit, like.geometry, like.crs_wkt, log);
+        survey.deposit_source = files.deposit.string();
+    }
+    return survey;
+}
+
+std::string comparison_json(const Comparison& c) {
+    Json json;
+    json["survey"] = c.survey;
+    json["threshold"] = c.limit;
+    json["cell"] = c.cell;
+    add_scores(json, c.trace, c);
+    json["runout_path"] = c.path_source;
+    if (c.deposit) {
+        json["deposit"] = c.deposit_source;
+        add_deposit(json, *c.deposit);
+    }
+    if (c.final) add_scores(json["final_extent"], *c.final, c);
+    json["remarks"] = c.remarks;
+    return json.dump(2) + "\n";
+}
+
+std::string comparison_section(const Comparison& c) {
+    std::string text = "## Against the survey\n\n";
+    text += fmt::format(
+        "Survey: `{}`. Simulated is every pixel of {:.6g} m deeper than {:.6g} m; the survey's area in each pixel is "
+        "exact. The survey is the reference (true positive + false negative). Runout is the horizontal length along "
+        "{} to the farthest point of each outline; reach is the straight distance from the path's start.\n\n",
+        c.survey, c.cell, c.limit,
+        c.path.empty() ? std::string("no known path")
+                       : (c.path_source.find("steepest") == 0 ? "the " + c.path_source : "`" + c.path_source + "`"));
+    text += extent_table(c) + deposit_table(c);
+    for (const std::string& remark : c.remarks) text += fmt::format("- {}\n", remark);
+    return text + (c.remarks.empty() ? "" : "\n");
+}
+
+std::string comparison_line(const Comparison& c) {
+    const Overlap& areas = c.trace.areas;
+    return fmt::format("IoU {}, simulated over surveyed area {}, runout {} m", value(areas.iou(), "{:.3f}"),
+                       value(areas.area_ratio(), "{:.3g}"), value(c.trace.runout - c.surveyed_runout, "{:+.0f}"));
+}
+
+}  // namespace frana

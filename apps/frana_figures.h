@@ -1,0 +1,16 @@
+#pragma once
+// A finished run read back for pictures and comparisons.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "frana_run_figures.h"
+
+namespace frana {
+
+/// Title, footer, limit of the covered area, rasters and terrain of a run, from its files. The terrain is that of
+/// terrain.vti, else the elevation model that the case names, on the rasters' nodes; without either it is empty, and
+/// `warnings` says so. Profiles, gauges and the survey are left out. UserError when the folder holds no finished run.
+FigureSource read_finished_run(const std::filesystem::path& run_dir, std::vector<std::string>& warnings);
+
+}  // namespace frana

@@ -1,0 +1,138 @@
+#include "compare/comparison.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace frana {
+namespace {
+
+/// Distances are taken four times a pixel, which keeps the sampling well below the pixels' own coarseness.
+constexpr double steps_per_cell = 4.0;
+
+class Comparing {
+public:
+    Comparing(const SimulatedRun& run, const Survey& survey)
+        : run_(run), survey_(survey), rings_(rings_of(survey.footprint)) {
+        expect(run.peak_depth != nullptr, "a comparison needs the peak depth");
+        expect(area_of(rings_) > 0.0, "a survey has an area");
+        result_.survey = survey.footprint.source;
+        result_.path_source = survey.path_source;
+        result_.deposit_source = survey.deposit_source;
+        result_.limit = run.limit;
+        result_.cell = run.peak_depth->geometry.cell;
+        step_ = result_.cell / steps_per_cell;
+    }
+
+    Comparison all() {
+        choose_path();
+        result_.outline = pixel_outline(*run_.peak_depth, run_.limit);
+        result_.trace = scores(*run_.peak_depth, result_.outline);
+        if (run_.final_depth)
+            result_.final = scores(*run_.final_depth, pixel_outline(*run_.final_depth, run_.limit));
+        if (!result_.path.empty()) {
+            result_.surveyed_runout = reach_along(result_.path, rings_, result_.cell);
+            result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
+        }
+        if (survey_.deposit && run_.final_depth)
+            result_.deposit = deposit_errors(*run_.final_depth, *survey_.deposit, run_.limit);
+        make_remarks();
+        return std::move(result_);
+    }
+
+private:
+    void choose_path() {
+        if (survey_.path) {
+            result_.path = *survey_.path;
+            const double rise = height_at(result_.path.back()) - height_at(result_.path.front());
+            if (rise > 0.0) {
+                std::reverse(result_.path.begin(), result_.path.end());
+                remark("{}: the path is drawn uphill and was turned round", survey_.path_source);
+            }
+        } else if (run_.bed && run_.arrival_time) {
+            const std::optional<Vec2> start = release_middle(*run_.arrival_time);
+            if (start) result_.path = steepest_path(*run_.bed, *start);
+            if (length_of(result_.path) > 0.0)
+                result_.path_source = "steepest path from the release";
+            else
+                result_.path.clear();
+        }
+        if (result_.path.empty())
+            remark("no steepest path from the release is known, so no runout; give one with --path");
+    }
+
+    /// NaN where there is no terrain.
+    double height_at(const Vec2& p) const {
+        if (!run_.bed) return Raster::nodata;
+        const GridGeometry& g = run_.bed->geometry;
+        const double i = std::round((p.x() - g.x0) / g.cell), j = std::round((p.y() - g.y0) / g.cell);
+        const bool inside = i >= 0 && j >= 0 && i < static_cast<double>(g.nx) && j < static_cast<double>(g.ny);
+        return inside ? run_.bed->at(static_cast<Index>(i), static_cast<Index>(j)) : Raster::nodata;
+    }
+
+    ExtentScores scores(const Raster& depth, const Rings& outline) const {
+        ExtentScores scores;
+        scores.areas = overlap(depth, run_.limit, rings_);
+        scores.boundary = distance_between(outline, rings_, step_);
+        if (!result_.path.empty()) {
+            scores.runout = reach_along(result_.path, outline, result_.cell);
+            scores.reach = farthest_from(result_.path.front(), outline);
+        }
+        return scores;
+    }
+
+    template <class... Parts>
+    void remark(const char* form, const Parts&... parts) {
+        result_.remarks.push_back(fmt::format(fmt::runtime(form), parts...));
+    }
+
+    void make_remarks() {
+        const Overlap& areas = result_.trace.areas;
+        if (areas.missed_outside > 0.0)
+            remark("{:.6g} m2 of the survey ({:.3g} %) lie outside the run's terrain and count as missed; widen the "
+                   "elevation model or terrain.window",
+                   areas.missed_outside, 100.0 * areas.missed_outside / areas.surveyed());
+        if (!(areas.simulated() > 0.0)) remark("nothing was ever deeper than {:.6g} m", run_.limit);
+        const double length = length_of(result_.path);
+        const double farthest = std::fmax(result_.surveyed_runout, result_.trace.runout);
+        if (farthest > length * (1.0 + 1e-9))
+            remark("the path ends {:.4g} m before the farther front and goes on straight there", farthest - length);
+        doubt_path();
+        if (!result_.deposit) return;
+        const DepositErrors& deposit = *result_.deposit;
+        if (deposit.unsurveyed_volume > 0.0)
+            remark("{:.6g} m3 of the simulated deposit lie where {} has no data and are in none of its errors; if no "
+                   "data means no deposit there, write zeros",
+                   deposit.unsurveyed_volume, result_.deposit_source);
+        if (deposit.negative > 0)
+            remark("{} pixels of {} are below zero and are taken as they are", deposit.negative,
+                   result_.deposit_source);
+    }
+
+    /// A flow that runs up an opposite slope or over a dam leaves the path that water would take.
+    void doubt_path() {
+        if (survey_.path || result_.path.empty()) return;
+        const double along = result_.trace.runout - result_.surveyed_runout;
+        const double straight = result_.trace.reach - result_.surveyed_reach;
+        constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
+        if (std::abs(along - straight) > noticeable * result_.cell)
+            remark("the steepest path may turn away from the fronts: they differ by {:+.4g} m along it, but by {:+.4g} "
+                   "m straight from the release; give the track of the flow with --path",
+                   along, straight);
+    }
+
+    const SimulatedRun& run_;
+    const Survey& survey_;
+    Rings rings_;
+    double step_ = 1.0;
+    Comparison result_;
+};
+
+}  // namespace
+
+Comparison compare(const SimulatedRun& run, const Survey& survey) { return Comparing(run, survey).all(); }
+
+}  // namespace frana

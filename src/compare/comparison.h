@@ -1,0 +1,54 @@
+#pragma once
+// A run held against a survey: every score in one place, from rasters and polygons.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/deposit.h"
+#include "compare/overlap.h"
+#include "compare/runout.h"
+
+namespace frana {
+
+/// What was simulated. All rasters on one grid.
+struct SimulatedRun {
+    const Raster* peak_depth = nullptr;    ///< needed
+    const Raster* final_depth = nullptr;   ///< or null: no scores of the final state
+    const Raster* arrival_time = nullptr;  ///< or null: no steepest path
+    const Raster* bed = nullptr;           ///< or null: no steepest path
+    double limit = 0.1;                    ///< deeper counts as covered [m]
+};
+
+/// What was surveyed.
+struct Survey {
+    Polygons footprint;            ///< polygons that do not overlap
+    std::optional<Polyline> path;  ///< for the runout; nothing: the steepest one from the release
+    std::optional<Raster> deposit; ///< thickness [m] on pixels of the run, maybe more around them
+    std::string path_source;       ///< file of the path
+    std::string deposit_source;    ///< file of the thickness
+};
+
+/// Scores of one simulated extent.
+struct ExtentScores {
+    Overlap areas;
+    OutlineDistance boundary;  ///< NaN when nothing was simulated
+    double runout = Raster::nodata;  ///< along the path [m]; NaN without path or extent
+    double reach = Raster::nodata;   ///< straight from the path's start to the farthest point of the extent [m]
+};
+
+struct Comparison {
+    std::string survey, path_source, deposit_source;
+    double limit = 0.1;
+    double cell = 1.0;
+    ExtentScores trace;                 ///< everything ever covered, as Fois et al. (2024), section 4.3
+    std::optional<ExtentScores> final;  ///< what is covered at the end
+    Polyline path;                      ///< empty: none
+    double surveyed_runout = Raster::nodata, surveyed_reach = Raster::nodata;
+    std::optional<DepositErrors> deposit;
+    Rings outline;  ///< of the trace
+    std::vector<std::string> remarks;
+};
+
+Comparison compare(const SimulatedRun& run, const Survey& survey);
+
+}  // namespace frana

@@ -1,0 +1,29 @@
+#pragma once
+// Extents as closed outlines in map coordinates, and how far two outlines lie apart.
+#include "particles/outline_area.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// The rings of polygons that do not overlap, turned as Rings wants them (outer counter-clockwise, holes clockwise).
+Rings rings_of(const Polygons& polygons);
+
+/// Area within the rings [m2].
+double area_of(const Rings& rings);
+
+/// Outline of all pixels whose value exceeds `limit`, along their edges. Pixels that touch at a corner only have
+/// rings of their own; NaN is not above any limit.
+Rings pixel_outline(const Raster& field, double limit);
+
+/// Distances between two outlines, each of all its rings.
+struct OutlineDistance {
+    double mean = 0.0;  ///< over the length of both outlines, from each point to the nearest of the other [m]
+    double p95 = 0.0;   ///< 95 % of both lengths lie nearer than this to the other [m]
+    double max = 0.0;   ///< Hausdorff distance of the outlines [m]
+};
+
+/// Both outlines are walked in steps of at most `step` [m]; from the middle of each step the distance to the other
+/// outline is exact. All NaN when one of them has no rings.
+OutlineDistance distance_between(const Rings& a, const Rings& b, double step);
+
+}  // namespace frana

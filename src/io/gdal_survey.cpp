@@ -1,0 +1,223 @@
+// Surveyed extents and deposits: what a run is compared with.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "io/gdal_crs.h"
+#include "io/gdal_onto.h"
+#include "io/gdal_reader.h"
+#include "io/gdal_shapes.h"
+
+namespace frana {
+namespace {
+
+namespace fs = std::filesystem;
+using gdal::Geometry;
+
+constexpr const char* what_it_is =
+    "a surveyed extent, as polygons in a vector file (GeoJSON, GeoPackage, Shapefile, ...) or as a raster above 0";
+
+/// The grid with as many rows and columns added around it as it takes to cover [xmin, ymin, xmax, ymax].
+GridGeometry widened(const GridGeometry& grid, const std::array<double, 4>& extent) {
+    const auto has = grid.pixel_extent();
+    const auto extra = [&](double by) {
+        constexpr double round_off = 1e-6;  // of a cell: edges that are meant to coincide
+        return std::max<Index>(0, static_cast<Index>(std::ceil(by / grid.cell - round_off)));
+    };
+    const Index left = extra(has[0] - extent[0]), low = extra(has[1] - extent[1]);
+    GridGeometry wide = grid;
+    wide.nx += left + extra(extent[2] - has[2]);
+    wide.ny += low + extra(extent[3] - has[3]);
+    wide.x0 -= static_cast<double>(left) * grid.cell;
+    wide.y0 -= static_cast<double>(low) * grid.cell;
+    return wide;
+}
+
+bool opens_as(const fs::path& file, unsigned kind) {
+    gdal::register_drivers();
+    const gdal::Messages quiet;
+    const gdal::Dataset dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY));
+    return dataset && (kind == GDAL_OF_RASTER || dataset->GetLayerCount() > 0);
+}
+
+[[noreturn]] void refuse_crs(const fs::path& file, const std::string& found, const OGRSpatialReference& terrain,
+                             const std::string& program) {
+    const char* authority = terrain.GetAuthorityName(nullptr);
+    const char* code = terrain.GetAuthorityCode(nullptr);
+    const std::string name = authority && code ? fmt::format("{}:{}", authority, code) : "THE_SURVEY'S_CRS";
+    const std::string target = (file.parent_path() / (file.stem().string() + "_crs")).string();
+    const std::string line = program == "ogr2ogr"
+                                 ? fmt::format("ogr2ogr -a_srs {} {} {}", name, gdal::shell(target + ".gpkg"),
+                                               gdal::shell(file.string()))
+                                 : fmt::format("gdal_translate -a_srs {} {} {}", name, gdal::shell(file.string()),
+                                               gdal::shell(target + ".tif"));
+    throw UserError(
+        fmt::format("{}: {}; expected a survey that says where on the earth it lies, as the terrain does ({}); if "
+                    "it has the terrain's coordinates, run: {}",
+                    file.string(), found, gdal::crs_name(terrain), line));
+}
+
+bool no_crs(const OGRSpatialReference* crs) { return !crs || crs->IsEmpty() || crs->IsLocal(); }
+
+void require_vector_crs(const fs::path& file, const OGRSpatialReference& terrain) {
+    const gdal::Dataset dataset = gdal::open(file, GDAL_OF_VECTOR);
+    for (OGRLayer* layer : dataset->GetLayers()) {
+        if (layer->GetFeatureCount() == 0) continue;
+        const OGRSpatialReference* declared = layer->GetSpatialRef();
+        if (no_crs(declared)) refuse_crs(file, "has no CRS", terrain, "ogr2ogr");
+        OGREnvelope box;
+        if (declared->IsGeographic() && layer->GetExtent(&box, 1) == OGRERR_NONE && !gdal::degrees_possible(box))
+            refuse_crs(file,
+                       fmt::format("has no CRS of its own, and its coordinates ({:.10g} {:.10g}) are not the degrees "
+                                   "that its format then asks for",
+                                   box.MinX, box.MinY),
+                       terrain, "ogr2ogr");
+    }
+}
+
+/// The pixels above 0 as polygons in the coordinates of the terrain.
+Polygons from_mask(const fs::path& file, const std::string& crs_wkt, std::vector<std::string>& log) {
+    const gdal::RasterFile raster(file, gdal::Meaning::any, log);
+    gdal::Transformation transformation;
+    if (!crs_wkt.empty()) {
+        const OGRSpatialReference terrain = gdal::crs_from_wkt(crs_wkt);
+        if (no_crs(&raster.crs())) refuse_crs(file, "has no CRS", terrain, "gdal_translate");
+        if (!gdal::same_crs(raster.crs(), terrain)) {
+            const gdal::Messages messages;
+            transformation.reset(OGRCreateCoordinateTransformation(&raster.crs(), &terrain));
+            log.push_back(fmt::format("{}: reprojected from {} to {}", raster.name(), gdal::crs_name(raster.crs()),
+                                      gdal::crs_name(terrain)));
+        }
+    }
+    const PixelAxis &x = raster.x_axis(), &y = raster.y_axis();
+    const std::vector<double> values = raster.read(0, 0, x.count, y.count);
+    std::vector<std::uint8_t> mask(values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) mask[k] = values[k] > 0.0;
+    Polygons polygons;
+    for (const auto& outline : gdal::outlines_of(mask, x.count, y.count, {x.start, x.size, 0, y.start, 0, y.size})) {
+        const gdal::Messages messages;
+        if (transformation && outline->transform(transformation.get()) != OGRERR_NONE)
+            throw UserError(fmt::format("{}: cannot be brought to the terrain's CRS ({}); check its coordinates and "
+                                        "its CRS",
+                                        file.string(), messages.reason("no reason given")));
+        gdal::append_polygon(*outline, file.string(), polygons.parts);
+    }
+    if (polygons.parts.empty())
+        throw UserError(
+            fmt::format("{}: has no pixel above 0; expected {}; check the values with gdalinfo -stats",
+                        file.string(), what_it_is));
+    return polygons;
+}
+
+std::unique_ptr<OGRMultiPolygon> to_ogr(const Polygons& polygons) {
+    auto all = std::make_unique<OGRMultiPolygon>();
+    for (const Polygon& part : polygons.parts) {
+        OGRPolygon polygon;
+        for (const auto& ring : part.rings) {
+            OGRLinearRing line;
+            for (const Vec2& v : ring) line.addPoint(v.x(), v.y());
+            line.closeRings();
+            polygon.addRing(&line);
+        }
+        all->addGeometry(&polygon);
+    }
+    return all;
+}
+
+/// Polygons that overlap become one; others stay as they are, to the last digit.
+void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& log) {
+    if (polygons.parts.size() < 2) return;
+    const std::unique_ptr<OGRMultiPolygon> all = to_ogr(polygons);
+    const gdal::Messages messages;
+    const Geometry united(all->UnionCascaded());
+    if (!united)
+        throw UserError(fmt::format("{}: its polygons cannot be united ({}); expected outlines that do not cross "
+                                    "themselves; draw them again",
+                                    file.string(), messages.reason("no reason given")));
+    double area = 0.0;
+    gdal::Census census;
+    std::vector<Polygon> parts;
+    gdal::collect_polygons(*united, census, [&](const OGRPolygon& polygon) {
+        area += polygon.get_Area();
+        gdal::append_polygon(polygon, file.string(), parts);
+    });
+    const double twice = all->get_Area() - area;
+    constexpr double round_off = 1e-9;
+    if (!(twice > round_off * area)) return;
+    polygons.parts = std::move(parts);
+    log.push_back(fmt::format("{}: its polygons overlap by {:.6g} m2, which count once", file.filename().string(),
+                              twice));
+}
+
+void require_overlap(const Polygons& polygons, const std::array<double, 4>& extent, const fs::path& file) {
+    const std::unique_ptr<OGRMultiPolygon> all = to_ogr(polygons);
+    OGRLinearRing edge;
+    for (const auto& [i, j] : {std::pair{0, 1}, {2, 1}, {2, 3}, {0, 3}})
+        edge.addPoint(extent[std::size_t(i)], extent[std::size_t(j)]);
+    edge.closeRings();
+    OGRPolygon terrain;
+    terrain.addRing(&edge);
+    if (all->Intersects(&terrain)) return;
+    OGREnvelope box;
+    all->getEnvelope(&box);
+    throw UserError(fmt::format("{}: covers {} on the terrain's map, which does not touch the terrain's {}; expected "
+                                "a survey of this place; check its coordinates and its CRS",
+                                file.string(), gdal::extent_text({box.MinX, box.MinY, box.MaxX, box.MaxY}),
+                                gdal::extent_text(extent)));
+}
+
+}  // namespace
+
+Polygons GdalReader::read_survey(const fs::path& file, const std::array<double, 4>& extent,
+                                 const std::string& crs_wkt, std::vector<std::string>& log) const {
+    const bool vector = opens_as(file, GDAL_OF_VECTOR);
+    if (!vector && !opens_as(file, GDAL_OF_RASTER)) {
+        std::error_code ignored;
+        throw UserError(fmt::format("{}: {}; expected {}; {}", file.string(),
+                                    fs::exists(file, ignored) ? "cannot be read" : "no such file", what_it_is,
+                                    fs::exists(file, ignored) ? "export it again from your GIS" : "correct the name"));
+    }
+    if (vector && !crs_wkt.empty()) require_vector_crs(file, gdal::crs_from_wkt(crs_wkt));
+    Polygons polygons = vector ? read_polygons(file, crs_wkt, log) : from_mask(file, crs_wkt, log);
+    if (vector) unite(polygons, file, log);
+    polygons.crs_wkt = crs_wkt;
+    polygons.source = file.string();
+    require_overlap(polygons, extent, file);
+    return polygons;
+}
+
+Raster GdalReader::read_deposit(const fs::path& file, const GridGeometry& grid, const std::string& crs_wkt,
+                                std::vector<std::string>& log) const {
+    std::vector<std::string> said_again_below;
+    const gdal::RasterFile raster(file, gdal::Meaning::any, said_again_below);
+    std::array<double, 4> extent = raster.extent();
+    if (!crs_wkt.empty()) {
+        const OGRSpatialReference terrain = gdal::crs_from_wkt(crs_wkt);
+        if (no_crs(&raster.crs())) refuse_crs(file, "has no CRS", terrain, "gdal_translate");
+        if (!gdal::same_crs(raster.crs(), terrain)) {
+            const gdal::Messages messages;
+            const gdal::Transformation forth(OGRCreateCoordinateTransformation(&raster.crs(), &terrain));
+            const std::array<double, 4> e = extent;
+            constexpr int points = 21;  // along each edge, which need not stay straight
+            if (!forth || !forth->TransformBounds(e[0], e[1], e[2], e[3], &extent[0], &extent[1], &extent[2],
+                                                  &extent[3], points))
+                throw UserError(fmt::format("{}: cannot be brought to the terrain's CRS ({}); reproject it with "
+                                            "gdalwarp",
+                                            file.string(), messages.reason("no transformation known")));
+        }
+    }
+    const GridGeometry wide = widened(grid, extent);
+    constexpr Index most = 400'000'000;  // nodes, of 8 bytes each
+    if (wide.size() > most)
+        throw UserError(fmt::format("{}: reaches so far that {} x {} pixels of {:g} m would be needed; expected a "
+                                    "deposit near the terrain; cut it with gdalwarp -te",
+                                    file.string(), wide.nx, wide.ny, wide.cell));
+    Raster deposit = read_onto(file, wide, crs_wkt, log);
+    deposit.source = file.string();
+    return deposit;
+}
+
+}  // namespace frana

@@ -1,0 +1,234 @@
+// Surveys as a GIS has them: what is read, and what is refused with which sentence.
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "catch.h"
+#include "compare/overlap.h"
+#include "fresh_folder.h"
+#include "io/gdal_reader.h"
+#include "io_gdal_make.h"
+
+using namespace frana;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// 400 x 300 m of UTM 32 N, 10 m pixels.
+const GridGeometry terrain{40, 30, 600005.0, 5100005.0, 10.0};
+const std::array<double, 4> extent = terrain.pixel_extent();
+
+std::string ring(double x0, double y0, double x1, double y1) {
+    return fmt::format("[[{0},{1}],[{2},{1}],[{2},{3}],[{0},{3}],[{0},{1}]]", x0, y0, x1, y1);
+}
+
+std::string collection(const std::vector<std::string>& geometries, const std::string& crs) {
+    std::string features;
+    for (const std::string& geometry : geometries)
+        features += fmt::format(R"({}{{"type":"Feature","properties":{{}},"geometry":{}}})",
+                                features.empty() ? "" : ",", geometry);
+    const std::string member =
+        crs.empty() ? "" : fmt::format(R"("crs":{{"type":"name","properties":{{"name":"{}"}}}},)", crs);
+    return fmt::format(R"({{"type":"FeatureCollection",{}"features":[{}]}})", member, features);
+}
+
+std::string polygon(const std::string& rings) { return R"({"type":"Polygon","coordinates":[)" + rings + "]}"; }
+
+const char* const utm = "urn:ogc:def:crs:EPSG::32632";
+
+class Files {
+public:
+    fs::path text(const std::string& name, const std::string& content) const {
+        write_text(folder_.path() / name, content);
+        return folder_.path() / name;
+    }
+    fs::path operator/(const std::string& name) const { return folder_.path() / name; }
+
+private:
+    FreshFolder folder_;
+};
+
+Polygons read(const fs::path& file, const std::string& wkt, std::vector<std::string>& log) {
+    return GdalReader().read_survey(file, extent, wkt, log);
+}
+
+std::string refusal(const fs::path& file) {
+    return user_error([&] {
+        std::vector<std::string> log;
+        read(file, wkt_of("EPSG:32632"), log);
+    });
+}
+
+/// One sentence in the house's form: what was found, what is expected, what to do.
+bool is_one_sentence(const std::string& message) {
+    return message.find('\n') == std::string::npos && contains(message, "; expected ") &&
+           message.rfind(';') > message.find("; expected ") + 2;
+}
+
+/// 100 x 80 m pixels above 0 in the middle, with a hole of one pixel.
+RasterSpec mask_spec() {
+    RasterSpec spec;
+    spec.columns = 20;
+    spec.rows = 20;
+    spec.transform = {600100.0, 10.0, 0.0, 5100250.0, 0.0, -10.0};
+    spec.type = GDT_Byte;
+    spec.value = [](int column, int row) {
+        const bool hole = column == 8 && row == 8;
+        return column >= 5 && column < 15 && row >= 5 && row < 13 && !hole ? 1.0 : 0.0;
+    };
+    return spec;
+}
+
+}  // namespace
+
+TEST_CASE("A survey in degrees has the area on the map that it had before", "[survey]") {
+    const Files files;
+    // corners brought to longitude and latitude by PROJ itself
+    OGRSpatialReference map, degrees;
+    map.importFromEPSG(32632);
+    degrees.importFromEPSG(4326);
+    degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRCoordinateTransformation> back(OGRCreateCoordinateTransformation(&map, &degrees));
+    std::vector<double> x = {600100, 600200, 600200, 600100}, y = {5100050, 5100050, 5100150, 5100150};
+    REQUIRE(back->Transform(4, x.data(), y.data()));
+    std::string corners;
+    for (const std::size_t k : {0, 1, 2, 3, 0})
+        corners += fmt::format("{}[{:.13f},{:.13f}]", corners.empty() ? "" : ",", x[k], y[k]);
+    const fs::path file = files.text("degrees.geojson", collection({polygon("[" + corners + "]")}, ""));
+    std::vector<std::string> log;
+    const Polygons survey = read(file, wkt_of("EPSG:32632"), log);
+    CHECK(any_contains(log, "reprojected from EPSG:4326"));
+    // 13 digits of a degree are 1e-8 m; times four sides of 100 m
+    CHECK(area_of(rings_of(survey)) == Approx(1e4).margin(4e-6));
+    for (const Vec2& v : survey.parts.at(0).rings.at(0)) {
+        CHECK(std::min(std::abs(v.x() - 600100), std::abs(v.x() - 600200)) < 1e-6);
+        CHECK(std::min(std::abs(v.y() - 5100050), std::abs(v.y() - 5100150)) < 1e-6);
+    }
+}
+
+TEST_CASE("Holes and parts of a survey are kept, and overlapping polygons count once", "[survey]") {
+    const Files files;
+    std::vector<std::string> log;
+    const fs::path file = files.text(
+        "parts.geojson",
+        collection({polygon(ring(600000, 5100000, 600100, 5100100) + "," + ring(600030, 5100030, 600070, 5100070)),
+                    polygon(ring(600200, 5100000, 600220, 5100020))},
+                   utm));
+    const Polygons survey = read(file, wkt_of("EPSG:32632"), log);
+    REQUIRE(survey.parts.size() == 2);
+    CHECK(survey.parts[0].rings.size() == 2);
+    CHECK(area_of(rings_of(survey)) == Approx(8400 + 400).epsilon(1e-12));
+    CHECK(log.empty());
+
+    const fs::path twice = files.text("twice.geojson", collection({polygon(ring(600000, 5100000, 600100, 5100100)),
+                                                                   polygon(ring(600050, 5100000, 600150, 5100100))},
+                                                                  utm));
+    CHECK(area_of(rings_of(read(twice, wkt_of("EPSG:32632"), log))) == Approx(15000).epsilon(1e-12));
+    CHECK(any_contains(log, "overlap by 5000 m2"));
+}
+
+TEST_CASE("A raster above 0 is a survey too, hole and all, in its own CRS or another", "[survey]") {
+    const Files files;
+    make_raster(files / "mask.tif", mask_spec());
+    std::vector<std::string> log;
+    const Polygons survey = read(files / "mask.tif", wkt_of("EPSG:32632"), log);
+    REQUIRE(survey.parts.size() == 1);
+    CHECK(survey.parts[0].rings.size() == 2);
+    CHECK(area_of(rings_of(survey)) == Approx(80 * 100 - 100).epsilon(1e-12));
+
+    // UTM 33 of the same place: PROJ brings the corners back, and scale on the map differs by the factor of areas
+    const std::string utm33 = wkt_of("EPSG:32633");
+    const Polygons elsewhere = [&] {
+        OGRSpatialReference from, to;
+        from.importFromEPSG(32632);
+        to.importFromEPSG(32633);
+        const std::unique_ptr<OGRCoordinateTransformation> forth(OGRCreateCoordinateTransformation(&from, &to));
+        std::array<double, 4> there{};
+        REQUIRE(forth->TransformBounds(extent[0], extent[1], extent[2], extent[3], &there[0], &there[1], &there[2],
+                                       &there[3], 5));
+        return GdalReader().read_survey(files / "mask.tif", there, utm33, log);
+    }();
+    CHECK(any_contains(log, "to EPSG:32633"));
+    // k = 0.9996 (1 + (E - 500 km)^2 / (2 R^2)) is 0.99972 at E = 600 km in zone 32 and about 1.0013 at 136 km in
+    // zone 33: areas grow by their ratio squared, 1.003
+    CHECK(area_of(rings_of(elsewhere)) == Approx(7900.0 * 1.003).epsilon(1e-3));
+}
+
+TEST_CASE("A survey that reaches outside the terrain is kept whole", "[survey]") {
+    const Files files;
+    std::vector<std::string> log;
+    const fs::path file =
+        files.text("wide.geojson", collection({polygon(ring(599900, 5099900, 600100, 5100100))}, utm));
+    const Polygons survey = read(file, wkt_of("EPSG:32632"), log);
+    const Overlap areas = overlap(Raster::filled(terrain, 1.0), 0.1, rings_of(survey));
+    CHECK(areas.hit == Approx(1e4).epsilon(1e-12));
+    CHECK(areas.missed_outside == Approx(3e4).epsilon(1e-12));
+}
+
+TEST_CASE("Surveys that say nothing are refused with a sentence each", "[survey]") {
+    const Files files;
+    const std::string square = polygon(ring(600000, 5100000, 600100, 5100100));
+    const auto check = [&](const fs::path& file, const std::string& found, const std::string& way_out) {
+        const std::string message = refusal(file);
+        CAPTURE(message);
+        CHECK(contains(message, file.string() + ": "));
+        CHECK(contains(message, found));
+        CHECK(contains(message, way_out));
+        CHECK(is_one_sentence(message));
+    };
+    check(files.text("local.geojson", collection({square}, "")), "has no CRS of its own", "ogr2ogr -a_srs EPSG:32632");
+    check(files.text("line.geojson",
+                     collection({R"({"type":"LineString","coordinates":[[600000,5100000],[600100,5100100]]})"}, utm)),
+          "holds 1 line only", "draw the outline as a polygon");
+    check(files.text("empty.geojson", collection({}, utm)), "holds no features", "draw the outline as a polygon");
+    check(files.text("away.geojson", collection({polygon(ring(700000, 5100000, 700100, 5100100))}, utm)),
+          "does not touch the terrain", "check its coordinates and its CRS");
+    check(files / "missing.geojson", "no such file", "correct the name");
+    check(files.text("junk.geojson", "this is no GeoJSON"), "cannot be read", "export it again");
+
+    RasterSpec spec = mask_spec();
+    spec.crs.clear();
+    make_raster(files / "nowhere.tif", spec);
+    check(files / "nowhere.tif", "has no CRS", "gdal_translate -a_srs EPSG:32632");
+    spec = mask_spec();
+    spec.value = [](int, int) { return 0.0; };
+    make_raster(files / "zero.tif", spec);
+    check(files / "zero.tif", "has no pixel above 0", "gdalinfo");
+
+    // without a CRS of the terrain there is nothing that a survey would have to agree with
+    std::vector<std::string> log;
+    CHECK(read(files / "local.geojson", "", log).parts.size() == 1);
+}
+
+TEST_CASE("The line that a refusal gives makes the survey readable", "[survey]") {
+    const Files files;
+    RasterSpec spec = mask_spec();
+    spec.crs.clear();
+    make_raster(files / "nowhere.tif", spec);
+    run_gdal_line(cure_in(refusal(files / "nowhere.tif")));
+    std::vector<std::string> log;
+    CHECK(area_of(rings_of(read(files / "nowhere_crs.tif", wkt_of("EPSG:32632"), log))) == Approx(7900).epsilon(1e-12));
+}
+
+TEST_CASE("A surveyed deposit keeps its volume beyond the terrain, on the run's pixels", "[survey]") {
+    const Files files;
+    RasterSpec spec;
+    spec.columns = 20;
+    spec.rows = 20;
+    spec.transform = {599900.0, 10.0, 0.0, 5100100.0, 0.0, -10.0};
+    spec.value = [](int, int) { return 1.5; };
+    make_raster(files / "deposit.tif", spec);
+    std::vector<std::string> log;
+    const Raster deposit = GdalReader().read_deposit(files / "deposit.tif", terrain, wkt_of("EPSG:32632"), log);
+    CHECK(deposit.geometry.nx == 50);
+    CHECK(deposit.geometry.ny == 40);
+    CHECK(deposit.geometry.x0 == terrain.x0 - 100.0);
+    double volume = 0.0;
+    for (const double h : deposit.values) volume += std::isnan(h) ? 0.0 : h * 100.0;
+    CHECK(volume == Approx(400 * 100 * 1.5).epsilon(1e-12));
+    spec.crs.clear();
+    make_raster(files / "nowhere.tif", spec);
+    const std::string message =
+        user_error([&] { GdalReader().read_deposit(files / "nowhere.tif", terrain, wkt_of("EPSG:32632"), log); });
+    CHECK(contains(message, "has no CRS"));
+    CHECK(is_one_sentence(message));
+}

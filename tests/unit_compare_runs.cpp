@@ -1,0 +1,184 @@
+// Runout, deposits and whole comparisons with answers found by hand.
+#include <cmath>
+
+#include "catch.h"
+#include "compare/comparison.h"
+
+using namespace frana;
+
+namespace {
+
+constexpr double cell = 10.0;
+
+/// 600 x 200 m; the pixels' outer edge starts at (0, 0).
+GridGeometry slope_grid() { return {60, 20, 0.5 * cell, 0.5 * cell, cell}; }
+
+template <class Value>
+Raster made(const Value& value) {
+    Raster raster = Raster::filled(slope_grid(), 0.0);
+    const GridGeometry& g = raster.geometry;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) raster.at(i, j) = value(g.x(i), g.y(j));
+    return raster;
+}
+
+bool within(double x, double y, double x0, double y0, double x1, double y1) {
+    return x > x0 && x < x1 && y > y0 && y < y1;
+}
+
+Polygon box(double x0, double y0, double x1, double y1) { return Polygon{{{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}}}; }
+
+/// A flow along x from 50 m to `front`, 100 m wide; it rests on the last 100 m of it. Released at x < 100 m.
+struct Flow {
+    Raster bed, peak, last, arrival;
+
+    explicit Flow(double front) {
+        bed = made([](double x, double) { return 300.0 - 0.5 * x; });
+        peak = made([&](double x, double y) { return within(x, y, 50, 50, front, 150) ? 2.0 : 0.0; });
+        last = made([&](double x, double y) { return within(x, y, front - 100, 50, front, 150) ? 1.0 : 0.0; });
+        arrival = made([&](double x, double y) {
+            return within(x, y, 50, 50, 100, 150) ? 0.0 : x < front ? x / 20.0 : Raster::nodata;
+        });
+    }
+    SimulatedRun run() const { return {&peak, &last, &arrival, &bed, 0.1}; }
+};
+
+}  // namespace
+
+TEST_CASE("On a plane the steepest path runs straight down to the edge") {
+    const Flow flow(300);
+    const Polyline path = steepest_path(flow.bed, {75, 105});
+    REQUIRE(path.size() == 53);  // nodes from 75 m to 595 m
+    for (const Vec2& p : path) CHECK(p.y() == Approx(105));
+    CHECK(path.front().x() == Approx(75));
+    CHECK(path.back().x() == Approx(595));
+    CHECK(length_of(path) == Approx(520));
+}
+
+TEST_CASE("The steepest path leaves a hollow over its lowest rim, and does not run on for ever") {
+    // a trough with a dam across it at x = 300 m, with a gap in its north that is lower than the trough's sides
+    const Raster bed = made([](double x, double y) {
+        const bool dam = std::abs(x - 300.0) < 12.0 && y < 150.0;
+        return 300.0 - 0.5 * x + 0.2 * std::abs(y - 105.0) + (dam ? 60.0 : 0.0);
+    });
+    const Polyline path = steepest_path(bed, {55, 55});
+    CHECK(path.back().x() == Approx(595));
+    double at_dam = 0.0;
+    for (const Vec2& p : path)
+        if (std::abs(p.x() - 300.0) < 6.0) at_dam = std::max(at_dam, p.y());
+    // Through the gap, whose first nodes are at 155 m. At the top of a way up and down along y, the mean over eleven
+    // nodes is lower by 10 m x 2 (1 + ... + 5) / 11 = 27.3 m; less for any gentler bend.
+    CHECK(at_dam > 155.0 - 27.4);
+    const Raster flat = made([](double, double) { return 1.0; });
+    CHECK(length_of(steepest_path(flat, {305, 105})) > 0.0);
+    CHECK(steepest_path(bed, {-500, 55}).empty());
+}
+
+TEST_CASE("The farthest point of an outline counts along a path, also round a bend and beyond its end") {
+    const Polyline bend = {{0, 0}, {100, 0}, {100, 100}};
+    const auto reach = [&](const Polygon& outline) { return reach_along(bend, outline.rings, 1.0); };
+    CHECK(reach(box(-10, -10, 60, 10)) == Approx(60));
+    CHECK(reach(box(80, 20, 120, 70)) == Approx(170));   // up the second leg
+    CHECK(reach(box(90, 50, 110, 130)) == Approx(230));  // 30 m beyond the end
+    CHECK(std::isnan(reach_along(bend, {}, 1.0)));
+}
+
+TEST_CASE("A flow that runs 50 m too far is told so, and both of its extents are scored") {
+    const Flow flow(350);
+    Survey survey;
+    survey.footprint = {{box(50, 50, 300, 150)}, "", "survey.geojson"};
+    const Comparison c = compare(flow.run(), survey);
+    CHECK(c.trace.areas.hit == Approx(25000));
+    CHECK(c.trace.areas.iou() == Approx(25.0 / 30.0));
+    CHECK(c.path_source == "steepest path from the release");
+    // the release's middle is the node at 75 m
+    CHECK(c.trace.runout == Approx(350 - 75));
+    CHECK(c.surveyed_runout == Approx(300 - 75));
+    REQUIRE(c.final);
+    CHECK(c.final->areas.hit == Approx(5000));
+    CHECK(c.final->areas.iou() == Approx(5.0 / 30.0));
+    CHECK(c.final->runout - c.surveyed_runout == Approx(50));
+    CHECK_FALSE(c.deposit);
+    CHECK(c.remarks.empty());
+}
+
+TEST_CASE("A given path is used downhill, and its end is not the end of the runout") {
+    const Flow flow(350);
+    Survey survey;
+    survey.footprint = {{box(50, 50, 300, 150)}, "", "survey.geojson"};
+    survey.path = Polyline{{280, 100}, {80, 100}};
+    survey.path_source = "track.geojson";
+    const Comparison c = compare(flow.run(), survey);
+    CHECK(c.trace.runout == Approx(270));
+    CHECK(c.surveyed_runout == Approx(220));
+    REQUIRE(c.remarks.size() == 2);
+    CHECK_THAT(c.remarks[0], Catch::Contains("turned round"));
+    CHECK_THAT(c.remarks[1], Catch::Contains("ends 70 m before"));
+}
+
+TEST_CASE("Where the flow leaves the way of water, the runout is put in doubt") {
+    Flow flow(300);
+    // a valley across: the water turns north at x = 300 m, the survey goes on up the opposite slope
+    flow.bed = made([](double x, double y) { return 300.0 + 0.5 * std::abs(x - 305.0) - 0.1 * y; });
+    Survey survey;
+    survey.footprint = {{box(50, 50, 450, 150)}, "", "survey.geojson"};
+    const Comparison c = compare(flow.run(), survey);
+    CHECK(c.trace.reach < c.surveyed_reach - 140.0);
+    REQUIRE(c.remarks.size() == 1);
+    CHECK_THAT(c.remarks[0], Catch::Contains("--path"));
+}
+
+TEST_CASE("Without terrain, or with nothing covered, there is no runout but there are scores") {
+    Flow flow(300);
+    Survey survey;
+    survey.footprint = {{box(50, 50, 300, 250)}, "", "survey.geojson"};
+    SimulatedRun run = flow.run();
+    run.bed = nullptr;
+    const Comparison c = compare(run, survey);
+    CHECK(std::isnan(c.trace.runout));
+    CHECK(c.trace.areas.recall() == Approx(0.5));
+    CHECK(c.trace.areas.missed_outside == Approx(250 * 50));
+    REQUIRE(c.remarks.size() == 2);
+    CHECK_THAT(c.remarks[1], Catch::Contains("12500 m2 of the survey (25 %) lie outside"));
+
+    for (double& h : flow.peak.values) h = 0.0;
+    const Comparison dry = compare(flow.run(), survey);
+    CHECK(dry.outline.empty());
+    CHECK(std::isnan(dry.trace.runout));
+    CHECK(dry.trace.areas.iou() == 0.0);
+}
+
+TEST_CASE("A deposit of known volumes has the error that they have") {
+    // simulated 1 m on [0, 100] x [0, 100]; surveyed 2 m on [50, 150] x [0, 100]
+    const Raster simulated = made([](double x, double y) { return within(x, y, 0, 0, 100, 100) ? 1.0 : 0.0; });
+    Raster surveyed = made([](double x, double y) { return within(x, y, 50, 0, 150, 100) ? 2.0 : 0.0; });
+    DepositErrors errors = deposit_errors(simulated, surveyed, 0.1);
+    CHECK(errors.simulated_volume == Approx(10000));
+    CHECK(errors.surveyed_volume == Approx(20000));
+    CHECK(errors.volume_error() == Approx(-0.5));
+    CHECK(errors.compared_area == Approx(15000));
+    CHECK(errors.mae == Approx(4.0 / 3.0));           // 1, 1 and 2 m on 5000 m2 each
+    CHECK(errors.rmse == Approx(std::sqrt(2.0)));     // 1, 1 and 4 m2
+    CHECK(errors.unsurveyed_volume == 0.0);
+
+    surveyed.at(0, 0) = Raster::nodata;
+    surveyed.at(59, 19) = -0.5;
+    errors = deposit_errors(simulated, surveyed, 0.1);
+    CHECK(errors.simulated_volume == Approx(9900));
+    CHECK(errors.unsurveyed_volume == Approx(100));
+    CHECK(errors.surveyed_volume == Approx(20000 - 50));
+    CHECK(errors.negative == 1);
+}
+
+TEST_CASE("A surveyed deposit may reach beyond the simulated raster; its volume there counts") {
+    const Raster simulated = made([](double, double) { return 1.0; });
+    GridGeometry wide = slope_grid();
+    wide.x0 -= 3 * cell;
+    wide.nx += 3;
+    wide.ny += 2;
+    const Raster surveyed = Raster::filled(wide, 1.0);
+    const DepositErrors errors = deposit_errors(simulated, surveyed, 0.1);
+    CHECK(errors.simulated_volume == Approx(600 * 200));
+    CHECK(errors.surveyed_volume == Approx(630 * 220));
+    CHECK(errors.mae == Approx((630.0 * 220 - 600 * 200) / (630 * 220)));
+}
