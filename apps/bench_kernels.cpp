@@ -23,7 +23,7 @@ struct Bed {
         step = simulation.status().dt;
         transfer->deposit(flow, step);
         surface();
-        kick->kick(flow, step);
+        kick->kick(flow, step, step);
     }
     void surface() {
         depth_pass(flow, {0.1, {0.0, 0.0}});
@@ -72,7 +72,7 @@ void gather(benchmark::State& state) {
     sweep(state, [](Bed& b) { benchmark::DoNotOptimize(b.transfer->gather(b.flow, 0.0)); });
 }
 void kick_nodes(benchmark::State& state) {
-    sweep(state, [](Bed& b) { benchmark::DoNotOptimize(b.kick->kick(b.flow, b.step)); });
+    sweep(state, [](Bed& b) { benchmark::DoNotOptimize(b.kick->kick(b.flow, b.step, b.step)); });
 }
 void depth_to_shoreline(benchmark::State& state) { sweep(state, [](Bed& b) { b.surface(); }); }
 void shock(benchmark::State& state) { sweep(state, [](Bed& b) { shock_pass(b.flow); }); }

@@ -67,10 +67,10 @@ void compare_nodes(Flow& a, Flow& b) {
 }
 
 void compare_points(Flow& a, Flow& b) {
-    std::vector<std::vector<double>*> of_b;
-    b.columns.each([&](std::vector<double>& column) { of_b.push_back(&column); });
+    std::vector<Column*> of_b;
+    b.columns.each([&](Column& column) { of_b.push_back(&column); });
     std::size_t field = 0;
-    a.columns.each([&](std::vector<double>& column) {
+    a.columns.each([&](Column& column) {
         for (std::size_t p = 0; p < column.size(); ++p)
             check_close(column[p], (*of_b[field])[p], 5e3, "field", static_cast<Index>(field));
         ++field;

@@ -1,6 +1,9 @@
 #include "solver/columns.h"
 
+#include <omp.h>
+
 #include <algorithm>
+#include <limits>
 
 #include "base/error.h"
 
@@ -9,12 +12,16 @@ namespace frana {
 void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
                       ActiveTiles& active) {
     const Index count = columns.count();
-    key_.resize(static_cast<std::size_t>(count));
+    expect(count < std::numeric_limits<std::int32_t>::max() && grid.tiles() < std::numeric_limits<std::int32_t>::max(),
+           "too many points for their numbers");
+    resize_sparingly(key_, static_cast<std::size_t>(count));
     tile_count_.resize(static_cast<std::size_t>(grid.tiles()));
-    Index* key = key_.data();
+    std::int32_t* key = key_.data();
 #pragma omp parallel for schedule(static) if (count > 4096)
     for (Index p = 0; p < count; ++p)
-        key[p] = !gone.empty() && gone[static_cast<std::size_t>(p)] ? -1 : grid.tile_of(columns.x[p], columns.y[p]);
+        key[p] = !gone.empty() && gone[static_cast<std::size_t>(p)]
+                     ? -1
+                     : static_cast<std::int32_t>(grid.tile_of(columns.x[p], columns.y[p]));
 
     used_.clear();
     for (Index p = 0; p < count; ++p)
@@ -31,26 +38,27 @@ void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<
     }
     active.begin.push_back(kept);
 
-    order_.resize(static_cast<std::size_t>(kept));
+    resize_sparingly(order_, static_cast<std::size_t>(kept));
     for (Index p = 0; p < count; ++p)
-        if (key[p] >= 0) order_[tile_count_[key[p]]++] = p;
+        if (key[p] >= 0) order_[tile_count_[key[p]]++] = static_cast<std::int32_t>(p);
     for (const Index tile : used_) tile_count_[tile] = 0;
 
     // Each thread permutes one field at a time: scattering all fields in one loop keeps too many streams open.
-    const Index* order = order_.data();
-    std::array<std::vector<double>*, 14> fields{};
+    const std::int32_t* order = order_.data();
+    std::array<Column*, 14> fields{};
     std::size_t found = 0;
-    columns.each([&](std::vector<double>& column) { fields.at(found++) = &column; });
-    scratch_.resize(fields.size());
+    columns.each([&](Column& column) { fields.at(found++) = &column; });
+    scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(omp_get_max_threads())));
 #pragma omp parallel for schedule(dynamic, 1) if (count > 4096)
     for (std::size_t f = 0; f < fields.size(); ++f) {
-        scratch_[f].resize(static_cast<std::size_t>(kept));
+        Column& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
+        resize_sparingly(scratch, static_cast<std::size_t>(kept));
         const double* from = fields[f]->data();
-        double* to = scratch_[f].data();
+        double* to = scratch.data();
         for (Index p = 0; p < kept; ++p) to[p] = from[order[p]];
-        fields[f]->swap(scratch_[f]);
+        fields[f]->swap(scratch);
     }
-    id_scratch_.resize(static_cast<std::size_t>(kept));
+    resize_sparingly(id_scratch_, static_cast<std::size_t>(kept));
     for (Index p = 0; p < kept; ++p) id_scratch_[p] = columns.id[order[p]];
     columns.id.swap(id_scratch_);
     list_tiles(grid, active);

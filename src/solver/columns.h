@@ -3,22 +3,25 @@
 #include <array>
 #include <vector>
 
+#include "base/staggered.h"
 #include "grid/tile_grid.h"
 
 namespace frana {
 
 /// Memory that an array holds [bytes].
-template <class T>
-Index allocated(const std::vector<T>& array) { return static_cast<Index>(array.capacity() * sizeof(T)); }
+template <class Array>
+Index allocated(const Array& array) {
+    return static_cast<Index>(array.capacity() * sizeof(typename Array::value_type));
+}
 
 /// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI.
 struct Columns {
-    std::vector<double> x, y;                ///< position [cells]
-    std::vector<double> vx, vy;              ///< velocity [m/s], half a step behind the position
-    std::vector<double> cxx, cxy, cyx, cyy;  ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
-    std::vector<double> mass;                ///< [kg]
-    std::vector<double> r1x, r1y, r2x, r2y;  ///< edges of the point's domain [cells]
-    std::vector<double> depth;               ///< sampled from the nodes (paper preset: carried) [m]
+    Column x, y;                ///< position [cells]
+    Column vx, vy;              ///< velocity [m/s], half a step behind the position
+    Column cxx, cxy, cyx, cyy;  ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
+    Column mass;                ///< [kg]
+    Column r1x, r1y, r2x, r2y;  ///< edges of the point's domain [cells]
+    Column depth;               ///< sampled from the nodes (paper preset: carried) [m]
     std::vector<std::int64_t> id;            ///< constant through sorting; children of a split get new ones
 
     Index count() const { return static_cast<Index>(x.size()); }
@@ -34,12 +37,12 @@ struct Columns {
     }
     Index bytes() const {
         Index sum = allocated(id);
-        each([&](const std::vector<double>& column) { sum += allocated(column); });
+        each([&](const Column& column) { sum += allocated(column); });
         return sum;
     }
     void resize(Index count) {
-        each([&](std::vector<double>& column) { column.resize(static_cast<std::size_t>(count)); });
-        id.resize(static_cast<std::size_t>(count));
+        each([&](Column& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
+        resize_sparingly(id, static_cast<std::size_t>(count));
     }
 
 private:
@@ -59,17 +62,17 @@ public:
     /// Memory that grows with the points [bytes].
     Index bytes() const {
         Index sum = allocated(key_) + allocated(order_) + allocated(id_scratch_);
-        for (const std::vector<double>& column : scratch_) sum += allocated(column);
+        for (const Column& column : scratch_) sum += allocated(column);
         return sum;
     }
 
 private:
     void list_tiles(const TileGrid& grid, ActiveTiles& active);
 
-    std::vector<Index> key_, order_;
+    std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile
     std::vector<Index> tile_count_;   ///< per tile of the domain; only entries in `used_` are non-zero
     std::vector<Index> used_;
-    std::vector<std::vector<double>> scratch_;  ///< one per field: they are permuted side by side
+    std::vector<Column> scratch_;     ///< one per thread: columns are permuted one by one and change places with it
     std::vector<std::int64_t> id_scratch_;
 };
 

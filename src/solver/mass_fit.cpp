@@ -151,7 +151,7 @@ bool inside(const Flow& flow, Index i, Index j) {
 
 MassFit fit_masses(Flow& flow, double level) {
     MassFit fit;
-    const std::vector<double> start = flow.columns.mass;
+    const std::vector<double> start(flow.columns.mass.begin(), flow.columns.mass.end());
     // A mass that meets its limits stays there, with no weight of its own, and the others are fitted again.
     std::vector<double> from = start, weight = start;
     FitSystem system(flow, weight);

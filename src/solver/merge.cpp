@@ -73,7 +73,7 @@ Pick cheapest(const Columns& c, const Index* points, Index count) {
 }  // namespace
 
 Merger::Merger(const Flow& flow) {
-    order_.resize(static_cast<std::size_t>(flow.columns.count()));
+    resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
     for (Index n = 0; n < flow.active.count(); ++n) {
         const Squares squares(flow, n, order_.data() + flow.active.begin[n]);
         for (Index s = 0; s < kSide * kSide; ++s) most_ = std::max(most_, squares.held(s));
@@ -82,7 +82,7 @@ Merger::Merger(const Flow& flow) {
 
 Index Merger::merge(Flow& flow) {
     gone_.assign(static_cast<std::size_t>(flow.columns.count()), 0);
-    order_.resize(static_cast<std::size_t>(flow.columns.count()));
+    resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
     for_each_tile(flow.active, [&](Index n) { merged_[n] = merge_tile(flow, n); });
     Index total = 0;

@@ -47,7 +47,7 @@ void halve(Flow& flow, Index p, Index q, bool first) {
     rx *= 0.5;
     ry *= 0.5;
     c.mass[p] *= 0.5;
-    c.each([&](std::vector<double>& column) { column[q] = column[p]; });
+    c.each([&](Column& column) { column[q] = column[p]; });
     const double dvx = flow.cell * (c.cxx[p] * dx + c.cxy[p] * dy), dvy = flow.cell * (c.cyx[p] * dx + c.cyy[p] * dy);
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
     c.x[q] = std::clamp(c.x[p] - dx, 0.0, x_max);
