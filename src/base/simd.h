@@ -80,6 +80,12 @@ template <class Real>
     second = __builtin_shuffle(a, b, Mask4{1, 3, 5, 7});
 }
 
+/// Back again.
+[[gnu::always_inline]] inline void zip(Double4 first, Double4 second, void* pairs) {
+    store(pairs, __builtin_shuffle(first, second, Mask4{0, 4, 1, 5}));
+    store(static_cast<double*>(pairs) + 4, __builtin_shuffle(first, second, Mask4{2, 6, 3, 7}));
+}
+
 /// Rows to columns: lane n of a, b, c, d becomes the value to[n].
 [[gnu::always_inline]] inline void transpose(Double4 a, Double4 b, Double4 c, Double4 d, Double4 to[4]) {
     const Double4 ab0 = __builtin_shuffle(a, b, Mask4{0, 4, 2, 6}), ab1 = __builtin_shuffle(a, b, Mask4{1, 5, 3, 7});

@@ -45,4 +45,12 @@ void resize_sparingly(Array& array, std::size_t count) {
     array.resize(count);
 }
 
+/// Fills `count` places with `value`, with room to grow as above.
+template <class Array>
+void assign_sparingly(Array& array, std::size_t count, const typename Array::value_type& value) {
+    array.clear();
+    if (count > array.capacity()) array.reserve(count + count / 8);
+    array.resize(count, value);
+}
+
 }  // namespace frana

@@ -32,6 +32,8 @@ struct Flow {
     bool walls;      ///< sides are mirrors; otherwise open
     bool steep;      ///< velocities follow the bed; otherwise they are horizontal
     Scheme scheme;
+    std::vector<Index> shore;         ///< tiles of the work list that have margin nodes (mark_margin)
+    std::vector<std::uint8_t> marked; ///< scratch of mark_margin, one per tile of the work list
     std::vector<TileSums> tile_sums;  ///< scratch of the node loops, so that a step allocates nothing
     double dry_depth() const { return 1e-14 * cell; }  ///< round-off of a depth [m]
 
@@ -51,6 +53,14 @@ void for_each_node_of(const TileGrid& grid, Index tile, Body&& body) {
         const Index row = grid.at(i0, j);
         for (Index n = 0; n < kTile; ++n) body(row + n, i0 + n, j);
     }
+}
+
+/// Calls body(storage index, i, j) for the first of each four nodes in a row of a tile.
+template <class Body>
+void for_each_four_of(const TileGrid& grid, Index tile, Body&& body) {
+    const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+    for (Index j = j0; j < j0 + kTile; ++j)
+        for (Index n = 0; n < kTile; n += 4) body(grid.at(i0 + n, j), i0 + n, j);
 }
 
 /// Calls body(ghost, mirror) for the node pairs on both ends of one axis (0: x, 1: y), layers `first` to kGhosts;

@@ -81,7 +81,7 @@ Merger::Merger(const Flow& flow) {
 }
 
 Index Merger::merge(Flow& flow) {
-    gone_.assign(static_cast<std::size_t>(flow.columns.count()), 0);
+    assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
     resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
     for_each_tile(flow.active, [&](Index n) { merged_[n] = merge_tile(flow, n); });

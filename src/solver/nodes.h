@@ -1,5 +1,7 @@
 #pragma once
 // Node arrays of the depth-averaged step, on the storage of a TileGrid.
+#include <cstring>
+
 #include "grid/tile_grid.h"
 
 namespace frana {
@@ -29,11 +31,28 @@ enum NodeFlag : std::uint8_t {
     kMoving = 32,  ///< has momentum of its own: more than round-off of mass, not only sub-points
 };
 
+/// Whether each of `Word`'s flags from f on has all bits of `set` and none of `unset`.
+template <class Word>
+inline bool all_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t unset) {
+    constexpr Word kEach = static_cast<Word>(0x0101010101010101u);
+    Word word;
+    std::memcpy(&word, f, sizeof word);
+    return (word & (kEach * static_cast<Word>(set | unset))) == kEach * set;
+}
+inline bool four_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t unset) {
+    return all_have<std::uint32_t>(f, set, unset);
+}
+inline bool eight_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t unset) {
+    return all_have<std::uint64_t>(f, set, unset);
+}
+
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
         : deposit(grid.size() + 1), column_mass(grid.size()), force(with_force ? grid.size() : 0), depth(grid.size()), surface(grid.size()),
-          surface_next(grid.size()), wave_x(grid.size()), row_known(grid.size()), before(grid.size()), motion(grid.size() + 1), viscous_flux(grid.size()),
-          shock(grid.size()), flags(grid.size()) {}
+          surface_next(grid.size()), wave_x(grid.size()), row_known(grid.size()), before(grid.size()),
+          motion(grid.size() + 1), viscous_flux(grid.size()),
+          shock(grid.size()), sensed(grid.size()),
+          flags(grid.size()) {}
 
     Deposit* deposits() { return aligned(deposit.data()); }
     const Deposit* deposits() const { return aligned(deposit.data()); }
@@ -54,6 +73,7 @@ struct Nodes {
     LazyArray<Motion> motion;        ///< use motions(), for the same reason
     LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^2/s^2]
     LazyArray<Pair> shock;           ///< sensor of those two faces, 0 (smooth) to 1 (bore) [1]
+    LazyArray<std::uint8_t> sensed;  ///< 1 where either of `shock` is above zero
     LazyArray<std::uint8_t> flags;   ///< NodeFlag bits
 
 private:

@@ -1,36 +1,57 @@
 #include "solver/peaks.h"
 
-#include <algorithm>
+#include "base/simd.h"
 
 namespace frana {
 
-BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, double vx, double vy) {
-    double gravity = flow.gravity, rise = 0.0, cosine2 = 1.0;
+namespace {
+
+template <class Real>
+struct Contact { Real speed, pressure; };
+
+/// bed_contact of one node or four.
+template <class Real>
+Contact<Real> contact(const Flow& flow, bool steep, bool curved, Index k, Real vx, Real vy) {
+    Real gravity = Real{} + flow.gravity, rise{}, cosine2 = Real{} + 1.0;
     if (steep) {
-        const double bx = flow.bed.slope_x[k], by = flow.bed.slope_y[k];
+        const Real bx = read<Real>(&flow.bed.slope_x[k]), by = read<Real>(&flow.bed.slope_y[k]);
         rise = vx * bx + vy * by;
         cosine2 = 1.0 / (1.0 + bx * bx + by * by);
         if (curved)
-            gravity = std::max(0.0, gravity + vx * vx * flow.bed.hxx[k] + 2.0 * vx * vy * flow.bed.hxy[k] +
-                                        vy * vy * flow.bed.hyy[k]);
+            gravity = max(Real{}, flow.gravity + vx * vx * read<Real>(&flow.bed.hxx[k]) +
+                                      2.0 * vx * vy * read<Real>(&flow.bed.hxy[k]) +
+                                      vy * vy * read<Real>(&flow.bed.hyy[k]));
     }
-    return {std::sqrt(vx * vx + vy * vy + rise * rise), flow.density * gravity * cosine2 * flow.nodes.depth[k]};
+    return {sqrt(vx * vx + vy * vy + rise * rise),
+            flow.density * gravity * cosine2 * read<Real>(&flow.nodes.depth[k])};
+}
+
+void raise(double* peaks, Double4 values) { store(peaks, max(load(peaks), values)); }
+
+}  // namespace
+
+BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, double vx, double vy) {
+    const Contact<double> c = contact<double>(flow, steep, curved, k, vx, vy);
+    return {c.speed, c.pressure};
 }
 
 void update_peaks(const Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            const double h = flow.nodes.depth[k];
-            if (h <= 0.0) return;
-            if (h > footprint_depth && !(peaks.depth[k] > footprint_depth)) peaks.arrival[k] = time;
-            peaks.depth[k] = std::max(peaks.depth[k], h);
-            const Pair v = flow.nodes.before[k];
-            const BedContact contact = bed_contact(flow, steep, curved, k, v.x, v.y);
-            peaks.pressure[k] = std::max(peaks.pressure[k], contact.pressure);
-            if (h < 0.1 * footprint_depth) return;
-            peaks.speed[k] = std::max(peaks.speed[k], contact.speed);
-            peaks.dynamic_pressure[k] =
-                std::max(peaks.dynamic_pressure[k], flow.density * contact.speed * contact.speed);
+        for_each_four_of(flow.grid, tile, [&](Index k, Index, Index) {
+            const Double4 h = load(&flow.nodes.depth[k]), none = {};
+            if (!any(h > 0.0)) return;
+            if (any((h > footprint_depth) & (load(&peaks.depth[k]) <= footprint_depth)))
+                for (Index n = k; n < k + 4; ++n)
+                    if (flow.nodes.depth[n] > footprint_depth && !(peaks.depth[n] > footprint_depth))
+                        peaks.arrival[n] = time;
+            Double4 vx, vy;
+            unzip(&flow.nodes.before[k], vx, vy);
+            const Contact<Double4> c = contact(flow, steep, curved, k, vx, vy);
+            const Double4 speed = select(h < 0.1 * footprint_depth, none, c.speed);
+            raise(&peaks.depth[k], h);
+            raise(&peaks.pressure[k], c.pressure);
+            raise(&peaks.speed[k], speed);
+            raise(&peaks.dynamic_pressure[k], flow.density * speed * speed);
         });
     });
 }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "base/simd.h"
 #include "solver/shock.h"
 
 namespace frana {
@@ -97,26 +98,31 @@ bool extrapolate(const Flow& flow, Index k, double& value) {
     return true;
 }
 
-void shoreline_sweep(Flow& flow) {
-    Nodes& nodes = flow.nodes;
+/// Runs body(k) for the margin nodes inside the walls.
+template <class Body>
+void for_each_margin_node(Flow& flow, Body&& body) {
     const auto inside = [&](Index i, Index j) {
         return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
     };
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
-            if (!(nodes.flags[k] & kMargin) || !inside(i, j)) return;
-            double value;
-            if (extrapolate(flow, k, value)) nodes.surface_next[k] = value;
-            else nodes.surface_next[k] = std::numeric_limits<double>::quiet_NaN();  // no candidate: stays flagged
+    const Index count = static_cast<Index>(flow.shore.size());
+#pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
+    for (Index n = 0; n < count; ++n)
+        for_each_node_of(flow.grid, flow.shore[static_cast<std::size_t>(n)], [&](Index k, Index i, Index j) {
+            if ((flow.nodes.flags[k] & kMargin) && inside(i, j)) body(k);
         });
+}
+
+void shoreline_sweep(Flow& flow) {
+    Nodes& nodes = flow.nodes;
+    for_each_margin_node(flow, [&](Index k) {
+        double value;
+        if (extrapolate(flow, k, value)) nodes.surface_next[k] = value;
+        else nodes.surface_next[k] = std::numeric_limits<double>::quiet_NaN();  // no candidate: stays flagged
     });
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
-            if (!(nodes.flags[k] & kMargin) || !inside(i, j)) return;
-            if (std::isnan(nodes.surface_next[k])) return;
-            nodes.surface[k] = nodes.surface_next[k];
-            nodes.flags[k] = static_cast<std::uint8_t>(nodes.flags[k] & ~kMargin);
-        });
+    for_each_margin_node(flow, [&](Index k) {
+        if (std::isnan(nodes.surface_next[k])) return;
+        nodes.surface[k] = nodes.surface_next[k];
+        nodes.flags[k] = static_cast<std::uint8_t>(nodes.flags[k] & ~kMargin);
     });
 }
 
@@ -128,9 +134,57 @@ bool five_known(const Nodes& nodes, Index k, Index step) {
     return (all & kWet) && !(any & kMargin);
 }
 
-/// Part of the 2-cell wave along one direction: a sixteenth of the fourth difference.
-double wave(const double* e, Index step) {
-    return ((e[-2 * step] + e[2 * step]) - 4.0 * (e[-step] + e[step]) + 6.0 * e[0]) / 16.0;
+/// Part of the 2-cell wave along one direction, of one node or four: a sixteenth of the fourth difference.
+template <class Real>
+Real wave(const double* e, Index step) {
+    const auto at = [&](Index n) { return read<Real>(e + n * step); };
+    return ((at(-2) + at(2)) - 4.0 * (at(-1) + at(1)) + 6.0 * at(0)) / 16.0;
+}
+
+void wave_along_x(Nodes& nodes, Index k) {
+    const double* e = nodes.surface.data() + k;
+    if (eight_have(nodes.flags.data() + k - 2, kWet, kMargin)) {
+        std::memset(nodes.row_known.data() + k, 1, 4);
+        store(&nodes.wave_x[k], wave<Double4>(e, 1));
+        return;
+    }
+    for (Index n = 0; n < 4; ++n) {
+        nodes.row_known[k + n] = five_known(nodes, k + n, 1);
+        nodes.wave_x[k + n] = nodes.row_known[k + n] ? wave<double>(e + n, 1) : 0.0;
+    }
+}
+
+/// Four nodes in a row without margin or bore nearby.
+bool calm(const Nodes& nodes, Index k, Index up) {
+    const std::uint8_t *f = nodes.flags.data() + k, *row = nodes.row_known.data() + k, *s = nodes.sensed.data() + k - 2;
+    for (Index n = -2; n <= 2; ++n)
+        if (!four_have(f + n * up, kWet, kMargin) || !four_have(row + n * up, 1, 0)) return false;
+    for (Index n = -2; n <= 1; ++n)
+        if (!eight_have(s + n * up, 0, 1)) return false;
+    return true;
+}
+
+/// (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; where the product is not known, two thirds
+/// of each: the waves along one axis and the chequerboard then both keep a third.
+void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool sensed) {
+    nodes.surface_next[k] = nodes.surface[k];
+    const bool x = nodes.row_known[k], y = five_known(nodes, k, up);
+    if (!x && !y) return;
+    const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
+    const double strength = flow.scheme.filter * held;
+    const double wave_y = y ? wave<double>(nodes.surface.data() + k, up) : 0.0;
+    const std::uint8_t* row = nodes.row_known.data() + k;
+    const bool all = x && y && row[up] && row[-up] && row[2 * up] && row[-2 * up];
+    const double both = all ? strength * wave<double>(nodes.wave_x.data() + k, up) : 0.0;
+    const double share = x && y && !all ? 2.0 / 3.0 : 1.0;
+    nodes.surface_next[k] -= share * strength * (nodes.wave_x[k] + wave_y - both);
+}
+
+void filter_calm(const Flow& flow, Nodes& nodes, Index k, Index up) {
+    const double strength = flow.scheme.filter;
+    const Double4 wave_y = wave<Double4>(nodes.surface.data() + k, up);
+    const Double4 both = strength * wave<Double4>(nodes.wave_x.data() + k, up);
+    store(&nodes.surface_next[k], load(&nodes.surface[k]) - strength * (load(&nodes.wave_x[k]) + wave_y - both));
 }
 
 }  // namespace
@@ -182,9 +236,11 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
 }
 
 void mark_margin(Flow& flow) {
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
+    flow.marked.assign(flow.active.work.size(), 0);
+    for_each_work_tile(flow.active, [&](Index n, Index tile) {
         const WetRows wet(flow, tile);
         if (!wet.any) return;
+        std::uint8_t any = 0;
         std::uint32_t across[kTile + 4];  // this node and two each way in x
         for (Index j = 0; j < kTile + 4; ++j) {
             const std::uint32_t r = wet.row[j];
@@ -202,12 +258,17 @@ void mark_margin(Flow& flow) {
                 if (!(r[2] & bit)) continue;
                 std::uint8_t flag = flags[i] & (kWet | kMoving);
                 if (!(inner & bit)) flag |= kMargin;
+                any |= flag;
                 if (a[2] & bit) flag |= kWideX;
                 if (wide_y & bit) flag |= kWideY;
                 flags[i] = flag;
             }
         }
+        flow.marked[n] = any & kMargin;
     });
+    flow.shore.clear();
+    for (std::size_t n = 0; n < flow.marked.size(); ++n)
+        if (flow.marked[n]) flow.shore.push_back(flow.active.work[n]);
     mirror_surface(flow);
 }
 
@@ -224,26 +285,15 @@ void filter(Flow& flow) {
     const Index up = flow.grid.stride();
     const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            nodes.row_known[k] = five_known(nodes, k, 1);
-            nodes.wave_x[k] = nodes.row_known[k] ? wave(nodes.surface.data() + k, 1) : 0.0;
-        });
+        for_each_four_of(flow.grid, tile, [&](Index k, Index, Index) { wave_along_x(nodes, k); });
     });
-    // (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; where the product is not known, two thirds
-    // of each: the waves along one axis and the chequerboard then both keep a third.
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            nodes.surface_next[k] = nodes.surface[k];
-            const bool x = nodes.row_known[k], y = five_known(nodes, k, up);
-            if (!x && !y) return;
-            const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
-            const double strength = flow.scheme.filter * held;
-            const double wave_y = y ? wave(nodes.surface.data() + k, up) : 0.0;
-            const std::uint8_t* row = nodes.row_known.data() + k;
-            const bool all = x && y && row[up] && row[-up] && row[2 * up] && row[-2 * up];
-            const double both = all ? strength * wave(nodes.wave_x.data() + k, up) : 0.0;
-            const double share = x && y && !all ? 2.0 / 3.0 : 1.0;
-            nodes.surface_next[k] -= share * strength * (nodes.wave_x[k] + wave_y - both);
+        for_each_four_of(flow.grid, tile, [&](Index k, Index, Index) {
+            if (calm(nodes, k, up)) {
+                filter_calm(flow, nodes, k, up);
+            } else {
+                for (Index n = 0; n < 4; ++n) filter_node(flow, nodes, k + n, up, sensed);
+            }
         });
     });
     std::swap(nodes.surface, nodes.surface_next);

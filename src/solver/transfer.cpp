@@ -75,7 +75,7 @@ public:
 
     PointSums gather(Flow& flow, double dt) override {
         tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
-        gone_.assign(static_cast<std::size_t>(flow.columns.count()), 0);
+        assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
         for_each_tile(flow.active, [&](Index n) {
             PointSums sums;
             for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) gather_point(flow, p, dt, sums);

@@ -138,7 +138,7 @@ private:
 
     void prepare_gather(const Flow& flow) {
         tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
-        gone_.assign(static_cast<std::size_t>(flow.columns.count()), 0);
+        assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
     }
 
     /// Clears the nodes; returns the largest 2 mu_eff that is stable explicitly [Pa s].

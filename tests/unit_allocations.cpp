@@ -1,0 +1,52 @@
+// A warm step asks the system for no memory.
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "analytic_scene.h"
+#include "catch.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}  // namespace
+
+void* operator new(std::size_t size) {
+    ++allocations;
+    if (void* block = std::malloc(size)) return block;
+    throw std::bad_alloc();
+}
+void operator delete(void* block) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+
+using namespace frana;
+
+TEST_CASE("Steps of a warm run allocate nothing", "[speed]") {
+    Scene scene = verify::scene_on(120, 60, 2.0, [](double x, double) { return -0.5 * x; });
+    scene.density = 1800.0;
+    scene.bed_law = bed::Voellmy{0.3, 1000.0};
+    scene.rheology = rheology::Bingham{100.0, 200.0};
+    scene.scheme.split = false;  // arrays grow with the number of points, by an eighth at a time
+    verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
+    DepthAveraged simulation(scene);
+    for (int step = 0; step < 30; ++step) simulation.advance(1e9);
+    std::size_t tiles = 0;
+    long most = 0, counted = 0, steady = 0;
+    for (int step = 0; step < 40; ++step) {
+        const long before = allocations;
+        simulation.advance(1e9);
+        const long asked = allocations - before;
+        const std::size_t work = simulation.flow().active.work.size();
+        // Lists of tiles may grow where the flow covers more than it ever did, each when it is next used.
+        if (work > tiles) steady = 0;
+        else if (++steady > 3) {
+            most = std::max(most, asked);
+            ++counted;
+        }
+        tiles = std::max(tiles, work);
+    }
+    CHECK(counted >= 20);
+    CHECK(most == 0);
+    const long before = allocations;
+    const std::vector<double> proof(1000);
+    CHECK(allocations == before + 1);  // and that would be seen
+}
