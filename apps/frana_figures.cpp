@@ -68,13 +68,15 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
     source.survey = GdalReader().read_survey(survey, source.bed.geometry.pixel_extent(), source.bed.crs_wkt, warnings);
 }
 
-/// A node field of a frame as a raster; without terrain nodata.
-ProductRaster from_frame(const LoadedFrame& frame, const std::string& field, const std::string& name) {
+/// A component of a node field of a frame as a raster; without terrain nodata.
+ProductRaster from_frame(const LoadedFrame& frame, const std::string& field, const std::string& name,
+                         std::size_t component = 0) {
     ProductRaster product{name, frame.units.at(field), field, Raster::filled(frame.grid, Raster::nodata)};
     const std::vector<double>& values = frame.nodes.at(field);
     const std::vector<double>& elevation = frame.nodes.at("elevation");
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (!std::isnan(elevation[i])) product.raster.values[i] = values[i];
+    const std::size_t components = static_cast<std::size_t>(frame.components.at(field));
+    for (std::size_t i = 0; i < elevation.size(); ++i)
+        if (!std::isnan(elevation[i])) product.raster.values[i] = values[i * components + component];
     return product;
 }
 
@@ -123,17 +125,33 @@ void read_bed(FigureSource& source, std::vector<std::string>& warnings) {
                         source.run_dir.string()));
 }
 
-/// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png and map_speed_t12.5s.png.
+/// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png, map_speed_t12.5s.png, and with stresses
+/// map_effective_stress_xx_t12.5s.png and so on.
 void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigure>& figures,
                  std::vector<std::string>& warnings) {
     const LoadedFrame frame = read_frame(source.run_dir, nearest_frame(source.run_dir, time));
+    const std::string moment = fmt::format("{:.6g}", frame.time);
+    std::optional<ProductRaster> depth;
+    if (frame.has("depth")) depth = from_frame(frame, "depth", "depth");
+    const ProductRaster* extent = depth ? &*depth : nullptr;
     for (const char* field : {"depth", "speed"}) {
         if (!frame.has(field)) {
             warnings.push_back(fmt::format("no {} in the frames of this run, so no map of it", field));
             continue;
         }
-        const ProductRaster product = from_frame(frame, field, fmt::format("{}_t{:.6g}s", field, frame.time));
-        draw_map(source, product, fmt::format("{} at t = {:.6g} s", field, frame.time), figures, warnings);
+        const ProductRaster product = from_frame(frame, field, fmt::format("{}_t{}s", field, moment));
+        draw_map(source, product, fmt::format("{} at t = {} s", field, moment), figures, warnings, extent);
+    }
+    constexpr const char* kComponents[] = {"xx", "yy", "xy"};
+    for (const char* field : {"effective_stress", "stress"}) {
+        if (!frame.has(field) || frame.components.at(field) != 3) continue;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const ProductRaster product =
+                from_frame(frame, field, fmt::format("{}_{}_t{}s", field, kComponents[n], moment), n);
+            const std::string what = std::string(field) == "stress" ? "stress" : "effective stress";
+            draw_map(source, product, fmt::format("{} {} at t = {} s", what, kComponents[n], moment), figures, warnings,
+                     extent);
+        }
     }
 }
 

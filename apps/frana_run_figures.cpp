@@ -14,22 +14,20 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-/// Where the flow was never deep enough to count, other fields say nothing. Zero and not nodata, so that the
-/// outline stays smooth.
-void flatten_shallow(std::vector<double>& field, const std::vector<ProductRaster>& rasters, double limit) {
-    const ProductRaster* peak = find_product(rasters, "peak_depth");
-    if (peak == nullptr || peak->raster.values.size() != field.size()) return;
-    for (std::size_t i = 0; i < field.size(); ++i)
-        if (!(peak->raster.values[i] > limit)) field[i] = 0.0;
-}
-
-MapFigure map_of(const FigureSource& source, const ProductRaster& product, const std::string& what) {
+/// `extent`: the depth that says where the flow is, for a field that is no depth.
+MapFigure map_of(const FigureSource& source, const ProductRaster& product, const std::string& what,
+                 const ProductRaster* extent) {
     const bool depth = product.unit == "m";
     MapFigure map;
     map.bed = source.bed;
     map.field = product.raster.values;
-    if (!depth) flatten_shallow(map.field, source.rasters, source.footprint_depth);
-    map.shown_above = depth ? source.footprint_depth : 0.1;  // [m] or [m/s]
+    map.shown_above = source.footprint_depth;
+    if (!depth && extent && extent->raster.values.size() == map.field.size()) {
+        map.outline_field = extent->raster.values;
+        for (double& value : map.outline_field) value = std::isnan(value) ? 0.0 : value;  // outlines stay smooth
+        map.outline_label = extent->name == "peak_depth" ? "peak depth [m]" : "depth [m]";
+    }
+    if (product.name.find("stress") != std::string::npos) map.colormap = Colormap::diverging;
     map.title = fmt::format("{}: {}", source.title, what);
     map.field_label =
         fmt::format("{} [{}]", what.substr(0, what.find(" at ")), product.unit);  // the title has the moment
@@ -62,11 +60,11 @@ void draw_view(const FigureSource& source, const ProductRaster& peak_depth, std:
 }  // namespace
 
 void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
-              std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+              std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings, const ProductRaster* extent) {
     const std::string caption = source.survey ? what + ", with the surveyed outline" : what;
     attempt(source, {fmt::format("figures/map_{}.png", product.name), caption}, figures, warnings,
             [&](const fs::path& png, std::string& why_not) {
-                return render_map(map_of(source, product, what), png, why_not);
+                return render_map(map_of(source, product, what, extent), png, why_not);
             });
 }
 
@@ -77,9 +75,10 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     };
     std::vector<DrawnFigure> figures;
     for (const MapRule& rule : {MapRule{"peak_depth", "peak depth"}, MapRule{"peak_speed", "peak speed"},
-                                MapRule{"final_depth", "depth at the end"}})
+                                MapRule{"peak_dynamic_pressure", "peak dynamic pressure"},
+                                MapRule{"arrival_time", "arrival time"}, MapRule{"final_depth", "depth at the end"}})
         if (const ProductRaster* product = find_product(source.rasters, rule.name))
-            draw_map(source, *product, rule.what, figures, warnings);
+            draw_map(source, *product, rule.what, figures, warnings, find_product(source.rasters, "peak_depth"));
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
         draw_view(source, *peak, figures, warnings);
     draw_overlay(source, figures, warnings);
@@ -95,7 +94,7 @@ void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
     if (!source.survey || peak == nullptr || source.bed.values.empty()) return;
     attempt(source, {"figures/compare.png", "simulated and surveyed extent"}, figures, warnings,
             [&](const fs::path& png, std::string& why_not) {
-                MapFigure map = map_of(source, *peak, "simulated and surveyed extent");
+                MapFigure map = map_of(source, *peak, "simulated and surveyed extent", nullptr);
                 map.field_label = "peak depth [m]";
                 map.profiles.clear();
                 if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});

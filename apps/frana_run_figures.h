@@ -32,9 +32,10 @@ struct FigureSource {
 /// line in `warnings` and never more: the run is worth more than its pictures.
 std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<std::string>& warnings);
 
-/// A map of one raster on the terrain: figures/map_<name>.png. `what` is its name for people.
+/// A map of one raster on the terrain: figures/map_<name>.png. `what` is its name for people, `extent` the depth
+/// that says where the flow is, for a raster that is no depth (nullptr: where the raster is above zero).
 void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
-              std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+              std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings, const ProductRaster* extent);
 
 /// figures/compare.png: the simulated extent (all pixels of peak_depth above footprint_depth) and the surveyed one;
 /// nothing without a survey, the terrain or the peak depth.

@@ -3,6 +3,8 @@
 #include "vtk_io/map_figure_layout.h"
 #include "vtk_io/map_figure_paint.h"
 
+#include <fmt/core.h>
+
 #include <fstream>
 
 #include "base/error.h"
@@ -212,4 +214,25 @@ TEST_CASE("A map for a folder that does not exist names the file", "[figures]") 
     CHECK_THROWS_WITH(render_map(figures::valley(), folder / "no/map.png", why_not),
                       Catch::Matchers::Contains("no/map.png: cannot be written"));
     CHECK(folder.files() == 0);
+}
+
+TEST_CASE("A field that is no depth is shown and outlined where the depth says, whatever its own value", "[figures]") {
+    MapFigure figure = figures::valley();
+    figure.outline_field = figure.field;
+    figure.outline_label = "depth [m]";
+    figure.field_label = "stress [Pa]";
+    figure.colormap = Colormap::diverging;
+    for (double& value : figure.field) value = -7.0;  // outside the flow too, where nobody may see it
+    for (std::size_t i = 0; i < figure.field.size(); ++i)
+        if (!(figure.outline_field[i] > figure.shown_above)) figure.field[i] = 5000.0;
+    figure.range.reset();
+    const MapLayout layout = lay_out(figure);
+    CHECK(layout.colours.low <= -7.0);
+    CHECK(layout.colours.high < 100.0);
+    CHECK(layout.legend.front().text == fmt::format("depth {:g} m", figure.shown_above));
+    if (cannot_draw()) return;
+    const Pixels picture = drawn(figure);
+    const Vec2 inside = layout.pixel(figures::deposit);
+    const Colour seen = at(picture, inside);
+    CHECK(seen.b > seen.r + 40);  // blue: below zero
 }

@@ -47,11 +47,17 @@ private:
         const GridGeometry pixels = layout_.pixel_grid();
         const Raster field{figure_.bed.geometry, figure_.field, "", ""};
         field_ = resampled(field, pixels, Between::linear);
+        double shown_above = figure_.shown_above;
+        if (!figure_.outline_field.empty()) {
+            const Raster outlined{figure_.bed.geometry, figure_.outline_field, "", ""};
+            field_.values = inside_outline(field_.values, resampled(outlined, pixels, Between::linear).values, shown_above);
+            shown_above = kAll;
+        }
         const Raster bed = resampled(figure_.bed, pixels, Between::smooth);
         const Pixels picture =
             figure_.shows_overlay()
                 ? painted_overlay(bed, *figure_.simulated, all_rings(*figure_.survey))
-                : painted(bed, field_, {figure_.colormap, layout_.colours, figure_.shown_above, 0.0});
+                : painted(bed, field_, {figure_.colormap, layout_.colours, shown_above, 0.0});
         canvas_.image(picture, static_cast<int>(layout_.frame.x0), static_cast<int>(layout_.frame.y0));
     }
 
@@ -127,7 +133,7 @@ private:
                 closed_line(ring, {colours::black, 0.1 * layout_.unit, {}}, false);
             return;
         }
-        Raster field{figure_.bed.geometry, figure_.field, "", ""};
+        Raster field{figure_.bed.geometry, figure_.outlined(), "", ""};
         for (double& value : field.values) value = std::isnan(value) ? 0.0 : std::abs(value);
         const Raster seen = resampled(field, coarser(layout_.pixel_grid(), 1), Between::linear);
         for (const Polyline& line : level_lines(seen, figure_.shown_above))
@@ -140,17 +146,17 @@ private:
         if (figure_.survey)
             for (const Polyline& ring : all_rings(*figure_.survey))
                 closed_line(ring, {colours::survey, figure_.survey_pen() * u, {}}, true);
-        for (const NamedLine& profile : figure_.profiles) {
-            const auto pieces = on_sheet(profile.line);
-            for (const auto& piece : pieces)
-                stroke_cased(canvas_, piece, {colours::black, 0.12 * u, {0.55 * u, 0.3 * u}});
-            if (!pieces.empty()) name(profile.name, pieces.front().front());
-        }
         for (const NamedPoint& gauge : figure_.gauges) {
             const Vec2 at = layout_.pixel(gauge.point);
             if (!layout_.frame.holds(at)) continue;
             draw_gauge(canvas_, at, u);
             name(gauge.name, {at.x(), at.y() + 0.3 * u});
+        }
+        for (const NamedLine& profile : figure_.profiles) {
+            const auto pieces = on_sheet(profile.line);
+            for (const auto& piece : pieces)
+                stroke_cased(canvas_, piece, {colours::black, 0.12 * u, {0.55 * u, 0.3 * u}});
+            if (!pieces.empty()) name(profile.name, pieces.front().front());
         }
     }
 
@@ -160,8 +166,16 @@ private:
         TextStyle style{0.9 * u, Across::left, Upward::middle, 0.0, false, true, {}};
         const bool room = at.x() + 1.2 * u + text_size(text, style).x() < layout_.frame.x1;
         if (!room) style.across = Across::right;
-        const double y = std::clamp(at.y(), layout_.frame.y0 + u, layout_.frame.y1 - u);
-        canvas_.text(text, {at.x() + (room ? 0.9 : -0.9) * u, y}, style);
+        const double width = text_size(text, style).x(), x = at.x() + (room ? 0.9 : -0.9) * u;
+        double y = std::clamp(at.y(), layout_.frame.y0 + u, layout_.frame.y1 - u);
+        const auto box = [&] { return Rectangle{room ? x : x - width, y - 0.6 * u, room ? x + width : x, y + 0.6 * u}; };
+        for (bool moved = true; moved;) {  // above the names that stand there already
+            moved = false;
+            for (const Rectangle& other : names_)
+                if (box().meets(other)) y = other.y1 + 0.61 * u, moved = true;
+        }
+        names_.push_back(box());
+        canvas_.text(text, {x, y}, style);
     }
 
     void axes() {
@@ -214,7 +228,8 @@ private:
     const MapLayout& layout_;
     Canvas canvas_;
     Raster field_;  ///< at the pixels of the frame
-    std::vector<Rectangle> labels_;
+    std::vector<Rectangle> labels_;  ///< of contours
+    std::vector<Rectangle> names_;   ///< of profiles and gauges
 };
 
 }  // namespace

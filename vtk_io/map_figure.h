@@ -25,6 +25,10 @@ struct MapFigure {
     Raster bed;                 ///< terrain [m]; NaN is plain light grey
     std::vector<double> field;  ///< on bed.geometry, row 0 south; NaN is not shown
     double shown_above = 0.1;   ///< shown (and outlined) where |field| exceeds this
+    /// With a field here, as large, `field` is shown (and the flow outlined) where this one exceeds `shown_above`,
+    /// whatever its own value; outline_label is its name and unit.
+    std::vector<double> outline_field;
+    std::string outline_label;
     std::string title;
     std::string field_label = "peak depth [m]";      ///< name and unit, for the colour bar
     std::optional<std::pair<double, double>> range;  ///< of the colours; default: from the field
@@ -40,6 +44,7 @@ struct MapFigure {
     int width = 1400;                            ///< at most [px]
     int height = 1200;                           ///< at most [px]
 
+    const std::vector<double>& outlined() const { return outline_field.empty() ? field : outline_field; }
     bool shows_overlay() const { return simulated && survey; }
     /// Thickness of the surveyed outline, in sizes of ordinary text: thinner where areas beside it are looked at.
     double survey_pen() const { return shows_overlay() ? 0.1 : 0.16; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 
@@ -142,7 +143,7 @@ void stretch(double& low, double& high, double length, double least, double most
 std::array<double, 4> wanted_view(const MapFigure& figure) {
     const auto all = figure.bed.geometry.pixel_extent();
     if (figure.focus) return *figure.focus;
-    auto covered = covered_extent(figure.bed.geometry, figure.field, figure.shown_above);
+    auto covered = covered_extent(figure.bed.geometry, figure.outlined(), figure.shown_above);
     if (!covered) return all;
     if (figure.survey && !figure.survey->parts.empty()) covered = united(*covered, extent_of(*figure.survey));
     std::array<double, 4> view = *covered;
@@ -207,7 +208,7 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
         legend.push_back(entry(Kind::area, colours::beyond, 0.0, "simulated only"));
         legend.push_back(entry(Kind::area, colours::missed, 0.0, "surveyed only"));
     }
-    const auto [name, unit] = name_and_unit(figure.field_label);
+    const auto [name, unit] = name_and_unit(figure.outline_field.empty() ? figure.field_label : figure.outline_label);
     legend.push_back(
         entry(Kind::line, colours::black, 0.1 * u,
               fmt::format("{} {:g}{}{}", name, figure.shown_above, unit.empty() ? "" : " ", unit)));
@@ -301,12 +302,22 @@ void place(MapLayout& layout, const MapFigure& figure, const std::array<double, 
 
 }  // namespace
 
+std::vector<double> inside_outline(std::vector<double> field, const std::vector<double>& outlined, double shown_above) {
+    for (std::size_t i = 0; i < field.size(); ++i)
+        if (!(std::abs(outlined[i]) > shown_above)) field[i] = std::numeric_limits<double>::quiet_NaN();
+    return field;
+}
+
 MapLayout lay_out(const MapFigure& figure) {
     MapLayout layout;
     layout.width = figure.width;
     layout.height = figure.height;
     layout.unit = text_unit(figure.width, figure.height);
-    layout.colours = colour_range(figure.field, figure.shown_above, figure.colormap, figure.range);
+    if (figure.outline_field.empty())
+        layout.colours = colour_range(figure.field, figure.shown_above, figure.colormap, figure.range);
+    else
+        layout.colours = colour_range(inside_outline(figure.field, figure.outline_field, figure.shown_above), kAll,
+                                      figure.colormap, figure.range);
     const auto wanted = wanted_view(figure);
     for (int pass = 0; pass < 4; ++pass) place(layout, figure, wanted);  // margins and labels settle in two
     return layout;

@@ -74,6 +74,10 @@ struct MapLayout {
     double row_height() const { return 2.3 * unit; }
 };
 
+/// The field where |outlined| exceeds the limit, elsewhere NaN; every number of it is then shown.
+std::vector<double> inside_outline(std::vector<double> field, const std::vector<double>& outlined, double shown_above);
+constexpr double kAll = -1.0;  ///< "shown above" that hides NaN only
+
 MapLayout lay_out(const MapFigure& figure);
 
 }  // namespace frana
