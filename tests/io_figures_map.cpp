@@ -1,5 +1,6 @@
 // Maps: what is drawn, where, in which colour, and what happens when nothing can be drawn.
 #include "io_figures_scene.h"
+#include "vtk_io/filmstrip.h"
 #include "vtk_io/map_figure_layout.h"
 #include "vtk_io/map_figure_paint.h"
 
@@ -235,4 +236,35 @@ TEST_CASE("A field that is no depth is shown and outlined where the depth says, 
     const Vec2 inside = layout.pixel(figures::deposit);
     const Colour seen = at(picture, inside);
     CHECK(seen.b > seen.r + 40);  // blue: below zero
+}
+
+TEST_CASE("A filmstrip shows its maps in rows, with one view and one range", "[figures]") {
+    if (cannot_draw()) return;
+    Filmstrip strip;
+    strip.maps = {figures::valley(), figures::valley(), figures::valley()};
+    for (MapFigure& map : strip.maps) map.range.reset();
+    for (double& value : strip.maps[1].field) value *= 0.5;
+    for (double& value : strip.maps[2].field) value = 0.0;
+    strip.columns = 2;
+    strip.width = 1000;
+    const figures::Folder folder;
+    std::string why_not;
+    REQUIRE(render_filmstrip(strip, folder / "strip.png", why_not));
+    CHECK(folder.files() == 1);
+    const Pixels picture = read_png(folder / "strip.png");
+    CHECK(picture.width <= 1000);
+    const int wide = picture.width / 2, high = picture.height / 2;
+    // Where the first map has the deposit, the second has half of it in another colour, the third bare ground.
+    const auto colour = [&](int column, int row) {
+        const Rectangle part{0.2 * wide + column * wide, 0.2 * high + row * high, 0.75 * wide + column * wide,
+                             0.9 * high + row * high};
+        double most = 0.0;
+        for (int y = static_cast<int>(part.y0); y < static_cast<int>(part.y1); ++y)
+            for (int x = static_cast<int>(part.x0); x < static_cast<int>(part.x1); ++x)
+                most = std::max(most, static_cast<double>(figures::saturation(picture.at(x, y))));
+        return most;
+    };
+    CHECK(colour(0, 1) > 60.0);
+    CHECK(colour(1, 1) > 60.0);
+    CHECK(colour(0, 0) < colour(0, 1));
 }
