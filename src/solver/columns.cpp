@@ -64,6 +64,29 @@ void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<
     list_tiles(grid, active);
 }
 
+void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+    resize_sparingly(order_, static_cast<std::size_t>(columns.count()));
+    std::int32_t kept = 0;
+    for (Index n = 0, p = 0; n < active.count(); ++n) {
+        const Index end = active.begin[n + 1];
+        active.begin[n] = kept;
+        for (; p < end; ++p)
+            if (!gone[static_cast<std::size_t>(p)]) order_[static_cast<std::size_t>(kept++)] = static_cast<std::int32_t>(p);
+    }
+    active.begin[active.count()] = kept;
+    const std::int32_t* order = order_.data();
+    std::array<Column*, 14> fields{};
+    std::size_t found = 0;
+    columns.each([&](Column& column) { fields.at(found++) = &column; });
+#pragma omp parallel for schedule(dynamic, 1) if (kept > 4096)
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+        double* of = fields[f]->data();
+        for (Index p = 0; p < kept; ++p) of[p] = of[order[p]];  // in place: order[p] >= p
+    }
+    for (Index p = 0; p < kept; ++p) columns.id[p] = columns.id[order[p]];
+    columns.resize(kept);
+}
+
 void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
     for (auto& positions : active.colour) positions.clear();
     active.in_work.resize(static_cast<std::size_t>(grid.tiles()));

@@ -59,6 +59,8 @@ public:
     /// Sorts `columns` and rebuilds `active`. Same bits for any number of threads.
     /// `gone` (one byte per particle, may be empty) marks particles to drop.
     void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    /// Drops the points marked in `gone`; the others keep their order and tiles.
+    void drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Memory that grows with the points [bytes].
     Index bytes() const {
         Index sum = allocated(key_) + allocated(order_) + allocated(id_scratch_);

@@ -158,7 +158,7 @@ void DepthAveraged::adapt_points(bool points_left) {
         drift_ = 0.0;
     }
     if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_); }) > 0)
-        timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, merger_->gone(), flow_.active); });
+        timed_("sort", [&] { sorter_.drop(flow_.columns, merger_->gone(), flow_.active); });
 }
 
 /// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs

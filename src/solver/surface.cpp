@@ -187,41 +187,52 @@ void filter_calm(const Flow& flow, Nodes& nodes, Index k, Index up) {
     store(&nodes.surface_next[k], load(&nodes.surface[k]) - strength * (load(&nodes.wave_x[k]) + wave_y - both));
 }
 
-}  // namespace
-
 /// Mass and momentum of a node vanish together: however little it is, the velocity is right, and points that gather
 /// would miss it. Only denormal numbers are none.
 constexpr double kLeastMass = 1e-200;  ///< [kg]
 
-NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
+/// The sums of one tile: four nodes at a time.
+struct DepthSums {
+    Double4 potential{}, max_depth{}, covered_area{}, front2{};
+    TileSums of_tile() const { return {sum(potential), largest(max_depth), sum(covered_area), largest(front2)}; }
+};
+
+/// Depth, wetness, surface and velocity of four nodes in a row from what lies on them.
+void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, Index j, DepthSums& sums) {
     Nodes& nodes = flow.nodes;
-    const Deposit* deposits = nodes.deposits();
-    const double column = flow.density * flow.area, dry = flow.dry_depth();
+    const Deposit* d = nodes.deposits() + k;
+    const double column = flow.density * flow.area;
+    const Double4 none = {}, z = load(&flow.bed.z[k]), raw = load(&nodes.column_mass[k]) / column;
+    Double4 of[4];  // mass, px, py
+    transpose(load(d), load(d + 1), load(d + 2), load(d + 3), of);
+    const Mask4 wet = raw > flow.dry_depth(), moving = of[0] > kLeastMass;
+    for (int n = 0; n < 4; ++n)
+        nodes.flags[k + n] = static_cast<std::uint8_t>((wet[n] ? kWet : 0) | (moving[n] ? kMoving : 0));
+    const Double4 h = select(wet, raw, none), mass = select(moving, of[0], all(1.0));
+    store(&nodes.depth[k], h);
+    store(&nodes.surface[k], z + h);
+    zip(select(moving, of[1] / mass, none), select(moving, of[2] / mass, none), &nodes.before[k]);
+    if (!any(wet)) return;
+    const Double4 share = {flow.share(i, j), flow.share(i + 1, j), flow.share(i + 2, j), flow.share(i + 3, j)};
+    sums.potential += share * column * flow.gravity * h * (z + 0.5 * h);
+    sums.max_depth = max(sums.max_depth, h);
+    const Mask4 covered = h > request.footprint_depth;
+    const Double4 dx = static_cast<double>(i) - request.centre.x() + Double4{0.0, 1.0, 2.0, 3.0};
+    const double dy = static_cast<double>(j) - request.centre.y();
+    sums.covered_area += select(covered, share * flow.area, none);
+    sums.front2 = max(sums.front2, select(covered, (dx * dx + dy * dy) * flow.area, none));
+}
+
+}  // namespace
+
+NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
     std::vector<TileSums>& parts = flow.tile_sums;
     parts.assign(flow.active.work.size(), {});
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
-        NodeSums sums;
-        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
-            const Deposit d = deposits[k];
-            double h = nodes.column_mass[k] / column;
-            const bool moving = d.mass > kLeastMass;
-            nodes.flags[k] = static_cast<std::uint8_t>((h > dry ? kWet : 0) | (moving ? kMoving : 0));
-            if (!(h > dry)) h = 0.0;
-            nodes.depth[k] = h;
-            nodes.surface[k] = flow.bed.z[k] + h;
-            nodes.before[k] = {moving ? d.px / d.mass : 0.0, moving ? d.py / d.mass : 0.0};
-            if (h == 0.0) return;
-            const double share = flow.share(i, j);
-            sums.potential += share * column * flow.gravity * h * (flow.bed.z[k] + 0.5 * h);
-            sums.max_depth = std::max(sums.max_depth, h);
-            if (h > request.footprint_depth) {
-                sums.covered_area += share * flow.area;
-                const double dx = static_cast<double>(i) - request.centre.x();
-                const double dy = static_cast<double>(j) - request.centre.y();
-                sums.front2 = std::max(sums.front2, (dx * dx + dy * dy) * flow.area);
-            }
-        });
-        parts[n] = {sums.potential, sums.max_depth, sums.covered_area, sums.front2};
+        DepthSums sums;
+        for_each_four_of(flow.grid, tile,
+                         [&](Index k, Index i, Index j) { depth_of_four(flow, request, k, i, j, sums); });
+        parts[n] = sums.of_tile();
     });
     NodeSums total;
     for (const TileSums& part : parts) {
