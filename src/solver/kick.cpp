@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "law/bed_law.h"
+#include "solver/kick_bed.h"
 #include "solver/shock.h"
 #include "solver/surface.h"
 
@@ -45,60 +46,6 @@ Double4 wide_gradients(const Flow& flow, Index k, Index step) {
                                      (12.0 * flow.cell);
     return select(abs(slope) * flow.cell <= kRoundOff * abs(load(e)), none, slope);
 }
-
-/// P1's terrain: gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.
-template <class Real>
-struct GentleBed {
-    GentleBed(const Flow&, Index) {}
-};
-
-/// Driving slope of the surface, times its gravity: a = -gravity * (x, y).
-template <class Real>
-struct Drive { Real x, y; };
-
-/// Steep terrain. kLinear: to first order in the depth gradient. kCurvature: none, inertia (v.H.v in the acceleration
-/// only), full (in the friction too).
-template <class Real, Curvature kCurvature, bool kLinear>
-struct SteepBed {
-    Real bx, by, hxx{}, hxy{}, hyy{};
-    SteepBed(const Flow& flow, Index k) : bx(read<Real>(&flow.bed.slope_x[k])), by(read<Real>(&flow.bed.slope_y[k])) {
-        if constexpr (kCurvature != Curvature::none) {
-            hxx = read<Real>(&flow.bed.hxx[k]);
-            hxy = read<Real>(&flow.bed.hxy[k]);
-            hyy = read<Real>(&flow.bed.hyy[k]);
-        }
-    }
-    /// Gravity plus the bed's own vertical acceleration along the path, (g + v.H.v)+
-    Real gravity(double g, Real vx, Real vy) const {
-        if constexpr (kCurvature == Curvature::none) return Real{} + g;
-        return max(Real{}, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
-    }
-    /// grad(eta) / (1 + gradZ . grad(eta)): a column that accelerates vertically with its bed. The continuation
-    /// 1/(1 - q) for q < 0 keeps the factor positive where the surface slopes against a steep bed. Linear:
-    /// c^2 (gradZ + grad h - c^2 gradZ (gradZ . grad h)), the first terms of its series in grad h.
-    Drive<Real> drive(Real ex, Real ey, Real cosine) const {
-        if constexpr (kLinear) {
-            const Real c2 = cosine * cosine, hx = ex - bx, hy = ey - by, along = c2 * (bx * hx + by * hy);
-            return {c2 * (ex - bx * along), c2 * (ey - by * along)};
-        } else {
-            const Real q = bx * ex + by * ey, reduce = select(q >= 0.0, 1.0 / (1.0 + abs(q)), 1.0 - q);
-            return {reduce * ex, reduce * ey};
-        }
-    }
-};
-
-struct Gentle {
-    static constexpr bool kSteep = false;
-    template <class Real>
-    using Bed = GentleBed<Real>;
-};
-
-template <Curvature kCurvature, bool kLinear>
-struct Steep {
-    static constexpr bool kSteep = true;
-    template <class Real>
-    using Bed = SteepBed<Real, kCurvature, kLinear>;
-};
 
 /// A node, or four in a row.
 template <class Real>
