@@ -105,6 +105,7 @@ private:
 
     TransferKernel::Probe probe_;
     std::vector<std::vector<double>> frame_storage_;  ///< what the last frame's fields point to
+    std::size_t frame_used_ = 0;                      ///< of them
 };
 
 }  // namespace frana

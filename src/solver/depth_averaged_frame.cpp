@@ -46,15 +46,17 @@ BedHere bed_at(const Flow& flow, double x, double y) {
 
 Field& DepthAveraged::add_field(std::vector<Field>& fields, const char* name, const char* unit, int components,
                                 Index count) {
-    frame_storage_.emplace_back(static_cast<std::size_t>(count * components), 0.0);
-    fields.push_back({name, unit, components, frame_storage_.back().data(), count});
+    if (frame_used_ == frame_storage_.size()) frame_storage_.emplace_back();
+    std::vector<double>& storage = frame_storage_[frame_used_++];  // frames come alike: memory is asked for once
+    storage.assign(static_cast<std::size_t>(count * components), 0.0);
+    fields.push_back({name, unit, components, storage.data(), count});
     return fields.back();
 }
 
 /// Velocities are half a step behind: nodes are kicked by the missing half on a copy, points gather from it.
 Frame DepthAveraged::frame() {
     Frame frame;
-    frame_storage_.clear();
+    frame_used_ = 0;
     timed_("frame", [&] {
         const KickSums sums = kick_->kick(flow_, 0.5 * status_.dt, 0.0);
         mirror_motion(flow_);
