@@ -34,7 +34,7 @@ Box block_of(const PerspectiveFigure& figure) {
     const GridGeometry& g = figure.bed.geometry;
     const Box all{g.x0, g.y0, g.x_max(), g.y_max()};
     auto covered = figure.focus ? figure.focus : covered_extent(g, figure.field, figure.shown_above);
-    if (!covered) return all;
+    if (!covered || (figure.eye && !figure.focus)) return all;
     Box box = *covered;
     if (!figure.focus) {
         if (figure.survey && !figure.survey->parts.empty()) box = united(box, extent_of(*figure.survey));
@@ -100,7 +100,10 @@ private:
     void build(const Box& box);
     void lines(vtkRenderer* renderer) const;
     void aim(vtkRenderer* renderer);
+    void aim_from_eye(vtkRenderer* renderer);
+    void keep_projection(vtkCamera* camera);
     std::vector<Vec3> silhouette() const;
+    double aspect_of_room() const { return room_.width() / room_.height(); }
     Vec2 on_picture(const Vec3& point) const;
     void edge_length(Canvas& canvas, const Vec3& a, const Vec3& b, double metres) const;
 
@@ -113,6 +116,7 @@ private:
     Pixels skin_;
     double foot_ = 0.0, azimuth_ = 0.0;
     Vec3 eye_{0, 0, 0};
+    Vec3 target_{0, 0, 0};  ///< seen in the middle
     Rectangle room_;  ///< of the picture, for the block [px]
     Eigen::Matrix4d to_unit_square_ = Eigen::Matrix4d::Identity();
 };
@@ -138,6 +142,8 @@ void BlockDrawing::build(const Box& box) {
     foot_ = (low < 1e300 ? low : 0.0) - 0.05 * longest;
     const double up = uphill_azimuth(surface_, field_, figure_.shown_above);
     azimuth_ = figure_.look_azimuth_deg ? *figure_.look_azimuth_deg * kDegree : up + 25.0 * kDegree;
+    if (const auto& eye = figure_.eye)
+        azimuth_ = std::atan2(eye->target[0] - eye->position[0], eye->target[1] - eye->position[1]);
     const double from_the_left = azimuth_ - 30.0 * kDegree;  // the eye expects light from the upper left
     skin_ = painted(fine, field_fine, {figure_.colormap, colours_, figure_.shown_above, from_the_left});
     const double left = 1.5 * unit_, right = 9.0 * unit_;
@@ -190,6 +196,30 @@ std::vector<Vec3> BlockDrawing::silhouette() const {
     return points;
 }
 
+void BlockDrawing::keep_projection(vtkCamera* camera) {
+    const double* m = camera->GetCompositeProjectionTransformMatrix(aspect_of_room(), -1.0, 1.0)->GetData();
+    to_unit_square_ = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m);
+}
+
+/// The camera where the figure wants it.
+void BlockDrawing::aim_from_eye(vtkRenderer* renderer) {
+    const auto relative = [&](const std::array<double, 3>& p) {
+        return Vec3(p[0] - origin_.x(), p[1] - origin_.y(), p[2]);
+    };
+    eye_ = relative(figure_.eye->position);
+    target_ = relative(figure_.eye->target);
+    double farthest = (target_ - eye_).norm();
+    for (const Vec3& p : silhouette()) farthest = std::max(farthest, (p - eye_).norm());
+    vtkCamera* camera = renderer->GetActiveCamera();
+    camera->SetViewAngle(figure_.eye->view_angle_deg);
+    camera->SetPosition(eye_.x(), eye_.y(), eye_.z());
+    camera->SetFocalPoint(target_.x(), target_.y(), target_.z());
+    const bool straight_down = (target_ - eye_).head<2>().norm() < 1e-6 * (target_ - eye_).norm();
+    straight_down ? camera->SetViewUp(0.0, 1.0, 0.0) : camera->SetViewUp(0.0, 0.0, 1.0);
+    camera->SetClippingRange(1e-3 * farthest, 1.1 * farthest);
+    keep_projection(camera);
+}
+
 /// Moves the camera back and sideways until the block just fills its room.
 void BlockDrawing::aim(vtkRenderer* renderer) {
     const GridGeometry& g = surface_.geometry;
@@ -199,7 +229,7 @@ void BlockDrawing::aim(vtkRenderer* renderer) {
     const Vec3 right(std::cos(azimuth_), -std::sin(azimuth_), 0.0);
     const Vec3 up = right.cross(ahead);
     const double size = g.cell * static_cast<double>(g.nx + g.ny);
-    const double aspect = room_.width() / room_.height();
+    const double aspect = aspect_of_room();
     const auto points = silhouette();
     Vec3 target(0.0, 0.0, foot_);
     double distance = 3.0 * size;
@@ -212,8 +242,7 @@ void BlockDrawing::aim(vtkRenderer* renderer) {
         camera->SetPosition(eye_.x(), eye_.y(), eye_.z());
         camera->SetViewUp(0.0, 0.0, 1.0);
         camera->SetClippingRange(0.05 * distance, distance + 4.0 * size);
-        const double* m = camera->GetCompositeProjectionTransformMatrix(aspect, -1.0, 1.0)->GetData();
-        to_unit_square_ = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m);
+        keep_projection(camera);
         Vec2 low(1e9, 1e9), high(-1e9, -1e9);
         for (const Vec3& p : points) {
             const Eigen::Vector4d q = to_unit_square_ * with_one(p);
@@ -233,7 +262,7 @@ void BlockDrawing::scene(vtkRenderer* renderer) {
     renderer->AddActor(skin_actor(surface_, skin_, origin_));
     renderer->AddActor(wall_actor(surface_, foot_, origin_));
     lines(renderer);
-    aim(renderer);
+    figure_.eye ? aim_from_eye(renderer) : aim(renderer);
 }
 
 Vec2 BlockDrawing::on_picture(const Vec3& point) const {
@@ -274,12 +303,13 @@ void BlockDrawing::explanations(Canvas& canvas) const {
     const GridGeometry& g = surface_.geometry;
     const double x = 0.5 * g.cell * static_cast<double>(g.nx - 1),
                  y = 0.5 * g.cell * static_cast<double>(g.ny - 1);
-    for (const double side : {-1.0, 1.0}) {  // walls that face the eye
+    const std::vector<double> sides = figure_.eye ? std::vector<double>{} : std::vector<double>{-1.0, 1.0};
+    for (const double side : sides) {  // walls that face the eye; from a place of its own it may not see their feet
         if (side * eye_.y() > y) edge_length(canvas, {-x, side * y, foot_}, {x, side * y, foot_}, 2.0 * x);
         if (side * eye_.x() > x) edge_length(canvas, {side * x, -y, foot_}, {side * x, y, foot_}, 2.0 * y);
     }
 
-    const Vec3 centre(0.0, 0.0, foot_);
+    const Vec3 centre = figure_.eye ? target_ : Vec3(0.0, 0.0, foot_);
     const Vec2 north = on_picture(centre + Vec3(0, 0.1 * (x + y), 0)) - on_picture(centre);
     const Vec2 along = north.norm() > 0.0 ? Vec2(north.normalized()) : Vec2(0, 1),
                across(-along.y(), along.x());
