@@ -151,7 +151,8 @@ public:
         chart.width = entry_.width;
         chart.height = entry_.height;
         ChartPanel ground{"elevation [m]", {}, false, {}, 1.4};
-        ground.curves = {curve("elevation", Curve::Kind::ground), curve("surface", Curve::Kind::line)};
+        ground.curves = {curve("elevation", Curve::Kind::ground), curve("surface", Curve::Kind::water)};
+        hide_dry(ground.curves[0].y, ground.curves[1].y);
         chart.panels = {ground};
         for (const std::string& field : entry_.fields) {
             if (field == "elevation" || field == "surface") continue;
@@ -165,6 +166,14 @@ public:
     }
 
 private:
+    /// A surface only where there is a flow under it, and to the first station beside it, so that it closes.
+    static void hide_dry(const std::vector<double>& bed, std::vector<double>& surface) {
+        const std::vector<double> all = surface;
+        const auto wet = [&](std::size_t i) { return all[i] > bed[i]; };
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (!wet(i) && !(i > 0 && wet(i - 1)) && !(i + 1 < all.size() && wet(i + 1))) surface[i] = Raster::nodata;
+    }
+
     const Scene& scene_;
     const Insitu& entry_;
     Pictures pictures_;

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <limits>
-
 #include "base/error.h"
 #include "frana_insitu_figures.h"
 #include "observe/insitu_tables.h"
@@ -72,11 +70,7 @@ std::unique_ptr<InsituWork> make_work(const Scene& scene, const Insitu& entry, c
 
 void check_insitu(const Scene& scene) {
     for (const Insitu& entry : scene.insitu)
-        if (const std::string missing = no_catalyst_reason();
-            entry.kind == Insitu::Kind::catalyst && !missing.empty())
-            throw UserError(fmt::format("{}.kind: found \"catalyst\"; expected another kind, since {}; build with it, or "
-                                        "remove this [[insitu]]",
-                                        entry.place, missing));
+        if (entry.kind == Insitu::Kind::catalyst) check_catalyst(entry.script, entry.place);
 }
 
 Observers make_insitu(const Scene& scene, const fs::path& run_dir, std::vector<InsituTally>& tallies) {

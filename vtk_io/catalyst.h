@@ -9,11 +9,12 @@
 
 namespace frana {
 
-/// Why this build runs no Catalyst script, such as "this frana was built without ParaView Catalyst"; empty when it does.
-std::string no_catalyst_reason();
+/// Throws UserError when this process cannot run the script: no Catalyst in this build, a script of another version, or
+/// one that draws where there is no display (ParaView would then end the process). `place` is "case.toml:12: insitu.0".
+void check_catalyst(const std::filesystem::path& script, const std::string& place);
 
 /// Hands every frame to a script of version 2.0: channels "grid" (vtkImageData) and "particles" (vtkPolyData), as in
-/// grid.pvd and particles.pvd. Throws UserError when there is no Catalyst.
+/// grid.pvd and particles.pvd; `timestep` counts the looks.
 std::unique_ptr<InsituWork> make_catalyst(const std::filesystem::path& script);
 
 }  // namespace frana

@@ -135,7 +135,8 @@ void BlockDrawing::build(const Box& box) {
     };
     surface_ = raised(block_grid(box, std::clamp(4.0 * cells, 60.0, 500.0)), field_);
     Raster field_fine;
-    const Raster fine = raised(block_grid(box, 1500.0), field_fine);
+    const double texels = std::min(1500.0, 1.1 * figure_.width);  // no finer than the picture can show
+    const Raster fine = raised(block_grid(box, texels), field_fine);
     double low = 1e300;
     for (const double z : surface_.values)
         if (!std::isnan(z)) low = std::min(low, z);

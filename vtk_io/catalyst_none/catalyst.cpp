@@ -5,10 +5,14 @@
 
 namespace frana {
 
-std::string no_catalyst_reason() {
-    return "this frana was built without ParaView Catalyst (cmake -DFRANA_CATALYST=legacy, see README.md)";
+void check_catalyst(const std::filesystem::path&, const std::string& place) {
+    throw UserError(place +
+                    ".kind: found \"catalyst\"; expected another kind, since this frana was built without ParaView "
+                    "Catalyst; build it with cmake -DFRANA_CATALYST=legacy (README.md), or remove this [[insitu]]");
 }
 
-std::unique_ptr<InsituWork> make_catalyst(const std::filesystem::path&) { throw UserError(no_catalyst_reason()); }
+std::unique_ptr<InsituWork> make_catalyst(const std::filesystem::path&) {
+    throw InternalError("internal error: a Catalyst script in a build without Catalyst");
+}
 
 }  // namespace frana
