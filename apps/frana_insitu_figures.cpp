@@ -9,6 +9,7 @@
 #include "observe/insitu_tables.h"
 #include "observe/profiles.h"
 #include "vtk_io/chart_figure.h"
+#include "vtk_io/chart_figure_ticks.h"
 #include "vtk_io/map_figure.h"
 #include "vtk_io/map_figure_perspective.h"
 
@@ -110,7 +111,7 @@ private:
         for (const double value : field)
             if (std::abs(value) > largest) largest = std::abs(value);
         if (entry_.range) largest = std::max(std::abs(entry_.range->first), std::abs(entry_.range->second));
-        return largest > 0.0 ? 1e-3 * largest : 1e-300;
+        return largest > 0.0 ? round_up_125(1e-3 * largest) : 1e-300;
     }
 
     template <class Figure>

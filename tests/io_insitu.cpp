@@ -18,20 +18,12 @@
 #include "fresh_folder.h"
 #include "vtk_io/insitu.h"
 #include "vtk_io/pvd.h"
+#include "vtk_read.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
 
 namespace {
-
-template <class Reader>
-vtkSmartPointer<Reader> read(const fs::path& file) {
-    auto reader = vtkSmartPointer<Reader>::New();
-    REQUIRE(reader->CanReadFile(file.string().c_str()) != 0);
-    reader->SetFileName(file.string().c_str());
-    reader->Update();
-    return reader;
-}
 
 double time_of(vtkDataSet* data) {
     auto* time = vtkDoubleArray::SafeDownCast(data->GetFieldData()->GetAbstractArray("TimeValue"));

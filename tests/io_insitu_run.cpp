@@ -111,7 +111,8 @@ TEST_CASE("a run without frames leaves its pictures, lines and tables", "[insitu
     const Json json = run.json();
     CHECK(json["exit_reason"] == "end");
     REQUIRE(json["insitu"].size() == 4);
-    CHECK(json["insitu"][1] == Json{{"name", "lines"}, {"kind", "contour"}, {"made", 5}, {"failed", 0}, {"first_failure", ""}});
+    CHECK(json["insitu"][1] ==
+          Json{{"name", "lines"}, {"kind", "contour"}, {"made", 5}, {"failed", 0}, {"first_failure", ""}});
     CHECK(json["wall_seconds"]["output"].contains("insitu cut"));
     const std::string report = text_of(run.dir() / "report.md");
     for (const char* product : {"insitu/cut.csv", "insitu/lines.pvd", "`insitu/lines/`", "`insitu/deep/`"})

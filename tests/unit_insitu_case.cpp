@@ -18,7 +18,8 @@ FakeGis slope_gis() {
 }
 
 std::string with(const std::string& rest) {
-    return "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n" + rest;
+    return "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = "
+           "20\n" + rest;
 }
 
 CaseFile read(const std::string& rest, const std::vector<std::string>& sets = {}) {
@@ -169,21 +170,25 @@ TEST_CASE("A bad entry is refused with its place, what was found, what is expect
           "\"depth\", \"thickness\", \"speed\", \"velocity_x\", \"velocity_y\", \"velocity_z\", \"pressure\", "
           "\"surface\", \"elevation\", \"peak_depth\", \"peak_speed\", \"peak_pressure\", \"arrival_time\", "
           "\"peak_dynamic_pressure\", \"stress_xx\", \"stress_yy\", \"stress_xy\", \"effective_stress_xx\", \"mass\", "
-          "\"effective_stress_yy\", \"volume\", \"effective_stress_xy\", \"id\", quantity that is looked at, one number "
+          "\"effective_stress_yy\", \"volume\", \"effective_stress_xy\", \"id\", quantity that is looked at, one "
+          "number "
           "a place; add field = ... under [[insitu]]");
     CHECK(problem_of(figure("field = \"depth\"\nlevels = [1]\n")) ==
           "slide/case.toml:12: insitu.0.levels: found, but insitu.kind = \"figure\" does not use it; expected with "
           "contour only; remove it, or choose insitu.kind");
     CHECK(problem_of(figure("field = \"depth\"\nrange = [2, 1]\n")) ==
-          "slide/case.toml:12: insitu.0.range: found [2.0, 1.0]; expected [low, high] with low < high; exchange the two");
+          "slide/case.toml:12: insitu.0.range: found [2.0, 1.0]; expected [low, high] with low < high; exchange the "
+          "two");
     CHECK(problem_of(figure("field = \"depth\"\ncamera = \"ridge\"\n")) ==
-          "slide/case.toml:12: insitu.0.camera: found \"ridge\"; expected the name of a [[camera]]; add that [[camera]], "
+          "slide/case.toml:12: insitu.0.camera: found \"ridge\"; expected the name of a [[camera]]; add that "
+          "[[camera]], "
           "or correct the name");
     CHECK(problem_of("[[insitu]]\nname = \"a\"\nkind = \"threshold\"\nfield = \"depth\"\n") ==
           "slide/case.toml:8: insitu.0: found a threshold without from and to; expected one of them, or both; add "
           "from = ... or to = ...");
     CHECK(problem_of("[[insitu]]\nname = \"a\"\nkind = \"profile\"\nline = [[0, 0], [1, 1]]\n") ==
-          "slide/case.toml:11: insitu.0.line: found no point of it on the terrain; expected it within x 1000 to 1200, y "
+          "slide/case.toml:11: insitu.0.line: found no point of it on the terrain; expected it within x 1000 to "
+          "1200, y "
           "2000 to 2150; correct the coordinates");
     CHECK(problem_of(figure("field = \"depth\"\n") + figure("field = \"speed\"\n")) ==
           "slide/case.toml:13: insitu.1.name: found \"a\" again; expected a name other than that at "
@@ -194,11 +199,13 @@ TEST_CASE("A bad entry is refused with its place, what was found, what is expect
 
 TEST_CASE("A camera that cannot see is refused", "[case][insitu]") {
     CHECK(problem_of("[[camera]]\nname = \"c\"\nprojection = \"perspective\"\ntarget = [1100, 2075, 150]\n") ==
-          "slide/case.toml:8: camera.0.position: not given, but camera.projection = \"perspective\" needs it; expected a "
+          "slide/case.toml:8: camera.0.position: not given, but camera.projection = \"perspective\" needs it; "
+          "expected a "
           "list of 3 numbers [m], where the eye is: [x, y, elevation]; add position = ... under [[camera]]");
     const std::string eye = "[[camera]]\nname = \"c\"\nprojection = \"perspective\"\nposition = [1100, 2075, 140]\n";
     CHECK(problem_of(eye + "target = [1050, 2075, 100]\n") ==
-          "slide/case.toml:11: camera.0.position: found 140 m, under the ground; expected an elevation above that of the "
+          "slide/case.toml:11: camera.0.position: found 140 m, under the ground; expected an elevation above that "
+          "of the "
           "terrain there, 150 m; raise the camera");
     CHECK(problem_of("[[camera]]\nname = \"c\"\nprojection = \"map\"\nwindow = [0, 0, 10, 10]\n") ==
           "slide/case.toml:11: camera.0.window: found [0.0, 0.0, 10.0, 10.0]; expected [xmin, ymin, xmax, ymax] that "

@@ -17,6 +17,7 @@
 #include "vtk_io/map_figure_contours.h"
 #include "vtk_io/map_figure_furniture.h"
 #include "vtk_io/map_figure_paint.h"
+#include "vtk_io/map_figure_piece.h"
 #include "vtk_io/offscreen.h"
 
 namespace frana {
@@ -24,62 +25,9 @@ namespace {
 
 constexpr double kDegree = 0.017453292519943295;
 
-using Box = std::array<double, 4>;
 using Vec3 = Eigen::Vector3d;
 
 Eigen::Vector4d with_one(const Vec3& p) { return {p.x(), p.y(), p.z(), 1.0}; }
-
-/// The block to show: the material and the survey with a broad margin, at least 40 % of the terrain.
-Box block_of(const PerspectiveFigure& figure) {
-    const GridGeometry& g = figure.bed.geometry;
-    const Box all{g.x0, g.y0, g.x_max(), g.y_max()};
-    auto covered = figure.focus ? figure.focus : covered_extent(g, figure.field, figure.shown_above);
-    if (!covered || (figure.eye && !figure.focus)) return all;
-    Box box = *covered;
-    if (!figure.focus) {
-        if (figure.survey && !figure.survey->parts.empty()) box = united(box, extent_of(*figure.survey));
-        const double margin = 0.22 * std::max(box[2] - box[0], box[3] - box[1]);
-        for (std::size_t k = 0; k < 2; ++k) {
-            const double wanted = std::max(box[k + 2] - box[k] + 2.0 * margin, 0.4 * (all[k + 2] - all[k]));
-            const double middle = 0.5 * (box[k] + box[k + 2]);
-            box[k] = middle - 0.5 * wanted;
-            box[k + 2] = middle + 0.5 * wanted;
-        }
-    }
-    for (std::size_t k = 0; k < 2; ++k) {
-        box[k] = std::max(box[k], all[k]);
-        box[k + 2] = std::min(box[k + 2], all[k + 2]);
-        if (!(box[k] < box[k + 2])) box[k] = all[k], box[k + 2] = all[k + 2];
-    }
-    return box;
-}
-
-/// Nodes over the block, `along` of them on its longer side but not much finer than the raster's own.
-GridGeometry block_grid(const Box& box, double along) {
-    const double w = box[2] - box[0], h = box[3] - box[1];
-    GridGeometry grid;
-    grid.cell = std::max(w, h) / (along - 1.0);
-    grid.nx = std::max<Index>(2, static_cast<Index>(w / grid.cell + 1e-6) + 1);
-    grid.ny = std::max<Index>(2, static_cast<Index>(h / grid.cell + 1e-6) + 1);
-    grid.x0 = box[0];
-    grid.y0 = box[1];
-    return grid;
-}
-
-/// Mean uphill direction under the material (of the whole block without any), as an azimuth [radians].
-double uphill_azimuth(const Raster& bed, const Raster& field, double shown_above) {
-    Vec2 shown(0, 0), all(0, 0);
-    const GridGeometry& g = bed.geometry;
-    for (Index j = 0; j + 1 < g.ny; ++j)
-        for (Index i = 0; i + 1 < g.nx; ++i) {
-            const Vec2 up(bed.at(i + 1, j) - bed.at(i, j), bed.at(i, j + 1) - bed.at(i, j));
-            if (!up.allFinite()) continue;
-            all += up;
-            if (std::abs(field.at(i, j)) > shown_above) shown += up;
-        }
-    const Vec2 up = shown.norm() > 0.0 ? shown : all;
-    return up.norm() > 0.0 ? std::atan2(up.x(), up.y()) : 0.0;
-}
 
 class BlockDrawing {
 public:
@@ -88,7 +36,7 @@ public:
           unit_(text_unit(figure.width, figure.height)),
           colours_(colour_range(figure.field, figure.shown_above, figure.colormap, figure.range)),
           captions_(make_captions(figure.title, figure.footer, unit_, figure.width)) {
-        const Box box = block_of(figure);
+        const MapBox box = block_of(figure);
         origin_ = {0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])};
         build(box);
     }
@@ -97,7 +45,7 @@ public:
     void explanations(Canvas& canvas) const;
 
 private:
-    void build(const Box& box);
+    void build(const MapBox& box);
     void lines(vtkRenderer* renderer) const;
     void aim(vtkRenderer* renderer);
     void aim_from_eye(vtkRenderer* renderer);
@@ -121,7 +69,7 @@ private:
     Eigen::Matrix4d to_unit_square_ = Eigen::Matrix4d::Identity();
 };
 
-void BlockDrawing::build(const Box& box) {
+void BlockDrawing::build(const MapBox& box) {
     const double longest = std::max(box[2] - box[0], box[3] - box[1]);
     const double cells = longest / figure_.bed.geometry.cell;
     const Raster field{figure_.bed.geometry, figure_.field, "", ""};

@@ -59,7 +59,8 @@ void add_what(Table& table) {
     Parameter line = make("insitu.line", Kind::points, "m", "the cut's line: [[x, y], [x, y], ...]");
     line.length = 2;
     table.push_back(with(line, kind, {"profile"}, {"profile"}));
-    table.push_back(with(flag("insitu.picture", false, "a line chart of the cut besides its table"), kind, {"profile"}));
+    table.push_back(with(flag("insitu.picture", false, "a line chart of the cut besides its "
+                                                       "table"), kind, {"profile"}));
     table.push_back(with(list("insitu.levels", 0, "", "values of the lines, in the field's unit"), kind, {"contour"},
                          {"contour"}));
     Parameter of = choice("insitu.of", {"grid", "particles"}, "grid", "cells of the grid, or particles");
@@ -102,7 +103,8 @@ void add_camera(Table& table) {
                          {"perspective"}, {"perspective"}));
     table.push_back(with(list("camera.target", 3, "m", "what it looks at: [x, y, elevation]"), projection,
                          {"perspective"}, {"perspective"}));
-    table.push_back(with(number("camera.view_angle_deg", "degree", between(1.0, 120.0), 30.0, "its angle of view, upright"),
+    table.push_back(with(number("camera.view_angle_deg", "degree", between(1.0, 120.0), 30.0, "its angle of view, "
+                                                                                              "upright"),
                          projection, {"perspective"}));
 }
 
@@ -111,7 +113,8 @@ void add_camera(Table& table) {
 void add_insitu(Table& table) {
     table.push_back(required(make("insitu.name", Kind::name, "", "name of the files: insitu/NAME...")));
     Parameter kinds = make(kind, Kind::choice, "",
-                           "profile: values along a line, a table; contour: lines of equal value, .vtp; threshold: what "
+                           "profile: values along a line, a table; contour: lines of equal value, .vtp; threshold: "
+                           "what "
                            "lies between two values, .vtu or .vtp; figure: a picture, .png; reduce: extremes, mean, "
                            "covered area and volume, a table; catalyst: a ParaView script");
     kinds.choices = {"profile", "contour", "threshold", "figure", "reduce", "catalyst"};

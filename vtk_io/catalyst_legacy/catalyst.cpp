@@ -45,7 +45,8 @@ public:
 
 private:
     UserError trouble(const char* what) const {
-        return UserError(fmt::format("{}: the script {}; expected one that reads the channels grid and particles; Python's "
+        return UserError(fmt::format("{}: the script {}; expected one that reads the channels grid and particles; "
+                                     "Python's "
                                      "own message is above",
                                      script_.string(), what));
     }
@@ -76,8 +77,10 @@ bool draws(const std::filesystem::path& script) {
 
 void check_catalyst(const std::filesystem::path& script, const std::string& place) {
     if (vtkCPPythonPipeline::DetectScriptVersion(script.string().c_str()) != 2)
-        throw UserError(fmt::format("{}.script: found {}, which is not a Catalyst script of version 2.0; expected one that "
-                                    "begins with \"# script-version: 2.0\"; add that line, or export it anew from ParaView",
+        throw UserError(fmt::format("{}.script: found {}, which is not a Catalyst script of version 2.0; expected "
+                                    "one that "
+                                    "begins with \"# script-version: 2.0\"; add that line, or export it anew from "
+                                    "ParaView",
                                     place, script.string()));
     const char* display = std::getenv("DISPLAY");
     if ((display == nullptr || *display == '\0') && draws(script))
