@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "frana_commands.h"
+#include "frana_run_insitu.h"
 #include "io/gdal_reader.h"
 #include "scene/build_scene.h"
 
@@ -127,6 +128,9 @@ int check_command(const CheckOptions& options) {
     std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
     std::cout << total_text(built) << forecast_text(built.scene);
+    check_insitu(built.scene);
+    for (const Insitu& entry : built.scene.insitu)
+        std::cout << fmt::format("in situ     {} \"{}\"\n", kind_word(entry.kind), entry.name);
     for (const std::string& remark : built.scene.log) std::cout << "remark      " << remark << '\n';
     std::cout << "ready to run\n";
     return 0;

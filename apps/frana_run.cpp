@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "frana_commands.h"
 #include "frana_run_folder.h"
+#include "frana_run_insitu.h"
 #include "frana_run_job.h"
 #include "io/gdal_reader.h"
 #include "scene/build_scene.h"
@@ -58,6 +59,7 @@ int run_command(const RunOptions& options) {
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
     Scene scene = build_scene(file, GdalReader());
     shorten(scene, options.until);
+    check_insitu(scene);
     const std::unique_ptr<Simulation> simulation = make_simulation(scene);
 
     // Only now is the folder touched: what lies there survives a case that cannot run.

@@ -31,6 +31,9 @@ const std::vector<ProductKind>& product_kinds() {
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
         {"figures", "((map|profile|gauges|budget)_[^.].*|compare)\\.png", "figure", false},
+        {"insitu", "[^.].*\\.csv", "looked at while the case ran", false},
+        {"insitu", "[^.].*\\.pvd", "looked at while the case ran, for ParaView", false},
+        {"insitu/*", "[^.].*_\\d+\\.(png|vtp|vtu)", "made while the case ran", true},
         {"states", ".*\\.pvsm", "ParaView state", false},
         {"", "compare\\.(json|md)", "comparison with a survey", false},
         {"", "checkpoint\\.h5", "last state", false}};
@@ -39,15 +42,36 @@ const std::vector<ProductKind>& product_kinds() {
 
 namespace {
 
-std::vector<fs::path> files_of(const fs::path& run_dir, const ProductKind& kind) {
-    const std::regex pattern(kind.pattern);
+/// The folders of a kind, relative to the run's: one, or with "name/*" all in "name".
+std::vector<fs::path> folders_of(const fs::path& run_dir, const ProductKind& kind) {
+    const fs::path folder(kind.folder);
+    if (folder.filename() != "*") return {folder};
     std::vector<fs::path> found;
     std::error_code none;  // a folder that is not there holds nothing
-    for (const auto& entry : fs::directory_iterator(run_dir / kind.folder, none))
+    for (const auto& entry : fs::directory_iterator(run_dir / folder.parent_path(), none))
+        if (entry.is_directory()) found.push_back(folder.parent_path() / entry.path().filename());
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, const ProductKind& kind) {
+    const std::regex pattern(kind.pattern);
+    std::vector<fs::path> found;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none))
         if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), pattern))
             found.push_back(entry.path());
     std::sort(found.begin(), found.end());
     return found;
+}
+
+std::vector<fs::path> all_files_of(const fs::path& run_dir, const ProductKind& kind) {
+    std::vector<fs::path> all;
+    for (const fs::path& folder : folders_of(run_dir, kind)) {
+        const std::vector<fs::path> files = files_in(run_dir / folder, kind);
+        all.insert(all.end(), files.begin(), files.end());
+    }
+    return all;
 }
 
 /// A UserError with the way out that is the same for every trouble with the folder.
@@ -61,16 +85,16 @@ UserError trouble(const fs::path& run_dir, const std::string& what) {
 
 std::vector<Product> products_in(const fs::path& run_dir) {
     std::vector<Product> products;
-    for (const ProductKind& kind : product_kinds()) {
-        const std::vector<fs::path> files = files_of(run_dir, kind);
-        if (files.empty()) continue;
-        if (kind.one_of_many)
-            products.push_back({kind.folder + "/", kind.meaning, files.size()});
-        else
-            for (const fs::path& file : files)
-                products.push_back(
-                    {(fs::path(kind.folder) / file.filename()).generic_string(), kind.meaning, 1});
-    }
+    for (const ProductKind& kind : product_kinds())
+        for (const fs::path& folder : folders_of(run_dir, kind)) {
+            const std::vector<fs::path> files = files_in(run_dir / folder, kind);
+            if (files.empty()) continue;
+            if (kind.one_of_many)
+                products.push_back({folder.generic_string() + "/", kind.meaning, files.size()});
+            else
+                for (const fs::path& file : files)
+                    products.push_back({(folder / file.filename()).generic_string(), kind.meaning, 1});
+        }
     return products;
 }
 
@@ -82,7 +106,7 @@ void prepare_run_folder(const fs::path& run_dir) {
     write_text(run_dir / "run.json",
                "{\"exit_reason\": \"running\"}\n");  // also shows that the folder is writable
     for (const ProductKind& kind : product_kinds())
-        for (const fs::path& file : files_of(run_dir, kind)) {
+        for (const fs::path& file : all_files_of(run_dir, kind)) {
             const std::string name = file.filename().string();
             if (name == "run.json" || name == "case.toml") continue;  // case.toml may be the case itself
             fs::remove(file, failure);

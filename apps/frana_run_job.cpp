@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "frana_comparison.h"
 #include "frana_run_figures.h"
+#include "frana_run_insitu.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
 #include "observe/history.h"
@@ -107,12 +108,14 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
                     const Interrupt& interrupt, Progress& progress) {
     std::vector<ProductRaster> rasters;
     Observers observers = make_observers(scene, run_dir, rasters);
+    for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 
     const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest};
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
     record.release_volume = simulation.status().mass / scene.density;
     record.summary = run(simulation, plan, observers, interrupt, progress);
+    for (const std::string& warning : insitu_warnings(record.insitu)) record.warnings.push_back(warning);
     note_results(record, rasters);
 
     timed(record.summary, "rasters", [&] {

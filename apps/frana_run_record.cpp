@@ -90,6 +90,17 @@ Json energy_json(const RunSummary& s) {
             {"residual", budget(s.first, s.last).energy_residual}};
 }
 
+Json insitu_json(const std::vector<InsituTally>& tallies) {
+    Json result = Json::array();
+    for (const InsituTally& tally : tallies)
+        result.push_back({{"name", tally.name},
+                          {"kind", tally.kind},
+                          {"made", tally.made},
+                          {"failed", tally.failed},
+                          {"first_failure", tally.first_failure}});
+    return result;
+}
+
 Json results_json(const RunRecord& record) {
     const Extremes& most = record.summary.extremes;
     return {{"max_depth", most.max_depth},
@@ -163,6 +174,7 @@ std::string run_json(const RunRecord& record) {
         {"results", results_json(record)},
         {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},
         {"figures", figures},
+        {"insitu", insitu_json(record.insitu)},
         {"warnings", record.warnings}};
     return json.dump(2) + "\n";
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compare/comparison.h"
+#include "observe/insitu.h"
 #include "observe/run_loop.h"
 #include "scene/scene.h"
 
@@ -44,6 +45,7 @@ struct RunRecord {
     std::optional<Comparison> comparison;  ///< with the survey, when the case gives one
     RunSummary summary;
     std::vector<DrawnFigure> figures;
+    std::vector<InsituTally> insitu;
     std::vector<std::string> warnings;
 };
 

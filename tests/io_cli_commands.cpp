@@ -9,6 +9,7 @@
 #include "base/atomic_file.h"
 #include "catch.h"
 #include "program.h"
+#include "scene/parameters.h"
 
 namespace fs = std::filesystem;
 using Catch::Contains;
@@ -50,6 +51,9 @@ public:
 private:
     FreshFolder folder_;
 };
+
+/// What the parameter table expects of a key.
+std::string expected_of(const char* key) { return frana::find_parameter(key)->expected(); }
 
 }  // namespace
 
@@ -109,6 +113,38 @@ TEST_CASE("check tells grid, particles and volume of a good case without running
     CHECK_THAT(check.out, Contains("remark      material.bed.law is not given"));
     CHECK_THAT(check.out, Catch::EndsWith("ready to run\n"));
     CHECK_FALSE(fs::exists(scene.folder() / "out"));
+}
+
+TEST_CASE("An in-situ entry that cannot work is refused before the run folder is touched", "[cli][insitu]") {
+    const Case scene;
+    const std::string name = scene.file().string();
+    const auto refused = [&](const std::string& rest, const std::string& sentence) {
+        scene.write(rest);
+        for (const char* command : {"check CASE", "run CASE --out out"}) {
+            const Outcome outcome = scene.frana(command);
+            CHECK(outcome.code == 2);
+            CHECK(outcome.err == name + sentence);
+        }
+        CHECK_FALSE(fs::exists(scene.folder() / "out"));
+    };
+    refused("[[insitu]]\nname = \"a\"\nkind = \"figure\"\nfield = \"depht\"\n",
+            ":11: insitu.0.field: found the text \"depht\"; expected " + expected_of("insitu.field") +
+                "; did you mean \"depth\"?\n");
+    refused("[[camera]]\nname = \"c\"\nprojection = \"perspective\"\ntarget = [40, 50, 95]\n",
+            ":8: camera.0.position: not given, but camera.projection = \"perspective\" needs it; expected a list of 3 "
+            "numbers [m], where the eye is: [x, y, elevation]; add position = ... under [[camera]]\n");
+}
+
+TEST_CASE("A run without formats leaves its in-situ products only", "[cli][insitu]") {
+    const Case scene;
+    scene.write("[output]\nformats = []\n[[insitu]]\nname = \"most\"\nkind = \"reduce\"\n");
+    const Outcome check = scene.frana("check CASE");
+    CHECK(check.code == 0);
+    CHECK_THAT(check.out, Contains("in situ     reduce \"most\"\n"));
+    CHECK(scene.frana("run CASE --out out --quiet").code == 0);
+    CHECK(fs::exists(scene.folder() / "out" / "insitu" / "most.csv"));
+    for (const char* frames : {"grid.pvd", "particles.pvd", "rasters", "figures", "terrain.vti"})
+        CHECK_FALSE(fs::exists(scene.folder() / "out" / frames));
 }
 
 TEST_CASE("check lists all problems of a bad case on stderr and is not ready", "[cli]") {

@@ -21,21 +21,13 @@
 #include "fresh_folder.h"
 #include "vtk_io/pvd.h"
 #include "vtk_io/writers.h"
+#include "vtk_read.h"
 
 using namespace frana;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-template <class Reader>
-vtkSmartPointer<Reader> read(const fs::path& file) {
-    auto reader = vtkSmartPointer<Reader>::New();
-    REQUIRE(reader->CanReadFile(file.string().c_str()) != 0);
-    reader->SetFileName(file.string().c_str());
-    reader->Update();
-    return reader;
-}
 
 /// Bit for bit what a conversion to the array's own type gives; counts differences instead of one check a
 /// value.

@@ -17,6 +17,7 @@
 #include "vtk_io/map_figure_contours.h"
 #include "vtk_io/map_figure_furniture.h"
 #include "vtk_io/map_figure_paint.h"
+#include "vtk_io/map_figure_piece.h"
 #include "vtk_io/offscreen.h"
 
 namespace frana {
@@ -24,62 +25,9 @@ namespace {
 
 constexpr double kDegree = 0.017453292519943295;
 
-using Box = std::array<double, 4>;
 using Vec3 = Eigen::Vector3d;
 
 Eigen::Vector4d with_one(const Vec3& p) { return {p.x(), p.y(), p.z(), 1.0}; }
-
-/// The block to show: the material and the survey with a broad margin, at least 40 % of the terrain.
-Box block_of(const PerspectiveFigure& figure) {
-    const GridGeometry& g = figure.bed.geometry;
-    const Box all{g.x0, g.y0, g.x_max(), g.y_max()};
-    auto covered = figure.focus ? figure.focus : covered_extent(g, figure.field, figure.shown_above);
-    if (!covered) return all;
-    Box box = *covered;
-    if (!figure.focus) {
-        if (figure.survey && !figure.survey->parts.empty()) box = united(box, extent_of(*figure.survey));
-        const double margin = 0.22 * std::max(box[2] - box[0], box[3] - box[1]);
-        for (std::size_t k = 0; k < 2; ++k) {
-            const double wanted = std::max(box[k + 2] - box[k] + 2.0 * margin, 0.4 * (all[k + 2] - all[k]));
-            const double middle = 0.5 * (box[k] + box[k + 2]);
-            box[k] = middle - 0.5 * wanted;
-            box[k + 2] = middle + 0.5 * wanted;
-        }
-    }
-    for (std::size_t k = 0; k < 2; ++k) {
-        box[k] = std::max(box[k], all[k]);
-        box[k + 2] = std::min(box[k + 2], all[k + 2]);
-        if (!(box[k] < box[k + 2])) box[k] = all[k], box[k + 2] = all[k + 2];
-    }
-    return box;
-}
-
-/// Nodes over the block, `along` of them on its longer side but not much finer than the raster's own.
-GridGeometry block_grid(const Box& box, double along) {
-    const double w = box[2] - box[0], h = box[3] - box[1];
-    GridGeometry grid;
-    grid.cell = std::max(w, h) / (along - 1.0);
-    grid.nx = std::max<Index>(2, static_cast<Index>(w / grid.cell + 1e-6) + 1);
-    grid.ny = std::max<Index>(2, static_cast<Index>(h / grid.cell + 1e-6) + 1);
-    grid.x0 = box[0];
-    grid.y0 = box[1];
-    return grid;
-}
-
-/// Mean uphill direction under the material (of the whole block without any), as an azimuth [radians].
-double uphill_azimuth(const Raster& bed, const Raster& field, double shown_above) {
-    Vec2 shown(0, 0), all(0, 0);
-    const GridGeometry& g = bed.geometry;
-    for (Index j = 0; j + 1 < g.ny; ++j)
-        for (Index i = 0; i + 1 < g.nx; ++i) {
-            const Vec2 up(bed.at(i + 1, j) - bed.at(i, j), bed.at(i, j + 1) - bed.at(i, j));
-            if (!up.allFinite()) continue;
-            all += up;
-            if (std::abs(field.at(i, j)) > shown_above) shown += up;
-        }
-    const Vec2 up = shown.norm() > 0.0 ? shown : all;
-    return up.norm() > 0.0 ? std::atan2(up.x(), up.y()) : 0.0;
-}
 
 class BlockDrawing {
 public:
@@ -88,7 +36,7 @@ public:
           unit_(text_unit(figure.width, figure.height)),
           colours_(colour_range(figure.field, figure.shown_above, figure.colormap, figure.range)),
           captions_(make_captions(figure.title, figure.footer, unit_, figure.width)) {
-        const Box box = block_of(figure);
+        const MapBox box = block_of(figure);
         origin_ = {0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])};
         build(box);
     }
@@ -97,10 +45,13 @@ public:
     void explanations(Canvas& canvas) const;
 
 private:
-    void build(const Box& box);
+    void build(const MapBox& box);
     void lines(vtkRenderer* renderer) const;
     void aim(vtkRenderer* renderer);
+    void aim_from_eye(vtkRenderer* renderer);
+    void keep_projection(vtkCamera* camera);
     std::vector<Vec3> silhouette() const;
+    double aspect_of_room() const { return room_.width() / room_.height(); }
     Vec2 on_picture(const Vec3& point) const;
     void edge_length(Canvas& canvas, const Vec3& a, const Vec3& b, double metres) const;
 
@@ -113,11 +64,12 @@ private:
     Pixels skin_;
     double foot_ = 0.0, azimuth_ = 0.0;
     Vec3 eye_{0, 0, 0};
+    Vec3 target_{0, 0, 0};  ///< seen in the middle
     Rectangle room_;  ///< of the picture, for the block [px]
     Eigen::Matrix4d to_unit_square_ = Eigen::Matrix4d::Identity();
 };
 
-void BlockDrawing::build(const Box& box) {
+void BlockDrawing::build(const MapBox& box) {
     const double longest = std::max(box[2] - box[0], box[3] - box[1]);
     const double cells = longest / figure_.bed.geometry.cell;
     const Raster field{figure_.bed.geometry, figure_.field, "", ""};
@@ -131,13 +83,16 @@ void BlockDrawing::build(const Box& box) {
     };
     surface_ = raised(block_grid(box, std::clamp(4.0 * cells, 60.0, 500.0)), field_);
     Raster field_fine;
-    const Raster fine = raised(block_grid(box, 1500.0), field_fine);
+    const double texels = std::min(1500.0, 1.1 * figure_.width);  // no finer than the picture can show
+    const Raster fine = raised(block_grid(box, texels), field_fine);
     double low = 1e300;
     for (const double z : surface_.values)
         if (!std::isnan(z)) low = std::min(low, z);
     foot_ = (low < 1e300 ? low : 0.0) - 0.05 * longest;
     const double up = uphill_azimuth(surface_, field_, figure_.shown_above);
     azimuth_ = figure_.look_azimuth_deg ? *figure_.look_azimuth_deg * kDegree : up + 25.0 * kDegree;
+    if (const auto& eye = figure_.eye)
+        azimuth_ = std::atan2(eye->target[0] - eye->position[0], eye->target[1] - eye->position[1]);
     const double from_the_left = azimuth_ - 30.0 * kDegree;  // the eye expects light from the upper left
     skin_ = painted(fine, field_fine, {figure_.colormap, colours_, figure_.shown_above, from_the_left});
     const double left = 1.5 * unit_, right = 9.0 * unit_;
@@ -190,6 +145,30 @@ std::vector<Vec3> BlockDrawing::silhouette() const {
     return points;
 }
 
+void BlockDrawing::keep_projection(vtkCamera* camera) {
+    const double* m = camera->GetCompositeProjectionTransformMatrix(aspect_of_room(), -1.0, 1.0)->GetData();
+    to_unit_square_ = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m);
+}
+
+/// The camera where the figure wants it.
+void BlockDrawing::aim_from_eye(vtkRenderer* renderer) {
+    const auto relative = [&](const std::array<double, 3>& p) {
+        return Vec3(p[0] - origin_.x(), p[1] - origin_.y(), p[2]);
+    };
+    eye_ = relative(figure_.eye->position);
+    target_ = relative(figure_.eye->target);
+    double farthest = (target_ - eye_).norm();
+    for (const Vec3& p : silhouette()) farthest = std::max(farthest, (p - eye_).norm());
+    vtkCamera* camera = renderer->GetActiveCamera();
+    camera->SetViewAngle(figure_.eye->view_angle_deg);
+    camera->SetPosition(eye_.x(), eye_.y(), eye_.z());
+    camera->SetFocalPoint(target_.x(), target_.y(), target_.z());
+    const bool straight_down = (target_ - eye_).head<2>().norm() < 1e-6 * (target_ - eye_).norm();
+    straight_down ? camera->SetViewUp(0.0, 1.0, 0.0) : camera->SetViewUp(0.0, 0.0, 1.0);
+    camera->SetClippingRange(1e-3 * farthest, 1.1 * farthest);
+    keep_projection(camera);
+}
+
 /// Moves the camera back and sideways until the block just fills its room.
 void BlockDrawing::aim(vtkRenderer* renderer) {
     const GridGeometry& g = surface_.geometry;
@@ -199,7 +178,7 @@ void BlockDrawing::aim(vtkRenderer* renderer) {
     const Vec3 right(std::cos(azimuth_), -std::sin(azimuth_), 0.0);
     const Vec3 up = right.cross(ahead);
     const double size = g.cell * static_cast<double>(g.nx + g.ny);
-    const double aspect = room_.width() / room_.height();
+    const double aspect = aspect_of_room();
     const auto points = silhouette();
     Vec3 target(0.0, 0.0, foot_);
     double distance = 3.0 * size;
@@ -212,8 +191,7 @@ void BlockDrawing::aim(vtkRenderer* renderer) {
         camera->SetPosition(eye_.x(), eye_.y(), eye_.z());
         camera->SetViewUp(0.0, 0.0, 1.0);
         camera->SetClippingRange(0.05 * distance, distance + 4.0 * size);
-        const double* m = camera->GetCompositeProjectionTransformMatrix(aspect, -1.0, 1.0)->GetData();
-        to_unit_square_ = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m);
+        keep_projection(camera);
         Vec2 low(1e9, 1e9), high(-1e9, -1e9);
         for (const Vec3& p : points) {
             const Eigen::Vector4d q = to_unit_square_ * with_one(p);
@@ -233,7 +211,7 @@ void BlockDrawing::scene(vtkRenderer* renderer) {
     renderer->AddActor(skin_actor(surface_, skin_, origin_));
     renderer->AddActor(wall_actor(surface_, foot_, origin_));
     lines(renderer);
-    aim(renderer);
+    figure_.eye ? aim_from_eye(renderer) : aim(renderer);
 }
 
 Vec2 BlockDrawing::on_picture(const Vec3& point) const {
@@ -274,12 +252,13 @@ void BlockDrawing::explanations(Canvas& canvas) const {
     const GridGeometry& g = surface_.geometry;
     const double x = 0.5 * g.cell * static_cast<double>(g.nx - 1),
                  y = 0.5 * g.cell * static_cast<double>(g.ny - 1);
-    for (const double side : {-1.0, 1.0}) {  // walls that face the eye
+    const std::vector<double> sides = figure_.eye ? std::vector<double>{} : std::vector<double>{-1.0, 1.0};
+    for (const double side : sides) {  // walls that face the eye; from a place of its own it may not see their feet
         if (side * eye_.y() > y) edge_length(canvas, {-x, side * y, foot_}, {x, side * y, foot_}, 2.0 * x);
         if (side * eye_.x() > x) edge_length(canvas, {side * x, -y, foot_}, {side * x, y, foot_}, 2.0 * y);
     }
 
-    const Vec3 centre(0.0, 0.0, foot_);
+    const Vec3 centre = figure_.eye ? target_ : Vec3(0.0, 0.0, foot_);
     const Vec2 north = on_picture(centre + Vec3(0, 0.1 * (x + y), 0)) - on_picture(centre);
     const Vec2 along = north.norm() > 0.0 ? Vec2(north.normalized()) : Vec2(0, 1),
                across(-along.y(), along.x());

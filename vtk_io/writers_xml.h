@@ -4,6 +4,7 @@
 #include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
+#include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkXMLWriter.h>
 
@@ -30,6 +31,13 @@ vtkSmartPointer<vtkImageData> image_of(const GridGeometry& grid);
 
 /// Adds `outside`, and HIDDENPOINT where it is 1 (why both: writers.h); nothing when it is empty.
 void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside);
+
+/// The particles: points in double at "position", one vertex cell each, every other column as an array; with units
+/// and the time (writers_frame.cpp).
+vtkSmartPointer<vtkPolyData> cloud_of(const Frame& frame);
+
+/// The nodes with all their columns, units and the time; nodes without terrain are hidden (writers_frame.cpp).
+vtkSmartPointer<vtkImageData> image_of(const Frame& frame);
 
 /// Writes atomically, LZ4 in inline base64. Throws UserError with path and reason.
 void write_xml(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem::path& target);

@@ -25,6 +25,9 @@ public:
     virtual ~Observer() = default;
     virtual std::string name() const = 0;                  ///< for the timing table
     virtual void step(const Status&, const Probe&) {}      ///< after every step (and once at the start)
+    /// Asked after every step that ends between outputs: is a frame wanted now? Then glance() gets it.
+    virtual bool wants_frame(const Status&) { return false; }
+    virtual void glance(const Frame&) {}
     virtual void see(const Frame&) {}                      ///< at the start, at every output time and at the end
     virtual void end(const Frame&) {}                      ///< once, with the last frame, after see()
 };

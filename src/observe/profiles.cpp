@@ -9,13 +9,14 @@
 namespace frana {
 namespace {
 
-/// The four nodes around a point, and what each contributes.
-struct Corner {
-    Index node = 0;
-    double weight = 0.0;
-};
+const Field& needed(const Frame& frame, const char* name) {
+    const Field* field = frame.node(name);
+    expect(field != nullptr, "a frame has the node fields elevation, depth and velocity");
+    return *field;
+}
 
-/// Empty when the point lies outside the rectangle of nodes.
+}  // namespace
+
 std::vector<Corner> corners(const GridGeometry& grid, const Vec2& point) {
     const double i = (point.x() - grid.x0) / grid.cell, j = (point.y() - grid.y0) / grid.cell;
     if (!(i >= 0.0 && j >= 0.0 && i <= static_cast<double>(grid.nx - 1) &&
@@ -31,14 +32,6 @@ std::vector<Corner> corners(const GridGeometry& grid, const Vec2& point) {
         if (corner.weight > 0.0) result.push_back(corner);
     return result;
 }
-
-const Field& needed(const Frame& frame, const char* name) {
-    const Field* field = frame.node(name);
-    expect(field != nullptr, "a frame has the node fields elevation, depth and velocity");
-    return *field;
-}
-
-}  // namespace
 
 std::vector<Station> stations(const Polyline& line, double spacing) {
     std::vector<Station> result;

@@ -25,6 +25,15 @@ struct Station {
 /// `spacing` [m]. A corner belongs to the piece that begins there. Pieces without length are passed over.
 std::vector<Station> stations(const Polyline& line, double spacing);
 
+/// A node near a point, and its bilinear weight.
+struct Corner {
+    Index node = 0;
+    double weight = 0.0;
+};
+
+/// The nodes around a point that have weight; empty when the point lies outside the rectangle of nodes.
+std::vector<Corner> corners(const GridGeometry& grid, const Vec2& point);
+
 /// Bilinear between the nodes of a frame. Velocity is weighted by depth, so that a dry node beside the flow's
 /// margin does not slow it down. Outside the grid, or beside a node without bed: elevation NaN, depth zero.
 Sample sample(const Frame& frame, const Vec2& point);

@@ -64,6 +64,7 @@ private:
     std::string reason_to_stop() const;
     double next_output_time() const;
     void show_step();
+    void show_glance();
     void show_frame();
     void show_end();
     void give_up(const NumericsError& error);
@@ -89,7 +90,10 @@ RunSummary Loop::run() {
             const double output_time = next_output_time();
             advance(output_time);
             show_step();
-            if (simulation_.status().time < output_time) continue;
+            if (simulation_.status().time < output_time) {
+                show_glance();
+                continue;
+            }
             ++outputs_;
             show_frame();
         }
@@ -146,6 +150,17 @@ Frame Loop::frame() {
     Frame result;
     timed(summary_.output.back(), [&] { result = simulation_.frame(); });
     return result;
+}
+
+/// A frame between two outputs, for those who ask for one.
+void Loop::show_glance() {
+    std::vector<std::size_t> asking;
+    for (std::size_t i = 0; i < observers_.size(); ++i)
+        if (observers_[i]->wants_frame(summary_.last)) asking.push_back(i);
+    if (asking.empty()) return;
+    Frame now = frame();
+    now.number = summary_.frames;
+    for (const std::size_t i : asking) timed(summary_.output[i], [&] { observers_[i]->glance(now); });
 }
 
 void Loop::show_frame() {

@@ -45,10 +45,11 @@ struct RunSummary {
 using Observers = std::vector<std::unique_ptr<Observer>>;
 
 /// Runs `simulation` from its present time to the plan's end. Observers' step() is called at the start and
-/// after every step; see() at the start, at every k * every exactly and at the end; end() once, after the
-/// last see(). An interruption finishes the step and ends the run as usual. A NumericsError ends it too: if
-/// the state can still be shown it is the last frame; the error is kept in the summary for the caller to
-/// throw once the products are written. Errors of observers (a full disk) pass through.
+/// after every step; see() at the start, at every k * every exactly and at the end; glance() in between, for
+/// those who ask for a frame; end() once, after the last see(). An interruption finishes the step and ends
+/// the run as usual. A NumericsError ends it too: if the state can still be shown it is the last frame; the
+/// error is kept in the summary for the caller to throw once the products are written. Errors of observers
+/// (a full disk) pass through.
 RunSummary run(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
                Progress& progress);
 

@@ -52,7 +52,7 @@ void CaseReader::missing(const std::string& key, const Parameter& parameter, con
 
 void CaseReader::check_rules() {
     check_tables();
-    for (const char* table : {"profile", "gauge"}) check_line_names(table);
+    for (const char* table : {"profile", "gauge", "insitu", "camera"}) check_line_names(table);
     check_meaning();
 }
 
@@ -82,8 +82,9 @@ void CaseReader::check_missing(const std::string& prefix, const std::string& tab
         const auto there = [&](const std::string& k) { return case_.given(k) || misread_.count(k) > 0; };
         if (there(key)) continue;
         if (parameter.required) missing(key, parameter, "");
-        if (parameter.required_by.empty() || misread_.count(parameter.switch_key)) continue;
-        const std::string& chosen = case_.word(parameter.switch_key);
+        const std::string choice = parameter.required_by.empty() ? "" : parameter.switch_of(key);
+        if (choice.empty() || misread_.count(choice) || !case_.has(choice)) continue;
+        const std::string& chosen = case_.word(choice);
         if (!contains(parameter.required_by, chosen)) continue;
         const std::string other = parameter.instead_of.empty() ? "" : concrete(prefix, parameter.instead_of);
         if (!other.empty() && (there(other) || other < key)) continue;  // of two ways, one complaint
@@ -109,8 +110,9 @@ void CaseReader::check_unused(const std::string& prefix, const std::string& tabl
     for (const Parameter& parameter : parameters()) {
         if (parameter.table() != table || parameter.switch_key.empty()) continue;
         const std::string key = concrete(prefix, parameter.key);
-        if (!case_.given(key) || misread_.count(parameter.switch_key)) continue;
-        const std::string& chosen = case_.word(parameter.switch_key);
+        const std::string choice = parameter.switch_of(key);
+        if (!case_.given(key) || misread_.count(choice) || !case_.has(choice)) continue;
+        const std::string& chosen = case_.word(choice);
         if (contains(parameter.used_by, chosen)) continue;
         std::string users;
         for (const std::string& user : parameter.used_by) users += (users.empty() ? "" : " or ") + user;

@@ -1,88 +1,12 @@
 // The table itself: every key a case file can have. The order is that of the documentation.
 #include <cmath>
 
-#include "scene/parameters.h"
+#include "scene/parameter_makers.h"
 
 namespace frana {
 namespace {
 
-const double infinity = std::numeric_limits<double>::infinity();
-const Range any{};
-const Range positive{0.0, infinity, true, false};
-const Range not_negative{0.0, infinity, false, false};
-const Range fraction{0.0, 1.0, false, false};
-
-Range between(double low, double high) { return {low, high, false, false}; }
-Range above_to(double low, double high) { return {low, high, true, false}; }
-
-Value text(const char* value) { return std::string(value); }
-
-Parameter make(const char* key, Kind kind, const char* unit, const char* meaning) {
-    Parameter parameter;
-    parameter.key = key;
-    parameter.kind = kind;
-    parameter.unit = unit;
-    parameter.meaning = meaning;
-    return parameter;
-}
-
-Parameter number(const char* key, const char* unit, Range range, const char* meaning) {
-    Parameter parameter = make(key, Kind::number, unit, meaning);
-    parameter.range = range;
-    return parameter;
-}
-
-Parameter number(const char* key, const char* unit, Range range, double fallback, const char* meaning) {
-    Parameter parameter = number(key, unit, range, meaning);
-    parameter.fallback = fallback;
-    return parameter;
-}
-
-Parameter flag(const char* key, bool fallback, const char* meaning) {
-    Parameter parameter = make(key, Kind::flag, "", meaning);
-    parameter.fallback = fallback;
-    return parameter;
-}
-
-Parameter choice(const char* key, std::vector<std::string> choices, const char* fallback,
-                 const char* meaning) {
-    Parameter parameter = make(key, Kind::choice, "", meaning);
-    parameter.choices = std::move(choices);
-    parameter.fallback = text(fallback);
-    return parameter;
-}
-
-Parameter required(Parameter parameter) {
-    parameter.required = true;
-    return parameter;
-}
-
-Parameter absent(Parameter parameter, const char* consequence) {
-    parameter.absent = consequence;
-    return parameter;
-}
-
-Parameter instead(Parameter parameter, const char* other) {
-    parameter.instead_of = other;
-    return parameter;
-}
-
-/// Another default under the preset "paper", the choices of Fois et al. (2024).
-Parameter paper(Parameter parameter, Value value) {
-    parameter.otherwise.push_back({"scheme.preset", "paper", std::move(value)});
-    return parameter;
-}
-
-/// Used with these choices of `key` only, and needed with those of `needed_by`.
-Parameter with(Parameter parameter, const char* key, std::vector<std::string> used_by,
-               std::vector<std::string> needed_by = {}) {
-    parameter.switch_key = key;
-    parameter.used_by = std::move(used_by);
-    parameter.required_by = std::move(needed_by);
-    return parameter;
-}
-
-using Table = std::vector<Parameter>;
+using namespace rows;
 
 void add_terrain(Table& table) {
     table.push_back(
@@ -259,6 +183,7 @@ void add_run(Table& table) {
     table.push_back(number("output.every", "s", positive, 1.0, "time between frames, which are hit exactly"));
     Parameter formats = make("output.formats", Kind::words, "", "what is written");
     formats.choices = {"vtk", "xdmf", "geotiff", "png"};
+    formats.may_be_empty = true;
     formats.fallback = std::vector<std::string>{"vtk", "geotiff", "png"};
     table.push_back(formats);
     Parameter fields = make("output.fields", Kind::words_or_all, "", "quantities in the frames");
@@ -281,6 +206,7 @@ void add_run(Table& table) {
     Parameter point = make("gauge.point", Kind::numbers, "m", "where the gauge stands: [x, y]");
     point.length = 2;
     table.push_back(required(point));
+    add_insitu(table);
     table.push_back(absent(make("survey.footprint", Kind::path, "",
                                 "surveyed extent that the run is compared with: any OGR vector file of polygons, or a "
                                 "raster that is above 0 there"),
@@ -305,14 +231,13 @@ const std::vector<Parameter>& parameters() {
 }
 
 const std::vector<std::string>& repeated_tables() {
-    static const std::vector<std::string> names = {"release", "profile", "gauge"};
+    static const std::vector<std::string> names = {"release", "profile", "gauge", "insitu", "camera"};
     return names;
 }
 
 const std::vector<UnbuiltTable>& unbuilt_tables() {
     static const std::vector<UnbuiltTable> tables = {{"barrier", "barriers"},
-                                                     {"stage", "stages with other laws or loads"},
-                                                     {"insitu", "rendering in situ"}};
+                                                     {"stage", "stages with other laws or loads"}};
     return tables;
 }
 

@@ -91,6 +91,13 @@ std::string Range::text() const {
     return joined(limits, " and ");
 }
 
+std::string Parameter::switch_of(const std::string& own_key) const {
+    const std::size_t dot = switch_key.rfind('.');
+    return switch_key.compare(0, dot, table()) == 0 && dot == table().size()
+               ? own_key.substr(0, own_key.rfind('.')) + switch_key.substr(dot)
+               : switch_key;
+}
+
 std::string Parameter::table() const { return key.substr(0, key.rfind('.')); }
 
 std::string Parameter::name() const { return key.substr(key.rfind('.') + 1); }
@@ -116,14 +123,15 @@ std::string Parameter::expected() const {
         case Kind::number_or_path:
             return "a number" + in_range + in_unit + " or the name of a raster";
         case Kind::numbers:
-            return fmt::format("a list of {} numbers", length) + in_unit;
+            return (length > 0 ? fmt::format("a list of {} numbers", length) : "a list of numbers") + in_unit;
         case Kind::numbers_or_paths:
             return fmt::format("a list of {} numbers", length) + in_unit +
                    fmt::format(" or of {} rasters", length);
         case Kind::points:
             return fmt::format("a list of {} or more points [x, y]", length) + in_unit;
         case Kind::words:
-            return "a list of \"" + joined(choices, "\", \"") + "\"";
+            return std::string(may_be_empty ? "an empty list, or a list of \"" : "a list of \"") +
+                   joined(choices, "\", \"") + "\"";
         case Kind::words_or_all:
             return "\"all\" or a list of \"" + joined(choices, "\", \"") + "\"";
     }

@@ -23,10 +23,10 @@ enum class Kind {
     choice,            ///< std::string, one of Parameter::choices
     path,              ///< std::string
     number_or_path,    ///< double or std::string (a raster)
-    numbers,           ///< Parameter::length doubles
+    numbers,           ///< Parameter::length doubles; length 0: one or more
     numbers_or_paths,  ///< Parameter::length doubles or as many std::string (rasters)
     points,            ///< Vec2, at least Parameter::length
-    words,             ///< std::string, each one of Parameter::choices
+    words,             ///< std::string, each one of Parameter::choices; none with Parameter::may_be_empty
     words_or_all       ///< the same, or the text "all" (held as an empty list)
 };
 
@@ -58,15 +58,19 @@ struct Parameter {
     Range range = {};
     std::vector<std::string> choices = {};
     std::size_t length = 0;                    ///< of lists
+    bool may_be_empty = false;                 ///< a list of words without any
     std::optional<Value> fallback = {};        ///< the default
     std::vector<OtherDefault> otherwise = {};  ///< defaults that depend on another choice, such as the preset
     std::string absent = {};                   ///< without default: what happens when the key is not given
     bool required = false;
-    std::string switch_key = {};                ///< key of the choice that decides whether this one is used
+    std::string switch_key = {};                ///< key of the choice that decides whether this one is used; within
+                                                ///< a repeated table that of the same table
     std::vector<std::string> used_by = {};      ///< choices of switch_key that use this key
     std::vector<std::string> required_by = {};  ///< choices of switch_key that need this key
     std::string instead_of = {};  ///< key that says the same in another way: only one of both may be given
 
+    /// switch_key for the parameter's own `key`: "insitu.2.kind" for "insitu.2.field".
+    std::string switch_of(const std::string& key) const;
     std::string table() const;     ///< "release" of "release.depth"
     std::string name() const;      ///< "depth" of "release.depth"
     std::string expected() const;  ///< "a number above 0 [m]"

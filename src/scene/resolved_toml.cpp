@@ -48,7 +48,7 @@ private:
             return;
         }
         const bool unused =
-            !parameter.switch_key.empty() && !contains(parameter.used_by, case_.word(parameter.switch_key));
+            !parameter.switch_key.empty() && !contains(parameter.used_by, case_.word(parameter.switch_of(key)));
         const bool said_otherwise = !parameter.instead_of.empty() &&
                                     case_.given(prefix + find_parameter(parameter.instead_of)->name());
         if (unused || said_otherwise) return;

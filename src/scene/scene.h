@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "particles/seeds.h"
+#include "scene/insitu.h"
 #include "terrain/raster.h"
 
 namespace frana {
@@ -113,6 +114,7 @@ struct Scene {
     Output output;
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
+    std::vector<Insitu> insitu;        ///< looked at while the case runs
     std::optional<Polygons> survey;    ///< surveyed footprint, to compare with
 
     std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)

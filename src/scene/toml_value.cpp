@@ -41,6 +41,8 @@ public:
             case Kind::points:
                 return points(node);
             case Kind::words:
+                if (parameter_.may_be_empty && node.is_array() && node.as_array()->empty())
+                    return Value(std::vector<std::string>{});
                 return wrapped(list(node, &Converter::chosen, 0));
             case Kind::words_or_all:
                 return words_or_all(node);

@@ -1,0 +1,97 @@
+#include "frana_run_insitu.h"
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "frana_insitu_figures.h"
+#include "observe/insitu_tables.h"
+#include "vtk_io/catalyst.h"
+#include "vtk_io/insitu.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// Two works at once; the second one is not kept from its turn by a failure of the first.
+class Both final : public InsituWork {
+public:
+    Both(std::unique_ptr<InsituWork> one, std::unique_ptr<InsituWork> other)
+        : one_(std::move(one)), other_(std::move(other)) {}
+
+    void look(const Frame& frame, Index number) override {
+        std::exception_ptr failure;
+        try {
+            one_->look(frame, number);
+        } catch (const std::exception&) {
+            failure = std::current_exception();
+        }
+        other_->look(frame, number);
+        if (failure) std::rethrow_exception(failure);
+    }
+
+private:
+    std::unique_ptr<InsituWork> one_, other_;
+};
+
+std::unique_ptr<InsituWork> cut(const Scene& scene, const Insitu& entry, const fs::path& folder) {
+    auto table = make_cut_table(folder / (entry.name + ".csv"), entry.line, entry.fields);
+    if (!entry.picture) return table;
+    return std::make_unique<Both>(std::move(table), make_cut_figure(scene, entry, folder));
+}
+
+std::unique_ptr<InsituWork> threshold(const Insitu& entry, const fs::path& folder) {
+    Interval kept;
+    kept.low = entry.from.value_or(kept.low);
+    kept.high = entry.to.value_or(kept.high);
+    const auto make = entry.of_particles ? make_particle_threshold : make_cell_threshold;
+    return make(folder, entry.name, entry.fields.front(), kept);
+}
+
+std::unique_ptr<InsituWork> make_work(const Scene& scene, const Insitu& entry, const fs::path& folder) {
+    switch (entry.kind) {
+        case Insitu::Kind::profile:
+            return cut(scene, entry, folder);
+        case Insitu::Kind::contour:
+            return make_contours(folder, entry.name, entry.fields.front(), entry.levels);
+        case Insitu::Kind::threshold:
+            return threshold(entry, folder);
+        case Insitu::Kind::figure:
+            return make_figure(scene, entry, folder);
+        case Insitu::Kind::reduce:
+            return make_reduction(folder / (entry.name + ".csv"), entry.fields,
+                                  entry.above.value_or(scene.output.footprint_depth));
+        case Insitu::Kind::catalyst:
+            return make_catalyst(entry.script);
+    }
+    throw InternalError("internal error: a kind of [[insitu]] without a work");
+}
+
+}  // namespace
+
+void check_insitu(const Scene& scene) {
+    for (const Insitu& entry : scene.insitu)
+        if (entry.kind == Insitu::Kind::catalyst) check_catalyst(entry.script, entry.place);
+}
+
+Observers make_insitu(const Scene& scene, const fs::path& run_dir, std::vector<InsituTally>& tallies) {
+    tallies.clear();
+    for (const Insitu& entry : scene.insitu) tallies.push_back({entry.name, kind_word(entry.kind), 0, 0, ""});
+    Observers observers;
+    for (std::size_t i = 0; i < scene.insitu.size(); ++i) {
+        const Insitu& entry = scene.insitu[i];
+        observers.push_back(std::make_unique<InsituObserver>(InsituTimes{entry.every, entry.every_steps},
+                                                             make_work(scene, entry, run_dir / "insitu"), tallies[i]));
+    }
+    return observers;
+}
+
+std::vector<std::string> insitu_warnings(const std::vector<InsituTally>& tallies) {
+    std::vector<std::string> warnings;
+    for (const InsituTally& tally : tallies)
+        if (tally.failed > 0)
+            warnings.push_back(fmt::format("insitu {}: {} of {} failed, the first one at {}", tally.name, tally.failed,
+                                           tally.made + tally.failed, tally.first_failure));
+    return warnings;
+}
+
+}  // namespace frana

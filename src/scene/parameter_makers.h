@@ -1,0 +1,96 @@
+#pragma once
+// How the rows of the parameter table are written down. Private to the files that hold the table.
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/parameters.h"
+
+namespace frana {
+
+using Table = std::vector<Parameter>;
+
+/// The keys of [[insitu]] and [[camera]] (parameter_table_insitu.cpp).
+void add_insitu(Table& table);
+
+namespace rows {
+
+inline const double infinity = std::numeric_limits<double>::infinity();
+inline const Range any{};
+inline const Range positive{0.0, infinity, true, false};
+inline const Range not_negative{0.0, infinity, false, false};
+inline const Range fraction{0.0, 1.0, false, false};
+
+inline Range between(double low, double high) { return {low, high, false, false}; }
+inline Range above_to(double low, double high) { return {low, high, true, false}; }
+
+inline Value text(const char* value) { return std::string(value); }
+
+inline Parameter make(const char* key, Kind kind, const char* unit, const char* meaning) {
+    Parameter parameter;
+    parameter.key = key;
+    parameter.kind = kind;
+    parameter.unit = unit;
+    parameter.meaning = meaning;
+    return parameter;
+}
+
+inline Parameter number(const char* key, const char* unit, Range range, const char* meaning) {
+    Parameter parameter = make(key, Kind::number, unit, meaning);
+    parameter.range = range;
+    return parameter;
+}
+
+inline Parameter number(const char* key, const char* unit, Range range, double fallback, const char* meaning) {
+    Parameter parameter = number(key, unit, range, meaning);
+    parameter.fallback = fallback;
+    return parameter;
+}
+
+inline Parameter flag(const char* key, bool fallback, const char* meaning) {
+    Parameter parameter = make(key, Kind::flag, "", meaning);
+    parameter.fallback = fallback;
+    return parameter;
+}
+
+inline Parameter choice(const char* key, std::vector<std::string> choices, const char* fallback,
+                 const char* meaning) {
+    Parameter parameter = make(key, Kind::choice, "", meaning);
+    parameter.choices = std::move(choices);
+    parameter.fallback = text(fallback);
+    return parameter;
+}
+
+inline Parameter required(Parameter parameter) {
+    parameter.required = true;
+    return parameter;
+}
+
+inline Parameter absent(Parameter parameter, const char* consequence) {
+    parameter.absent = consequence;
+    return parameter;
+}
+
+inline Parameter instead(Parameter parameter, const char* other) {
+    parameter.instead_of = other;
+    return parameter;
+}
+
+/// Another default under the preset "paper", the choices of Fois et al. (2024).
+inline Parameter paper(Parameter parameter, Value value) {
+    parameter.otherwise.push_back({"scheme.preset", "paper", std::move(value)});
+    return parameter;
+}
+
+/// Used with these choices of `key` only, and needed with those of `needed_by`.
+inline Parameter with(Parameter parameter, const char* key, std::vector<std::string> used_by,
+               std::vector<std::string> needed_by = {}) {
+    parameter.switch_key = key;
+    parameter.used_by = std::move(used_by);
+    parameter.required_by = std::move(needed_by);
+    return parameter;
+}
+
+}  // namespace rows
+}  // namespace frana

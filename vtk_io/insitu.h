@@ -1,0 +1,36 @@
+#pragma once
+// Works of [[insitu]] that run a VTK pipeline inside the solver process. Each look leaves a file of a series,
+// listed in a .pvd as soon as it is there; files appear whole or not at all.
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "observe/insitu.h"
+
+namespace frana {
+
+/// Lines along which a node field has the given values: `folder`/`name`/`name`_NNNNNN.vtp, laid on the surface of the
+/// flow (z = elevation + depth), with cell data `level` in the field's unit. Cells beside nodes without terrain have
+/// none.
+std::unique_ptr<InsituWork> make_contours(const std::filesystem::path& folder, const std::string& name,
+                                          const std::string& field, const std::vector<double>& levels);
+
+/// Values that are kept; both ends belong to it.
+struct Interval {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+};
+
+/// Cells of the grid all of whose nodes have terrain and the field within the interval, with all node fields:
+/// `name`_NNNNNN.vtu (vtkUnstructuredGrid).
+std::unique_ptr<InsituWork> make_cell_threshold(const std::filesystem::path& folder, const std::string& name,
+                                                const std::string& field, const Interval& kept);
+
+/// Particles whose field is within the interval, with all their columns: `name`_NNNNNN.vtp (vtkPolyData, one vertex a
+/// particle).
+std::unique_ptr<InsituWork> make_particle_threshold(const std::filesystem::path& folder, const std::string& name,
+                                                    const std::string& field, const Interval& kept);
+
+}  // namespace frana
