@@ -7,10 +7,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
 #include <new>
+#include <set>
 
 #include "base/error.h"
 #include "base/version.h"
@@ -207,11 +209,17 @@ int run_program(int argc, char** argv) {
 }
 
 /// Threads of OpenMP spin for milliseconds before they sleep; beside other work on the machine that is time the others
-/// would compute in (measured: 25 times slower with two threads on two busy cores). They are told to sleep soon, unless the
-/// environment has a wish of its own. The runtime reads it before main(), hence the program starts itself anew.
-void wait_briefly(char** argv) {
-    if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
-    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0) execv("/proc/self/exe", argv);
+/// would compute in (measured: 25 times slower with two threads on two busy cores). For the commands that compute they
+/// are told to sleep soon, unless the environment has a wish of its own. The runtime reads it before main(), hence the
+/// program starts itself anew; not under tools that have loaded it by ways of their own.
+void wait_briefly(int argc, char** argv) {
+    static const std::set<std::string> kComputing{"run", "verify", "bench"};
+    if (argc < 2 || !kComputing.count(argv[1])) return;
+    if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY") || std::getenv("LD_PRELOAD")) return;
+    std::error_code none;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", none);
+    if (none || self.filename() != std::filesystem::path(argv[0]).filename()) return;
+    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0) execv(self.c_str(), argv);
 }
 
 }  // namespace
@@ -219,7 +227,7 @@ void wait_briefly(char** argv) {
 
 int main(int argc, char** argv) {
     using namespace frana;
-    wait_briefly(argv);
+    wait_briefly(argc, argv);
     try {
         return run_program(argc, argv);
     } catch (const UserError& error) {

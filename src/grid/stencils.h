@@ -10,7 +10,7 @@ struct Stencils {
     Int4 first;      ///< node of the first weight, counted from the storage's first
     Double4 offset;  ///< position minus first node, 1/2 to 3/2
     Double4 w[3];
-    explicit Stencils(Double4 u) : first(floor_positive(u + (kTile - 0.5))) {
+    [[gnu::always_inline]] explicit Stencils(Double4 u) : first(floor_positive(u + (kTile - 0.5))) {
         const Double4 f = u - (to_double(first) - kTile);
         offset = f;
         w[0] = 0.5 * (1.5 - f) * (1.5 - f);
@@ -23,7 +23,7 @@ struct Stencils {
 struct Reach {
     Index node;
     double wx[3], wy[3], sx[3], sy[3];
-    Reach(const Stencils& x, const Stencils& y, Index stride, int lane)
+    [[gnu::always_inline]] Reach(const Stencils& x, const Stencils& y, Index stride, int lane)
         : node(y.first[lane] * stride + x.first[lane]) {
         const double f = x.offset[lane], g = y.offset[lane];
         for (int n = 0; n < 3; ++n) wx[n] = x.w[n][lane], wy[n] = y.w[n][lane];

@@ -16,19 +16,21 @@ namespace frana {
 constexpr Index kTile = 16;   ///< nodes along a tile's edge
 constexpr Index kGhosts = 3;  ///< layers of nodes beyond the outer ones that material can reach
 
-/// A zeroed array whose untouched pages take no memory.
+/// A zeroed array whose untouched pages take no memory. `guard` numbers before the first and behind the last may be read:
+/// they are zero.
 template <class T>
 class LazyArray {
 public:
     LazyArray() = default;
-    explicit LazyArray(Index count)
-        : data_(static_cast<T*>(std::calloc(static_cast<std::size_t>(count), sizeof(T)))), count_(count) {
-        if (!data_ && count > 0) throw std::bad_alloc();
+    explicit LazyArray(Index count, Index guard = 0)
+        : block_(static_cast<T*>(std::calloc(static_cast<std::size_t>(count + 2 * guard), sizeof(T)))),
+          first_(block_.get() + guard), count_(count) {
+        if (!block_ && count > 0) throw std::bad_alloc();
     }
-    T& operator[](Index k) { return data_.get()[k]; }
-    const T& operator[](Index k) const { return data_.get()[k]; }
-    T* data() { return data_.get(); }
-    const T* data() const { return data_.get(); }
+    T& operator[](Index k) { return first_[k]; }
+    const T& operator[](Index k) const { return first_[k]; }
+    T* data() { return first_; }
+    const T* data() const { return first_; }
     Index count() const { return count_; }
     explicit operator bool() const { return count_ > 0; }
 
@@ -36,7 +38,8 @@ private:
     struct Free {
         void operator()(T* p) const { std::free(p); }
     };
-    std::unique_ptr<T[], Free> data_;
+    std::unique_ptr<T[], Free> block_;
+    T* first_ = nullptr;
     Index count_ = 0;
 };
 

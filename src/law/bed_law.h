@@ -94,7 +94,8 @@ inline SheetShares bingham_sheet(double b, double d) {
 }
 
 template <class Real>
-inline Real speed_after(const bed::None&, const BedStateOf<Real>&, Real, Real driven, double) {
+[[gnu::always_inline]] inline Real speed_after(const bed::None&, const BedStateOf<Real>&, Real, Real driven,
+                                               double) {
     return driven;
 }
 

@@ -12,10 +12,11 @@ namespace frana {
 namespace {
 
 constexpr Index kStepsBetweenSplits = 3;
-/// Cells a point may have moved since the last sort: same-colour tiles then still share no node
-/// (sub-points reach from one node before the stencil to one behind it: 16 + d + 2 < 32 - d - 1, d <= 6).
+/// Cells a point may have moved since the last sort: same-colour tiles then still share no node, as long as the drift d
+/// keeps 16 + d + 2 < 32 - d - 1 (sub-points reach from one node before the quadratic stencil to one behind it), d <= 6;
+/// cubic: d <= 5. A step that moves a point by more than 4 cells is refused.
 constexpr double kDriftLimit = 3.0;
-constexpr double kLongestShift = 1.0;  ///< of a sound step [cells]; and 2 (2 + 4) <= 12 holds to the very last one
+double drift_before_carry(const Scheme& scheme) { return scheme.shape == Shape::cubic ? 1.0 : 2.0; }
 
 double least_split_mass(const Scene& scene) {
     double largest = 0.0;
@@ -101,7 +102,7 @@ void DepthAveraged::advance(double until) {
     book_kick(timed_("kick and friction", [&] { return kick_->kick(flow_, kick, dt); }), kick);
     timed_("kick and friction", [&] { mirror_motion(flow_); });
     const double next_kick = 0.5 * (dt + longest_step());
-    const bool adapts = (status_.step + 1) % kStepsBetweenSplits == 0 || drift_ + kLongestShift > kDriftLimit;
+    const bool adapts = (status_.step + 1) % kStepsBetweenSplits == 0 || drift_ > drift_before_carry(flow_.scheme);
     PointSums points = adapts ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
                               : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_kick); });
     require_sound(points);
@@ -149,11 +150,11 @@ void DepthAveraged::adapt_points(bool points_left) {
     const bool has_domains = !flow_.scheme.paper_pressure;
     const bool due = status_.step % kStepsBetweenSplits == 0;
     const std::vector<std::uint8_t> none;
-    if (points_left)
-        timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, transfer_->gone(), flow_.active); });
+    // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
+    if (points_left) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
     Index born = 0;
     if (has_domains && due) born = timed_("split", [&] { return splitter_.split(flow_); });
-    if (born > 0 || drift_ > kDriftLimit || (due && !points_left)) {
+    if (born > 0 || drift_ > kDriftLimit || due) {
         timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, none, flow_.active); });
         drift_ = 0.0;
     }

@@ -48,11 +48,11 @@ inline bool eight_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t uns
 
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
-        : deposit(grid.size() + 1), column_mass(grid.size()), force(with_force ? grid.size() : 0), depth(grid.size()), surface(grid.size()),
-          surface_next(grid.size()), wave_x(grid.size()), row_known(grid.size()), before(grid.size()),
-          motion(grid.size() + 1), viscous_flux(grid.size()),
-          shock(grid.size()), sensed(grid.size()),
-          flags(grid.size()) {}
+        : deposit(grid.size() + 1), column_mass(grid.size()), force(with_force ? grid.size() : 0), depth(grid.size()),
+          surface(grid.size()), surface_next(grid.size()), wave_x(grid.size()),
+          row_known(grid.size(), around(grid)), before(grid.size()), motion(grid.size() + 1),
+          viscous_flux(grid.size()), shock(grid.size()), sensed(grid.size(), around(grid)),
+          flags(grid.size(), around(grid)) {}
 
     Deposit* deposits() { return aligned(deposit.data()); }
     const Deposit* deposits() const { return aligned(deposit.data()); }
@@ -77,6 +77,8 @@ struct Nodes {
     LazyArray<std::uint8_t> flags;   ///< NodeFlag bits
 
 private:
+    /// Stencils of the outermost spare nodes read so far beyond the array: two rows and a few.
+    static Index around(const TileGrid& grid) { return 2 * grid.stride() + 8; }
     template <class T>
     static T* aligned(T* p) {  // calloc promises 16 bytes only
         const auto address = reinterpret_cast<std::uintptr_t>(p);

@@ -37,4 +37,7 @@ void deposit_sub_points(Flow& flow, Index p) {
     }
 }
 
+/// The same with quadratic shape functions, for the few points that the packed kernel does not take.
+void deposit_quadratic_sub_points(Flow& flow, Index p);
+
 }  // namespace frana

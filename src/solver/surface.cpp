@@ -215,8 +215,8 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
     if (!any(wet)) return;
     const Double4 share = {flow.share(i, j), flow.share(i + 1, j), flow.share(i + 2, j), flow.share(i + 3, j)};
     sums.potential += share * column * flow.gravity * h * (z + 0.5 * h);
-    sums.max_depth = max(sums.max_depth, h);
-    const Mask4 covered = h > request.footprint_depth;
+    sums.max_depth = max(sums.max_depth, select(share > 0.0, h, none));
+    const Mask4 covered = (h > request.footprint_depth) & (share > 0.0);
     const Double4 dx = static_cast<double>(i) - request.centre.x() + Double4{0.0, 1.0, 2.0, 3.0};
     const double dy = static_cast<double>(j) - request.centre.y();
     sums.covered_area += select(covered, share * flow.area, none);

@@ -205,7 +205,7 @@ private:
         const Double4 ay = reach * (r.r1y + r.r2y), by = reach * (r.r1y - r.r2y);
         const Double4 far = max(max(abs(ax), abs(bx)), max(abs(ay), abs(by)));
         if (at_side || any(far > 0.5)) {
-            for (int lane = 0; lane < lanes; ++lane) deposit_sub_points<Quadratic>(flow, p + lane);
+            for (int lane = 0; lane < lanes; ++lane) deposit_quadratic_sub_points(flow, p + lane);
             return;
         }
         const Int4 i = floor_positive(x + (kTile - 1.0)), j = floor_positive(y + (kTile - 1.0));
@@ -299,7 +299,7 @@ private:
         const Double4 shift = max(abs(shift_x), abs(shift_y));
         const Mask4 sound = shift <= 4.0;  // also catches what is not finite
         if (any(~sound)) {
-            for (int lane = lanes - 1; lane >= 0; --lane)
+            for (int lane = 0; lane < lanes; ++lane)
                 if (!sound[lane] && sums.rare.bad < 0) sums.rare.bad = p + lane;
             return;
         }
