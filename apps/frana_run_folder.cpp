@@ -22,6 +22,9 @@ const std::vector<ProductKind>& product_kinds() {
         {"particles", "particles_\\d+\\.vtp", "frames of the particles", true},
         {"", "grid\\.pvd", "fields on the grid over time, for ParaView", false},
         {"grid", "grid_\\d+\\.vti", "frames of the grid", true},
+        {"", "profiles\\.pvd", "profiles over time, for ParaView", false},
+        {"profiles", "profiles_\\d+\\.vtp", "frames of the profiles", true},
+        {"", "survey_(areas|outlines)\\.vtp", "the survey on the terrain, for ParaView", false},
         {"", "terrain\\.vti", "bed elevation, slope and hillshade", false},
         {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
         {"rasters",
@@ -31,7 +34,8 @@ const std::vector<ProductKind>& product_kinds() {
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
         {"figures", "((map|profile|gauges|budget)_[^.].*|compare)\\.png", "figure", false},
-        {"states", ".*\\.pvsm", "ParaView state", false},
+        {"states", ".*\\.pvsm", "ParaView state, File > Load State", false},
+        {"states", "look\\.json", "colour ranges and cameras of the states", false},
         {"", "compare\\.(json|md)", "comparison with a survey", false},
         {"", "checkpoint\\.h5", "last state", false}};
     return kinds;
