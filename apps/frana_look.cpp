@@ -132,7 +132,8 @@ Json camera(const Vec3& position, const Vec3& focal, const Vec3& up, double half
             {"up", up},
             {"angle", 30.0},
             {"scale", std::max(half_height, half_width)},
-            {"scale_wide", std::max(half_height, half_width / 1.5)}};
+            {"scale_wide", std::max(half_height, half_width / 1.5)},
+            {"scale_tall", std::max(half_height, half_width / 0.6)}};
 }
 
 constexpr double pi = 3.14159265358979323846;
@@ -234,8 +235,10 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     look["last_time"] = seen.last_time;
     look["busy_time"] = seen.busy_time;
     look["lift"] = std::max(0.1 * seen.grid.cell, 0.2 * seen.thin);
+    look["lift_areas"] = seen.grid.cell;
+    look["lift_outlines"] = 1.5 * seen.grid.cell;
     look["thin"] = seen.thin;
-    look["particle_radius"] = 0.35 * seen.grid.cell;
+    look["particle_radius"] = std::max(0.35 * seen.grid.cell, 0.0015 * reach_of(seen.extent));  // or nobody sees them
     for (const char* name : {"depth", "speed"}) look["range"][name] = {0.0, round_up(seen.largest[name])};
     const double stress = round_up(seen.largest["stress"]);
     look["range"]["stress"] = {-stress, stress};

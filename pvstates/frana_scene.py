@@ -139,7 +139,7 @@ def show_terrain(surface, view):
     display = Show(surface, view)
     ColorBy(display, ("POINTS", "hillshade"))
     greys = GetColorTransferFunction("hillshade")
-    greys.RGBPoints = [-0.6, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]
+    greys.RGBPoints = [-0.4, 0.0, 0.0, 0.0, 1.15, 1.0, 1.0, 1.0]
     greys.ColorSpace = "RGB"
     greys.AutomaticRescaleRangeMode = "Never"
     without_lamp(display)

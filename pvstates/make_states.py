@@ -26,11 +26,18 @@ from frana_scene import NoState  # noqa: E402
 STATES = ["overview", "stress", "profiles", "survey", "budgets"]
 FILES = ["FileName", "FileNames"]
 WHOLE = {"VOI": "/cross/extent/%d", "SampleRateI": "/cross/stride", "SampleRateJ": "/cross/stride",
-         "LegendLocation": "/legend"}  # properties of whole numbers, which cannot be marked
+         "LegendLocation": "/legend", "EndTime": "/last_time"}  # what cannot be marked: whole numbers, the data's times
+OF_SOME = {"LegendLocation": ["profiles"], "EndTime": ["overview", "stress", "profiles"]}  # fixed in other states
+NEEDLESS = {  # names of arrays that ParaView picks by itself, and what belongs to a user's own settings
+    "PointArrayStatus", "CellArrayStatus", "SelectionPointFieldDataArrayName", "SelectionCellFieldDataArrayName",
+    "SetScaleArray", "OpacityArray", "OpacityArrayName", "OSPRayScaleArray", "GlyphTableIndexArray", "SelectScaleArray",
+    "SelectNormalArray", "SelectTangentArray", "SelectTCoordArray", "Camera2DManipulators", "Camera3DManipulators",
+    "TimestepValues"}
 
 
 def marked(look):
-    """The look with every number moved to one of a kind by less than 1e-4 of itself, and its slots: [(value, pointer)]."""
+    """The look with every number made one of a kind, less than 1e-4 of itself nearer to 0 (times stay within the run),
+    and its slots: [(value, pointer)]."""
     slots = []
 
     def walk(value, pointer):
@@ -39,7 +46,7 @@ def marked(look):
         if isinstance(value, list):
             return [walk(part, "%s/%d" % (pointer, k)) for k, part in enumerate(value)]
         if isinstance(value, float) and value not in (0.0, 1.0, -1.0):
-            value = value * (1.0 + 1e-6 * (7.0 + 0.731 * len(slots)))
+            value = value * (1.0 - 1e-6 * (7.0 + 0.731 * len(slots)))
         if not isinstance(value, int) and value not in (0.0, 1.0, -1.0, "") and not pointer.startswith("/states"):
             slots.append((value, pointer))
         return value
@@ -74,7 +81,7 @@ def set_slots(state, proxy_property, slots, look, run_dir):
     if name in ("RGBPoints", "Points") and len(values) >= 8:
         set_range(elements, values, look)
         return
-    if name in WHOLE and not (name == "LegendLocation" and state != "profiles"):
+    if name in WHOLE and state in OF_SOME.get(name, STATES):
         for k, element in enumerate(elements):
             set_value(element, element.get("value"), WHOLE[name] % k if "%" in WHOLE[name] else WHOLE[name])
         return
@@ -104,7 +111,7 @@ def set_value(element, value, slot):
 
 def is_default(proxy, name):
     found = proxy.GetProperty(name) if proxy else None
-    return bool(found) and bool(found.IsValueDefault())
+    return bool(found) and name != "Time" and bool(found.IsValueDefault())
 
 
 def prune(root):
@@ -113,7 +120,7 @@ def prune(root):
     for proxy in root.findall(".//Proxy[@id]"):
         live = session.GetRemoteObject(int(proxy.get("id")))
         for one in list(proxy.findall("Property")):
-            if one.get("name").endswith("Info") or is_default(live, one.get("name")):
+            if one.get("name").endswith("Info") or one.get("name") in NEEDLESS or is_default(live, one.get("name")):
                 proxy.remove(one)
                 continue
             one.attrib.pop("id", None)
@@ -123,6 +130,7 @@ def prune(root):
 
 def save(name, run_dir, look, slots, folder):
     simple.ResetSession()
+    servermanager.ActiveConnection.Session.GetSessionProxyManager().UnRegisterAllLinks()  # a reset keeps them
     simple._DisableFirstRenderCameraReset()
     module = importlib.import_module(name)
     layout = module.build(run_dir)
@@ -133,6 +141,8 @@ def save(name, run_dir, look, slots, folder):
     root = tree.parse(raw).getroot()
     os.remove(raw)
     prune(root)
+    for settings in root.findall(".//Settings/.."):
+        settings.remove(settings.find("Settings"))
     for one in root.iter("Property"):
         set_slots(name, one, slots, look, run_dir)
     tree.indent(root, " ")

@@ -17,7 +17,7 @@ def build(run_dir):
     layout = scene.new_layout("profiles")
     left = layout.SplitHorizontal(0, 0.4)
     lower = layout.SplitVertical(left + 1, 0.6)
-    map_view = scene.render_view(layout, left, "map", look["camera"]["map"], flat=True)
+    map_view = scene.render_view(layout, left, "map", look["camera"]["map"], flat=True, scale="scale_tall")
     surfaces = scene.chart_view(layout, lower, "surfaces", "Surfaces along the line",
                                 "distance along the line [m]", "elevation [m]")
     depths = scene.chart_view(layout, lower + 1, "depth along", "Depth along the line",

@@ -35,7 +35,7 @@ def show_areas(run_dir, view, look):
     bar.ScalarBarLength = 0.2
     display.SetScalarBarVisibility(view, True)
     display.Opacity = 0.75
-    display.Position = [0.0, 0.0, look["lift"]]
+    display.Position = [0.0, 0.0, look["lift_areas"]]
     scene.without_lamp(display)
 
 
@@ -46,4 +46,4 @@ def show_outlines(run_dir, view, look):
         one = Threshold(registrationName=name, Input=outlines)
         one.Scalars = ["CELLS", "extent"]
         one.LowerThreshold = one.UpperThreshold = float(value)
-        scene.show_line(one, view, look["lift"], colour, width)
+        scene.show_line(one, view, look["lift_outlines"], colour, width)
