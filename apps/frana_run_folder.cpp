@@ -33,7 +33,7 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
-        {"figures", "((map|profile|gauges|budget)_[^.].*|compare)\\.png", "figure", false},
+        {"figures", "((map|view|profile|gauges|budget)_[^.].*|compare)\\.png", "figure", false},
         {"states", ".*\\.pvsm", "ParaView state, File > Load State", false},
         {"states", "look\\.json", "colour ranges and cameras of the states", false},
         {"", "compare\\.(json|md)", "comparison with a survey", false},

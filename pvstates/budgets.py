@@ -16,7 +16,8 @@ def build(run_dir):
     time = "time [s]"
     energy = scene.chart_view(layout, upper_right, "energy", "Energy", time, "energy [J]")
     speed = scene.chart_view(layout, upper_right + 1, "speed", "Speed", time, "speed [m/s]")
-    reach = scene.chart_view(layout, lower_right, "front", "Front", time, "distance from the release's centre [m]", legend=False)
+    reach = scene.chart_view(layout, lower_right, "front", "Front", time, "distance from the release's centre [m]",
+                             legend=False)
     mass = scene.chart_view(layout, lower_right + 1, "mass", "Mass error", time, "mass error, relative [1]")
     energy.LegendLocation = "TopLeft"
     history = CSVReader(registrationName="history", FileName=[os.path.join(run_dir, "history.csv")])

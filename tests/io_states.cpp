@@ -5,13 +5,12 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "catch.h"
 #include "frana_commands.h"
@@ -43,13 +42,6 @@ const fs::path& full_run() {
     REQUIRE(done);
     static const fs::path run = folder.path() / "run";
     return run;
-}
-
-const std::string& template_of(const std::string& name) {
-    for (const StateTemplate& state : state_templates())
-        if (state.name == name) return state.text;
-    FAIL("no template " << name);
-    throw std::logic_error("unreachable");
 }
 
 std::set<std::string> all_matches(const std::string& text, const std::regex& pattern) {
@@ -160,10 +152,10 @@ TEST_CASE("a run's states have its files, ranges and cameras, and no slot is lef
                     CHECK(fs::exists(file));
                 }
     }
-    const auto thresholds = values_of(text_of(full_run() / "states" / "overview.pvsm"), "CameraFocalPoint");
-    REQUIRE(thresholds.size() == 2);
+    const auto focal = values_of(text_of(full_run() / "states" / "overview.pvsm"), "CameraFocalPoint");
+    REQUIRE(focal.size() == 2);
     for (std::size_t axis = 0; axis < 3; ++axis)
-        CHECK(std::stod(thresholds[0][axis]) == look["camera"]["view"]["focal"][axis].get<double>());
+        CHECK(std::stod(focal[0][axis]) == look["camera"]["view"]["focal"][axis].get<double>());
 }
 
 TEST_CASE("slots take numbers, parts of ranges, texts and paths, with XML's own letters escaped") {
@@ -185,7 +177,7 @@ TEST_CASE("a state that the run lacks files for is not written, and asking for i
     options.sets = {"grid.cell=10.0", "time.end=2.0", "output.formats=[\"vtk\"]"};
     options.quiet = true;
     REQUIRE(run_command(options) == 0);
-    const auto there = [&](const char* name) { return fs::exists(options.out / "states" / (std::string(name) + ".pvsm")); };
+    const auto there = [&](const std::string& name) { return fs::exists(options.out / "states" / (name + ".pvsm")); };
     CHECK(there("overview"));
     CHECK(there("budgets"));
     CHECK(!there("stress"));

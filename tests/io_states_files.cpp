@@ -9,6 +9,9 @@
 #include <vtkStringArray.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -93,7 +96,8 @@ TEST_CASE("the survey's outlines are closed, on the terrain, and leave out what 
     Raster depth = bed;
     for (double& value : depth.values) value = 0.0;
     depth.at(4, 4) = 1.0;  // one pixel, 8 m around
-    write_survey(folder.path(), bed, depth, 0.5, {{{2, 2}, {12, 2}, {12, 10}, {2, 10}}, {{-30, 4}, {-20, 4}, {-20, 8}}});
+    const Rings survey = {{{2, 2}, {12, 2}, {12, 10}, {2, 10}}, {{-30, 4}, {-20, 4}, {-20, 8}}};
+    write_survey(folder.path(), bed, depth, 0.5, survey);
     const auto lines = polydata(folder.path() / "survey_outlines.vtp");
     REQUIRE(lines->GetNumberOfCells() == 2);  // of the ring beside the terrain there is nothing
     vtkDataArray* extent = lines->GetCellData()->GetArray("extent");

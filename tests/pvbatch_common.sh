@@ -1,6 +1,6 @@
-# Sourced by the tests that need ParaView: finds a usable pvbatch, or skips the test (exit code 77).
-# Needs pvbatch with its Python modules: either packages paraview and python3-paraview, or, where python3-paraview cannot
-# be installed beside libvtk9-dev's python3-vtk9, that package unpacked in a folder that FRANA_PARAVIEW_PREFIX names:
+# Sourced by the tests that need ParaView: finds a usable pvbatch, or skips the test (exit code 77). Wants $work.
+# Needs pvbatch with its Python modules: either packages paraview and python3-paraview, or, where python3-paraview
+# cannot be installed beside libvtk9-dev's python3-vtk9, that package unpacked in a folder that FRANA_PARAVIEW_PREFIX names:
 #   apt-get install -y --no-install-recommends paraview
 #   mkdir -p "$FRANA_PARAVIEW_PREFIX" && cd "$FRANA_PARAVIEW_PREFIX" && apt-get download python3-paraview
 #   dpkg -x python3-paraview_*.deb "$FRANA_PARAVIEW_PREFIX"
