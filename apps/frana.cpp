@@ -118,6 +118,13 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
     command->callback([&] { action = [&] { return compare_command(options); }; });
 }
 
+void add_states(CLI::App& app, StatesOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("states", "write the ParaView states of a run again, after it was moved");
+    command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
+    command->add_option("NAME", options.names, "states that must be there: overview, stress, profiles, survey, budgets");
+    command->callback([&] { action = [&] { return states_command(options); }; });
+}
+
 void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("verify", "problems with exact answers: errors, order, run time");
     command->add_option("NAME", options.names, "problems; default all");
@@ -184,6 +191,7 @@ int run_program(int argc, char** argv) {
     FiguresOptions figures;
     std::string size;
     CompareOptions compare;
+    StatesOptions states;
     VerifyOptions verify;
     BenchOptions bench;
     Action action;
@@ -193,6 +201,7 @@ int run_program(int argc, char** argv) {
     add_particles(app, particles, action);
     add_figures(app, figures, size, action);
     add_compare(app, compare, action);
+    add_states(app, states, action);
     add_verify(app, verify, action);
     add_bench(app, bench, action);
     if (argc > 1) refuse_unknown(app, argv[1]);

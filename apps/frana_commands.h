@@ -34,6 +34,12 @@ struct CompareOptions {
     std::filesystem::path json;           ///< empty: RUN_DIR/compare.json
 };
 
+/// `frana states RUN_DIR [NAME...]`
+struct StatesOptions {
+    std::filesystem::path run_dir;
+    std::vector<std::string> names;  ///< those that must be there; empty: whatever the run has
+};
+
 /// `frana check CASE [--set key=value]...`
 struct CheckOptions {
     std::filesystem::path case_file;
@@ -77,6 +83,7 @@ int verify_command(const VerifyOptions& options);        // frana_verify.cpp
 int run_command(const RunOptions& options);              // frana_run.cpp
 int figures_command(const FiguresOptions& options);      // frana_figures.cpp
 int compare_command(const CompareOptions& options);      // frana_compare.cpp
+int states_command(const StatesOptions& options);        // frana_states_command.cpp
 int check_command(const CheckOptions& options);          // frana_check.cpp
 int describe_command(const std::string& key);            // frana_describe.cpp; empty: every key
 int particles_command(const ParticlesOptions& options);  // frana_particles.cpp

@@ -8,6 +8,8 @@
 #include "frana_commands.h"
 #include "frana_comparison.h"
 #include "frana_figures.h"
+#include "frana_states.h"
+#include "vtk_io/survey_vtp.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -56,6 +58,11 @@ int compare_command(const CompareOptions& options) {
     source.runout_path = comparison.path;
     if (bed_known) draw_overlay(source, figures, warnings);
     write_text(options.run_dir / "compare.md", page(source, comparison, figures));
+
+    if (bed_known && fs::exists(options.run_dir / "grid.pvd")) {
+        write_survey(options.run_dir, source.bed, peak, comparison.limit, rings_of(survey.footprint));
+        write_states(options.run_dir, source.title);
+    }
 
     std::cout << comparison_section(comparison) << json.string() << '\n'
               << (options.run_dir / "compare.md").string() << '\n';

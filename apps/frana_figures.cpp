@@ -157,6 +157,12 @@ void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigur
 
 }  // namespace
 
+std::string title_of_run(const fs::path& run_dir) {
+    FigureSource source;
+    read_record(run_dir, source);
+    return source.title;
+}
+
 FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>& warnings) {
     FigureSource source;
     source.run_dir = run_dir;

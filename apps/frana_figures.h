@@ -8,6 +8,9 @@
 
 namespace frana {
 
+/// The title in the folder's run.json. UserError when the folder holds no finished run.
+std::string title_of_run(const std::filesystem::path& run_dir);
+
 /// Title, footer, limit of the covered area, rasters and terrain of a run, from its files. The terrain is that of
 /// terrain.vti, else the elevation model that the case names, on the rasters' nodes; without either it is empty, and
 /// `warnings` says so. Profiles, gauges and the survey are left out. UserError when the folder holds no finished run.

@@ -11,12 +11,14 @@
 #include "frana_comparison.h"
 #include "frana_run_figures.h"
 #include "frana_run_insitu.h"
+#include "frana_states.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
 #include "observe/history.h"
 #include "observe/only_fields.h"
 #include "observe/profiles.h"
 #include "solver/simulation.h"
+#include "vtk_io/survey_vtp.h"
 #include "vtk_io/writers.h"
 
 namespace frana {
@@ -60,9 +62,22 @@ void compare_with_survey(const Scene& scene, const fs::path& run_dir, const std:
         survey.footprint = *scene.survey;
         Comparison comparison = compare_rasters(rasters, &scene.bed, scene.output.footprint_depth, survey);
         write_text(run_dir / "compare.json", comparison_json(comparison));
+        if (scene.output.vtk)
+            write_survey(run_dir, scene.bed, find_product(rasters, "peak_depth")->raster, comparison.limit,
+                         rings_of(survey.footprint));
         record.comparison = std::move(comparison);
     } catch (const UserError& error) {
         record.warnings.push_back(fmt::format("the run was not compared with the survey: {}", error.what()));
+    }
+}
+
+/// states/, when there are files for them to show. Trouble is a warning here as well.
+void leave_states(const Scene& scene, const fs::path& run_dir, RunRecord& record) {
+    if (!scene.output.vtk) return;
+    try {
+        write_states(run_dir, record.title);
+    } catch (const UserError& error) {
+        record.warnings.push_back(fmt::format("the ParaView states were not written: {}", error.what()));
     }
 }
 
@@ -98,6 +113,7 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
     if (output.vtk) {
         observers.push_back(only_fields(make_particle_writer(run_dir), output.fields));
         observers.push_back(only_fields(make_grid_writer(run_dir), output.fields));
+        if (!profiles.empty()) observers.push_back(make_profile_writer(run_dir, profiles));
     }
     if (output.xdmf) observers.push_back(only_fields(make_xdmf_writer(run_dir), output.fields));
     observers.push_back(std::make_unique<LastFields>(scene.bed.crs_wkt, rasters));
@@ -128,6 +144,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
         if (scene.output.png)
             record.figures = draw_figures(figure_source(scene, run_dir, record, rasters), record.warnings);
     });
+    timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
     write_text(run_dir / "run.json", run_json(record));
     write_text(run_dir / "report.md", report_markdown(record, run_dir));
     return record;

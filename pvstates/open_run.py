@@ -1,16 +1,19 @@
-"""Opens a run of frana in ParaView: terrain with relief, flow depth over it, particles.
+"""Opens a run of frana in ParaView: terrain with relief, flow depth over it, particles; or one of the states.
 
 Without a window:   pvbatch open_run.py RUN_DIR [--time T] [--png FILE] [--colour depth|speed] [--max VALUE]
+                    pvbatch open_run.py RUN_DIR --state overview|stress|profiles|survey|budgets [--time T] [--png FILE]
                     (on a machine without a screen: xvfb-run -a pvbatch ...)
 In ParaView:        Tools > Python Shell, then
                     import sys; sys.path.append("/path/to/pvstates")
-                    from open_run import open_run; open_run("/path/to/RUN_DIR")
+                    from open_run import open_run, open_state
+                    open_run("/path/to/RUN_DIR")   or   open_state("/path/to/RUN_DIR", "stress")
 
 The colour range is fixed over all times of the run (0 to a round number above the largest value of its output
 times), so that colours of two times can be compared. "Play" shows the run; a running case can be opened
 too: "Reload Files" (F5) brings the newer frames.
 """
 import argparse
+import importlib
 import math
 import os
 import sys
@@ -18,10 +21,14 @@ import sys
 from paraview import servermanager
 from paraview.simple import (
     AnnotateTimeFilter, Clip, ColorBy, GetActiveViewOrCreate, GetAnimationScene, GetColorTransferFunction,
-    GetScalarBar, Hide, PVDReader, Render, ResetCamera, SaveScreenshot, Show, Threshold, WarpByScalar,
+    GetScalarBar, GetViewsInLayout, Hide, PVDReader, Render, ResetCamera, SaveScreenshot, Show, Threshold, WarpByScalar,
     XMLImageDataReader,
 )
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from frana_scene import NoState, at_time  # noqa: E402
+
+STATES = ("overview", "stress", "profiles", "survey", "budgets")
 LIFT = 0.5  # [m] keeps the flow's surface clear of the terrain where it is thin
 THIN = 0.05  # [m] flow thinner than this is not drawn
 
@@ -173,6 +180,29 @@ def open_run(run_dir, colour="depth", maximum=None, time=None):
     return view
 
 
+def open_state(run_dir, name, time=None):
+    """Shows one of STATES in a layout of its own, and returns it with its size for pictures.
+
+    `time` [s]: output time; the state's own when None. Raises NoState with a sentence when the run lacks what it shows.
+    """
+    if name not in STATES:
+        raise NoState("no state \"%s\"; expected one of %s" % (name, ", ".join(STATES)))
+    module = importlib.import_module(name)
+    layout = module.build(os.path.abspath(run_dir))
+    if time is not None and name not in ("survey", "budgets"):
+        at_time(GetViewsInLayout(layout), time)
+    return layout, module.SIZE
+
+
+def picture_of(given):
+    """Draws what the command line asks for; returns what to save, and the size."""
+    if given.state:
+        return open_state(given.run_dir, given.state, given.time)
+    view = open_run(given.run_dir, given.colour, given.max, given.time)
+    view.ViewSize = [1400, 900]
+    return view, [1400, 900]
+
+
 def main():
     parser = argparse.ArgumentParser(description="Opens a run of frana in ParaView and saves a picture.")
     parser.add_argument("run_dir")
@@ -180,12 +210,20 @@ def main():
     parser.add_argument("--png", help="picture to write; default: RUN_DIR/figures/paraview.png")
     parser.add_argument("--colour", default="depth", help="depth or speed")
     parser.add_argument("--max", type=float, help="upper end of the colour range; default: from the run")
+    parser.add_argument("--state", help="one of %s instead" % ", ".join(STATES))
     given = parser.parse_args()
-    view = open_run(given.run_dir, given.colour, given.max, given.time)
-    view.ViewSize = [1400, 900]
-    png = given.png or os.path.join(given.run_dir, "figures", "paraview.png")
+    name = "paraview_%s.png" % given.state if given.state else "paraview.png"
+    png = given.png or os.path.join(given.run_dir, "figures", name)
+    try:
+        shown, size = picture_of(given)
+    except NoState as problem:
+        print(problem, file=sys.stderr)
+        sys.stderr.flush()
+        os._exit(2)  # pvbatch's own way out loses the status
     os.makedirs(os.path.dirname(os.path.abspath(png)), exist_ok=True)
-    SaveScreenshot(png, view, ImageResolution=[1400, 900])
+    if given.state:
+        shown.SetSize(*size)
+    SaveScreenshot(png, shown, ImageResolution=size, SaveAllViews=1 if given.state else 0)
     print(png)
 
 

@@ -6,8 +6,10 @@
 #include <vtkDataSetAttributes.h>
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
+#include <vtkCell.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -146,6 +148,28 @@ LoadedParticles read_particles(const std::filesystem::path& run_dir, Index numbe
         particles.columns["position"] = {};
     particles.components["position"] = 3;
     return particles;
+}
+
+std::pair<double, double> profile_ends(const std::filesystem::path& run_dir) {
+    const auto entry = entry_of(run_dir / "profiles.pvd", 0).first;
+    vtkNew<vtkXMLPolyDataReader> reader;
+    read_file(reader, run_dir / entry.file);
+    vtkPolyData* lines = reader->GetOutput();
+    if (lines->GetNumberOfCells() == 0) return {0.0, 0.0};
+    vtkIdList* stations = lines->GetCell(0)->GetPointIds();
+    double first[3], last[3];
+    lines->GetPoint(stations->GetId(0), first);
+    lines->GetPoint(stations->GetId(stations->GetNumberOfIds() - 1), last);
+    return {first[2], last[2]};
+}
+
+std::optional<std::array<double, 4>> bounds_of(const std::filesystem::path& vtp) {
+    vtkNew<vtkXMLPolyDataReader> reader;
+    read_file(reader, vtp);
+    if (reader->GetOutput()->GetNumberOfPoints() == 0) return std::nullopt;
+    double b[6];
+    reader->GetOutput()->GetBounds(b);
+    return std::array<double, 4>{b[0], b[2], b[1], b[3]};
 }
 
 LoadedFrame read_terrain(const std::filesystem::path& run_dir) { return read_image(run_dir / "terrain.vti"); }

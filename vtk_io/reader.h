@@ -1,8 +1,11 @@
 #pragma once
 // Frames read back from the VTK files of a run directory, for figures and comparisons made after the run.
+#include <array>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -50,5 +53,12 @@ LoadedParticles read_particles(const std::filesystem::path& run_dir, Index numbe
 
 /// RUN_DIR/terrain.vti as a frame at time 0: "elevation" (NaN: no terrain), "slope", "hillshade".
 LoadedFrame read_terrain(const std::filesystem::path& run_dir);
+
+/// Elevation [m] at the first and the last station of the first profile of RUN_DIR/profiles.pvd; 0 and 0 when that
+/// has none.
+std::pair<double, double> profile_ends(const std::filesystem::path& run_dir);
+
+/// [xmin, ymin, xmax, ymax] of the points of a .vtp file; nothing when it has none.
+std::optional<std::array<double, 4>> bounds_of(const std::filesystem::path& vtp);
 
 }  // namespace frana

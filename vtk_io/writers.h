@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "observe/observer.h"
+#include "observe/profiles.h"
 #include "terrain/raster.h"
 
 namespace frana {
@@ -24,6 +25,12 @@ std::unique_ptr<Observer> make_particle_writer(const std::filesystem::path& run_
 /// grid.pvd and grid/grid_NNNNNN.vti: vtkImageData of one layer, point data at the nodes (z = 0). Errors as
 /// above.
 std::unique_ptr<Observer> make_grid_writer(const std::filesystem::path& run_dir);
+
+/// profiles.pvd and profiles/profiles_NNNNNN.vtp: a line for each profile, points on the bed at its stations
+/// (observe/profiles.h; those without terrain are left out). Point data `distance`, `elevation`, `depth`, `surface`,
+/// `initial_surface` (of the first frame) [m], `velocity_along` [m/s]; cell data `profile` (0, 1, ... as in `lines`);
+/// their names in the field data, `profile_names`. Errors as above.
+std::unique_ptr<Observer> make_profile_writer(const std::filesystem::path& run_dir, std::vector<ProfileLine> lines);
 
 /// terrain.vti: "elevation" [m], "slope" [degree], "hillshade" [1, 0 dark to 1 bright] at the nodes of the
 /// bed.

@@ -1,5 +1,7 @@
 #pragma once
 // A simulated extent, which consists of pixels, held against a surveyed one, which consists of polygons.
+#include <functional>
+
 #include "compare/outline.h"
 
 namespace frana {
@@ -23,6 +25,10 @@ struct Overlap {
     /// Area in one extent only, over the survey's [%]; unlike the above it sees a wrong place.
     double symmetric_difference_percent() const { return 100.0 * (beyond + missed) / surveyed(); }
 };
+
+/// Calls body(i, j, area) for every pixel, rows from the south: the rings' area within it, exact [m2].
+void for_each_pixel_area(const GridGeometry& grid, const Rings& rings,
+                         const std::function<void(Index i, Index j, double area)>& body);
 
 /// Pixels of `depth` above `limit` against the rings of a survey (see rings_of). The survey's area in each pixel is
 /// exact, so the sums are those of a polygon overlay, to round-off.

@@ -1,0 +1,256 @@
+#include "frana_look.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "base/error.h"
+#include "observe/table.h"
+#include "vtk_io/reader.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Vec3 = std::array<double, 3>;
+
+/// The next 1, 1.5, 2, 3, 5 or 7.5 times a power of ten: an end of a range that one can read off a colour bar.
+double round_up(double value) {
+    if (!(value > 0.0)) return 1.0;
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    for (const double step : {1.0, 1.5, 2.0, 3.0, 5.0, 7.5})
+        if (step * power >= value) return step * power;
+    return 10.0 * power;
+}
+
+/// What 99.5 % of the values do not exceed; 0 of nothing.
+double most(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    const auto place = static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + place, values.end());
+    return values[static_cast<std::size_t>(place)];
+}
+
+/// Everything ever covered, and where the mass was first and last.
+struct Extent {
+    double xmin = HUGE_VAL, xmax = -HUGE_VAL, ymin = HUGE_VAL, ymax = -HUGE_VAL, zmin = HUGE_VAL, zmax = -HUGE_VAL;
+    Vec3 first{}, last{};
+
+    bool empty() const { return xmin > xmax; }
+    void add(double x, double y, double z) {
+        xmin = std::min(xmin, x), xmax = std::max(xmax, x);
+        ymin = std::min(ymin, y), ymax = std::max(ymax, y);
+        zmin = std::min(zmin, z), zmax = std::max(zmax, z);
+    }
+    Vec3 middle() const { return {0.5 * (xmin + xmax), 0.5 * (ymin + ymax), 0.5 * (zmin + zmax)}; }
+};
+
+struct Seen {
+    std::set<std::string> arrays;  ///< of the grid's frames
+    GridGeometry grid;
+    double deepest = 0.0, thin = 0.0, last_time = 0.0, busy_time = 0.0, busiest = -1.0;
+    std::map<std::string, double> largest;  ///< of depth, speed, stress, effective_stress (size of any component)
+    Extent extent;
+};
+
+void see_extent(const LoadedFrame& frame, Seen& seen, bool first) {
+    const auto& depth = frame.nodes.at("depth");
+    const auto& elevation = frame.nodes.at("elevation");
+    Vec3 centre{};
+    double weights = 0.0;
+    for (Index j = 0, k = 0; j < frame.grid.ny; ++j)
+        for (Index i = 0; i < frame.grid.nx; ++i, ++k) {
+            const auto node = static_cast<std::size_t>(k);
+            if (!(depth[node] > seen.thin) || !std::isfinite(elevation[node])) continue;
+            const Vec3 at{frame.grid.x(i), frame.grid.y(j), elevation[node]};
+            seen.extent.add(at[0], at[1], at[2]);
+            for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] += depth[node] * at[axis];
+            weights += depth[node];
+        }
+    if (weights > 0.0)
+        for (double& coordinate : centre) coordinate /= weights;
+    if (weights > 0.0 || first) seen.extent.last = centre;
+    if (first) seen.extent.first = centre;
+}
+
+void see_values(const LoadedFrame& frame, Seen& seen) {
+    const auto& depth = frame.nodes.at("depth");
+    for (const char* name : {"depth", "speed", "stress", "effective_stress"}) {
+        if (!frame.has(name)) continue;
+        const auto& values = frame.nodes.at(name);
+        const auto components = static_cast<std::size_t>(frame.components.at(name));
+        std::vector<double> wet;
+        for (std::size_t node = 0; node < depth.size(); ++node)
+            for (std::size_t c = 0; c < components; ++c)
+                if (depth[node] > seen.thin) wet.push_back(std::abs(values[node * components + c]));
+        seen.largest[name] = std::max(seen.largest[name], most(std::move(wet)));
+    }
+}
+
+/// The time at which most is in motion.
+void see_motion(const LoadedFrame& frame, Seen& seen) {
+    if (!frame.has("speed")) return;
+    const auto &depth = frame.nodes.at("depth"), &speed = frame.nodes.at("speed");
+    const double motion = std::inner_product(depth.begin(), depth.end(), speed.begin(), 0.0);
+    if (motion <= seen.busiest) return;
+    seen.busiest = motion;
+    seen.busy_time = frame.time;
+}
+
+/// Looks at no more than seven frames: ranges need no more, and a long run has hundreds.
+Seen see_frames(const fs::path& run_dir) {
+    Seen seen;
+    const std::vector<double> times = frame_times(run_dir);
+    const Index frames = static_cast<Index>(times.size());
+    std::set<Index> chosen;
+    for (Index k = 0; k < 7; ++k) chosen.insert(k * (frames - 1) / 6);
+    for (const Index number : chosen) {
+        const LoadedFrame frame = read_frame(run_dir, number);
+        if (!frame.has("depth") || !frame.has("elevation")) return seen;
+        for (const auto& column : frame.nodes) seen.arrays.insert(column.first);
+        const auto& depth = frame.nodes.at("depth");
+        seen.grid = frame.grid;
+        seen.deepest = std::max(seen.deepest, *std::max_element(depth.begin(), depth.end()));
+        seen.thin = std::min(0.05, 0.02 * seen.deepest);
+        see_extent(frame, seen, number == 0);
+        see_values(frame, seen);
+        see_motion(frame, seen);
+    }
+    seen.last_time = times.back();
+    return seen;
+}
+
+Json camera(const Vec3& position, const Vec3& focal, const Vec3& up, double half_height, double half_width) {
+    return {{"position", position},
+            {"focal", focal},
+            {"up", up},
+            {"angle", 30.0},
+            {"scale", std::max(half_height, half_width)},
+            {"scale_wide", std::max(half_height, half_width / 1.5)},
+            {"scale_tall", std::max(half_height, half_width / 0.6)}};
+}
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double around = 1.12;  ///< 12 % of ground around what was covered
+
+/// Half the extent's size in space, with ground around it [m].
+double reach_of(const Extent& extent) {
+    const double size = std::hypot(extent.xmax - extent.xmin, extent.ymax - extent.ymin, extent.zmax - extent.zmin);
+    return std::max(0.5 * around * size, 1e-6);
+}
+
+/// From above, north up.
+Json map_camera(const Extent& extent) {
+    const Vec3 middle = extent.middle();
+    const Vec3 top{middle[0], middle[1], extent.zmax + 4.0 * reach_of(extent)};
+    return camera(top, middle, {0.0, 1.0, 0.0}, 0.5 * around * (extent.ymax - extent.ymin),
+                  0.5 * around * (extent.xmax - extent.xmin));
+}
+
+/// From before the deposit, up the way that the mass came.
+Json view_camera(const Extent& extent) {
+    constexpr double half_angle = 15.0 * pi / 180.0, above = 35.0 * pi / 180.0;
+    const double reach = reach_of(extent);
+    const Vec3 middle = extent.middle();
+    double to_x = extent.last[0] - extent.first[0], to_y = extent.last[1] - extent.first[1];
+    const double way = std::hypot(to_x, to_y);
+    const bool moved = way > 0.05 * reach;
+    to_x = moved ? to_x / way : 0.0, to_y = moved ? to_y / way : -1.0;
+    const double distance = 1.25 * reach / std::tan(half_angle), flat = distance * std::cos(above);
+    const Vec3 before{middle[0] + to_x * flat, middle[1] + to_y * flat, middle[2] + distance * std::sin(above)};
+    return camera(before, middle, {0.0, 0.0, 1.0}, reach, reach);
+}
+
+Json cameras(const fs::path& run_dir, const Extent& extent, bool survey) {
+    Extent both = extent;
+    const auto bounds = survey ? bounds_of(run_dir / "survey_outlines.vtp") : std::nullopt;
+    if (bounds) {
+        const double z = extent.middle()[2];
+        both.add((*bounds)[0], (*bounds)[1], z);
+        both.add((*bounds)[2], (*bounds)[3], z);
+    }
+    return {{"view", view_camera(extent)}, {"map", map_camera(extent)}, {"survey", map_camera(both)}};
+}
+
+std::string lacks_arrays(const Seen& seen, const std::vector<std::string>& names, const std::string& way_out) {
+    for (const std::string& name : names)
+        if (seen.arrays.count(name) == 0)
+            return fmt::format("the frames of grid.pvd have no array {}; {}", name, way_out);
+    return "";
+}
+
+/// Why a state cannot be shown; empty when it can.
+std::string missing_for(const std::string& state, const fs::path& run_dir, const Seen& seen) {
+    const bool history = fs::exists(run_dir / "history.csv");
+    if (state == "budgets") return history ? "" : "there is no history.csv; run the case again";
+    if (seen.extent.empty())
+        return "there are no frames with flow in grid.pvd; add \"vtk\" to output.formats and run again";
+    for (const char* file : {"terrain.vti", "particles.pvd"})
+        if (!fs::exists(run_dir / file))
+            return fmt::format("there is no {}; add \"vtk\" to output.formats and run again", file);
+    const std::string all = "set output.fields = \"all\" and run again";
+    std::string lacks = lacks_arrays(seen, {"depth", "surface", "speed"}, all);
+    if (state == "stress" && lacks.empty())
+        lacks = lacks_arrays(seen, {"stress", "effective_stress"},
+                             "give a [material.rheology], leave output.fields at \"all\", and run again");
+    if (state == "profiles" && lacks.empty() && !fs::exists(run_dir / "profiles.pvd"))
+        return "there is no profiles.pvd; give a [[profile]] and run again";
+    if (state == "survey" && lacks.empty() && !fs::exists(run_dir / "survey_areas.vtp"))
+        return "the run was not held against a survey; use frana compare, or give [survey] footprint and run again";
+    return lacks;
+}
+
+/// Corner of the profile's chart that the terrain leaves free, in ParaView's numbers: 0 top left where it rises along
+/// the line, 3 bottom left where it falls.
+int free_corner(const fs::path& run_dir) {
+    const auto [first, last] = profile_ends(run_dir);
+    return last > first ? 0 : 3;
+}
+
+}  // namespace
+
+const std::vector<std::string>& state_names() {
+    static const std::vector<std::string> names = {"overview", "stress", "profiles", "survey", "budgets"};
+    return names;
+}
+
+Json look_at_run(const fs::path& run_dir, const std::string& title) {
+    Seen seen;
+    if (fs::exists(run_dir / "grid.pvd") && !frame_times(run_dir).empty()) seen = see_frames(run_dir);
+    Json look;
+    look["title"] = title;
+    for (const std::string& name : state_names()) look["states"][name] = missing_for(name, run_dir, seen);
+    if (look["states"]["budgets"] == "") {
+        const Table history = read_table(run_dir / "history.csv");
+        const double start = history.rows() > 0 ? history.column("potential").front() : 0.0;
+        look["potential_from_start"] = fmt::format("potential - ({})", start);
+    }
+    if (seen.extent.empty()) return look;
+    look["last_time"] = seen.last_time;
+    look["busy_time"] = seen.busy_time;
+    look["lift"] = std::max(0.1 * seen.grid.cell, 0.2 * seen.thin);
+    look["lift_areas"] = seen.grid.cell;
+    look["lift_outlines"] = 1.5 * seen.grid.cell;
+    look["thin"] = seen.thin;
+    look["particle_radius"] = std::max(0.35 * seen.grid.cell, 0.0015 * reach_of(seen.extent));  // or nobody sees them
+    for (const char* name : {"depth", "speed"}) look["range"][name] = {0.0, round_up(seen.largest[name])};
+    const double stress = round_up(seen.largest["stress"]);
+    look["range"]["stress"] = {-stress, stress};
+    look["range"]["effective_stress"] = {-round_up(seen.largest["effective_stress"]), 0.0};
+    const double across = std::max(seen.extent.xmax - seen.extent.xmin, seen.extent.ymax - seen.extent.ymin);
+    const auto stride = std::max<Index>(1, std::llround(across / seen.grid.cell / 32.0));  // some 32 crosses that way
+    look["cross"] = {{"stride", stride},
+                     {"scale", 2.5 * static_cast<double>(stride) * seen.grid.cell / stress},
+                     {"extent", {0, seen.grid.nx - 1, 0, seen.grid.ny - 1, 0, 0}}};
+    if (look["states"]["profiles"] == "") look["legend"] = free_corner(run_dir);
+    look["camera"] = cameras(run_dir, seen.extent, look["states"]["survey"] == "");
+    return look;
+}
+
+}  // namespace frana

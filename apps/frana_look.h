@@ -1,0 +1,27 @@
+#pragma once
+// What ParaView's states have to know of a run: colour ranges for all its times, cameras, sizes of marks.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace frana {
+
+/// Reads the frames of a run folder (at most seven, spread over the run) and history.csv, and returns as JSON what
+/// states/look.json holds:
+///   title, last_time and busy_time (when most is in motion) [s], thin [m] below which flow is not drawn,
+///   lift, lift_areas, lift_outlines [m] of what lies on the terrain, particle_radius [m],
+///   potential_from_start (a formula for history.csv's rows) [J],
+///   range: {depth, speed, stress, effective_stress: [low, high]}, round numbers that hold 99.5 % of the wet nodes,
+///   cross: {stride, scale [m/Pa], extent} of the principal stresses, legend: corner of the profile's chart,
+///   camera: {view: seen up the slope, map: from above, survey: from above, with what was surveyed}: {position, focal,
+///   up, angle [degree], scale, scale_wide, scale_tall [m]}, all over everything ever covered; scale is half the height
+///   of a square view, the others those of a 3:2 and of a 3:5 one,
+///   states: {name: ""} for each state the run has the files for, or the sentence that says what it lacks.
+/// Throws UserError when a file that is there cannot be read.
+nlohmann::ordered_json look_at_run(const std::filesystem::path& run_dir, const std::string& title);
+
+/// The names of all states, in the order of their use.
+const std::vector<std::string>& state_names();
+
+}  // namespace frana

@@ -1,0 +1,207 @@
+// ParaView's states: what is written into them, what they name, and when there are none.
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
+#include "base/error.h"
+#include "catch.h"
+#include "frana_commands.h"
+#include "frana_look.h"
+#include "frana_states.h"
+#include "fresh_folder.h"
+#include "observe/table.h"
+#include "vtk_io/reader.h"
+
+using namespace frana;
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const char* const everything = FRANA_SOURCE_DIR "/tests/states_case/case.toml";
+
+/// The case with all that a state can show, run once for all tests here that only look.
+const fs::path& full_run() {
+    static const FreshFolder folder;
+    static const bool done = [] {
+        RunOptions options;
+        options.case_file = everything;
+        options.out = folder.path() / "run";
+        options.quiet = true;
+        return run_command(options) == 0;
+    }();
+    REQUIRE(done);
+    static const fs::path run = folder.path() / "run";
+    return run;
+}
+
+std::set<std::string> all_matches(const std::string& text, const std::regex& pattern) {
+    std::set<std::string> found;
+    for (std::sregex_iterator match(text.begin(), text.end(), pattern), none; match != none; ++match)
+        found.insert((*match)[1]);
+    return found;
+}
+
+/// Values of the elements of every property of that name.
+std::vector<std::vector<std::string>> values_of(const std::string& text, const std::string& property) {
+    std::vector<std::vector<std::string>> found;
+    const std::regex block("<Property name=\"" + property + "\"[^>]*>([^]*?)</Property>");
+    const std::regex element("<Element index=\"\\d+\" value=\"([^\"]*)\"");
+    for (std::sregex_iterator match(text.begin(), text.end(), block), none; match != none; ++match) {
+        const std::string body = (*match)[1];
+        found.emplace_back();
+        for (std::sregex_iterator one(body.begin(), body.end(), element); one != none; ++one)
+            found.back().push_back((*one)[1]);
+    }
+    return found;
+}
+
+/// Names of arrays that a state reads: by the properties of ParaView 5.11 that choose one, and in formulas.
+std::set<std::string> arrays_named(const std::string& text) {
+    std::set<std::string> names;
+    for (const char* property : {"SelectInputScalars", "SelectInputVectors", "ColorArrayName", "ThresholdScalars",
+                                 "SelectOrientationVectors", "OrientationArray", "ScaleArray"})
+        for (const auto& values : values_of(text, property))
+            if (values.size() == 5) names.insert(values[4]);
+    for (const auto& values : values_of(text, "XArrayName"))
+        names.insert(values.begin(), values.end());
+    for (const auto& values : values_of(text, "SeriesVisibility"))
+        for (std::size_t k = 0; k + 1 < values.size(); k += 2)
+            if (values[k + 1] == "1") names.insert(values[k]);
+    const std::set<std::string> functions = {"cos", "sin", "atan2", "sqrt", "abs", "iHat", "jHat"};
+    for (const auto& values : values_of(text, "Function"))
+        for (const std::string& formula : values)
+            for (const std::string& word : all_matches(formula, std::regex("([A-Za-z_]\\w*)")))
+                if (functions.count(word) == 0 && formula.find("e+") == std::string::npos)
+                    names.insert(std::regex_replace(word, std::regex("_(xx|yy|xy)$"), ""));
+    names.erase("");
+    return names;
+}
+
+void add_arrays(vtkDataSetAttributes* attributes, std::set<std::string>& names) {
+    for (int k = 0; k < attributes->GetNumberOfArrays(); ++k) names.insert(attributes->GetArrayName(k));
+}
+
+vtkSmartPointer<vtkPolyData> polydata(const fs::path& file) {
+    vtkNew<vtkXMLPolyDataReader> reader;
+    reader->SetFileName(file.string().c_str());
+    reader->Update();
+    REQUIRE(reader->GetErrorCode() == 0);
+    return reader->GetOutput();
+}
+
+/// Every array of the files in a run that has everything.
+std::set<std::string> arrays_written(const fs::path& run) {
+    std::set<std::string> names;
+    for (const auto& column : read_frame(run, -1).nodes) names.insert(column.first);
+    for (const auto& column : read_particles(run, -1).columns) names.insert(column.first);
+    for (const auto& column : read_terrain(run).nodes) names.insert(column.first);
+    for (const char* file : {"survey_areas.vtp", "survey_outlines.vtp", "profiles/profiles_000000.vtp"}) {
+        const auto data = polydata(run / file);
+        add_arrays(data->GetPointData(), names);
+        add_arrays(data->GetCellData(), names);
+    }
+    for (const std::string& column : read_table(run / "history.csv").columns) names.insert(column);
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("the templates read only files and arrays that a run writes") {
+    const std::set<std::string> written = arrays_written(full_run());
+    REQUIRE(state_templates().size() == state_names().size());
+    for (const StateTemplate& state : state_templates()) {
+        CAPTURE(state.name);
+        CHECK(std::count(state_names().begin(), state_names().end(), state.name) == 1);
+        const std::set<std::string> files = all_matches(state.text, std::regex("slot=\"file:([^\"]*)\""));
+        CHECK(!files.empty());
+        for (const std::string& file : files) {
+            CAPTURE(file);
+            CHECK(fs::exists(full_run() / file));
+        }
+        std::set<std::string> known = written;
+        for (const auto& values : values_of(state.text, "ResultArrayName")) known.insert(values.begin(), values.end());
+        const std::set<std::string> named = arrays_named(state.text);
+        CHECK(named.size() >= 3);
+        for (const std::string& name : named) {
+            CAPTURE(name);
+            CHECK(known.count(name) == 1);
+        }
+    }
+}
+
+TEST_CASE("a run's states have its files, ranges and cameras, and no slot is left open") {
+    const Json look = Json::parse(text_of(full_run() / "states" / "look.json"));
+    for (const std::string& name : state_names()) {
+        CAPTURE(name);
+        const std::string text = text_of(full_run() / "states" / (name + ".pvsm"));
+        CHECK(text.find("slot=") == std::string::npos);
+        for (const auto& property : {"FileName", "FileNames"})
+            for (const auto& values : values_of(text, property))
+                for (const std::string& file : values) {
+                    CHECK(fs::path(file).is_absolute());
+                    CHECK(fs::exists(file));
+                }
+    }
+    const auto focal = values_of(text_of(full_run() / "states" / "overview.pvsm"), "CameraFocalPoint");
+    REQUIRE(focal.size() == 2);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        CHECK(std::stod(focal[0][axis]) == look["camera"]["view"]["focal"][axis].get<double>());
+}
+
+TEST_CASE("slots take numbers, parts of ranges, texts and paths, with XML's own letters escaped") {
+    const Json look = {{"range", {{"depth", {2.0, 10.0}}}}, {"title", "rock & \"roll\""}};
+    const std::string text = "<Element index=\"0\" value=\"1\" slot=\"/range/depth@0.25\" />"
+                             "<Element index=\"1\" value=\"x\" slot=\"/title\" /><Element value=\"keep\" />"
+                             "<Element value=\"a.pvd\" slot=\"file:a.pvd\" />";
+    CHECK(filled_state(text, look, "/tmp/<here>") ==
+          "<Element index=\"0\" value=\"4\" /><Element index=\"1\" value=\"rock &amp; &quot;roll&quot;\" />"
+          "<Element value=\"keep\" /><Element value=\"/tmp/&lt;here&gt;/a.pvd\" />");
+    CHECK_THROWS_AS(filled_state("<Element value=\"1\" slot=\"/range/speed/0\" />", look, "/tmp"), InternalError);
+}
+
+TEST_CASE("a state that the run lacks files for is not written, and asking for it says why") {
+    const FreshFolder folder;
+    RunOptions options;
+    options.case_file = FRANA_SOURCE_DIR "/cases/maungawhau/case.toml";
+    options.out = folder.path() / "run";
+    options.sets = {"grid.cell=10.0", "time.end=2.0", "output.formats=[\"vtk\"]"};
+    options.quiet = true;
+    REQUIRE(run_command(options) == 0);
+    const auto there = [&](const std::string& name) { return fs::exists(options.out / "states" / (name + ".pvsm")); };
+    CHECK(there("overview"));
+    CHECK(there("budgets"));
+    CHECK(!there("stress"));
+    CHECK(!there("survey"));
+    CHECK_THROWS_WITH(states_command({options.out, {"stress"}}),
+                      Contains("no state \"stress\": the frames of grid.pvd have no array stress") &&
+                          Contains("material.rheology"));
+    CHECK_THROWS_WITH(states_command({options.out, {"survey"}}), Contains("not held against a survey"));
+    CHECK_THROWS_WITH(states_command({options.out, {"strss"}}), Contains("found \"strss\"; expected overview, stress"));
+    CHECK_THROWS_AS(states_command({folder.path() / "nothing", {}}), UserError);
+}
+
+TEST_CASE("states written again after a move name the files where they lie now") {
+    const FreshFolder folder;
+    const fs::path moved = folder.path() / "a run & more";
+    fs::copy(full_run(), moved, fs::copy_options::recursive);
+    CHECK(text_of(moved / "states" / "overview.pvsm").find(moved.filename().string()) == std::string::npos);
+    REQUIRE(states_command({moved, {}}) == 0);
+    for (const std::string& name : state_names()) {
+        const std::string text = text_of(moved / "states" / (name + ".pvsm"));
+        CHECK(text.find(folder.path().string() + "/a run &amp; more/") != std::string::npos);
+        CHECK(text.find(full_run().string()) == std::string::npos);
+    }
+    fs::remove(moved / "profiles.pvd");
+    REQUIRE(states_command({moved, {}}) == 0);
+    CHECK(!fs::exists(moved / "states" / "profiles.pvsm"));
+}

@@ -1,0 +1,57 @@
+#!/bin/sh
+# Runs a small case that has everything, and looks at its states in ParaView: as the run left them, after the folder was
+# moved, and the templates. Usage: pvbatch_states.sh FRANA SOURCE_DIR WORK_FOLDER
+# Needs pvbatch (see pvbatch_common.sh) and a display or Xvfb (package xvfb), for the pictures. Exits with 77 (skipped)
+# when one of them is missing, 1 when something is wrong; pictures lie in WORK_FOLDER/pictures.
+set -u
+frana=$1
+source=$2
+work=$3
+. "$source/tests/pvbatch_common.sh"
+
+# An X server of our own: xvfb-run may take a number that another one holds.
+if [ -z "${DISPLAY:-}" ]; then
+    command -v Xvfb >/dev/null || skip "no display and no Xvfb (package xvfb)"
+    rm -f "$work/display"
+    Xvfb -displayfd 3 -screen 0 1600x1200x24 -nolisten tcp -noreset 3>"$work/display" 2>/dev/null &
+    server=$!
+    trap 'kill $server' EXIT
+    for _ in 1 2 3 4 5 6 7 8 9 10; do grep -qs . "$work/display" || sleep 1; done
+    [ -s "$work/display" ] || skip "Xvfb does not start"
+    export DISPLAY=":$(cat "$work/display")"
+fi
+
+look() {  # RUN_DIR mode what
+    for _ in 1 2 3; do  # a loaded machine may refuse the connection to its X server
+        look_once "$1" "$2"
+        grep -q "bad X server connection" "$work/states.log" || break
+    done
+    cat "$work/states.out"
+    grep -m 5 "ERR|" "$work/states.log" && status=1
+    [ $status -eq 0 ] || { echo "$3: wrong (status $status), see $work"; tail -20 "$work/states.log"; exit 1; }
+}
+
+look_once() {
+    run_pvbatch "$source/tests/pvbatch_states.py" "$source/pvstates" "$1" "$work/pictures" "$2" \
+        >"$work/states.out" 2>"$work/states.log"
+    status=$?
+}
+
+rm -rf "$work/run" "$work/elsewhere"
+"$frana" run "$source/tests/states_case/case.toml" --out "$work/run" --threads 1 --quiet || exit 1
+look "$work/run" full "as the run left them"
+
+moved="$work/elsewhere/a run & more"
+mkdir -p "$work/elsewhere" && mv "$work/run" "$moved" || exit 1
+look "$moved" searched "moved, with the folder given to ParaView"
+"$frana" states "$moved" >/dev/null || exit 1
+look "$moved" plain "moved, and written again by frana states"
+
+# A state that the run has no files for: one sentence, exit code 2.
+rm "$moved/survey_areas.vtp"
+"$frana" states "$moved" >/dev/null || exit 1
+said=$(run_pvbatch "$source/pvstates/open_run.py" "$moved" --state survey 2>&1 >/dev/null)
+status=$?
+[ $status -eq 2 ] || { echo "exit code $status of a state that is not there; expected 2"; exit 1; }
+echo "$said" | grep -q 'no state "survey": the run was not held against a survey' || { echo "said: $said"; exit 1; }
+echo "states load and show what the Python states show"
