@@ -3,7 +3,6 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "read_polydata.h"
 #include "catch.h"
 #include "frana_commands.h"
 #include "frana_look.h"
@@ -21,6 +21,7 @@
 #include "vtk_io/reader.h"
 
 using namespace frana;
+using test::polydata;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -89,14 +90,6 @@ std::set<std::string> arrays_named(const std::string& text) {
 
 void add_arrays(vtkDataSetAttributes* attributes, std::set<std::string>& names) {
     for (int k = 0; k < attributes->GetNumberOfArrays(); ++k) names.insert(attributes->GetArrayName(k));
-}
-
-vtkSmartPointer<vtkPolyData> polydata(const fs::path& file) {
-    vtkNew<vtkXMLPolyDataReader> reader;
-    reader->SetFileName(file.string().c_str());
-    reader->Update();
-    REQUIRE(reader->GetErrorCode() == 0);
-    return reader->GetOutput();
 }
 
 /// Every array of the files in a run that has everything.

@@ -7,7 +7,6 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <fmt/format.h>
 
@@ -16,6 +15,7 @@
 #include <cmath>
 
 #include "catch.h"
+#include "read_polydata.h"
 #include "compare/outline.h"
 #include "compare/overlap.h"
 #include "frame_maker.h"
@@ -25,17 +25,10 @@
 #include "vtk_io/writers.h"
 
 using namespace frana;
+using test::polydata;
 namespace fs = std::filesystem;
 
 namespace {
-
-vtkSmartPointer<vtkPolyData> polydata(const fs::path& file) {
-    vtkNew<vtkXMLPolyDataReader> reader;
-    reader->SetFileName(file.string().c_str());
-    reader->Update();
-    REQUIRE(reader->GetErrorCode() == 0);
-    return reader->GetOutput();
-}
 
 /// A plane z = 100 + x + 2 y on 10 x 8 nodes, 2 m apart, the first at (1, 1): pixels from (0, 0) to (20, 16).
 Raster plane() {

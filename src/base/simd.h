@@ -1,7 +1,7 @@
 #pragma once
 // Four doubles as one value, by the compilers' vector extension: no intrinsics, any instruction set. Kernels use it in
-// two ways: four numbers of one node side by side, or one number of four points ("lanes"). All is always inlined: files built
-// for different instruction sets may share it.
+// two ways: four numbers of one node side by side, or one number of four points ("lanes"). All is
+// always inlined: files built for different instruction sets may share it.
 #include <cmath>
 #include <cstdint>
 #include <cstring>

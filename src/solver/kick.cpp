@@ -172,7 +172,8 @@ private:
             node.ex = surface_gradient(flow, k, 1, nodes.flags[k] & kWideX, flow.bed.slope_x[k]);
             node.ey = surface_gradient(flow, k, up, nodes.flags[k] & kWideY, flow.bed.slope_y[k]);
         }
-        if (has_viscosity(flow.scheme) && node.depth > 1e-12 * flow.cell) {  // a rotated domain's centre may reach beyond its mass
+        // A rotated domain's centre may reach beyond its mass.
+        if (has_viscosity(flow.scheme) && node.depth > 1e-12 * flow.cell) {
             const double scale = 1.0 / (flow.cell * node.depth);
             node.push_x = node.loss_x = scale * (nodes.viscous_flux[k - 1].x - nodes.viscous_flux[k].x);
             node.push_y = node.loss_y = scale * (nodes.viscous_flux[k - up].y - nodes.viscous_flux[k].y);

@@ -39,8 +39,8 @@ void mark_margin(Flow& flow);
 /// lowered by no more than the ground that emerges around the node can have lifted it and the depth that it is given.
 void shoreline(Flow& flow);
 
-/// Removes the 2-cell wave from the surface where five wet nodes away from the margin stand in a row; exact on linear surfaces. Held back at
-/// bores (shock_pass), where that wave must stay visible to the pressure that undoes it.
+/// Removes the 2-cell wave from the surface where five wet nodes away from the margin stand in a row; exact on linear
+/// surfaces. Held back at bores (shock_pass), where that wave must stay visible to the pressure that undoes it.
 void filter(Flow& flow);
 
 }  // namespace frana

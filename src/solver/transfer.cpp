@@ -245,7 +245,8 @@ std::unique_ptr<TransferKernel> with_rheology(const Scene& scene) {
     return std::visit(
         [&](const auto& law) -> std::unique_ptr<TransferKernel> {
             using Law = std::decay_t<decltype(law)>;
-            if constexpr (std::is_same_v<S, Cubic>) expect(!scene.scheme.paper_pressure, "cubic shapes with pressure on points");
+            if constexpr (std::is_same_v<S, Cubic>)
+                expect(!scene.scheme.paper_pressure, "cubic shapes with pressure on points");
             else if (scene.scheme.paper_pressure) return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
             return std::make_unique<Kernel<S, kTransfer, Law, false>>(law);
         },
