@@ -36,7 +36,8 @@ std::vector<Measurement> measure(const Problem& problem, Setup setup, const std:
             const double coarse = std::abs(results.back().value(problem.order_of));
             const double fine = std::abs(m.value(problem.order_of));
             const double ratio = static_cast<double>(cells) / static_cast<double>(results.back().cells);
-            m.observed_order = std::log(coarse / fine) / std::log(ratio);
+            constexpr double kRoundOff = 1e-12;  // below it an order says nothing
+            if (fine > kRoundOff) m.observed_order = std::log(coarse / fine) / std::log(ratio);
         }
         results.push_back(std::move(m));
     }

@@ -39,7 +39,7 @@ struct Measurement {
     double mass_error = kNone;   ///< |V + V_left - V_0| / V_0
     double energy_error = kNone; ///< residual of the energy budget over the largest kinetic or dissipated energy, signed
     std::vector<Extra> extras;
-    double observed_order = kNone;  ///< of Problem::order_of, against the next coarser grid
+    double observed_order = kNone;  ///< of Problem::order_of, against the next coarser grid; none at round-off
 
     /// Any of the above, or of the extras, by name; kNone when there is none.
     double value(const std::string& quantity) const;
