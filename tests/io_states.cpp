@@ -156,10 +156,10 @@ TEST_CASE("slots take numbers, parts of ranges, texts and paths, with XML's own 
     const std::string text = "<Element index=\"0\" value=\"1\" slot=\"/range/depth@0.25\" />"
                              "<Element index=\"1\" value=\"x\" slot=\"/title\" /><Element value=\"keep\" />"
                              "<Element value=\"a.pvd\" slot=\"file:a.pvd\" />";
-    CHECK(filled_state(text, look, "/tmp/<here>") ==
+    CHECK(filled_state(text, look, "/runs/<here>") ==
           "<Element index=\"0\" value=\"4\" /><Element index=\"1\" value=\"rock &amp; &quot;roll&quot;\" />"
-          "<Element value=\"keep\" /><Element value=\"/tmp/&lt;here&gt;/a.pvd\" />");
-    CHECK_THROWS_AS(filled_state("<Element value=\"1\" slot=\"/range/speed/0\" />", look, "/tmp"), InternalError);
+          "<Element value=\"keep\" /><Element value=\"/runs/&lt;here&gt;/a.pvd\" />");
+    CHECK_THROWS_AS(filled_state("<Element value=\"1\" slot=\"/range/speed/0\" />", look, "/runs"), InternalError);
 }
 
 TEST_CASE("a state that the run lacks files for is not written, and asking for it says why") {

@@ -23,6 +23,7 @@ public:
 
     PointSums deposit(Flow& flow, double kick) override {
         const double cap = prepare_deposit(flow, kick);
+        start_sums(flow);
         for_each_tile_coloured(flow.active, [&](Index n) {
             Sums sums;
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
@@ -35,6 +36,7 @@ public:
 
     PointSums gather(Flow& flow, double dt) override {
         prepare_gather(flow);
+        start_sums(flow);
         for_each_tile(flow.active, [&](Index n) {
             Sums sums;
             for_each_four(flow.active.begin[n], flow.active.begin[n + 1],
@@ -47,6 +49,7 @@ public:
     /// Points are still in the first cache when they deposit.
     PointSums carry(Flow& flow, double dt, double kick) override {
         prepare_gather(flow);
+        start_sums(flow);
         const double cap = prepare_deposit(flow, kick);
         for_each_tile_coloured(flow.active, [&](Index n) {
             Sums moved, deposited;
@@ -97,15 +100,15 @@ private:
         }
     };
 
+    void start_sums(const Flow& flow) { tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {}); }
+
     void prepare_gather(const Flow& flow) {
-        tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
         assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
     }
 
     /// Clears the nodes; returns the largest 2 mu_eff that is stable explicitly [Pa s].
     double prepare_deposit(Flow& flow, double kick) {
         clear_nodes(flow);
-        tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
         return flow.scheme.stress_cap * flow.density * flow.area / kick;
     }
 
