@@ -34,27 +34,32 @@ void mirror_velocity(Flow& flow) {
         });
 }
 
-/// Wetness of a tile and two nodes around it: one bit a node, bit n + 2 of row n + 2 is node (n, n).
+/// Wetness of a tile and two nodes around it: one bit a node, bit n + 2 of row n + 2 is node (n, n). Right in rows two or
+/// fewer from a touched node, empty elsewhere.
 struct WetRows {
-    std::uint32_t row[kTile + 4];
-    bool any = false;
+    std::uint32_t row[kTile + 4] = {};
     WetRows(const Flow& flow, Index tile) {
         const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
-        std::uint32_t seen = 0;
+        const NodeGroups touched = flow.touched[tile];
         for (Index j = 0; j < kTile + 4; ++j) {
-            row[j] = 0;
-            const Index jj = j0 + j - 2;
-            const Index first = flow.grid.at(i0, jj) - 2;
+            const Index from = 4 * std::max<Index>(j - 4, 0), past = 4 * std::min<Index>(j + 1, kTile);
+            const NodeGroups below = past < 64 ? (NodeGroups{1} << past) - 1 : kAllGroups;
+            if (!((touched & below) >> from)) continue;
+            const Index first = flow.grid.at(i0, j0 + j - 2) - 2;
             if (first < 0 || first + kTile + 4 > flow.grid.size()) continue;  // beyond the spare ring: dry
             // Depth and not the flags, which other threads write at the same time.
             const double* depth = flow.nodes.depth.data() + first;
             for (Index i = 0; i < kTile + 4; ++i)
                 row[j] |= static_cast<std::uint32_t>(depth[i] > 0.0) << i;
-            seen |= row[j];
         }
-        any = seen != 0;
     }
 };
+
+/// The sixteen nodes of four groups, a bit each.
+std::uint32_t nodes_in(NodeGroups groups) {
+    const auto spread = static_cast<std::uint32_t>(groups | groups << 3 | groups << 6 | groups << 9) & 0x1111u;
+    return spread * 0xfu;
+}
 
 constexpr int kSweeps = 3;  ///< a ragged shore is flagged three nodes deep
 
@@ -106,10 +111,12 @@ void for_each_margin_node(Flow& flow, Body&& body) {
     };
     const Index count = static_cast<Index>(flow.shore.size());
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
-    for (Index n = 0; n < count; ++n)
-        for_each_node_of(flow.grid, flow.shore[static_cast<std::size_t>(n)], [&](Index k, Index i, Index j) {
+    for (Index n = 0; n < count; ++n) {
+        const Index tile = flow.shore[static_cast<std::size_t>(n)];
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
             if ((flow.nodes.flags[k] & kMargin) && inside(i, j)) body(k);
         });
+    }
 }
 
 void shoreline_sweep(Flow& flow) {
@@ -191,6 +198,18 @@ void filter_calm(const Flow& flow, Nodes& nodes, Index k, Index up) {
 /// would miss it. Only denormal numbers are none.
 constexpr double kLeastMass = 1e-200;  ///< [kg]
 
+/// Four nodes in a row that no point touches.
+void dry_four(Flow& flow, Index k) {
+    Nodes& nodes = flow.nodes;
+    const Double4 none = {}, z = load(&flow.bed.z[k]);
+    store(&nodes.depth[k], none);
+    store(&nodes.surface[k], z);
+    store(&nodes.surface_next[k], z);
+    for (Index n = 0; n < 4; n += 2)
+        for (auto* pairs : {&nodes.before, &nodes.viscous_flux, &nodes.shock}) store(&(*pairs)[k + n], none);
+    for (auto* bytes : {&nodes.flags, &nodes.sensed, &nodes.row_known}) std::memset(bytes->data() + k, 0, 4);
+}
+
 /// The sums of one tile: four nodes at a time.
 struct DepthSums {
     Double4 potential{}, max_depth{}, covered_area{}, front2{};
@@ -230,8 +249,10 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
     parts.assign(flow.active.work.size(), {});
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
         DepthSums sums;
-        for_each_four_of(flow.grid, tile,
+        const NodeGroups touched = flow.touched[tile];
+        for_each_four_of(flow.grid, tile, touched,
                          [&](Index k, Index i, Index j) { depth_of_four(flow, request, k, i, j, sums); });
+        for_each_four_of(flow.grid, tile, flow.near[tile] & ~touched, [&](Index k, Index, Index) { dry_four(flow, k); });
         parts[n] = sums.of_tile();
     });
     NodeSums total;
@@ -249,8 +270,9 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
 void mark_margin(Flow& flow) {
     flow.marked.assign(flow.active.work.size(), 0);
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
+        const NodeGroups touched = flow.touched[tile];
+        if (!touched) return;
         const WetRows wet(flow, tile);
-        if (!wet.any) return;
         std::uint8_t any = 0;
         std::uint32_t across[kTile + 4];  // this node and two each way in x
         for (Index j = 0; j < kTile + 4; ++j) {
@@ -259,6 +281,8 @@ void mark_margin(Flow& flow) {
         }
         const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
         for (Index j = 0; j < kTile; ++j) {
+            const std::uint32_t here = nodes_in(touched >> (4 * j) & 0xf);
+            if (!here) continue;
             const std::uint32_t* r = wet.row + j;
             const std::uint32_t wide_y = r[0] & r[1] & r[2] & r[3] & r[4];
             const std::uint32_t* a = across + j;
@@ -266,7 +290,7 @@ void mark_margin(Flow& flow) {
             std::uint8_t* flags = flow.nodes.flags.data() + flow.grid.at(i0, j0 + j);
             for (Index i = 0; i < kTile; ++i) {
                 const std::uint32_t bit = 1u << (i + 2);
-                if (!(r[2] & bit)) continue;
+                if (!(r[2] & here << 2 & bit)) continue;
                 std::uint8_t flag = flags[i] & (kWet | kMoving);
                 if (!(inner & bit)) flag |= kMargin;
                 any |= flag;
@@ -296,10 +320,10 @@ void filter(Flow& flow) {
     const Index up = flow.grid.stride();
     const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, [&](Index k, Index, Index) { wave_along_x(nodes, k); });
+        for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) { wave_along_x(nodes, k); });
     });
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, [&](Index k, Index, Index) {
+        for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) {
             if (calm(nodes, k, up)) {
                 filter_calm(flow, nodes, k, up);
             } else {
