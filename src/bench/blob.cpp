@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "grid/tile_grid.h"
 
@@ -34,6 +35,16 @@ std::vector<Place> nearest_places(Index count) {
     return places;
 }
 
+/// The column of places from which on points move, when a share of them rests.
+Index first_moving(const std::vector<Place>& places, double resting) {
+    if (resting <= 0.0) return std::numeric_limits<Index>::min();
+    std::vector<Index> columns;
+    for (const Place& place : places) columns.push_back(place.i);
+    const auto nth = static_cast<std::ptrdiff_t>(resting * static_cast<double>(places.size()));
+    std::nth_element(columns.begin(), columns.begin() + nth, columns.end());
+    return columns[static_cast<std::size_t>(nth)];
+}
+
 /// Bed elevation at (x, y) from the blob's centre [m].
 double ground(double x, double y) {
     return 2000.0 - 0.5 * x + 4.0 * std::sin(2.0 * kPi * x / 190.0) * std::cos(2.0 * kPi * y / 230.0);
@@ -62,14 +73,18 @@ Scene blob_scene(const Blob& blob) {
     scene.density = 1291.0;
     if (blob.friction) scene.bed_law = bed::Voellmy{0.2, 500.0};
     if (blob.rheology) scene.rheology = rheology::Bingham{2000.0, 50.0};
+    scene.scheme.sleep = blob.sleeps;
     Seeds& seeds = scene.particles;
-    for (const Place& place : nearest_places(blob.particles)) {
+    const std::vector<Place> places = nearest_places(blob.particles);
+    const Index front = first_moving(places, blob.resting);
+    for (const Place& place : places) {
         const double x = 0.5 * static_cast<double>(place.i) + 0.25, y = 0.5 * static_cast<double>(place.j) + 0.25;
         const double out = std::hypot(x, y) / radius, depth = kDepth * std::max(0.02, 1.0 - std::pow(out, 4));
         seeds.x.push_back(kCell * (static_cast<double>(centre) + x));
         seeds.y.push_back(kCell * (static_cast<double>(centre) + y));
-        seeds.vx.push_back(8.0 + 3.0 * x / radius);
-        seeds.vy.push_back(3.0 * y / radius);
+        const bool moves = place.i >= front;
+        seeds.vx.push_back(moves ? 8.0 + 3.0 * x / radius : 0.0);
+        seeds.vy.push_back(moves ? 3.0 * y / radius : 0.0);
         seeds.depth.push_back(depth);
         seeds.size.push_back(0.5 * kCell);
         seeds.volume.push_back(depth * 0.25 * kCell * kCell);

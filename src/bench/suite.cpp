@@ -23,14 +23,19 @@ struct Variant {
 
 /// Scenes beside the full one, timed with one thread.
 std::vector<Variant> variants(const Options& options) {
-    Blob plain, bare, level, tight;
-    plain.particles = bare.particles = level.particles = reference_particles(options);
+    Blob plain, bare, level, tight, resting;
+    plain.particles = bare.particles = level.particles = resting.particles = reference_particles(options);
+    resting.topography = false;
+    resting.resting = 0.9;
+    Blob awake = resting;
+    awake.sleeps = false;
     bare.friction = bare.rheology = false;
     level.topography = false;
     tight.particles = plain.particles >= kReference ? kWideParticles : plain.particles;
     Blob wide = tight;
     wide.emptiness = kEmptiness;
-    std::vector<Variant> list{{"depth_averaged_bare", bare}, {"depth_averaged_level", level}};
+    std::vector<Variant> list{{"depth_averaged_bare", bare}, {"depth_averaged_level", level},
+                              {"depth_averaged_resting", resting}, {"depth_averaged_resting_awake", awake}};
     if (!options.quick || tight.particles < kReference) {
         list.push_back({"depth_averaged_tight", tight});
         list.push_back({"depth_averaged_wide", wide});

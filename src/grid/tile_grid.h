@@ -87,6 +87,7 @@ struct ActiveTiles {
     std::array<std::vector<Index>, 4> colour; ///< positions in `tile`, by colour
     std::vector<Index> work;                  ///< ids of tiles with particles and their neighbours, ascending
     std::vector<std::uint8_t> in_work;        ///< per tile of the domain: 1 when it is on the work list
+    std::vector<std::uint8_t> quiet;          ///< per tile of the domain: gathers in a row that left its points at rest
 
     Index count() const { return static_cast<Index>(tile.size()); }
 };

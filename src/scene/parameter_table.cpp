@@ -155,6 +155,7 @@ void add_scheme(Table& table) {
     table.push_back(paper(flag("scheme.merge", true, "merge particles where convergence crowds them"), false));
     table.push_back(paper(
         flag("scheme.reset_domains", true, "give a strongly sheared particle a rectangular domain again"), false));
+    table.push_back(flag("scheme.sleep", true, "skip material at rest until something stirs it; the results are the same"));
     table.push_back(number("scheme.split_length", "cells", above_to(0.0, 2.0), 0.8,
                            "edge of a particle's domain that makes it split"));
     table.push_back(number("scheme.split_min_mass", "1", fraction, 0.02,

@@ -68,6 +68,7 @@ Scheme scheme_of(const CaseFile& file) {
     scheme.split = file.flag("scheme.split");
     scheme.merge = file.flag("scheme.merge");
     scheme.reset_domains = file.flag("scheme.reset_domains");
+    scheme.sleep = file.flag("scheme.sleep");
     scheme.split_length = value("split_length");
     scheme.split_min_mass = value("split_min_mass");
     scheme.mass_fit = file.flag("scheme.mass_fit");

@@ -72,14 +72,23 @@ double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index
     return 2.0 * z[jc * nx + ic] - z[inside(2 * jc - j, ny) * nx + inside(2 * ic - i, nx)];
 }
 
+/// The same up to kTile nodes beyond the domain on every side, whatever the tiles: filters that run often carry in what
+/// lies at the rim, and mirror images must stay so.
+template <class Body>
+void for_each_node_around(const TileGrid& grid, Index margin, Body&& body) {
+#pragma omp parallel for schedule(static)
+    for (Index j = margin - kTile; j < grid.ny() + kTile - margin; ++j)
+        for (Index i = margin - kTile; i < grid.nx() + kTile - margin; ++i) body(grid.at(i, j));
+}
+
 /// Applies the symmetric weights w[0] (centre), w[1], w[2] along one direction (step 1: x, stride: y).
 void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch, Index step,
             const std::array<double, 3>& w) {
-    for_each_node(grid, 2, [&](Index, Index, Index k) {
+    for_each_node_around(grid, 2, [&](Index k) {
         scratch[k] = w[0] * field[k] + w[1] * (field[k - step] + field[k + step]) +
                      w[2] * (field[k - 2 * step] + field[k + 2 * step]);
     });
-    for_each_node(grid, 2, [&](Index, Index, Index k) { field[k] = scratch[k]; });
+    for_each_node_around(grid, 2, [&](Index k) { field[k] = scratch[k]; });
 }
 
 /// Average of a bilinear bed with the scheme's own shape function: B-splines of two degrees more at whole numbers.

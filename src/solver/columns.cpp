@@ -26,6 +26,7 @@ void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<
     used_.clear();
     for (Index p = 0; p < count; ++p)
         if (key[p] >= 0 && tile_count_[key[p]]++ == 0) used_.push_back(key[p]);
+    wake(count, active);
     std::sort(used_.begin(), used_.end());
 
     active.tile.assign(used_.begin(), used_.end());
@@ -64,6 +65,20 @@ void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<
     list_tiles(grid, active);
 }
 
+/// Tiles that points leave or enter do not sleep.
+void TileSorter::wake(Index count, ActiveTiles& active) {
+    if (active.quiet.empty()) return;
+    Index p = 0;
+    for (Index n = 0; n < active.count(); ++n)
+        for (; p < active.begin[n + 1]; ++p)
+            if (key_[p] != active.tile[n]) {
+                active.quiet[active.tile[n]] = 0;
+                if (key_[p] >= 0) active.quiet[key_[p]] = 0;
+            }
+    for (; p < count; ++p)
+        if (key_[p] >= 0) active.quiet[key_[p]] = 0;
+}
+
 void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
     resize_sparingly(order_, static_cast<std::size_t>(columns.count()));
     std::int32_t kept = 0;
@@ -90,6 +105,7 @@ void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, A
 void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
     for (auto& positions : active.colour) positions.clear();
     active.in_work.resize(static_cast<std::size_t>(grid.tiles()));
+    active.quiet.resize(static_cast<std::size_t>(grid.tiles()));
     for (const Index tile : active.work) active.in_work[tile] = 0;
     active.work.clear();
     const Index width = grid.tiles_x();

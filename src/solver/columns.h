@@ -69,6 +69,7 @@ public:
     }
 
 private:
+    void wake(Index count, ActiveTiles& active);
     void list_tiles(const TileGrid& grid, ActiveTiles& active);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile

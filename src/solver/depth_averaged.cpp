@@ -117,7 +117,10 @@ void DepthAveraged::advance(double until) {
 
 /// What follows from a deposit: depth, surface, status, peaks.
 void DepthAveraged::arrive(const PointSums& points) {
-    const PointSums nodes = timed_("deposit", [&] { return node_sums(flow_); });
+    const PointSums nodes = timed_("deposit", [&] {
+        choose_stirred(flow_, *kick_);
+        return node_sums(flow_);
+    });
     status_.p2g_mass_error = points.mass > 0.0 ? std::abs(nodes.mass - points.mass) / points.mass : 0.0;
     status_.p2g_momentum_error =
         points.p_abs > 0.0 ? std::hypot(nodes.px - points.px, nodes.py - points.py) / points.p_abs : 0.0;

@@ -7,6 +7,7 @@
 #include "solver/bed_geometry.h"
 #include "solver/columns.h"
 #include "solver/nodes.h"
+#include "solver/rest.h"
 
 namespace frana {
 
@@ -19,7 +20,8 @@ struct Flow {
         : grid(scene.bed.geometry), bed(make_bed_geometry(scene, grid)),
           nodes(grid, scene.rheology.index() != 0 || scene.scheme.paper_pressure), density(scene.density),
           gravity(scene.gravity), cell(grid.cell()), area(cell * cell), walls(scene.sides == Sides::wall),
-          steep(scene.terrain != TerrainModel::shallow), scheme(scene.scheme), touched(grid.tiles()), near(grid.tiles()) {}
+          steep(scene.terrain != TerrainModel::shallow), scheme(scene.scheme), touched(grid.tiles()), near(grid.tiles()),
+          reach(grid.tiles()), deposit_sums(grid.tiles()), depth_sums(grid.tiles()), rest(grid) {}
 
     TileGrid grid;
     BedGeometry bed;
@@ -38,10 +40,13 @@ struct Flow {
     LazyArray<NodeGroups> touched;
     /// The same grown by three nodes, as far as passes look: these nodes, and no others, hold what a dry node holds.
     LazyArray<NodeGroups> near;
-    std::vector<TileReach> reach;     ///< what each particle tile touches, by its position in `active`
+    LazyArray<TileReach> reach;       ///< what the points of each tile touch
     std::vector<Index> shore;         ///< tiles of the work list that have margin nodes (mark_margin)
     std::vector<std::uint8_t> marked; ///< scratch of mark_margin, one per tile of the work list
-    std::vector<TileSums> tile_sums;  ///< scratch of the node loops, so that a step allocates nothing
+    LazyArray<TileSums> deposit_sums, depth_sums;  ///< per tile, of node_sums and depth_pass
+    Rest rest;
+    /// Nodes that the passes walk.
+    NodeGroups walked(Index tile) const { return rest.stirred[tile] ? touched[tile] : 0; }
     StencilMarks marks_of(Index tile) const { return {grid.tile_i(tile) + kTile, grid.tile_j(tile) + kTile}; }
     /// Whether a node was touched.
     bool touches(Index i, Index j) const {

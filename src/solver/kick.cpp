@@ -76,18 +76,22 @@ public:
 
     KickSums kick(Flow& flow, double dt, double drift) override {
         drift_ = drift;
-        parts_.assign(flow.active.work.size(), {});
-        for_each_work_tile(flow.active, [&](Index n, Index tile) {
+        if (!parts_) parts_ = LazyArray<KickSums>(flow.grid.tiles());
+        for_each_work_tile(flow.active, [&](Index, Index tile) {
+            flow.rest.moving[tile] = 0;
+            if (!flow.rest.stirred[tile]) return;
             Sums<double> single;
             Sums<Double4> four;
-            for_each_four_of(flow.grid, tile, flow.touched[tile],
+            for_each_four_of(flow.grid, tile, flow.walked(tile),
                              [&](Index k, Index i, Index j) { kick_four(flow, k, i, j, dt, four, single); });
-            parts_[n] = {single.kinetic + sum(four.kinetic), single.dissipated + sum(four.dissipated),
+            flow.rest.moving[tile] = flow.rest.some_asleep ? moving_groups(flow, tile) : kAllGroups;
+            parts_[tile] = {single.kinetic + sum(four.kinetic), single.dissipated + sum(four.dissipated),
                          single.impulse_x + sum(four.impulse_x), single.impulse_y + sum(four.impulse_y),
                          std::max(single.max_signal, largest(four.max_signal))};
         });
         KickSums total;
-        for (const KickSums& part : parts_) {
+        for (const Index tile : flow.active.work) {
+            const KickSums& part = parts_[tile];
             total.kinetic += part.kinetic;
             total.dissipated += part.dissipated;
             total.impulse_x += part.impulse_x;
@@ -97,7 +101,32 @@ public:
         return total;
     }
 
+    /// Were the pull stronger by a billionth, friction would hold it still.
+    bool holds(const Flow& flow, Index tile) const override {
+        constexpr double kFirm = 1.0 + 1e-9;
+        bool held = true;
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) {
+            if (!held || !(flow.nodes.flags[k] & kMoving)) return;
+            Node<double> node = prepared(flow, k);
+            for (double* pull : {&node.ex, &node.ey, &node.push_x, &node.push_y}) *pull *= kFirm;
+            const Kicked<double> after = kicked(flow, typename Terrain::template Bed<double>(flow, k), node, 1.0);
+            held = after.vx == 0.0 && after.vy == 0.0;
+        });
+        return held;
+    }
+
 private:
+    static NodeGroups moving_groups(const Flow& flow, Index tile) {
+        NodeGroups moving = 0;
+        for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+            const Motion* m = flow.nodes.motions() + k;
+            bool any = false;
+            for (int n = 0; n < 4; ++n) any = any || m[n].vx != 0.0 || m[n].vy != 0.0;
+            if (any) moving |= group_of(i - flow.grid.tile_i(tile), j - flow.grid.tile_j(tile));
+        });
+        return moving;
+    }
+
     template <class Real>
     struct Sums { Real kinetic{}, dissipated{}, impulse_x{}, impulse_y{}, max_signal{}; };
 
@@ -295,7 +324,7 @@ private:
     Law law_;
     bool pressure_on_points_;
     double drift_ = 0.0;  ///< [s]
-    std::vector<KickSums> parts_;
+    LazyArray<KickSums> parts_;  ///< per tile of the domain
 };
 
 template <class Terrain>

@@ -19,8 +19,10 @@ class KickKernel {
 public:
     virtual ~KickKernel() = default;
     /// Velocities of all wet nodes after `dt` [s], from Nodes::before to Nodes::motion, for a drift that takes `drift`
-    /// [s]. Only writes motion, so it may be repeated (output uses half a step and no drift).
+    /// [s]. Walks the tiles that are stirred (rest.h). Only writes motion, and where it is (Rest::moving), so it may be repeated (output uses half a step and no drift).
     virtual KickSums kick(Flow& flow, double dt, double drift) = 0;
+    /// Whether the nodes of a tile, all at rest, would stay so in a kick of any length.
+    virtual bool holds(const Flow& flow, Index tile) const = 0;
 };
 
 std::unique_ptr<KickKernel> make_kick(const Scene& scene);

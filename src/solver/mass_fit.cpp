@@ -105,17 +105,25 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
     return sum;
 }
 
-/// Conjugate gradients for (B W B^T) y = rhs, to round-off or 1000 iterations. Returns the iterations.
-Index solve(const FitSystem& system, std::vector<double> residual, std::vector<double>& y) {
-    std::vector<double> direction = residual, change, applied;
-    y.assign(residual.size(), 0.0);
-    double rr = dot(residual, residual);
+/// Conjugate gradients for (B W B^T) y = rhs, to round-off or 1000 iterations. Rows that no point with weight reaches are
+/// left out; more rows than such points may have no solution, then the best so far counts. Returns the iterations.
+Index solve(const FitSystem& system, const std::vector<double>& weight, std::vector<double> residual,
+            std::vector<double>& y) {
+    std::vector<double> change, applied;
+    system.collect(weight, applied);
+    for (std::size_t k = 0; k < residual.size(); ++k)
+        if (!(applied[k] > 0.0)) residual[k] = 0.0;
+    std::vector<double> direction = residual, best(residual.size(), 0.0);
+    y = best;
+    double rr = dot(residual, residual), least = rr;
     const double goal = 1e-30 * rr;
     Index iteration = 0;
-    for (; iteration < 1000 && rr > goal && rr > 0.0; ++iteration) {
+    for (; iteration < 1000 && rr > goal && rr < 1e12 * least; ++iteration) {
         system.spread(direction, change);
         system.collect(change, applied);
-        const double step = rr / dot(direction, applied);
+        const double bend = dot(direction, applied);
+        if (!(bend > 0.0)) break;
+        const double step = rr / bend;
         for (std::size_t k = 0; k < y.size(); ++k) {
             y[k] += step * direction[k];
             residual[k] -= step * applied[k];
@@ -123,13 +131,18 @@ Index solve(const FitSystem& system, std::vector<double> residual, std::vector<d
         const double next = dot(residual, residual);
         for (std::size_t k = 0; k < y.size(); ++k) direction[k] = residual[k] + next / rr * direction[k];
         rr = next;
+        if (rr < least) {
+            least = rr;
+            best = y;
+        }
     }
+    y.swap(best);
     return iteration;
 }
 
 /// Deposits the columns' mass alone and finds wetness and margin.
 void deposit_columns(Flow& flow) {
-    start_deposit(flow);
+    start_deposit(flow, 1, 3);
     touch_all(flow);
     for (Index p = 0; p < flow.columns.count(); ++p) {
         const Reach reach = reach_of(flow, p);
@@ -175,7 +188,7 @@ MassFit fit_masses(Flow& flow, double level) {
         std::vector<double> rhs, y, change;
         system.collect(from, rhs);
         for (std::size_t r = 0; r < rows.size(); ++r) rhs[r] = column * (level - flow.bed.z[rows[r]]) - rhs[r];
-        fit.iterations += solve(system, rhs, y);
+        fit.iterations += solve(system, weight, rhs, y);
         system.spread(y, change);
         fit.largest_change = 0.0;
         Index clipped = 0;

@@ -84,7 +84,12 @@ Index Merger::merge(Flow& flow) {
     assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
     resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
-    for_each_tile(flow.active, [&](Index n) { merged_[n] = merge_tile(flow, n); });
+    for_each_tile(flow.active, [&](Index n) {
+        std::uint8_t& quiet = flow.active.quiet[flow.active.tile[n]];
+        if (quiet >= kAsleep) return;
+        merged_[n] = merge_tile(flow, n);
+        if (merged_[n] > 0) quiet = 0;
+    });
     Index total = 0;
     for (const Index count : merged_) total += count;
     return total;

@@ -8,20 +8,22 @@ namespace frana {
 namespace {
 
 /// Long thin domains of points that may not split would throw their sub-points far ahead of the mass.
-void clamp_edge(double& x, double& y, double longest) {
+bool clamp_edge(double& x, double& y, double longest) {
     const double length = std::sqrt(x * x + y * y);
-    if (length <= longest) return;
+    if (length <= longest) return false;
     x *= longest / length;
     y *= longest / length;
+    return true;
 }
 
 /// A strongly sheared domain, all edge and no area, gives way to the rectangle with the same second moments.
-void straighten(Columns& c, Index p) {
+bool straighten(Columns& c, Index p) {
     const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
     const double area = c.r1x[p] * c.r2y[p] - c.r1y[p] * c.r2x[p];
-    if (l1 * l2 <= 16.0 * area * area) return;
+    if (l1 * l2 <= 16.0 * area * area) return false;
     const Edges edges = rectangle_of(Moments::of(c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]));
     c.r1x[p] = edges.r1x, c.r1y[p] = edges.r1y, c.r2x[p] = edges.r2x, c.r2y[p] = edges.r2y;
+    return true;
 }
 
 /// How many points p becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one, or
@@ -70,13 +72,17 @@ Index Splitter::split(Flow& flow) {
     tile_first_.assign(static_cast<std::size_t>(flow.active.count()) + 1, 0);
     for_each_tile(flow.active, [&](Index n) {
         Index found = 0;
+        bool changed = false;
+        const Index tile = flow.active.tile[n];
+        if (flow.active.quiet[tile] >= kAsleep) return;
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-            clamp_edge(c.r1x[p], c.r1y[p], longest);
-            clamp_edge(c.r2x[p], c.r2y[p], longest);
-            if (flow.scheme.reset_domains) straighten(c, p);
+            changed |= clamp_edge(c.r1x[p], c.r1y[p], longest);
+            changed |= clamp_edge(c.r2x[p], c.r2y[p], longest);
+            if (flow.scheme.reset_domains) changed |= straighten(c, p);
             if (may_split) found += parts_of(c, p, length, least_mass_) - 1;
         }
         tile_first_[n + 1] = found;
+        if (changed || found > 0) flow.active.quiet[tile] = 0;
     });
     for (Index n = 0; n < flow.active.count(); ++n) tile_first_[n + 1] += tile_first_[n];
     const Index added = tile_first_.back();
@@ -84,6 +90,7 @@ Index Splitter::split(Flow& flow) {
     c.resize(count + added);
     for_each_tile(flow.active, [&](Index n) {
         Index next = tile_first_[n];
+        if (next == tile_first_[n + 1]) return;
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
             const int parts = parts_of(c, p, length, least_mass_);
             if (parts == 1) continue;

@@ -241,18 +241,18 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
 }  // namespace
 
 NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
-    std::vector<TileSums>& parts = flow.tile_sums;
-    parts.assign(flow.active.work.size(), {});
-    for_each_work_tile(flow.active, [&](Index n, Index tile) {
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        if (!flow.rest.stirred[tile]) return;
         DepthSums sums;
         const NodeGroups touched = flow.touched[tile];
         for_each_four_of(flow.grid, tile, touched,
                          [&](Index k, Index i, Index j) { depth_of_four(flow, request, k, i, j, sums); });
         for_each_four_of(flow.grid, tile, flow.near[tile] & ~touched, [&](Index k, Index, Index) { dry_four(flow, k); });
-        parts[n] = sums.of_tile();
+        flow.depth_sums[tile] = sums.of_tile();
     });
     NodeSums total;
-    for (const TileSums& part : parts) {
+    for (const Index tile : flow.active.work) {
+        const TileSums& part = flow.depth_sums[tile];
         total.potential += part[0];
         total.max_depth = std::max(total.max_depth, part[1]);
         total.covered_area += part[2];
@@ -266,7 +266,7 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
 void mark_margin(Flow& flow) {
     flow.marked.assign(flow.active.work.size(), 0);
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
-        const NodeGroups touched = flow.touched[tile];
+        const NodeGroups touched = flow.walked(tile);
         if (!touched) return;
         const WetRows wet(flow, tile);
         std::uint8_t any = 0;
@@ -316,10 +316,10 @@ void filter(Flow& flow) {
     const Index up = flow.grid.stride();
     const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) { wave_along_x(nodes, k); });
+        for_each_four_of(flow.grid, tile, flow.walked(tile), [&](Index k, Index, Index) { wave_along_x(nodes, k); });
     });
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) {
+        for_each_four_of(flow.grid, tile, flow.walked(tile), [&](Index k, Index, Index) {
             if (calm(nodes, k, up)) {
                 filter_calm(flow, nodes, k, up);
             } else {

@@ -64,39 +64,43 @@ public:
     explicit Kernel(const Law& law) : law_(law) {}
 
     PointSums deposit(Flow& flow, double kick) override {
-        start_deposit(flow);
-        tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
+        make_room(flow);
+        start_deposit(flow, kBefore, kAfter);
         const double cap = flow.scheme.stress_cap * flow.density * flow.area / kick;
         for_each_tile_coloured(flow.active, [&](Index n) {
+            if (!flow.rest.deposits[n]) return;
+            const Index tile = flow.active.tile[n];
             PointSums sums;
-            StencilMarks marks = flow.marks_of(flow.active.tile[n]);
+            StencilMarks marks = flow.marks_of(tile);
             for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
                 deposit_point(flow, p, cap, sums);
                 marks.mark(static_cast<std::int32_t>(std::floor(flow.columns.x[p] + (kTile - 0.5))),
                            static_cast<std::int32_t>(std::floor(flow.columns.y[p] + (kTile - 0.5))));
             }
-            flow.reach[n] = marks.reach(kBefore, kAfter);
-            tile_sums_[n] = sums;
+            flow.reach[tile] = marks.reach(kBefore, kAfter);
+            deposited_[tile] = sums;
         });
-        mark_touched(flow);
-        return total(tile_sums_);
+        finish_deposit(flow);
+        return total(flow.active, deposited_);
     }
 
     PointSums gather(Flow& flow, double dt) override {
-        tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
+        make_room(flow);
         assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
+        choose_gathers(flow);
         for_each_tile(flow.active, [&](Index n) {
+            if (!flow.rest.gathers[n]) return;
             PointSums sums;
             for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) gather_point(flow, p, dt, sums);
-            tile_sums_[n] = sums;
+            gathered_[flow.active.tile[n]] = sums;
+            note_rest(flow, n, sums.max_motion == 0.0);
         });
-        return total(tile_sums_);
+        note_changed(flow);
+        return total(flow.active, gathered_);
     }
 
     PointSums carry(Flow& flow, double dt, double kick) override {
-        PointSums sums = gather(flow, dt);
-        if (sums.bad < 0) sums.stress_power = deposit(flow, kick).stress_power;
-        return sums;
+        return carry_apart(flow, dt, kick);
     }
 
     void probe(Flow& flow, Probe& out) override {
@@ -231,6 +235,8 @@ private:
         meet_side(flow, p, gone_, sums);
         const double speed = std::hypot(vx, vy), m = c.mass[p];
         sums.max_shift = std::max(sums.max_shift, shift);
+        for (const double part : {vx, vy, g.cxx, g.cxy, g.cyx, g.cyy})
+            sums.max_motion = std::max(sums.max_motion, std::abs(part));
         sums.max_speed = std::max(sums.max_speed, speed);
         sums.max_signal = std::max(sums.max_signal, speed + std::sqrt(flow.gravity * std::max(c.depth[p], 0.0)));
         if (gone_[p]) return;

@@ -16,6 +16,7 @@ struct PointSums {
     double max_speed = 0.0;          ///< [m/s]
     double max_signal = 0.0;         ///< largest |v| + sqrt(g h) [m/s]
     double max_shift = 0.0;          ///< largest displacement of the step [cells]
+    double max_motion = 0.0;         ///< largest part of v [m/s] or grad v [1/s]; 0: all at rest
     double stress_power = 0.0;       ///< sum of V sigma : eps [W]
     double left_mass = 0.0, left_px = 0.0, left_py = 0.0, left_energy = 0.0;  ///< removed in this step
     Index left_count = 0;
@@ -42,8 +43,20 @@ public:
     const std::vector<std::uint8_t>& gone() const { return gone_; }
 
 protected:
+    PointSums carry_apart(Flow& flow, double dt, double kick) {
+        PointSums sums = gather(flow, dt);
+        if (sums.bad < 0) sums.stress_power = deposit(flow, kick).stress_power;
+        return sums;
+    }
+
     std::vector<std::uint8_t> gone_;
-    std::vector<PointSums> tile_sums_;
+    /// Room for sums per tile of the domain, which outlive steps in which the tile sleeps.
+    void make_room(const Flow& flow) {
+        if (gathered_) return;
+        gathered_ = LazyArray<PointSums>(flow.grid.tiles());
+        deposited_ = LazyArray<PointSums>(flow.grid.tiles());
+    }
+    LazyArray<PointSums> gathered_, deposited_;
 };
 
 /// The kernel for the scene's choices: a vectorised one for the default scheme, otherwise the plain one.
@@ -53,16 +66,7 @@ std::unique_ptr<TransferKernel> make_plain_transfer(const Scene& scene);
 /// Quadratic shapes and TPIC, four points at a time; nullptr for other schemes.
 std::unique_ptr<TransferKernel> make_packed_transfer(const Scene& scene);
 
-PointSums total(const std::vector<PointSums>& parts);
-
-/// Zeroes what the last deposit left and makes room for the tiles' marks.
-void start_deposit(Flow& flow);
-
-/// After a deposit: which nodes the tiles' points touched (Flow::touched), and which lie near.
-void mark_touched(Flow& flow);
-
-/// Takes all nodes of the work list for touched.
-void touch_all(Flow& flow);
+PointSums total(const ActiveTiles& active, const LazyArray<PointSums>& parts);
 
 /// Sums of the nodes' deposits before folding, to be held against PointSums (partition of unity).
 PointSums node_sums(Flow& flow);

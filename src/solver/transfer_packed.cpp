@@ -16,6 +16,7 @@ namespace {
 template <class Law>
 class PackedKernel final : public TransferKernel {
     static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
+    static constexpr int kBefore = 1, kAfter = 3;  ///< nodes that sub-points touch around the first of a stencil
     static constexpr Index kBatch = 128;  ///< points whose stresses wait on the stack
 
 public:
@@ -23,50 +24,56 @@ public:
 
     PointSums deposit(Flow& flow, double kick) override {
         const double cap = prepare_deposit(flow, kick);
-        start_sums(flow);
         for_each_tile_coloured(flow.active, [&](Index n) {
+            if (!flow.rest.deposits[n]) return;
+            const Index tile = flow.active.tile[n];
             Sums sums;
-            StencilMarks marks = flow.marks_of(flow.active.tile[n]);
+            StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
                 deposit_batch(flow, first, end, cap, at_side, marks, sums);
             });
-            flow.reach[n] = marks.reach(1, 3);
-            tile_sums_[n] = sums.points();
+            flow.reach[tile] = marks.reach(kBefore, kAfter);
+            deposited_[tile] = sums.points();
         });
-        mark_touched(flow);
-        return total(tile_sums_);
+        finish_deposit(flow);
+        return total(flow.active, deposited_);
     }
 
     PointSums gather(Flow& flow, double dt) override {
         prepare_gather(flow);
-        start_sums(flow);
+        choose_gathers(flow);
         for_each_tile(flow.active, [&](Index n) {
+            if (!flow.rest.gathers[n]) return;
             Sums sums;
             for_each_four(flow.active.begin[n], flow.active.begin[n + 1],
                           [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
-            tile_sums_[n] = sums.points();
+            keep_gathered(flow, n, sums);
         });
-        return total(tile_sums_);
+        note_changed(flow);
+        return total(flow.active, gathered_);
     }
 
     /// Points are still in the first cache when they deposit.
     PointSums carry(Flow& flow, double dt, double kick) override {
+        if (some_asleep(flow)) return carry_apart(flow, dt, kick);  // what sleeps is chosen between the two
         prepare_gather(flow);
-        start_sums(flow);
         const double cap = prepare_deposit(flow, kick);
         for_each_tile_coloured(flow.active, [&](Index n) {
+            const Index tile = flow.active.tile[n];
             Sums moved, deposited;
-            StencilMarks marks = flow.marks_of(flow.active.tile[n]);
+            StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
                 for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, moved); });
                 if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, marks, deposited);
             });
-            flow.reach[n] = marks.reach(1, 3);
-            tile_sums_[n] = moved.points();
-            tile_sums_[n].stress_power = sum(deposited.stress_power);
+            flow.reach[tile] = marks.reach(kBefore, kAfter);
+            deposited_[tile] = deposited.points();
+            keep_gathered(flow, n, moved);
         });
-        mark_touched(flow);
-        return total(tile_sums_);
+        finish_deposit(flow);
+        PointSums sums = total(flow.active, gathered_);
+        sums.stress_power = total(flow.active, deposited_).stress_power;
+        return sums;
     }
 
     void probe(Flow& flow, Probe& out) override {
@@ -90,7 +97,7 @@ public:
 private:
     /// PointSums of the lanes, in a fixed order.
     struct Sums {
-        Double4 mass = {}, px = {}, py = {}, p_abs = {}, speed = {}, signal = {}, shift = {}, stress_power = {};
+        Double4 mass = {}, px = {}, py = {}, p_abs = {}, speed = {}, signal = {}, shift = {}, motion = {}, stress_power = {};
         PointSums rare;
         PointSums points() const {
             PointSums s = rare;
@@ -106,15 +113,20 @@ private:
         }
     };
 
-    void start_sums(const Flow& flow) { tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {}); }
+    void keep_gathered(Flow& flow, Index n, const Sums& sums) {
+        gathered_[flow.active.tile[n]] = sums.points();
+        note_rest(flow, n, largest(sums.motion) == 0.0);
+    }
 
     void prepare_gather(const Flow& flow) {
+        make_room(flow);
         assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
     }
 
-    /// Clears the nodes; returns the largest 2 mu_eff that is stable explicitly [Pa s].
+    /// Clears what will be deposited; returns the largest 2 mu_eff that is stable explicitly [Pa s].
     double prepare_deposit(Flow& flow, double kick) {
-        start_deposit(flow);
+        make_room(flow);
+        start_deposit(flow, kBefore, kAfter);
         return flow.scheme.stress_cap * flow.density * flow.area / kick;
     }
 
@@ -325,6 +337,8 @@ private:
 
         const Double4 speed = sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
         sums.shift = max(sums.shift, shift);
+        sums.motion = max(sums.motion, max(max(abs(g.vx), abs(g.vy)),
+                                           max(max(abs(g.cxx), abs(g.cxy)), max(abs(g.cyx), abs(g.cyy)))));
         sums.speed = max(sums.speed, speed);
         sums.signal = max(sums.signal, speed + sqrt(flow.gravity * max(g.depth, zero)));
         Double4 m = load(&c.mass[p], lanes), vx = g.vx, vy = g.vy;

@@ -1,0 +1,138 @@
+// Material at rest sleeps: a run with sleep has the same bits as one without, and tiles do fall asleep and wake.
+#include <cstring>
+
+#include <omp.h>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "solver/depth_averaged.h"
+
+using namespace frana;
+
+namespace {
+
+/// A slide comes down a ramp (x < 60 m) into a deposit that rests on a gentle slope, wider than the slide: it rests first,
+/// is stirred where it is met, comes to rest again.
+Scene slide_into_deposit() {
+    Scene scene = verify::scene_on(230, 150, 1.0, [](double x, double y) {
+        return (x < 60 ? 0.9 * (60 - x) : 0.05 * (60 - x)) + 0.3 * std::sin(0.2 * y);
+    });
+    scene.density = 1600.0;
+    scene.bed_law = bed::Voellmy{0.45, 400.0};
+    verify::fill(scene, [](double x, double y) {
+        if (x > 30 && x < 48 && y > 20 && y < 60) return 2.0;
+        return x > 66 && x < 215 && y > 12 && y < 138 ? 1.0 : 0.0;
+    }, {2});
+    return scene;
+}
+
+struct Slept { Index most = 0, at_end = 0; bool woke = false; };
+
+bool same(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+bool same_columns(const Columns& a, const Columns& b) {
+    if (a.id != b.id) return false;
+    std::vector<const Column*> of_b;
+    b.each([&](const Column& column) { of_b.push_back(&column); });
+    std::size_t n = 0;
+    bool equal = true;
+    a.each([&](const Column& column) {
+        equal = equal && std::memcmp(column.data(), of_b[n++]->data(), column.size() * sizeof(double)) == 0;
+    });
+    return equal;
+}
+
+bool same_status(const Status& a, const Status& b) {
+    return same(a.time, b.time) && same(a.mass, b.mass) && same(a.kinetic, b.kinetic) && same(a.potential, b.potential) &&
+           same(a.dissipated, b.dissipated) && same(a.max_speed, b.max_speed) && same(a.max_depth, b.max_depth) &&
+           same(a.covered_area, b.covered_area) && same(a.front, b.front) && same(a.momentum[0], b.momentum[0]) &&
+           same(a.impulse[1], b.impulse[1]) && same(a.p2g_mass_error, b.p2g_mass_error);
+}
+
+Index tiles_asleep(const Flow& flow) {
+    Index count = 0;
+    for (const Index tile : flow.active.tile) count += flow.active.quiet[tile] >= kAsleep;
+    return count;
+}
+
+Slept compare(Scene scene, int steps) {
+    DepthAveraged sleeper(scene);
+    scene.scheme.sleep = false;
+    DepthAveraged waker(scene);
+    Slept slept;
+    Index before = 0;
+    for (int step = 0; step < steps; ++step) {
+        sleeper.advance(1e9);
+        waker.advance(1e9);
+        const Index now = tiles_asleep(sleeper.flow());
+        slept.most = std::max(slept.most, now);
+        slept.woke = slept.woke || now < before;
+        before = slept.at_end = now;
+        CAPTURE(step, now);
+        REQUIRE(same_status(sleeper.status(), waker.status()));
+        if (step % 10 == 9 || step == steps - 1) REQUIRE(same_columns(sleeper.flow().columns, waker.flow().columns));
+        if (step % 60 != 59) continue;
+        const Frame a = sleeper.frame(), b = waker.frame();
+        for (const auto fields : {&Frame::particles, &Frame::nodes})
+            for (std::size_t n = 0; n < (a.*fields).size(); ++n) {
+                const Field &of_a = (a.*fields)[n], &of_b = (b.*fields)[n];
+                CAPTURE(of_a.name);
+                const std::size_t bytes = static_cast<std::size_t>(of_a.count * of_a.components) * sizeof(double);
+                REQUIRE(std::memcmp(of_a.data, of_b.data, bytes) == 0);
+            }
+    }
+    CHECK(tiles_asleep(waker.flow()) == 0);
+    return slept;
+}
+
+void check(const Scene& scene, int steps) {
+    const Slept slept = compare(scene, steps);
+    CAPTURE(slept.most, slept.at_end);
+    CHECK(slept.most >= 20);
+    CHECK(slept.woke);
+}
+
+}  // namespace
+
+TEST_CASE("A deposit sleeps until a slide reaches it, with the bits of a run without sleep", "[solver][sleep]") {
+    check(slide_into_deposit(), 240);
+}
+
+TEST_CASE("Sleep changes no bit with walls, a yield stress, or any shape and transfer", "[solver][sleep]") {
+    SECTION("walls") {
+        Scene scene = slide_into_deposit();
+        scene.sides = Sides::wall;
+        check(scene, 130);
+    }
+    SECTION("Bingham points on a Bingham bed") {
+        Scene scene = slide_into_deposit();
+        scene.rheology = rheology::Bingham{50.0, 300.0};
+        scene.bed_law = bed::Bingham{20.0, 800.0, 0.3};
+        check(scene, 130);
+    }
+    SECTION("cubic") {
+        Scene scene = slide_into_deposit();
+        scene.scheme.shape = Shape::cubic;
+        check(scene, 130);
+    }
+    SECTION("linear, FLIP, Pouliquen") {
+        Scene scene = slide_into_deposit();
+        scene.scheme.shape = Shape::linear;
+        scene.scheme.transfer = Transfer::flip;
+        scene.bed_law = bed::Pouliquen{0.45, 0.7, 0.3, 0.002, 0.6};
+        compare(scene, 130);
+    }
+    SECTION("two threads") {
+        omp_set_num_threads(2);
+        check(slide_into_deposit(), 130);
+        omp_set_num_threads(1);
+    }
+}
+
+TEST_CASE("A pile that holds by less than a step's rounding is not left alone", "[solver][sleep]") {
+    // A uniform sheet on a plane whose slope is the friction coefficient itself.
+    Scene scene = verify::scene_on(120, 60, 1.0, [](double x, double) { return 100.0 - 0.3 * x; });
+    scene.bed_law = bed::Coulomb{0.3};
+    verify::fill(scene, [](double x, double y) { return x > 20 && x < 100 && y > 10 && y < 50 ? 1.0 : 0.0; }, {2});
+    compare(scene, 120);
+}
