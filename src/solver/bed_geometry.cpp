@@ -107,6 +107,10 @@ void average(const Scene& scene, const TileGrid& grid, LazyArray<double>& field,
     smooth(grid, field, scratch, grid.stride(), averaging(scene));
 }
 
+/// Change of slope over a cell that a step can follow: it moves a point by up to scheme.cfl of a cell, and a sharper bend
+/// (a cliff's foot in one cell) would turn more than the speed at hand. What is sharper counts as this.
+constexpr double kSharpest = 0.5;
+
 /// The bed's Hessian, from the bed extended linearly whatever the sides: a slope that meets a wall is mirrored for
 /// the pressure, but it has no curvature there.
 void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<double>& z, BedGeometry& bed) {
@@ -132,6 +136,7 @@ void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<
         bed.hxx[k] = (c[1] - 2.0 * c[0] + c[-1]) / (cell * cell);
         bed.hyy[k] = (c[up] - 2.0 * c[0] + c[-up]) / (cell * cell);
         bed.hxy[k] = (c[up + 1] - c[up - 1] - c[-up + 1] + c[-up - 1]) / (4.0 * cell * cell);
+        for (auto* h : {&bed.hxx, &bed.hxy, &bed.hyy}) (*h)[k] = std::clamp((*h)[k], -kSharpest / cell, kSharpest / cell);
     });
 }
 

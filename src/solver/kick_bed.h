@@ -32,15 +32,16 @@ struct SteepBed {
         if constexpr (kCurvature == Curvature::none) return Real{} + g;
         return max(Real{}, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
     }
-    /// grad(eta) / (1 + gradZ . grad(eta)): a column that accelerates vertically with its bed. The continuation
-    /// 1/(1 - q) for q < 0 keeps the factor positive where the surface slopes against a steep bed. Linear:
+    /// grad(eta) / (1 + q), q = gradZ . grad(eta): a column that accelerates vertically with its bed. Where the surface
+    /// slopes against the bed (q < 0) that would grow without bound and make energy of nothing (at q = -1 the column would
+    /// weigh nothing): there the plain gradient. Linear:
     /// c^2 (gradZ + grad h - c^2 gradZ (gradZ . grad h)), the first terms of its series in grad h.
     Drive<Real> drive(Real ex, Real ey, Real cosine) const {
         if constexpr (kLinear) {
             const Real c2 = cosine * cosine, hx = ex - bx, hy = ey - by, along = c2 * (bx * hx + by * hy);
             return {c2 * (ex - bx * along), c2 * (ey - by * along)};
         } else {
-            const Real q = bx * ex + by * ey, reduce = select(q >= 0.0, 1.0 / (1.0 + abs(q)), 1.0 - q);
+            const Real q = bx * ex + by * ey, reduce = select(q >= 0.0, 1.0 / (1.0 + abs(q)), Real{} + 1.0);
             return {reduce * ex, reduce * ey};
         }
     }
