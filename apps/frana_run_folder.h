@@ -31,4 +31,8 @@ std::vector<Product> products_in(const std::filesystem::path& run_dir);
 /// UserError when the folder is a file, cannot be made or cannot be written to.
 void prepare_run_folder(const std::filesystem::path& run_dir);
 
+/// Removes what a run leaves at its end (report, rasters, figures, ...) and half-written files of a run that was
+/// killed; series and tables stay, for the run to go on with. Throws UserError as above.
+void clear_for_resume(const std::filesystem::path& run_dir);
+
 }  // namespace frana
