@@ -23,24 +23,33 @@ Scene slide(const std::function<void(Scene&)>& edit = {}) {
     return scene;
 }
 
-/// Everything that a state consists of but the wall time.
-std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
-    MemoryArchive archive;
-    simulation.keep(archive);
-    auto entries = archive.entries();
+using Bits = std::map<std::string, MemoryArchive::Entry>;
+
+/// Everything that a kept state consists of but the wall time.
+Bits bits(const MemoryArchive& archive) {
+    Bits entries = archive.entries();
     for (auto entry = entries.begin(); entry != entries.end();)
         entry = entry->first.rfind("clock/", 0) == 0 ? entries.erase(entry) : std::next(entry);
     return entries;
 }
 
-void check_same(DepthAveraged& resumed, DepthAveraged& straight) {
-    const auto expected = bits(straight), found = bits(resumed);
+Bits bits(DepthAveraged& simulation) {
+    MemoryArchive archive;
+    simulation.keep(archive);
+    return bits(archive);
+}
+
+void check_same(const Bits& found, const Bits& expected) {
     REQUIRE(found.size() == expected.size());
     REQUIRE(found.size() > 20);
     for (const auto& [name, entry] : expected) {
         INFO(name);
         CHECK((found.at(name) == entry));
     }
+}
+
+void check_same(DepthAveraged& resumed, DepthAveraged& straight) {
+    check_same(bits(resumed), bits(straight));
     const Frame a = resumed.frame(), b = straight.frame();
     REQUIRE(a.nodes.size() == b.nodes.size());
     const auto same = [](const Field& x, const Field& y) {
@@ -71,6 +80,7 @@ std::unique_ptr<DepthAveraged> check_resume(const Scene& scene, double end, int 
         DepthAveraged resumed(scene, Start::kept);
         resumed.keep(state.rewind());
         INFO("kept at step " << resumed.status().step);
+        check_same(bits(resumed), bits(state));
         resumed.frame();  // a look at a state changes nothing
         while (resumed.status().time < end) resumed.advance(resumed.status().time < output ? output : end);
         check_same(resumed, *straight);
