@@ -163,7 +163,7 @@ TEST_CASE("Stress at the rim of a stencil drives no node away from its points", 
             const double points = simulation.status().max_speed;
             double nodes = 0.0;
             for (const Index tile : simulation.flow().active.work)
-                for_each_node_of(simulation.flow().grid, tile, [&](Index k, Index, Index) {
+                for_each_node_of(simulation.flow().grid, tile, simulation.flow().touched[tile], [&](Index k, Index, Index) {
                     const Motion& m = simulation.flow().nodes.motions()[k];
                     nodes = std::max(nodes, std::hypot(m.vx, m.vy));
                 });

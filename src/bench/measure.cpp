@@ -46,7 +46,13 @@ public:
     }
 
 private:
-    double nodes() const { return static_cast<double>(simulation_.flow().active.work.size()) * kTile * kTile; }
+    /// Nodes that the passes walk.
+    double nodes() const {
+        const Flow& flow = simulation_.flow();
+        Index groups = 0;
+        for (const Index tile : flow.active.work) groups += __builtin_popcountll(flow.touched[tile]);
+        return 4.0 * static_cast<double>(groups);
+    }
 
     /// Steps, and the particle-steps that they were.
     double advance(int steps) {

@@ -231,9 +231,9 @@ Sample DepthAveraged::at(const Vec2& point) const {
     for (Index dj = 0; dj < 2; ++dj)
         for (Index di = 0; di < 2; ++di) {
             const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
-            const Index ni = i + di + kTile, nj = j + dj + kTile, k = flow_.grid.at(i + di, j + dj);
+            const Index k = flow_.grid.at(i + di, j + dj);
             sample.elevation += w * flow_.bed.z[k];
-            if (!flow_.active.in_work[nj / kTile * flow_.grid.tiles_x() + ni / kTile]) continue;
+            if (!flow_.touches(i + di, j + dj)) continue;
             sample.depth += w * flow_.nodes.depth[k];
             sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
         }

@@ -8,12 +8,12 @@
 namespace frana {
 namespace {
 
-/// Calls body(storage index, output index) for all nodes of the domain in tiles near material.
+/// Calls body(storage index, output index) for all nodes of the domain that points touch.
 template <class Body>
 void for_each_output_node(const Flow& flow, Body&& body) {
     const Index nx = flow.grid.nx(), ny = flow.grid.ny();
     for (const Index tile : flow.active.work)
-        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
             if (i >= 0 && i < nx && j >= 0 && j < ny) body(k, j * nx + i);
         });
 }

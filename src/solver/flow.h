@@ -1,6 +1,7 @@
 #pragma once
 // Everything the phases of a depth-averaged step share.
 #include "base/error.h"
+#include "grid/node_groups.h"
 #include "grid/tile_grid.h"
 #include "scene/scene.h"
 #include "solver/bed_geometry.h"
@@ -18,7 +19,7 @@ struct Flow {
         : grid(scene.bed.geometry), bed(make_bed_geometry(scene, grid)),
           nodes(grid, scene.rheology.index() != 0 || scene.scheme.paper_pressure), density(scene.density),
           gravity(scene.gravity), cell(grid.cell()), area(cell * cell), walls(scene.sides == Sides::wall),
-          steep(scene.terrain != TerrainModel::shallow), scheme(scene.scheme) {}
+          steep(scene.terrain != TerrainModel::shallow), scheme(scene.scheme), touched(grid.tiles()), near(grid.tiles()) {}
 
     TileGrid grid;
     BedGeometry bed;
@@ -32,9 +33,21 @@ struct Flow {
     bool walls;      ///< sides are mirrors; otherwise open
     bool steep;      ///< velocities follow the bed; otherwise they are horizontal
     Scheme scheme;
+    /// Per tile of the domain, good for tiles of the work list: what the points of the last deposit touched, the only nodes
+    /// with material. Stale elsewhere; deposits are cleared by it.
+    LazyArray<NodeGroups> touched;
+    /// The same grown by three nodes, as far as passes look: these nodes, and no others, hold what a dry node holds.
+    LazyArray<NodeGroups> near;
+    std::vector<TileReach> reach;     ///< what each particle tile touches, by its position in `active`
     std::vector<Index> shore;         ///< tiles of the work list that have margin nodes (mark_margin)
     std::vector<std::uint8_t> marked; ///< scratch of mark_margin, one per tile of the work list
     std::vector<TileSums> tile_sums;  ///< scratch of the node loops, so that a step allocates nothing
+    StencilMarks marks_of(Index tile) const { return {grid.tile_i(tile) + kTile, grid.tile_j(tile) + kTile}; }
+    /// Whether a node was touched.
+    bool touches(Index i, Index j) const {
+        const Index tile = (j + kTile) / kTile * grid.tiles_x() + (i + kTile) / kTile;
+        return active.in_work[tile] && (touched[tile] & group_of((i + kTile) % kTile, (j + kTile) % kTile));
+    }
     double dry_depth() const { return 1e-14 * cell; }  ///< round-off of a depth [m]
 
     /// Share of a node that lies inside walls: 1, 1/2 on a wall, 1/4 in a corner, 0 beyond. 1 at open sides.
@@ -53,14 +66,6 @@ void for_each_node_of(const TileGrid& grid, Index tile, Body&& body) {
         const Index row = grid.at(i0, j);
         for (Index n = 0; n < kTile; ++n) body(row + n, i0 + n, j);
     }
-}
-
-/// Calls body(storage index, i, j) for the first of each four nodes in a row of a tile.
-template <class Body>
-void for_each_four_of(const TileGrid& grid, Index tile, Body&& body) {
-    const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
-    for (Index j = j0; j < j0 + kTile; ++j)
-        for (Index n = 0; n < kTile; n += 4) body(grid.at(i0 + n, j), i0 + n, j);
 }
 
 /// Calls body(ghost, mirror) for the node pairs on both ends of one axis (0: x, 1: y), layers `first` to kGhosts;

@@ -80,9 +80,8 @@ public:
         for_each_work_tile(flow.active, [&](Index n, Index tile) {
             Sums<double> single;
             Sums<Double4> four;
-            const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
-            for (Index j = j0; j < j0 + kTile; ++j)
-                for (Index i = i0; i < i0 + kTile; i += 4) kick_four(flow, i, j, dt, four, single);
+            for_each_four_of(flow.grid, tile, flow.touched[tile],
+                             [&](Index k, Index i, Index j) { kick_four(flow, k, i, j, dt, four, single); });
             parts_[n] = {single.kinetic + sum(four.kinetic), single.dissipated + sum(four.dissipated),
                          single.impulse_x + sum(four.impulse_x), single.impulse_y + sum(four.impulse_y),
                          std::max(single.max_signal, largest(four.max_signal))};
@@ -103,8 +102,7 @@ private:
     struct Sums { Real kinetic{}, dissipated{}, impulse_x{}, impulse_y{}, max_signal{}; };
 
     /// Four nodes in a row: together where all lie inside the flow, otherwise one by one.
-    void kick_four(Flow& flow, Index i, Index j, double dt, Sums<Double4>& four, Sums<double>& single) {
-        const Index k = flow.grid.at(i, j);
+    void kick_four(Flow& flow, Index k, Index i, Index j, double dt, Sums<Double4>& four, Sums<double>& single) {
         const std::uint8_t* f = flow.nodes.flags.data() + k;
         constexpr int kInside = kMoving | kWideX | kWideY;
         Motion* motion = flow.nodes.motions() + k;

@@ -4,6 +4,7 @@
 
 #include "grid/stencil.h"
 #include "solver/surface.h"
+#include "solver/transfer.h"
 
 namespace frana {
 namespace {
@@ -128,13 +129,8 @@ Index solve(const FitSystem& system, std::vector<double> residual, std::vector<d
 
 /// Deposits the columns' mass alone and finds wetness and margin.
 void deposit_columns(Flow& flow) {
-    Deposit* deposits = flow.nodes.deposits();
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-            deposits[k] = {};
-            flow.nodes.column_mass[k] = 0.0;
-        });
-    });
+    start_deposit(flow);
+    touch_all(flow);
     for (Index p = 0; p < flow.columns.count(); ++p) {
         const Reach reach = reach_of(flow, p);
         for (int n = 0; n < reach.count; ++n)

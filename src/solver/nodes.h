@@ -25,10 +25,11 @@ struct Pair { double x, y; };
 
 enum NodeFlag : std::uint8_t {
     kWet = 1,      ///< depth above round-off
-    kMargin = 2,   ///< wet with a dry node within two layers, surface not yet extrapolated
+    kMargin = 2,   ///< wet with a dry node within two layers
     kWideX = 4,    ///< this node and two neighbours each way in x are wet
     kWideY = 8,    ///< the same in y
     kMoving = 32,  ///< has momentum of its own: more than round-off of mass, not only sub-points
+    kSweep = 64,   ///< a margin node's two bits from here on: the sweep that found its surface, 0 as long as none did
 };
 
 /// Whether each of `Word`'s flags from f on has all bits of `set` and none of `unset`.
@@ -49,7 +50,7 @@ inline bool eight_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t uns
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
         : deposit(grid.size() + 1), column_mass(grid.size()), force(with_force ? grid.size() : 0), depth(grid.size()),
-          surface(grid.size()), surface_next(grid.size()), wave_x(grid.size()),
+          level(grid.size()), surface(grid.size()), wave_x(grid.size()),
           row_known(grid.size(), around(grid)), before(grid.size()), motion(grid.size() + 1),
           viscous_flux(grid.size()), shock(grid.size()), sensed(grid.size(), around(grid)),
           flags(grid.size(), around(grid)) {}
@@ -65,8 +66,8 @@ struct Nodes {
     LazyArray<double> column_mass;
     LazyArray<Pair> force;           ///< stress (and paper pressure) force [N]; empty without rheology
     LazyArray<double> depth;         ///< column_mass / (rho A) [m]
-    LazyArray<double> surface;       ///< free surface, bed where dry [m]
-    LazyArray<double> surface_next;  ///< scratch of the surface passes
+    LazyArray<double> level;         ///< bed + depth [m]
+    LazyArray<double> surface;       ///< free surface: the level, filtered and mended at margins; bed where dry [m]
     LazyArray<double> wave_x;        ///< part of the 2-cell wave in x, scratch of the filter [m]
     LazyArray<std::uint8_t> row_known;  ///< 1: the wave in x is known there
     LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]

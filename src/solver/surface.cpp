@@ -18,7 +18,7 @@ void mirror_surface(Flow& flow) {
         for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
             nodes.depth[ghost] = nodes.depth[mirror];
             nodes.surface[ghost] = nodes.surface[mirror];
-            nodes.surface_next[ghost] = nodes.surface_next[mirror];
+            nodes.level[ghost] = nodes.level[mirror];
             nodes.flags[ghost] = nodes.flags[mirror];
         });
 }
@@ -34,27 +34,32 @@ void mirror_velocity(Flow& flow) {
         });
 }
 
-/// Wetness of a tile and two nodes around it: one bit a node, bit n + 2 of row n + 2 is node (n, n).
+/// Wetness of a tile and two nodes around it: one bit a node, bit n + 2 of row n + 2 is node (n, n). Right in rows two or
+/// fewer from a touched node, empty elsewhere.
 struct WetRows {
-    std::uint32_t row[kTile + 4];
-    bool any = false;
+    std::uint32_t row[kTile + 4] = {};
     WetRows(const Flow& flow, Index tile) {
         const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
-        std::uint32_t seen = 0;
+        const NodeGroups touched = flow.touched[tile];
         for (Index j = 0; j < kTile + 4; ++j) {
-            row[j] = 0;
-            const Index jj = j0 + j - 2;
-            const Index first = flow.grid.at(i0, jj) - 2;
+            const Index from = 4 * std::max<Index>(j - 4, 0), past = 4 * std::min<Index>(j + 1, kTile);
+            const NodeGroups below = past < 64 ? (NodeGroups{1} << past) - 1 : kAllGroups;
+            if (!((touched & below) >> from)) continue;
+            const Index first = flow.grid.at(i0, j0 + j - 2) - 2;
             if (first < 0 || first + kTile + 4 > flow.grid.size()) continue;  // beyond the spare ring: dry
             // Depth and not the flags, which other threads write at the same time.
             const double* depth = flow.nodes.depth.data() + first;
             for (Index i = 0; i < kTile + 4; ++i)
                 row[j] |= static_cast<std::uint32_t>(depth[i] > 0.0) << i;
-            seen |= row[j];
         }
-        any = seen != 0;
     }
 };
+
+/// The sixteen nodes of four groups, a bit each.
+std::uint32_t nodes_in(NodeGroups groups) {
+    const auto spread = static_cast<std::uint32_t>(groups | groups << 3 | groups << 6 | groups << 9) & 0x1111u;
+    return spread * 0xfu;
+}
 
 constexpr int kSweeps = 3;  ///< a ragged shore is flagged three nodes deep
 
@@ -71,10 +76,17 @@ double emerging(const Flow& flow, Index k, double level) {
     return sum;
 }
 
-/// One extrapolated surface value from up to eight directions, or nothing.
-bool extrapolate(const Flow& flow, Index k, double& value) {
+/// Flags that another thread may be writing: it only adds the present sweep, which readers take for none.
+std::uint8_t flags_now(const Nodes& nodes, Index k) { return __atomic_load_n(&nodes.flags[k], __ATOMIC_RELAXED); }
+
+/// One extrapolated surface value from up to eight directions, made of nodes known before this sweep, or nothing.
+bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
     const Nodes& nodes = flow.nodes;
-    const auto known = [&](Index n) { return (nodes.flags[n] & (kWet | kMargin)) == kWet; };
+    const auto known = [&](Index n) {
+        const std::uint8_t f = flags_now(nodes, n);
+        const int found = f / kSweep;
+        return (f & kWet) && (!(f & kMargin) || (found > 0 && found < sweep));
+    };
     const Index up = flow.grid.stride();
     double sum = 0.0, weights = 0.0;
     for (int dj = -1; dj <= 1; ++dj)
@@ -92,38 +104,29 @@ bool extrapolate(const Flow& flow, Index k, double& value) {
         }
     if (weights <= 0.0) return false;
     value = std::max(sum / weights, flow.bed.z_min[k]);
-    if (value >= nodes.surface[k]) value = nodes.surface[k];
+    const double level = nodes.level[k];
+    if (value >= level) value = level;
     else  // a heap stays seen
-        value = std::max(value, nodes.surface[k] - emerging(flow, k, value) - (value - flow.bed.z_min[k]));
+        value = std::max(value, level - emerging(flow, k, value) - (value - flow.bed.z_min[k]));
     return true;
 }
 
-/// Runs body(k) for the margin nodes inside the walls.
-template <class Body>
-void for_each_margin_node(Flow& flow, Body&& body) {
+/// Extrapolates to the margin nodes inside the walls that no earlier sweep reached.
+void shoreline_sweep(Flow& flow, int sweep) {
+    Nodes& nodes = flow.nodes;
     const auto inside = [&](Index i, Index j) {
         return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
     };
     const Index count = static_cast<Index>(flow.shore.size());
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
-    for (Index n = 0; n < count; ++n)
-        for_each_node_of(flow.grid, flow.shore[static_cast<std::size_t>(n)], [&](Index k, Index i, Index j) {
-            if ((flow.nodes.flags[k] & kMargin) && inside(i, j)) body(k);
+    for (Index n = 0; n < count; ++n) {
+        const Index tile = flow.shore[static_cast<std::size_t>(n)];
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+            const std::uint8_t f = nodes.flags[k];
+            if (!(f & kMargin) || f >= kSweep || !inside(i, j) || !extrapolate(flow, k, sweep, nodes.surface[k])) return;
+            __atomic_store_n(&nodes.flags[k], static_cast<std::uint8_t>(f | sweep * kSweep), __ATOMIC_RELAXED);
         });
-}
-
-void shoreline_sweep(Flow& flow) {
-    Nodes& nodes = flow.nodes;
-    for_each_margin_node(flow, [&](Index k) {
-        double value;
-        if (extrapolate(flow, k, value)) nodes.surface_next[k] = value;
-        else nodes.surface_next[k] = std::numeric_limits<double>::quiet_NaN();  // no candidate: stays flagged
-    });
-    for_each_margin_node(flow, [&](Index k) {
-        if (std::isnan(nodes.surface_next[k])) return;
-        nodes.surface[k] = nodes.surface_next[k];
-        nodes.flags[k] = static_cast<std::uint8_t>(nodes.flags[k] & ~kMargin);
-    });
+    }
 }
 
 /// Whether a node and two each way are wet and not of the margin.
@@ -142,7 +145,7 @@ Real wave(const double* e, Index step) {
 }
 
 void wave_along_x(Nodes& nodes, Index k) {
-    const double* e = nodes.surface.data() + k;
+    const double* e = nodes.level.data() + k;
     if (eight_have(nodes.flags.data() + k - 2, kWet, kMargin)) {
         std::memset(nodes.row_known.data() + k, 1, 4);
         store(&nodes.wave_x[k], wave<Double4>(e, 1));
@@ -167,29 +170,40 @@ bool calm(const Nodes& nodes, Index k, Index up) {
 /// (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; where the product is not known, two thirds
 /// of each: the waves along one axis and the chequerboard then both keep a third.
 void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool sensed) {
-    nodes.surface_next[k] = nodes.surface[k];
     const bool x = nodes.row_known[k], y = five_known(nodes, k, up);
     if (!x && !y) return;
     const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
     const double strength = flow.scheme.filter * held;
-    const double wave_y = y ? wave<double>(nodes.surface.data() + k, up) : 0.0;
+    const double wave_y = y ? wave<double>(nodes.level.data() + k, up) : 0.0;
     const std::uint8_t* row = nodes.row_known.data() + k;
     const bool all = x && y && row[up] && row[-up] && row[2 * up] && row[-2 * up];
     const double both = all ? strength * wave<double>(nodes.wave_x.data() + k, up) : 0.0;
     const double share = x && y && !all ? 2.0 / 3.0 : 1.0;
-    nodes.surface_next[k] -= share * strength * (nodes.wave_x[k] + wave_y - both);
+    nodes.surface[k] -= share * strength * (nodes.wave_x[k] + wave_y - both);
 }
 
 void filter_calm(const Flow& flow, Nodes& nodes, Index k, Index up) {
     const double strength = flow.scheme.filter;
-    const Double4 wave_y = wave<Double4>(nodes.surface.data() + k, up);
+    const Double4 wave_y = wave<Double4>(nodes.level.data() + k, up);
     const Double4 both = strength * wave<Double4>(nodes.wave_x.data() + k, up);
-    store(&nodes.surface_next[k], load(&nodes.surface[k]) - strength * (load(&nodes.wave_x[k]) + wave_y - both));
+    store(&nodes.surface[k], load(&nodes.level[k]) - strength * (load(&nodes.wave_x[k]) + wave_y - both));
 }
 
 /// Mass and momentum of a node vanish together: however little it is, the velocity is right, and points that gather
 /// would miss it. Only denormal numbers are none.
 constexpr double kLeastMass = 1e-200;  ///< [kg]
+
+/// Four nodes in a row that no point touches.
+void dry_four(Flow& flow, Index k) {
+    Nodes& nodes = flow.nodes;
+    const Double4 none = {}, z = load(&flow.bed.z[k]);
+    store(&nodes.depth[k], none);
+    store(&nodes.level[k], z);
+    store(&nodes.surface[k], z);
+    for (Index n = 0; n < 4; n += 2)
+        for (auto* pairs : {&nodes.before, &nodes.viscous_flux, &nodes.shock}) store(&(*pairs)[k + n], none);
+    for (auto* bytes : {&nodes.flags, &nodes.sensed, &nodes.row_known}) std::memset(bytes->data() + k, 0, 4);
+}
 
 /// The sums of one tile: four nodes at a time.
 struct DepthSums {
@@ -210,6 +224,7 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
         nodes.flags[k + n] = static_cast<std::uint8_t>((wet[n] ? kWet : 0) | (moving[n] ? kMoving : 0));
     const Double4 h = select(wet, raw, none), mass = select(moving, of[0], all(1.0));
     store(&nodes.depth[k], h);
+    store(&nodes.level[k], z + h);
     store(&nodes.surface[k], z + h);
     zip(select(moving, of[1] / mass, none), select(moving, of[2] / mass, none), &nodes.before[k]);
     if (!any(wet)) return;
@@ -230,8 +245,10 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
     parts.assign(flow.active.work.size(), {});
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
         DepthSums sums;
-        for_each_four_of(flow.grid, tile,
+        const NodeGroups touched = flow.touched[tile];
+        for_each_four_of(flow.grid, tile, touched,
                          [&](Index k, Index i, Index j) { depth_of_four(flow, request, k, i, j, sums); });
+        for_each_four_of(flow.grid, tile, flow.near[tile] & ~touched, [&](Index k, Index, Index) { dry_four(flow, k); });
         parts[n] = sums.of_tile();
     });
     NodeSums total;
@@ -249,8 +266,9 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
 void mark_margin(Flow& flow) {
     flow.marked.assign(flow.active.work.size(), 0);
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
+        const NodeGroups touched = flow.touched[tile];
+        if (!touched) return;
         const WetRows wet(flow, tile);
-        if (!wet.any) return;
         std::uint8_t any = 0;
         std::uint32_t across[kTile + 4];  // this node and two each way in x
         for (Index j = 0; j < kTile + 4; ++j) {
@@ -259,6 +277,8 @@ void mark_margin(Flow& flow) {
         }
         const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
         for (Index j = 0; j < kTile; ++j) {
+            const std::uint32_t here = nodes_in(touched >> (4 * j) & 0xf);
+            if (!here) continue;
             const std::uint32_t* r = wet.row + j;
             const std::uint32_t wide_y = r[0] & r[1] & r[2] & r[3] & r[4];
             const std::uint32_t* a = across + j;
@@ -266,7 +286,7 @@ void mark_margin(Flow& flow) {
             std::uint8_t* flags = flow.nodes.flags.data() + flow.grid.at(i0, j0 + j);
             for (Index i = 0; i < kTile; ++i) {
                 const std::uint32_t bit = 1u << (i + 2);
-                if (!(r[2] & bit)) continue;
+                if (!(r[2] & here << 2 & bit)) continue;
                 std::uint8_t flag = flags[i] & (kWet | kMoving);
                 if (!(inner & bit)) flag |= kMargin;
                 any |= flag;
@@ -284,8 +304,8 @@ void mark_margin(Flow& flow) {
 }
 
 void shoreline(Flow& flow) {
-    for (int sweep = 0; sweep < (flow.scheme.margin ? kSweeps : 0); ++sweep) {
-        shoreline_sweep(flow);
+    for (int sweep = 1; sweep <= (flow.scheme.margin ? kSweeps : 0); ++sweep) {
+        shoreline_sweep(flow, sweep);
         mirror_surface(flow);
     }
 }
@@ -296,10 +316,10 @@ void filter(Flow& flow) {
     const Index up = flow.grid.stride();
     const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, [&](Index k, Index, Index) { wave_along_x(nodes, k); });
+        for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) { wave_along_x(nodes, k); });
     });
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, [&](Index k, Index, Index) {
+        for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) {
             if (calm(nodes, k, up)) {
                 filter_calm(flow, nodes, k, up);
             } else {
@@ -307,7 +327,6 @@ void filter(Flow& flow) {
             }
         });
     });
-    std::swap(nodes.surface, nodes.surface_next);
     mirror_surface(flow);
 }
 

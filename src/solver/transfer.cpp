@@ -57,19 +57,28 @@ template <class S, Transfer kTransfer, class Law, bool kPaper>
 class Kernel final : public TransferKernel {
     static constexpr bool kAffine = kTransfer == Transfer::tpic || kTransfer == Transfer::apic;
     static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
+    /// Nodes that a point and its sub-points touch, from the first of a quadratic stencil there.
+    static constexpr int kBefore = std::is_same_v<S, Cubic> ? 2 : 1, kAfter = std::is_same_v<S, Cubic> ? 4 : 3;
 
 public:
     explicit Kernel(const Law& law) : law_(law) {}
 
     PointSums deposit(Flow& flow, double kick) override {
-        clear_nodes(flow);
+        start_deposit(flow);
         tile_sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
         const double cap = flow.scheme.stress_cap * flow.density * flow.area / kick;
         for_each_tile_coloured(flow.active, [&](Index n) {
             PointSums sums;
-            for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) deposit_point(flow, p, cap, sums);
+            StencilMarks marks = flow.marks_of(flow.active.tile[n]);
+            for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+                deposit_point(flow, p, cap, sums);
+                marks.mark(static_cast<std::int32_t>(std::floor(flow.columns.x[p] + (kTile - 0.5))),
+                           static_cast<std::int32_t>(std::floor(flow.columns.y[p] + (kTile - 0.5))));
+            }
+            flow.reach[n] = marks.reach(kBefore, kAfter);
             tile_sums_[n] = sums;
         });
+        mark_touched(flow);
         return total(tile_sums_);
     }
 

@@ -55,8 +55,14 @@ std::unique_ptr<TransferKernel> make_packed_transfer(const Scene& scene);
 
 PointSums total(const std::vector<PointSums>& parts);
 
-/// Zeroes the deposits of all nodes near material.
-void clear_nodes(Flow& flow);
+/// Zeroes what the last deposit left and makes room for the tiles' marks.
+void start_deposit(Flow& flow);
+
+/// After a deposit: which nodes the tiles' points touched (Flow::touched), and which lie near.
+void mark_touched(Flow& flow);
+
+/// Takes all nodes of the work list for touched.
+void touch_all(Flow& flow);
 
 /// Sums of the nodes' deposits before folding, to be held against PointSums (partition of unity).
 PointSums node_sums(Flow& flow);

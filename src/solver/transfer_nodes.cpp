@@ -28,16 +28,61 @@ PointSums total(const std::vector<PointSums>& parts) {
     return sum;
 }
 
-void clear_nodes(Flow& flow) {
+void start_deposit(Flow& flow) {
     Deposit* deposits = flow.nodes.deposits();
     for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for (Index j = 0; j < kTile; ++j) {
-            const Index row = flow.grid.at(flow.grid.tile_i(tile), flow.grid.tile_j(tile) + j);
-            std::memset(deposits + row, 0, kTile * sizeof(Deposit));
-            std::memset(&flow.nodes.column_mass[row], 0, kTile * sizeof(double));
-            if (flow.nodes.force) std::memset(&flow.nodes.force[row], 0, kTile * sizeof(Pair));
-        }
+        for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) {
+            std::memset(deposits + k, 0, 4 * sizeof(Deposit));
+            std::memset(&flow.nodes.column_mass[k], 0, 4 * sizeof(double));
+            if (flow.nodes.force) std::memset(&flow.nodes.force[k], 0, 4 * sizeof(Pair));
+        });
     });
+    flow.reach.resize(static_cast<std::size_t>(flow.active.count()));
+}
+
+namespace {
+
+/// Whether a tile has nodes that walls mirror, or ghosts: these are always taken to be touched.
+bool at_wall(const Flow& flow, Index tile) {
+    const auto along = [](Index first, Index nodes) {
+        const auto holds = [&](Index wall) { return first <= wall + kGhosts && first + kTile > wall - kGhosts; };
+        return holds(0) || holds(nodes - 1);
+    };
+    return flow.walls && (along(flow.grid.tile_i(tile), flow.grid.nx()) || along(flow.grid.tile_j(tile), flow.grid.ny()));
+}
+
+/// The groups of a tile and its eight neighbours, none where a neighbour is not near material.
+TileReach touched_around(const Flow& flow, Index tile) {
+    TileReach around{};
+    const Index width = flow.grid.tiles_x(), column = tile % width;
+    for (Index n = 0; n < 9; ++n) {
+        const Index neighbour = tile + (n / 3 - 1) * width + n % 3 - 1, to = column + n % 3 - 1;
+        if (to < 0 || to >= width || neighbour < 0 || neighbour >= flow.grid.tiles()) continue;
+        if (flow.active.in_work[neighbour]) around[static_cast<std::size_t>(n)] = flow.touched[neighbour];
+    }
+    return around;
+}
+
+void mark_near(Flow& flow) {
+    for_each_work_tile(flow.active, [&](Index, Index tile) { flow.near[tile] = grown(touched_around(flow, tile)); });
+}
+
+}  // namespace
+
+void mark_touched(Flow& flow) {
+    for (const Index tile : flow.active.work) flow.touched[tile] = at_wall(flow, tile) ? kAllGroups : 0;
+    const Index width = flow.grid.tiles_x();
+    for (Index n = 0; n < flow.active.count(); ++n)
+        for (Index m = 0; m < 9; ++m) {  // the work list holds all neighbours, or the points have left the grid
+            const NodeGroups groups = flow.reach[static_cast<std::size_t>(n)][static_cast<std::size_t>(m)];
+            if (groups) flow.touched[flow.active.tile[static_cast<std::size_t>(n)] + (m / 3 - 1) * width + m % 3 - 1] |= groups;
+        }
+    mark_near(flow);
+}
+
+void touch_all(Flow& flow) {
+    for (const Index tile : flow.active.work) flow.touched[tile] = kAllGroups;
+    mark_near(flow);
 }
 
 PointSums node_sums(Flow& flow) {
@@ -46,7 +91,7 @@ PointSums node_sums(Flow& flow) {
     const Deposit* deposits = flow.nodes.deposits();
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
         TileSums sums{};
-        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) {
             sums[0] += deposits[k].mass;
             sums[1] += deposits[k].px;
             sums[2] += deposits[k].py;

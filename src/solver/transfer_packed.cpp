@@ -26,11 +26,14 @@ public:
         start_sums(flow);
         for_each_tile_coloured(flow.active, [&](Index n) {
             Sums sums;
+            StencilMarks marks = flow.marks_of(flow.active.tile[n]);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
-                deposit_batch(flow, first, end, cap, at_side, sums);
+                deposit_batch(flow, first, end, cap, at_side, marks, sums);
             });
+            flow.reach[n] = marks.reach(1, 3);
             tile_sums_[n] = sums.points();
         });
+        mark_touched(flow);
         return total(tile_sums_);
     }
 
@@ -53,13 +56,16 @@ public:
         const double cap = prepare_deposit(flow, kick);
         for_each_tile_coloured(flow.active, [&](Index n) {
             Sums moved, deposited;
+            StencilMarks marks = flow.marks_of(flow.active.tile[n]);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
                 for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, moved); });
-                if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, deposited);
+                if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, marks, deposited);
             });
+            flow.reach[n] = marks.reach(1, 3);
             tile_sums_[n] = moved.points();
             tile_sums_[n].stress_power = sum(deposited.stress_power);
         });
+        mark_touched(flow);
         return total(tile_sums_);
     }
 
@@ -108,7 +114,7 @@ private:
 
     /// Clears the nodes; returns the largest 2 mu_eff that is stable explicitly [Pa s].
     double prepare_deposit(Flow& flow, double kick) {
-        clear_nodes(flow);
+        start_deposit(flow);
         return flow.scheme.stress_cap * flow.density * flow.area / kick;
     }
 
@@ -121,14 +127,14 @@ private:
     }
 
     /// Stresses first: a chain of divisions and roots that points wait for side by side.
-    void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side, Sums& sums) {
+    void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side, StencilMarks& marks, Sums& sums) {
         PlaneOf<Double4> pull[kBatch / 4];
         if constexpr (kStress)
             for_each_four(first, end, [&](Index p, int lanes) {
                 pull[(p - first) / 4] = pull_of(flow, p, lanes, cap, sums);
             });
         for_each_four(first, end, [&](Index p, int lanes) {
-            deposit_four(flow, p, lanes, pull[(p - first) / 4], at_side, sums);
+            deposit_four(flow, p, lanes, pull[(p - first) / 4], at_side, marks, sums);
         });
     }
 
@@ -143,7 +149,8 @@ private:
         return i <= 0 || j <= 0 || i + 2 * kTile > grid.nx() || j + 2 * kTile > grid.ny();
     }
 
-    void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& pull, bool at_side, Sums& sums) {
+    void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& pull, bool at_side, StencilMarks& marks,
+                      Sums& sums) {
         const Columns& c = flow.columns;
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), m = load(&c.mass[p], lanes);
         const Double4 vx = load(&c.vx[p], lanes), vy = load(&c.vy[p], lanes);
@@ -166,6 +173,7 @@ private:
         Pair* const forces = flow.nodes.force.data();
         for (int lane = 0; lane < lanes; ++lane) {
             const Reach reach(sx, sy, stride, lane);
+            marks.mark(sx.first[lane], sy.first[lane]);
             Deposit* row = deposits + reach.node;
             Double4 value = base[lane];
             for (int j = 0; j < 3; ++j, row += stride, value += along_y[lane]) {
