@@ -59,7 +59,9 @@ void DepthAveraged::keep(Archive& archive) {
     keep_nodes(archive);
     keep_peaks(archive);
     timed_.keep(archive);
-    if (archive.loading()) raise_surface();
+    if (!archive.loading()) return;
+    mark_near(flow_);
+    raise_surface();
 }
 
 void DepthAveraged::keep_points(Archive& archive) {
@@ -101,6 +103,11 @@ void DepthAveraged::keep_nodes(Archive& archive) {
     const Archive::Part part(archive, "nodes");
     Nodes& nodes = flow_.nodes;
     const std::vector<Index>& tiles = flow_.active.work;
+    std::vector<std::uint64_t> touched;
+    for (const Index tile : tiles) touched.push_back(flow_.touched[tile]);
+    archive.array("touched", touched);
+    if (touched.size() != tiles.size()) throw misfit("its nodes are not those of the tiles");
+    for (std::size_t n = 0; n < tiles.size(); ++n) flow_.touched[tiles[n]] = touched[n];
     keep_tiles(archive, "deposit", flow_, tiles, 3, [&](Index k) { return &nodes.deposits()[k].mass; });
     keep_tiles(archive, "column_mass", flow_, tiles, 1, [&](Index k) { return &nodes.column_mass[k]; });
     if (nodes.force) keep_tiles(archive, "force", flow_, tiles, 2, [&](Index k) { return &nodes.force[k].x; });

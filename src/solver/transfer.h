@@ -61,6 +61,9 @@ void start_deposit(Flow& flow);
 /// After a deposit: which nodes the tiles' points touched (Flow::touched), and which lie near.
 void mark_touched(Flow& flow);
 
+/// Which nodes lie near those touched (Flow::near).
+void mark_near(Flow& flow);
+
 /// Takes all nodes of the work list for touched.
 void touch_all(Flow& flow);
 

@@ -63,11 +63,11 @@ TileReach touched_around(const Flow& flow, Index tile) {
     return around;
 }
 
+}  // namespace
+
 void mark_near(Flow& flow) {
     for_each_work_tile(flow.active, [&](Index, Index tile) { flow.near[tile] = grown(touched_around(flow, tile)); });
 }
-
-}  // namespace
 
 void mark_touched(Flow& flow) {
     for (const Index tile : flow.active.work) flow.touched[tile] = at_wall(flow, tile) ? kAllGroups : 0;
