@@ -207,10 +207,9 @@ std::vector<std::string> CheckpointKeeper::warnings() const {
 /// A state that outlives a power cut is worth nothing without the frames that go with it.
 void CheckpointKeeper::flush_new_files() {
     const auto now = fs::file_time_type::clock::now();
-    for (const auto& entry : fs::recursive_directory_iterator(run_dir_)) {
+    for (const fs::path& file : product_files(run_dir_)) {
         std::error_code gone;
-        if (entry.is_regular_file(gone) && entry.last_write_time(gone) >= flushed_ && !gone)
-            flush_to_disk(entry.path());
+        if (fs::last_write_time(file, gone) >= flushed_ && !gone) flush_to_disk(file);
     }
     flushed_ = now;
 }

@@ -94,15 +94,23 @@ bool grows(const ProductKind& kind) {
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);
 }
 
-/// What a killed process was writing when it died has a name like ".peak_depth.tmp4711.tif".
+/// A product that a killed process was writing when it died has a name like ".peak_depth.tmp4711.tif".
 void remove_half_written(const fs::path& run_dir) {
-    static const std::regex half_written("\\..*\\.tmp\\d+.*");
-    std::vector<fs::path> found;
+    static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*)?");
     std::error_code ignored;
-    for (const auto& entry : fs::recursive_directory_iterator(run_dir, ignored))
-        if (entry.is_regular_file(ignored) && std::regex_match(entry.path().filename().string(), half_written))
-            found.push_back(entry.path());
-    for (const fs::path& file : found) fs::remove(file, ignored);
+    for (const ProductKind& kind : product_kinds()) {
+        const std::regex product(kind.pattern);
+        std::vector<fs::path> found;
+        for (const fs::path& folder : folders_of(run_dir, kind))
+            for (const auto& entry : fs::directory_iterator(run_dir / folder, ignored)) {
+                const std::string name = entry.path().filename().string();
+                std::smatch parts;
+                if (std::regex_match(name, parts, half_written) &&
+                    std::regex_match(parts[1].str() + parts[2].str(), product))
+                    found.push_back(entry.path());
+            }
+        for (const fs::path& file : found) fs::remove(file, ignored);
+    }
 }
 
 /// Marks the folder as that of a running case and removes all products but those of the kinds that stay.
@@ -137,6 +145,15 @@ std::vector<Product> products_in(const fs::path& run_dir) {
                     products.push_back({(folder / file.filename()).generic_string(), kind.meaning, 1});
         }
     return products;
+}
+
+std::vector<fs::path> product_files(const fs::path& run_dir) {
+    std::vector<fs::path> all;
+    for (const ProductKind& kind : product_kinds()) {
+        const std::vector<fs::path> files = all_files_of(run_dir, kind);
+        all.insert(all.end(), files.begin(), files.end());
+    }
+    return all;
 }
 
 void prepare_run_folder(const fs::path& run_dir) {
