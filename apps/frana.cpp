@@ -48,16 +48,10 @@ void add_run(CLI::App& app, RunOptions& options, Action& action) {
     command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")
         ->check(CLI::Range(1, 4096));
     command->add_option("--until", options.until, "stop at this simulated time [s]");
-    command->add_flag("--resume", options.resume, "go on from the last state");
+    command->add_flag("--resume", options.resume, "go on, bit for bit, from the checkpoint.h5 that a run left");
     command->add_flag("--quiet", options.quiet, "no progress");
     command->callback([&] {
-        action = [&] {
-            if (options.resume)
-                throw UserError(
-                    "--resume: found on the command line; expected a run from the start, since this version "
-                    "keeps no state to go on from; run without --resume");
-            return run_command(options);
-        };
+        action = [&] { return run_command(options); };
     });
 }
 

@@ -15,7 +15,7 @@ struct RunOptions {
     std::vector<std::string> sets;  ///< "key=value" overrides, in order
     int threads = 0;                ///< 0: as OMP_NUM_THREADS or the machine says
     std::optional<double> until;    ///< stop at this simulated time instead of time.end [s]
-    bool resume = false;            ///< refused before run_command is called
+    bool resume = false;            ///< go on from the folder's checkpoint.h5
     bool quiet = false;
 };
 

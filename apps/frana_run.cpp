@@ -2,6 +2,7 @@
 #include <omp.h>
 
 #include <iostream>
+#include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -9,6 +10,7 @@
 #include "frana_run_folder.h"
 #include "frana_run_insitu.h"
 #include "frana_run_job.h"
+#include "frana_run_lock.h"
 #include "io/gdal_reader.h"
 #include "scene/build_scene.h"
 #include "solver/simulation.h"
@@ -60,12 +62,25 @@ int run_command(const RunOptions& options) {
     Scene scene = build_scene(file, GdalReader());
     shorten(scene, options.until);
     check_insitu(scene);
-    const std::unique_ptr<Simulation> simulation = make_simulation(scene);
+    const fs::path run_dir = options.out.empty() ? fs::path("out") / scene.name : options.out;
+    const CheckpointLabels labels = checkpoint_labels(scene, file);
+    std::optional<RunLock> lock;
+    std::unique_ptr<CheckpointFile> kept;
+    if (options.resume) {
+        if (fs::is_directory(run_dir)) lock.emplace(run_dir);
+        kept = open_checkpoint(run_dir, labels);
+    }
+    const std::unique_ptr<Simulation> simulation =
+        make_simulation(scene, options.resume ? Start::kept : Start::placed);
 
     // Only now is the folder touched: what lies there survives a case that cannot run.
-    const fs::path run_dir = options.out.empty() ? fs::path("out") / scene.name : options.out;
-    prepare_run_folder(run_dir);
+    if (!options.resume) {
+        lock.emplace(run_dir);
+        prepare_run_folder(run_dir);
+    }
     keep_case(file, run_dir);
+    CheckpointKeeper keeper(run_dir, labels, std::chrono::duration<double>(60.0 * scene.output.checkpoint_minutes),
+                            std::move(kept));
 
     RunRecord record = begin_record(scene, file);
     record.command_line = overrides(options);
@@ -74,7 +89,7 @@ int run_command(const RunOptions& options) {
 
     const Interrupt interrupt(Interrupt::Listen::signals);
     Progress progress(std::cout, Progress::fitting(options.quiet), scene.density);
-    record = carry_out(scene, *simulation, run_dir, std::move(record), interrupt, progress);
+    record = carry_out(scene, *simulation, run_dir, std::move(record), interrupt, progress, &keeper);
 
     if (!options.quiet) std::cout << closing_lines(record, run_dir) << std::flush;
     if (record.summary.failure) std::rethrow_exception(record.summary.failure);

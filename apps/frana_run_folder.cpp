@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
 #include <regex>
 
 #include "base/atomic_file.h"
@@ -85,6 +86,50 @@ UserError trouble(const fs::path& run_dir, const std::string& what) {
                     run_dir.string(), what));
 }
 
+/// Whether files of a kind are written while the run goes on, and not at its end.
+bool grows(const ProductKind& kind) {
+    for (const char* folder : {"particles", "grid", "profiles", "gauges", "insitu", "insitu/*"})
+        if (kind.folder == folder) return true;
+    static const std::regex growing("(history|particles|grid|profiles|run|terrain|checkpoint|resolved).*");
+    return kind.folder.empty() && std::regex_match(kind.pattern, growing);
+}
+
+/// A product that a killed process was writing when it died has a name like ".peak_depth.tmp4711.tif".
+void remove_half_written(const fs::path& run_dir) {
+    static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*)?");
+    std::error_code ignored;
+    for (const ProductKind& kind : product_kinds()) {
+        const std::regex product(kind.pattern);
+        std::vector<fs::path> found;
+        for (const fs::path& folder : folders_of(run_dir, kind))
+            for (const auto& entry : fs::directory_iterator(run_dir / folder, ignored)) {
+                const std::string name = entry.path().filename().string();
+                std::smatch parts;
+                if (std::regex_match(name, parts, half_written) &&
+                    std::regex_match(parts[1].str() + parts[2].str(), product))
+                    found.push_back(entry.path());
+            }
+        for (const fs::path& file : found) fs::remove(file, ignored);
+    }
+}
+
+/// Marks the folder as that of a running case and removes all products but those of the kinds that stay.
+void clear(const fs::path& run_dir, const std::function<bool(const ProductKind&)>& stays) {
+    write_text(run_dir / "run.json",
+               "{\"exit_reason\": \"running\"}\n");  // also shows that the folder is writable
+    remove_half_written(run_dir);
+    std::error_code failure;
+    for (const ProductKind& kind : product_kinds())
+        for (const fs::path& file : all_files_of(run_dir, kind)) {
+            const std::string name = file.filename().string();
+            if (name == "run.json" || name == "case.toml" || stays(kind)) continue;  // case.toml may be the case itself
+            fs::remove(file, failure);
+            if (failure)
+                throw trouble(run_dir, fmt::format("{} of an earlier run cannot be removed: {}", name,
+                                                   failure.message()));
+        }
+}
+
 }  // namespace
 
 std::vector<Product> products_in(const fs::path& run_dir) {
@@ -102,22 +147,25 @@ std::vector<Product> products_in(const fs::path& run_dir) {
     return products;
 }
 
+std::vector<fs::path> product_files(const fs::path& run_dir) {
+    std::vector<fs::path> all;
+    for (const ProductKind& kind : product_kinds()) {
+        const std::vector<fs::path> files = all_files_of(run_dir, kind);
+        all.insert(all.end(), files.begin(), files.end());
+    }
+    return all;
+}
+
 void prepare_run_folder(const fs::path& run_dir) {
     std::error_code failure;
     if (fs::exists(run_dir) && !fs::is_directory(run_dir)) throw trouble(run_dir, "this is a file");
     fs::create_directories(run_dir, failure);
     if (failure) throw trouble(run_dir, "cannot be made: " + failure.message());
-    write_text(run_dir / "run.json",
-               "{\"exit_reason\": \"running\"}\n");  // also shows that the folder is writable
-    for (const ProductKind& kind : product_kinds())
-        for (const fs::path& file : all_files_of(run_dir, kind)) {
-            const std::string name = file.filename().string();
-            if (name == "run.json" || name == "case.toml") continue;  // case.toml may be the case itself
-            fs::remove(file, failure);
-            if (failure)
-                throw trouble(run_dir, fmt::format("{} of an earlier run cannot be removed: {}", name,
-                                                   failure.message()));
-        }
+    clear(run_dir, [](const ProductKind&) { return false; });
+}
+
+void clear_for_resume(const fs::path& run_dir) {
+    clear(run_dir, [](const ProductKind& kind) { return grows(kind); });
 }
 
 }  // namespace frana

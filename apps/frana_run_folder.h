@@ -27,8 +27,15 @@ struct Product {
 /// What frana's files there are in the folder now, in the order of product_kinds(), names sorted.
 std::vector<Product> products_in(const std::filesystem::path& run_dir);
 
+/// The files behind these, with the folder's name.
+std::vector<std::filesystem::path> product_files(const std::filesystem::path& run_dir);
+
 /// Creates the folder and removes the files of an earlier run. Files that frana does not write stay. Throws
 /// UserError when the folder is a file, cannot be made or cannot be written to.
 void prepare_run_folder(const std::filesystem::path& run_dir);
+
+/// Removes what a run leaves at its end (report, rasters, figures, ...) and half-written files of a run that was
+/// killed; series and tables stay, for the run to go on with. Throws UserError as above.
+void clear_for_resume(const std::filesystem::path& run_dir);
 
 }  // namespace frana

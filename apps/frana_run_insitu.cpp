@@ -28,6 +28,12 @@ public:
         other_->look(frame, number);
         if (failure) std::rethrow_exception(failure);
     }
+    void keep(Archive& archive) override {
+        for (InsituWork* work : {one_.get(), other_.get()}) {
+            const Archive::Part part(archive, work == one_.get() ? "one" : "other");
+            work->keep(archive);
+        }
+    }
 
 private:
     std::unique_ptr<InsituWork> one_, other_;

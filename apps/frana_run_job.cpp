@@ -121,16 +121,20 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
 }
 
 RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& run_dir, RunRecord record,
-                    const Interrupt& interrupt, Progress& progress) {
+                    const Interrupt& interrupt, Progress& progress, CheckpointKeeper* keeper) {
     std::vector<ProductRaster> rasters;
     Observers observers = make_observers(scene, run_dir, rasters);
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 
-    const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest};
+    const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest, record.end < record.whole_end};
+    record.summary = run(simulation, plan, observers, interrupt, progress, keeper);
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
-    record.release_volume = simulation.status().mass / scene.density;
-    record.summary = run(simulation, plan, observers, interrupt, progress);
+    record.release_volume = record.summary.first.mass / scene.density;
+    if (keeper) {
+        record.checkpoints = keeper->progress();
+        for (const std::string& warning : keeper->warnings()) record.warnings.push_back(warning);
+    }
     for (const std::string& warning : insitu_warnings(record.insitu)) record.warnings.push_back(warning);
     note_results(record, rasters);
 

@@ -2,6 +2,7 @@
 // A run once the scene stands and the folder is ready: look on, run, and leave products, figures and report.
 #include <filesystem>
 
+#include "frana_checkpoint.h"
 #include "frana_products.h"
 #include "frana_run_record.h"
 #include "observe/run_loop.h"
@@ -15,8 +16,10 @@ Observers make_observers(const Scene& scene, const std::filesystem::path& run_di
 
 /// Runs `simulation` to the scene's end in a prepared folder and leaves everything a run leaves there;
 /// `record` comes from begin_record(). The returned record has the summary, figures and warnings. A
-/// NumericsError of the simulation is kept in its summary; UserError when a file cannot be written.
+/// NumericsError of the simulation is kept in its summary; UserError when a file cannot be written. With a
+/// `keeper` the state is kept while it runs, and the run goes on from the keeper's state if it has one.
 RunRecord carry_out(const Scene& scene, Simulation& simulation, const std::filesystem::path& run_dir,
-                    RunRecord record, const Interrupt& interrupt, Progress& progress);
+                    RunRecord record, const Interrupt& interrupt, Progress& progress,
+                    CheckpointKeeper* keeper = nullptr);
 
 }  // namespace frana

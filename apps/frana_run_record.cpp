@@ -128,7 +128,8 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.density = scene.density;
     record.particles = scene.particles.count();
     for (const double volume : scene.particles.volume) record.release_volume += volume;
-    record.end = scene.end;
+    record.end = record.whole_end = scene.end;
+    if (file.given("time.end")) record.whole_end = file.number("time.end");
     record.footprint_depth = scene.output.footprint_depth;
     record.warnings = scene.log;
     return record;
@@ -175,6 +176,10 @@ std::string run_json(const RunRecord& record) {
         {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},
         {"figures", figures},
         {"insitu", insitu_json(record.insitu)},
+        {"checkpoints",
+         {{"written", record.checkpoints.written},
+          {"failed", record.checkpoints.failed},
+          {"resumed_at", record.checkpoints.resumed_at}}},
         {"warnings", record.warnings}};
     return json.dump(2) + "\n";
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compare/comparison.h"
+#include "frana_checkpoint.h"
 #include "observe/insitu.h"
 #include "observe/run_loop.h"
 #include "scene/scene.h"
@@ -37,6 +38,7 @@ struct RunRecord {
     Index particles = 0;           ///< at the start
     double release_volume = 0.0;   ///< [m^3]
     double end = 0.0;              ///< planned [s]
+    double whole_end = 0.0;        ///< of the case, without --until [s]
     double footprint_depth = 0.1;  ///< [m]
     double footprint_area = 0.0;   ///< ever deeper than footprint_depth [m2]
     double peak_depth = 0.0, peak_speed = 0.0, peak_pressure = 0.0;  ///< of the rasters [m], [m/s], [Pa]
@@ -46,6 +48,7 @@ struct RunRecord {
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
+    CheckpointKeeper::Progress checkpoints;
     std::vector<std::string> warnings;
 };
 

@@ -56,6 +56,13 @@ public:
     const Status& status() const override { return status_; }
     bool at_rest() const override { return status_.time >= script_.rest_time; }
     std::vector<PhaseTime> timings() const override { return {{"deposit", 0.25}, {"kick", 0.5}}; }
+    void keep(Archive& archive) override {
+        frana::keep(archive, "status", status_);
+        for (const auto& [name, peak] : {std::pair{"depth", &peak_depth_}, {"speed", &peak_speed_},
+                                         {"pressure", &peak_pressure_}, {"arrival", &arrival_}})
+            archive.array(name, *peak);
+        if (archive.loading()) update();
+    }
     Sample at(const Vec2& p) const override { return {bed(p), depth(p, status_.time), Vec2(u, v)}; }
 
     Frame frame() override {

@@ -33,6 +33,7 @@ public:
         write_xml(writer, data, files_.file(number));
         files_.add(number, frame.status.time);
     }
+    void keep(Archive& archive) { files_.keep(archive); }
 
 private:
     PvdSeries files_;
@@ -73,6 +74,7 @@ public:
         vtkNew<vtkXMLPolyDataWriter> writer;
         series_.write(writer, contours, frame, number);
     }
+    void keep(Archive& archive) override { series_.keep(archive); }
 
 private:
     Series series_;
@@ -125,6 +127,7 @@ public:
         vtkNew<vtkXMLUnstructuredGridWriter> writer;
         series_.write(writer, filtered(threshold.Get(), image), frame, number);
     }
+    void keep(Archive& archive) override { series_.keep(archive); }
 
 private:
     Series series_;
@@ -147,6 +150,7 @@ public:
         vtkNew<vtkXMLPolyDataWriter> writer;
         series_.write(writer, filtered(threshold.Get(), cloud), frame, number);
     }
+    void keep(Archive& archive) override { series_.keep(archive); }
 
 private:
     Series series_;

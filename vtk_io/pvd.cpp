@@ -7,6 +7,7 @@
 #include <vtkXMLUtilities.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -63,6 +64,42 @@ std::filesystem::path PvdSeries::file(std::int64_t number) const {
         throw UserError(fmt::format("{}: cannot be made: {}; give a folder that may be written with --out",
                                     file.parent_path().string(), failure.message()));
     return file;
+}
+
+void PvdSeries::keep(Archive& archive) {
+    std::vector<double> times;
+    std::vector<std::string> files;
+    for (const PvdEntry& entry : entries_) {
+        times.push_back(entry.time);
+        files.push_back(entry.file);
+    }
+    archive.array("times", times);
+    archive.texts("files", files);
+    if (!archive.loading()) return;
+    entries_.clear();
+    for (std::size_t i = 0; i < files.size(); ++i) entries_.push_back({times.at(i), files[i]});
+    take_back_others();
+    if (!entries_.empty()) write_pvd(pvd_, entries_);
+    else std::filesystem::remove(pvd_);
+}
+
+/// The folder holds the files of the list and no other of the series.
+void PvdSeries::take_back_others() const {
+    namespace fs = std::filesystem;
+    std::set<std::string> listed;
+    for (const PvdEntry& entry : entries_) {
+        if (!fs::exists(pvd_.parent_path() / entry.file))
+            throw UserError(fmt::format("{}: not found; expected a file that the run had written when its state was "
+                                        "kept; put it back, or run without --resume",
+                                        (pvd_.parent_path() / entry.file).string()));
+        listed.insert(entry.file);
+    }
+    std::error_code none;  // a folder that is not there holds nothing
+    for (const auto& found : fs::directory_iterator(pvd_.parent_path() / stem_, none)) {
+        const std::string name = found.path().filename().string();
+        const bool ours = name.rfind(stem_ + "_", 0) == 0 && found.path().extension() == extension_;
+        if (ours && listed.count(stem_ + "/" + name) == 0) fs::remove(found.path());
+    }
 }
 
 void PvdSeries::add(std::int64_t number, double time) {

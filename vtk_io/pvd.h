@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "observe/archive.h"
+
 namespace frana {
 
 /// One line of a .pvd: a time [s] and the file that holds it, relative to the .pvd's folder.
@@ -29,8 +31,12 @@ public:
     std::filesystem::path file(std::int64_t number) const;
     /// Call after the file was written.
     void add(std::int64_t number, double time);
+    /// Saves the list, or takes it up again: files of the series that are not on it are removed. Throws UserError
+    /// when one on it is not there.
+    void keep(Archive& archive);
 
 private:
+    void take_back_others() const;
     std::string relative(std::int64_t number) const;
     std::filesystem::path pvd_;
     std::string stem_, extension_;

@@ -24,6 +24,7 @@ public:
         write_xml(writer, cloud, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }
+    void keep(Archive& archive) override { series_.keep(archive); }
 
 private:
     PvdSeries series_;
@@ -42,6 +43,7 @@ public:
         write_xml(writer, image, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }
+    void keep(Archive& archive) override { series_.keep(archive); }
 
 private:
     PvdSeries series_;

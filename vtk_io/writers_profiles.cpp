@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "vtk_io/pvd.h"
 #include "vtk_io/writers.h"
@@ -43,19 +44,30 @@ public:
     void see(const Frame& frame) override {
         std::vector<Line> sampled;
         for (const ProfileLine& line : lines_) sampled.push_back(along(line, frame));
-        if (first_.empty())
-            for (const Line& line : sampled) first_.push_back(line.rows);
+        if (first_.empty()) first_ = surfaces_of(sampled);
         for (std::size_t k = 0; k < sampled.size(); ++k)
             for (std::size_t row = 0; row < sampled[k].rows.size(); ++row)
-                sampled[k].rows[row][4] = first_[k][row][3];  // the surface of the first frame
+                sampled[k].rows[row][4] = first_[k][row];
         const auto data = polydata_of(sampled);
         add_time(data->GetFieldData(), frame.status.time);
         vtkNew<vtkXMLPolyDataWriter> writer;
         write_xml(writer, data, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }
+    void keep(Archive& archive) override {
+        series_.keep(archive);
+        first_.resize(lines_.size());  // a state is kept after the first frame only
+        for (std::size_t k = 0; k < first_.size(); ++k) archive.array("surface_" + std::to_string(k), first_[k]);
+    }
 
 private:
+    static std::vector<std::vector<double>> surfaces_of(const std::vector<Line>& sampled) {
+        std::vector<std::vector<double>> surfaces(sampled.size());
+        for (std::size_t k = 0; k < sampled.size(); ++k)
+            for (const auto& row : sampled[k].rows) surfaces[k].push_back(row[3]);
+        return surfaces;
+    }
+
     static Line along(const ProfileLine& profile, const Frame& frame) {
         Line line;
         for (const Station& station : stations(profile.line, 0.5 * frame.grid.cell)) {
@@ -108,7 +120,7 @@ private:
 
     PvdSeries series_;
     std::vector<ProfileLine> lines_;
-    std::vector<std::vector<std::array<double, column_count>>> first_;  ///< rows of the first frame
+    std::vector<std::vector<double>> first_;  ///< surface of the first frame at every station [m]
 };
 
 }  // namespace

@@ -1,113 +1,26 @@
 #include "io/hdf5_frame.h"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <hdf5.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <type_traits>
 
 #include "base/error.h"
+#include "io/hdf5_support.h"
 #include "observe/file_columns.h"
 
 namespace frana {
+
+using hdf5::Handle;
+using hdf5::put_numbers;
+using hdf5::put_text;
+
 namespace {
 
-/// Keeps the innermost reason of the error stack that names what the system said.
-herr_t keep_reason(unsigned, const H5E_error2_t* error, void* text) {
-    auto& reason = *static_cast<std::string*>(text);
-    const std::string said = error->desc ? error->desc : "";
-    const auto from = said.find("error message = '");
-    if (from != std::string::npos)
-        reason = said.substr(from + 17, said.find('\'', from + 17) - from - 17);
-    else if (reason.empty())
-        reason = said;
-    return 0;
-}
-
-/// Silences HDF5's printing while errors are thrown instead.
-class QuietErrors {
-public:
-    QuietErrors() {
-        H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
-        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    }
-    ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
-    QuietErrors(const QuietErrors&) = delete;
-    QuietErrors& operator=(const QuietErrors&) = delete;
-
-private:
-    H5E_auto2_t print_ = nullptr;
-    void* data_ = nullptr;
+/// The file while it is written, and where its arrays came to lie.
+struct Output : hdf5::Access {
+    using Access::Access;
+    std::vector<FileExtent> arrays;
 };
-
-/// The file while it is written: every HDF5 result passes `check`, which throws with the file's name.
-class Output {
-public:
-    explicit Output(std::filesystem::path file) : file_(std::move(file)) {}
-
-    template <class Result>
-    Result check(Result result) const {
-        if (result >= 0) return result;
-        std::string reason;
-        H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, &reason);
-        throw failure(reason.empty() ? "HDF5 failed" : reason);
-    }
-    UserError failure(const std::string& reason) const {
-        return UserError(
-            fmt::format("{}: cannot be written: {}; check the folder's permissions and free space",
-                        file_.string(), reason));
-    }
-    const std::filesystem::path& file() const { return file_; }
-
-private:
-    std::filesystem::path file_;
-};
-
-/// An HDF5 identifier with its closing function.
-class Handle {
-public:
-    Handle(const Output& output, hid_t id, herr_t (*closer)(hid_t))
-        : output_(output), id_(output.check(id)), closer_(closer) {}
-    ~Handle() {
-        if (id_ >= 0) closer_(id_);
-    }
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    operator hid_t() const { return id_; }
-    /// Closes and checks; what is still in memory is written now, so a full disk shows here.
-    void close() {
-        const hid_t id = id_;
-        id_ = -1;
-        output_.check(closer_(id));
-    }
-
-private:
-    const Output& output_;
-    hid_t id_;
-    herr_t (*closer_)(hid_t);
-};
-
-void put_text(const Output& output, hid_t object, const char* name, const std::string& text) {
-    const Handle type(output, H5Tcopy(H5T_C_S1), H5Tclose);
-    output.check(H5Tset_size(type, text.size() + 1));
-    output.check(H5Tset_cset(type, H5T_CSET_UTF8));
-    const Handle space(output, H5Screate(H5S_SCALAR), H5Sclose);
-    const Handle attribute(output, H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    output.check(H5Awrite(attribute, type, text.c_str()));
-}
-
-void put_numbers(const Output& output, hid_t object, const char* name, const std::vector<double>& numbers) {
-    const hsize_t count = numbers.size();
-    const Handle space(
-        output, numbers.size() == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose);
-    const Handle attribute(output, H5Acreate2(object, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Aclose);
-    output.check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, numbers.data()));
-}
 
 /// Types of a number in memory and in the file.
 struct NumberType {
@@ -122,14 +35,16 @@ NumberType number_type() {
 }
 
 template <class T>
-void put_array(const Output& output, hid_t group, const std::string& name, const std::string& unit,
+void put_array(Output& output, hid_t group, const std::string& name, const std::string& unit,
                const std::vector<hsize_t>& shape, const T* values,
                const std::vector<std::string>& components) {
     const Handle space(output, H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                        H5Sclose);
+    const Handle creation(output, H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    output.check(H5Pset_obj_track_times(creation, false));  // the same run gives the same file
     Handle set(
         output,
-        H5Dcreate2(group, name.c_str(), number_type<T>().file, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dcreate2(group, name.c_str(), number_type<T>().file, space, H5P_DEFAULT, creation, H5P_DEFAULT),
         H5Dclose);
     if (H5Sget_simple_extent_npoints(space) > 0)
         output.check(H5Dwrite(set, number_type<T>().memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
@@ -137,11 +52,14 @@ void put_array(const Output& output, hid_t group, const std::string& name, const
     std::string listed;
     for (const auto& component : components) listed += (listed.empty() ? "" : " ") + component;
     if (!listed.empty()) put_text(output, set, "components", listed);
+    const haddr_t at = H5Dget_offset(set);
+    if (at != HADDR_UNDEF)
+        output.arrays.push_back({static_cast<Index>(at), static_cast<Index>(H5Dget_storage_size(set))});
     set.close();
 }
 
 template <class T>
-void put_column(const Output& output, hid_t group, const Field& field, std::vector<hsize_t> shape,
+void put_column(Output& output, hid_t group, const Field& field, std::vector<hsize_t> shape,
                 const std::vector<std::uint8_t>& outside) {
     std::vector<T> values(static_cast<std::size_t>(field.count * field.components));
     copy_column(field, outside, values.data());
@@ -149,7 +67,7 @@ void put_column(const Output& output, hid_t group, const Field& field, std::vect
     put_array(output, group, field.name, field.unit, shape, values.data(), component_names(field));
 }
 
-void put_field(const Output& output, hid_t group, const Field& field, const std::vector<hsize_t>& shape,
+void put_field(Output& output, hid_t group, const Field& field, const std::vector<hsize_t>& shape,
                const std::vector<std::uint8_t>& outside) {
     switch (storage_of(field)) {
         case Storage::int64:
@@ -161,11 +79,11 @@ void put_field(const Output& output, hid_t group, const Field& field, const std:
     }
 }
 
-Handle new_group(const Output& output, hid_t parent, const std::string& name) {
+Handle new_group(Output& output, hid_t parent, const std::string& name) {
     return {output, H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose};
 }
 
-void put_grid(const Output& output, hid_t parent, const Frame& frame,
+void put_grid(Output& output, hid_t parent, const Frame& frame,
               const std::vector<std::uint8_t>& outside) {
     const GridGeometry& grid = frame.grid;
     const Handle group = new_group(output, parent, "grid");
@@ -179,7 +97,7 @@ void put_grid(const Output& output, hid_t parent, const Frame& frame,
     if (!outside.empty()) put_array(output, group, "outside", "1", shape, outside.data(), {});
 }
 
-void put_particles(const Output& output, hid_t parent, const Frame& frame) {
+void put_particles(Output& output, hid_t parent, const Frame& frame) {
     const Field* position = frame.particle("position");
     expect(position && position->components == 3, "particles have no position of 3 components");
     const Handle group = new_group(output, parent, "particles");
@@ -189,7 +107,7 @@ void put_particles(const Output& output, hid_t parent, const Frame& frame) {
     }
 }
 
-Handle open_file(const Output& output, bool fresh) {
+Handle open_file(Output& output, bool fresh) {
     // Without locks a viewer that has the file open cannot stop the run, nor the run the viewer.
     const Handle access(output, H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     output.check(H5Pset_file_locking(access, false, true));
@@ -211,29 +129,16 @@ off_t space_for(const Frame& frame) {
     return static_cast<off_t>(8 * numbers + 4096 * fields + 65536);
 }
 
-/// Asks the system for the space before HDF5 writes: HDF5 leaves a broken file behind (and crashes at exit)
-/// when the disk fills up under it. What is too much is given back when HDF5 closes the file.
-void reserve(const Output& output, off_t bytes) {
-    const int file = ::open(output.file().c_str(), O_WRONLY | O_CLOEXEC);
-    if (file < 0) throw output.failure(std::strerror(errno));
-    struct stat before {};
-    int problem = ::fstat(file, &before) == 0 ? 0 : errno;
-    if (problem == 0) problem = ::posix_fallocate(file, before.st_size, bytes);
-    if (problem != 0 && ::ftruncate(file, before.st_size) != 0) problem = errno;
-    ::close(file);
-    if (problem != 0) throw output.failure(std::strerror(problem));
-}
-
 }  // namespace
 
 std::string frame_group(Index number) { return fmt::format("frame_{:06d}", number); }
 
-void append_frame(const std::filesystem::path& path, bool fresh, const Frame& frame,
-                  const std::vector<std::uint8_t>& outside) {
-    const QuietErrors quiet;
-    const Output output(path);
+std::vector<FileExtent> append_frame(const std::filesystem::path& path, bool fresh, const Frame& frame,
+                                     const std::vector<std::uint8_t>& outside) {
+    const hdf5::QuietErrors quiet;
+    Output output(path);
     if (fresh) open_file(output, true).close();
-    reserve(output, space_for(frame));
+    hdf5::reserve(output, path, space_for(frame));
     Handle file = open_file(output, false);
     const std::string name = frame_group(frame.number);
     if (H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0)
@@ -247,6 +152,7 @@ void append_frame(const std::filesystem::path& path, bool fresh, const Frame& fr
     }
     output.check(H5Fflush(file, H5F_SCOPE_GLOBAL));
     file.close();
+    return output.arrays;
 }
 
 }  // namespace frana

@@ -94,18 +94,71 @@ public:
 
     void see(const Frame& frame) override {
         const auto outside = outside_nodes(frame);
-        append_frame(run_dir_ / "run.h5", grids_.empty(), frame, outside);
+        for (const FileExtent& array : append_frame(run_dir_ / "run.h5", grids_.empty(), frame, outside))
+            arrays_.push_back(array);
         grids_[frame.number] = grid_text(frame, !outside.empty());
         particles_[frame.number] = particles_text(frame);
+        write_list();
+    }
+
+    void keep(Archive& archive) override {
+        keep_texts(archive, "grids", grids_);
+        keep_texts(archive, "particles", particles_);
+        if (grids_.empty()) return;
+        keep_file(archive);
+        if (archive.loading()) write_list();
+    }
+
+private:
+    void write_list() const {
         write_text(run_dir_ / "run.xdmf", "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n" +
                                               collection_text("grid", grids_) +
                                               collection_text("particles", particles_) +
                                               "  </Domain>\n</Xdmf>\n");
     }
 
-private:
+    /// HDF5 writes its tables over and over in the same places, and a run that is killed there leaves a file that
+    /// nobody can open. So they are kept apart.
+    void keep_file(Archive& archive) {
+        const std::filesystem::path file = run_dir_ / "run.h5";
+        std::vector<Index> offsets, bytes;
+        for (const FileExtent& array : arrays_) {
+            offsets.push_back(array.offset);
+            bytes.push_back(array.bytes);
+        }
+        archive.array("offsets", offsets);
+        archive.array("bytes", bytes);
+        std::vector<std::uint8_t> tables;
+        Index length = 0;
+        if (!archive.loading()) {
+            tables = tables_of(file, arrays_);
+            length = static_cast<Index>(std::filesystem::file_size(file));
+        }
+        archive.array("tables", tables);
+        archive.number("length", length);
+        if (!archive.loading()) return;
+        arrays_.clear();
+        for (std::size_t i = 0; i < offsets.size(); ++i) arrays_.push_back({offsets[i], bytes.at(i)});
+        put_tables_back(file, length, arrays_, tables);
+    }
+
+    static void keep_texts(Archive& archive, const std::string& name, std::map<Index, std::string>& of_frames) {
+        std::vector<Index> numbers;
+        std::vector<std::string> texts;
+        for (const auto& [number, text] : of_frames) {
+            numbers.push_back(number);
+            texts.push_back(text);
+        }
+        archive.array(name + "_numbers", numbers);
+        archive.texts(name, texts);
+        if (!archive.loading()) return;
+        of_frames.clear();
+        for (std::size_t i = 0; i < numbers.size(); ++i) of_frames[numbers[i]] = texts.at(i);
+    }
+
     std::filesystem::path run_dir_;
     std::map<Index, std::string> grids_, particles_;  ///< XDMF text of each frame, by number
+    std::vector<FileExtent> arrays_;                  ///< of run.h5
 };
 
 }  // namespace

@@ -18,11 +18,11 @@ struct GaugePoint {
 /// bed [m], depth [m], surface [m], speed [m/s], velocity_x [m/s], velocity_y [m/s].
 class Gauges : public Observer {
 public:
-    /// Writes the headers at once. Throws UserError when it cannot.
     Gauges(const std::filesystem::path& run_dir, std::vector<GaugePoint> gauges);
     std::string name() const override { return "gauges"; }
     void step(const Status& now, const Probe& probe) override;
     void see(const Frame&) override;
+    void keep(Archive& archive) override { keep_all(archive, tables_); }
 
 private:
     std::vector<GaugePoint> gauges_;

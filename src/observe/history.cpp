@@ -55,6 +55,12 @@ void History::see(const Frame& frame) {
     table_.flush();
 }
 
+void History::keep(Archive& archive) {
+    table_.keep(archive);
+    if (!first_) first_.emplace();  // a state is kept after the first step() only
+    frana::keep(archive, "first", *first_);
+}
+
 void History::add(const Status& now) {
     const Budget left_over = budget(*first_, now);
     const std::vector<double> row = {static_cast<double>(now.step),

@@ -18,11 +18,11 @@ namespace frana {
 class History : public Observer {
 public:
     enum class Lines { per_step, per_output };
-    /// Writes the header at once. Throws UserError when it cannot.
     History(const std::filesystem::path& run_dir, Lines lines);
     std::string name() const override { return "history"; }
     void step(const Status& now, const Probe&) override;
     void see(const Frame& frame) override;
+    void keep(Archive& archive) override;
 
 private:
     void add(const Status& now);

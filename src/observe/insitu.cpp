@@ -36,6 +36,16 @@ void InsituObserver::end(const Frame& last) {
     if (last.status.step != looked_at_) look(last);
 }
 
+void InsituObserver::keep(Archive& archive) {
+    archive.number("next_multiple", next_multiple_);
+    archive.number("looked_at", looked_at_);
+    archive.number("made", tally_.made);
+    archive.number("failed", tally_.failed);
+    archive.text("first_failure", tally_.first_failure);
+    const Archive::Part part(archive, "work");
+    work_->keep(archive);
+}
+
 void InsituObserver::look(const Frame& frame) {
     if (times_.every || times_.every_steps) next_multiple_ = multiples(times_, frame.status) + 1;
     looked_at_ = frame.status.step;

@@ -15,6 +15,7 @@ public:
     virtual ~InsituWork() = default;
     /// Looks at a frame; `number` counts what was made so far (0, 1, 2, ...). Any exception says that it failed.
     virtual void look(const Frame& frame, Index number) = 0;
+    virtual void keep(Archive&) {}  ///< as Observer::keep
 };
 
 /// When: neither member: at every output.
@@ -42,6 +43,7 @@ public:
     void glance(const Frame& frame) override;
     void see(const Frame& frame) override;
     void end(const Frame& last) override;
+    void keep(Archive& archive) override;
 
 private:
     bool due(const Status& now) const;

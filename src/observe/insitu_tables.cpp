@@ -25,6 +25,12 @@ public:
         if (!table_) table_.emplace(file_, columns);
         return *table_;
     }
+    void keep(Archive& archive) {
+        std::vector<std::string> columns;
+        if (table_) columns = table_->columns();
+        archive.texts("columns", columns);
+        if (!columns.empty()) with_columns(columns).keep(archive);
+    }
 
 private:
     std::filesystem::path file_;
@@ -50,6 +56,7 @@ public:
         }
         table.flush();
     }
+    void keep(Archive& archive) override { table_.keep(archive); }
 
 private:
     LateTable table_;
@@ -93,6 +100,7 @@ public:
         table.add(row);
         table.flush();
     }
+    void keep(Archive& archive) override { table_.keep(archive); }
 
 private:
     static std::vector<std::string> columns(const std::vector<Scalar>& values) {

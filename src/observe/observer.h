@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "observe/archive.h"
 #include "observe/frame.h"
 
 namespace frana {
@@ -30,6 +31,9 @@ public:
     virtual void glance(const Frame&) {}
     virtual void see(const Frame&) {}                      ///< at the start, at every output time and at the end
     virtual void end(const Frame&) {}                      ///< once, with the last frame, after see()
+    /// Saves what the observer needs to go on, or takes it up again before its first call; then its files are those of
+    /// that moment: what was written later is taken back. Throws UserError when they are not there any more.
+    virtual void keep(Archive&) {}
 };
 
 }  // namespace frana

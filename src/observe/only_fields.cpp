@@ -16,6 +16,7 @@ public:
     void step(const Status& now, const Probe& probe) override { inner_->step(now, probe); }
     void see(const Frame& frame) override { inner_->see(chosen(frame)); }
     void end(const Frame& frame) override { inner_->end(chosen(frame)); }
+    void keep(Archive& archive) override { inner_->keep(archive); }
 
 private:
     Frame chosen(const Frame& frame) const {

@@ -43,10 +43,10 @@ Sample sample(const Frame& frame, const Vec2& point);
 /// [m/s].
 class Profiles : public Observer {
 public:
-    /// Writes the headers at once. Throws UserError when it cannot.
     Profiles(const std::filesystem::path& run_dir, std::vector<ProfileLine> lines);
     std::string name() const override { return "profiles"; }
     void see(const Frame& frame) override;
+    void keep(Archive& archive) override { keep_all(archive, tables_); }
 
 private:
     std::vector<ProfileLine> lines_;

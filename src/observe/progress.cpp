@@ -46,6 +46,11 @@ void Progress::begin(const Status& first, double end) {
     last_drawn_ = -1.0;
 }
 
+void Progress::resumed(const Status& now) {
+    if (style_ == Style::silent) return;
+    stream_ << fmt::format("goes on from t = {:.6g} s, step {}\n", now.time, now.step) << std::flush;
+}
+
 void Progress::step(const Status& now) {
     if (style_ != Style::bar) return;
     const double wall = wall_seconds();

@@ -16,6 +16,8 @@ public:
         : stream_(stream), style_(style), density_(density) {}
 
     void begin(const Status& first, double end);
+    /// After begin(), when the run goes on from a kept state.
+    void resumed(const Status& now);
     /// After every step; the bar is redrawn at most five times a second.
     void step(const Status& now);
     /// After every frame that was written.

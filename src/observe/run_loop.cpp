@@ -45,16 +45,19 @@ std::optional<std::string> unfit(const Frame& frame) {
 class Loop {
 public:
     Loop(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
-         Progress& progress)
+         Progress& progress, StateKeeper* keeper)
         : simulation_(simulation),
           plan_(plan),
           observers_(observers),
           interrupt_(interrupt),
-          progress_(progress) {
+          progress_(progress),
+          keeper_(keeper) {
         summary_.first = summary_.last = simulation.status();
         summary_.started = utc_now();
         for (const auto& observer : observers) summary_.output.push_back({observer->name(), 0.0});
+        frame_phase_ = summary_.output.size();
         summary_.output.push_back({"frame", 0.0});
+        if (keeper_) summary_.output.push_back({"checkpoint", 0.0});
     }
 
     RunSummary run();
@@ -68,6 +71,12 @@ private:
     void show_frame();
     void show_end();
     void give_up(const NumericsError& error);
+    bool resume();
+    void save_state();
+    bool heads_for_the_cut() const;
+    bool last_before_the_cut() const;
+    void keep(Archive& archive);
+    double wall_seconds() const { return wall_before_ + seconds_since(start_); }
     Frame frame();
 
     Simulation& simulation_;
@@ -75,18 +84,27 @@ private:
     Observers& observers_;
     const Interrupt& interrupt_;
     Progress& progress_;
+    StateKeeper* keeper_;
     RunSummary summary_;
+    std::size_t frame_phase_ = 0;  ///< of summary_.output
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    double wall_before_ = 0.0;  ///< of the runs that this one goes on from [s]
     Index outputs_ = 0;      ///< multiples of plan_.every passed
     Index shown_step_ = -1;  ///< step of the last frame that was shown
 };
 
 RunSummary Loop::run() {
-    const auto start = std::chrono::steady_clock::now();
-    progress_.begin(summary_.first, plan_.end);
     try {
-        show_step();
-        show_frame();
+        const bool resumed = resume();
+        progress_.begin(simulation_.status(), plan_.end);
+        if (resumed) {
+            progress_.resumed(simulation_.status());
+        } else {
+            show_step();
+            show_frame();
+        }
         while ((summary_.reason = reason_to_stop()).empty()) {
+            if (keeper_ && (keeper_->due() || last_before_the_cut())) save_state();
             const double output_time = next_output_time();
             advance(output_time);
             show_step();
@@ -97,16 +115,75 @@ RunSummary Loop::run() {
             ++outputs_;
             show_frame();
         }
+        save_state();
         show_end();
     } catch (const NumericsError& error) {
         give_up(error);
     }
     summary_.ended = utc_now();
-    summary_.wall_seconds = seconds_since(start);
+    summary_.wall_seconds = wall_seconds();
     for (const PhaseTime& phase : simulation_.timings())
         if (phase.name != "frame") summary_.solver.push_back(phase);  // counted as output above
     progress_.end(summary_.last, summary_.reason);
     return summary_;
+}
+
+bool Loop::resume() {
+    if (!keeper_) return false;
+    return keeper_->load([&](Archive& archive) {
+        keep(archive);
+        if (simulation_.status().time > plan_.end)
+            throw UserError(fmt::format("--until: found {} s; expected at least the {} s of the state to go on from; "
+                                        "give a later time",
+                                        plan_.end, simulation_.status().time));
+    });
+}
+
+/// The next steps, or the last ones, are shortened for an end that the whole run does not have.
+bool Loop::heads_for_the_cut() const {
+    return plan_.cut_short && next_output_time() != static_cast<double>(outputs_ + 1) * plan_.every;
+}
+
+bool Loop::last_before_the_cut() const {
+    return heads_for_the_cut() && static_cast<double>(outputs_) * plan_.every == simulation_.status().time;
+}
+
+void Loop::save_state() {
+    if (!keeper_ || (heads_for_the_cut() && !last_before_the_cut())) return;
+    timed(summary_.output.back(), [&] {
+        keeper_->save(simulation_.status().time, [&](Archive& archive) { keep(archive); });
+    });
+}
+
+void Loop::keep(Archive& archive) {
+    {
+        const Archive::Part part(archive, "run");
+        frana::keep(archive, "first", summary_.first);
+        frana::keep(archive, "last", summary_.last);
+        frana::keep(archive, "output", summary_.output);
+        Extremes& most = summary_.extremes;
+        archive.numbers("extremes", {&most.max_depth, &most.max_depth_time, &most.max_speed, &most.max_speed_time,
+                                     &most.max_covered_area, &most.max_front, &most.p2g_mass_error,
+                                     &most.p2g_momentum_error});
+        double wall = wall_seconds();
+        archive.numbers("numbers", {&summary_.particle_steps, &wall});
+        archive.number("steps", summary_.steps);
+        archive.number("frames", summary_.frames);
+        archive.number("outputs", outputs_);
+        archive.number("shown_step", shown_step_);
+        archive.text("started", summary_.started);
+        if (archive.loading()) wall_before_ = wall;
+        if (summary_.output.size() != observers_.size() + 2)
+            throw UserError("the kept state is of other observers; run without --resume");
+    }
+    {
+        const Archive::Part part(archive, "simulation");
+        simulation_.keep(archive);
+    }
+    for (std::size_t i = 0; i < observers_.size(); ++i) {
+        const Archive::Part part(archive, fmt::format("observers/{:03d}", i));
+        observers_[i]->keep(archive);
+    }
 }
 
 void Loop::advance(double until) {
@@ -148,7 +225,7 @@ void Loop::show_step() {
 
 Frame Loop::frame() {
     Frame result;
-    timed(summary_.output.back(), [&] { result = simulation_.frame(); });
+    timed(summary_.output[frame_phase_], [&] { result = simulation_.frame(); });
     return result;
 }
 
@@ -209,9 +286,9 @@ double RunSummary::output_seconds() const {
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 RunSummary run(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
-               Progress& progress) {
+               Progress& progress, StateKeeper* keeper) {
     expect(plan.every > 0.0 && plan.end >= 0.0, "a run plan has a positive output interval and end");
-    return Loop(simulation, plan, observers, interrupt, progress).run();
+    return Loop(simulation, plan, observers, interrupt, progress, keeper).run();
 }
 
 }  // namespace frana

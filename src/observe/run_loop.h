@@ -9,6 +9,7 @@
 #include "observe/interrupt.h"
 #include "observe/observer.h"
 #include "observe/progress.h"
+#include "observe/state_keeper.h"
 
 namespace frana {
 
@@ -20,6 +21,9 @@ struct RunPlan {
     double end = 0.0;    ///< [s]
     double every = 1.0;  ///< frames at k * every [s], and one at the end
     bool stop_at_rest = false;
+    /// The case itself ends later. Steps that were shortened to hit this end are then not those of the whole run, so no
+    /// state is kept on the way from the last multiple of `every` to an end that is none.
+    bool cut_short = false;
 };
 
 /// What happened, for run.json and the report.
@@ -35,7 +39,7 @@ struct RunSummary {
     double particle_steps = 0.0;  ///< sum of the particles over the steps
     double wall_seconds = 0.0;
     std::vector<PhaseTime> solver;  ///< wall time by the solver's phases but "frame"
-    std::vector<PhaseTime> output;  ///< wall time by observer, and "frame": gathering what they look at
+    std::vector<PhaseTime> output;  ///< wall time by observer, "frame": gathering what they look at, "checkpoint"
     std::string started, ended;     ///< wall clock, UTC, ISO 8601
 
     double output_seconds() const;
@@ -44,14 +48,16 @@ struct RunSummary {
 
 using Observers = std::vector<std::unique_ptr<Observer>>;
 
-/// Runs `simulation` from its present time to the plan's end. Observers' step() is called at the start and
-/// after every step; see() at the start, at every k * every exactly and at the end; glance() in between, for
-/// those who ask for a frame; end() once, after the last see(). An interruption finishes the step and ends
-/// the run as usual. A NumericsError ends it too: if the state can still be shown it is the last frame; the
-/// error is kept in the summary for the caller to throw once the products are written. Errors of observers
-/// (a full disk) pass through.
+/// Runs `simulation` from its present time to the plan's end. Observers' step() is called at the start and after
+/// every step; see() at the start, at every k * every exactly and at the end; glance() in between, for those who ask
+/// for a frame; end() once, after the last see(). An interruption finishes the step and ends the run as usual. A
+/// NumericsError ends it too: if the state can still be shown it is the last frame; the error is kept in the summary
+/// for the caller to throw once the products are written. Errors of observers (a full disk) pass through. With a
+/// `keeper` the state of simulation, observers and summary is kept whenever that is due and once the run is over,
+/// before the last frame and end(): a run that is taken up again shows its own. If the keeper has a state, the run
+/// goes on from there and its summary tells of the whole run.
 RunSummary run(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
-               Progress& progress);
+               Progress& progress, StateKeeper* keeper = nullptr);
 
 /// The present wall clock as "2024-05-01T12:00:00Z".
 std::string utc_now();

@@ -47,11 +47,7 @@ double number(const std::string& cell, const std::string& file, std::size_t line
 }  // namespace
 
 TableWriter::TableWriter(std::filesystem::path file, std::vector<std::string> columns)
-    : file_(std::move(file)), columns_(std::move(columns)) {
-    std::error_code ignored;
-    std::filesystem::create_directories(file_.parent_path(), ignored);  // write_text says what is wrong
-    write_text(file_, joined(columns_, ",") + "\n");
-}
+    : file_(std::move(file)), columns_(std::move(columns)) {}
 
 void TableWriter::add(const std::vector<double>& row) {
     expect(row.size() == columns_.size(), "a table row has one value per column");
@@ -66,14 +62,44 @@ void TableWriter::add(const std::vector<double>& row) {
 }
 
 void TableWriter::flush() {
+    if (!begun_) {
+        std::error_code ignored;
+        std::filesystem::create_directories(file_.parent_path(), ignored);  // write_text says what is wrong
+        write_text(file_, joined(columns_, ",") + "\n" + pending_);
+        bytes_ = std::filesystem::file_size(file_);
+        begun_ = true;
+        pending_.clear();
+        return;
+    }
     std::ofstream stream(file_, std::ios::binary | std::ios::app);
     stream << pending_;
     stream.flush();
-    if (!stream)
+    if (!stream) {
+        std::error_code ignored;
+        std::filesystem::resize_file(file_, bytes_, ignored);  // all rows or none, so that they can be tried again
         throw UserError(
             fmt::format("{}: rows cannot be added; check the disk's free space and the file's permissions",
                         file_.string()));
+    }
+    bytes_ += pending_.size();
     pending_.clear();
+}
+
+void TableWriter::keep(Archive& archive) {
+    if (!archive.loading()) flush();
+    auto bytes = static_cast<Index>(bytes_);
+    archive.number("bytes", bytes);
+    if (!archive.loading()) return;
+    bytes_ = static_cast<std::uintmax_t>(bytes);
+    cut_back(file_, bytes_);
+    begun_ = true;
+}
+
+void keep_all(Archive& archive, std::vector<TableWriter>& tables) {
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const Archive::Part part(archive, std::to_string(i));
+        tables[i].keep(archive);
+    }
 }
 
 bool Table::has(const std::string& name) const {

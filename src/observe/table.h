@@ -1,11 +1,13 @@
 #pragma once
 // Tables of numbers as CSV: one header line, then rows that only ever grow. A cell without a value is empty.
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "base/types.h"
+#include "observe/archive.h"
 
 namespace frana {
 
@@ -15,18 +17,26 @@ namespace frana {
 class TableWriter {
 public:
     static constexpr double empty = std::numeric_limits<double>::quiet_NaN();
-    /// Creates the file (and its folder) with its header; an older file is replaced. Throws UserError.
     TableWriter(std::filesystem::path file, std::vector<std::string> columns);
+    const std::vector<std::string>& columns() const { return columns_; }
     /// One value per column; whole numbers are written without a fraction.
     void add(const std::vector<double>& row);
-    /// Throws UserError when the rows cannot be written.
+    /// The first time the file (and its folder) is made with its header; an older file is replaced. Throws UserError
+    /// when the rows cannot be written.
     void flush();
+    /// Saves how long the file is, after a flush, or cuts it back to that. Throws UserError when it is shorter.
+    void keep(Archive& archive);
 
 private:
     std::filesystem::path file_;
     std::vector<std::string> columns_;
     std::string pending_;
+    bool begun_ = false;        ///< the file has its header
+    std::uintmax_t bytes_ = 0;  ///< of the file
 };
+
+/// All tables of an observer, one after the other.
+void keep_all(Archive& archive, std::vector<TableWriter>& tables);
 
 /// A table read back. Column names stand without their unit: "depth [m]" is found as "depth".
 struct Table {

@@ -199,6 +199,8 @@ void add_run(Table& table) {
         number("output.footprint_depth", "m", positive, 0.1, "deeper than this counts as covered"));
     table.push_back(
         choice("output.history", {"step", "output"}, "step", "history.csv has a line per step or frame"));
+    table.push_back(number("output.checkpoint_minutes", "min", not_negative, 10.0,
+                           "wall time between two checkpoint.h5; 0: one when the run ends or is interrupted"));
     table.push_back(required(make("profile.name", Kind::name, "", "name of the profile's file and figure")));
     Parameter line = make("profile.line", Kind::points, "m", "the profile's line: [[x, y], [x, y], ...]");
     line.length = 2;

@@ -87,6 +87,7 @@ struct Output {
     std::vector<std::string> fields;   ///< empty: all
     double footprint_depth = 0.1;      ///< [m]
     bool history_per_step = true;      ///< history.csv: a line a step, or a line an output
+    double checkpoint_minutes = 10.0;  ///< of wall time between checkpoints; 0: one at the end of the run [min]
 };
 
 struct Scene {

@@ -61,6 +61,8 @@ public:
     void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Drops the points marked in `gone`; the others keep their order and tiles.
     void drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    /// Makes `active` whole from its tiles and their ranges.
+    void list_tiles(const TileGrid& grid, ActiveTiles& active);
     /// Memory that grows with the points [bytes].
     Index bytes() const {
         Index sum = allocated(key_) + allocated(order_) + allocated(id_scratch_);
@@ -70,7 +72,6 @@ public:
 
 private:
     void wake(Index count, ActiveTiles& active);
-    void list_tiles(const TileGrid& grid, ActiveTiles& active);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile
     std::vector<Index> tile_count_;   ///< per tile of the domain; only entries in `used_` are non-zero

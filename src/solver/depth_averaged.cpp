@@ -37,13 +37,14 @@ void StepClock::add(const char* phase, double seconds, double cpu_seconds) {
     times_.push_back({phase, seconds, cpu_seconds, 1});
 }
 
-DepthAveraged::DepthAveraged(const Scene& scene)
+DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
       peaks_(flow_.grid), rheology_(scene.rheology), steep_(scene.terrain != TerrainModel::shallow),
       curved_(steep_ && scene.curvature == Curvature::full), footprint_depth_(scene.output.footprint_depth),
       rest_fraction_(scene.rest_fraction) {
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
+    if (start == Start::kept) return;
     place(scene.particles);
     if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear)
@@ -124,16 +125,8 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.p2g_mass_error = points.mass > 0.0 ? std::abs(nodes.mass - points.mass) / points.mass : 0.0;
     status_.p2g_momentum_error =
         points.p_abs > 0.0 ? std::hypot(nodes.px - points.px, nodes.py - points.py) / points.p_abs : 0.0;
-    const NodeSums sums = timed_("depth", [&] {
-        fold_walls(flow_);
-        return depth_pass(flow_, {footprint_depth_, centre_});
-    });
-    mark_margin(flow_);
-    timed_("filter", [&] {
-        shock_pass(flow_);
-        filter(flow_);
-    });
-    timed_("shoreline", [&] { shoreline(flow_); });
+    timed_("depth", [&] { fold_walls(flow_); });
+    const NodeSums sums = raise_surface();
     timed_("peaks", [&] { update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_); });
 
     stress_power_ = points.stress_power;
@@ -146,6 +139,18 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.covered_area = sums.covered_area;
     status_.front = std::sqrt(sums.front2);
     peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
+}
+
+/// All that nodes have besides what was deposited on them.
+NodeSums DepthAveraged::raise_surface() {
+    const NodeSums sums = timed_("depth", [&] { return depth_pass(flow_, {footprint_depth_, centre_}); });
+    mark_margin(flow_);
+    timed_("filter", [&] {
+        shock_pass(flow_);
+        filter(flow_);
+    });
+    timed_("shoreline", [&] { shoreline(flow_); });
+    return sums;
 }
 
 /// Every few steps points split where they spread; points that left are dropped; tiles are kept up to date.
@@ -249,6 +254,8 @@ std::vector<std::string> DepthAveraged::remarks() const {
                         fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped)};
 }
 
-std::unique_ptr<Simulation> make_simulation(const Scene& scene) { return std::make_unique<DepthAveraged>(scene); }
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start) {
+    return std::make_unique<DepthAveraged>(scene, start);
+}
 
 }  // namespace frana

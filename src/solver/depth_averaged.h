@@ -27,6 +27,7 @@ public:
         return body();
     }
     std::vector<PhaseTime> times() const { return times_; }
+    void keep(Archive& archive) { frana::keep(archive, "clock", times_); }
 
 private:
     struct Lap {
@@ -48,7 +49,7 @@ private:
 
 class DepthAveraged final : public Simulation {
 public:
-    explicit DepthAveraged(const Scene& scene);
+    explicit DepthAveraged(const Scene& scene, Start start = Start::placed);
 
     void advance(double until) override;
     const Status& status() const override { return status_; }
@@ -57,6 +58,7 @@ public:
     std::vector<PhaseTime> timings() const override { return timed_.times(); }
     Sample at(const Vec2& point) const override;
     std::vector<std::string> remarks() const override;
+    void keep(Archive& archive) override;
 
     const Flow& flow() const { return flow_; }
     /// timings() tell CPU time too from now on.
@@ -70,6 +72,11 @@ private:
     void place(const Seeds& seeds);
     void level_points(double level);
     void arrive(const PointSums& points);
+    NodeSums raise_surface();
+    void keep_points(Archive& archive);
+    void keep_sums(Archive& archive);
+    void keep_nodes(Archive& archive);
+    void keep_peaks(Archive& archive);
     void adapt_points(bool points_left);
     double longest_step() const;
     double step_length(double until) const;

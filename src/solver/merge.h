@@ -8,6 +8,8 @@ class Merger {
 public:
     /// A half-cell square may hold as many points as it ever does at the start, and at least two, unmerged.
     explicit Merger(const Flow& flow);
+    explicit Merger(Index most) : most_(most) {}
+    Index most() const { return most_; }  ///< points that such a square may hold
     /// In every half-cell square with more points than that, the two whose union adds least to the second moments
     /// (m_a m_b / (m_a + m_b) |x_a - x_b|^2; Ward 1963) become one: mass, place, velocity and its gradient are the
     /// mass-weighted means, the domain is the rectangle with the union's second moments. Mass and momentum are kept

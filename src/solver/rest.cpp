@@ -192,12 +192,14 @@ void choose_stirred(Flow& flow, const KickKernel& kick) {
     }
 }
 
-void touch_all(Flow& flow) {
-    for (const Index tile : flow.active.work) {
-        flow.touched[tile] = kAllGroups;
-        flow.rest.stirred[tile] = 1;
-    }
+void stir_all(Flow& flow) {
+    for (const Index tile : flow.active.work) flow.rest.stirred[tile] = 1;
     mark_near(flow);
+}
+
+void touch_all(Flow& flow) {
+    for (const Index tile : flow.active.work) flow.touched[tile] = kAllGroups;
+    stir_all(flow);
 }
 
 }  // namespace frana

@@ -66,6 +66,9 @@ void finish_deposit(Flow& flow);
 /// falls still is left only when friction holds it whatever the length of a step.
 void choose_stirred(Flow& flow, const KickKernel& kick);
 
+/// What follows from Flow::touched when nothing sleeps: which nodes are near, and that passes walk all tiles.
+void stir_all(Flow& flow);
+
 /// Takes all nodes of the work list for touched and stirred.
 void touch_all(Flow& flow);
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "observe/archive.h"
 #include "observe/frame.h"
 #include "observe/observer.h"
 
@@ -23,9 +24,15 @@ public:
     virtual std::vector<std::string> remarks() const { return {}; }
     /// Wall time by phase since the start.
     virtual std::vector<PhaseTime> timings() const = 0;
+    /// Saves the state between two steps, or takes it up again with all its bits, in a simulation of the same scene
+    /// that was made for that (Start::kept). Steps then go on as if they had never stopped, on any number of threads.
+    virtual void keep(Archive& archive) = 0;
 };
 
+/// Where a simulation starts: with the scene's particles, or empty, for keep() to fill.
+enum class Start { placed, kept };
+
 /// Chooses physics and scheme once, as types, and builds the solver of a scene.
-std::unique_ptr<Simulation> make_simulation(const Scene& scene);
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start = Start::placed);
 
 }  // namespace frana

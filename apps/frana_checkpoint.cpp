@@ -1,0 +1,217 @@
+#include "frana_checkpoint.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <sstream>
+
+#include "base/atomic_file.h"
+#include "base/checksum.h"
+#include "base/error.h"
+#include "base/version.h"
+#include "frana_run_folder.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kNotGiven = "not given";
+constexpr const char* kWayOut = "or run without --resume to start at the beginning";
+
+/// Whether two cases that differ in this key alone have the same states.
+bool changes_nothing(const std::string& key) { return key == "output.checkpoint_minutes"; }
+
+/// What a file holds is compared by its sum; where it lies says nothing.
+std::string without_paths(const std::string& key, const std::string& value) {
+    const Parameter* parameter = find_parameter(key);
+    const bool may_be_path = parameter && (parameter->kind == Kind::path || parameter->kind == Kind::number_or_path ||
+                                           parameter->kind == Kind::numbers_or_paths);
+    return may_be_path && value.find('"') != std::string::npos ? "a file" : value;
+}
+
+/// The resolved case as "key = value" by key; repeated tables are numbered.
+std::map<std::string, std::string> keys_of(const std::string& resolved) {
+    std::map<std::string, std::string> keys;
+    std::map<std::string, int> counts;
+    std::string table;
+    std::istringstream lines(resolved);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.empty() || line.front() == '#') continue;
+        if (line.rfind("[[", 0) == 0) {
+            const std::string name = line.substr(2, line.size() - 4);
+            table = fmt::format("{}.{}.", name, counts[name]++);
+            continue;
+        }
+        if (line.front() == '[') {
+            table = line.substr(1, line.size() - 2) + ".";
+            continue;
+        }
+        const std::size_t equals = line.find(" = ");
+        const std::string mark = "  # default";
+        if (line.size() > mark.size() && line.compare(line.size() - mark.size(), mark.size(), mark) == 0)
+            line.resize(line.size() - mark.size());
+        const std::string key = table + line.substr(0, equals);
+        if (equals != std::string::npos && !changes_nothing(key))
+            keys[key] = without_paths(key, line.substr(equals + 3));
+    }
+    return keys;
+}
+
+std::string case_text(const CaseFile& file) {
+    std::string text;
+    for (const auto& [key, value] : keys_of(resolved_toml(file))) text += key + " = " + value + "\n";
+    return text;
+}
+
+std::string sum_of_bed(const Raster& bed) {
+    const GridGeometry& grid = bed.geometry;
+    Checksum sum;
+    sum.add_all(std::array<double, 5>{grid.x0, grid.y0, grid.cell, static_cast<double>(grid.nx),
+                                      static_cast<double>(grid.ny)});
+    sum.add_all(bed.values);
+    return fmt::format("{:016x}", sum.sum());
+}
+
+std::string sum_of_particles(const Seeds& seeds) {
+    Checksum sum;
+    for (const auto* column : {&seeds.x, &seeds.y, &seeds.vx, &seeds.vy, &seeds.volume, &seeds.depth, &seeds.size})
+        sum.add_all(*column);
+    return fmt::format("{:016x}", sum.sum());
+}
+
+std::map<std::string, std::string> lines_of(const std::string& text) {
+    std::map<std::string, std::string> keys;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (const auto equals = line.find(" = "); equals != std::string::npos)
+            keys[line.substr(0, equals)] = line.substr(equals + 3);
+    return keys;
+}
+
+/// "material.bed.mu is 0.4 there and 0.5 here", the first key that differs.
+std::string difference(const std::string& there, const std::string& here) {
+    auto kept = lines_of(there), given = lines_of(here);
+    for (const auto& [key, value] : given) kept.emplace(key, kNotGiven);
+    for (const auto& [key, value] : kept) {
+        const auto found = given.find(key);
+        const std::string now = found == given.end() ? kNotGiven : found->second;
+        if (now != value) return fmt::format("{} is {} there and {} here", key, value, now);
+    }
+    return "its keys differ";
+}
+
+std::string label(const CheckpointLabels& labels, const char* name) {
+    const auto found = labels.find(name);
+    return found == labels.end() ? kNotGiven : found->second;
+}
+
+void require_same(const fs::path& file, const CheckpointLabels& there, const CheckpointLabels& here) {
+    const auto differs = [&](const char* name) { return label(there, name) != label(here, name); };
+    const auto refused = [&](const std::string& what, const std::string& instead) {
+        return UserError(fmt::format("{}: {}; {}, {}", file.string(), what, instead, kWayOut));
+    };
+    for (const char* name : {"version", "precision"})
+        if (differs(name))
+            throw refused(fmt::format("found a state of {} {}; expected {} {}", name, label(there, name), name,
+                                      label(here, name)),
+                          "use the program that left it");
+    if (differs("case"))
+        throw refused("found the state of another case: " + difference(label(there, "case"), label(here, "case")),
+                      "give the case and the --set it was left with");
+    if (differs("bed"))
+        throw refused("found a state on another terrain: the elevations on the grid have changed since",
+                      "put the elevation model back");
+    if (differs("particles"))
+        throw refused("found the state of another release: the particles at the start have changed since",
+                      "put the files of the release back");
+}
+
+}  // namespace
+
+CheckpointLabels checkpoint_labels(const Scene& scene, const CaseFile& file) {
+    return {{"version", FRANA_VERSION},
+            {"precision", "double"},
+            {"build", fmt::format("{}, {}, march {}, commit {}", FRANA_BUILD_TYPE, FRANA_COMPILER, FRANA_ARCH,
+                                  FRANA_COMMIT)},
+            {"case", case_text(file)},
+            {"bed", sum_of_bed(scene.bed)},
+            {"particles", sum_of_particles(scene.particles)}};
+}
+
+std::unique_ptr<CheckpointFile> open_checkpoint(const fs::path& run_dir, const CheckpointLabels& labels) {
+    auto file = std::make_unique<CheckpointFile>(run_dir / "checkpoint.h5");
+    require_same(run_dir / "checkpoint.h5", file->labels(), labels);
+    return file;
+}
+
+CheckpointKeeper::CheckpointKeeper(const fs::path& run_dir, CheckpointLabels labels,
+                                   std::chrono::duration<double> interval, std::unique_ptr<CheckpointFile> from)
+    : run_dir_(run_dir), labels_(std::move(labels)), interval_(interval), from_(std::move(from)) {
+    if (from_ && label(from_->labels(), "build") != label(labels_, "build"))
+        other_build_ = fmt::format("resumed by another build ({}; before: {}): up to round-off, not bit for bit",
+                                   label(labels_, "build"), label(from_->labels(), "build"));
+}
+
+bool CheckpointKeeper::due() const {
+    return interval_.count() > 0.0 && std::chrono::steady_clock::now() - last_ >= interval_;
+}
+
+void CheckpointKeeper::save(double time, const State& state) {
+    try {
+        flush_new_files();
+        write_checkpoint(run_dir_ / "checkpoint.h5", labels_, [&](Archive& archive) {
+            Progress now{time, progress_.written + 1, progress_.failed, progress_.first_failure, progress_.resumed_at};
+            now.keep(archive);
+            state(archive);
+        });
+        ++progress_.written;
+    } catch (const std::exception& error) {
+        if (progress_.failed == 0)
+            progress_.first_failure = fmt::format("t = {:.6g} s: {}", time, error.what());
+        ++progress_.failed;
+    }
+    last_ = std::chrono::steady_clock::now();
+}
+
+bool CheckpointKeeper::load(const State& state) {
+    if (!from_) return false;
+    from_->load([&](Archive& archive) {
+        progress_.keep(archive);
+        state(archive);
+    });
+    clear_for_resume(run_dir_);
+    progress_.resumed_at.push_back(progress_.time);
+    from_.reset();
+    return true;
+}
+
+void CheckpointKeeper::Progress::keep(Archive& archive) {
+    const Archive::Part part(archive, "checkpoints");
+    archive.number("time", time);
+    archive.number("written", written);
+    archive.number("failed", failed);
+    archive.text("first_failure", first_failure);
+    archive.array("resumed_at", resumed_at);
+}
+
+std::vector<std::string> CheckpointKeeper::warnings() const {
+    std::vector<std::string> warnings;
+    if (progress_.failed > 0)
+        warnings.push_back(fmt::format("checkpoint: {} of {} could not be written, the first one at {}",
+                                       progress_.failed, progress_.failed + progress_.written,
+                                       progress_.first_failure));
+    if (!other_build_.empty()) warnings.push_back(other_build_);
+    return warnings;
+}
+
+/// A state that outlives a power cut is worth nothing without the frames that go with it.
+void CheckpointKeeper::flush_new_files() {
+    const auto now = fs::file_time_type::clock::now();
+    for (const fs::path& file : product_files(run_dir_)) {
+        std::error_code gone;
+        if (fs::last_write_time(file, gone) >= flushed_ && !gone) flush_to_disk(file);
+    }
+    flushed_ = now;
+}
+
+}  // namespace frana

@@ -1,0 +1,21 @@
+#pragma once
+#include <functional>
+
+#include "observe/archive.h"
+
+namespace frana {
+
+/// Decides when the state of a run is kept and where it goes (apps/frana_checkpoint.h writes files).
+class StateKeeper {
+public:
+    using State = std::function<void(Archive&)>;
+    virtual ~StateKeeper() = default;
+    /// Asked after every step: is it time?
+    virtual bool due() const = 0;
+    /// Takes the state in by calling `state`; a state that cannot be kept is the keeper's trouble and never the run's.
+    virtual void save(double time, const State& state) = 0;
+    /// Gives the kept state to `state`; false when the run starts at its beginning. Throws UserError.
+    virtual bool load(const State& state) = 0;
+};
+
+}  // namespace frana
