@@ -1,5 +1,4 @@
 // What VTK's own readers find in the files of the VTK writers.
-#include <sys/resource.h>
 #include <vtkCellArray.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
@@ -11,7 +10,6 @@
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 
-#include <csignal>
 #include <cstring>
 #include <fstream>
 
@@ -19,6 +17,7 @@
 #include "catch.h"
 #include "frame_maker.h"
 #include "fresh_folder.h"
+#include "small_disk.h"
 #include "vtk_io/pvd.h"
 #include "vtk_io/writers.h"
 #include "vtk_read.h"
@@ -114,24 +113,6 @@ std::vector<PvdEntry> check_series(const fs::path& pvd) {
     }
     return entries;
 }
-
-/// Files of this process stop growing at `bytes`, as on a full disk, while the object lives.
-class SmallDisk {
-public:
-    explicit SmallDisk(rlim_t bytes) : previous_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &previous_);
-        const rlimit limit{bytes, previous_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~SmallDisk() {
-        setrlimit(RLIMIT_FSIZE, &previous_);
-        std::signal(SIGXFSZ, previous_handler_);
-    }
-
-private:
-    rlimit previous_{};
-    void (*previous_handler_)(int);
-};
 
 }  // namespace
 

@@ -2,10 +2,8 @@
 #include <fcntl.h>
 #include <hdf5.h>
 #include <sys/file.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstring>
 
 #include "base/error.h"
@@ -13,6 +11,7 @@
 #include "frame_maker.h"
 #include "fresh_folder.h"
 #include "io/xdmf_writer.h"
+#include "small_disk.h"
 
 using namespace frana;
 using Catch::Matchers::Contains;
@@ -210,15 +209,11 @@ TEST_CASE("A full disk is an error with path and reason, and the frames before i
     const auto writer = make_xdmf_writer(run.path());
     writer->see(maker.frame);
     const auto size = fs::file_size(run.path() / "run.h5");
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{size + 50000, before.rlim_max};  // stands for a full disk
-    setrlimit(RLIMIT_FSIZE, &small);
-    CHECK_THROWS_WITH(writer->see(large.frame),
-                      Contains("run.h5: cannot be written") && Contains("File too large"));
-    setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
+    {
+        const SmallDisk disk(size + 50000);
+        CHECK_THROWS_WITH(writer->see(large.frame),
+                          Contains("run.h5: cannot be written") && Contains("File too large"));
+    }
     CHECK(fs::file_size(run.path() / "run.h5") == size);
     check_frame(maker.frame, run.path() / "run.h5");
     CHECK(named_arrays(text_of(run.path() / "run.xdmf")).size() == 14);
