@@ -23,7 +23,7 @@ std::vector<Index> spread_frames(Index count, Index most) {
     return chosen;
 }
 
-/// The depth of an output, without a title. UserError when the frame has none on the terrain's grid.
+/// The depth of an output with the survey, without a title. UserError when the frame has none on the terrain's grid.
 MapFigure depth_map(const FigureSource& source, Index number) {
     LoadedFrame frame = read_frame(source.run_dir, number);
     if (!frame.has("depth") || frame.nodes.at("depth").size() != source.bed.values.size())
@@ -33,14 +33,16 @@ MapFigure depth_map(const FigureSource& source, Index number) {
     map.field = std::move(frame.nodes.at("depth"));
     map.shown_above = source.footprint_depth;
     map.field_label = "depth [m]";
+    map.survey = source.survey;
     return map;
 }
 
-/// Digits behind the point that tell the times apart, at most three.
+/// Digits behind the point that the times need, at most three; one for the last, which may be any.
 int decimals_of(const std::vector<double>& times) {
     int digits = 0;
-    for (const double time : times)
-        while (digits < 3 && std::abs(time - std::round(time * std::pow(10, digits)) / std::pow(10, digits)) > 5e-4)
+    for (std::size_t k = 0; k < times.size(); ++k)
+        while (digits < (k + 1 < times.size() ? 3 : 1) &&
+               std::abs(times[k] - std::round(times[k] * std::pow(10, digits)) / std::pow(10, digits)) > 5e-4)
             ++digits;
     return digits;
 }
@@ -55,7 +57,6 @@ bool fill_reel(const FigureSource& source, const std::vector<double>& times, Fil
         MapFigure map = depth_map(source, number);
         view.apply(map);
         map.title = fmt::format("{}: depth, t = {:.{}f} s", source.title, times[static_cast<std::size_t>(number)], digits);
-        map.survey = source.survey;
         map.footer = source.footer;
         map.width = source.width;
         map.height = source.height;

@@ -19,6 +19,7 @@
 #include "io/gdal_series.h"
 #include "io_figures_scene.h"
 #include "observe/table.h"
+#include "read_back.h"
 #include "scene/case_file.h"
 #include "small_disk.h"
 #include "vtk_io/pvd.h"
@@ -91,6 +92,7 @@ public:
         dataset_.reset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
         REQUIRE(dataset_);
         REQUIRE(dataset_->GetLayerCount() == 1);
+        ++read_back.files;
     }
     OGRLayer& get() const { return *dataset_->GetLayer(0); }
 
@@ -241,6 +243,7 @@ TEST_CASE("lines and outlines for a GIS are those for ParaView, in the terrain's
             // a chord on 1 m cells, as in io_insitu.cpp
             CHECK(std::abs((Vec2(p.getX(), p.getY()) - FakeSimulation::centre(t)).norm() - exact) < 0.23 / 8.0 / 0.36);
     }
+    read_back.array(found.get().GetFeatureCount());
     CHECK(at_time == std::map<double, Index>{{0.0, 2}, {0.5, 2}, {1.0, 2}, {1.5, 2}, {2.0, 2}});
 
     const std::vector<PvdEntry> files = read_pvd(run.dir() / "insitu" / "deep.pvd");

@@ -11,6 +11,7 @@
 #include "frame_maker.h"
 #include "fresh_folder.h"
 #include "io/xdmf_writer.h"
+#include "read_back.h"
 #include "small_disk.h"
 
 using namespace frana;
@@ -77,10 +78,12 @@ void check_same(const Field& field, std::vector<hsize_t> shape, const Array& fou
             found.bytes == 4 ? static_cast<double>(static_cast<float>(field.data[k])) : field.data[k];
         different += std::memcmp(&found.numbers[k], &wanted, sizeof wanted) != 0;
     }
+    read_back.array(static_cast<Index>(found.numbers.size()));
     CHECK(different == 0);
 }
 
 void check_frame(const Frame& frame, const fs::path& file) {
+    ++read_back.files;
     char name[32];
     std::snprintf(name, sizeof name, "/frame_%06d/", static_cast<int>(frame.number));
     const auto& grid = frame.grid;

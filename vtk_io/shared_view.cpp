@@ -11,8 +11,9 @@ void SharedView::add(const MapFigure& map) {
     const ColourRange own = colours_within(map.field, map.outline_field, map.shown_above, map.colormap, {});
     if (!range_) range_ = {own.low, own.high};
     range_ = {std::min(range_->first, own.low), std::max(range_->second, own.high)};
-    const auto covered = covered_extent(map.bed.geometry, map.outlined(), map.shown_above);
-    if (covered) covered_ = covered_ ? united(*covered_, *covered) : covered;
+    const auto hold = [&](const std::array<double, 4>& part) { covered_ = covered_ ? united(*covered_, part) : part; };
+    if (const auto covered = covered_extent(map.bed.geometry, map.outlined(), map.shown_above)) hold(*covered);
+    if (map.survey && !map.survey->parts.empty()) hold(extent_of(*map.survey));
 }
 
 void SharedView::apply(MapFigure& map) const {
