@@ -277,6 +277,8 @@ TEST_CASE("shapes go on after a run is resumed, without those that come again", 
     for (const OGRFeatureUniquePtr& feature : layer.get())
         levels[feature->GetFieldAsDouble("t_s")] = feature->GetFieldAsDouble("level");
     CHECK(levels == std::map<double, double>{{0.0, 0.0}, {1.0, 11.0}, {1.5, 11.5}});
+    REQUIRE(layer.get().GetSpatialRef());
+    CHECK(layer.get().GetSpatialRef()->IsLocal());  // metres of nowhere, and no degrees
 }
 
 TEST_CASE("a full disk takes no shapes, and leaves those before", "[insitu]") {

@@ -28,9 +28,11 @@ gdal::Dataset made(const fs::path& file) {
 /// The layer with its attributes; null when GDAL refuses.
 OGRLayer* make_layer(GDALDataset& dataset, const std::string& name, const std::string& crs_wkt, bool lines) {
     OGRSpatialReference crs;
-    if (!crs_wkt.empty()) crs = gdal::crs_from_wkt(crs_wkt);
-    OGRLayer* layer = dataset.CreateLayer(name.c_str(), crs.IsEmpty() ? nullptr : &crs,
-                                          lines ? wkbLineString : wkbPolygon, nullptr);
+    if (crs_wkt.empty())
+        crs.SetLocalCS("local metres");  // without any the file would claim degrees
+    else
+        crs = gdal::crs_from_wkt(crs_wkt);
+    OGRLayer* layer = dataset.CreateLayer(name.c_str(), &crs, lines ? wkbLineString : wkbPolygon, nullptr);
     if (!layer) return nullptr;
     OGRFieldDefn time("t_s", OFTReal), level("level", OFTReal), unit("unit", OFTString), area("area_m2", OFTReal);
     bool good = layer->CreateField(&time) == OGRERR_NONE;

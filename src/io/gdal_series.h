@@ -16,7 +16,7 @@ namespace frana {
 /// is resumed) what is not earlier. UserError when the disk refuses, NumericsError for a place that is not finite.
 class ShapeSeries {
 public:
-    /// `crs_wkt` of the coordinates, or empty; the layer has the name of the file.
+    /// `crs_wkt` of the coordinates, or empty: local metres; the layer has the name of the file.
     ShapeSeries(std::filesystem::path gpkg, std::string crs_wkt)
         : gpkg_(std::move(gpkg)), crs_wkt_(std::move(crs_wkt)) {}
 
