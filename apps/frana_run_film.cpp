@@ -56,7 +56,8 @@ bool fill_reel(const FigureSource& source, const std::vector<double>& times, Fil
     for (Index number = 0; number < static_cast<Index>(times.size()); ++number) {
         MapFigure map = depth_map(source, number);
         view.apply(map);
-        map.title = fmt::format("{}: depth, t = {:.{}f} s", source.title, times[static_cast<std::size_t>(number)], digits);
+        const double time = times[static_cast<std::size_t>(number)];
+        map.title = fmt::format("{}: depth, t = {:.{}f} s", source.title, time, digits);
         map.footer = source.footer;
         map.width = source.width;
         map.height = source.height;

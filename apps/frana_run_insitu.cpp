@@ -60,7 +60,8 @@ std::unique_ptr<InsituWork> with_shapes(std::unique_ptr<InsituWork> work, const 
 }
 
 std::unique_ptr<InsituWork> contour(const Scene& scene, const Insitu& entry, const fs::path& folder) {
-    auto add = [&entry, shapes = ShapeSeries(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt)](const Frame& frame) mutable {
+    ShapeSeries series(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt);
+    auto add = [&entry, shapes = std::move(series)](const Frame& frame) mutable {
         shapes.add_lines(frame.status.time, level_lines_of(frame, entry.fields.front(), entry.levels),
                          scalar(frame.nodes, entry.fields.front(), "the grid").unit);
     };
@@ -71,7 +72,8 @@ std::unique_ptr<InsituWork> threshold(const Scene& scene, const Insitu& entry, c
     Interval kept;
     kept.low = entry.from.value_or(kept.low);
     kept.high = entry.to.value_or(kept.high);
-    auto add = [&entry, kept, shapes = ShapeSeries(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt)](const Frame& frame) mutable {
+    ShapeSeries series(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt);
+    auto add = [&entry, kept, shapes = std::move(series)](const Frame& frame) mutable {
         std::vector<std::uint8_t> cells = cells_within(frame, entry.fields.front(), kept);
         shapes.add_cells(frame.status.time, frame.grid, cells);
     };

@@ -1,5 +1,4 @@
 // In-situ in a whole run: pictures and tables without frames, and failures that stop nothing.
-#include <ogrsf_frmts.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
@@ -16,10 +15,9 @@
 #include "frana_run_insitu.h"
 #include "frana_run_job.h"
 #include "fresh_folder.h"
-#include "io/gdal_series.h"
 #include "io_figures_scene.h"
 #include "observe/table.h"
-#include "read_back.h"
+#include "read_layer.h"
 #include "scene/case_file.h"
 #include "small_disk.h"
 #include "vtk_io/pvd.h"
@@ -83,22 +81,6 @@ Insitu depth_map(const char* name, double above) {
     map.above = above;
     return map;
 }
-
-/// The one layer of a vector file, as GDAL reads it.
-class Layer {
-public:
-    explicit Layer(const fs::path& file) {
-        GDALAllRegister();
-        dataset_.reset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
-        REQUIRE(dataset_);
-        REQUIRE(dataset_->GetLayerCount() == 1);
-        ++read_back.files;
-    }
-    OGRLayer& get() const { return *dataset_->GetLayer(0); }
-
-private:
-    GDALDatasetUniquePtr dataset_;
-};
 
 }  // namespace
 
@@ -258,43 +240,6 @@ TEST_CASE("lines and outlines for a GIS are those for ParaView, in the terrain's
         const auto cells = read<vtkXMLUnstructuredGridReader>(run.dir() / "insitu" / file.file);
         CHECK(area[file.time] == static_cast<double>(cells->GetOutput()->GetNumberOfCells()));  // of 1 m2
     }
-}
-
-TEST_CASE("shapes go on after a run is resumed, without those that come again", "[insitu]") {
-    const FreshFolder folder;
-    const fs::path file = folder.path() / "lines.gpkg";
-    const auto line = [](double level) {
-        return std::vector<std::pair<double, Polyline>>{{level, {{0.0, 0.0}, {1.0, 2.0}}}};
-    };
-    {
-        ShapeSeries first(file, "");
-        for (const double t : {0.0, 1.0, 2.0}) first.add_lines(t, line(t), "m");
-    }
-    ShapeSeries again(file, "");
-    for (const double t : {1.0, 1.5}) again.add_lines(t, line(10.0 + t), "m");
-    const Layer layer(file);
-    std::map<double, double> levels;
-    for (const OGRFeatureUniquePtr& feature : layer.get())
-        levels[feature->GetFieldAsDouble("t_s")] = feature->GetFieldAsDouble("level");
-    CHECK(levels == std::map<double, double>{{0.0, 0.0}, {1.0, 11.0}, {1.5, 11.5}});
-    REQUIRE(layer.get().GetSpatialRef());
-    CHECK(layer.get().GetSpatialRef()->IsLocal());  // metres of nowhere, and no degrees
-}
-
-TEST_CASE("a full disk takes no shapes, and leaves those before", "[insitu]") {
-    const FreshFolder folder;
-    const fs::path file = folder.path() / "lines.gpkg";
-    ShapeSeries series(file, utm32);
-    series.add_lines(0.0, {{1.0, {{0.0, 0.0}, {1.0, 2.0}}}}, "m");
-    const Polyline long_line(20000, Vec2(3.0, 4.0));
-    {
-        const SmallDisk disk(fs::file_size(file));
-        CHECK_THROWS_WITH(series.add_lines(1.0, {{1.0, long_line}}, "m"),
-                          Catch::StartsWith(file.string() + ": cannot be written"));
-    }
-    CHECK(Layer(file).get().GetFeatureCount() == 1);
-    series.add_lines(2.0, {{1.0, {{0.0, 0.0}, {1.0, 2.0}}}}, "m");
-    CHECK(Layer(file).get().GetFeatureCount() == 2);
 }
 
 TEST_CASE("a map made in the run shows the flow where it is", "[insitu]") {
