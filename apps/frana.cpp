@@ -93,6 +93,8 @@ void add_figures(CLI::App& app, FiguresOptions& options, std::string& size, Acti
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
     command->add_option("--time", options.time, "simulated time [s]; default the last frame");
     command->add_option("--size", size, "pixels; default 1600x1200")->type_name("WxH");
+    command->add_option("--film", options.film, "a film of the depth besides, mp4 or gif; needs the program ffmpeg")
+        ->check(CLI::IsMember({"mp4", "gif"}));
     command->callback([&] {
         action = [&] {
             if (!size.empty()) read_size(size, options);

@@ -19,9 +19,10 @@ struct RunOptions {
     bool quiet = false;
 };
 
-/// `frana figures RUN_DIR [--time T] [--size WxH]`
+/// `frana figures RUN_DIR [--time T] [--size WxH] [--film mp4|gif]`
 struct FiguresOptions {
     std::filesystem::path run_dir;
+    std::string film;            ///< "mp4", "gif"; empty: none
     std::optional<double> time;  ///< simulated time [s]; nothing: the last frame
     int width = 1600;            ///< [pixels]
     int height = 1200;           ///< [pixels]

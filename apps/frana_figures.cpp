@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "frana_commands.h"
 #include "frana_figures.h"
+#include "frana_run_film.h"
 #include "io/gdal_reader.h"
 #include "scene/case_file.h"
 #include "vtk_io/reader.h"
@@ -182,6 +183,7 @@ int figures_command(const FiguresOptions& options) {
     read_case(options.run_dir, source, warnings);
     std::vector<DrawnFigure> figures = draw_figures(source, warnings);
     if (options.time) draw_moment(source, *options.time, figures, warnings);
+    if (!options.film.empty()) draw_film(source, options.film, figures, warnings);
     for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
     for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
     return 0;

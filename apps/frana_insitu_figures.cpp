@@ -3,13 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
+#include <type_traits>
 
 #include "base/error.h"
 #include "observe/insitu_tables.h"
 #include "observe/profiles.h"
 #include "vtk_io/chart_figure.h"
-#include "vtk_io/chart_figure_ticks.h"
 #include "vtk_io/map_figure.h"
 #include "vtk_io/map_figure_perspective.h"
 
@@ -81,46 +80,41 @@ public:
 
     void look(const Frame& frame, Index number) override {
         const Scalar values = scalar(frame.nodes, entry_.fields.front(), "the grid");
-        const std::vector<double> field = shown_values(frame, values);
-        const double above = shown_above(field);
         pictures_.add(number, [&](const fs::path& png, std::string& why_not) {
-            if (perspective()) return fill(view_, frame, values, field, above), render_perspective(view_, png, why_not);
-            return fill(map_, frame, values, field, above), render_map(map_, png, why_not);
+            if (perspective()) return fill(view_, frame, values), render_perspective(view_, png, why_not);
+            return fill(map_, frame, values), render_map(map_, png, why_not);
         });
     }
 
 private:
     bool perspective() const { return entry_.camera && entry_.camera->perspective; }
 
-    /// Where the flow is not deep enough to count, other fields say nothing: zero and not nodata, so that the outline
-    /// stays smooth. Peaks and arrivals outlast the flow.
-    std::vector<double> shown_values(const Frame& frame, const Scalar& values) const {
-        const bool lasting = values.name.rfind("peak", 0) == 0 || values.name == "arrival_time";
-        const Scalar depth = scalar(frame.nodes, lasting ? "peak_depth" : "depth", "the grid");
-        std::vector<double> field(static_cast<std::size_t>(values.count));
-        for (Index k = 0; k < values.count; ++k)
-            field[static_cast<std::size_t>(k)] =
-                is_depth(values.name) || depth[k] > scene_.output.footprint_depth ? values[k] : 0.0;
-        return field;
+    /// The depth that says where a field is shown; peaks and arrivals outlast the flow.
+    static const char* extent_of(const std::string& field) {
+        return field.rfind("peak", 0) == 0 || field == "arrival_time" ? "peak_depth" : "depth";
     }
 
-    double shown_above(const std::vector<double>& field) const {
-        if (entry_.above) return *entry_.above;
-        if (is_depth(entry_.fields.front())) return scene_.output.footprint_depth;
-        double largest = 0.0;
-        for (const double value : field)
-            if (std::abs(value) > largest) largest = std::abs(value);
-        if (entry_.range) largest = std::max(std::abs(entry_.range->first), std::abs(entry_.range->second));
-        return largest > 0.0 ? round_up_125(1e-3 * largest) : 1e-300;
-    }
-
+    /// Shown and outlined are a depth by itself, another field by its own size when `above` asks for it, and else where
+    /// the flow is deep enough.
     template <class Figure>
-    void fill(Figure& figure, const Frame& frame, const Scalar& values, const std::vector<double>& field,
-              double above) const {
-        figure.field = field;
-        figure.shown_above = above;
+    void fill(Figure& figure, const Frame& frame, const Scalar& values) const {
+        const bool by_itself = is_depth(values.name) || entry_.above;
+        figure.field = numbers(values);
+        figure.shown_above = by_itself && entry_.above ? *entry_.above : scene_.output.footprint_depth;
+        if (!by_itself) {
+            const Scalar extent = scalar(frame.nodes, extent_of(values.name), "the grid");
+            figure.outline_field = numbers(extent);
+            if constexpr (std::is_same_v<Figure, MapFigure>)
+                figure.outline_label = fmt::format("{} [{}]", words(extent.name), extent.unit);
+        }
         figure.title = title_of(scene_, words(values.name), frame);
         figure.field_label = fmt::format("{} [{}]", words(values.name), values.unit);
+    }
+
+    static std::vector<double> numbers(const Scalar& values) {
+        std::vector<double> result(static_cast<std::size_t>(values.count));
+        for (Index k = 0; k < values.count; ++k) result[static_cast<std::size_t>(k)] = values[k];
+        return result;
     }
 
     const Scene& scene_;

@@ -55,6 +55,7 @@ struct Seen {
     std::set<std::string> arrays;  ///< of the grid's frames
     GridGeometry grid;
     double deepest = 0.0, thin = 0.0, last_time = 0.0, busy_time = 0.0, busiest = -1.0;
+    Index busy_nodes = 0;  ///< with flow at busy_time
     std::map<std::string, double> largest;  ///< of depth, speed, stress, effective_stress (size of any component)
     Extent extent;
 };
@@ -101,6 +102,7 @@ void see_motion(const LoadedFrame& frame, Seen& seen) {
     if (motion <= seen.busiest) return;
     seen.busiest = motion;
     seen.busy_time = frame.time;
+    seen.busy_nodes = std::count_if(depth.begin(), depth.end(), [&](double h) { return h > seen.thin; });
 }
 
 /// Looks at no more than seven frames: ranges need no more, and a long run has hundreds.
@@ -243,8 +245,12 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     const double stress = round_up(seen.largest["stress"]);
     look["range"]["stress"] = {-stress, stress};
     look["range"]["effective_stress"] = {-round_up(seen.largest["effective_stress"]), 0.0};
+    // Some 400 crosses on the flow, since a narrow one has no room for wide distances; but they must be large enough to
+    // see when all that was ever covered is in view.
     const double across = std::max(seen.extent.xmax - seen.extent.xmin, seen.extent.ymax - seen.extent.ymin);
-    const auto stride = std::max<Index>(1, std::llround(across / seen.grid.cell / 32.0));  // some 32 crosses that way
+    const double nodes_apart = std::max(std::sqrt(static_cast<double>(seen.busy_nodes) / 400.0),
+                                        across / seen.grid.cell / 80.0);
+    const auto stride = std::max<Index>(1, std::llround(nodes_apart));
     look["cross"] = {{"stride", stride},
                      {"scale", 2.5 * static_cast<double>(stride) * seen.grid.cell / stress},
                      {"extent", {0, seen.grid.nx - 1, 0, seen.grid.ny - 1, 0, 0}}};

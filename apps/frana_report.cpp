@@ -83,7 +83,9 @@ std::string figures(const RunRecord& r) {
     if (r.figures.empty()) return "";
     std::string text = "## Figures\n\n";
     for (const DrawnFigure& figure : r.figures)
-        text += fmt::format("![{}]({})\n\n*{}*\n\n", figure.caption, figure.path, figure.caption);
+        text += figure.path.find(".mp4") != std::string::npos  // no picture to a page
+                    ? fmt::format("[{}]({})\n\n", figure.caption, figure.path)
+                    : fmt::format("![{}]({})\n\n*{}*\n\n", figure.caption, figure.path, figure.caption);
     return text;
 }
 

@@ -7,10 +7,9 @@
 #include "base/error.h"
 #include "compare/overlap.h"
 #include "frana_run_charts.h"
-#include "vtk_io/filmstrip.h"
+#include "frana_run_film.h"
 #include "vtk_io/map_figure.h"
 #include "vtk_io/map_figure_perspective.h"
-#include "vtk_io/reader.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -57,40 +56,6 @@ void draw_view(const FigureSource& source, const ProductRaster& peak_depth, std:
     view.height = source.height;
     attempt(source, {"figures/view_peak_depth.png", "peak depth, seen up the slope"}, figures, warnings,
             [&](const fs::path& png, std::string& why_not) { return render_perspective(view, png, why_not); });
-}
-
-/// Up to `most` of `count` frames, evenly spread, the first and the last among them.
-std::vector<Index> spread_frames(Index count, Index most) {
-    std::vector<Index> chosen;
-    const Index n = std::min(count, most);
-    for (Index k = 0; k < n; ++k) chosen.push_back(n == 1 ? 0 : k * (count - 1) / (n - 1));
-    return chosen;
-}
-
-/// The depth at up to six output times side by side; nothing for a run without node frames.
-void draw_filmstrip(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
-    if (source.bed.values.empty() || !fs::exists(source.run_dir / "grid.pvd")) return;
-    const Index count = static_cast<Index>(frame_times(source.run_dir).size());
-    if (count < 2) return;
-    attempt(source, {"figures/filmstrip_depth.png", "depth at several times"}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) {
-                Filmstrip strip;
-                for (const Index number : spread_frames(count, 6)) {
-                    const LoadedFrame frame = read_frame(source.run_dir, number);
-                    if (!frame.has("depth") || frame.nodes.at("depth").size() != source.bed.values.size()) {
-                        why_not = "the frames hold no depth on the terrain's grid";
-                        return false;
-                    }
-                    MapFigure map;
-                    map.bed = source.bed;
-                    map.field = frame.nodes.at("depth");
-                    map.shown_above = source.footprint_depth;
-                    map.title = fmt::format("t = {:.6g} s", frame.time);
-                    map.field_label = "depth [m]";
-                    strip.maps.push_back(std::move(map));
-                }
-                return render_filmstrip(strip, png, why_not);
-            });
 }
 
 }  // namespace

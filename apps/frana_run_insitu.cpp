@@ -4,7 +4,9 @@
 
 #include "base/error.h"
 #include "frana_insitu_figures.h"
+#include "io/gdal_series.h"
 #include "observe/insitu_tables.h"
+#include "observe/scalar.h"
 #include "vtk_io/catalyst.h"
 #include "vtk_io/insitu.h"
 
@@ -39,18 +41,50 @@ private:
     std::unique_ptr<InsituWork> one_, other_;
 };
 
+/// A work in a few words.
+template <class Look>
+class Shapes final : public InsituWork {
+public:
+    explicit Shapes(Look look) : look_(std::move(look)) {}
+    void look(const Frame& frame, Index) override { look_(frame); }
+
+private:
+    Look look_;
+};
+
 std::unique_ptr<InsituWork> cut(const Scene& scene, const Insitu& entry, const fs::path& folder) {
     auto table = make_cut_table(folder / (entry.name + ".csv"), entry.line, entry.fields);
     if (!entry.picture) return table;
     return std::make_unique<Both>(std::move(table), make_cut_figure(scene, entry, folder));
 }
 
-std::unique_ptr<InsituWork> threshold(const Insitu& entry, const fs::path& folder) {
+/// `work`, and with gis = true the shapes for a GIS besides.
+template <class AddShapes>
+std::unique_ptr<InsituWork> with_shapes(std::unique_ptr<InsituWork> work, const Insitu& entry, AddShapes add) {
+    if (!entry.gis) return work;
+    return std::make_unique<Both>(std::move(work), std::make_unique<Shapes<AddShapes>>(std::move(add)));
+}
+
+std::unique_ptr<InsituWork> contour(const Scene& scene, const Insitu& entry, const fs::path& folder) {
+    ShapeSeries series(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt);
+    auto add = [&entry, shapes = std::move(series)](const Frame& frame) mutable {
+        shapes.add_lines(frame.status.time, level_lines_of(frame, entry.fields.front(), entry.levels),
+                         scalar(frame.nodes, entry.fields.front(), "the grid").unit);
+    };
+    return with_shapes(make_contours(folder, entry.name, entry.fields.front(), entry.levels), entry, std::move(add));
+}
+
+std::unique_ptr<InsituWork> threshold(const Scene& scene, const Insitu& entry, const fs::path& folder) {
     Interval kept;
     kept.low = entry.from.value_or(kept.low);
     kept.high = entry.to.value_or(kept.high);
+    ShapeSeries series(folder / (entry.name + ".gpkg"), scene.bed.crs_wkt);
+    auto add = [&entry, kept, shapes = std::move(series)](const Frame& frame) mutable {
+        std::vector<std::uint8_t> cells = cells_within(frame, entry.fields.front(), kept);
+        shapes.add_cells(frame.status.time, frame.grid, cells);
+    };
     const auto make = entry.of_particles ? make_particle_threshold : make_cell_threshold;
-    return make(folder, entry.name, entry.fields.front(), kept);
+    return with_shapes(make(folder, entry.name, entry.fields.front(), kept), entry, std::move(add));
 }
 
 std::unique_ptr<InsituWork> make_work(const Scene& scene, const Insitu& entry, const fs::path& folder) {
@@ -58,9 +92,9 @@ std::unique_ptr<InsituWork> make_work(const Scene& scene, const Insitu& entry, c
         case Insitu::Kind::profile:
             return cut(scene, entry, folder);
         case Insitu::Kind::contour:
-            return make_contours(folder, entry.name, entry.fields.front(), entry.levels);
+            return contour(scene, entry, folder);
         case Insitu::Kind::threshold:
-            return threshold(entry, folder);
+            return threshold(scene, entry, folder);
         case Insitu::Kind::figure:
             return make_figure(scene, entry, folder);
         case Insitu::Kind::reduce:

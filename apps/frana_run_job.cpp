@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "frana_comparison.h"
 #include "frana_run_figures.h"
+#include "frana_run_film.h"
 #include "frana_run_insitu.h"
 #include "frana_states.h"
 #include "io/xdmf_writer.h"
@@ -145,8 +146,10 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     });
     timed(record.summary, "survey", [&] { compare_with_survey(scene, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {
-        if (scene.output.png)
-            record.figures = draw_figures(figure_source(scene, run_dir, record, rasters), record.warnings);
+        if (!scene.output.png && scene.output.film.empty()) return;
+        const FigureSource source = figure_source(scene, run_dir, record, rasters);
+        if (scene.output.png) record.figures = draw_figures(source, record.warnings);
+        if (!scene.output.film.empty()) draw_film(source, scene.output.film, record.figures, record.warnings);
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
     write_text(run_dir / "run.json", run_json(record));

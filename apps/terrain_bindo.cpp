@@ -89,6 +89,37 @@ double mass_shape(double x, double y) {
     return r < 1.0 ? kDepth * (1.0 - std::pow(r, kShape)) : 0.0;
 }
 
+/// Half the width of the made-up survey at y [m]: the standing mass with the ground beside it down to where it is
+/// deepest, then a lobe that spreads on the valley floor and closes at `toe`.
+double surveyed_half_width(double y, double crown, double toe) {
+    const double widest = kToe + kDeepest * kLength;
+    const double beside = 112.0;  // [m]; the mass itself has 109.5
+    if (y >= widest) return beside * std::sqrt(1.0 - std::pow((y - widest) / (crown - widest), 2));
+    const double closing = 60.0;  // the length of the lobe's round end [m]
+    const double end = std::max(0.0, (toe + closing - y) / closing);
+    return (beside + 18.0 * smooth_step((widest - y) / 80.0)) * std::sqrt(std::max(0.0, 1.0 - end * end));
+}
+
+/// An outline as somebody might have mapped it after the event, drawn from what the paper prints and never from a run:
+/// from the headscarp's crown down to a toe 500 m below the mass's upper end, on x = kMiddle (section 4.3: "nearly
+/// 500 m"). Its edges waver by 5 m, as a hand's do, and the lobe leans downstream.
+std::vector<Vec2> survey_outline() {
+    const double crown = kToe + 1.03 * kLength, toe = kToe + kLength - 500.0;
+    const int steps = 64;
+    std::vector<Vec2> east, west;
+    for (int k = 0; k <= steps; ++k) {
+        // close steps at both ends, where the outline turns
+        const double y = 0.5 * (crown + toe + (crown - toe) * std::cos(180.0 * kDegree * k / steps));
+        const double half = surveyed_half_width(y, crown, toe);
+        const double axis = kMiddle + 12.0 * smooth_step((kToe + 20.0 - y) / 100.0);
+        const double wavers = 5.0 * smooth_step(half / 60.0);
+        east.emplace_back(axis + half + wavers * std::sin(y / 19.0), y);
+        west.emplace_back(axis - half + wavers * std::sin(y / 27.0 + 1.1), y);
+    }
+    east.insert(east.end(), west.rbegin() + 1, west.rend() - 1);  // both ends are single corners
+    return east;
+}
+
 }  // namespace
 
 MadeScene bindo() {
@@ -98,7 +129,8 @@ MadeScene bindo() {
     double volume = 0.0;
     for (const double h : depth.values) volume += h * kCell * kCell;
     for (double& h : depth.values) h *= kVolume / volume;
-    return {{{"dem.tif", on_nodes(kWidth, kHeight, kCell, bed)}, {"depth.tif", std::move(depth)}}, {}};
+    return {{{"dem.tif", on_nodes(kWidth, kHeight, kCell, bed)}, {"depth.tif", std::move(depth)}},
+            {{"survey.geojson", survey_outline()}}};
 }
 
 }  // namespace frana

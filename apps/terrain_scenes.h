@@ -35,7 +35,8 @@ MadeScene lake_z2();
 /// [0, 20] (eq. 37), with a block of 37.5 x 14 m upstream of the obstacle.
 MadeScene obstacle();
 /// Section 4.3 on made-up ground: a mountainside of 28 degrees above a valley floor with a river, 1500 x 1350
-/// m, and 1.2e6 m3 of rock, 38 m deep and 400 m long, standing on it (terrain_bindo.cpp has the design).
+/// m, and 1.2e6 m3 of rock, 38 m deep and 400 m long, standing on it; with a made-up survey of its trace
+/// (terrain_bindo.cpp has the design).
 MadeScene bindo();
 /// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on
 /// flat ground.

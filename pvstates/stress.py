@@ -73,6 +73,7 @@ def show_crosses(grid, view, look):
     samples = Threshold(registrationName="samples", Input=lifted)
     samples.Scalars, samples.UpperThreshold = ["POINTS", "depth"], look["thin"]
     samples.ThresholdMethod = "Above Upper Threshold"
+    samples.AllScalars = 0  # a cell of samples is wider than many a flow; where it is dry the bars have no length
     for number, (sign, along, across) in enumerate([("+", "cos", "sin"), ("-", "sin", "-cos")], 1):
         name = "principal_%d" % number
         size = calculated(samples, name, "%s%s%s" % (MEAN, sign, RADIUS))

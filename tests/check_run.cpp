@@ -1,6 +1,8 @@
 // check_run RUN_DIR EXPECTED.csv: compares what a run left with the case's expected figures.
 // Lines of EXPECTED.csv: quantity,value,tolerance,unit,source. A quantity is
 //   budgets.mass.relative_error     a number of run.json
+//   compare/iou                     a number of compare.json
+//   table/insitu/stress.csv/depth_max/last   last (or first) number of a column of a table, named without its unit
 //   history/max_speed/max           largest absolute value (or: last) of a column of history.csv
 //   profile/x675/length/last        of a profile, last (or first) output: way from the first to the last
 //                                   station deeper than 0.1 m; gap: widest way between two of them; depth
@@ -40,8 +42,9 @@ std::vector<Row> read_csv(const std::filesystem::path& file) {
     return rows;
 }
 
-double from_json(const std::filesystem::path& run, const std::string& quantity) {
-    std::ifstream stream(run / "run.json");
+double from_json(const std::filesystem::path& file, const std::string& quantity) {
+    std::ifstream stream(file);
+    if (!stream) throw std::runtime_error(file.string() + ": is not there");
     nlohmann::json value = nlohmann::json::parse(stream);
     for (const std::string& key : split(quantity, '.')) value = nlohmann::json(value.at(key));
     return value.get<double>();
@@ -58,6 +61,15 @@ double from_history(const std::filesystem::path& run, const Row& path) {
     for (std::size_t i = 1; i < rows.size(); ++i)
         largest = std::max(largest, std::abs(std::stod(rows[i].at(place))));
     return largest;
+}
+
+double from_table(const std::filesystem::path& run, const Row& path) {
+    const std::vector<Row> rows = read_csv(run / path.at(1) / path.at(2));
+    const auto column = std::find_if(rows[0].begin(), rows[0].end(),
+                                     [&](const std::string& name) { return name.rfind(path.at(3) + " [", 0) == 0; });
+    if (column == rows[0].end()) throw std::runtime_error(path.at(2) + " has no column " + path.at(3));
+    const Row& row = path.at(4) == "first" ? rows[1] : rows.back();
+    return std::stod(row.at(static_cast<std::size_t>(column - rows[0].begin())));
 }
 
 /// Columns of a profile: t, distance, x, y, bed, depth, ...
@@ -104,7 +116,9 @@ double obtained(const std::filesystem::path& run, const std::string& quantity) {
     if (path[0] == "history") return from_history(run, path);
     if (path[0] == "profile") return from_profile(run, path);
     if (path[0] == "raster") return from_raster(run, path);
-    return from_json(run, quantity);
+    if (path[0] == "table") return from_table(run, path);
+    if (path[0] == "compare") return from_json(run / "compare.json", path.at(1));
+    return from_json(run / "run.json", quantity);
 }
 
 }  // namespace

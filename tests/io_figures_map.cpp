@@ -1,5 +1,6 @@
 // Maps: what is drawn, where, in which colour, and what happens when nothing can be drawn.
 #include "io_figures_scene.h"
+#include "small_disk.h"
 #include "vtk_io/filmstrip.h"
 #include "vtk_io/map_figure_layout.h"
 #include "vtk_io/map_figure_paint.h"
@@ -215,6 +216,23 @@ TEST_CASE("A map for a folder that does not exist names the file", "[figures]") 
     CHECK_THROWS_WITH(render_map(figures::valley(), folder / "no/map.png", why_not),
                       Catch::Matchers::Contains("no/map.png: cannot be written"));
     CHECK(folder.files() == 0);
+}
+
+TEST_CASE("A full disk refuses a map with its name, and the earlier picture stays as it was", "[figures]") {
+    if (cannot_draw()) return;
+    const figures::Folder folder;
+    std::string why_not;
+    REQUIRE(render_map(figures::valley(), folder / "map.png", why_not));
+    const Pixels before = read_png(folder / "map.png");
+    MapFigure other = figures::valley();
+    for (double& value : other.field) value = 3.0;
+    {
+        const SmallDisk disk(4096);
+        CHECK_THROWS_WITH(render_map(other, folder / "map.png", why_not),
+                          Catch::Matchers::Contains("map.png: cannot be written"));
+    }
+    CHECK(folder.files() == 1);
+    CHECK(read_png(folder / "map.png").rgb == before.rgb);
 }
 
 TEST_CASE("A field that is no depth is shown and outlined where the depth says, whatever its own value", "[figures]") {

@@ -9,6 +9,7 @@
 #include "io/gdal_support.h"
 #include "io/gdal_writer.h"
 #include "io_gdal_make.h"
+#include "read_back.h"
 
 #include "catch.h"
 
@@ -112,6 +113,18 @@ TEST_CASE("A written GeoTIFF is float32, tiled, compressed, north-up, with unit,
     REQUIRE(dataset->GetGeoTransform(transform) == CE_None);
     CHECK(transform[3] == Approx(raster.geometry.y_max() + 2.5).epsilon(1e-15));
     CHECK(transform[5] == -5.0);
+    std::vector<float> all(raster.values.size());
+    const int nx = int(raster.geometry.nx), ny = int(raster.geometry.ny);
+    REQUIRE(band.RasterIO(GF_Read, 0, 0, nx, ny, all.data(), nx, ny, GDT_Float32, 0, 0, nullptr) == CE_None);
+    Index different = 0;
+    for (int row = 0; row < ny; ++row)  // a file's first row is the northernmost
+        for (int i = 0; i < nx; ++i) {
+            const double wanted = raster.at(i, ny - 1 - row);
+            different += all[std::size_t(row * nx + i)] != (std::isnan(wanted) ? -9999.0F : float(wanted));
+        }
+    ++read_back.files;
+    read_back.array(Index(all.size()));
+    CHECK(different == 0);
     float corner = 0.0F;  // the file's last row, first column: our node (0, 0), which is nodata
     REQUIRE(band.RasterIO(GF_Read, 0, 69, 1, 1, &corner, 1, 1, GDT_Float32, 0, 0, nullptr) == CE_None);
     CHECK(corner == -9999.0F);

@@ -1,6 +1,10 @@
 // In-situ in a whole run: pictures and tables without frames, and failures that stop nothing.
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "base/atomic_file.h"
@@ -13,8 +17,11 @@
 #include "fresh_folder.h"
 #include "io_figures_scene.h"
 #include "observe/table.h"
+#include "read_layer.h"
 #include "scene/case_file.h"
+#include "small_disk.h"
 #include "vtk_io/pvd.h"
+#include "vtk_read.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -170,6 +177,71 @@ TEST_CASE("a folder that cannot be written to stops no run", "[insitu]") {
     CHECK(text_of(run.dir() / "insitu") == "a file where the folder should be");
 }
 
+TEST_CASE("a disk that is full of pictures stops no run", "[insitu]") {
+    if (figures::cannot_draw()) return;
+    std::optional<SmallDisk> disk;
+    const Insitu extremes = entry("extremes", Insitu::Kind::reduce, {"depth"});
+    Insitu map = depth_map("map", 0.1);
+    map.width = 2000;
+    map.height = 1600;
+    // enough for each table of this run, not for such a picture
+    const BareRun run({map, extremes}, [&](const fs::path&) { disk.emplace(65536); });
+    disk.reset();
+    CHECK(run.record.summary.reason == "end");
+    CHECK(run.record.insitu[0].made == 0);
+    CHECK(run.record.insitu[0].failed == 5);
+    CHECK(run.record.insitu[0].first_failure.find("map_000000.png: cannot be written") != std::string::npos);
+    CHECK(run.record.insitu[1].made == 5);
+    CHECK(run.files("insitu/map") == 0);  // no halves either
+}
+
+TEST_CASE("lines and outlines for a GIS are those for ParaView, in the terrain's CRS and with their times", "[insitu]") {
+    Insitu lines = entry("lines", Insitu::Kind::contour, {"depth"});
+    lines.levels = {0.5, 1.0};
+    Insitu deep = entry("deep", Insitu::Kind::threshold, {"depth"});
+    deep.from = 1.0;
+    lines.gis = deep.gis = true;
+    const BareRun run({lines, deep});
+    REQUIRE(run.record.insitu[0].made == 5);
+    REQUIRE(run.record.insitu[1].made == 5);
+    CHECK(text_of(run.dir() / "report.md").find("insitu/lines.gpkg") != std::string::npos);
+    const Layer found(run.dir() / "insitu" / "lines.gpkg"), patches(run.dir() / "insitu" / "deep.gpkg");
+    for (const Layer* layer : {&found, &patches}) {
+        OGRSpatialReference expected;
+        expected.importFromEPSG(32632);
+        REQUIRE(layer->get().GetSpatialRef());
+        CHECK(std::string(layer->get().GetSpatialRef()->GetAuthorityCode(nullptr)) == "32632");
+        CHECK(layer->get().GetSpatialRef()->IsSame(&expected));
+    }
+    CHECK(std::string(found.get().GetName()) == "lines");
+
+    std::map<double, Index> at_time;
+    for (const OGRFeatureUniquePtr& feature : found.get()) {
+        const double t = feature->GetFieldAsDouble("t_s"), level = feature->GetFieldAsDouble("level");
+        ++at_time[t];
+        CHECK(std::string(feature->GetFieldAsString("unit")) == "m");
+        const double exact = FakeSimulation::width * std::sqrt(2.0 * std::log(FakeSimulation::height / level));
+        for (const OGRPoint& p : *feature->GetGeometryRef()->toLineString())
+            // a chord on 1 m cells, as in io_insitu.cpp
+            CHECK(std::abs((Vec2(p.getX(), p.getY()) - FakeSimulation::centre(t)).norm() - exact) < 0.23 / 8.0 / 0.36);
+    }
+    read_back.array(found.get().GetFeatureCount());
+    CHECK(at_time == std::map<double, Index>{{0.0, 2}, {0.5, 2}, {1.0, 2}, {1.5, 2}, {2.0, 2}});
+
+    const std::vector<PvdEntry> files = read_pvd(run.dir() / "insitu" / "deep.pvd");
+    REQUIRE(files.size() == 5);
+    std::map<double, double> area;
+    for (const OGRFeatureUniquePtr& feature : patches.get()) {
+        area[feature->GetFieldAsDouble("t_s")] += feature->GetFieldAsDouble("area_m2");
+        CHECK(feature->GetGeometryRef()->toPolygon()->get_Area() == Approx(feature->GetFieldAsDouble("area_m2")));
+    }
+    REQUIRE(area.size() == 5);
+    for (const PvdEntry& file : files) {
+        const auto cells = read<vtkXMLUnstructuredGridReader>(run.dir() / "insitu" / file.file);
+        CHECK(area[file.time] == static_cast<double>(cells->GetOutput()->GetNumberOfCells()));  // of 1 m2
+    }
+}
+
 TEST_CASE("a map made in the run shows the flow where it is", "[insitu]") {
     if (figures::cannot_draw()) return;
     const BareRun run({depth_map("map", 0.1), depth_map("nothing", 100.0)});
@@ -187,6 +259,32 @@ TEST_CASE("a map made in the run shows the flow where it is", "[insitu]") {
     // contours, the outline and texts take away a few per cent of the coloured pixels
     CHECK((moved - expected).norm() < 0.1 * expected.norm());
     CHECK(last.count - bar.count == Approx(flow).epsilon(0.05));
+}
+
+TEST_CASE("the map of another field is outlined as that of the depth is", "[insitu]") {
+    if (figures::cannot_draw()) return;
+    Insitu depth = depth_map("depth_map", 0.1), speed = depth_map("speed_map", 0.1);
+    speed.fields = {"speed"};  // the same everywhere in the flow, and far beyond where it counts
+    speed.above.reset();
+    const BareRun run({depth, speed});
+    const auto last = [&](const char* name) {
+        return read_png(run.dir() / "insitu" / name / fmt::format("{}_000004.png", name));
+    };
+    const Pixels a = last("depth_map"), b = last("speed_map");
+    REQUIRE(a.width == b.width);
+    REQUIRE(a.height == b.height);
+    const auto black = [](const Pixels& picture, int x, int y) {
+        const Colour c = picture.at(x, y);
+        return std::max({c.r, c.g, c.b}) < 60;
+    };
+    int outline = 0, different = 0;
+    for (int y = a.height / 4; y < a.height * 9 / 10; ++y)  // the map without the texts around it
+        for (int x = a.width / 8; x < a.width * 3 / 4; ++x) {
+            outline += black(a, x, y);
+            different += black(a, x, y) != black(b, x, y);
+        }
+    CHECK(outline > 300);
+    CHECK(different < outline / 20);  // the edges of the line mix with the colours beside it
 }
 
 TEST_CASE("a camera that follows the flow sees it at the same place of the picture", "[insitu]") {

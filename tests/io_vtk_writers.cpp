@@ -40,6 +40,7 @@ Index differences(const Field& field, vtkDataArray* array) {
                                   : field.data[k];
         count += std::memcmp(&found, &wanted, sizeof found) != 0;
     }
+    read_back.array(field.count * field.components);
     return count;
 }
 

@@ -2,10 +2,8 @@
 #include <fcntl.h>
 #include <hdf5.h>
 #include <sys/file.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstring>
 
 #include "base/error.h"
@@ -13,6 +11,8 @@
 #include "frame_maker.h"
 #include "fresh_folder.h"
 #include "io/xdmf_writer.h"
+#include "read_back.h"
+#include "small_disk.h"
 
 using namespace frana;
 using Catch::Matchers::Contains;
@@ -78,10 +78,12 @@ void check_same(const Field& field, std::vector<hsize_t> shape, const Array& fou
             found.bytes == 4 ? static_cast<double>(static_cast<float>(field.data[k])) : field.data[k];
         different += std::memcmp(&found.numbers[k], &wanted, sizeof wanted) != 0;
     }
+    read_back.array(static_cast<Index>(found.numbers.size()));
     CHECK(different == 0);
 }
 
 void check_frame(const Frame& frame, const fs::path& file) {
+    ++read_back.files;
     char name[32];
     std::snprintf(name, sizeof name, "/frame_%06d/", static_cast<int>(frame.number));
     const auto& grid = frame.grid;
@@ -210,15 +212,11 @@ TEST_CASE("A full disk is an error with path and reason, and the frames before i
     const auto writer = make_xdmf_writer(run.path());
     writer->see(maker.frame);
     const auto size = fs::file_size(run.path() / "run.h5");
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{size + 50000, before.rlim_max};  // stands for a full disk
-    setrlimit(RLIMIT_FSIZE, &small);
-    CHECK_THROWS_WITH(writer->see(large.frame),
-                      Contains("run.h5: cannot be written") && Contains("File too large"));
-    setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
+    {
+        const SmallDisk disk(size + 50000);
+        CHECK_THROWS_WITH(writer->see(large.frame),
+                          Contains("run.h5: cannot be written") && Contains("File too large"));
+    }
     CHECK(fs::file_size(run.path() / "run.h5") == size);
     check_frame(maker.frame, run.path() / "run.h5");
     CHECK(named_arrays(text_of(run.path() / "run.xdmf")).size() == 14);

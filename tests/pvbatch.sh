@@ -21,4 +21,5 @@ if [ $status -ne 0 ]; then
     tail -20 "$work/pvbatch.log"
     exit 1
 fi
+echo "read back by ParaView: $(sed -n 's/.*"compared": \([0-9]*\).*/\1/p' "$work/found.json") numbers, names and units compared"
 echo "ParaView found what was written"

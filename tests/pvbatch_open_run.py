@@ -87,6 +87,9 @@ def look(reader_name, path):
     return blocks
 
 
+compared = 0  # numbers, names and units
+
+
 def differences(expected, found, place, skip):
     """Sentences about every number or name of `expected` that `found` does not have."""
     if isinstance(expected, dict):
@@ -106,6 +109,8 @@ def differences(expected, found, place, skip):
         for k, (one, other) in enumerate(zip(expected, found)):
             problems += differences(one, other, "%s/%d" % (place, k), skip)
         return problems
+    global compared
+    compared += 1
     if isinstance(expected, (int, float)) and isinstance(found, (int, float)):
         # Values arrive as written; coordinates of an image are origin plus steps: a last digit may differ.
         tolerance = 1e-14 * abs(expected) if "bounds" in place else 0.0
@@ -140,7 +145,7 @@ def main(run_dir, expected_file):
             found["%s by %s" % (file, reader)] = seen
             skip = {"xdmf2": ["unit"], "xdmf3": ["unit", "cells"]}.get(reader, [])
             problems += differences(visible_to(reader, wanted), seen, "%s by %s" % (file, reader), skip)
-    print(json.dumps({"found": found, "problems": problems}, indent=1))
+    print(json.dumps({"found": found, "compared": compared, "problems": problems}, indent=1))
     return 1 if problems else 0
 
 

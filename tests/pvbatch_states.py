@@ -139,7 +139,7 @@ def main(states_dir, run_dir, pictures, mode):
             check_loading(state, states_dir, run_dir, mode)
             if mode == "full":
                 check_picture(state, run_dir, pictures)
-    print("%s: %d checks, %d problems" % (mode, checks, len(problems)))
+    print("read back by ParaView, states %s: %d checks, %d problems" % (mode, checks, len(problems)))
     for problem in problems:
         print(problem)
     return 1 if problems else 0

@@ -186,6 +186,9 @@ TEST_CASE("Keys that contradict each other are refused", "[case]") {
     CHECK(problem_of("[terrain]\ndem=\"a\"\nmodel=\"shallow\"\ncurvature=\"full\"\n[[release]]\ndepth=1\n["
                      "time]\nend=1\n")
               .find("case.toml:4: terrain.curvature: found \"full\" with terrain.model = \"shallow\"") == 0);
+    CHECK(problem_of(least + "[output]\nformats=[\"png\"]\nfilm=\"mp4\"\n") ==
+          "case.toml:9: output.film: found \"mp4\" without \"vtk\" in output.formats; expected the frames that a film "
+          "is made of; add \"vtk\" to output.formats, or remove film");
     const std::string head = "[terrain]\ndem=\"a\"\n[time]\nend=1\n[[release]]\n";
     CHECK(problem_of(head + "outline=\"a\"\n")
               .find("case.toml:5: release.0.depth: not given, and no surface either") == 0);

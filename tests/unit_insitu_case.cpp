@@ -65,6 +65,7 @@ name = "lines"
 kind = "contour"
 field = "depth"
 levels = [0.1, 1, 2]
+gis = true
 every_steps = 20
 [[insitu]]
 name = "fast"
@@ -107,6 +108,7 @@ TEST_CASE("Every key of [[insitu]] and [[camera]] reaches the scene", "[case][in
     CHECK_FALSE(all[0].every_steps);
     CHECK(all[1].kind == Insitu::Kind::contour);
     CHECK(all[1].levels == std::vector<double>{0.1, 1.0, 2.0});
+    CHECK(all[1].gis);
     CHECK(all[1].every_steps == 20);
     CHECK(all[2].kind == Insitu::Kind::threshold);
     CHECK(all[2].of_particles);
@@ -149,6 +151,13 @@ TEST_CASE("A run may write no frames at all", "[case][insitu]") {
     const Scene scene = build_scene(read("[output]\nformats = []\n"), slope_gis());
     CHECK_FALSE((scene.output.vtk || scene.output.xdmf || scene.output.geotiff || scene.output.png));
     CHECK(resolved_toml(read("[output]\nformats = []\n")).find("formats = []\n") != std::string::npos);
+}
+
+TEST_CASE("Outlines of particles for a GIS are refused", "[case][insitu]") {
+    CHECK(problem_of("[[insitu]]\nname = \"a\"\nkind = \"threshold\"\nfield = \"depth\"\nfrom = 1\nof = "
+                     "\"particles\"\ngis = true\n") ==
+          "slide/case.toml:14: insitu.0.gis: found true together with of = \"particles\"; expected the grid, whose "
+          "cells have an outline; remove one of them");
 }
 
 TEST_CASE("A bad entry is refused with its place, what was found, what is expected and a way out", "[case][insitu]") {

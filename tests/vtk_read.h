@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "catch.h"
+#include "read_back.h"
 
 template <class Reader>
 vtkSmartPointer<Reader> read(const std::filesystem::path& file) {
@@ -12,5 +13,6 @@ vtkSmartPointer<Reader> read(const std::filesystem::path& file) {
     REQUIRE(reader->CanReadFile(file.string().c_str()) != 0);
     reader->SetFileName(file.string().c_str());
     reader->Update();
+    ++read_back.files;
     return reader;
 }

@@ -6,31 +6,13 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "vtk_io/map_figure_layout.h"
 #include "vtk_io/offscreen.h"
+#include "vtk_io/offscreen_canvas.h"
+#include "vtk_io/shared_view.h"
 
 namespace frana {
 namespace fs = std::filesystem;
 namespace {
-
-/// One range, and one view that holds the flow at all times.
-void agree(std::vector<MapFigure>& maps) {
-    ColourRange range = colour_range(maps.front().field, maps.front().shown_above, maps.front().colormap, {});
-    std::optional<std::array<double, 4>> view;
-    for (const MapFigure& map : maps) {
-        const ColourRange own = colour_range(map.field, map.shown_above, map.colormap, {});
-        range.low = std::min(range.low, own.low);
-        range.high = std::max(range.high, own.high);
-        const auto covered = covered_extent(map.bed.geometry, map.outlined(), map.shown_above);
-        if (covered) view = view ? united(*view, *covered) : covered;
-    }
-    for (MapFigure& map : maps) {
-        map.range = {range.low, range.high};
-        if (!view || map.focus) continue;
-        const double rim = 0.08 * std::max((*view)[2] - (*view)[0], (*view)[3] - (*view)[1]);
-        map.focus = {(*view)[0] - rim, (*view)[1] - rim, (*view)[2] + rim, (*view)[3] + rim};
-    }
-}
 
 /// The map alone, by way of a file that does not stay.
 bool drawn(const MapFigure& map, const fs::path& beside, Pixels& pixels, std::string& why_not) {
@@ -50,7 +32,9 @@ bool render_filmstrip(const Filmstrip& strip, const fs::path& png, std::string& 
     if (!why_not.empty()) return false;
     const int columns = std::min(strip.columns, static_cast<int>(strip.maps.size()));
     std::vector<MapFigure> maps = strip.maps;
-    agree(maps);
+    SharedView view;
+    for (const MapFigure& map : maps) view.add(map);
+    for (MapFigure& map : maps) view.apply(map);
     std::vector<Pixels> pictures(maps.size());
     int wide = 1, high = 1;
     for (std::size_t n = 0; n < maps.size(); ++n) {

@@ -39,6 +39,16 @@ private:
     PvdSeries files_;
 };
 
+/// A node field, not a number where there is no terrain.
+std::vector<double> on_terrain(const Frame& frame, const std::string& field) {
+    const Scalar values = scalar(frame.nodes, field, "the grid");
+    const Scalar bed = scalar(frame.nodes, "elevation", "the grid");
+    std::vector<double> result(static_cast<std::size_t>(values.count), Raster::nodata);
+    for (Index k = 0; k < values.count; ++k)
+        if (!std::isnan(bed[k])) result[static_cast<std::size_t>(k)] = values[k];
+    return result;
+}
+
 class Contours final : public InsituWork {
 public:
     Contours(const std::filesystem::path& folder, const std::string& name, std::string field,
@@ -46,30 +56,23 @@ public:
         : series_(folder, name, ".vtp"), field_(std::move(field)), levels_(std::move(levels)) {}
 
     void look(const Frame& frame, Index number) override {
-        const Scalar values = scalar(frame.nodes, field_, "the grid");
         const Scalar surface = scalar(frame.nodes, "surface", "the grid");
-        const Scalar bed = scalar(frame.nodes, "elevation", "the grid");
-        Raster raster = Raster::filled(frame.grid, Raster::nodata);
-        for (Index k = 0; k < values.count; ++k)
-            if (!std::isnan(bed[k])) raster.values[static_cast<std::size_t>(k)] = values[k];
         vtkNew<vtkPoints> points;
         points->SetDataTypeToDouble();
         vtkNew<vtkCellArray> lines;
         vtkNew<vtkDoubleArray> level_of;
         level_of->SetName("level");
-        for (const double level : levels_)
-            for (const Polyline& line : level_lines(raster, level)) {
-                lines->InsertNextCell(static_cast<int>(line.size()));
-                for (const Vec2& p : line)
-                    lines->InsertCellPoint(
-                        points->InsertNextPoint(p.x(), p.y(), value_at(surface, frame.grid, p)));
-                level_of->InsertNextValue(level);
-            }
+        for (const auto& [level, line] : level_lines_of(frame, field_, levels_)) {
+            lines->InsertNextCell(static_cast<int>(line.size()));
+            for (const Vec2& p : line)
+                lines->InsertCellPoint(points->InsertNextPoint(p.x(), p.y(), value_at(surface, frame.grid, p)));
+            level_of->InsertNextValue(level);
+        }
         vtkNew<vtkPolyData> contours;
         contours->SetPoints(points);
         contours->SetLines(lines);
         contours->GetCellData()->AddArray(level_of);
-        add_unit(contours->GetFieldData(), "level", values.unit);
+        add_unit(contours->GetFieldData(), "level", scalar(frame.nodes, field_, "the grid").unit);
         add_time(contours->GetFieldData(), frame.status.time);
         vtkNew<vtkXMLPolyDataWriter> writer;
         series_.write(writer, contours, frame, number);
@@ -113,13 +116,9 @@ public:
         : series_(folder, name, ".vtu"), field_(std::move(field)), kept_(kept) {}
 
     void look(const Frame& frame, Index number) override {
-        Scalar values = scalar(frame.nodes, field_, "the grid");
-        const Scalar bed = scalar(frame.nodes, "elevation", "the grid");
-        std::vector<double> on_terrain(static_cast<std::size_t>(values.count));
-        for (Index k = 0; k < values.count; ++k)
-            on_terrain[static_cast<std::size_t>(k)] = std::isnan(bed[k]) ? Raster::nodata : values[k];
+        const std::vector<double> values = on_terrain(frame, field_);
         const auto image = image_of(frame);
-        mark(image, {values.name, values.unit, on_terrain.data(), values.count, 1}, kept_);
+        mark(image, {field_, "", values.data(), static_cast<Index>(values.size()), 1}, kept_);
         vtkNew<vtkThreshold> threshold;
         threshold->SetThresholdFunction(vtkThreshold::THRESHOLD_UPPER);
         threshold->SetUpperThreshold(1.0);
@@ -159,6 +158,29 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::pair<double, Polyline>> level_lines_of(const Frame& frame, const std::string& field,
+                                                        const std::vector<double>& levels) {
+    const Raster raster{frame.grid, on_terrain(frame, field), "", ""};
+    std::vector<std::pair<double, Polyline>> lines;
+    for (const double level : levels)
+        for (Polyline& line : level_lines(raster, level)) lines.emplace_back(level, std::move(line));
+    return lines;
+}
+
+std::vector<std::uint8_t> cells_within(const Frame& frame, const std::string& field, const Interval& kept) {
+    const std::vector<double> values = on_terrain(frame, field);
+    const Index nx = frame.grid.nx, ny = frame.grid.ny;
+    const auto inside = [&](Index i, Index j) {
+        const double value = values[static_cast<std::size_t>(j * nx + i)];
+        return value >= kept.low && value <= kept.high;  // never for what is not a number
+    };
+    std::vector<std::uint8_t> cells;
+    for (Index j = 0; j + 1 < ny; ++j)
+        for (Index i = 0; i + 1 < nx; ++i)
+            cells.push_back(inside(i, j) && inside(i + 1, j) && inside(i, j + 1) && inside(i + 1, j + 1));
+    return cells;
+}
 
 std::unique_ptr<InsituWork> make_contours(const std::filesystem::path& folder, const std::string& name,
                                           const std::string& field, const std::vector<double>& levels) {

@@ -308,16 +308,19 @@ std::vector<double> inside_outline(std::vector<double> field, const std::vector<
     return field;
 }
 
+ColourRange colours_within(const std::vector<double>& field, const std::vector<double>& outlined, double shown_above,
+                           Colormap map, const std::optional<std::pair<double, double>>& given) {
+    if (outlined.empty()) return colour_range(field, shown_above, map, given);
+    return colour_range(inside_outline(field, outlined, shown_above), kAll, map, given);
+}
+
 MapLayout lay_out(const MapFigure& figure) {
     MapLayout layout;
     layout.width = figure.width;
     layout.height = figure.height;
     layout.unit = text_unit(figure.width, figure.height);
-    if (figure.outline_field.empty())
-        layout.colours = colour_range(figure.field, figure.shown_above, figure.colormap, figure.range);
-    else
-        layout.colours = colour_range(inside_outline(figure.field, figure.outline_field, figure.shown_above), kAll,
-                                      figure.colormap, figure.range);
+    layout.colours =
+        colours_within(figure.field, figure.outline_field, figure.shown_above, figure.colormap, figure.range);
     const auto wanted = wanted_view(figure);
     for (int pass = 0; pass < 4; ++pass) place(layout, figure, wanted);  // margins and labels settle in two
     return layout;

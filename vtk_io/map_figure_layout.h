@@ -77,6 +77,9 @@ struct MapLayout {
 /// The field where |outlined| exceeds the limit, elsewhere NaN; every number of it is then shown.
 std::vector<double> inside_outline(std::vector<double> field, const std::vector<double>& outlined, double shown_above);
 constexpr double kAll = -1.0;  ///< "shown above" that hides NaN only
+/// The limits of the colours of a field that is shown where `outlined` exceeds the limit; empty: where the field does.
+ColourRange colours_within(const std::vector<double>& field, const std::vector<double>& outlined, double shown_above,
+                           Colormap map, const std::optional<std::pair<double, double>>& given);
 
 MapLayout lay_out(const MapFigure& figure);
 

@@ -34,7 +34,8 @@ public:
     explicit BlockDrawing(const PerspectiveFigure& figure)
         : figure_(figure),
           unit_(text_unit(figure.width, figure.height)),
-          colours_(colour_range(figure.field, figure.shown_above, figure.colormap, figure.range)),
+          colours_(colours_within(figure.field, figure.outline_field, figure.shown_above, figure.colormap,
+                                  figure.range)),
           captions_(make_captions(figure.title, figure.footer, unit_, figure.width)) {
         const MapBox box = block_of(figure);
         origin_ = {0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])};
@@ -60,7 +61,7 @@ private:
     ColourRange colours_;
     Captions captions_;
     Vec2 origin_{0, 0};
-    Raster surface_, field_;  ///< on the mesh
+    Raster surface_, outlined_;  ///< on the mesh: the ground with the flow, and the field that is outlined
     Pixels skin_;
     double foot_ = 0.0, azimuth_ = 0.0;
     Vec3 eye_{0, 0, 0};
@@ -81,20 +82,28 @@ void BlockDrawing::build(const MapBox& box) {
             if (field_there.values[i] > figure_.shown_above) ground.values[i] += field_there.values[i];
         return ground;
     };
-    surface_ = raised(block_grid(box, std::clamp(4.0 * cells, 60.0, 500.0)), field_);
+    surface_ = raised(block_grid(box, std::clamp(4.0 * cells, 60.0, 500.0)), outlined_);
     Raster field_fine;
     const double texels = std::min(1500.0, 1.1 * figure_.width);  // no finer than the picture can show
     const Raster fine = raised(block_grid(box, texels), field_fine);
+    double shown_above = figure_.shown_above;
+    if (!figure_.outline_field.empty()) {
+        const Raster outlined{figure_.bed.geometry, figure_.outline_field, "", ""};
+        outlined_ = resampled(outlined, surface_.geometry, Between::linear);
+        field_fine.values = inside_outline(field_fine.values,
+                                           resampled(outlined, fine.geometry, Between::linear).values, shown_above);
+        shown_above = kAll;
+    }
     double low = 1e300;
     for (const double z : surface_.values)
         if (!std::isnan(z)) low = std::min(low, z);
     foot_ = (low < 1e300 ? low : 0.0) - 0.05 * longest;
-    const double up = uphill_azimuth(surface_, field_, figure_.shown_above);
+    const double up = uphill_azimuth(surface_, outlined_, figure_.shown_above);
     azimuth_ = figure_.look_azimuth_deg ? *figure_.look_azimuth_deg * kDegree : up + 25.0 * kDegree;
     if (const auto& eye = figure_.eye)
         azimuth_ = std::atan2(eye->target[0] - eye->position[0], eye->target[1] - eye->position[1]);
     const double from_the_left = azimuth_ - 30.0 * kDegree;  // the eye expects light from the upper left
-    skin_ = painted(fine, field_fine, {figure_.colormap, colours_, figure_.shown_above, from_the_left});
+    skin_ = painted(fine, field_fine, {figure_.colormap, colours_, shown_above, from_the_left});
     const double left = 1.5 * unit_, right = 9.0 * unit_;
     room_ = {left, captions_.footer_height() + 2.5 * unit_, figure_.width - right,
              figure_.height - captions_.title_height() - 1.2 * unit_};
@@ -103,7 +112,7 @@ void BlockDrawing::build(const MapBox& box) {
 void BlockDrawing::lines(vtkRenderer* renderer) const {
     const GridGeometry& g = surface_.geometry;
     const double lift = 0.0015 * g.cell * static_cast<double>(std::max(g.nx, g.ny));
-    Raster shown = field_;
+    Raster shown = outlined_;
     for (double& value : shown.values) value = std::isnan(value) ? 0.0 : std::abs(value);
     renderer->AddActor(draped_actor(level_lines(shown, figure_.shown_above), surface_, lift, origin_,
                                     colours::black, 0.1 * unit_));

@@ -9,6 +9,7 @@ struct PerspectiveFigure {
     std::vector<double> field;  ///< on bed.geometry, row 0 south
     bool raised = true;         ///< the field is a depth [m] and is put on the terrain
     double shown_above = 0.1;
+    std::vector<double> outline_field;  ///< as in MapFigure: says where the field is shown; empty: the field itself
     std::string title;
     std::string field_label = "depth [m]";
     std::optional<std::pair<double, double>> range;
@@ -28,6 +29,8 @@ struct PerspectiveFigure {
     std::optional<Eye> eye;
     int width = 1600;                            ///< [px]
     int height = 1100;                           ///< [px]
+
+    const std::vector<double>& outlined() const { return outline_field.empty() ? field : outline_field; }
 };
 
 /// Draws the block into a PNG of width x height, without vertical exaggeration. False with a reason when

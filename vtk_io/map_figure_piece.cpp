@@ -10,7 +10,7 @@ namespace frana {
 MapBox block_of(const PerspectiveFigure& figure) {
     const GridGeometry& g = figure.bed.geometry;
     const MapBox all{g.x0, g.y0, g.x_max(), g.y_max()};
-    auto covered = figure.focus ? figure.focus : covered_extent(g, figure.field, figure.shown_above);
+    auto covered = figure.focus ? figure.focus : covered_extent(g, figure.outlined(), figure.shown_above);
     if (!covered || (figure.eye && !figure.focus)) return all;
     MapBox box = *covered;
     if (!figure.focus) {

@@ -15,6 +15,7 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringOutputWindow.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkVersionMacros.h>
 #include <vtkWindowToImageFilter.h>
 
@@ -237,17 +238,17 @@ bool Offscreen::save(const std::filesystem::path& png, std::string& why_not) {
     grab->Update();
     why_not = window_->errors();
     if (!why_not.empty()) return false;
-    AtomicFile file(png);
     vtkNew<vtkPNGWriter> writer;
-    writer->SetFileName(file.path().c_str());
+    writer->WriteToMemoryOn();  // on a full disk libpng would talk to the console
     writer->SetInputConnection(grab->GetOutputPort());
     writer->Write();
-    if (writer->GetErrorCode() != 0 || !window_->errors().empty())
-        throw UserError(
-            fmt::format("{}: cannot be written; check that the folder exists, its permissions and "
-                        "free space",
-                        png.string()));
-    file.commit();
+    vtkUnsignedCharArray* bytes = writer->GetResult();
+    if (writer->GetErrorCode() != 0 || !window_->errors().empty() || !bytes) {
+        why_not = "VTK could not make a PNG of the picture: " + window_->errors();
+        return false;
+    }
+    write_text(png, std::string(reinterpret_cast<const char*>(bytes->GetPointer(0)),
+                                static_cast<std::size_t>(bytes->GetNumberOfValues())));
     return true;
 }
 

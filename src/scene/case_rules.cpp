@@ -179,6 +179,10 @@ void CaseReader::check_meaning() {
         wrong("scheme.transfer", "found \"apic\" with scheme.shape = \"linear\"",
               "expected \"tpic\", \"flip\" or \"pic\", since apic here is the one of quadratic shapes",
               "choose one of them, or scheme.shape = \"quadratic\"");
+    if (case_.given("output.film") && !chose("output.film", "none") && !misread_.count("output.formats") &&
+        !contains(case_.words("output.formats"), "vtk"))
+        wrong("output.film", "found \"" + case_.word("output.film") + "\" without \"vtk\" in output.formats",
+              "expected the frames that a film is made of", "add \"vtk\" to output.formats, or remove film");
     if (case_.given("material.bed.mu_s") && case_.given("material.bed.mu_2") &&
         case_.number("material.bed.mu_2") <= case_.number("material.bed.mu_s"))
         wrong("material.bed.mu_2", fmt::format("found {}", case_.number("material.bed.mu_2")),

@@ -33,6 +33,7 @@ struct Insitu {
     bool picture = false;               ///< of a profile
     std::vector<double> levels;
     bool of_particles = false;
+    bool gis = false;                   ///< of contour and threshold: a GeoPackage besides
     std::optional<double> from, to;     ///< of threshold
     std::optional<double> above;        ///< of figure and reduce
     std::optional<std::pair<double, double>> range;

@@ -71,11 +71,15 @@ void add_what(Table& table) {
     table.push_back(absent(
         with(number("insitu.to", "", any, "largest value that is kept, in the field's unit"), kind, {"threshold"}),
         "no upper limit"));
+    table.push_back(with(flag("insitu.gis", false,
+                              "besides, for a GIS: insitu/NAME.gpkg with the lines, or the outlines of the cells, at all "
+                              "times, in the coordinate system of the elevation model"),
+                         kind, {"contour", "threshold"}));
     table.push_back(absent(with(number("insitu.above", "", not_negative,
                                        "reduce: depth [m] above which a node counts; figure: size of the field above "
                                        "which it is drawn, in its unit"),
                                 kind, {"figure", "reduce"}),
-                           "output.footprint_depth for a depth; for other figures a thousandth of the range"));
+                           "output.footprint_depth; fields other than a depth are then shown where the flow is deeper"));
 }
 
 void add_picture(Table& table) {

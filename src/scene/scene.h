@@ -84,6 +84,7 @@ struct Gauge { std::string name; Vec2 point{0, 0}; };
 struct Output {
     double every = 1.0;                ///< [s]; frames are hit exactly
     bool vtk = true, xdmf = false, geotiff = true, png = true;
+    std::string film;                  ///< "mp4", "gif" or, for none, ""
     std::vector<std::string> fields;   ///< empty: all
     double footprint_depth = 0.1;      ///< [m]
     bool history_per_step = true;      ///< history.csv: a line a step, or a line an output

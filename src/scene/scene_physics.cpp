@@ -90,6 +90,7 @@ Output output_of(const CaseFile& file) {
         output.geotiff |= format == "geotiff";
         output.png |= format == "png";
     }
+    if (file.word("output.film") != "none") output.film = file.word("output.film");
     output.fields = file.words("output.fields");
     output.footprint_depth = file.number("output.footprint_depth");
     output.history_per_step = file.word("output.history") == "step";

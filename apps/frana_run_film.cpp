@@ -1,0 +1,107 @@
+#include "frana_run_film.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "vtk_io/film.h"
+#include "vtk_io/filmstrip.h"
+#include "vtk_io/reader.h"
+#include "vtk_io/shared_view.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// Up to `most` of `count` frames, evenly spread, the first and the last among them.
+std::vector<Index> spread_frames(Index count, Index most) {
+    std::vector<Index> chosen;
+    const Index n = std::min(count, most);
+    for (Index k = 0; k < n; ++k) chosen.push_back(n == 1 ? 0 : k * (count - 1) / (n - 1));
+    return chosen;
+}
+
+/// The depth of an output with the survey, without a title. UserError when the frame has none on the terrain's grid.
+MapFigure depth_map(const FigureSource& source, Index number) {
+    LoadedFrame frame = read_frame(source.run_dir, number);
+    if (!frame.has("depth") || frame.nodes.at("depth").size() != source.bed.values.size())
+        throw UserError("the frames hold no depth on the terrain's grid");
+    MapFigure map;
+    map.bed = source.bed;
+    map.field = std::move(frame.nodes.at("depth"));
+    map.shown_above = source.footprint_depth;
+    map.field_label = "depth [m]";
+    map.survey = source.survey;
+    return map;
+}
+
+/// Digits behind the point that the times need, at most three; one for the last, which may be any.
+int decimals_of(const std::vector<double>& times) {
+    int digits = 0;
+    for (std::size_t k = 0; k < times.size(); ++k)
+        while (digits < (k + 1 < times.size() ? 3 : 1) &&
+               std::abs(times[k] - std::round(times[k] * std::pow(10, digits)) / std::pow(10, digits)) > 5e-4)
+            ++digits;
+    return digits;
+}
+
+/// Draws every frame twice over: once to know what all of them show, then for good. They need not fit the memory
+/// together.
+bool fill_reel(const FigureSource& source, const std::vector<double>& times, FilmReel& reel, std::string& why_not) {
+    SharedView view;
+    for (Index number = 0; number < static_cast<Index>(times.size()); ++number) view.add(depth_map(source, number));
+    const int digits = decimals_of(times);
+    for (Index number = 0; number < static_cast<Index>(times.size()); ++number) {
+        MapFigure map = depth_map(source, number);
+        view.apply(map);
+        const double time = times[static_cast<std::size_t>(number)];
+        map.title = fmt::format("{}: depth, t = {:.{}f} s", source.title, time, digits);
+        map.footer = source.footer;
+        map.width = source.width;
+        map.height = source.height;
+        if (!render_map(map, reel.next(), why_not)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+void draw_filmstrip(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+    if (source.bed.values.empty() || !fs::exists(source.run_dir / "grid.pvd")) return;
+    const Index count = static_cast<Index>(frame_times(source.run_dir).size());
+    if (count < 2) return;
+    attempt(source, {"figures/filmstrip_depth.png", "depth at several times"}, figures, warnings,
+            [&](const fs::path& png, std::string& why_not) {
+                const std::vector<double> times = frame_times(source.run_dir);
+                Filmstrip strip;
+                for (const Index number : spread_frames(count, 6)) {
+                    strip.maps.push_back(depth_map(source, number));
+                    strip.maps.back().title = fmt::format("t = {:.6g} s", times[static_cast<std::size_t>(number)]);
+                }
+                return render_filmstrip(strip, png, why_not);
+            });
+}
+
+void draw_film(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
+               std::vector<std::string>& warnings) {
+    attempt(source, {"figures/film_depth." + kind, "depth through time"}, figures, warnings,
+            [&](const fs::path& film, std::string& why_not) {
+                why_not = no_film_reason();
+                if (!why_not.empty()) return false;
+                if (source.bed.values.empty() || !fs::exists(source.run_dir / "grid.pvd")) {
+                    why_not = "the run has no frames on the grid; add \"vtk\" to output.formats and run again";
+                    return false;
+                }
+                const std::vector<double> times = frame_times(source.run_dir);
+                if (times.empty()) return why_not = "the run has no frames yet", false;
+                FilmReel reel(film);
+                if (!fill_reel(source, times, reel, why_not)) return false;
+                constexpr double seconds = 8.0, slowest = 2.0, fastest = 25.0;
+                const double rate = static_cast<double>(times.size()) / seconds;
+                return reel.join(std::clamp(rate, slowest, fastest), why_not);
+            });
+}
+
+}  // namespace frana

@@ -1,0 +1,49 @@
+// Shapes through time for a GIS: a run that is resumed, a disk that is full.
+#include <map>
+
+#include "catch.h"
+#include "fake_scene.h"
+#include "fresh_folder.h"
+#include "io/gdal_series.h"
+#include "read_layer.h"
+#include "small_disk.h"
+
+using namespace frana;
+namespace fs = std::filesystem;
+
+TEST_CASE("shapes go on after a run is resumed, without those that come again", "[insitu][gdal]") {
+    const FreshFolder folder;
+    const fs::path file = folder.path() / "lines.gpkg";
+    const auto line = [](double level) {
+        return std::vector<std::pair<double, Polyline>>{{level, {{0.0, 0.0}, {1.0, 2.0}}}};
+    };
+    {
+        ShapeSeries first(file, "");
+        for (const double t : {0.0, 1.0, 2.0}) first.add_lines(t, line(t), "m");
+    }
+    ShapeSeries again(file, "");
+    for (const double t : {1.0, 1.5}) again.add_lines(t, line(10.0 + t), "m");
+    const Layer layer(file);
+    std::map<double, double> levels;
+    for (const OGRFeatureUniquePtr& feature : layer.get())
+        levels[feature->GetFieldAsDouble("t_s")] = feature->GetFieldAsDouble("level");
+    CHECK(levels == std::map<double, double>{{0.0, 0.0}, {1.0, 11.0}, {1.5, 11.5}});
+    REQUIRE(layer.get().GetSpatialRef());
+    CHECK(layer.get().GetSpatialRef()->IsLocal());  // metres of nowhere, and no degrees
+}
+
+TEST_CASE("a full disk takes no shapes, and leaves those before", "[insitu][gdal]") {
+    const FreshFolder folder;
+    const fs::path file = folder.path() / "lines.gpkg";
+    ShapeSeries series(file, utm32);
+    series.add_lines(0.0, {{1.0, {{0.0, 0.0}, {1.0, 2.0}}}}, "m");
+    const Polyline long_line(20000, Vec2(3.0, 4.0));
+    {
+        const SmallDisk disk(fs::file_size(file));
+        CHECK_THROWS_WITH(series.add_lines(1.0, {{1.0, long_line}}, "m"),
+                          Catch::StartsWith(file.string() + ": cannot be written"));
+    }
+    CHECK(Layer(file).get().GetFeatureCount() == 1);
+    series.add_lines(2.0, {{1.0, {{0.0, 0.0}, {1.0, 2.0}}}}, "m");
+    CHECK(Layer(file).get().GetFeatureCount() == 2);
+}
