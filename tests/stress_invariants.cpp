@@ -109,7 +109,7 @@ TEST_CASE("A falsified state is seen, by the invariant that it breaks", "[stress
     CHECK(broken_by([](Snapshot& s) { s.between.impulse[1] += 1e-3; }) == "momentum");
     CHECK(broken_by([](Snapshot& s) { s.now.momentum[0] += 1e-3; }) == "momentum");
     CHECK(broken_by([](Snapshot& s) { s.now.kinetic += 2e5; }) == "energy");
-    CHECK(broken_by([](Snapshot& s) { s.now.potential *= 1.3; }) == "energy");
+    CHECK(broken_by([](Snapshot& s) { s.now.potential *= 1.8; }) == "energy");
     CHECK(broken_by([](Snapshot& s) { s.max_speed = 11.0; }) == "speed");  // 2 sqrt(9.81 * 1.5) and a fall of 1.5 m: 9.4
 }
 

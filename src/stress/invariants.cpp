@@ -58,8 +58,6 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
     Facts facts;
     facts.claims = claims;
     facts.gravity = scene.gravity;
-    facts.density = scene.density;
-    facts.cell = flow.cell;
     facts.walls = flow.walls;
     facts.steep = flow.steep;
     facts.nodes_x = flow.grid.nx(), facts.nodes_y = flow.grid.ny();
@@ -77,6 +75,11 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
                 facts.one_cell_bend = std::max(facts.one_cell_bend, std::abs(z[step] - 2.0 * z[0] + z[-step]));
             }
         }
+    for (Index p = 0; p < scene.particles.count(); ++p) {
+        const double depth = scene.particles.depth[p], mass = scene.density * scene.particles.volume[p];
+        facts.release_depth = std::max(facts.release_depth, depth);
+        facts.release_energy += 0.5 * mass * scene.gravity * depth;
+    }
     if (!facts.energy_law && facts.steep) facts.stretch = std::sqrt(1.0 + steepest2);
     return facts;
 }
@@ -84,12 +87,10 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
 Watch::Watch(const Facts& facts, const Snapshot& start) : facts_(facts), start_(start) {
     mass_ = sum_of(start.points.mass);
     highest_ = -kInfinite, lowest_ = kInfinite;
-    at_hand_ = start.now.kinetic;
-    for (const NodeState& node : start.nodes) {
-        if (!node.wet) continue;
-        highest_ = std::max(highest_, node.surface);
-        at_hand_ += 0.5 * facts.density * facts.gravity * facts.cell * facts.cell * node.depth * node.depth;
-    }
+    at_hand_ = start.now.kinetic + facts.release_energy;
+    deepest_ = facts.release_depth;
+    for (const NodeState& node : start.nodes)
+        if (node.wet) highest_ = std::max({highest_, node.surface, node.bed + facts.release_depth});
     note_extremes(start);
 }
 
@@ -184,7 +185,7 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
 std::optional<Violation> Watch::speed(const Snapshot& state) {
     const double wave = start_.max_speed + 2.0 * std::sqrt(facts_.gravity * deepest_);
     const double drop = std::max(0.0, highest_ - lowest_);
-    const double bound = facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
+    const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
     return judged("speed", state.max_speed, bound * (1.0 + 1e-9), state, "speed beyond the energy line [m/s]");
 }
 
