@@ -85,7 +85,8 @@ TEST_CASE("frana stress --case watches a case, and sees a claim that does not ho
     for (Index j = 6; j < 10; ++j)
         for (Index i = 6; i < 10; ++i) depth.at(i, j) = 1.0;
     draft.rasters = {{"dem.tif", Raster::filled(grid, 0.0)}, {"depth.tif", depth}};
-    draft.keys = {{"terrain.dem", "\"dem.tif\""}, {"release.depth", "\"depth.tif\""}};
+    draft.keys = {{"terrain.dem", "\"dem.tif\""}, {"release.depth", "\"depth.tif\""},
+                  {"time.end", "1.0"}};
     save_draft(folder.path(), draft, {"none", 0.0, 0, 0.0, "nothing"});
     const Outcome sound = call_frana(folder.path(), "stress --case case.toml --steps 10 --mirror x");
     CHECK(sound.code == 0);

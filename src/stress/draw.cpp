@@ -122,7 +122,7 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
     if (kind < 0.10) {
         draw_pile(dice, draft);
     } else {
-        draft.claims.threads = kind > 0.97;
+        draft.claims.threads = kind > 0.98;
         draw_terrain(dice, draft);
         if (kind < 0.15) {
             draw_lake(dice, draft);
