@@ -153,7 +153,8 @@ void add_bench(CLI::App& app, BenchOptions& options, Action& action) {
 
 void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("stress", "random hostile scenes; invariants checked each step");
-    command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60")->check(CLI::PositiveNumber);
+    command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60")
+        ->check(CLI::PositiveNumber);
     command->add_option("--seed", options.seed, "of the series; default 1")->check(CLI::NonNegativeNumber);
     command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows")
         ->check(CLI::PositiveNumber);

@@ -78,8 +78,8 @@ struct BenchOptions {
     bool quick = false;
 };
 
-/// `frana stress [--seconds S] [--seed N] [--scenes N] [--first N] [--json FILE] [--out DIR] [--cfl-map [--figure FILE.png]]
-/// [--case CASE --steps N [--rests] [--mirror x|y|diagonal] [--same-threads]]`
+/// `frana stress [--seconds S] [--seed N] [--scenes N] [--first N] [--shrunk N] [--json FILE] [--out DIR]
+/// [--cfl-map [--figure FILE.png]] [--case CASE --steps N [--rests] [--mirror x|y|diagonal] [--same-threads]]`
 struct StressOptions {
     double seconds = 60.0;            ///< of running scenes; shrinking comes on top
     long long seed = 1;

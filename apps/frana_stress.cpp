@@ -30,7 +30,8 @@ int watch_case(const StressOptions& options) {
     const Verdict verdict = examine(scene, claims, options.steps);
     fmt::print("{}: {} steps, {:.6g} s, up to {} particles\n", options.case_file.string(), verdict.steps, verdict.time,
                verdict.particles);
-    for (const auto& [invariant, worst] : verdict.worst) fmt::print("{:<10} {:>12.3g} of what is allowed\n", invariant, worst);
+    for (const auto& [invariant, worst] : verdict.worst)
+        fmt::print("{:<10} {:>12.3g} of what is allowed\n", invariant, worst);
     if (verdict.broken) fmt::print(stderr, "{}\n", text_of(*verdict.broken));
     return verdict.broken ? 1 : 0;
 }
@@ -39,8 +40,8 @@ int map_cfl(const StressOptions& options) {
     std::vector<CflRow> rows;
     for (const Method& method : cfl_methods()) {
         rows.push_back(cfl_row(method));
-        fmt::print(stderr, "{}, {} points: {} ({})\n", method.name(), method.per_side * method.per_side, rows.back().largest,
-                   rows.back().first_broken);
+        fmt::print(stderr, "{}, {} points: {} ({})\n", method.name(), method.per_side * method.per_side,
+                   rows.back().largest, rows.back().first_broken);
     }
     fmt::print("{}", cfl_table(rows));
     if (!options.figure.empty()) draw_cfl_map(rows, options.figure);
@@ -54,8 +55,8 @@ void report(const Failure& failure, const StressOptions& options) {
     if (shrunk.trials == 0 || !shrunk.verdict.broken) return;
     const std::filesystem::path folder = options.out / fmt::format("stress-{}-{}", options.seed, failure.n);
     save_draft(folder, shrunk.draft, *shrunk.verdict.broken);
-    fmt::print(stderr, "  shrunk in {} trials to {} particles, {} steps: frana stress --case {}/case.toml {}\n", shrunk.trials,
-               shrunk.verdict.particles, shrunk.draft.steps, folder.string(), replay_options(shrunk.draft));
+    fmt::print(stderr, "  shrunk in {} trials to {} particles, {} steps: frana stress --case {}/case.toml {}\n",
+               shrunk.trials, shrunk.verdict.particles, shrunk.draft.steps, folder.string(), replay_options(shrunk.draft));
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ void save_draft(const std::filesystem::path& folder, const Draft& draft, const V
     Draft as_run = draft;  // what `frana run` is to reach: a little beyond the step that fails
     as_run.keys["time.end"] = toml_number(broken.time > 0.0 ? 1.1 * broken.time : 1.0);
     as_run.keys["output.every"] = as_run.keys["time.end"];
-    const std::string why = fmt::format("# {}, step {}: {}\n# Watched by: frana stress --case case.toml {}\n", broken.invariant,
-                                        broken.step, broken.text, replay_options(draft));
+    const std::string why = fmt::format("# {}, step {}: {}\n# Watched by: frana stress --case case.toml {}\n",
+                                        broken.invariant, broken.step, broken.text, replay_options(draft));
     write_text(folder / "case.toml", why + toml_of(as_run));
     const Scene scene = scene_of(draft);
     write_seeds_csv(folder / "particles.csv", make_seeds_export(scene.particles, scene.density, scene.bed));

@@ -60,13 +60,14 @@ TEST_CASE("A saved case says how it is watched", "[stress][io]") {
     save_draft(folder.path(), draft, {"rest", 2.0, 7, 0.5, "moved"});
     const std::string text = text_of(folder.path() / "case.toml");
     CHECK(text.find("# rest, step 7: moved\n") == 0);
-    CHECK(text.find("frana stress --case case.toml --steps 9 --rests --mirror diagonal --same-threads") != std::string::npos);
+    CHECK(text.find("frana stress --case case.toml " + replay_options(draft)) != std::string::npos);
     CHECK(text_of(folder.path() / "particles.csv").find("id,x,y") == 0);
 }
 
 TEST_CASE("frana stress runs scenes, counts them and writes JSON", "[stress][io]") {
     const FreshFolder folder;
-    const Outcome outcome = call_frana(folder.path(), "stress --scenes 3 --seed 12 --seconds 1e6 --shrunk 0 --json s.json");
+    const Outcome outcome =
+        call_frana(folder.path(), "stress --scenes 3 --seed 12 --seconds 1e6 --shrunk 0 --json s.json");
     CHECK((outcome.code == 0 || outcome.code == 1));
     CHECK(outcome.out.find("3 run") != std::string::npos);
     const auto json = nlohmann::json::parse(text_of(folder.path() / "s.json"));

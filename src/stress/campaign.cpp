@@ -40,7 +40,8 @@ std::string json_text(const std::string& text) {
 
 std::string json_of(const Failure& failure) {
     const Violation& v = failure.found;
-    std::string text = fmt::format("{{\"scene\": {}, \"invariant\": {}, \"value\": {}, \"step\": {}, \"time\": {}, \"text\": {}",
+    std::string text = fmt::format("{{\"scene\": {}, \"invariant\": {}, \"value\": {}, \"step\": {}, \"time\": {}, "
+                                   "\"text\": {}",
                                    failure.n, json_text(v.invariant), json_number(v.value), v.step, json_number(v.time),
                                    json_text(v.text));
     if (failure.shrunk.trials > 0)
@@ -76,10 +77,10 @@ Campaign run(const Plan& plan, const std::function<void(const Failure&)>& see, c
 }
 
 std::string table_of(const Campaign& c) {
-    std::string text = fmt::format("seed {}, scenes {} to {}: {} run, {} refused, {} failed; {} steps, {:.3g} particle-steps, "
-                                   "{:.1f} s\n",
-                                   c.plan.seed, c.plan.first, c.plan.first + static_cast<std::uint64_t>(c.scenes), c.scenes,
-                                   c.refused, c.failures.size(), c.steps, c.particle_steps, c.seconds);
+    const std::uint64_t end = c.plan.first + static_cast<std::uint64_t>(c.scenes);
+    std::string text = fmt::format("seed {}, scenes {} to {}: {} run, {} refused, {} failed; {} steps, {:.3g} "
+                                   "particle-steps, {:.1f} s\n",
+                                   c.plan.seed, c.plan.first, end, c.scenes, c.refused, c.failures.size(), c.steps, c.particle_steps, c.seconds);
     text += fmt::format("{:<10} {:>8} {:>16} {:>8}\n", "invariant", "failed", "worst / allowed", "scene");
     for (const std::string& name : invariant_names()) {
         const auto worst = c.worst.find(name);
@@ -98,8 +99,8 @@ std::string json_of(const Campaign& c) {
         worst += fmt::format("{}{{\"invariant\": {}, \"value\": {}, \"scene\": {}}}", worst.empty() ? "\n  " : ",\n  ",
                              json_text(name), json_number(value.value), value.n);
     for (const Failure& failure : c.failures) failures += (failures.empty() ? "\n  " : ",\n  ") + json_of(failure);
-    return fmt::format("{{\"seed\": {}, \"first\": {}, \"scenes\": {}, \"refused\": {}, \"steps\": {}, \"particle_steps\": {}, "
-                       "\"seconds\": {},\n\"worst\": [{}],\n\"failures\": [{}]}}\n",
+    return fmt::format("{{\"seed\": {}, \"first\": {}, \"scenes\": {}, \"refused\": {}, \"steps\": {}, "
+                       "\"particle_steps\": {}, \"seconds\": {},\n\"worst\": [{}],\n\"failures\": [{}]}}\n",
                        c.plan.seed, c.plan.first, c.scenes, c.refused, c.steps, json_number(c.particle_steps),
                        json_number(c.seconds), worst, failures);
 }

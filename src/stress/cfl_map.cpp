@@ -14,7 +14,9 @@ using Function = double (*)(double, double);
 constexpr Index kNodes = 33;     ///< along each side
 constexpr double kLength = 32.0; ///< [m], cells of 1 m
 
-const char* word(Shape shape) { return shape == Shape::linear ? "linear" : shape == Shape::quadratic ? "quadratic" : "cubic"; }
+const char* word(Shape shape) {
+    return shape == Shape::linear ? "linear" : shape == Shape::quadratic ? "quadratic" : "cubic";
+}
 
 const char* word(Transfer transfer) {
     switch (transfer) {
@@ -92,7 +94,8 @@ std::vector<Method> cfl_methods() {
     for (const Shape shape : {Shape::linear, Shape::quadratic, Shape::cubic})
         for (const Transfer transfer : {Transfer::tpic, Transfer::apic, Transfer::flip, Transfer::pic})
             for (const int per_side : {1, 2, 3, 4})
-                if (shape != Shape::linear || transfer != Transfer::apic) methods.push_back({"default", shape, transfer, per_side});
+                if (shape != Shape::linear || transfer != Transfer::apic)
+                    methods.push_back({"default", shape, transfer, per_side});
     for (const Shape shape : {Shape::linear, Shape::quadratic})
         for (const int per_side : {1, 2, 3, 4}) methods.push_back({"paper", shape, Transfer::pic, per_side});
     return methods;
@@ -131,8 +134,8 @@ CflRow cfl_row(const Method& method, Index steps) {
 }
 
 std::string cfl_table(const std::vector<CflRow>& rows) {
-    std::string text = fmt::format("largest stable scheme.cfl, of at most {}, by points a cell\n{:<18} {:>6} {:>6} {:>6} {:>6}  {}\n",
-                                   cfl_ladder().back(), "", 1, 4, 9, 16, "what breaks first beyond, at 4 points");
+    std::string text = fmt::format("largest stable scheme.cfl, of at most {}, by points a cell\n", cfl_ladder().back());
+    text += fmt::format("{:<18} {:>6} {:>6} {:>6} {:>6}  {}\n", "", 1, 4, 9, 16, "what breaks first beyond, at 4 points");
     std::string last, reason;
     for (const CflRow& row : rows) {
         if (row.method.name() != last) {

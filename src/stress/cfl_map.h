@@ -23,8 +23,8 @@ struct CflRow {
 const std::vector<double>& cfl_ladder();
 std::vector<Method> cfl_methods();
 
-/// The suite: a dam break on level ground, a column that collapses, streams that meet, a bowl that swings, a slide on 40
-/// degrees, a viscous mass and a thin film. All have an energy law.
+/// The suite: a dam break on level ground, a column that collapses, streams that meet, a bowl that swings, a slide on
+/// 40 degrees, a viscous mass and a thin film. All have an energy law.
 struct SuiteScene { std::string name; Scene scene; };
 std::vector<SuiteScene> cfl_suite(const Method& method);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "scene/build_scene.h"
 
@@ -64,6 +66,18 @@ std::string toml_of(const Draft& draft) {
 
 Scene scene_of(const Draft& draft) {
     return build_scene(CaseFile::parse(toml_of(draft), "case.toml"), DraftReader(draft));
+}
+
+bool same(const Draft& a, const Draft& b) {
+    if (a.keys != b.keys || a.steps != b.steps || a.rasters.size() != b.rasters.size()) return false;
+    for (const auto& [name, raster] : a.rasters) {
+        const Raster& other = b.rasters.at(name);
+        if (!(raster.geometry == other.geometry)) return false;
+        for (std::size_t k = 0; k < raster.values.size(); ++k)
+            if (raster.values[k] != other.values[k] && !(std::isnan(raster.values[k]) && std::isnan(other.values[k])))
+                return false;
+    }
+    return true;
 }
 
 const char* word_of(Mirror mirror) {

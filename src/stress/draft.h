@@ -14,7 +14,7 @@ enum class Mirror { none, x, y, diagonal };
 
 /// What must hold of a scene beyond what holds of any.
 struct Claims {
-    bool rests = false;             ///< nothing moves by one bit
+    bool rests = false;             ///< nothing moves by one bit (a lake: unless the fit of masses met its limits)
     Mirror mirror = Mirror::none;   ///< x: west and east change places, y: south and north, diagonal: x and y
     bool threads = false;           ///< one thread and two give the same bits
 };
@@ -39,6 +39,9 @@ inline double single(double value) { return static_cast<double>(static_cast<floa
 
 /// The Scene, on the way of a case file. Throws UserError as reading the files would.
 Scene scene_of(const Draft& draft);
+
+/// The same keys, steps and rasters, bit for bit.
+bool same(const Draft& a, const Draft& b);
 
 const char* word_of(Mirror mirror);
 /// Throws UserError for any other word.

@@ -85,7 +85,8 @@ void draw_pile(Dice& dice, Draft& draft) {
     Raster dem = Raster::filled(grid, 0.0), depth = Raster::filled(grid, Raster::nodata);
     for (Index j = 0; j < grid.ny; ++j)
         for (Index i = 0; i < grid.nx; ++i) {
-            const double x = static_cast<double>(i) - x0, y = static_cast<double>(j) - y0, r = std::hypot(x, y) / radius;
+            const double x = static_cast<double>(i) - x0, y = static_cast<double>(j) - y0;
+            const double r = std::hypot(x, y) / radius;
             dem.at(i, j) = single(-grid.cell * slope * (std::cos(turn) * x + std::sin(turn) * y));
             const double h = grid.cell * radius * flank * (cone ? 1.0 - r : 0.5 * (1.0 - r * r));
             if (h > 1e-4 * grid.cell) depth.at(i, j) = single(h);
@@ -95,7 +96,8 @@ void draw_pile(Dice& dice, Draft& draft) {
     draft.keys["particles.per_cell"] = dice.one_of({"1", "4", "9", "16"});
     draft.keys["material.bed.law"] = dice.one_of({"\"coulomb\"", "\"voellmy\""});
     draft.keys["material.bed.mu"] = toml_number(mu);
-    if (draft.keys["material.bed.law"] == "\"voellmy\"") draft.keys["material.bed.xi"] = toml_number(dice.decades(1e-3, 1e7));
+    if (draft.keys["material.bed.law"] == "\"voellmy\"")
+        draft.keys["material.bed.xi"] = toml_number(dice.decades(1e-3, 1e7));
     if (!steep) draft.keys["terrain.model"] = "\"shallow\"";
     if (dice.chance(0.3)) draft.keys["scheme.cfl"] = toml_number(dice.between(0.05, 0.5));
     if (dice.chance(0.3)) draft.keys["boundary.sides"] = "\"wall\"";

@@ -84,7 +84,8 @@ void draw_scheme(Dice& dice, Draft& draft) {
         if (model != "steep") say(draft, "terrain.model", model);
         const std::string curvature = dice.one_of({"full", "full", "inertia", "none"});
         if (model != "shallow" && curvature != "full") say(draft, "terrain.curvature", curvature);
-        if (dice.chance(0.4)) say(draft, "scheme.curvature_length", dice.one_of({0.0, 2.0, 8.0}) * draft.dem().geometry.cell);
+        const double cell = draft.dem().geometry.cell;
+        if (dice.chance(0.4)) say(draft, "scheme.curvature_length", dice.one_of({0.0, 2.0, 8.0}) * cell);
     }
     if (dice.chance(0.25)) draw_parts(dice, draft);
 }

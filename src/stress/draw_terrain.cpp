@@ -43,7 +43,8 @@ void add(Raster& dem, Shape&& shape) {
 }
 
 void add_plane(Dice& dice, Raster& dem) {
-    const double steepness = std::tan(dice.one_of({0.0, 5.0, 20.0, 35.0, 50.0, 70.0, 80.0, dice.between(0, 80)}) * kPi / 180);
+    const double any = dice.between(0.0, 80.0);
+    const double steepness = std::tan(dice.one_of({0.0, 5.0, 20.0, 35.0, 50.0, 70.0, 80.0, any}) * kPi / 180);
     const Vec2 down = direction(dice);
     add(dem, [&](double x, double y) { return -steepness * (down.x() * x + down.y() * y); });
 }
@@ -55,7 +56,8 @@ void add_waves(Dice& dice, Raster& dem) {
 }
 
 void add_hill(Dice& dice, Raster& dem) {
-    const double x0 = dice.unit() * static_cast<double>(dem.geometry.nx), y0 = dice.unit() * static_cast<double>(dem.geometry.ny);
+    const double x0 = dice.unit() * static_cast<double>(dem.geometry.nx);
+    const double y0 = dice.unit() * static_cast<double>(dem.geometry.ny);
     const double radius = dice.decades(0.7, 12.0), height = radius * dice.between(-2.0, 2.0);
     add(dem, [&](double x, double y) {
         return height * std::exp(-((x - x0) * (x - x0) + (y - y0) * (y - y0)) / (radius * radius));
@@ -65,7 +67,8 @@ void add_hill(Dice& dice, Raster& dem) {
 void add_cliff(Dice& dice, Raster& dem) {
     const Vec2 across = direction(dice);
     const double edge = dice.between(0.2, 0.8), height = dice.decades(0.05, 30.0);
-    const double at = edge * (across.x() * static_cast<double>(dem.geometry.nx) + across.y() * static_cast<double>(dem.geometry.ny));
+    const Vec2 corner(static_cast<double>(dem.geometry.nx), static_cast<double>(dem.geometry.ny));
+    const double at = edge * across.dot(corner);
     add(dem, [&](double x, double y) { return across.x() * x + across.y() * y > at ? 0.0 : height; });
 }
 

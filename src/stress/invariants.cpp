@@ -22,28 +22,36 @@ double sum_of(const Column& column) {
 }
 
 std::vector<double> numbers_of(const Status& s) {
-    return {s.time, s.dt, s.mass, s.mass_left, s.momentum[0], s.momentum[1], s.impulse[0], s.impulse[1], s.momentum_left[0],
-            s.momentum_left[1], s.kinetic, s.potential, s.dissipated, s.energy_left, s.p2g_mass_error, s.p2g_momentum_error,
-            s.max_depth, s.max_speed, s.mean_speed, s.covered_area, s.front};
+    return {s.time,       s.dt,           s.mass,        s.mass_left,   s.momentum[0],      s.momentum[1],
+            s.impulse[0], s.impulse[1],   s.kinetic,     s.potential,   s.momentum_left[0], s.momentum_left[1],
+            s.dissipated, s.energy_left,  s.max_depth,   s.max_speed,   s.p2g_mass_error,   s.p2g_momentum_error,
+            s.mean_speed, s.covered_area, s.front};
 }
 
-/// Change of slope from node to node that the scheme's Hessian does not account for, at most [1].
-double unresolved_bend(const Flow& flow, bool steep) {
-    if (!steep) return 0.0;
-    double worst = 0.0;
+/// What the bed's curvature is against the scheme's steps and the flow's depth; zero on gentle terrain, which has none.
+struct Bends {
+    double unresolved = 0.0;  ///< largest change of slope from node to node that the Hessian does not account for [1]
+    double sharpest = 0.0;    ///< largest entry of the Hessian [1/m]
+};
+
+Bends bends_of(const Flow& flow) {
+    Bends worst;
+    if (!flow.steep) return worst;
+    const bool bent = flow.bed.hxx.count() > 0;
     const Index up = flow.grid.stride();
     for (Index j = 0; j < flow.grid.ny(); ++j)
         for (Index i = 0; i < flow.grid.nx(); ++i) {
             const Index k = flow.grid.at(i, j);
-            const auto bend = [&](Index step) {
+            const auto look = [&](Index step, double hessian) {
                 const double* z = flow.bed.z.data() + k;
-                return (z[step] - 2.0 * z[0] + z[-step]) / (flow.cell * flow.cell);
+                const double bend = (z[step] - 2.0 * z[0] + z[-step]) / flow.cell;
+                worst.unresolved = std::max(worst.unresolved, std::abs(bend - hessian * flow.cell));
+                worst.sharpest = std::max(worst.sharpest, std::abs(hessian));
             };
-            const bool bent = flow.bed.hxx.count() > 0;
-            worst = std::max(worst, std::abs(bend(1) - (bent ? flow.bed.hxx[k] : 0.0)));
-            worst = std::max(worst, std::abs(bend(up) - (bent ? flow.bed.hyy[k] : 0.0)));
+            look(1, bent ? flow.bed.hxx[k] : 0.0);
+            look(up, bent ? flow.bed.hyy[k] : 0.0);
         }
-    return worst * flow.cell;
+    return worst;
 }
 
 }  // namespace
@@ -61,14 +69,12 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
     facts.walls = flow.walls;
     facts.steep = flow.steep;
     facts.nodes_x = flow.grid.nx(), facts.nodes_y = flow.grid.ny();
-    constexpr double kSmooth = 0.02;  // slope a cell
-    facts.energy_law = unresolved_bend(flow, flow.steep) < kSmooth && scene.terrain != TerrainModel::linearised &&
-                       !scene.scheme.paper_pressure;
     double steepest2 = 0.0;
     for (Index j = 0; j < flow.grid.ny(); ++j)
         for (Index i = 0; i < flow.grid.nx(); ++i) {
             const Index k = flow.grid.at(i, j);
-            steepest2 = std::max(steepest2, flow.bed.slope_x[k] * flow.bed.slope_x[k] + flow.bed.slope_y[k] * flow.bed.slope_y[k]);
+            const double bx = flow.bed.slope_x[k], by = flow.bed.slope_y[k];
+            steepest2 = std::max(steepest2, bx * bx + by * by);
             for (const Index step : {Index{1}, flow.grid.stride()}) {
                 const double* z = flow.bed.z.data() + k;
                 facts.one_cell_drop = std::max(facts.one_cell_drop, std::abs(z[step] - z[0]));
@@ -80,6 +86,10 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
         facts.release_depth = std::max(facts.release_depth, depth);
         facts.release_energy += 0.5 * mass * scene.gravity * depth;
     }
+    constexpr double kSmooth = 0.02, kThin = 0.1;  // slope a cell; depth over radius of curvature
+    const Bends bends = bends_of(flow);
+    facts.energy_law = bends.unresolved < kSmooth && bends.sharpest * facts.release_depth < kThin &&
+                       scene.terrain != TerrainModel::linearised && !scene.scheme.paper_pressure;
     if (!facts.energy_law && facts.steep) facts.stretch = std::sqrt(1.0 + steepest2);
     return facts;
 }
@@ -122,8 +132,8 @@ std::optional<Violation> Watch::see(const Snapshot& state) {
     if (auto broken = finite(state)) return broken;  // the others would compare with what is no number
     note_extremes(state);
     std::optional<Violation> first;
-    for (const auto check : {&Watch::positive, &Watch::mass, &Watch::momentum, &Watch::energy, &Watch::speed, &Watch::rest,
-                             &Watch::symmetry}) {
+    for (const auto check : {&Watch::positive, &Watch::mass, &Watch::momentum, &Watch::energy, &Watch::speed,
+                             &Watch::rest, &Watch::symmetry}) {
         auto broken = (this->*check)(state);
         if (!first) first = std::move(broken);
     }
@@ -173,7 +183,8 @@ std::optional<Violation> Watch::momentum(const Snapshot& state) {
 std::optional<Violation> Watch::energy(const Snapshot& state) {
     if (!facts_.energy_law) return std::nullopt;
     const Status &first = start_.now, &now = state.now;
-    const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) + (now.energy_left - first.energy_left);
+    const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
+                          (now.energy_left - first.energy_left);
     // What leaves is booked with the bed of the nearest node, half a cell away at most.
     const double booked = now.mass_left * facts_.gravity * (facts_.one_cell_drop + deepest_);
     const double round_off = kEps * static_cast<double>(points_) * std::abs(first.potential);
@@ -194,7 +205,7 @@ std::optional<Violation> Watch::rest(const Snapshot& state) {
     const Columns &a = start_.points, &b = state.points;
     double fastest = 0.0;
     for (Index p = 0; p < b.count(); ++p) fastest = std::max({fastest, std::abs(b.vx[p]), std::abs(b.vy[p])});
-    const bool moved = a.id == b.id && (a.x != b.x || a.y != b.y);  // points that split stand elsewhere and have not moved
+    const bool moved = a.id == b.id && (a.x != b.x || a.y != b.y);  // what splits stands elsewhere and has not moved
     return judged("rest", moved ? std::max(fastest, 1e-300) : fastest, 0.0, state, "speed of what should rest [m/s]");
 }
 
@@ -212,7 +223,7 @@ std::optional<Violation> Watch::symmetry(const Snapshot& state) {
         if (facts_.claims.mirror == Mirror::y) j = facts_.nodes_y - 1 - j, vy = -vy;
         if (facts_.claims.mirror == Mirror::diagonal) std::swap(i, j), std::swap(vx, vy);
         const auto found = at.find(j * width + i);
-        const NodeState image = found == at.end() ? NodeState{i, j, false, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0} : *found->second;
+        const NodeState image = found == at.end() ? NodeState{} : *found->second;
         // Momentum, not velocity: that of a node with next to no mass is the quotient of two round-offs.
         worst = std::max({worst, std::abs(image.depth - node.depth) / depth,
                           std::abs(image.depth * image.vx - node.depth * vx) / (depth * speed),

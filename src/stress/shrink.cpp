@@ -128,18 +128,6 @@ void add_plainer(const Draft& draft, std::vector<Change>& changes) {
         });
 }
 
-bool same(const Draft& a, const Draft& b) {
-    if (a.keys != b.keys || a.steps != b.steps || a.rasters.size() != b.rasters.size()) return false;
-    for (const auto& [name, raster] : a.rasters) {
-        const Raster& other = b.rasters.at(name);
-        if (!(raster.geometry == other.geometry)) return false;
-        for (std::size_t k = 0; k < raster.values.size(); ++k)
-            if (raster.values[k] != other.values[k] && !(std::isnan(raster.values[k]) && std::isnan(other.values[k])))
-                return false;
-    }
-    return true;
-}
-
 class Shrinker {
 public:
     Shrinker(const Draft& draft, const std::function<Verdict(const Draft&)>& judge, Index budget)

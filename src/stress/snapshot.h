@@ -8,10 +8,10 @@ namespace frana::stress {
 
 /// A node of the domain near material.
 struct NodeState {
-    Index i, j;
-    bool wet;
-    double depth, bed, surface;  ///< [m]
-    double vx, vy, speed;        ///< along the map, and along the bed on steep terrain [m/s]
+    Index i = 0, j = 0;
+    bool wet = false;
+    double depth = 0.0, bed = 0.0, surface = 0.0;  ///< [m]
+    double vx = 0.0, vy = 0.0, speed = 0.0;        ///< along the map, and along the bed on steep terrain [m/s]
 };
 
 struct Snapshot {

@@ -37,7 +37,9 @@ void compare_threads(const Scene& scene, Verdict& verdict) {
 
 void run(const Scene& scene, const Claims& claims, Index steps, const Falsify& falsify, Verdict& verdict) {
     DepthAveraged simulation(scene);
-    const Facts facts = facts_of(scene, simulation.flow(), claims);
+    Facts facts = facts_of(scene, simulation.flow(), claims);
+    // A lake is level only where points at these places can make it so; the fit says when they cannot.
+    if (simulation.mass_fit() && simulation.mass_fit()->clipped > 0) facts.claims.rests = false;
     Snapshot state = snapshot_of(simulation, facts.steep);
     Watch watch(facts, state);
     const Status& status = simulation.status();
@@ -62,8 +64,9 @@ void run(const Scene& scene, const Claims& claims, Index steps, const Falsify& f
 Verdict examine(const Scene& scene, const Claims& claims, Index steps, const Falsify& falsify) {
     Verdict verdict;
     const auto broke = [&](const char* invariant, const char* what) {
-        verdict.broken = Violation{invariant, std::numeric_limits<double>::infinity(), verdict.steps, verdict.time, what};
-        verdict.worst[invariant] = verdict.broken->value;
+        const double beyond = std::numeric_limits<double>::infinity();
+        verdict.broken = Violation{invariant, beyond, verdict.steps, verdict.time, what};
+        verdict.worst[invariant] = beyond;
     };
     try {
         run(scene, claims, steps, falsify, verdict);
