@@ -56,7 +56,8 @@ void report(const Failure& failure, const StressOptions& options) {
     const std::filesystem::path folder = options.out / fmt::format("stress-{}-{}", options.seed, failure.n);
     save_draft(folder, shrunk.draft, *shrunk.verdict.broken);
     fmt::print(stderr, "  shrunk in {} trials to {} particles, {} steps: frana stress --case {}/case.toml {}\n",
-               shrunk.trials, shrunk.verdict.particles, shrunk.draft.steps, folder.string(), replay_options(shrunk.draft));
+               shrunk.trials, shrunk.verdict.particles, shrunk.draft.steps, folder.string(),
+               replay_options(shrunk.draft));
 }
 
 }  // namespace

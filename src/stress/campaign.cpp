@@ -80,7 +80,8 @@ std::string table_of(const Campaign& c) {
     const std::uint64_t end = c.plan.first + static_cast<std::uint64_t>(c.scenes);
     std::string text = fmt::format("seed {}, scenes {} to {}: {} run, {} refused, {} failed; {} steps, {:.3g} "
                                    "particle-steps, {:.1f} s\n",
-                                   c.plan.seed, c.plan.first, end, c.scenes, c.refused, c.failures.size(), c.steps, c.particle_steps, c.seconds);
+                                   c.plan.seed, c.plan.first, end, c.scenes, c.refused, c.failures.size(), c.steps,
+                                   c.particle_steps, c.seconds);
     text += fmt::format("{:<10} {:>8} {:>16} {:>8}\n", "invariant", "failed", "worst / allowed", "scene");
     for (const std::string& name : invariant_names()) {
         const auto worst = c.worst.find(name);

@@ -135,7 +135,8 @@ CflRow cfl_row(const Method& method, Index steps) {
 
 std::string cfl_table(const std::vector<CflRow>& rows) {
     std::string text = fmt::format("largest stable scheme.cfl, of at most {}, by points a cell\n", cfl_ladder().back());
-    text += fmt::format("{:<18} {:>6} {:>6} {:>6} {:>6}  {}\n", "", 1, 4, 9, 16, "what breaks first beyond, at 4 points");
+    text += fmt::format("{:<18} {:>6} {:>6} {:>6} {:>6}  {}\n", "", 1, 4, 9, 16,
+                        "what breaks first beyond, at 4 points");
     std::string last, reason;
     for (const CflRow& row : rows) {
         if (row.method.name() != last) {

@@ -197,7 +197,7 @@ std::optional<Violation> Watch::speed(const Snapshot& state) {
     const double wave = start_.max_speed + 2.0 * std::sqrt(facts_.gravity * deepest_);
     const double drop = std::max(0.0, highest_ - lowest_);
     const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
-    return judged("speed", state.max_speed, bound * (1.0 + 1e-9), state, "speed beyond the energy line [m/s]");
+    return judged("speed", state.max_speed, (1.0 + kConvergence) * bound, state, "speed beyond the energy line [m/s]");
 }
 
 std::optional<Violation> Watch::rest(const Snapshot& state) {

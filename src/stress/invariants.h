@@ -28,9 +28,9 @@ struct Facts {
     bool walls = false;
     bool steep = true;
     /// The model itself keeps V^2/2 + g z along a path: shallow terrain always (speeds along the map); steep terrain
-    /// where the Hessian that the scheme uses bends the path as the slopes do, and the flow is thin against the radius of
-    /// curvature (whose pressure is none of gravity). Elsewhere a path along a bent bed changes its speed along the bed,
-    /// by the factor `stretch` = sqrt(1 + B^2) between level and steepest.
+    /// where the Hessian that the scheme uses bends the path as the slopes do, and the flow is thin against the radius
+    /// of curvature (whose pressure is none of gravity). Elsewhere a path along a bent bed changes its speed along the
+    /// bed, by the factor `stretch` = sqrt(1 + B^2) between level and steepest.
     bool energy_law = true;
     double stretch = 1.0;
     double release_depth = 0.0;  ///< largest of the release; nodes see it averaged over a cell and more [m]
@@ -48,19 +48,22 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
 ///   step. Between walls it holds by definition (Status::impulse).
 /// energy: K + E_p + E_left <= start + `kEnergyShare` of the energy at hand (start's kinetic, that of its depth) and
 ///   turned over, where the model has an energy law. Truncation errs by a share of what is there, most at steps of the
-///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. Over a bed bent within
-///   a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by second
+///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. Over a bed bent
+///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by second
 ///   differences of the bed. Not for the paper preset, whose explicit forces act on nodes of vanishing mass.
-/// speed: V^2 <= stretch^4 ((v0 + 2 sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the start, h the largest
-///   depth and drop to the lowest bed so far. stretch is 1 where the model has an energy law; elsewhere a bend may turn a
-///   speed along the map into `stretch` times that along the bed, which carries it up by stretch^2 of the height, to fall
-///   again. The energy line's v0^2 + 2 g drop alone is no bound of a fluid: the tip of a dam break runs at 2 sqrt(g h)
-///   (Ritter 1892), driven by what stays behind.
+/// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
+///   start, h the largest depth and drop to the lowest bed so far. stretch is 1 where the model has an energy law;
+///   elsewhere a bend may turn a speed along the map into `stretch` times that along the bed, which carries it up by
+///   stretch^2 of the height, to fall again. The energy line's v0^2 + 2 g drop alone is no bound of a fluid: the tip of
+///   a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what stays behind. kConvergence: that in turn is a bound
+///   along one direction; streams that converge from two may pass it a little (1 % has been seen), while what is
+///   unstable passes it by factors.
 /// rest: points' positions and velocities are those of the start, bit for bit (claimed scenes).
 /// symmetry: depth and momentum of mirrored nodes agree within `kMirrorError` of the largest (claimed scenes).
 class Watch {
 public:
     static constexpr double kEnergyShare = 0.1;
+    static constexpr double kConvergence = 0.25;
     static constexpr double kMirrorError = 1e-8;
 
     Watch(const Facts& facts, const Snapshot& start);
