@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
+#include "frana_stress_figure.h"
 #include "frana_stress_save.h"
 #include "fresh_folder.h"
 #include "io/gdal_reader.h"
@@ -98,4 +99,12 @@ TEST_CASE("frana stress --case watches a case, and sees a claim that does not ho
     const Outcome wrong = call_frana(folder.path(), "stress --case case.toml --mirror z");
     CHECK(wrong.code == 2);
     CHECK(wrong.err.find("--mirror: found \"z\"; expected x, y or diagonal") != std::string::npos);
+}
+
+TEST_CASE("The map of stable steps is drawn", "[stress][io]") {
+    const FreshFolder folder;
+    std::vector<CflRow> rows;
+    for (const Method& method : cfl_methods()) rows.push_back({method, 0.1 * method.per_side, ""});
+    draw_cfl_map(rows, folder.path() / "cfl.png");
+    CHECK(std::filesystem::file_size(folder.path() / "cfl.png") > 10000);
 }

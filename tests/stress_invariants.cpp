@@ -3,6 +3,7 @@
 
 #include "catch.h"
 #include "stress/campaign.h"
+#include "stress/cfl_map.h"
 #include "stress/draw.h"
 
 using namespace frana;
@@ -174,4 +175,21 @@ TEST_CASE("A campaign says what it ran, the same again", "[stress]") {
     REQUIRE(campaign.worst.count("mass") == 1);
     CHECK(campaign.worst.at("momentum").value == again.worst.at("momentum").value);
     CHECK(json_of(campaign).find("\"seed\": 11, \"first\": 0, \"scenes\": 6") != std::string::npos);
+}
+
+TEST_CASE("The map of stable steps rises until something breaks", "[stress]") {
+    const CflRow row = cfl_row({"default", Shape::quadratic, Transfer::tpic, 1}, 25);
+    CAPTURE(row.largest, row.first_broken);
+    CHECK(row.largest >= 0.5);  // the default scheme.cfl
+    CHECK((row.largest == cfl_ladder().back()) == row.first_broken.empty());
+    const std::string table = cfl_table({row});
+    CHECK(table.find("quadratic tpic") != std::string::npos);
+}
+
+TEST_CASE("The scenes of that map all have an energy law", "[stress]") {
+    for (const SuiteScene& entry : cfl_suite({})) {
+        const DepthAveraged simulation(entry.scene);
+        CAPTURE(entry.name);
+        CHECK(facts_of(entry.scene, simulation.flow(), {}).energy_law);
+    }
 }

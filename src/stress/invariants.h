@@ -49,8 +49,8 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
 /// energy: K + E_p + E_left <= start + `kEnergyShare` of the energy at hand (start's kinetic, that of its depth) and
 ///   turned over, where the model has an energy law. Truncation errs by a share of what is there, most at steps of the
 ///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. Over a bed bent
-///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by second
-///   differences of the bed. Not for the paper preset, whose explicit forces act on nodes of vanishing mass.
+///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
+///   second differences of the bed. Not for the paper preset, whose explicit forces act on nodes of vanishing mass.
 /// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
 ///   start, h the largest depth and drop to the lowest bed so far. stretch is 1 where the model has an energy law;
 ///   elsewhere a bend may turn a speed along the map into `stretch` times that along the bed, which carries it up by
