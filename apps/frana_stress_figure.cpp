@@ -35,7 +35,7 @@ void draw_cfl_map(const std::vector<stress::CflRow>& rows, const std::filesystem
     figure.title = "Largest stable scheme.cfl";
     figure.x_label = "points a cell [1]";
     figure.height = 1300;
-    figure.footer = "frana " FRANA_VERSION ", seven scenes of 150 steps under watch (frana stress --cfl-map)";
+    figure.footer = "frana " FRANA_VERSION ", seven scenes of 100 steps under watch (frana stress --cfl-map)";
     for (const char* shape : {"linear", "quadratic", "cubic"}) {
         ChartPanel panel;
         panel.y_label = std::string(shape) + ", cfl [1]";

@@ -11,8 +11,8 @@ namespace {
 
 using Function = double (*)(double, double);
 
-constexpr Index kNodes = 33;     ///< along each side
-constexpr double kLength = 32.0; ///< [m], cells of 1 m
+constexpr Index kNodes = 25;     ///< along each side
+constexpr double kLength = 24.0; ///< [m], cells of 1 m
 
 const char* word(Shape shape) {
     return shape == Shape::linear ? "linear" : shape == Shape::quadratic ? "quadratic" : "cubic";
@@ -29,15 +29,15 @@ const char* word(Transfer transfer) {
 }
 
 double level(double, double) { return 0.0; }
-double bowl(double x, double y) { return 0.02 * ((x - 16) * (x - 16) + (y - 16) * (y - 16)); }
-double slope(double x, double) { return 30 - 0.84 * x; }
-double dam(double x, double) { return x < 16 ? 2.0 : 0.0; }
-double column(double x, double y) { return std::hypot(x - 16, y - 16) < 5 ? 3.0 : 0.0; }
-double aside(double x, double y) { return std::hypot(x - 12, y - 16) < 6 ? 2.0 : 0.0; }
+double bowl(double x, double y) { return 0.02 * ((x - 12) * (x - 12) + (y - 12) * (y - 12)); }
+double slope(double x, double) { return 24 - 0.84 * x; }
+double dam(double x, double) { return x < 12 ? 2.0 : 0.0; }
+double column(double x, double y) { return std::hypot(x - 12, y - 12) < 4 ? 3.0 : 0.0; }
+double aside(double x, double y) { return std::hypot(x - 9, y - 12) < 5 ? 2.0 : 0.0; }
 double everywhere(double, double) { return 1.0; }
-double film(double x, double y) { return std::hypot(x - 16, y - 16) < 8 ? 1e-3 : 0.0; }
+double film(double x, double y) { return std::hypot(x - 12, y - 12) < 6 ? 1e-3 : 0.0; }
 
-/// Points on the lattice, `stream` [m/s] towards x = 16 m from both sides.
+/// Points on the lattice, `stream` [m/s] towards the middle from both sides.
 void fill(Scene& scene, Function depth, int per_side, double stream) {
     const double size = 1.0 / per_side;
     Seeds& seeds = scene.particles;
@@ -85,7 +85,7 @@ std::string Method::name() const {
 }
 
 const std::vector<double>& cfl_ladder() {
-    static const std::vector<double> ladder = {0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0};
+    static const std::vector<double> ladder = {0.1, 0.25, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0};
     return ladder;
 }
 

@@ -29,7 +29,7 @@ struct SuiteScene { std::string name; Scene scene; };
 std::vector<SuiteScene> cfl_suite(const Method& method);
 
 /// Runs the suite at rising fractions, `steps` steps each.
-CflRow cfl_row(const Method& method, Index steps = 150);
+CflRow cfl_row(const Method& method, Index steps = 100);
 
 /// For people: a row a shape and transfer, a column a number of points.
 std::string cfl_table(const std::vector<CflRow>& rows);

@@ -85,7 +85,8 @@ void add_material(const Draft& draft, std::vector<Change>& changes) {
     });
 }
 
-void add_plainer(const Draft& draft, std::vector<Change>& changes) {
+/// Keys at their defaults, fewer points, no motion.
+void add_defaults(const Draft& draft, std::vector<Change>& changes) {
     for (const auto& [key, value] : draft.keys) {
         if (is_needed(key)) continue;
         const std::string name = key;
@@ -99,33 +100,36 @@ void add_plainer(const Draft& draft, std::vector<Change>& changes) {
         });
     }
     if (draft.has("particles.per_cell")) changes.push_back([](Draft& d) { d.keys["particles.per_cell"] = "1"; });
-    changes.push_back([](Draft& d) {  // level ground
-        for (double& z : d.rasters["dem.tif"].values) z = std::isnan(z) ? z : 0.0;
-    });
-    changes.push_back([](Draft& d) {  // ground of one direction
-        Raster& dem = d.rasters["dem.tif"];
-        for (Index j = 0; j < dem.geometry.ny; ++j)
-            for (Index i = 0; i < dem.geometry.nx; ++i) dem.at(i, j) = dem.at(i, 0);
-    });
-    changes.push_back([](Draft& d) {
-        Raster& dem = d.rasters["dem.tif"];
-        for (Index j = 0; j < dem.geometry.ny; ++j)
-            for (Index i = 0; i < dem.geometry.nx; ++i) dem.at(i, j) = dem.at(0, j);
-    });
-    changes.push_back([](Draft& d) {  // elevations and coordinates near zero
-        double low = INFINITY;
-        for (const double z : d.dem().values) low = std::isnan(z) ? low : std::min(low, z);
-        for (double& z : d.rasters["dem.tif"].values) z = single(z - low);
-    });
-    changes.push_back([](Draft& d) {
-        for (auto& [name, raster] : d.rasters) raster.geometry.x0 = raster.geometry.y0 = 0.0;
-    });
     if (draft.rasters.count("vx.tif"))
         changes.push_back([](Draft& d) {
             d.keys.erase("release.velocity");
             d.rasters.erase("vx.tif");
             d.rasters.erase("vy.tif");
         });
+}
+
+/// A change that gives each node of the ground f(dem, i, j).
+template <class Ground>
+Change with_ground(Ground f) {
+    return [f](Draft& d) {
+        Raster& dem = d.rasters["dem.tif"];
+        for (Index j = 0; j < dem.geometry.ny; ++j)
+            for (Index i = 0; i < dem.geometry.nx; ++i) dem.at(i, j) = f(dem, i, j);
+    };
+}
+
+/// Ground that varies less, and stands near zero.
+void add_ground(const Draft& draft, std::vector<Change>& changes) {
+    const auto hole = [](double z, double otherwise) { return std::isnan(z) ? z : otherwise; };
+    changes.push_back(with_ground([hole](const Raster& z, Index i, Index j) { return hole(z.at(i, j), 0.0); }));
+    changes.push_back(with_ground([](const Raster& z, Index i, Index) { return z.at(i, 0); }));
+    changes.push_back(with_ground([](const Raster& z, Index, Index j) { return z.at(0, j); }));
+    double low = INFINITY;
+    for (const double z : draft.dem().values) low = std::isnan(z) ? low : std::min(low, z);
+    changes.push_back(with_ground([low](const Raster& z, Index i, Index j) { return single(z.at(i, j) - low); }));
+    changes.push_back([](Draft& d) {
+        for (auto& [name, raster] : d.rasters) raster.geometry.x0 = raster.geometry.y0 = 0.0;
+    });
 }
 
 class Shrinker {
@@ -141,14 +145,14 @@ public:
         shorten();
         for (bool better = true; better && best_.trials < budget_;) {
             better = false;
-            for (const auto add : {add_cuts, add_material, add_plainer}) {
+            for (const auto add : {add_cuts, add_material, add_defaults, add_ground}) {
                 std::vector<Change> changes;
                 add(best_.draft, changes);
                 for (const Change& change : changes) {
                     if (best_.trials >= budget_) break;
                     const bool took = take(change);
                     better = better || took;
-                    if (took && add != add_plainer) break;  // the others were made for the larger draft
+                    if (took && (add == add_cuts || add == add_material)) break;  // the others were made for the larger draft
                 }
             }
         }
