@@ -85,7 +85,7 @@ std::string Method::name() const {
 }
 
 const std::vector<double>& cfl_ladder() {
-    static const std::vector<double> ladder = {0.1, 0.25, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0};
+    static const std::vector<double> ladder = {0.1, 0.25, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0};
     return ladder;
 }
 

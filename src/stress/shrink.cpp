@@ -152,7 +152,8 @@ public:
                     if (best_.trials >= budget_) break;
                     const bool took = take(change);
                     better = better || took;
-                    if (took && (add == add_cuts || add == add_material)) break;  // the others were made for the larger draft
+                    // The other cuts were made for the larger draft.
+                    if (took && (add == add_cuts || add == add_material)) break;
                 }
             }
         }
