@@ -162,6 +162,28 @@ TEST_CASE("A failing case is shrunk to what makes it fail", "[stress]") {
     CHECK(judge(shrunk.draft).broken);
 }
 
+TEST_CASE("A pile that is shrunk keeps what it rests by, an image its symmetry", "[stress]") {
+    const auto always = [](const Draft&) {
+        Verdict verdict;
+        verdict.broken = Violation{"planted", 1.0, 0, 0.0, ""};
+        return verdict;
+    };
+    Draft pile = resting_mound();
+    pile.keys["scheme.cfl"] = "0.3";
+    const Draft small = shrink(pile, always).draft;
+    CHECK(small.keys.at("material.bed.mu") == "3.0");
+    CHECK_FALSE(small.has("scheme.cfl"));
+    pile.keys = small.keys;
+    pile.steps = small.steps;
+    CHECK(same(small, pile));
+
+    Draft image = draw(1, 0);
+    for (std::uint64_t n = 1; image.claims.mirror != Mirror::diagonal; ++n) image = draw(1, n);
+    const Raster& dem = shrink(image, always).draft.dem();
+    for (Index j = 0; j < dem.geometry.ny; ++j)
+        for (Index i = 0; i < dem.geometry.nx; ++i) REQUIRE(dem.at(i, j) == dem.at(j, i));
+}
+
 TEST_CASE("A campaign says what it ran, the same again", "[stress]") {
     Plan plan;
     plan.seed = 11;

@@ -14,6 +14,10 @@ bool is_needed(const std::string& key) {
            key == "output.formats";
 }
 
+/// A pile rests by its friction and its shape: without either the claim would be none.
+bool is_pile(const Draft& draft) { return draft.claims.rests && draft.has("release.depth"); }
+bool holds_pile(const std::string& key) { return key.rfind("material.bed.", 0) == 0 || key.rfind("terrain.", 0) == 0; }
+
 /// Keeps pixels [i0, i0 + nx) x [j0, j0 + ny) of all rasters.
 void cut(Draft& draft, Index i0, Index j0, Index nx, Index ny) {
     for (auto& [name, raster] : draft.rasters) {
@@ -29,7 +33,7 @@ void cut(Draft& draft, Index i0, Index j0, Index nx, Index ny) {
 }
 
 void add_cuts(const Draft& draft, std::vector<Change>& changes) {
-    if (draft.claims.mirror != Mirror::none) return;
+    if (draft.claims.mirror != Mirror::none || is_pile(draft)) return;
     const Index nx = draft.dem().geometry.nx, ny = draft.dem().geometry.ny;
     for (const double share : {0.5, 0.75, 0.9}) {
         const Index x = std::min(nx - 1, std::max<Index>(4, static_cast<Index>(share * static_cast<double>(nx))));
@@ -57,7 +61,7 @@ Change without(Choose choose) {
 }
 
 void add_material(const Draft& draft, std::vector<Change>& changes) {
-    if (!draft.rasters.count("depth.tif") || draft.claims.mirror != Mirror::none) return;
+    if (!draft.rasters.count("depth.tif") || draft.claims.mirror != Mirror::none || is_pile(draft)) return;
     const Raster& depth = draft.rasters.at("depth.tif");
     Index i0 = depth.geometry.nx, i1 = -1, j0 = depth.geometry.ny, j1 = -1;
     double sum = 0.0;
@@ -88,18 +92,22 @@ void add_material(const Draft& draft, std::vector<Change>& changes) {
 /// Keys at their defaults, fewer points, no motion.
 void add_defaults(const Draft& draft, std::vector<Change>& changes) {
     for (const auto& [key, value] : draft.keys) {
-        if (is_needed(key)) continue;
+        if (is_needed(key) || (is_pile(draft) && holds_pile(key))) continue;
         const std::string name = key;
         changes.push_back([name](Draft& d) { d.keys.erase(name); });
     }
     for (const char* table : {"scheme.", "material.rheology.", "material.bed.", "release.velocity"}) {
         const std::string prefix = table;
+        if (is_pile(draft) && holds_pile(prefix)) continue;
         changes.push_back([prefix](Draft& d) {  // all of a table, since a law's keys need one another
             for (auto key = d.keys.begin(); key != d.keys.end();)
                 key = key->first.rfind(prefix, 0) == 0 ? d.keys.erase(key) : std::next(key);
         });
     }
-    if (draft.has("particles.per_cell")) changes.push_back([](Draft& d) { d.keys["particles.per_cell"] = "1"; });
+    // One point a cell stands on the corner of four pixels, and has the velocity of one of them.
+    const bool one_may_break_symmetry = draft.claims.mirror != Mirror::none && draft.has("release.velocity");
+    if (draft.has("particles.per_cell") && !one_may_break_symmetry)
+        changes.push_back([](Draft& d) { d.keys["particles.per_cell"] = "1"; });
     if (draft.rasters.count("vx.tif"))
         changes.push_back([](Draft& d) {
             d.keys.erase("release.velocity");
@@ -120,10 +128,13 @@ Change with_ground(Ground f) {
 
 /// Ground that varies less, and stands near zero.
 void add_ground(const Draft& draft, std::vector<Change>& changes) {
+    if (is_pile(draft)) return;
     const auto hole = [](double z, double otherwise) { return std::isnan(z) ? z : otherwise; };
     changes.push_back(with_ground([hole](const Raster& z, Index i, Index j) { return hole(z.at(i, j), 0.0); }));
-    changes.push_back(with_ground([](const Raster& z, Index i, Index) { return z.at(i, 0); }));
-    changes.push_back(with_ground([](const Raster& z, Index, Index j) { return z.at(0, j); }));
+    if (draft.claims.mirror != Mirror::diagonal) {
+        changes.push_back(with_ground([](const Raster& z, Index i, Index) { return z.at(i, 0); }));
+        changes.push_back(with_ground([](const Raster& z, Index, Index j) { return z.at(0, j); }));
+    }
     double low = INFINITY;
     for (const double z : draft.dem().values) low = std::isnan(z) ? low : std::min(low, z);
     changes.push_back(with_ground([low](const Raster& z, Index i, Index j) { return single(z.at(i, j) - low); }));
