@@ -39,7 +39,7 @@ void draw_cfl_map(const std::vector<stress::CflRow>& rows, const std::filesystem
     for (const char* shape : {"linear", "quadratic", "cubic"}) {
         ChartPanel panel;
         panel.y_label = std::string(shape) + ", cfl [1]";
-        panel.y_range = {0.0, stress::cfl_ladder().back()};
+        panel.y_range = {0.0, 1.1 * stress::cfl_ladder().back()};
         for (const stress::CflRow& row : rows) {
             if (shape_of(row.method) != shape) continue;
             Curve& curve = curve_of(panel, transfer_of(row.method));

@@ -136,14 +136,14 @@ CflRow cfl_row(const Method& method, Index steps) {
 
 std::string cfl_table(const std::vector<CflRow>& rows) {
     std::string text = fmt::format("largest stable scheme.cfl, of at most {}, by points a cell\n", cfl_ladder().back());
-    text += fmt::format("{:<18} {:>6} {:>6} {:>6} {:>6}  {}\n", "", 1, 4, 9, 16,
+    text += fmt::format("{:<20} {:>6} {:>6} {:>6} {:>6}  {}\n", "", 1, 4, 9, 16,
                         "what breaks first beyond, at 4 points");
     std::string last, reason;
     for (const CflRow& row : rows) {
         if (row.method.name() != last) {
             if (!last.empty()) text += "  " + reason + "\n";
             last = row.method.name();
-            text += fmt::format("{:<18}", last);
+            text += fmt::format("{:<20}", last);
         }
         if (row.method.per_side == 2) reason = row.first_broken;
         text += fmt::format(" {:>6.2f}", row.largest);
