@@ -147,6 +147,29 @@ void add_bench(CLI::App& app, BenchOptions& options, Action& action) {
     command->callback([&] { action = [&] { return bench_command(options); }; });
 }
 
+void add_stress(CLI::App& app, StressOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("stress", "random hostile scenes; invariants checked each step");
+    command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--seed", options.seed, "of the series; default 1")->check(CLI::NonNegativeNumber);
+    command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--first", options.first, "number of the first scene of the series; default 0")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--shrunk", options.shrunk, "failures that are shrunk and saved; default 20")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--json", options.json, "write the results as JSON");
+    command->add_option("--out", options.out, "folder for cases of failing scenes; default out/stress");
+    command->add_flag("--cfl-map", options.cfl_map, "find the largest stable scheme.cfl of each scheme instead");
+    command->add_option("--figure", options.figure, "draw that map (PNG)");
+    command->add_option("--case", options.case_file, "watch this case instead");
+    command->add_option("--steps", options.steps, "of that case; default 100")->check(CLI::PositiveNumber);
+    command->add_flag("--rests", options.rests, "nothing in that case may move");
+    command->add_option("--mirror", options.mirror, "that case is its own mirror image: x, y or diagonal");
+    command->add_flag("--same-threads", options.same_threads, "one thread and two must give that case the same bits");
+    command->callback([&] { action = [&] { return stress_command(options); }; });
+}
+
 int complain(const std::string& text, int code) {
     std::cout << std::flush;
     std::cerr << text << '\n';
@@ -190,6 +213,7 @@ int run_program(int argc, char** argv) {
     StatesOptions states;
     VerifyOptions verify;
     BenchOptions bench;
+    StressOptions stress;
     Action action;
     add_run(app, run, action);
     add_check(app, check, action);
@@ -200,6 +224,7 @@ int run_program(int argc, char** argv) {
     add_states(app, states, action);
     add_verify(app, verify, action);
     add_bench(app, bench, action);
+    add_stress(app, stress, action);
     if (argc > 1) refuse_unknown(app, argv[1]);
     try {
         app.parse(argc, argv);
@@ -218,7 +243,7 @@ int run_program(int argc, char** argv) {
 /// are told to sleep soon, unless the environment has a wish of its own. The runtime reads it before main(), hence the
 /// program starts itself anew; not under tools that have loaded it by ways of their own.
 void wait_briefly(int argc, char** argv) {
-    static const std::set<std::string> kComputing{"run", "verify", "bench"};
+    static const std::set<std::string> kComputing{"run", "verify", "bench", "stress"};
     if (argc < 2 || !kComputing.count(argv[1])) return;
     if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY") || std::getenv("LD_PRELOAD")) return;
     std::error_code none;

@@ -1,0 +1,83 @@
+// `frana stress`: random hostile scenes under watch; what fails is shrunk and saved as a case.
+#include <fmt/core.h>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "frana_commands.h"
+#include "frana_stress_figure.h"
+#include "frana_stress_save.h"
+#include "io/gdal_reader.h"
+#include "observe/interrupt.h"
+#include "scene/build_scene.h"
+#include "stress/campaign.h"
+
+namespace frana {
+namespace {
+
+using namespace stress;
+
+std::string text_of(const Violation& broken) {
+    return fmt::format("{} at step {}, t = {:.6g} s: {}", broken.invariant, broken.step, broken.time, broken.text);
+}
+
+/// A case file under watch. 1 when it breaks an invariant.
+int watch_case(const StressOptions& options) {
+    Claims claims;
+    claims.rests = options.rests;
+    claims.threads = options.same_threads;
+    claims.mirror = mirror_of(options.mirror);
+    const Scene scene = build_scene(CaseFile::read(options.case_file), GdalReader());
+    const Verdict verdict = examine(scene, claims, options.steps);
+    fmt::print("{}: {} steps, {:.6g} s, up to {} particles\n", options.case_file.string(), verdict.steps, verdict.time,
+               verdict.particles);
+    for (const auto& [invariant, worst] : verdict.worst)
+        fmt::print("{:<10} {:>12.3g} of what is allowed\n", invariant, worst);
+    if (verdict.broken) fmt::print(stderr, "{}\n", text_of(*verdict.broken));
+    return verdict.broken ? 1 : 0;
+}
+
+int map_cfl(const StressOptions& options) {
+    std::vector<CflRow> rows;
+    for (const Method& method : cfl_methods()) {
+        rows.push_back(cfl_row(method));
+        fmt::print(stderr, "{}, {} points: {} ({})\n", method.name(), method.per_side * method.per_side,
+                   rows.back().largest, rows.back().first_broken);
+    }
+    fmt::print("{}", cfl_table(rows));
+    if (!options.figure.empty()) draw_cfl_map(rows, options.figure);
+    return 0;
+}
+
+/// Saves what was shrunk, and says what became of it.
+void report(const Failure& failure, const StressOptions& options) {
+    fmt::print(stderr, "scene {}: {}\n", failure.n, text_of(failure.found));
+    const Shrunk& shrunk = failure.shrunk;
+    if (shrunk.trials == 0 || !shrunk.verdict.broken) return;
+    const std::filesystem::path folder = options.out / fmt::format("stress-{}-{}", options.seed, failure.n);
+    save_draft(folder, shrunk.draft, *shrunk.verdict.broken);
+    fmt::print(stderr, "  shrunk in {} trials to {} particles, {} steps: frana stress --case {}/case.toml {}\n",
+               shrunk.trials, shrunk.verdict.particles, shrunk.draft.steps, folder.string(),
+               replay_options(shrunk.draft));
+}
+
+}  // namespace
+
+int stress_command(const StressOptions& options) {
+    if (!options.case_file.empty()) return watch_case(options);
+    if (options.cfl_map) return map_cfl(options);
+    Plan plan;
+    plan.seed = static_cast<std::uint64_t>(options.seed);
+    plan.first = static_cast<std::uint64_t>(options.first);
+    plan.scenes = options.scenes;
+    plan.seconds = options.seconds;
+    plan.most_shrunk = options.shrunk;
+    const Interrupt interrupt(Interrupt::Listen::signals);
+    const Campaign campaign = run(plan, [&](const Failure& failure) { report(failure, options); },
+                                  [&] { return interrupt.requested(); });
+    fmt::print("{}", table_of(campaign));
+    if (!options.json.empty()) write_text(options.json, json_of(campaign));
+    if (interrupt.requested()) throw Interrupted("interrupted; the scenes so far are above");
+    return campaign.failures.empty() && campaign.refused == 0 ? 0 : 1;
+}
+
+}  // namespace frana

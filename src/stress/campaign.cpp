@@ -1,0 +1,109 @@
+#include "stress/campaign.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "stress/draw.h"
+
+namespace frana::stress {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void note(const Verdict& verdict, std::uint64_t n, Campaign& campaign) {
+    campaign.steps += verdict.steps;
+    campaign.particle_steps += static_cast<double>(verdict.steps) * static_cast<double>(verdict.particles);
+    if (verdict.broken) {
+        campaign.broken[verdict.broken->invariant] += 1;
+        return;
+    }
+    for (const auto& [invariant, value] : verdict.worst) {
+        const auto [worst, is_new] = campaign.worst.try_emplace(invariant, Worst{value, n});
+        if (!is_new && value > worst->second.value) worst->second = {value, n};
+    }
+}
+
+std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", value) : "null"; }
+
+std::string json_text(const std::string& text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') quoted += '\\';
+        quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    return quoted + "\"";
+}
+
+std::string json_of(const Failure& failure) {
+    const Violation& v = failure.found;
+    std::string text = fmt::format("{{\"scene\": {}, \"invariant\": {}, \"value\": {}, \"step\": {}, \"time\": {}, "
+                                   "\"text\": {}",
+                                   failure.n, json_text(v.invariant), json_number(v.value), v.step, json_number(v.time),
+                                   json_text(v.text));
+    if (failure.shrunk.trials > 0)
+        text += fmt::format(", \"shrunk_trials\": {}, \"shrunk_steps\": {}, \"shrunk_particles\": {}",
+                            failure.shrunk.trials, failure.shrunk.draft.steps, failure.shrunk.verdict.particles);
+    return text + "}";
+}
+
+}  // namespace
+
+Campaign run(const Plan& plan, const std::function<void(const Failure&)>& see, const std::function<bool()>& stop) {
+    Campaign campaign;
+    campaign.plan = plan;
+    const auto judge = [](const Draft& draft) { return examine(draft); };
+    for (std::uint64_t n = plan.first; campaign.seconds < plan.seconds; ++n) {
+        if ((plan.scenes > 0 && campaign.scenes >= plan.scenes) || (stop && stop())) break;
+        const auto start = std::chrono::steady_clock::now();
+        const Draft draft = draw(plan.seed, n);
+        const Verdict verdict = examine(draft);
+        campaign.seconds += seconds_since(start);
+        campaign.scenes += 1;
+        campaign.refused += verdict.refused;
+        note(verdict, n, campaign);
+        if (!verdict.broken) continue;
+        Failure failure{n, *verdict.broken, {draft, verdict, 0}};
+        if (static_cast<Index>(campaign.failures.size()) < plan.most_shrunk)
+            failure.shrunk = shrink(draft, judge, plan.shrink_trials);
+        see(failure);
+        failure.shrunk.draft.rasters.clear();  // saved by now
+        campaign.failures.push_back(std::move(failure));
+    }
+    return campaign;
+}
+
+std::string table_of(const Campaign& c) {
+    const std::uint64_t end = c.plan.first + static_cast<std::uint64_t>(c.scenes);
+    std::string text = fmt::format("seed {}, scenes {} to {}: {} run, {} refused, {} failed; {} steps, {:.3g} "
+                                   "particle-steps, {:.1f} s\n",
+                                   c.plan.seed, c.plan.first, end, c.scenes, c.refused, c.failures.size(), c.steps,
+                                   c.particle_steps, c.seconds);
+    text += fmt::format("{:<10} {:>8} {:>16} {:>8}\n", "invariant", "failed", "worst / allowed", "scene");
+    for (const std::string& name : invariant_names()) {
+        const auto worst = c.worst.find(name);
+        const auto broken = c.broken.find(name);
+        if (worst == c.worst.end() && broken == c.broken.end()) continue;
+        text += fmt::format("{:<10} {:>8} ", name, broken == c.broken.end() ? 0 : broken->second);
+        text += worst == c.worst.end() ? std::string(16, ' ') + "\n"
+                                       : fmt::format("{:>16.3g} {:>8}\n", worst->second.value, worst->second.n);
+    }
+    return text;
+}
+
+std::string json_of(const Campaign& c) {
+    std::string worst, failures;
+    for (const auto& [name, value] : c.worst)
+        worst += fmt::format("{}{{\"invariant\": {}, \"value\": {}, \"scene\": {}}}", worst.empty() ? "\n  " : ",\n  ",
+                             json_text(name), json_number(value.value), value.n);
+    for (const Failure& failure : c.failures) failures += (failures.empty() ? "\n  " : ",\n  ") + json_of(failure);
+    return fmt::format("{{\"seed\": {}, \"first\": {}, \"scenes\": {}, \"refused\": {}, \"steps\": {}, "
+                       "\"particle_steps\": {}, \"seconds\": {},\n\"worst\": [{}],\n\"failures\": [{}]}}\n",
+                       c.plan.seed, c.plan.first, c.scenes, c.refused, c.steps, json_number(c.particle_steps),
+                       json_number(c.seconds), worst, failures);
+}
+
+}  // namespace frana::stress

@@ -1,0 +1,50 @@
+#pragma once
+// A case that exists in memory only: the text of its keys and its rasters. It becomes a Scene on the way that the files
+// of a case take, so that a draft written to a folder is the same case to the last bit.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace frana::stress {
+
+/// Images of a draft that are the draft itself.
+enum class Mirror { none, x, y, diagonal };
+
+/// What must hold of a scene beyond what holds of any.
+struct Claims {
+    bool rests = false;             ///< nothing moves by one bit (a lake: unless the fit of masses met its limits)
+    Mirror mirror = Mirror::none;   ///< x: west and east change places, y: south and north, diagonal: x and y
+    bool threads = false;           ///< one thread and two give the same bits
+};
+
+struct Draft {
+    /// "material.bed.mu" -> "0.4": what a case file says, in TOML. Those of `release` belong to its one release.
+    std::map<std::string, std::string> keys;
+    /// By file name, on one grid; values that float32 holds, since that is what a GeoTIFF of ours holds.
+    std::map<std::string, Raster> rasters;
+    Claims claims;
+    Index steps = 60;
+
+    const Raster& dem() const { return rasters.at("dem.tif"); }
+    bool has(const std::string& key) const { return keys.count(key) > 0; }
+};
+
+/// The case file, keys by table.
+std::string toml_of(const Draft& draft);
+
+/// Nearest number that float32 holds.
+inline double single(double value) { return static_cast<double>(static_cast<float>(value)); }
+
+/// The Scene, on the way of a case file. Throws UserError as reading the files would.
+Scene scene_of(const Draft& draft);
+
+/// The same keys, steps and rasters, bit for bit.
+bool same(const Draft& a, const Draft& b);
+
+const char* word_of(Mirror mirror);
+/// Throws UserError for any other word.
+Mirror mirror_of(const std::string& word);
+
+}  // namespace frana::stress

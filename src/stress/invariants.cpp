@@ -1,0 +1,235 @@
+#include "stress/invariants.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "observe/budget.h"
+#include "particles/sum.h"
+
+namespace frana::stress {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+double sum_of(const Column& column) {
+    CompensatedSum sum;
+    for (const double value : column) sum.add(value);
+    return sum.value();
+}
+
+std::vector<double> numbers_of(const Status& s) {
+    return {s.time,       s.dt,           s.mass,        s.mass_left,   s.momentum[0],      s.momentum[1],
+            s.impulse[0], s.impulse[1],   s.kinetic,     s.potential,   s.momentum_left[0], s.momentum_left[1],
+            s.dissipated, s.energy_left,  s.max_depth,   s.max_speed,   s.p2g_mass_error,   s.p2g_momentum_error,
+            s.mean_speed, s.covered_area, s.front};
+}
+
+/// What the bed's curvature is against the scheme's steps and the flow's depth; zero on gentle terrain, which has none.
+struct Bends {
+    double unresolved = 0.0;  ///< largest change of slope from node to node that the Hessian does not account for [1]
+    double sharpest = 0.0;    ///< largest entry of the Hessian [1/m]
+};
+
+Bends bends_of(const Flow& flow) {
+    Bends worst;
+    if (!flow.steep) return worst;
+    const bool bent = flow.bed.hxx.count() > 0;
+    const Index up = flow.grid.stride();
+    for (Index j = 0; j < flow.grid.ny(); ++j)
+        for (Index i = 0; i < flow.grid.nx(); ++i) {
+            const Index k = flow.grid.at(i, j);
+            const auto look = [&](Index step, double hessian) {
+                const double* z = flow.bed.z.data() + k;
+                const double bend = (z[step] - 2.0 * z[0] + z[-step]) / flow.cell;
+                worst.unresolved = std::max(worst.unresolved, std::abs(bend - hessian * flow.cell));
+                worst.sharpest = std::max(worst.sharpest, std::abs(hessian));
+            };
+            look(1, bent ? flow.bed.hxx[k] : 0.0);
+            look(up, bent ? flow.bed.hyy[k] : 0.0);
+        }
+    return worst;
+}
+
+}  // namespace
+
+const std::vector<std::string>& invariant_names() {
+    static const std::vector<std::string> names = {"finite", "positive", "mass",     "momentum", "energy", "speed",
+                                                   "rest",   "symmetry", "threads", "numerics", "program"};
+    return names;
+}
+
+Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
+    Facts facts;
+    facts.claims = claims;
+    facts.gravity = scene.gravity;
+    facts.walls = flow.walls;
+    facts.steep = flow.steep;
+    facts.nodes_x = flow.grid.nx(), facts.nodes_y = flow.grid.ny();
+    double steepest2 = 0.0;
+    for (Index j = 0; j < flow.grid.ny(); ++j)
+        for (Index i = 0; i < flow.grid.nx(); ++i) {
+            const Index k = flow.grid.at(i, j);
+            const double bx = flow.bed.slope_x[k], by = flow.bed.slope_y[k];
+            steepest2 = std::max(steepest2, bx * bx + by * by);
+            for (const Index step : {Index{1}, flow.grid.stride()}) {
+                const double* z = flow.bed.z.data() + k;
+                facts.one_cell_drop = std::max(facts.one_cell_drop, std::abs(z[step] - z[0]));
+                facts.one_cell_bend = std::max(facts.one_cell_bend, std::abs(z[step] - 2.0 * z[0] + z[-step]));
+            }
+        }
+    for (Index p = 0; p < scene.particles.count(); ++p) {
+        const double depth = scene.particles.depth[p], mass = scene.density * scene.particles.volume[p];
+        facts.release_depth = std::max(facts.release_depth, depth);
+        facts.release_energy += 0.5 * mass * scene.gravity * depth;
+    }
+    constexpr double kSmooth = 0.02, kThin = 0.1;  // slope a cell; depth over radius of curvature
+    const Bends bends = bends_of(flow);
+    facts.energy_law = bends.unresolved < kSmooth && bends.sharpest * facts.release_depth < kThin &&
+                       scene.terrain != TerrainModel::linearised && !scene.scheme.paper_pressure;
+    if (!facts.energy_law && facts.steep) facts.stretch = std::sqrt(1.0 + steepest2);
+    return facts;
+}
+
+Watch::Watch(const Facts& facts, const Snapshot& start) : facts_(facts), start_(start) {
+    mass_ = sum_of(start.points.mass);
+    highest_ = -kInfinite, lowest_ = kInfinite;
+    at_hand_ = start.now.kinetic + facts.release_energy;
+    deepest_ = facts.release_depth;
+    for (const NodeState& node : start.nodes)
+        if (node.wet) highest_ = std::max({highest_, node.surface, node.bed + facts.release_depth});
+    note_extremes(start);
+}
+
+void Watch::note_extremes(const Snapshot& state) {
+    for (const NodeState& node : state.nodes) {
+        if (node.wet) {
+            lowest_ = std::min(lowest_, node.bed);
+            deepest_ = std::max(deepest_, node.depth);
+        }
+        fastest_ = std::max(fastest_, node.speed);
+    }
+    fastest_ = std::max({fastest_, state.max_speed, state.between.max_speed});
+    turned_over_ = std::max({turned_over_, state.now.kinetic, state.now.dissipated - start_.now.dissipated,
+                             std::abs(state.now.potential - start_.now.potential)});
+    points_ = std::max(points_, state.points.count());
+}
+
+std::optional<Violation> Watch::judged(const char* invariant, double value, double allowed, const Snapshot& state,
+                                       const std::string& what) {
+    const double ratio = allowed > 0.0 ? value / allowed : value > 0.0 ? kInfinite : 0.0;
+    double& worst = worst_[invariant];
+    worst = std::max(worst, ratio);
+    if (ratio <= 1.0) return std::nullopt;
+    return Violation{invariant, ratio, state.now.step, state.now.time,
+                     fmt::format("{}: found {:.6g}, at most {:.6g} is allowed", what, value, allowed)};
+}
+
+std::optional<Violation> Watch::see(const Snapshot& state) {
+    if (auto broken = finite(state)) return broken;  // the others would compare with what is no number
+    note_extremes(state);
+    std::optional<Violation> first;
+    for (const auto check : {&Watch::positive, &Watch::mass, &Watch::momentum, &Watch::energy, &Watch::speed,
+                             &Watch::rest, &Watch::symmetry}) {
+        auto broken = (this->*check)(state);
+        if (!first) first = std::move(broken);
+    }
+    return first;
+}
+
+std::optional<Violation> Watch::finite(const Snapshot& state) {
+    Index bad = 0;
+    const auto look = [&](double value) { bad += !std::isfinite(value); };
+    state.points.each([&](const Column& column) {
+        for (const double value : column) look(value);
+    });
+    for (const NodeState& node : state.nodes)
+        for (const double value : {node.depth, node.surface, node.vx, node.vy, node.speed}) look(value);
+    for (const Status* status : {&state.between, &state.now})
+        for (const double value : numbers_of(*status)) look(value);
+    look(state.max_speed);
+    return judged("finite", static_cast<double>(bad), 0.0, state, "numbers that are not finite");
+}
+
+std::optional<Violation> Watch::positive(const Snapshot& state) {
+    Index bad = 0;
+    for (const double m : state.points.mass) bad += !(m > 0.0);
+    for (const NodeState& node : state.nodes) bad += node.wet ? !(node.depth > 0.0) : !(node.depth >= 0.0);
+    return judged("positive", static_cast<double>(bad), 0.0, state, "masses or depths that are not positive");
+}
+
+std::optional<Violation> Watch::mass(const Snapshot& state) {
+    const double error = std::abs(sum_of(state.points.mass) + state.between.mass_left - mass_);
+    const double allowed = 0.5 * kEps * mass_ * static_cast<double>(points_ + state.between.step);
+    return judged("mass", error, allowed, state, "mass lost or gained [kg]");
+}
+
+std::optional<Violation> Watch::momentum(const Snapshot& state) {
+    // A step rounds each point's velocity some ten times, half of them on the way to the nodes.
+    const double allowed = 16.0 * kEps * mass_ * fastest_ * static_cast<double>(state.between.step + 10);
+    std::optional<Violation> first;
+    for (const auto& [from, to] : {std::pair{&start_.between, &state.between}, std::pair{&start_.now, &state.now}}) {
+        const Budget left = budget(*from, *to);
+        const double residual = std::hypot(left.momentum_residual[0], left.momentum_residual[1]);
+        auto broken = judged("momentum", residual, allowed, state, "momentum that no force gave [kg m/s]");
+        if (!first) first = std::move(broken);
+    }
+    return first;
+}
+
+std::optional<Violation> Watch::energy(const Snapshot& state) {
+    if (!facts_.energy_law) return std::nullopt;
+    const Status &first = start_.now, &now = state.now;
+    const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
+                          (now.energy_left - first.energy_left);
+    // What leaves is booked with the bed of the nearest node, half a cell away at most.
+    const double booked = now.mass_left * facts_.gravity * (facts_.one_cell_drop + deepest_);
+    const double round_off = kEps * static_cast<double>(points_) * std::abs(first.potential);
+    const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
+    return judged("energy", growth, kEnergyShare * (at_hand_ + turned_over_) + booked + bends + round_off, state,
+                  "mechanical energy gained beyond the work of gravity [J]");
+}
+
+std::optional<Violation> Watch::speed(const Snapshot& state) {
+    const double wave = start_.max_speed + 2.0 * std::sqrt(facts_.gravity * deepest_);
+    const double drop = std::max(0.0, highest_ - lowest_);
+    const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
+    return judged("speed", state.max_speed, (1.0 + kConvergence) * bound, state, "speed beyond the energy line [m/s]");
+}
+
+std::optional<Violation> Watch::rest(const Snapshot& state) {
+    if (!facts_.claims.rests) return std::nullopt;
+    const Columns &a = start_.points, &b = state.points;
+    double fastest = 0.0;
+    for (Index p = 0; p < b.count(); ++p) fastest = std::max({fastest, std::abs(b.vx[p]), std::abs(b.vy[p])});
+    const bool moved = a.id == b.id && (a.x != b.x || a.y != b.y);  // what splits stands elsewhere and has not moved
+    return judged("rest", moved ? std::max(fastest, 1e-300) : fastest, 0.0, state, "speed of what should rest [m/s]");
+}
+
+std::optional<Violation> Watch::symmetry(const Snapshot& state) {
+    if (facts_.claims.mirror == Mirror::none) return std::nullopt;
+    const Index width = std::max(facts_.nodes_x, facts_.nodes_y);
+    std::map<Index, const NodeState*> at;
+    for (const NodeState& node : state.nodes) at[node.j * width + node.i] = &node;
+    double worst = 0.0;
+    const double depth = std::max(deepest_, 1e-300), speed = std::max(fastest_, 1e-300);
+    for (const NodeState& node : state.nodes) {
+        Index i = node.i, j = node.j;
+        double vx = node.vx, vy = node.vy;
+        if (facts_.claims.mirror == Mirror::x) i = facts_.nodes_x - 1 - i, vx = -vx;
+        if (facts_.claims.mirror == Mirror::y) j = facts_.nodes_y - 1 - j, vy = -vy;
+        if (facts_.claims.mirror == Mirror::diagonal) std::swap(i, j), std::swap(vx, vy);
+        const auto found = at.find(j * width + i);
+        const NodeState image = found == at.end() ? NodeState{} : *found->second;
+        // Momentum, not velocity: that of a node with next to no mass is the quotient of two round-offs.
+        worst = std::max({worst, std::abs(image.depth - node.depth) / depth,
+                          std::abs(image.depth * image.vx - node.depth * vx) / (depth * speed),
+                          std::abs(image.depth * image.vy - node.depth * vy) / (depth * speed)});
+    }
+    return judged("symmetry", worst, kMirrorError, state, "difference of mirrored nodes over the largest [1]");
+}
+
+}  // namespace frana::stress

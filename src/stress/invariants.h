@@ -1,0 +1,100 @@
+#pragma once
+// What no scene may break, checked after each step.
+#include <map>
+#include <optional>
+#include <string>
+
+#include "stress/draft.h"
+#include "stress/snapshot.h"
+
+namespace frana::stress {
+
+/// A broken invariant.
+struct Violation {
+    std::string invariant;  ///< one of invariant_names()
+    double value = 0.0;     ///< what was found, in units of what is allowed; infinite when no number tells
+    Index step = 0;
+    double time = 0.0;      ///< [s]
+    std::string text;       ///< what was found
+};
+
+const std::vector<std::string>& invariant_names();
+
+/// What of a scene decides on which invariants hold, and how well.
+struct Facts {
+    Claims claims;
+    double gravity = 9.81;       ///< [m/s^2]
+    Index nodes_x = 0, nodes_y = 0;
+    bool walls = false;
+    bool steep = true;
+    /// The model itself keeps V^2/2 + g z along a path: shallow terrain always (speeds along the map); steep terrain
+    /// where the Hessian that the scheme uses bends the path as the slopes do, and the flow is thin against the radius
+    /// of curvature (whose pressure is none of gravity). Elsewhere a path along a bent bed changes its speed along the
+    /// bed, by the factor `stretch` = sqrt(1 + B^2) between level and steepest.
+    bool energy_law = true;
+    double stretch = 1.0;
+    double release_depth = 0.0;  ///< largest of the release; nodes see it averaged over a cell and more [m]
+    double release_energy = 0.0; ///< that its depth alone could set free [J]
+    double one_cell_drop = 0.0;  ///< largest difference of the bed between neighbouring nodes [m]
+    double one_cell_bend = 0.0;  ///< largest second difference of the bed between neighbouring nodes [m]
+};
+Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
+
+/// Watches one run. Bounds (all from the start of the run):
+/// finite: every number of points, nodes and status.
+/// mass: sum of points and what left is the start's, to eps (points + steps) / 2, each sum and merger rounding once.
+/// positive: depth > 0 on wet nodes and >= 0 on all, mass > 0 of each point.
+/// momentum: points' momentum changes by the impulse booked, to round-off of mass times the largest speed so far a
+///   step. Between walls it holds by definition (Status::impulse).
+/// energy: K + E_p + E_left <= start + `kEnergyShare` of the energy at hand (start's kinetic, that of its depth) and
+///   turned over, where the model has an energy law. Truncation errs by a share of what is there, most at steps of the
+///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. Over a bed bent
+///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
+///   second differences of the bed. Not for the paper preset, whose explicit forces act on nodes of vanishing mass.
+/// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
+///   start, h the largest depth and drop to the lowest bed so far. stretch is 1 where the model has an energy law;
+///   elsewhere a bend may turn a speed along the map into `stretch` times that along the bed, which carries it up by
+///   stretch^2 of the height, to fall again. The energy line's v0^2 + 2 g drop alone is no bound of a fluid: the tip of
+///   a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what stays behind. kConvergence: that in turn is a bound
+///   along one direction; streams that converge from two may pass it a little (1 % has been seen), while what is
+///   unstable passes it by factors.
+/// rest: points' positions and velocities are those of the start, bit for bit (claimed scenes).
+/// symmetry: depth and momentum of mirrored nodes agree within `kMirrorError` of the largest (claimed scenes).
+class Watch {
+public:
+    static constexpr double kEnergyShare = 0.1;
+    static constexpr double kConvergence = 0.25;
+    static constexpr double kMirrorError = 1e-8;
+
+    Watch(const Facts& facts, const Snapshot& start);
+    /// The first invariant that the state breaks.
+    std::optional<Violation> see(const Snapshot& state);
+    /// Largest value so far of each invariant that has a number, in units of what is allowed.
+    const std::map<std::string, double>& worst() const { return worst_; }
+
+private:
+    std::optional<Violation> finite(const Snapshot& state);
+    std::optional<Violation> positive(const Snapshot& state);
+    std::optional<Violation> mass(const Snapshot& state);
+    std::optional<Violation> momentum(const Snapshot& state);
+    std::optional<Violation> energy(const Snapshot& state);
+    std::optional<Violation> speed(const Snapshot& state);
+    std::optional<Violation> rest(const Snapshot& state);
+    std::optional<Violation> symmetry(const Snapshot& state);
+    void note_extremes(const Snapshot& state);
+    std::optional<Violation> judged(const char* invariant, double value, double allowed, const Snapshot& state,
+                                    const std::string& what);
+
+    Facts facts_;
+    Snapshot start_;
+    double mass_ = 0.0;            ///< of the start, compensated [kg]
+    double highest_ = 0.0, lowest_ = 0.0;  ///< surface of the start, bed so far [m]
+    double deepest_ = 0.0;         ///< so far [m]
+    double fastest_ = 0.0;         ///< point or node so far [m/s]
+    double at_hand_ = 0.0;         ///< kinetic energy of the start, and what its depth alone could set free [J]
+    double turned_over_ = 0.0;     ///< largest kinetic and dissipated energy and change of potential so far [J]
+    Index points_ = 0;             ///< most so far
+    std::map<std::string, double> worst_;
+};
+
+}  // namespace frana::stress

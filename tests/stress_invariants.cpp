@@ -1,0 +1,217 @@
+// The stress run itself: cases are the same for the same seed, a broken state is seen, what fails is made small.
+#include <limits>
+
+#include "catch.h"
+#include "stress/campaign.h"
+#include "stress/cfl_map.h"
+#include "stress/draw.h"
+
+using namespace frana;
+using namespace frana::stress;
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A mound on level ground in the middle of 20 x 20 pixels of 1 m, mirror-symmetric in every way.
+Draft mound() {
+    const GridGeometry grid{20, 20, 0.0, 0.0, 1.0};
+    Draft draft;
+    Raster dem = Raster::filled(grid, 0.0), depth = Raster::filled(grid, Raster::nodata);
+    for (Index j = 7; j < 13; ++j)
+        for (Index i = 7; i < 13; ++i) depth.at(i, j) = 1.5;
+    draft.rasters = {{"dem.tif", dem}, {"depth.tif", depth}};
+    draft.keys = {{"terrain.dem", "\"dem.tif\""}, {"release.depth", "\"depth.tif\""}, {"time.end", "1.0"},
+                  {"material.bed.law", "\"coulomb\""}, {"material.bed.mu", "0.3"}};
+    draft.steps = 12;
+    return draft;
+}
+
+/// The mound as a draft that may not move: its friction holds a slope of 3.
+Draft resting_mound() {
+    Draft draft = mound();
+    draft.keys["material.bed.mu"] = "3.0";
+    draft.claims.rests = true;
+    return draft;
+}
+
+/// What is found broken when a run's state is falsified at step 5.
+std::string broken_by(const Draft& draft, const Falsify& change) {
+    const Verdict verdict = examine(draft, [&](Snapshot& state) {
+        if (state.now.step == 5) change(state);
+    });
+    REQUIRE_FALSE(verdict.refused);
+    if (!verdict.broken) return "";
+    CHECK(verdict.broken->step == 5);
+    return verdict.broken->invariant;
+}
+
+std::string broken_by(const Falsify& change) { return broken_by(mound(), change); }
+
+}  // namespace
+
+TEST_CASE("A seed draws the same cases again, another seed other ones", "[stress]") {
+    for (std::uint64_t n = 0; n < 50; ++n) {
+        CHECK(same(draw(7, n), draw(7, n)));
+        CHECK_FALSE(same(draw(7, n), draw(8, n)));
+        CHECK_FALSE(same(draw(7, n), draw(7, n + 1)));
+    }
+}
+
+TEST_CASE("Drawn rasters hold what a float32 GeoTIFF holds", "[stress]") {
+    for (std::uint64_t n = 0; n < 100; ++n)
+        for (const auto& [name, raster] : draw(3, n).rasters)
+            for (const double value : raster.values) REQUIRE((std::isnan(value) || single(value) == value));
+}
+
+TEST_CASE("Every drawn case is one that the program takes", "[stress]") {
+    for (std::uint64_t n = 0; n < 150; ++n) {
+        CAPTURE(n, toml_of(draw(5, n)));
+        REQUIRE_NOTHROW(scene_of(draw(5, n)));
+    }
+}
+
+TEST_CASE("A sound run breaks no invariant", "[stress]") {
+    const Verdict verdict = examine(mound());
+    REQUIRE_FALSE(verdict.broken);
+    CHECK(verdict.steps == 12);
+    for (const char* checked : {"mass", "momentum", "energy", "speed"}) CHECK(verdict.worst.count(checked) == 1);
+    CHECK_FALSE(examine(resting_mound()).broken);
+    for (const Mirror way : {Mirror::x, Mirror::y, Mirror::diagonal}) {
+        Draft draft = mound();
+        draft.claims.mirror = way;
+        const Verdict image = examine(draft);
+        REQUIRE_FALSE(image.broken);
+        CHECK(image.worst.at("symmetry") > 0.0);
+    }
+}
+
+TEST_CASE("A falsified state is seen, by the invariant that it breaks", "[stress]") {
+    CHECK(broken_by([](Snapshot&) {}) == "");
+    CHECK(broken_by([](Snapshot& s) { s.points.cxy[3] = kNaN; }) == "finite");
+    CHECK(broken_by([](Snapshot& s) { s.now.dissipated = kNaN; }) == "finite");
+    CHECK(broken_by([](Snapshot& s) { s.nodes[4].vx = kNaN; }) == "finite");
+    CHECK(broken_by([](Snapshot& s) { s.points.mass[2] = -s.points.mass[2]; }) == "positive");
+    CHECK(broken_by([](Snapshot& s) { s.nodes[4].depth = -1e-9; }) == "positive");
+    CHECK(broken_by([](Snapshot& s) { s.points.mass[2] *= 1.0 + 1e-9; }) == "mass");
+    CHECK(broken_by([](Snapshot& s) { s.between.mass_left = 1e-6; }) == "mass");
+    CHECK(broken_by([](Snapshot& s) { s.between.impulse[1] += 1e-3; }) == "momentum");
+    CHECK(broken_by([](Snapshot& s) { s.now.momentum[0] += 1e-3; }) == "momentum");
+    CHECK(broken_by([](Snapshot& s) { s.now.kinetic += 2e5; }) == "energy");
+    CHECK(broken_by([](Snapshot& s) { s.now.potential *= 1.8; }) == "energy");
+    // 2 sqrt(9.81 * 1.5) and a fall of 1.5 m: 9.4 m/s, and a quarter: 11.8
+    CHECK(broken_by([](Snapshot& s) { s.max_speed = 13.0; }) == "speed");
+}
+
+TEST_CASE("A point of a resting pile that moves by one bit is seen", "[stress]") {
+    const auto nudge = [](Snapshot& s) { s.points.x[0] = std::nextafter(s.points.x[0], 1e9); };
+    CHECK(broken_by(resting_mound(), nudge) == "rest");
+    CHECK(broken_by(resting_mound(), [](Snapshot& s) { s.points.vy[1] = 1e-300; }) == "rest");
+}
+
+TEST_CASE("A mirror image that is none is seen", "[stress]") {
+    for (const Mirror way : {Mirror::x, Mirror::y, Mirror::diagonal}) {
+        Draft draft = mound();
+        draft.claims.mirror = way;
+        CHECK(broken_by(draft, [](Snapshot& s) { s.nodes[2].depth += 1e-6; }) == "symmetry");
+        draft.rasters["depth.tif"].at(9, 7) += 0.125;
+        CHECK(examine(draft).broken->invariant == "symmetry");
+    }
+}
+
+TEST_CASE("A run that fails in the solver is a finding, a case that is none is refused", "[stress]") {
+    Draft draft = mound();
+    Scene scene = scene_of(draft);
+    scene.scheme.cfl = 50.0;  // far beyond what a case may ask for
+    const Verdict verdict = examine(scene, {}, 20);
+    REQUIRE(verdict.broken);
+    CHECK(verdict.broken->invariant == "numerics");
+    CHECK(verdict.broken->text.find("four cells") != std::string::npos);
+    draft.keys["release.velocity"] = "[1.0]";
+    CHECK(examine(draft).refused);
+}
+
+TEST_CASE("A failing case is shrunk to what makes it fail", "[stress]") {
+    // Planted: pits of more than 5 m count as a failure, where there is material, at step 2.
+    Draft draft = mound();
+    draft.steps = 40;
+    draft.keys["scheme.cfl"] = "0.3";
+    draft.keys["material.rheology.law"] = "\"newtonian\"";
+    draft.keys["material.rheology.viscosity"] = "10.0";
+    draft.rasters["dem.tif"].at(9, 9) = -8.0;
+    const auto judge = [](const Draft& d) {
+        Verdict verdict;
+        bool pit = false;
+        for (const double z : d.dem().values) pit = pit || z < -5.0;
+        double volume = 0.0;
+        for (const double h : d.rasters.at("depth.tif").values) volume += h > 0.0 ? h : 0.0;
+        if (pit && volume > 0.0 && d.steps > 2) verdict.broken = Violation{"planted", 1.0, 2, 0.0, ""};
+        return verdict;
+    };
+    const Shrunk shrunk = shrink(draft, judge);
+    REQUIRE(shrunk.verdict.broken);
+    CHECK(shrunk.verdict.broken->invariant == "planted");
+    CHECK(shrunk.draft.steps == 3);
+    CHECK(shrunk.draft.dem().geometry.size() <= 25);
+    CHECK_FALSE(shrunk.draft.has("scheme.cfl"));
+    CHECK_FALSE(shrunk.draft.has("material.rheology.law"));
+    CHECK_FALSE(shrunk.draft.has("material.bed.law"));
+    Index pixels = 0;
+    for (const double h : shrunk.draft.rasters.at("depth.tif").values) pixels += h > 0.0;
+    CHECK(pixels == 1);
+    CHECK(judge(shrunk.draft).broken);
+}
+
+TEST_CASE("A pile that is shrunk keeps what it rests by, an image its symmetry", "[stress]") {
+    const auto always = [](const Draft&) {
+        Verdict verdict;
+        verdict.broken = Violation{"planted", 1.0, 0, 0.0, ""};
+        return verdict;
+    };
+    Draft pile = resting_mound();
+    pile.keys["scheme.cfl"] = "0.3";
+    const Draft small = shrink(pile, always).draft;
+    CHECK(small.keys.at("material.bed.mu") == "3.0");
+    CHECK_FALSE(small.has("scheme.cfl"));
+    pile.keys = small.keys;
+    pile.steps = small.steps;
+    CHECK(same(small, pile));
+
+    Draft image = draw(1, 0);
+    for (std::uint64_t n = 1; image.claims.mirror != Mirror::diagonal; ++n) image = draw(1, n);
+    const Raster& dem = shrink(image, always).draft.dem();
+    for (Index j = 0; j < dem.geometry.ny; ++j)
+        for (Index i = 0; i < dem.geometry.nx; ++i) REQUIRE(dem.at(i, j) == dem.at(j, i));
+}
+
+TEST_CASE("A campaign says what it ran, the same again", "[stress]") {
+    Plan plan;
+    plan.seed = 11;
+    plan.scenes = 6;
+    plan.seconds = 1e9;
+    plan.most_shrunk = 0;
+    const auto ignore = [](const Failure&) {};
+    const Campaign campaign = run(plan, ignore), again = run(plan, ignore);
+    CHECK(campaign.scenes == 6);
+    CHECK(campaign.steps == again.steps);
+    REQUIRE(campaign.worst.count("mass") == 1);
+    CHECK(campaign.worst.at("momentum").value == again.worst.at("momentum").value);
+    CHECK(json_of(campaign).find("\"seed\": 11, \"first\": 0, \"scenes\": 6") != std::string::npos);
+}
+
+TEST_CASE("The map of stable steps rises until something breaks", "[stress]") {
+    const CflRow row = cfl_row({"default", Shape::quadratic, Transfer::tpic, 1}, 25);
+    CAPTURE(row.largest, row.first_broken);
+    CHECK(row.largest >= 0.5);  // the default scheme.cfl
+    CHECK((row.largest == cfl_ladder().back()) == row.first_broken.empty());
+    const std::string table = cfl_table({row});
+    CHECK(table.find("quadratic tpic") != std::string::npos);
+}
+
+TEST_CASE("The scenes of that map all have an energy law", "[stress]") {
+    for (const SuiteScene& entry : cfl_suite({})) {
+        const DepthAveraged simulation(entry.scene);
+        CAPTURE(entry.name);
+        CHECK(facts_of(entry.scene, simulation.flow(), {}).energy_law);
+    }
+}
