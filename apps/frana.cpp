@@ -160,6 +160,7 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
         ->check(CLI::NonNegativeNumber);
     command->add_option("--json", options.json, "write the results as JSON");
     command->add_option("--out", options.out, "folder for cases of failing scenes; default out/stress");
+    command->add_option("--known", options.known, "list of known failures (SEED SCENE INVARIANT): only others count");
     command->add_flag("--cfl-map", options.cfl_map, "find the largest stable scheme.cfl of each scheme instead");
     command->add_option("--figure", options.figure, "draw that map (PNG)");
     command->add_option("--case", options.case_file, "watch this case instead");

@@ -89,6 +89,7 @@ struct StressOptions {
     long long shrunk = 20;            ///< failures that are shrunk and saved; the others are counted
     std::filesystem::path json;       ///< file to write, or empty
     std::filesystem::path out = "out/stress";  ///< where cases of failing scenes go
+    std::filesystem::path known;      ///< list of failures that are known (lines: seed scene invariant), or empty
     bool cfl_map = false;             ///< instead: the largest stable scheme.cfl of each scheme
     std::filesystem::path figure;     ///< PNG of it, or empty
     std::filesystem::path case_file;  ///< instead: this case under watch, or empty

@@ -1,6 +1,10 @@
 // `frana stress`: random hostile scenes under watch; what fails is shrunk and saved as a case.
 #include <fmt/core.h>
 
+#include <fstream>
+#include <set>
+#include <sstream>
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "frana_commands.h"
@@ -60,6 +64,35 @@ void report(const Failure& failure, const StressOptions& options) {
                replay_options(shrunk.draft));
 }
 
+/// Failures by seed, scene and invariant, a line each; # begins a comment.
+std::set<std::string> known_failures(const std::filesystem::path& file) {
+    std::set<std::string> known;
+    if (file.empty()) return known;
+    std::ifstream in(file);
+    if (!in)
+        throw UserError(fmt::format("{}: cannot be read; expected lines of SEED SCENE INVARIANT; give another --known",
+                                    file.string()));
+    for (std::string line; std::getline(in, line);)
+        if (!line.empty() && line[0] != '#') known.insert(line);
+    return known;
+}
+
+/// Failures that the list of known ones does not hold; says of known ones when they are mended.
+Index new_failures(const Campaign& campaign, const StressOptions& options) {
+    std::set<std::string> known = known_failures(options.known);
+    Index found = 0;
+    for (const Failure& failure : campaign.failures)
+        if (known.erase(fmt::format("{} {} {}", options.seed, failure.n, failure.found.invariant)) == 0) ++found;
+    for (const std::string& mended : known) {
+        unsigned long long seed = 0, n = 0;
+        std::istringstream(mended) >> seed >> n;
+        const bool ran = seed == campaign.plan.seed && n >= campaign.plan.first &&
+                         n < campaign.plan.first + static_cast<unsigned long long>(campaign.scenes);
+        if (ran) fmt::print(stderr, "{}: {} does not fail any more; take the line out\n", options.known.string(), mended);
+    }
+    return found;
+}
+
 }  // namespace
 
 int stress_command(const StressOptions& options) {
@@ -77,7 +110,7 @@ int stress_command(const StressOptions& options) {
     fmt::print("{}", table_of(campaign));
     if (!options.json.empty()) write_text(options.json, json_of(campaign));
     if (interrupt.requested()) throw Interrupted("interrupted; the scenes so far are above");
-    return campaign.failures.empty() && campaign.refused == 0 ? 0 : 1;
+    return new_failures(campaign, options) == 0 && campaign.refused == 0 ? 0 : 1;
 }
 
 }  // namespace frana

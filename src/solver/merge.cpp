@@ -10,7 +10,11 @@ namespace {
 
 constexpr Index kSide = 2 * kTile;  ///< half-cell squares along a tile's edge
 /// Squares hold few points; of a crowd only so many are compared at a time.
-constexpr Index kMostCompared = 12;
+constexpr Index kMostCompared = 64;
+/// A point so near to a square's edge [half cells] is in no square: round-off must not choose one, or mirror images part.
+constexpr double kEdge = 1e-6;
+/// Unions whose costs differ by less than this share tie, for the same reason.
+constexpr double kTie = 1e-6;
 /// A union shorter than this share of the splitting length will not split at once.
 constexpr double kNoResplit = 0.95;
 
@@ -22,16 +26,23 @@ public:
         : i0_(2 * flow.grid.tile_i(flow.active.tile[n]) + 1), j0_(2 * flow.grid.tile_j(flow.active.tile[n]) + 1),
           c_(flow.columns), order_(order) {
         const Index begin = flow.active.begin[n], end = flow.active.begin[n + 1];
-        for (Index p = begin; p < end; ++p) ++end_of_[square(p)];
+        Index held = 0;
+        for (Index p = begin; p < end; ++p)
+            if (!on_edge(p)) ++end_of_[square(p)], ++held;
         for (Index s = 1; s < kSide * kSide; ++s) end_of_[s] += end_of_[s - 1];
-        for (Index p = end; p-- > begin;) order[--end_of_[square(p)]] = p;
+        for (Index p = end; p-- > begin;)
+            if (!on_edge(p)) order[--end_of_[square(p)]] = p;
         for (Index s = 0; s + 1 < kSide * kSide; ++s) end_of_[s] = end_of_[s + 1];
-        end_of_[kSide * kSide - 1] = end - begin;
+        end_of_[kSide * kSide - 1] = held;
     }
     const Index* points(Index s) const { return order_ + (s == 0 ? 0 : end_of_[s - 1]); }
     Index held(Index s) const { return end_of_[s] - (s == 0 ? 0 : end_of_[s - 1]); }
 
 private:
+    bool on_edge(Index p) const {
+        const auto near = [](double u) { return std::abs(u - std::round(u)) < kEdge; };
+        return near(2.0 * c_.x[p]) || near(2.0 * c_.y[p]);
+    }
     /// A point that the rounding of 2 x puts outside belongs to the nearest square.
     Index square(Index p) const {
         const Index i = static_cast<Index>(std::floor(2.0 * c_.x[p])) - i0_;
@@ -67,7 +78,7 @@ Pick cheapest(const Columns& c, const Index* points, Index count) {
                 second = std::min(second, cost);
             }
         }
-    return second <= best * (1.0 + 1e-9) ? Pick{} : pick;
+    return second <= best * (1.0 + kTie) ? Pick{} : pick;
 }
 
 }  // namespace
