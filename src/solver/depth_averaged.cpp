@@ -111,7 +111,7 @@ void DepthAveraged::advance(double until) {
     status_.step += 1;
     status_.time = dt >= until - status_.time ? until : status_.time + dt;
     status_.dt = dt;
-    if (adapts || points.left_count > 0) adapt_points(points.left_count > 0);
+    if (adapts || points.left_count > 0) adapt_points(adapts, points.left_count > 0);
     if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_kick); });
     arrive(points);
 }
@@ -154,12 +154,13 @@ NodeSums DepthAveraged::raise_surface() {
 }
 
 /// Every few steps points split where they spread; points that left are dropped; tiles are kept up to date.
-void DepthAveraged::adapt_points(bool points_left) {
+void DepthAveraged::adapt_points(bool deposit_follows, bool points_left) {
     const bool has_domains = !flow_.scheme.paper_pressure;
     const bool due = status_.step % kStepsBetweenSplits == 0;
     const std::vector<std::uint8_t> none;
     // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
     if (points_left) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
+    if (!deposit_follows) return;
     Index born = 0;
     if (has_domains && due) born = timed_("split", [&] { return splitter_.split(flow_); });
     if (born > 0 || drift_ > kDriftLimit || due) {

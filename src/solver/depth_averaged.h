@@ -77,7 +77,7 @@ private:
     void keep_sums(Archive& archive);
     void keep_nodes(Archive& archive);
     void keep_peaks(Archive& archive);
-    void adapt_points(bool points_left);
+    void adapt_points(bool deposit_follows, bool points_left);
     double longest_step() const;
     double step_length(double until) const;
     void book_kick(const KickSums& sums, double kick);

@@ -101,16 +101,19 @@ public:
         return total;
     }
 
-    /// Were the pull stronger by a billionth, friction would hold it still.
+    /// Were the pull stronger by a billionth, friction would hold it still. Where only a yield stress holds a node on a bent
+    /// bed, its gravity depends on the step (midpoint); the linearised pull does not grow with the slope alone: no promise.
     bool holds(const Flow& flow, Index tile) const override {
+        if constexpr (Terrain::kLinearised) return false;
         constexpr double kFirm = 1.0 + 1e-9;
         bool held = true;
         for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) {
             if (!held || !(flow.nodes.flags[k] & kMoving)) return;
             Node<double> node = prepared(flow, k);
             for (double* pull : {&node.ex, &node.ey, &node.push_x, &node.push_y}) *pull *= kFirm;
-            const Kicked<double> after = kicked(flow, typename Terrain::template Bed<double>(flow, k), node, 1.0);
-            held = after.vx == 0.0 && after.vy == 0.0;
+            const typename Terrain::template Bed<double> bed(flow, k);
+            const Kicked<double> after = kicked(flow, bed, node, 1.0);
+            held = after.vx == 0.0 && after.vy == 0.0 && rests_midway(flow, bed, node);
         });
         return held;
     }
@@ -271,6 +274,16 @@ private:
         const BedStateOf<Real> state{normal * cosine / kappa, max(n.depth * cosine, Real{} + 1e-9), kappa, cosine, g,
                                      flow.density};
         return braked(state, n, dx, dy, bed.bx, bed.by, max(Real{} + g, gravity), dt);
+    }
+
+    bool rests_midway(const Flow&, const GentleBed<double>&, const Node<double>&) const { return true; }
+    template <Curvature kCurvature, bool kLinear>
+    bool rests_midway(const Flow& flow, const SteepBed<double, kCurvature, kLinear>& bed, const Node<double>& n) const {
+        if constexpr (kCurvature == Curvature::none) return true;
+        const double g = flow.gravity, cosine = 1.0 / std::sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
+        const Drive<double> slope = bed.drive(n.ex, n.ey, cosine);
+        const auto [mx, my] = midpoint(bed, n, {g * slope.x, g * slope.y}, g, cosine, 1.0);
+        return mx == 0.0 && my == 0.0;
     }
 
     /// Velocity in the middle of the step, driven and braked by Coulomb friction: makes v.H.v second order.

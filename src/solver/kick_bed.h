@@ -48,14 +48,14 @@ struct SteepBed {
 };
 
 struct Gentle {
-    static constexpr bool kSteep = false;
+    static constexpr bool kSteep = false, kLinearised = false;
     template <class Real>
     using Bed = GentleBed<Real>;
 };
 
 template <Curvature kCurvature, bool kLinear>
 struct Steep {
-    static constexpr bool kSteep = true;
+    static constexpr bool kSteep = true, kLinearised = kLinear;
     template <class Real>
     using Bed = SteepBed<Real, kCurvature, kLinear>;
 };

@@ -235,7 +235,7 @@ private:
         meet_side(flow, p, gone_, sums);
         const double speed = std::hypot(vx, vy), m = c.mass[p];
         sums.max_shift = std::max(sums.max_shift, shift);
-        for (const double part : {vx, vy, g.cxx, g.cxy, g.cyx, g.cyy})
+        for (const double part : {vx, vy, g.vx, g.vy, g.cxx, g.cxy, g.cyx, g.cyy})
             sums.max_motion = std::max(sums.max_motion, std::abs(part));
         sums.max_speed = std::max(sums.max_speed, speed);
         sums.max_signal = std::max(sums.max_signal, speed + std::sqrt(flow.gravity * std::max(c.depth[p], 0.0)));
