@@ -46,7 +46,7 @@ public:
     }
 
 private:
-    /// Nodes that the passes walk.
+    /// Nodes that points touch: those that the passes walk while nothing sleeps.
     double nodes() const {
         const Flow& flow = simulation_.flow();
         Index groups = 0;

@@ -32,7 +32,7 @@ struct Cost {
     Index steps = 0;
     int threads = 1;
     double bytes_per_particle = 0.0;  ///< memory that grows with the points, sort buffers included
-    double nodes_per_particle = 0.0;  ///< nodes of the work list
+    double nodes_per_particle = 0.0;  ///< nodes that points touch
     std::uint64_t hash = 0;           ///< of all points at the end
 
     const PhaseCost& full() const { return phases.front(); }

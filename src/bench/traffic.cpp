@@ -56,7 +56,7 @@ Traffic traffic_of(const std::string& phase, const Flow& flow) {
     if (phase == "kick and friction") return kick(flow);
     if (phase == "depth") return depth(flow);
     if (phase == "filter") return filter(flow);
-    if (phase == "shoreline") return {0.0, 6.0};  // three sweeps of two loops over the flags; margins are few
+    if (phase == "shoreline") return {0.0, 6.0};  // flags, three sweeps; margins are few
     if (phase == "peaks") return peaks(flow);
     if (phase == "sort") return sort(flow);
     if (phase == "split") return {10.0 * kRead, 0.0};
