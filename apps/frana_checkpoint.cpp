@@ -130,7 +130,7 @@ void require_same(const fs::path& file, const CheckpointLabels& there, const Che
 
 CheckpointLabels checkpoint_labels(const Scene& scene, const CaseFile& file) {
     return {{"version", FRANA_VERSION},
-            {"precision", "double"},
+            {"precision", scene.scheme.precision == Precision::single ? "float" : "double"},
             {"build", fmt::format("{}, {}, march {}, commit {}", FRANA_BUILD_TYPE, FRANA_COMPILER, FRANA_ARCH,
                                   FRANA_COMMIT)},
             {"case", case_text(file)},

@@ -121,6 +121,9 @@ TEST_CASE("A kept state goes on with the same bits whatever the scheme", "[resum
     SECTION("the paper's choices") {
         check_resume(slide([](Scene& scene) { verify::set_preset(scene, "paper"); }), 1.5, 1, 1);
     }
+    SECTION("single precision") {
+        check_resume(slide([](Scene& scene) { scene.scheme.precision = Precision::single; }), 1.5, 1, 2);
+    }
     SECTION("cubic shapes") {
         check_resume(slide([](Scene& scene) { scene.scheme.shape = Shape::cubic; }), 1.5, 1, 1);
     }

@@ -171,6 +171,10 @@ TEST_CASE("A law needs its parameters and refuses those of others", "[case]") {
               .find("case.toml:10: material.rheology.yield_stress: found, but") == 0);
     CHECK(problem_of(least + "[scheme]\nflip_ratio = 0.9\n")
               .find("scheme.transfer = \"tpic\" does not use it") != std::string::npos);
+    CHECK(problem_of(least + "[scheme]\nprecision = \"float\"\nshape = \"cubic\"\n") ==
+          "case.toml:8: scheme.precision: found \"float\" with another preset, shape or transfer than the default; "
+          "expected \"double\", since only the default kernels have the other; remove it, or use the default preset, "
+          "shape and transfer");
     CHECK(problem_of(least + "[scheme]\nstill_level = 10\n").find("expected with paper only") !=
           std::string::npos);
     CHECK(problems_of(least + "[material.bed]\nlaw = \"manning\"\nmanning_n = 0.03\n").empty());

@@ -36,12 +36,13 @@ bool same(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 bool same_columns(const Columns& a, const Columns& b) {
     if (a.id != b.id) return false;
-    std::vector<const Column*> of_b;
-    b.each([&](const Column& column) { of_b.push_back(&column); });
+    std::vector<std::pair<const void*, std::size_t>> of_b;
+    b.each([&](const auto& column) { of_b.push_back({column.data(), column.size() * sizeof column[0]}); });
     std::size_t n = 0;
     bool equal = true;
-    a.each([&](const Column& column) {
-        equal = equal && std::memcmp(column.data(), of_b[n++]->data(), column.size() * sizeof(double)) == 0;
+    a.each([&](const auto& column) {
+        const auto [data, bytes] = of_b[n++];
+        equal = equal && bytes == column.size() * sizeof column[0] && std::memcmp(column.data(), data, bytes) == 0;
     });
     return equal;
 }
@@ -130,6 +131,11 @@ TEST_CASE("Sleep changes no bit with walls, a yield stress, or any shape and tra
         Scene scene = slide_into_deposit();
         for (double& vx : scene.particles.vx) vx = vx > 0.0 ? -14.0 : 0.0;
         CHECK(compare(scene, 130).most >= 20);
+    }
+    SECTION("single precision") {
+        Scene scene = slide_into_deposit();
+        scene.scheme.precision = Precision::single;
+        check(scene, 240);
     }
     SECTION("cubic") {
         Scene scene = slide_into_deposit();

@@ -31,6 +31,20 @@ typedef std::int32_t Int4 __attribute__((vector_size(16)));
     else std::memcpy(p, &value, sizeof(double) * static_cast<std::size_t>(lanes));
 }
 
+/// The same for numbers that memory holds in single precision.
+typedef float Float4 __attribute__((vector_size(16)));
+[[gnu::always_inline]] inline Double4 load(const float* p, int lanes) {
+    Float4 value = {};
+    if (lanes == 4) std::memcpy(&value, p, sizeof value);
+    else std::memcpy(&value, p, sizeof(float) * static_cast<std::size_t>(lanes));
+    return __builtin_convertvector(value, Double4);
+}
+[[gnu::always_inline]] inline void store(float* p, Double4 value, int lanes) {
+    const Float4 narrow = __builtin_convertvector(value, Float4);
+    if (lanes == 4) std::memcpy(p, &narrow, sizeof narrow);
+    else std::memcpy(p, &narrow, sizeof(float) * static_cast<std::size_t>(lanes));
+}
+
 /// A pair of numbers of one node.
 typedef double Double2 __attribute__((vector_size(16)));
 

@@ -36,7 +36,9 @@ private:
 };
 
 /// One quantity of all points.
-using Column = std::vector<double, Staggered<double>>;
+template <class Real>
+using ColumnOf = std::vector<Real, Staggered<Real>>;
+using Column = ColumnOf<double>;
 
 /// Sets the size; grows by no more than an eighth beyond what is asked for.
 template <class Array>

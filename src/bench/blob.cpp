@@ -74,6 +74,7 @@ Scene blob_scene(const Blob& blob) {
     if (blob.friction) scene.bed_law = bed::Voellmy{0.2, 500.0};
     if (blob.rheology) scene.rheology = rheology::Bingham{2000.0, 50.0};
     scene.scheme.sleep = blob.sleeps;
+    if (blob.single) scene.scheme.precision = Precision::single;
     Seeds& seeds = scene.particles;
     const std::vector<Place> places = nearest_places(blob.particles);
     const Index front = first_moving(places, blob.resting);

@@ -12,6 +12,7 @@ struct Blob {
     bool topography = true;      ///< an undulating slope of 27 degrees; otherwise level ground
     double resting = 0.0;        ///< share of the points, those behind a line across the blob, that start at rest
     bool sleeps = true;          ///< scheme.sleep
+    bool single = false;         ///< scheme.precision = "float"
 };
 
 /// Cells of 5 m, up to 4 m of material, 8 m/s downhill and up to 3 m/s outwards. The blob stands on the same tiles of

@@ -33,6 +33,8 @@ std::vector<Gate> gates(const Report& report) {
         {"no friction, no rheology over full step", 0.75, 0.6},
         {"90 % of the material at rest: asleep over awake", 0.25, 0.12},
         {"memory per particle, double [B]", 200, 120},
+        {"float, one thread: ns x triad GB/s [B]", 450, 280},
+        {"memory per particle, float [B]", 110, 60},
     };
     if (full) list[0].measured = full->cost.ns(full->cost.full()) * report.calibration.triad_GBps.at(1);
     list[1].measured = speed_up(full, find(report, "depth_averaged", reference, 2));
@@ -42,6 +44,10 @@ std::vector<Gate> gates(const Report& report) {
     list[5].measured = ratio(find(report, "depth_averaged_resting", reference, 1),
                              find(report, "depth_averaged_resting_awake", reference, 1));
     if (full) list[6].measured = full->cost.bytes_per_particle;
+    if (const Timed* single = find(report, "depth_averaged", reference, 1, "float")) {
+        list[7].measured = single->cost.ns(single->cost.full()) * report.calibration.triad_GBps.at(1);
+        list[8].measured = single->cost.bytes_per_particle;
+    }
     return list;
 }
 
@@ -50,7 +56,7 @@ bool same_bits(const Report& report) {
         if (entry.second != report.hashes.begin()->second) return false;
     for (const Timed& a : report.timed)
         for (const Timed& b : report.timed)
-            if (a.model == b.model && a.cost.particles == b.cost.particles && a.cost.hash != b.cost.hash) return false;
+            if (a.model == b.model && a.precision == b.precision && a.cost.particles == b.cost.particles && a.cost.hash != b.cost.hash) return false;
     const Timed* asleep = find(report, "depth_averaged_resting", 0, 1);
     const Timed* awake = find(report, "depth_averaged_resting_awake", 0, 1);
     return !asleep || !awake || asleep->cost.hash == awake->cost.hash;

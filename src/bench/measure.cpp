@@ -103,7 +103,7 @@ Cost measure(const Scene& scene, const Plan& plan) { return Meter(scene, plan).r
 std::uint64_t hash_of(const Columns& columns) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     const auto mix = [&](std::uint64_t bits) { hash = (hash ^ bits) * 0x100000001b3u; };
-    columns.each([&](const Column& column) {
+    columns.each([&](const auto& column) {
         for (const double value : column) {
             std::uint64_t bits;
             std::memcpy(&bits, &value, sizeof bits);

@@ -107,9 +107,10 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
     report.calibration = calibrate(plan);
 
     const auto time = [&](const std::string& model, const Scene& scene, int threads) {
+        const char* precision = scene.scheme.precision == Precision::single ? "float" : "double";
         const Index particles = scene.particles.count();
         say(fmt::format("{}: {} particles, {} threads", model, particles, threads));
-        report.timed.push_back({model, "double", measure(scene, plan_for(options, model, particles, threads))});
+        report.timed.push_back({model, precision, measure(scene, plan_for(options, model, particles, threads))});
     };
     for (const Index particles : options.particles) {
         if (options.quick && particles > kReference) continue;
@@ -118,16 +119,22 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
         const Scene scene = blob_scene(blob);
         for (const int threads : options.threads) time("depth_averaged", scene, threads);
     }
+    Blob single;
+    single.particles = reference_particles(options);
+    single.single = true;
+    for (const int threads : options.threads) time("depth_averaged", blob_scene(single), threads);
     for (const Variant& variant : variants(options)) time(variant.model, blob_scene(variant.blob), 1);
     say("the same run with different numbers of threads");
     report.hashes = hashes(options);
     return report;
 }
 
-const Timed* find(const Report& report, const std::string& model, Index particles, int threads) {
+const Timed* find(const Report& report, const std::string& model, Index particles, int threads,
+                  const std::string& precision) {
     for (const Timed& timed : report.timed) {
         const bool counted = particles == 0 || timed.cost.particles == particles;
-        if (counted && timed.model == model && timed.cost.threads == threads) return &timed;
+        if (counted && timed.model == model && timed.precision == precision && timed.cost.threads == threads)
+            return &timed;
     }
     return nullptr;
 }

@@ -21,7 +21,7 @@ struct Options {
 /// with Voellmy, Bingham and topography; others have a suffix.
 struct Timed {
     std::string model;
-    std::string precision = "double";
+    std::string precision = "double";  ///< or "float": of what points carry
     Cost cost;
 };
 
@@ -36,8 +36,9 @@ struct Report {
 /// that cannot be.
 Report run(const Options& options, const std::function<void(const std::string&)>& say);
 
-/// The timed scene with that model, particles (0: any) and threads, or nullptr.
-const Timed* find(const Report& report, const std::string& model, Index particles, int threads);
+/// The timed scene with that model, particles (0: any), threads and precision, or nullptr.
+const Timed* find(const Report& report, const std::string& model, Index particles, int threads,
+                  const std::string& precision = "double");
 
 /// Number of particles that variants and gates refer to: the one of the options that is nearest to 500 000.
 Index reference_particles(const Options& options);

@@ -5,6 +5,10 @@ namespace {
 
 constexpr double kRead = 8.0, kWrite = 16.0;  ///< a double; an update costs the same as a write
 constexpr double kNode4 = 32.0;               ///< Deposit or Motion, read
+constexpr double kPlaced = 3.0, kHeld = 11.0; ///< numbers of a point: place and mass; what it carries (Carried)
+
+/// Share of a double that a number takes which points carry.
+double held(const Flow& flow) { return flow.columns.single ? 0.5 : 1.0; }
 
 double hessian(const Flow& flow) { return flow.bed.hxx ? 3.0 * kRead : 0.0; }
 double slopes(const Flow& flow) { return flow.steep ? 2.0 * kRead : 0.0; }
@@ -12,11 +16,12 @@ double slopes(const Flow& flow) { return flow.steep ? 2.0 * kRead : 0.0; }
 Traffic deposit(const Flow& flow) {
     const double force = flow.nodes.force ? 2.0 : 0.0;  // numbers a node
     // Clearing, scattering, and the sums that are held against the points'.
-    return {14.0 * kRead, 2.0 * (2.0 * kNode4 + (force + 1.0) * kWrite) + kNode4};
+    return {(kPlaced + kHeld * held(flow)) * kRead, 2.0 * (2.0 * kNode4 + (force + 1.0) * kWrite) + kNode4};
 }
 
-Traffic gather(const Flow&) {
-    const double moved = 6.0 * kWrite, replaced = 7.0 * kWrite, gone = 3.0;  // place and domain; v, grad v, depth
+Traffic gather(const Flow& flow) {
+    const double moved = (2.0 + 4.0 * held(flow)) * kWrite, gone = 3.0;  // place and domain
+    const double replaced = 7.0 * held(flow) * kWrite;                   // v, grad v, depth
     return {moved + replaced + kRead + gone, kNode4 + 1.0};
 }
 
@@ -41,9 +46,9 @@ Traffic filter(const Flow&) {
 
 Traffic peaks(const Flow& flow) { return {0.0, 3.0 * kRead + 5.0 * kRead + slopes(flow) + hessian(flow)}; }
 
-Traffic sort(const Flow&) {
+Traffic sort(const Flow& flow) {
     const double keys = 2.0 * kRead + 0.5 * (kWrite + 2.0 * kRead + kWrite);
-    const double permuted = 15.0 * (1.5 * kRead + kWrite);  // 14 columns and the id, each by the order
+    const double permuted = (kPlaced + kHeld * held(flow) + 1.0) * (1.5 * kRead + kWrite);  // and the id, by the order
     return {keys + permuted, 0.0};
 }
 
@@ -59,7 +64,7 @@ Traffic traffic_of(const std::string& phase, const Flow& flow) {
     if (phase == "shoreline") return {0.0, 6.0};  // flags, three sweeps; margins are few
     if (phase == "peaks") return peaks(flow);
     if (phase == "sort") return sort(flow);
-    if (phase == "split") return {10.0 * kRead, 0.0};
+    if (phase == "split") return {(2.0 + 8.0 * held(flow)) * kRead, 0.0};
     if (phase == "merge") return {4.0 * kRead + 2.0 * kWrite + 2.0, 0.0};
     return {};
 }

@@ -179,6 +179,11 @@ void CaseReader::check_meaning() {
         wrong("scheme.transfer", "found \"apic\" with scheme.shape = \"linear\"",
               "expected \"tpic\", \"flip\" or \"pic\", since apic here is the one of quadratic shapes",
               "choose one of them, or scheme.shape = \"quadratic\"");
+    if (chose("scheme.precision", "float") &&
+        !(chose("scheme.preset", "default") && chose("scheme.shape", "quadratic") && chose("scheme.transfer", "tpic")))
+        wrong("scheme.precision", "found \"float\" with another preset, shape or transfer than the default",
+              "expected \"double\", since only the default kernels have the other",
+              "remove it, or use the default preset, shape and transfer");
     if (case_.given("output.film") && !chose("output.film", "none") && !misread_.count("output.formats") &&
         !contains(case_.words("output.formats"), "vtk"))
         wrong("output.film", "found \"" + case_.word("output.film") + "\" without \"vtk\" in output.formats",

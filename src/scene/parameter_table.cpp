@@ -130,6 +130,9 @@ void add_scheme(Table& table) {
     table.push_back(paper(choice("scheme.transfer", {"tpic", "apic", "flip", "pic"}, "tpic",
                                  "how velocity passes between particles and grid"),
                           text("pic")));
+    table.push_back(choice("scheme.precision", {"double", "float"}, "double",
+                           "how memory holds what particles carry (velocity, gradient, domain, depth); float needs "
+                           "quadratic shapes, tpic and the default preset"));
     table.push_back(with(number("scheme.flip_ratio", "1", fraction, 0.99, "share of FLIP, the rest is PIC"),
                          "scheme.transfer", {"flip"}));
     table.push_back(

@@ -20,6 +20,7 @@ enum class Curvature { none, inertia, full };
 enum class Sides { open, wall };
 enum class Transfer { tpic, apic, flip, pic };
 enum class Shape { linear, quadratic, cubic };
+enum class Precision { full, single };  ///< of what points carry: float64, float32
 
 /// Bed laws: shear stress between the flow and its bed (law/bed_law.h has the formulas).
 namespace bed {
@@ -51,6 +52,7 @@ struct Scheme {
     std::string preset = "default";
     Shape shape = Shape::quadratic;
     Transfer transfer = Transfer::tpic;
+    Precision precision = Precision::full;
     double flip_ratio = 0.99;          ///< share of FLIP in transfer "flip" [1]
     double cfl = 0.5;                  ///< fraction of a cell per step [1]
     double filter = 1.0;               ///< strength of the surface filter, 0 = off [1]

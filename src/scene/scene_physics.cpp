@@ -55,6 +55,7 @@ Scheme scheme_of(const CaseFile& file) {
     scheme.preset = file.word("scheme.preset");
     scheme.shape = shape_of(file.word("scheme.shape"));
     scheme.transfer = transfer_of(file.word("scheme.transfer"));
+    scheme.precision = file.word("scheme.precision") == "float" ? Precision::single : Precision::full;
     scheme.flip_ratio = value("flip_ratio");
     scheme.cfl = value("cfl");
     scheme.filter = value("filter");

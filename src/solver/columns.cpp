@@ -3,11 +3,46 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
+#include <variant>
 
 #include "base/error.h"
 
 namespace frana {
+namespace {
+
+/// All arrays of the points, to be shared out among threads.
+struct Fields {
+    explicit Fields(Columns& columns) {
+        columns.each([&](auto& column) { list[static_cast<std::size_t>(count++)] = &column; });
+        list[static_cast<std::size_t>(count++)] = &columns.id;
+    }
+    auto at(Index f) const { return list[static_cast<std::size_t>(f)]; }
+    std::array<std::variant<Column*, ColumnOf<float>*, std::vector<std::int64_t>*>, 15> list;
+    Index count = 0;
+};
+
+/// field[p] becomes field[order[p]], p < kept; `scratch` is room for it.
+template <class Field>
+void permute_field(Field& field, const std::int32_t* order, Index kept, Column& scratch) {
+    using Number = typename Field::value_type;
+    static_assert(sizeof(Number) <= sizeof(double), "the scratch is too narrow");
+    resize_sparingly(scratch, static_cast<std::size_t>(kept));
+    const Number* from = field.data();
+    if constexpr (std::is_same_v<Field, Column>) {
+        for (Index p = 0; p < kept; ++p) scratch[p] = from[order[p]];
+        field.swap(scratch);
+    } else {
+        char* const room = reinterpret_cast<char*>(scratch.data());
+        constexpr std::size_t size = sizeof(Number);
+        for (Index p = 0; p < kept; ++p) std::memcpy(room + static_cast<std::size_t>(p) * size, from + order[p], size);
+        field.resize(static_cast<std::size_t>(kept));
+        std::memcpy(field.data(), room, static_cast<std::size_t>(kept) * size);
+    }
+}
+
+}  // namespace
 
 void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
                       ActiveTiles& active) {
@@ -44,25 +79,18 @@ void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<
         if (key[p] >= 0) order_[tile_count_[key[p]]++] = static_cast<std::int32_t>(p);
     for (const Index tile : used_) tile_count_[tile] = 0;
 
-    // Each thread permutes one field at a time: scattering all fields in one loop keeps too many streams open.
-    const std::int32_t* order = order_.data();
-    std::array<Column*, 14> fields{};
-    std::size_t found = 0;
-    columns.each([&](Column& column) { fields.at(found++) = &column; });
-    scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(omp_get_max_threads())));
-#pragma omp parallel for schedule(dynamic, 1) if (count > 4096)
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-        Column& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
-        resize_sparingly(scratch, static_cast<std::size_t>(kept));
-        const double* from = fields[f]->data();
-        double* to = scratch.data();
-        for (Index p = 0; p < kept; ++p) to[p] = from[order[p]];
-        fields[f]->swap(scratch);
-    }
-    resize_sparingly(id_scratch_, static_cast<std::size_t>(kept));
-    for (Index p = 0; p < kept; ++p) id_scratch_[p] = columns.id[order[p]];
-    columns.id.swap(id_scratch_);
+    permute(columns, kept);
     list_tiles(grid, active);
+}
+
+/// Each thread permutes one field at a time: scattering all fields in one loop keeps too many streams open.
+void TileSorter::permute(Columns& columns, Index kept) {
+    const Fields fields(columns);
+    scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(omp_get_max_threads())));
+#pragma omp parallel for schedule(dynamic, 1) if (kept > 4096)
+    for (Index f = 0; f < fields.count; ++f)
+        std::visit([&](auto* field) { permute_field(*field, order_.data(), kept, scratch_[omp_get_thread_num()]); },
+                   fields.at(f));
 }
 
 /// Tiles that points leave or enter do not sleep.
@@ -90,15 +118,15 @@ void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, A
     }
     active.begin[active.count()] = kept;
     const std::int32_t* order = order_.data();
-    std::array<Column*, 14> fields{};
-    std::size_t found = 0;
-    columns.each([&](Column& column) { fields.at(found++) = &column; });
+    const Fields fields(columns);
 #pragma omp parallel for schedule(dynamic, 1) if (kept > 4096)
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-        double* of = fields[f]->data();
-        for (Index p = 0; p < kept; ++p) of[p] = of[order[p]];  // in place: order[p] >= p
-    }
-    for (Index p = 0; p < kept; ++p) columns.id[p] = columns.id[order[p]];
+    for (Index f = 0; f < fields.count; ++f)
+        std::visit(
+            [&](auto* field) {
+                auto* of = field->data();
+                for (Index p = 0; p < kept; ++p) of[p] = of[order[p]];  // in place: order[p] >= p
+            },
+            fields.at(f));
     columns.resize(kept);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The material points of the depth-averaged model: one array per quantity, sorted by tile.
 #include <array>
+#include <type_traits>
 #include <vector>
 
 #include "base/staggered.h"
@@ -14,42 +15,70 @@ Index allocated(const Array& array) {
     return static_cast<Index>(array.capacity() * sizeof(typename Array::value_type));
 }
 
-/// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI.
-struct Columns {
-    Column x, y;                ///< position [cells]
-    Column vx, vy;              ///< velocity [m/s], half a step behind the position
-    Column cxx, cxy, cyx, cyy;  ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
-    Column mass;                ///< [kg]
-    Column r1x, r1y, r2x, r2y;  ///< edges of the point's domain [cells]
-    Column depth;               ///< sampled from the nodes (paper preset: carried) [m]
-    std::vector<std::int64_t> id;            ///< constant through sorting; children of a split get new ones
+/// What a point carries from node to node, in double or single precision.
+template <class Real>
+struct Carried {
+    ColumnOf<Real> vx, vy;                ///< velocity [m/s], half a step behind the position
+    ColumnOf<Real> cxx, cxy, cyx, cyy;    ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
+    ColumnOf<Real> r1x, r1y, r2x, r2y;    ///< edges of the point's domain [cells]
+    ColumnOf<Real> depth;                 ///< sampled from the nodes (paper preset: carried) [m]
+
+    template <class Self, class Visit>
+    static void each(Self& s, Visit&& visit) {
+        for (auto* column : {&s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.r1x, &s.r1y, &s.r2x, &s.r2y, &s.depth})
+            visit(*column);
+    }
+};
+
+/// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI. Positions and masses
+/// are always in double precision: a step moves a point by little, and mass is exact.
+struct Columns : Carried<double> {
+    Column x, y;           ///< position [cells]
+    Column mass;           ///< [kg]
+    Carried<float> narrow; ///< with scheme.precision = "float" instead of the base's columns, which are empty then
+    std::vector<std::int64_t> id;  ///< constant through sorting; children of a split get new ones
+    bool single = false;   ///< what points carry is in `narrow`
 
     Index count() const { return static_cast<Index>(x.size()); }
 
-    /// The one list of floating-point columns: sorting and growing walk it.
-    template <class Visit>
-    void each(Visit&& visit) {
-        for (auto* column : all(*this)) visit(*column);
+    template <class Real>
+    Carried<Real>& carried() {
+        if constexpr (std::is_same_v<Real, float>) return narrow;
+        else return *this;
     }
-    template <class Visit>
-    void each(Visit&& visit) const {
-        for (auto* column : all(*this)) visit(*column);
+    template <class Real>
+    const Carried<Real>& carried() const {
+        if constexpr (std::is_same_v<Real, float>) return narrow;
+        else return *this;
     }
+    /// Calls work(Real{}), Real being what points carry: a choice made once for a loop over points.
+    template <class Work>
+    auto with_real(Work&& work) const {
+        return single ? work(float{}) : work(double{});
+    }
+
+    /// The one list of floating-point columns in use: sorting and growing walk it.
+    template <class Visit>
+    void each(Visit&& visit) { each_of(*this, visit); }
+    template <class Visit>
+    void each(Visit&& visit) const { each_of(*this, visit); }
     Index bytes() const {
         Index sum = allocated(id);
-        each([&](const Column& column) { sum += allocated(column); });
+        each([&](const auto& column) { sum += allocated(column); });
         return sum;
     }
     void resize(Index count) {
-        each([&](Column& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
+        each([&](auto& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
         resize_sparingly(id, static_cast<std::size_t>(count));
     }
 
 private:
-    template <class Self>
-    static auto all(Self& s) -> std::array<decltype(&s.x), 14> {
-        return {&s.x, &s.y, &s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.mass, &s.r1x, &s.r1y, &s.r2x, &s.r2y,
-                &s.depth};
+    template <class Self, class Visit>
+    static void each_of(Self& s, Visit& visit) {
+        visit(s.x), visit(s.y), visit(s.mass);
+        if (s.single) Carried<float>::each(s.narrow, visit);
+        else Carried<double>::each(static_cast<std::conditional_t<std::is_const_v<Self>, const Carried<double>,
+                                                                  Carried<double>>&>(s), visit);
     }
 };
 
@@ -65,19 +94,19 @@ public:
     void list_tiles(const TileGrid& grid, ActiveTiles& active);
     /// Memory that grows with the points [bytes].
     Index bytes() const {
-        Index sum = allocated(key_) + allocated(order_) + allocated(id_scratch_);
+        Index sum = allocated(key_) + allocated(order_);
         for (const Column& column : scratch_) sum += allocated(column);
         return sum;
     }
 
 private:
     void wake(Index count, ActiveTiles& active);
+    void permute(Columns& columns, Index kept);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile
     std::vector<Index> tile_count_;   ///< per tile of the domain; only entries in `used_` are non-zero
     std::vector<Index> used_;
-    std::vector<Column> scratch_;     ///< one per thread: columns are permuted one by one and change places with it
-    std::vector<std::int64_t> id_scratch_;
+    std::vector<Column> scratch_;     ///< one per thread: columns are permuted one by one through it
 };
 
 }  // namespace frana

@@ -44,8 +44,9 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
       rest_fraction_(scene.rest_fraction) {
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
+    flow_.columns.single = scene.scheme.precision == Precision::single;
     if (start == Start::kept) return;
-    place(scene.particles);
+    flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
     if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear)
         fit_ = fit_masses(flow_, *scene.still_surface);
@@ -57,23 +58,25 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
 }
 
 /// Seeds become columns: positions in cells, square domains, sorted by tile.
+template <class Real>
 void DepthAveraged::place(const Seeds& seeds) {
     Columns& c = flow_.columns;
+    Carried<Real>& held = c.carried<Real>();
     const GridGeometry& g = flow_.grid.geometry();
     c.resize(seeds.count());
     double mass = 0.0;
     for (Index p = 0; p < seeds.count(); ++p) {
         c.x[p] = (seeds.x[p] - g.x0) / g.cell;
         c.y[p] = (seeds.y[p] - g.y0) / g.cell;
-        c.vx[p] = seeds.vx[p];
-        c.vy[p] = seeds.vy[p];
+        held.vx[p] = static_cast<Real>(seeds.vx[p]);
+        held.vy[p] = static_cast<Real>(seeds.vy[p]);
         c.mass[p] = seeds.volume[p] * flow_.density;
-        c.r1x[p] = c.r2y[p] = seeds.size[p] / g.cell;
-        c.depth[p] = seeds.depth[p];
+        held.r1x[p] = held.r2y[p] = static_cast<Real>(seeds.size[p] / g.cell);
+        held.depth[p] = static_cast<Real>(seeds.depth[p]);
         c.id[p] = p;
         centre_ += c.mass[p] * Vec2(c.x[p], c.y[p]);
         mass += c.mass[p];
-        signal_ = std::max(signal_, std::hypot(c.vx[p], c.vy[p]));
+        signal_ = std::max(signal_, std::hypot(seeds.vx[p], seeds.vy[p]));
     }
     status_.max_speed = signal_;
     if (mass > 0.0) centre_ /= mass;
@@ -167,8 +170,8 @@ void DepthAveraged::adapt_points(bool deposit_follows, bool points_left) {
         timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, none, flow_.active); });
         drift_ = 0.0;
     }
-    if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_); }) > 0)
-        timed_("sort", [&] { sorter_.drop(flow_.columns, merger_->gone(), flow_.active); });
+    if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_, transfer_->gone()); }) > 0)
+        timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
 }
 
 /// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs
@@ -216,7 +219,8 @@ void DepthAveraged::require_sound(const PointSums& sums) const {
         "step {}, t = {:.6g} s, dt = {:.3g} s: the point at ({:.6g}, {:.6g}) has depth {:.3g} m and would move more than "
         "four cells in one step or is not finite; reduce scheme.cfl (now {}) or look at the terrain there",
         status_.step, status_.time, status_.dt, g.x0 + flow_.columns.x[p] * g.cell, g.y0 + flow_.columns.y[p] * g.cell,
-        flow_.columns.depth[p], flow_.scheme.cfl));
+        flow_.columns.with_real([&](auto real) { return double{flow_.columns.carried<decltype(real)>().depth[p]}; }),
+        flow_.scheme.cfl));
 }
 
 bool DepthAveraged::at_rest() const {

@@ -69,6 +69,7 @@ public:
     const std::optional<MassFit>& mass_fit() const { return fit_; }
 
 private:
+    template <class Real>
     void place(const Seeds& seeds);
     void level_points(double level);
     void arrive(const PointSums& points);

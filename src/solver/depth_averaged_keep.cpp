@@ -4,6 +4,8 @@
 // else nodes have follows from the deposit.
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "solver/depth_averaged.h"
 
 namespace frana {
@@ -11,8 +13,8 @@ namespace {
 
 constexpr Index kNodes = kTile * kTile;  ///< of a tile
 
-constexpr const char* kColumnNames[] = {"x",   "y",    "vx",  "vy",  "cxx", "cxy", "cyx",
-                                        "cyy", "mass", "r1x", "r1y", "r2x", "r2y", "depth"};
+constexpr const char* kColumnNames[] = {"x",   "y",   "mass", "vx",  "vy",  "cxx", "cxy",
+                                        "cyx", "cyy", "r1x",  "r1y", "r2x", "r2y", "depth"};
 
 UserError misfit(const char* what) {
     return UserError(fmt::format("the kept state does not fit this case: {}; run without --resume", what));
@@ -27,6 +29,17 @@ void require_whole(const ActiveTiles& active, const TileGrid& grid, Index points
         sound = active.tile[n] >= 0 && active.tile[n] < grid.tiles() && active.begin[n] <= active.begin[n + 1] &&
                 (n == 0 || active.tile[n - 1] < active.tile[n]);
     if (!sound) throw misfit("its tiles are not those of the points");
+}
+
+void keep_column(Archive& archive, const char* name, Column& column) { archive.array(name, column); }
+
+/// Every float is a double.
+void keep_column(Archive& archive, const char* name, ColumnOf<float>& column) {
+    Column wide(column.begin(), column.end());
+    archive.array(name, wide);
+    if (!archive.loading()) return;
+    column.resize(wide.size());
+    std::transform(wide.begin(), wide.end(), column.begin(), [](double value) { return static_cast<float>(value); });
 }
 
 /// `components` numbers at every node of the tiles; at(storage index) is where they lie.
@@ -68,12 +81,12 @@ void DepthAveraged::keep_points(Archive& archive) {
     const Archive::Part part(archive, "points");
     Columns& c = flow_.columns;
     std::size_t n = 0;
-    c.each([&](Column& column) { archive.array(kColumnNames[n++], column); });
+    c.each([&](auto& column) { keep_column(archive, kColumnNames[n++], column); });
     archive.array("id", c.id);
     archive.array("tile", flow_.active.tile);
     archive.array("begin", flow_.active.begin);
     if (!archive.loading()) return;
-    c.each([&](Column& column) {
+    c.each([&](const auto& column) {
         if (column.size() != c.id.size()) throw misfit("its columns differ in length");
     });
     require_whole(flow_.active, flow_.grid, c.count());

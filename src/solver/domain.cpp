@@ -6,7 +6,7 @@ namespace frana {
 
 Gradient spanned(const Gradient& c, double r1x, double r1y, double r2x, double r2y) {
     constexpr double least = 1.0 / 16.0;  // [cells]
-    const Moments s = Moments::of(r1x, r1y, r2x, r2y);
+    const Moments s = Moments::of({r1x, r1y, r2x, r2y});
     const double half = 0.5 * (s.xx - s.yy), narrow = 0.5 * (s.xx + s.yy) - std::sqrt(half * half + s.xy * s.xy);
     if (12.0 * narrow >= least * least) return c;
     const Edges e = rectangle_of(s);

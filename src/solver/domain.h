@@ -2,14 +2,36 @@
 // A point's domain: the parallelogram of its edges r1, r2, known to the rest of the scheme by its second moments.
 #include <cmath>
 
+#include "base/types.h"
+
 namespace frana {
+
+/// Edges of a parallelogram [cells].
+struct Edges {
+    double r1x, r1y, r2x, r2y;
+    double length1_2() const { return r1x * r1x + r1y * r1y; }  ///< [cells^2]
+    double length2_2() const { return r2x * r2x + r2y * r2y; }
+    double area() const { return r1x * r2y - r1y * r2x; }  ///< with its sign [cells^2]
+};
+
+/// Those of point p (Held: Carried of columns.h).
+template <class Held>
+Edges edges_of(const Held& held, Index p) {
+    return {held.r1x[p], held.r1y[p], held.r2x[p], held.r2y[p]};
+}
+template <class Held>
+void set_edges(Held& held, Index p, const Edges& e) {
+    using Real = typename decltype(held.r1x)::value_type;
+    held.r1x[p] = static_cast<Real>(e.r1x), held.r1y[p] = static_cast<Real>(e.r1y);
+    held.r2x[p] = static_cast<Real>(e.r2x), held.r2y[p] = static_cast<Real>(e.r2y);
+}
 
 /// Second moments of a mass spread evenly over a domain, per unit of mass: (r1 r1^T + r2 r2^T) / 12 [cells^2].
 struct Moments {
     double xx = 0.0, xy = 0.0, yy = 0.0;
-    /// Of a parallelogram with these edges [cells].
-    static Moments of(double r1x, double r1y, double r2x, double r2y) {
-        return {(r1x * r1x + r2x * r2x) / 12.0, (r1x * r1y + r2x * r2y) / 12.0, (r1y * r1y + r2y * r2y) / 12.0};
+    static Moments of(const Edges& e) {
+        return {(e.r1x * e.r1x + e.r2x * e.r2x) / 12.0, (e.r1x * e.r1y + e.r2x * e.r2y) / 12.0,
+                (e.r1y * e.r1y + e.r2y * e.r2y) / 12.0};
     }
     /// Adds `share` of others, whose centre lies (dx, dy) away from the common one.
     void add(double share, const Moments& o, double dx, double dy) {
@@ -19,10 +41,7 @@ struct Moments {
     }
 };
 
-/// Edges of a rectangle, r1 the longer one [cells].
-struct Edges { double r1x, r1y, r2x, r2y; };
-
-/// The rectangle that has these second moments: edges along their principal directions, sqrt(12 lambda) long. A square
+/// The rectangle that has these second moments, r1 its longer edge: edges along their principal directions, sqrt(12 lambda) long. A square
 /// lies along the grid.
 inline Edges rectangle_of(const Moments& s) {
     const double mean = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);

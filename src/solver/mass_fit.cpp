@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "grid/stencil.h"
+#include "solver/domain.h"
 #include "solver/surface.h"
 #include "solver/transfer.h"
 
@@ -37,11 +38,12 @@ Folded folded(const Flow& flow, Index i, Index j) {
 template <class S>
 Reach reach_with(const Flow& flow, Index p) {
     const Columns& c = flow.columns;
+    const Edges edges = c.with_real([&](auto real) { return edges_of(c.carried<decltype(real)>(), p); });
     Reach reach;
     const double sub_reach = flow.scheme.sub_point_reach;
     for (int sub = 0; sub < 4; ++sub) {
         const double s1 = sub & 1 ? sub_reach : -sub_reach, s2 = sub & 2 ? sub_reach : -sub_reach;
-        double x = c.x[p] + s1 * c.r1x[p] + s2 * c.r2x[p], y = c.y[p] + s1 * c.r1y[p] + s2 * c.r2y[p];
+        double x = c.x[p] + s1 * edges.r1x + s2 * edges.r2x, y = c.y[p] + s1 * edges.r1y + s2 * edges.r2y;
         if (!flow.walls) {
             x = std::clamp(x, 0.0, static_cast<double>(flow.grid.nx() - 1));
             y = std::clamp(y, 0.0, static_cast<double>(flow.grid.ny() - 1));

@@ -22,7 +22,7 @@ constexpr double kNoResplit = 0.95;
 class Squares {
 public:
     /// `order` has room for the tile's points.
-    Squares(const Flow& flow, Index n, Index* order)
+    Squares(const Flow& flow, Index n, std::int32_t* order)
         : i0_(2 * flow.grid.tile_i(flow.active.tile[n]) + 1), j0_(2 * flow.grid.tile_j(flow.active.tile[n]) + 1),
           c_(flow.columns), order_(order) {
         const Index begin = flow.active.begin[n], end = flow.active.begin[n + 1];
@@ -31,11 +31,11 @@ public:
             if (!on_edge(p)) ++end_of_[square(p)], ++held;
         for (Index s = 1; s < kSide * kSide; ++s) end_of_[s] += end_of_[s - 1];
         for (Index p = end; p-- > begin;)
-            if (!on_edge(p)) order[--end_of_[square(p)]] = p;
+            if (!on_edge(p)) order[--end_of_[square(p)]] = static_cast<std::int32_t>(p);
         for (Index s = 0; s + 1 < kSide * kSide; ++s) end_of_[s] = end_of_[s + 1];
         end_of_[kSide * kSide - 1] = held;
     }
-    const Index* points(Index s) const { return order_ + (s == 0 ? 0 : end_of_[s - 1]); }
+    const std::int32_t* points(Index s) const { return order_ + (s == 0 ? 0 : end_of_[s - 1]); }
     Index held(Index s) const { return end_of_[s] - (s == 0 ? 0 : end_of_[s - 1]); }
 
 private:
@@ -51,7 +51,7 @@ private:
     }
     Index i0_, j0_;
     const Columns& c_;
-    Index* order_;
+    std::int32_t* order_;
     Index end_of_[kSide * kSide] = {};
 };
 
@@ -64,7 +64,7 @@ double cost_of(const Columns& c, Index a, Index b) {
 struct Pick { Index a = -1, b = -1; };
 
 /// The cheapest union among `count` points, nothing when two tie.
-Pick cheapest(const Columns& c, const Index* points, Index count) {
+Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
     Pick pick;
     double best = 0.0, second = 0.0;
     for (Index m = 0; m < count; ++m)
@@ -91,14 +91,14 @@ Merger::Merger(const Flow& flow) {
     }
 }
 
-Index Merger::merge(Flow& flow) {
-    assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
+Index Merger::merge(Flow& flow, std::vector<std::uint8_t>& gone) {
+    assign_sparingly(gone, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
     resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
     for_each_tile(flow.active, [&](Index n) {
         std::uint8_t& quiet = flow.active.quiet[flow.active.tile[n]];
         if (quiet >= kAsleep) return;
-        merged_[n] = merge_tile(flow, n);
+        merged_[n] = merge_tile(flow, n, gone);
         if (merged_[n] > 0) quiet = 0;
     });
     Index total = 0;
@@ -106,34 +106,39 @@ Index Merger::merge(Flow& flow) {
     return total;
 }
 
-Index Merger::merge_tile(Flow& flow, Index n) {
+Index Merger::merge_tile(Flow& flow, Index n, std::vector<std::uint8_t>& gone) {
     const Squares squares(flow, n, order_.data() + flow.active.begin[n]);
     const double longest = kNoResplit * flow.scheme.split_length;
     Index merged = 0;
     for (Index s = 0; s < kSide * kSide; ++s) {
         if (squares.held(s) <= most_) continue;
         const Pick pick = cheapest(flow.columns, squares.points(s), std::min(squares.held(s), kMostCompared));
-        if (pick.a >= 0) merged += unite(flow, pick.a, pick.b, longest);
+        if (pick.a < 0) continue;
+        merged += flow.columns.with_real(
+            [&](auto real) { return unite<decltype(real)>(flow, pick.a, pick.b, longest, gone); });
     }
     return merged;
 }
 
 /// Point b goes into point a.
-bool Merger::unite(Flow& flow, Index a, Index b, double longest) {
+template <class Real>
+bool Merger::unite(Flow& flow, Index a, Index b, double longest, std::vector<std::uint8_t>& gone) {
     Columns& c = flow.columns;
+    Carried<Real>& held = c.carried<Real>();
     if (c.mass[b] > c.mass[a]) std::swap(a, b);  // the heavier one keeps its id
     const double mass = c.mass[a] + c.mass[b], fa = c.mass[a] / mass, fb = c.mass[b] / mass;
     const double dx = c.x[b] - c.x[a], dy = c.y[b] - c.y[a];
     Moments moments;
-    moments.add(fa, Moments::of(c.r1x[a], c.r1y[a], c.r2x[a], c.r2y[a]), fb * dx, fb * dy);
-    moments.add(fb, Moments::of(c.r1x[b], c.r1y[b], c.r2x[b], c.r2y[b]), fa * dx, fa * dy);
+    moments.add(fa, Moments::of(edges_of(held, a)), fb * dx, fb * dy);
+    moments.add(fb, Moments::of(edges_of(held, b)), fa * dx, fa * dy);
     const Edges edges = rectangle_of(moments);
-    if (edges.r1x * edges.r1x + edges.r1y * edges.r1y >= longest * longest) return false;
-    for (auto* column : {&c.x, &c.y, &c.vx, &c.vy, &c.cxx, &c.cxy, &c.cyx, &c.cyy, &c.depth})
-        (*column)[a] = fa * (*column)[a] + fb * (*column)[b];
+    if (edges.length1_2() >= longest * longest) return false;
+    for (auto* column : {&c.x, &c.y}) (*column)[a] = fa * (*column)[a] + fb * (*column)[b];
+    for (auto* column : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy, &held.depth})
+        (*column)[a] = static_cast<Real>(fa * (*column)[a] + fb * (*column)[b]);
     c.mass[a] = mass;
-    c.r1x[a] = edges.r1x, c.r1y[a] = edges.r1y, c.r2x[a] = edges.r2x, c.r2y[a] = edges.r2y;
-    gone_[static_cast<std::size_t>(b)] = 1;
+    set_edges(held, a, edges);
+    gone[static_cast<std::size_t>(b)] = 1;
     return true;
 }
 

@@ -15,19 +15,18 @@ public:
     /// mass-weighted means, the domain is the rectangle with the union's second moments. Mass and momentum are kept
     /// exactly. No union when its domain would be nearly long enough to split again. Where two unions
     /// tie, none is made: round-off must not choose, or mirror images part.
-    /// Needs columns sorted by tile. Marks merged-away points in gone(); returns how many. The caller drops them.
-    Index merge(Flow& flow);
-    const std::vector<std::uint8_t>& gone() const { return gone_; }
+    /// Needs columns sorted by tile. Marks merged-away points in `gone` (resized); returns how many. The caller drops them.
+    Index merge(Flow& flow, std::vector<std::uint8_t>& gone);
     /// Memory that grows with the points [bytes].
-    Index bytes() const { return allocated(gone_) + allocated(order_); }
+    Index bytes() const { return allocated(order_); }
 
 private:
-    Index merge_tile(Flow& flow, Index n);
-    bool unite(Flow& flow, Index a, Index b, double longest);
+    Index merge_tile(Flow& flow, Index n, std::vector<std::uint8_t>& gone);
+    template <class Real>
+    static bool unite(Flow& flow, Index a, Index b, double longest, std::vector<std::uint8_t>& gone);
 
     Index most_ = 2;  ///< points that a half-cell square may hold
-    std::vector<std::uint8_t> gone_;
-    std::vector<Index> order_;   ///< points by tile and square
+    std::vector<std::int32_t> order_;  ///< points by tile and square
     std::vector<Index> merged_;  ///< per tile
 };
 

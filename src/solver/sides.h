@@ -6,6 +6,7 @@ namespace frana {
 
 /// Walls reflect point p; beyond open sides, and where the elevation model has no data, it leaves: marked in `gone`,
 /// booked in `sums`, without mass from then on.
+template <class Real>
 void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums);
 
 }  // namespace frana

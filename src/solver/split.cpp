@@ -8,64 +8,82 @@ namespace frana {
 namespace {
 
 /// Long thin domains of points that may not split would throw their sub-points far ahead of the mass.
-bool clamp_edge(double& x, double& y, double longest) {
-    const double length = std::sqrt(x * x + y * y);
+template <class Real>
+bool clamp_edge(Real& x, Real& y, double longest) {
+    const double length = std::sqrt(double{x} * x + double{y} * y);
     if (length <= longest) return false;
-    x *= longest / length;
-    y *= longest / length;
+    x = static_cast<Real>(x * (longest / length));
+    y = static_cast<Real>(y * (longest / length));
     return true;
 }
 
 /// A strongly sheared domain, all edge and no area, gives way to the rectangle with the same second moments.
-bool straighten(Columns& c, Index p) {
-    const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
-    const double area = c.r1x[p] * c.r2y[p] - c.r1y[p] * c.r2x[p];
-    if (l1 * l2 <= 16.0 * area * area) return false;
-    const Edges edges = rectangle_of(Moments::of(c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]));
-    c.r1x[p] = edges.r1x, c.r1y[p] = edges.r1y, c.r2x[p] = edges.r2x, c.r2y[p] = edges.r2y;
+template <class Real>
+bool straighten(Carried<Real>& held, Index p) {
+    const Edges e = edges_of(held, p);
+    const double area = e.area();
+    if (e.length1_2() * e.length2_2() <= 16.0 * area * area) return false;
+    set_edges(held, p, rectangle_of(Moments::of(e)));
     return true;
 }
 
+/// Edges whose squared lengths differ by no more than this share are equally long: round-off.
+template <class Real>
+constexpr double kSame = std::is_same_v<Real, float> ? 1e-5 : 1e-9;
+
 /// How many points p becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one, or
 /// mirror images part.
+template <class Real>
 int parts_of(const Columns& c, Index p, double split_length, double least_mass) {
-    const double l1 = c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p], l2 = c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
-    const double area = std::abs(c.r1x[p] * c.r2y[p] - c.r1y[p] * c.r2x[p]);
-    const bool splits = std::max(l1, l2) >= split_length * split_length && area >= 0.1 && c.mass[p] > least_mass;
+    const Edges e = edges_of(c.carried<Real>(), p);
+    const double l1 = e.length1_2(), l2 = e.length2_2();
+    const bool splits =
+        std::max(l1, l2) >= split_length * split_length && std::abs(e.area()) >= 0.1 && c.mass[p] > least_mass;
     if (!splits) return 1;
-    return std::abs(l1 - l2) <= 1e-9 * std::max(l1, l2) ? 4 : 2;
+    return std::abs(l1 - l2) <= kSame<Real> * std::max(l1, l2) ? 4 : 2;
 }
 
+template <class Real>
 bool first_is_longer(const Columns& c, Index p) {
-    return c.r1x[p] * c.r1x[p] + c.r1y[p] * c.r1y[p] >= c.r2x[p] * c.r2x[p] + c.r2y[p] * c.r2y[p];
+    const Edges e = edges_of(c.carried<Real>(), p);
+    return e.length1_2() >= e.length2_2();
 }
 
 /// Halves point p along one of its edges; the second half becomes point q.
+template <class Real>
 void halve(Flow& flow, Index p, Index q, bool first) {
     Columns& c = flow.columns;
-    double& rx = first ? c.r1x[p] : c.r2x[p];
-    double& ry = first ? c.r1y[p] : c.r2y[p];
+    Carried<Real>& held = c.carried<Real>();
+    Real& rx = first ? held.r1x[p] : held.r2x[p];
+    Real& ry = first ? held.r1y[p] : held.r2y[p];
     const double dx = 0.25 * rx, dy = 0.25 * ry;
-    rx *= 0.5;
-    ry *= 0.5;
+    rx *= Real{0.5};
+    ry *= Real{0.5};
     c.mass[p] *= 0.5;
-    c.each([&](Column& column) { column[q] = column[p]; });
-    const double dvx = flow.cell * (c.cxx[p] * dx + c.cxy[p] * dy), dvy = flow.cell * (c.cyx[p] * dx + c.cyy[p] * dy);
+    c.each([&](auto& column) { column[q] = column[p]; });
+    const Real dvx = static_cast<Real>(flow.cell * (held.cxx[p] * dx + held.cxy[p] * dy));
+    const Real dvy = static_cast<Real>(flow.cell * (held.cyx[p] * dx + held.cyy[p] * dy));
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
     c.x[q] = std::clamp(c.x[p] - dx, 0.0, x_max);
     c.y[q] = std::clamp(c.y[p] - dy, 0.0, y_max);
-    c.vx[q] -= dvx;
-    c.vy[q] -= dvy;
+    held.vx[q] -= dvx;
+    held.vy[q] -= dvy;
     c.x[p] = std::clamp(c.x[p] + dx, 0.0, x_max);
     c.y[p] = std::clamp(c.y[p] + dy, 0.0, y_max);
-    c.vx[p] += dvx;
-    c.vy[p] += dvy;
+    held.vx[p] += dvx;
+    held.vy[p] += dvy;
 }
 
 }  // namespace
 
 Index Splitter::split(Flow& flow) {
+    return flow.columns.with_real([&](auto real) { return split_as<decltype(real)>(flow); });
+}
+
+template <class Real>
+Index Splitter::split_as(Flow& flow) {
     Columns& c = flow.columns;
+    Carried<Real>& held = c.carried<Real>();
     const Index count = c.count();
     const double length = flow.scheme.split_length, longest = std::max(1.0, length);
     const bool may_split = flow.scheme.split;
@@ -76,10 +94,10 @@ Index Splitter::split(Flow& flow) {
         const Index tile = flow.active.tile[n];
         if (flow.active.quiet[tile] >= kAsleep) return;
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-            changed |= clamp_edge(c.r1x[p], c.r1y[p], longest);
-            changed |= clamp_edge(c.r2x[p], c.r2y[p], longest);
-            if (flow.scheme.reset_domains) changed |= straighten(c, p);
-            if (may_split) found += parts_of(c, p, length, least_mass_) - 1;
+            changed |= clamp_edge(held.r1x[p], held.r1y[p], longest);
+            changed |= clamp_edge(held.r2x[p], held.r2y[p], longest);
+            if (flow.scheme.reset_domains) changed |= straighten(held, p);
+            if (may_split) found += parts_of<Real>(c, p, length, least_mass_) - 1;
         }
         tile_first_[n + 1] = found;
         if (changed || found > 0) flow.active.quiet[tile] = 0;
@@ -92,15 +110,15 @@ Index Splitter::split(Flow& flow) {
         Index next = tile_first_[n];
         if (next == tile_first_[n + 1]) return;
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-            const int parts = parts_of(c, p, length, least_mass_);
+            const int parts = parts_of<Real>(c, p, length, least_mass_);
             if (parts == 1) continue;
             const Index q = count + next;
             for (int part = 1; part < parts; ++part, ++next) c.id[count + next] = next_id_ + next;
-            halve(flow, p, q, first_is_longer(c, p));
+            halve<Real>(flow, p, q, first_is_longer<Real>(c, p));
             if (parts == 2) continue;
-            const bool other = first_is_longer(c, p);  // the edge that is still whole
-            halve(flow, p, q + 1, other);
-            halve(flow, q, q + 2, other);
+            const bool other = first_is_longer<Real>(c, p);  // the edge that is still whole
+            halve<Real>(flow, p, q + 1, other);
+            halve<Real>(flow, q, q + 2, other);
         }
     });
     next_id_ += added;

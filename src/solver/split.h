@@ -18,6 +18,9 @@ public:
     void set_next_id(Index id) { next_id_ = id; }
 
 private:
+    template <class Real>
+    Index split_as(Flow& flow);
+
     double least_mass_;
     Index next_id_ = 0;
     std::vector<Index> tile_first_;

@@ -19,16 +19,18 @@ void deposit_column(Flow& flow, const S& sx, const S& sy, double mass) {
 
 /// The four sub-points of a domain at +- r1/4 +- r2/4 (scheme.sub_point_reach) carry a quarter of the column each. At
 /// open sides they are held inside the domain, so that no mass waits beyond the edge.
-template <class S>
+template <class S, class Real>
 void deposit_sub_points(Flow& flow, Index p) {
     const Columns& c = flow.columns;
+    const Carried<Real>& held = c.carried<Real>();
+    const double r1x = held.r1x[p], r1y = held.r1y[p], r2x = held.r2x[p], r2y = held.r2y[p];
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
     const double quarter = 0.25 * c.mass[p], reach = flow.scheme.sub_point_reach;
     for (int k = 0; k < 4; ++k) {
         const double s1 = k & 1 ? reach : -reach, s2 = k & 2 ? reach : -reach;
         // Domains are held below one cell when they are split; between two such times 3/4 is out of their reach.
-        double x = c.x[p] + std::clamp(s1 * c.r1x[p] + s2 * c.r2x[p], -0.75, 0.75);
-        double y = c.y[p] + std::clamp(s1 * c.r1y[p] + s2 * c.r2y[p], -0.75, 0.75);
+        double x = c.x[p] + std::clamp(s1 * r1x + s2 * r2x, -0.75, 0.75);
+        double y = c.y[p] + std::clamp(s1 * r1y + s2 * r2y, -0.75, 0.75);
         if (!flow.walls) {
             x = std::clamp(x, 0.0, x_max);
             y = std::clamp(y, 0.0, y_max);
@@ -38,6 +40,7 @@ void deposit_sub_points(Flow& flow, Index p) {
 }
 
 /// The same with quadratic shape functions, for the few points that the packed kernel does not take.
+template <class Real>
 void deposit_quadratic_sub_points(Flow& flow, Index p);
 
 }  // namespace frana

@@ -145,7 +145,7 @@ private:
                 store(row + i, load(row + i) + (sx.w[i] * sy.w[j]) * (value + static_cast<double>(i) * along_x));
         }
         if constexpr (kPaper) deposit_column(flow, sx, sy, m);
-        if constexpr (!kPaper) deposit_sub_points<S>(flow, p);
+        if constexpr (!kPaper) deposit_sub_points<S, double>(flow, p);
         if constexpr (kStress) {
             if (c.depth[p] > flow.dry_depth()) {
                 const double volume = m / flow.density;
@@ -232,7 +232,7 @@ private:
             stretch(c.r1x[p], c.r1y[p], g, dt);
             stretch(c.r2x[p], c.r2y[p], g, dt);
         }
-        meet_side(flow, p, gone_, sums);
+        meet_side<double>(flow, p, gone_, sums);
         const double speed = std::hypot(vx, vy), m = c.mass[p];
         sums.max_shift = std::max(sums.max_shift, shift);
         for (const double part : {vx, vy, g.vx, g.vy, g.cxx, g.cxy, g.cyx, g.cyy})
@@ -292,6 +292,7 @@ std::unique_ptr<TransferKernel> make_plain_transfer(const Scene& scene) {
 
 std::unique_ptr<TransferKernel> make_transfer(const Scene& scene) {
     auto packed = make_packed_transfer(scene);
+    expect(packed || scene.scheme.precision == Precision::full, "single precision with another scheme than the default");
     return packed ? std::move(packed) : make_plain_transfer(scene);
 }
 

@@ -39,7 +39,8 @@ public:
     /// The points' velocities gathered from the nodes, without moving anything: v and grad v at the points.
     struct Probe { std::vector<double> vx, vy, cxx, cxy, cyx, cyy, depth; };
     virtual void probe(Flow& flow, Probe& out) = 0;
-    /// One byte per point, 1: it left the domain in the last gather.
+    /// One byte per point, 1: it left the domain in the last gather. Free for others' use until the next.
+    std::vector<std::uint8_t>& gone() { return gone_; }
     const std::vector<std::uint8_t>& gone() const { return gone_; }
 
 protected:

@@ -13,7 +13,8 @@
 namespace frana {
 namespace {
 
-template <class Law>
+/// Real: how memory holds what points carry; it is reckoned with in double precision.
+template <class Law, class Real>
 class PackedKernel final : public TransferKernel {
     static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
     static constexpr int kBefore = 1, kAfter = 3;  ///< nodes that sub-points touch around the first of a stencil
@@ -164,12 +165,13 @@ private:
     void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& pull, bool at_side, StencilMarks& marks,
                       Sums& sums) {
         const Columns& c = flow.columns;
+        const Carried<Real>& held = c.carried<Real>();
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), m = load(&c.mass[p], lanes);
-        const Double4 vx = load(&c.vx[p], lanes), vy = load(&c.vy[p], lanes);
-        const Double4 r1x = load(&c.r1x[p], lanes), r1y = load(&c.r1y[p], lanes);
-        const Double4 r2x = load(&c.r2x[p], lanes), r2y = load(&c.r2y[p], lanes);
-        Double4 cxx = load(&c.cxx[p], lanes), cxy = load(&c.cxy[p], lanes);
-        Double4 cyx = load(&c.cyx[p], lanes), cyy = load(&c.cyy[p], lanes);
+        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes);
+        const Double4 r1x = load(&held.r1x[p], lanes), r1y = load(&held.r1y[p], lanes);
+        const Double4 r2x = load(&held.r2x[p], lanes), r2y = load(&held.r2y[p], lanes);
+        Double4 cxx = load(&held.cxx[p], lanes), cxy = load(&held.cxy[p], lanes);
+        Double4 cyx = load(&held.cyx[p], lanes), cyy = load(&held.cyy[p], lanes);
         const Double4 speed = sqrt(vx * vx + vy * vy);
         const Stencils sx(x), sy(y);
         limit_gradient(r1x, r1y, r2x, r2y, cxx, cxy, cyx, cyy);
@@ -228,7 +230,7 @@ private:
         const Double4 ay = reach * (r.r1y + r.r2y), by = reach * (r.r1y - r.r2y);
         const Double4 far = max(max(abs(ax), abs(bx)), max(abs(ay), abs(by)));
         if (at_side || any(far > 0.5)) {
-            for (int lane = 0; lane < lanes; ++lane) deposit_quadratic_sub_points(flow, p + lane);
+            for (int lane = 0; lane < lanes; ++lane) deposit_quadratic_sub_points<Real>(flow, p + lane);
             return;
         }
         const Int4 i = floor_positive(x + (kTile - 1.0)), j = floor_positive(y + (kTile - 1.0));
@@ -254,9 +256,10 @@ private:
     /// V sigma / cell of four points [N], the explicit stress capped (scheme.stress_cap).
     PlaneOf<Double4> pull_of(const Flow& flow, Index p, int lanes, double cap, Sums& sums) const {
         const Columns& c = flow.columns;
-        const Double4 vx = load(&c.vx[p], lanes), vy = load(&c.vy[p], lanes), depth = load(&c.depth[p], lanes);
-        const Double4 cxy = load(&c.cxy[p], lanes), cyx = load(&c.cyx[p], lanes), zero = {};
-        const PlaneOf<Double4> rate{load(&c.cxx[p], lanes), load(&c.cyy[p], lanes), 0.5 * (cxy + cyx)};
+        const Carried<Real>& held = c.carried<Real>();
+        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), depth = load(&held.depth[p], lanes);
+        const Double4 cxy = load(&held.cxy[p], lanes), cyx = load(&held.cyx[p], lanes), zero = {};
+        const PlaneOf<Double4> rate{load(&held.cxx[p], lanes), load(&held.cyy[p], lanes), 0.5 * (cxy + cyx)};
         const PlaneOf<Double4> sigma =
             stress(law_, StrainState<Double4>{rate, sqrt(vx * vx + vy * vy), max(depth, all(flow.dry_depth())),
                                               flow.scheme.strain_rate_floor, cap});
@@ -317,6 +320,7 @@ private:
 
     void gather_four(Flow& flow, Index p, int lanes, double dt, Sums& sums) {
         Columns& c = flow.columns;
+        Carried<Real>& held = c.carried<Real>();
         const Gathered g(flow, p, lanes);
         const Double4 shift_x = dt / flow.cell * g.vx, shift_y = dt / flow.cell * g.vy;
         const Double4 shift = max(abs(shift_x), abs(shift_y));
@@ -327,13 +331,13 @@ private:
             return;
         }
         const Double4 x = load(&c.x[p], lanes) + shift_x, y = load(&c.y[p], lanes) + shift_y;
-        store(&c.vx[p], g.vx, lanes), store(&c.vy[p], g.vy, lanes);
-        store(&c.cxx[p], g.cxx, lanes), store(&c.cxy[p], g.cxy, lanes);
-        store(&c.cyx[p], g.cyx, lanes), store(&c.cyy[p], g.cyy, lanes);
+        store(&held.vx[p], g.vx, lanes), store(&held.vy[p], g.vy, lanes);
+        store(&held.cxx[p], g.cxx, lanes), store(&held.cxy[p], g.cxy, lanes);
+        store(&held.cyx[p], g.cyx, lanes), store(&held.cyy[p], g.cyy, lanes);
         store(&c.x[p], x, lanes), store(&c.y[p], y, lanes);
-        store(&c.depth[p], g.depth, lanes);
-        stretch(&c.r1x[p], &c.r1y[p], g, dt, lanes);
-        stretch(&c.r2x[p], &c.r2y[p], g, dt, lanes);
+        store(&held.depth[p], g.depth, lanes);
+        stretch(&held.r1x[p], &held.r1y[p], g, dt, lanes);
+        stretch(&held.r2x[p], &held.r2y[p], g, dt, lanes);
 
         const Double4 speed = sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
         sums.shift = max(sums.shift, shift);
@@ -341,12 +345,12 @@ private:
                                            max(max(abs(g.cxx), abs(g.cxy)), max(abs(g.cyx), abs(g.cyy)))));
         sums.speed = max(sums.speed, speed);
         sums.signal = max(sums.signal, speed + sqrt(flow.gravity * max(g.depth, zero)));
-        Double4 m = load(&c.mass[p], lanes), vx = g.vx, vy = g.vy;
+        Double4 m = load(&c.mass[p], lanes), vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes);
         const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
         if (flow.bed.has_exits || any((x < 0.0) | (x > x_max) | (y < 0.0) | (y > y_max))) {
             for (int lane = 0; lane < lanes; ++lane) {
-                meet_side(flow, p + lane, gone_, sums.rare);
-                vx[lane] = c.vx[p + lane], vy[lane] = c.vy[p + lane];
+                meet_side<Real>(flow, p + lane, gone_, sums.rare);
+                vx[lane] = held.vx[p + lane], vy[lane] = held.vy[p + lane];
                 if (gone_[p + lane]) m[lane] = 0.0;
             }
         }
@@ -356,7 +360,7 @@ private:
         sums.p_abs += m * speed;
     }
 
-    static void stretch(double* rx, double* ry, const Gathered& g, double dt, int lanes) {
+    static void stretch(Real* rx, Real* ry, const Gathered& g, double dt, int lanes) {
         const Double4 x = load(rx, lanes), y = load(ry, lanes);
         store(rx, x + dt * (g.cxx * x + g.cxy * y), lanes);
         store(ry, y + dt * (g.cyx * x + g.cyy * y), lanes);
@@ -365,16 +369,21 @@ private:
     Law law_;
 };
 
+template <class Real>
+std::unique_ptr<TransferKernel> packed_kernel(const Scene& scene) {
+    return std::visit(
+        [](const auto& law) -> std::unique_ptr<TransferKernel> {
+            return std::make_unique<PackedKernel<std::decay_t<decltype(law)>, Real>>(law);
+        },
+        scene.rheology);
+}
+
 }  // namespace
 
 std::unique_ptr<TransferKernel> make_packed_transfer(const Scene& scene) {
     const Scheme& scheme = scene.scheme;
     if (scheme.shape != Shape::quadratic || scheme.transfer != Transfer::tpic || scheme.paper_pressure) return nullptr;
-    return std::visit(
-        [](const auto& law) -> std::unique_ptr<TransferKernel> {
-            return std::make_unique<PackedKernel<std::decay_t<decltype(law)>>>(law);
-        },
-        scene.rheology);
+    return scheme.precision == Precision::single ? packed_kernel<float>(scene) : packed_kernel<double>(scene);
 }
 
 }  // namespace frana

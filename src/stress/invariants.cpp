@@ -143,7 +143,7 @@ std::optional<Violation> Watch::see(const Snapshot& state) {
 std::optional<Violation> Watch::finite(const Snapshot& state) {
     Index bad = 0;
     const auto look = [&](double value) { bad += !std::isfinite(value); };
-    state.points.each([&](const Column& column) {
+    state.points.each([&](const auto& column) {
         for (const double value : column) look(value);
     });
     for (const NodeState& node : state.nodes)
@@ -204,7 +204,11 @@ std::optional<Violation> Watch::rest(const Snapshot& state) {
     if (!facts_.claims.rests) return std::nullopt;
     const Columns &a = start_.points, &b = state.points;
     double fastest = 0.0;
-    for (Index p = 0; p < b.count(); ++p) fastest = std::max({fastest, std::abs(b.vx[p]), std::abs(b.vy[p])});
+    b.with_real([&](auto real) {
+        const auto& held = b.carried<decltype(real)>();
+        for (const auto* component : {&held.vx, &held.vy})
+            for (const double v : *component) fastest = std::max(fastest, std::abs(v));
+    });
     const bool moved = a.id == b.id && (a.x != b.x || a.y != b.y);  // what splits stands elsewhere and has not moved
     return judged("rest", moved ? std::max(fastest, 1e-300) : fastest, 0.0, state, "speed of what should rest [m/s]");
 }

@@ -14,7 +14,8 @@ constexpr double kNever = 1e300;  ///< [s]
 
 /// Whether the points differ by a bit.
 bool differ(const Columns& a, const Columns& b) {
-    return a.x != b.x || a.y != b.y || a.vx != b.vx || a.vy != b.vy || a.mass != b.mass || a.id != b.id;
+    return a.x != b.x || a.y != b.y || a.mass != b.mass || a.vx != b.vx || a.vy != b.vy ||
+           a.narrow.vx != b.narrow.vx || a.narrow.vy != b.narrow.vy || a.id != b.id;
 }
 
 /// The points after `steps` steps by `threads` threads.

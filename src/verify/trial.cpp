@@ -87,7 +87,8 @@ void fill_cut(Scene& scene, const Function& depth, const Lattice& lattice) {
 }
 
 void set_preset(Scene& scene, const std::string& preset) {
-    scene.scheme.preset = preset;
+    scene.scheme.preset = preset == "float" ? "default" : preset;
+    if (preset == "float") scene.scheme.precision = Precision::single;
     if (preset != "paper") return;
     scene.terrain = TerrainModel::shallow;
     scene.curvature = Curvature::none;
@@ -106,6 +107,8 @@ Trial::Trial(Scene scene, const Setup& setup, bool keep_terrain) : scene_(std::m
     set_preset(scene_, setup.preset);
     if (keep_terrain) scene_.terrain = terrain, scene_.curvature = curvature;
     if (setup.edit) setup.edit(scene_);
+    const Scheme& s = scene_.scheme;  // other kernels have no float
+    if (s.shape != Shape::quadratic || s.transfer != Transfer::tpic) scene_.scheme.precision = Precision::full;
     simulation_ = std::make_unique<DepthAveraged>(scene_);
     first_ = simulation_->frame().status;  // a frame knows the kinetic energy before the first step
 }

@@ -20,7 +20,7 @@ void fill(Scene& scene, const Function& depth, const Lattice& lattice = {});
 /// Same, volumes exact for an outline that cuts the lattice's squares: midpoints of 8 * 8 parts of each square.
 void fill_cut(Scene& scene, const Function& depth, const Lattice& lattice = {});
 
-/// The named preset's choices of terrain model and scheme (those of the case file's scheme.preset).
+/// The named preset's choices of terrain model and scheme (Setup::preset).
 void set_preset(Scene& scene, const std::string& preset);
 
 /// Exact fields at the end time.
