@@ -99,11 +99,19 @@ void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside) {
     add_unit(image->GetFieldData(), "outside", "1");
 }
 
+/// Throws std::bad_alloc when so many bytes are not to be had.
+static void require_memory(std::size_t bytes) {
+    char* volatile room = new char[bytes];  // volatile: or the compiler sees that nobody needs it
+    delete[] room;
+}
+
 void write_xml(vtkXMLWriter* writer, vtkDataObject* data, const std::filesystem::path& target) {
     vtkNew<vtkCallbackCommand> quiet;  // without an observer VTK prints its errors; ours is thrown below
     writer->AddObserver("ErrorEvent", quiet);
     writer->GetExecutive()->AddObserver("ErrorEvent", quiet);
     writer->SetInputDataObject(data);
+    // VTK 9.1 frees what it never got when memory ends within its writers: ask for what they need before they do.
+    require_memory(4 * 1024 * static_cast<std::size_t>(data->GetActualMemorySize()) + (std::size_t{4} << 20));
     // To memory first: VTK 9.1 does not survive a full disk in this mode.
     writer->WriteToOutputStringOn();
     // Inline base64, a third larger than appended bytes: Debian 12's ParaView 5.11 reads appended data (raw or base64)
