@@ -275,6 +275,10 @@ int main(int argc, char** argv) {
             "memory: found too little for this case; expected what `frana check` tells; use fewer particles "
             "or a larger grid.cell",
             2);
+    } catch (const std::system_error& error) {  // a thread or a file handle that the system will not give
+        return complain(fmt::format("{}; the system gives the program no more of that; free memory, or raise its limits",
+                                    error.what()),
+                        2);
     } catch (const std::exception& error) {
         return complain(
             fmt::format("{} (a mistake of the program; please report it with the case)", error.what()), 1);

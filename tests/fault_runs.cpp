@@ -20,13 +20,14 @@ struct Tally { int tried = 0, whole = 0, refused = 0, bad = 0; };
 
 class Faults {
 public:
-    Faults(fs::path frana, const fs::path& folder, const Case& of) : folder_(folder), runner_(std::move(frana), folder) {
+    Faults(const fs::path& frana, const fs::path& folder, const Case& of) : folder_(folder), runner_(frana, folder) {
         fs::remove_all(folder);
         make_case(folder, of);
         const auto start = Clock::now();
-        runner_.run_well(false, 1);
+        const double peak = runner_.run_well(false, 1).peak;
         wall_ = std::chrono::duration<double>(Clock::now() - start).count();
         fs::rename(out(), folder / "undisturbed");
+        check_forecast(frana, peak);
     }
     fs::path out() const { return folder_ / "out"; }
     fs::path undisturbed() const { return folder_ / "undisturbed"; }
@@ -58,6 +59,18 @@ public:
         }
         empty(out());
         std::fflush(stdout);
+    }
+    /// `frana check` says how much memory a run will need: within 20 % of what it took.
+    void check_forecast(const fs::path& frana, double peak) {
+        const fs::path said = folder_ / "check.txt";
+        const std::string call = "'" + frana.string() + "' check '" + (folder_ / "case.toml").string() + "' > '";
+        if (std::system((call + said.string() + "'").c_str()) != 0) throw std::runtime_error("frana check failed");
+        const std::string text = text_of(said), words = "memory      about ";
+        const double foretold = 1e6 * std::stod(text.substr(text.find(words) + words.size()));
+        std::printf("memory foretold %.0f MB, taken %.0f MB\n", foretold / 1e6, peak / 1e6);
+        Tally& tally = tallies_["memory foretold within 20 %"];
+        ++tally.tried;
+        ++(std::abs(foretold / peak - 1.0) <= 0.2 ? tally.whole : tally.bad);
     }
     /// The folder itself stays where it is a mount point.
     static void empty(const fs::path& folder) {

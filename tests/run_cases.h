@@ -3,6 +3,7 @@
 // are the same. What tells of wall time is left out and nothing else: see without_wall_time().
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -161,6 +162,7 @@ struct Ending {
     int code = -1;      ///< its exit code, -1: a signal ended it
     int signal = 0;
     std::string errors; ///< what it said on stderr
+    double peak = 0.0;  ///< memory [bytes]
 };
 
 /// What else happens to a run.
@@ -185,21 +187,23 @@ public:
         if (child == 0) become(words, disturbance);
         const auto start = Clock::now();
         int status = 0;
+        rusage used{};
         bool disturbed = false;
-        while (::waitpid(child, &status, WNOHANG) == 0) {
+        while (::wait4(child, &status, WNOHANG, &used) == 0) {
             std::this_thread::sleep_for(std::chrono::microseconds(300));
             if (disturbed || std::chrono::duration<double>(Clock::now() - start).count() < disturbance.moment) continue;
             disturbance.at_moment(child);
             disturbed = true;
         }
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0,
-                text_of(folder_ / "err.txt")};
+                text_of(folder_ / "err.txt"), 1024.0 * static_cast<double>(used.ru_maxrss)};
     }
 
     /// Without disturbance; throws what the program said when it fails.
-    void run_well(bool resume, int threads) const {
+    Ending run_well(bool resume, int threads) const {
         const Ending ending = run(resume, threads, {});
         if (ending.code != 0) throw std::runtime_error("the program failed: " + ending.errors);
+        return ending;
     }
 
 private:
