@@ -36,7 +36,7 @@ double exact_energy_factor(VelocityProfile profile) {
 }
 
 Index layer_count(double depth, double spacing) {
-    constexpr double kDigits = 1e-6;
+    constexpr double kDigits = 1e-7;
     return static_cast<Index>(std::clamp(std::floor(depth / spacing * (1.0 + kDigits)), 1.0, 1e18));
 }
 

@@ -22,7 +22,7 @@ double profile_value(VelocityProfile profile, double s);
 /// Depth mean of the squared profile: 1, 4/3, 6/5, 5/4 [1]. By so much the kinetic energy is above m |mean v|^2 / 2.
 double exact_energy_factor(VelocityProfile profile);
 
-/// Number of layers of a column (Fois et al. 2025, eq. 1): floor(depth / spacing), at least 1. A part in 1e6 is given,
+/// Number of layers of a column (Fois et al. 2025, eq. 1): floor(depth / spacing), at least 1. A part in 1e7 is given,
 /// since frames hold depths with 7 digits and 0.3 / 0.1 is below 3 in binary numbers. Not above 1e18.
 Index layer_count(double depth, double spacing);
 
