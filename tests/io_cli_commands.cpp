@@ -77,7 +77,7 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     CHECK(unknown.out.empty());
     CHECK(unknown.err ==
           "command line: found the unknown command \"chekc\"; expected one of run, check, describe, "
-          "particles, figures, compare, states, verify, bench, stress; did you mean check?\n");
+          "particles, convert, figures, compare, states, verify, bench, stress; did you mean check?\n");
     const Outcome threads = scene.frana("run CASE --threads 0");
     CHECK(threads.code == 2);
     CHECK_THAT(threads.err, Contains("--threads"));

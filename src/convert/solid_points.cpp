@@ -11,9 +11,7 @@ namespace frana {
 namespace {
 
 void require_sound(const FlowColumns& columns, const ConversionChoice& choice) {
-    if (!(choice.spacing > 0.0 && std::isfinite(choice.spacing)))
-        throw UserError(fmt::format(
-            "--spacing: found {}; expected a distance above 0 in metres; give the size of the 3D points", choice.spacing));
+    require_spacing(choice.spacing);
     const std::size_t n = columns.count();
     for (const auto* numbers : {&columns.y, &columns.bed, &columns.depth, &columns.slope_x, &columns.slope_y, &columns.vx,
                                 &columns.vy, &columns.mass, &columns.volume, &columns.bed_pressure, &columns.id})
@@ -60,6 +58,12 @@ void fill_column(const FlowColumns& columns, std::size_t p, const ConversionChoi
 }
 
 }  // namespace
+
+void require_spacing(double spacing) {
+    if (!(spacing > 0.0 && std::isfinite(spacing)))
+        throw UserError(fmt::format(
+            "--spacing: found {}; expected a distance above 0 in metres; give the size of the 3D points", spacing));
+}
 
 FlowColumns columns_within(const FlowColumns& columns, const std::array<double, 4>& window) {
     FlowColumns inside;

@@ -37,6 +37,9 @@ struct SolidPoints {
     std::size_t count() const { return mass.size(); }
 };
 
+/// Throws UserError for a spacing that is not a positive number.
+void require_spacing(double spacing);
+
 /// Columns within [xmin, ymin, xmax, ymax].
 FlowColumns columns_within(const FlowColumns& columns, const std::array<double, 4>& window);
 
