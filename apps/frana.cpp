@@ -78,9 +78,9 @@ void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
 void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("convert", "columns of a run to 3D points, with what is kept on the way");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
-    command->add_option("--time", options.time, "simulated time [s]; the nearest frame is taken")->required();
-    command->add_option("--spacing", options.spacing, "vertical distance of the points [m]")->required();
-    command->add_option("--out", options.out, "file to write: .h5, .json, .csv, .vtp or .mdpa")->required();
+    command->add_option("--time", options.time, "simulated time [s]; the nearest frame is taken");
+    command->add_option("--spacing", options.spacing, "vertical distance of the points [m]");
+    command->add_option("--out", options.out, "file to write: .h5, .json, .csv, .vtp or .mdpa");
     command->add_option("--layers", options.layers, "centres (of equal slices, default) or end-points (bed to surface)")
         ->check(CLI::IsMember({"centres", "end-points"}));
     command->add_option("--vertical", options.vertical, "velocity: along-bed (default) or zero")
@@ -90,6 +90,8 @@ void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
     command->add_option("--window", options.window, "only columns within: xmin,ymin,xmax,ymax")
         ->delimiter(',')
         ->expected(4);
+    command->add_option("--points", options.points, "3D points (.h5) to bring back onto the run's grid, with --back");
+    command->add_option("--back", options.back, "folder for depth.tif, velocity_x.tif, velocity_y.tif of --points");
     command->callback([&] { action = [&] { return convert_command(options); }; });
 }
 

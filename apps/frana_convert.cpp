@@ -29,7 +29,7 @@ VelocityProfile profile_of(const std::string& word) {
 
 ConversionChoice choice_of(const ConvertOptions& options) {
     ConversionChoice choice;
-    choice.spacing = options.spacing;
+    choice.spacing = *options.spacing;
     require_spacing(choice.spacing);
     choice.layers = options.layers == "end-points" ? Layers::end_points : Layers::centres;
     choice.vertical = options.vertical == "zero" ? Vertical::zero : Vertical::along_bed;
@@ -84,7 +84,7 @@ PointTable table_of(const SolidPoints& points, const RunState& state, double den
     PointTable table;
     table.format = "frana 3D points 1";
     table.crs_wkt = state.bed.crs_wkt;
-    table.constants = {{"time", "s", state.time}, {"spacing", "m", options.spacing}, {"density", "kg/m3", density}};
+    table.constants = {{"time", "s", state.time}, {"spacing", "m", *options.spacing}, {"density", "kg/m3", density}};
     table.texts = {{"layers", options.layers},
                    {"vertical", options.vertical},
                    {"profile", options.profile},
@@ -138,18 +138,41 @@ std::string record_json(const RunState& state, const ConvertOptions& options, co
     if (!options.window.empty()) window = fmt::format("\n\"window\": [{}],", fmt::join(options.window, ", "));
     return fmt::format("{{\n\"frames\": {},\n\"time\": {},\n\"asked_time\": {},\n\"spacing\": {},\n\"layers\": {},\n"
                        "\"vertical\": {},\n\"profile\": {},{}\n\"conservation\": {}}}\n",
-                       json_text(state.frames), state.time, options.time, options.spacing, json_text(options.layers),
+                       json_text(state.frames), state.time, *options.time, *options.spacing, json_text(options.layers),
                        json_text(options.vertical), json_text(options.profile), window, conservation);
+}
+
+/// One way or the other, with all that it needs.
+void require_options(const ConvertOptions& options) {
+    std::string missing;
+    const auto need = [&](bool given, const char* name) {
+        if (!given) missing += (missing.empty() ? "" : ", ") + std::string(name);
+    };
+    const bool back = !options.points.empty() || !options.back.empty();
+    need(back || options.time, "--time");
+    need(back || options.spacing, "--spacing");
+    need(back || !options.out.empty(), "--out");
+    need(!back || !options.points.empty(), "--points");
+    need(!back || !options.back.empty(), "--back");
+    if (!missing.empty())
+        throw UserError(fmt::format("command line: found no {}; expected --time, --spacing and --out, or --points and --back "
+                                    "for the way from 3D; see `frana convert --help`",
+                                    missing));
+    if (back && (options.time || options.spacing || !options.out.empty()))
+        throw UserError("command line: found both ways at once; expected --time, --spacing and --out, or --points and --back "
+                        "for the way from 3D; call frana convert twice");
 }
 
 }  // namespace
 
 int convert_command(const ConvertOptions& options) {
+    require_options(options);
+    if (!options.back.empty()) return convert_back(options);
     const std::string format = export_format(options.out, {".mdpa"});
     const ConversionChoice choice = choice_of(options);
-    const RunState state = read_run_state(options.run_dir, options.time);
-    if (std::abs(state.time - options.time) > 1e-9 * std::max(1.0, std::abs(state.time)))
-        std::cout << fmt::format("no frame at {:.6g} s; the nearest, at {:.6g} s, is taken\n", options.time, state.time);
+    const RunState state = read_run_state(options.run_dir, *options.time);
+    if (std::abs(state.time - *options.time) > 1e-9 * std::max(1.0, std::abs(state.time)))
+        std::cout << fmt::format("no frame at {:.6g} s; the nearest, at {:.6g} s, is taken\n", *options.time, state.time);
     const FlowColumns columns = chosen_columns(state, options.window);
     require_memory(columns, choice.spacing, format);
 

@@ -82,11 +82,25 @@ FlowColumns columns_of(const Loaded& loaded, const fs::path& frames) {
     return columns;
 }
 
-Raster bed_of(const LoadedFrame& frame) {
+Raster vtk_bed(const fs::path& run_dir) {
+    LoadedFrame terrain = read_terrain(run_dir);
     Raster bed;
-    bed.geometry = frame.grid;
-    bed.values = frame.nodes.at("elevation");
+    bed.geometry = terrain.grid;
+    bed.values = std::move(terrain.nodes.at("elevation"));
+    bed.source = (run_dir / "terrain.vti").string();
     return bed;
+}
+
+/// The coordinate system of the run's rasters, where it wrote some.
+std::string crs_of(const fs::path& run_dir) {
+    const auto rasters = read_rasters(run_dir);
+    return rasters.empty() ? "" : rasters.front().raster.crs_wkt;
+}
+
+UserError no_frames(const fs::path& run_dir, const char* file) {
+    return UserError(fmt::format("{}: holds neither {} nor run.h5; expected the folder of a run with \"vtk\" or \"xdmf\" in "
+                                 "output.formats, such as the one after --out of frana run",
+                                 run_dir.string(), file));
 }
 
 RunState state_of_vtk(const fs::path& run_dir, double time) {
@@ -98,8 +112,7 @@ RunState state_of_vtk(const fs::path& run_dir, double time) {
     const LoadedParticles particles = read_particles(run_dir, number);
     state.time = particles.time;
     state.columns = columns_of(particles, list);
-    state.bed = bed_of(read_terrain(run_dir));
-    state.bed.source = (run_dir / "terrain.vti").string();
+    state.bed = vtk_bed(run_dir);
     state.frames = list.string();
     return state;
 }
@@ -120,19 +133,23 @@ RunState state_of_hdf5(const fs::path& run_dir, double time) {
 
 RunState read_run_state(const fs::path& run_dir, double time) {
     const bool vtk = fs::exists(run_dir / "particles.pvd");
-    if (!vtk && !fs::exists(run_dir / "run.h5"))
-        throw UserError(fmt::format("{}: holds neither particles.pvd nor run.h5; expected the folder of a run with "
-                                    "\"vtk\" or \"xdmf\" in output.formats, such as the one after --out of frana run",
-                                    run_dir.string()));
+    if (!vtk && !fs::exists(run_dir / "run.h5")) throw no_frames(run_dir, "particles.pvd");
     RunState state = vtk ? state_of_vtk(run_dir, time) : state_of_hdf5(run_dir, time);
     if (state.columns.count() == 0)
         throw UserError(fmt::format("{}: has no particles at {:.6g} s: everything has left the terrain; give an earlier "
                                     "--time",
                                     state.frames, state.time));
     take_slopes(state.columns, state.bed);
-    const auto rasters = read_rasters(run_dir);
-    if (!rasters.empty()) state.bed.crs_wkt = rasters.front().raster.crs_wkt;
+    state.bed.crs_wkt = crs_of(run_dir);
     return state;
+}
+
+Raster bed_of_run(const fs::path& run_dir) {
+    const bool vtk = fs::exists(run_dir / "terrain.vti");
+    if (!vtk && !fs::exists(run_dir / "run.h5")) throw no_frames(run_dir, "terrain.vti");
+    Raster bed = vtk ? vtk_bed(run_dir) : read_hdf5_particles(run_dir / "run.h5", 0).bed;
+    bed.crs_wkt = crs_of(run_dir);
+    return bed;
 }
 
 }  // namespace frana

@@ -20,4 +20,7 @@ struct RunState {
 /// missing, damaged or has not the fields that a state needs.
 RunState read_run_state(const std::filesystem::path& run_dir, double time);
 
+/// The terrain of a run on its grid: of terrain.vti, or of run.h5. Throws UserError when there is neither.
+Raster bed_of_run(const std::filesystem::path& run_dir);
+
 }  // namespace frana

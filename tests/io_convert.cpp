@@ -1,5 +1,4 @@
 // `frana convert` as a person calls it: every format read back by libraries that are not ours, and every refusal.
-#include <hdf5.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkPointData.h>
@@ -8,60 +7,15 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
-#include "plane_case.h"
+#include "convert_run.h"
 #include "read_mdpa.h"
 #include "read_polydata.h"
 
 namespace fs = std::filesystem;
 using Catch::Contains;
-using Numbers = std::vector<double>;
+using namespace convert_run;
 
 namespace {
-
-/// A short run, made once: a plane that falls 0.1 in x, 1.5 m of a viscous fluid, frames every half second to 2 s.
-const PlaneCase& finished_run() {
-    static const PlaneCase scene;
-    static const bool made = [] {
-        scene.write("[material]\ndensity = 1300\n[material.rheology]\nlaw = \"newtonian\"\nviscosity = 40\n"
-                    "[output]\nevery = 0.5\nformats = [\"vtk\", \"xdmf\", \"geotiff\"]\n");
-        const Outcome run = scene.frana("run CASE --out out --quiet --threads 1");
-        INFO(run.err);
-        REQUIRE(run.code == 0);
-        return true;
-    }();
-    REQUIRE(made);
-    return scene;
-}
-
-/// Converts the run into `file` and returns where it lies.
-fs::path convert(const std::string& file, const std::string& rest = "--time 1 --spacing 0.25") {
-    const Outcome outcome = finished_run().frana("convert out " + rest + " --out " + file);
-    INFO(outcome.err);
-    REQUIRE(outcome.code == 0);
-    return finished_run().folder() / file;
-}
-
-Outcome refused(const std::string& arguments) {
-    const Outcome outcome = finished_run().frana("convert " + arguments);
-    CHECK(outcome.code == 2);
-    return outcome;
-}
-
-Numbers hdf5_numbers(const fs::path& file, const char* name, bool attribute = false) {
-    const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    REQUIRE(opened >= 0);
-    const hid_t set = attribute ? H5Aopen(opened, name, H5P_DEFAULT) : H5Dopen2(opened, name, H5P_DEFAULT);
-    REQUIRE(set >= 0);
-    const hid_t space = attribute ? H5Aget_space(set) : H5Dget_space(set);
-    Numbers numbers(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-    const auto read = attribute ? H5Aread(set, H5T_NATIVE_DOUBLE, numbers.data())
-                                : H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data());
-    REQUIRE(read >= 0);
-    H5Sclose(space);
-    attribute ? H5Aclose(set) : H5Dclose(set);
-    H5Fclose(opened);
-    return numbers;
-}
 
 Numbers numbers_of(vtkDataArray* array) {
     REQUIRE(array);

@@ -10,6 +10,8 @@ namespace frana {
 
 using hdf5::Access;
 using hdf5::Handle;
+using hdf5::Numbers;
+using hdf5::read_numbers;
 
 namespace {
 
@@ -29,24 +31,6 @@ std::vector<double> numbers_of(const Access& access, hid_t object, const char* n
     return numbers;
 }
 
-/// A dataset and its shape.
-struct Numbers {
-    std::vector<hsize_t> shape;
-    std::vector<double> values;
-};
-
-Numbers read_set(const Access& access, hid_t group, const std::string& name) {
-    const Handle set(access, H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
-    const Handle space(access, H5Dget_space(set), H5Sclose);
-    Numbers numbers;
-    numbers.shape.resize(static_cast<std::size_t>(access.check(H5Sget_simple_extent_ndims(space))));
-    access.check(H5Sget_simple_extent_dims(space, numbers.shape.data(), nullptr));
-    numbers.values.resize(static_cast<std::size_t>(access.check(H5Sget_simple_extent_npoints(space))));
-    if (!numbers.values.empty())
-        access.check(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.values.data()));
-    return numbers;
-}
-
 std::vector<std::string> names_in(const Access& access, hid_t group) {
     H5G_info_t info;
     access.check(H5Gget_info(group, &info));
@@ -62,7 +46,7 @@ std::vector<std::string> names_in(const Access& access, hid_t group) {
 Raster read_bed(const Access& access, hid_t frame) {
     const Handle grid(access, H5Gopen2(frame, "grid", H5P_DEFAULT), H5Gclose);
     const std::vector<double> origin = numbers_of(access, grid, "origin"), cell = numbers_of(access, grid, "cell");
-    Numbers elevation = read_set(access, grid, "elevation");
+    Numbers elevation = read_numbers(access, grid, "elevation");
     if (elevation.shape.size() != 3 || origin.size() < 2 || cell.empty())
         throw access.failure("its grid is not that of a run");
     Raster bed;
@@ -71,7 +55,7 @@ Raster read_bed(const Access& access, hid_t frame) {
     bed.values = std::move(elevation.values);
     bed.source = access.file().string();
     if (H5Lexists(grid, "outside", H5P_DEFAULT) > 0) {
-        const std::vector<double> outside = read_set(access, grid, "outside").values;
+        const std::vector<double> outside = read_numbers(access, grid, "outside").values;
         for (std::size_t k = 0; k < bed.values.size() && k < outside.size(); ++k)
             if (outside[k] != 0.0) bed.values[k] = Raster::nodata;
     }
@@ -102,7 +86,7 @@ StoredParticles read_hdf5_particles(const std::filesystem::path& path, Index num
     StoredParticles particles;
     particles.time = numbers_of(access, frame, "time").at(0);
     for (const std::string& name : names_in(access, group)) {
-        Numbers numbers = read_set(access, group, name);
+        Numbers numbers = read_numbers(access, group, name);
         if (numbers.shape.empty() || numbers.shape.size() > 2) throw access.failure(name + " is not a column of a run");
         particles.count = static_cast<Index>(numbers.shape[0]);
         particles.components[name] = numbers.shape.size() == 2 ? static_cast<int>(numbers.shape[1]) : 1;

@@ -1,9 +1,13 @@
 #include "io/hdf5_points.h"
 
+#include <fmt/core.h>
+
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "io/hdf5_support.h"
 
 namespace frana {
@@ -57,7 +61,57 @@ off_t space_for(const PointTable& table) {
     return static_cast<off_t>(8 * numbers + (std::size_t{1} << 20));
 }
 
+/// A column of so many components, whatever its length.
+std::vector<double> read_column(const Access& access, hid_t file, const char* name, std::size_t components) {
+    const bool there = H5Lexists(file, name, H5P_DEFAULT) > 0;
+    hdf5::Numbers numbers;
+    if (there) numbers = hdf5::read_numbers(access, file, name);
+    const bool fits = components == 1 ? numbers.shape.size() == 1
+                                      : numbers.shape.size() == 2 && numbers.shape[1] == components;
+    if (!there || !fits)
+        throw UserError(fmt::format("{}: has no {} of {} per point; expected position (N, 3), velocity (N, 3), mass (N) and "
+                                    "volume (N), as frana convert writes them; write these",
+                                    access.file().string(), name, components));
+    return std::move(numbers.values);
+}
+
+void require_sound(const std::filesystem::path& file, const SolidPoints& points) {
+    const std::size_t n = points.mass.size();
+    const auto wrong = [&](const std::string& what) {
+        return UserError(fmt::format("{}: {}; expected finite numbers for each of its points, mass and volume above 0; "
+                                     "write them so",
+                                     file.string(), what));
+    };
+    if (n == 0) throw wrong("holds no points");
+    if (points.position.size() != 3 * n || points.velocity.size() != 3 * n || points.volume.size() != n ||
+        points.pressure.size() != n)
+        throw wrong("its arrays differ in length");
+    for (std::size_t k = 0; k < n; ++k) {
+        bool finite = std::isfinite(points.mass[k] + points.volume[k] + points.pressure[k]);
+        for (std::size_t c = 3 * k; c < 3 * k + 3; ++c)
+            finite = finite && std::isfinite(points.position[c]) && std::isfinite(points.velocity[c]);
+        if (!finite || points.mass[k] <= 0.0 || points.volume[k] <= 0.0)
+            throw wrong(fmt::format("point {} has mass {} and volume {}{}", k, points.mass[k], points.volume[k],
+                                    finite ? "" : ", or another number that is not finite"));
+    }
+}
+
 }  // namespace
+
+SolidPoints read_points_hdf5(const std::filesystem::path& path) {
+    const hdf5::QuietErrors quiet;
+    const Access access(path, Access::Mode::read);
+    const Handle file(access, H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    SolidPoints points;
+    points.position = read_column(access, file, "position", 3);
+    points.velocity = read_column(access, file, "velocity", 3);
+    points.mass = read_column(access, file, "mass", 1);
+    points.volume = read_column(access, file, "volume", 1);
+    points.pressure.assign(points.mass.size(), 0.0);
+    if (H5Lexists(file, "pressure", H5P_DEFAULT) > 0) points.pressure = read_column(access, file, "pressure", 1);
+    require_sound(path, points);
+    return points;
+}
 
 void write_points_hdf5(const std::filesystem::path& file, const PointTable& table) {
     require_finite(table);

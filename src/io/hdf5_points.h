@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "base/point_table.h"
+#include "convert/solid_points.h"
 
 namespace frana {
 
@@ -10,5 +11,10 @@ namespace frana {
 /// file appears whole or not at all. Throws UserError when it cannot be written, InternalError on a number that is not
 /// finite.
 void write_points_hdf5(const std::filesystem::path& file, const PointTable& table);
+
+/// 3D points of any program that writes position (N, 3) [m], velocity (N, 3) [m/s], mass (N) [kg] and volume (N) [m3] as
+/// above; a pressure (N) [Pa] is taken when there is one. The other arrays of the result stay empty. Throws UserError
+/// when the file cannot be read, lacks one of them, or holds a number that no point can have.
+SolidPoints read_points_hdf5(const std::filesystem::path& file);
 
 }  // namespace frana
