@@ -215,10 +215,12 @@ TEST_CASE("What cannot be converted is refused with one sentence, and no file ap
     CHECK_THAT(refused("out --profile cubic" + rest).err, Contains("bagnold"));
     CHECK(refused("." + rest).err == ".: holds neither particles.pvd nor run.h5; expected the folder of a run with \"vtk\" "
                                      "or \"xdmf\" in output.formats, such as the one after --out of frana run\n");
-    // 1.5 m in slices of a nanometre: known before any memory is asked for.
+    // Metres in slices of a nanometre: known before any memory is asked for.
     const Outcome many = refused("out --time 0 --spacing 1e-9 --out bad.h5");
-    CHECK_THAT(many.err, Contains("--spacing 1e-09: makes 2.88e+11 points, about ") && Contains(" GB that are free; give a "
-                                                                                               "larger spacing"));
+    const std::string number = fmt::format("{:.3g} points, about {:.3g} GB; ", sum(run_particles(0, "depth")) * 1e9,
+                                           sum(run_particles(0, "depth")) * 144.0);  // bytes a point
+    CHECK_THAT(many.err, Contains("--spacing 1e-09: makes " + number) &&
+                             Contains(" GB that are free; give a larger spacing or a --window\n"));
     for (const char* name : {"bad.h5", "bad.xyz", "bad.conservation.json"})
         CHECK_FALSE(fs::exists(finished_run().folder() / name));
 }
