@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "convert/conservation.h"
+#include "convert/paper_errors.h"
 #include "flow_maker.h"
 
 using namespace frana;
@@ -194,4 +195,36 @@ TEST_CASE("A spacing that is no distance is refused with a sentence", "[convert]
         CHECK_THROWS_WITH(columns_to_points(one_column(), choice),
                           Catch::Contains("--spacing: found") && Catch::Contains("above 0"));
     }
+}
+
+TEST_CASE("The paper's error measures are the same from columns as from the points they become", "[convert]") {
+    const FlowColumns columns = uneven_flow(tilted_bed(12, 2.0), 1000.0, 9.81);
+    ExactTotals exact;
+    for (std::size_t p = 0; p < columns.count(); ++p) {
+        exact.mass += columns.mass[p];
+        exact.momentum += columns.mass[p] * columns.vx[p];
+    }
+    ConversionChoice choice;
+    choice.spacing = 0.4;
+    const SolidPoints points = columns_to_points(columns, choice);
+    const auto column = [&](Index k) {
+        const auto p = static_cast<std::size_t>(k);
+        return ErrorColumn{columns.depth[p], columns.mass[p], columns.volume[p], columns.mass[p] * columns.vx[p]};
+    };
+    const ConversionErrors before = conversion_errors(static_cast<Index>(columns.count()), column, 0.4, exact);
+    const ConversionErrors after = conversion_errors(points, exact);
+    CHECK(before.points == static_cast<double>(points.count()));
+    CHECK(after.points == before.points);
+    CHECK(after.mass == Approx(before.mass).epsilon(1e-12));
+    CHECK(after.momentum == Approx(before.momentum).epsilon(1e-12));
+}
+
+TEST_CASE("The paper's error measure is the root of a mean over the volume", "[convert]") {
+    // Two columns of 2 and 1 layers: points of 3, 3 and 9 kg, 1, 1 and 4 m3; 15 kg over three points are 5 kg each.
+    const ErrorColumn two[] = {{2.5, 6.0, 2.0, 12.0}, {1.0, 9.0, 4.0, 0.0}};
+    const ConversionErrors errors =
+        conversion_errors(2, [&](Index p) { return two[p]; }, 1.0, {15.0, 12.0});
+    CHECK(errors.points == 3.0);
+    CHECK(errors.mass == Approx(std::sqrt((2 * 4.0 + 4 * 16.0) / 6.0)).epsilon(1e-14));
+    CHECK(errors.momentum == Approx(std::sqrt((2 * 4.0 + 4 * 16.0) / 6.0)).epsilon(1e-14));  // 6, 6, 0 around 4
 }
