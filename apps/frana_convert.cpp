@@ -42,17 +42,20 @@ FlowColumns chosen_columns(const RunState& state, const std::vector<double>& win
     if (window.empty()) return state.columns;
     const std::string text = fmt::format("--window {}", fmt::join(window, ","));
     if (!(window[0] < window[2] && window[1] < window[3]))
-        throw UserError(text + ": is empty; expected xmin,ymin,xmax,ymax with xmin < xmax and ymin < ymax; give the "
-                               "corners in that order");
+        throw UserError(text +
+                        ": is empty; expected xmin,ymin,xmax,ymax with xmin < xmax and ymin < ymax; give the "
+                        "corners in that order");
     const auto terrain = state.bed.geometry.pixel_extent();
     if (window[2] < terrain[0] || window[0] > terrain[2] || window[3] < terrain[1] || window[1] > terrain[3])
-        throw UserError(fmt::format("{}: lies outside the terrain; expected a part of {}; give map coordinates of the run",
-                                    text, fmt::join(terrain, ",")));
+        throw UserError(
+            fmt::format("{}: lies outside the terrain; expected a part of {}; give map coordinates of the run", text,
+                        fmt::join(terrain, ",")));
     FlowColumns inside = columns_within(state.columns, {window[0], window[1], window[2], window[3]});
     if (inside.count() == 0)
-        throw UserError(fmt::format("{}: holds no material at {:.6g} s; expected columns of the flow in it; give another "
-                                    "window or time",
-                                    text, state.time));
+        throw UserError(
+            fmt::format("{}: holds no material at {:.6g} s; expected columns of the flow in it; give another "
+                        "window or time",
+                        text, state.time));
     return inside;
 }
 
@@ -68,9 +71,10 @@ void require_memory(const FlowColumns& columns, double spacing, const std::strin
     const double points = forecast_points(columns, spacing);
     const double bytes = bytes_needed(points, format), free = free_memory();
     if (bytes <= free) return;
-    throw UserError(fmt::format("--spacing {:.6g}: makes {:.3g} points, about {:.3g} GB; expected what fits into the {:.3g} "
-                                "GB that are free; give a larger spacing or a --window",
-                                spacing, points, bytes / 1e9, free / 1e9));
+    throw UserError(
+        fmt::format("--spacing {:.6g}: makes {:.3g} points, about {:.3g} GB; expected what fits into the {:.3g} "
+                    "GB that are free; give a larger spacing or a --window",
+                    spacing, points, bytes / 1e9, free / 1e9));
 }
 
 double total(const std::vector<double>& numbers) {
@@ -122,12 +126,13 @@ void write_for_kratos(const ConvertOptions& options, const RunState& state, cons
     const double viscosity = law == "none" ? 0.0 : run_case.number("material.rheology.viscosity");
     const double sound = sound_speed(points, columns, run_case.number("terrain.gravity"));
     make_folder_of(options.out);
-    write_kratos(options.out, points, kratos_fluid(density, viscosity, sound),
-                 {fmt::format("frana 3D points: {} at {} s, a hexahedron for each", state.frames, state.time),
-                  "MP_VELOCITY is data of the elements; Kratos starts its points at rest, hand it on before the first step:",
-                  "for body, point in zip(model[\"Initial_MPM_Material.Flow\"].Elements, "
-                  "model[\"MPM_Material.Flow\"].Elements):",
-                  "    point.SetValuesOnIntegrationPoints(MP_VELOCITY, [body.GetValue(MP_VELOCITY)], process_info)"});
+    write_kratos(
+        options.out, points, kratos_fluid(density, viscosity, sound),
+        {fmt::format("frana 3D points: {} at {} s, a hexahedron for each", state.frames, state.time),
+         "MP_VELOCITY is data of the elements; Kratos starts its points at rest, hand it on before the first step:",
+         "for body, point in zip(model[\"Initial_MPM_Material.Flow\"].Elements, "
+         "model[\"MPM_Material.Flow\"].Elements):",
+         "    point.SetValuesOnIntegrationPoints(MP_VELOCITY, [body.GetValue(MP_VELOCITY)], process_info)"});
     std::cout << fmt::format("{}: viscosity {:.6g} Pa s, sound {:.4g} m/s{}\n",
                              (options.out.parent_path() / "ParticleMaterials.json").string(), viscosity, sound,
                              law == "bingham" ? "; the yield stress has no place in this law" : "");
@@ -136,10 +141,11 @@ void write_for_kratos(const ConvertOptions& options, const RunState& state, cons
 std::string record_json(const RunState& state, const ConvertOptions& options, const std::string& conservation) {
     std::string window;
     if (!options.window.empty()) window = fmt::format("\n\"window\": [{}],", fmt::join(options.window, ", "));
-    return fmt::format("{{\n\"frames\": {},\n\"time\": {},\n\"asked_time\": {},\n\"spacing\": {},\n\"layers\": {},\n"
-                       "\"vertical\": {},\n\"profile\": {},{}\n\"conservation\": {}}}\n",
-                       json_text(state.frames), state.time, *options.time, *options.spacing, json_text(options.layers),
-                       json_text(options.vertical), json_text(options.profile), window, conservation);
+    return fmt::format(
+        "{{\n\"frames\": {},\n\"time\": {},\n\"asked_time\": {},\n\"spacing\": {},\n\"layers\": {},\n"
+        "\"vertical\": {},\n\"profile\": {},{}\n\"conservation\": {}}}\n",
+        json_text(state.frames), state.time, *options.time, *options.spacing, json_text(options.layers),
+        json_text(options.vertical), json_text(options.profile), window, conservation);
 }
 
 /// One way or the other, with all that it needs.
@@ -155,12 +161,14 @@ void require_options(const ConvertOptions& options) {
     need(!back || !options.points.empty(), "--points");
     need(!back || !options.back.empty(), "--back");
     if (!missing.empty())
-        throw UserError(fmt::format("command line: found no {}; expected --time, --spacing and --out, or --points and --back "
-                                    "for the way from 3D; see `frana convert --help`",
-                                    missing));
+        throw UserError(
+            fmt::format("command line: found no {}; expected --time, --spacing and --out, or --points and --back "
+                        "for the way from 3D; see `frana convert --help`",
+                        missing));
     if (back && (options.time || options.spacing || !options.out.empty()))
-        throw UserError("command line: found both ways at once; expected --time, --spacing and --out, or --points and --back "
-                        "for the way from 3D; call frana convert twice");
+        throw UserError(
+            "command line: found both ways at once; expected --time, --spacing and --out, or --points and --back "
+            "for the way from 3D; call frana convert twice");
 }
 
 }  // namespace
@@ -172,7 +180,8 @@ int convert_command(const ConvertOptions& options) {
     const ConversionChoice choice = choice_of(options);
     const RunState state = read_run_state(options.run_dir, *options.time);
     if (std::abs(state.time - *options.time) > 1e-9 * std::max(1.0, std::abs(state.time)))
-        std::cout << fmt::format("no frame at {:.6g} s; the nearest, at {:.6g} s, is taken\n", *options.time, state.time);
+        std::cout << fmt::format("no frame at {:.6g} s; the nearest, at {:.6g} s, is taken\n", *options.time,
+                                 state.time);
     const FlowColumns columns = chosen_columns(state, options.window);
     require_memory(columns, choice.spacing, format);
 
@@ -183,12 +192,13 @@ int convert_command(const ConvertOptions& options) {
     if (format == ".mdpa")
         write_for_kratos(options, state, columns, points, density);
     else
-        write_points(options.out, format, table_of(points, state, density, options, conservation), points.position.data());
+        write_points(options.out, format, table_of(points, state, density, options, conservation),
+                     points.position.data());
     const fs::path record = fs::path(options.out).replace_extension(".conservation.json");
     write_text(record, record_json(state, options, conservation));
     std::cout << conservation_text(kept)
-              << fmt::format("{} points of {} columns at {:.6g} s in {}\n{}\n", points.count(), columns.count(), state.time,
-                             options.out.string(), record.string());
+              << fmt::format("{} points of {} columns at {:.6g} s in {}\n{}\n", points.count(), columns.count(),
+                             state.time, options.out.string(), record.string());
     return 0;
 }
 

@@ -20,11 +20,11 @@ std::string export_format(const std::filesystem::path& file, const std::vector<s
     known.insert(known.end(), more.begin(), more.end());
     if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
     std::string listed;
-    for (const std::string& one : known)
-        listed += (listed.empty() ? "" : one == known.back() ? " or " : ", ") + one;
-    throw UserError(fmt::format("--out {}: found the extension \"{}\"; expected {}; name the file after the format you "
-                                "want",
-                                file.string(), file.extension().string(), listed));
+    for (const std::string& one : known) listed += (listed.empty() ? "" : one == known.back() ? " or " : ", ") + one;
+    throw UserError(
+        fmt::format("--out {}: found the extension \"{}\"; expected {}; name the file after the format you "
+                    "want",
+                    file.string(), file.extension().string(), listed));
 }
 
 void make_folder_of(const std::filesystem::path& file) {

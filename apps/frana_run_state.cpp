@@ -23,12 +23,13 @@ Index choose_frame(const std::vector<double>& times, double time, const fs::path
     const double first = times.front(), last = times.back(), slack = 1e-9 * std::max(1.0, std::abs(last));
     const auto range = fmt::format("expected {:.6g} to {:.6g} s", first, last);
     if (!(time >= first - slack))
-        throw UserError(fmt::format("--time {:.6g}: lies before the first frame of {}; {}; give a time of the run", time,
-                                    frames.string(), range));
-    if (time > last + slack)
-        throw UserError(fmt::format("--time {:.6g}: is past the last frame of {}; {}; give a time of the run, or let the "
-                                    "run go further",
+        throw UserError(fmt::format("--time {:.6g}: lies before the first frame of {}; {}; give a time of the run",
                                     time, frames.string(), range));
+    if (time > last + slack)
+        throw UserError(
+            fmt::format("--time {:.6g}: is past the last frame of {}; {}; give a time of the run, or let the "
+                        "run go further",
+                        time, frames.string(), range));
     std::size_t nearest = 0;
     for (std::size_t k = 1; k < times.size(); ++k)
         if (std::abs(times[k] - time) < std::abs(times[nearest] - time)) nearest = k;
@@ -50,16 +51,21 @@ std::vector<double> component(const Loaded& loaded, const std::string& name, std
 template <class Loaded>
 void require_fields(const Loaded& loaded, const fs::path& frames) {
     std::string missing;
-    for (const auto& [name, components] : {std::pair<const char*, int>{"position", 3}, {"depth", 1}, {"velocity", 3},
-                                           {"mass", 1}, {"volume", 1}, {"pressure", 1}}) {
+    for (const auto& [name, components] : {std::pair<const char*, int>{"position", 3},
+                                           {"depth", 1},
+                                           {"velocity", 3},
+                                           {"mass", 1},
+                                           {"volume", 1},
+                                           {"pressure", 1}}) {
         const auto found = loaded.components.find(name);
         if (found == loaded.components.end() || found->second != components)
             missing += (missing.empty() ? "" : ", ") + std::string(name);
     }
     if (!missing.empty())
-        throw UserError(fmt::format("{}: its particles have no {}; expected position, depth, velocity, mass, volume and "
-                                    "pressure; add them to output.fields and run the case again",
-                                    frames.string(), missing));
+        throw UserError(
+            fmt::format("{}: its particles have no {}; expected position, depth, velocity, mass, volume and "
+                        "pressure; add them to output.fields and run the case again",
+                        frames.string(), missing));
 }
 
 template <class Loaded>
@@ -98,9 +104,10 @@ std::string crs_of(const fs::path& run_dir) {
 }
 
 UserError no_frames(const fs::path& run_dir, const char* file) {
-    return UserError(fmt::format("{}: holds neither {} nor run.h5; expected the folder of a run with \"vtk\" or \"xdmf\" in "
-                                 "output.formats, such as the one after --out of frana run",
-                                 run_dir.string(), file));
+    return UserError(
+        fmt::format("{}: holds neither {} nor run.h5; expected the folder of a run with \"vtk\" or \"xdmf\" in "
+                    "output.formats, such as the one after --out of frana run",
+                    run_dir.string(), file));
 }
 
 RunState state_of_vtk(const fs::path& run_dir, double time) {
@@ -136,9 +143,10 @@ RunState read_run_state(const fs::path& run_dir, double time) {
     if (!vtk && !fs::exists(run_dir / "run.h5")) throw no_frames(run_dir, "particles.pvd");
     RunState state = vtk ? state_of_vtk(run_dir, time) : state_of_hdf5(run_dir, time);
     if (state.columns.count() == 0)
-        throw UserError(fmt::format("{}: has no particles at {:.6g} s: everything has left the terrain; give an earlier "
-                                    "--time",
-                                    state.frames, state.time));
+        throw UserError(
+            fmt::format("{}: has no particles at {:.6g} s: everything has left the terrain; give an earlier "
+                        "--time",
+                        state.frames, state.time));
     take_slopes(state.columns, state.bed);
     state.bed.crs_wkt = crs_of(run_dir);
     return state;

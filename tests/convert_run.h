@@ -16,8 +16,9 @@ using Numbers = std::vector<double>;
 inline const PlaneCase& finished_run() {
     static const PlaneCase scene;
     static const bool made = [] {
-        scene.write("[material]\ndensity = 1300\n[material.rheology]\nlaw = \"newtonian\"\nviscosity = 40\n"
-                    "[output]\nevery = 0.5\nformats = [\"vtk\", \"xdmf\", \"geotiff\"]\n");
+        scene.write(
+            "[material]\ndensity = 1300\n[material.rheology]\nlaw = \"newtonian\"\nviscosity = 40\n"
+            "[output]\nevery = 0.5\nformats = [\"vtk\", \"xdmf\", \"geotiff\"]\n");
         const Outcome run = scene.frana("run CASE --out out --quiet --threads 1");
         INFO(run.err);
         REQUIRE(run.code == 0);

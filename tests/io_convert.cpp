@@ -27,8 +27,10 @@ Numbers numbers_of(vtkDataArray* array) {
 
 /// The run's own particles of a frame, as VTK reads them.
 Numbers run_particles(int frame, const char* name) {
-    const auto cloud = test::polydata(finished_run().folder() / fmt::format("out/particles/particles_{:06d}.vtp", frame));
-    return numbers_of(std::string(name) == "position" ? cloud->GetPoints()->GetData() : cloud->GetPointData()->GetArray(name));
+    const auto cloud =
+        test::polydata(finished_run().folder() / fmt::format("out/particles/particles_{:06d}.vtp", frame));
+    return numbers_of(std::string(name) == "position" ? cloud->GetPoints()->GetData()
+                                                      : cloud->GetPointData()->GetArray(name));
 }
 
 double sum(const Numbers& numbers) {
@@ -96,8 +98,9 @@ TEST_CASE("VTP, JSON and CSV hold the same numbers as HDF5, to the last bit", "[
     const Numbers position = hdf5_numbers(h5, "position");
     CHECK(numbers_of(cloud->GetPoints()->GetData()) == position);
     CHECK(cloud->GetNumberOfVerts() * 3 == static_cast<vtkIdType>(position.size()));
-    const std::map<const char*, const char*> units{{"velocity", "m/s"}, {"mass", "kg"},   {"volume", "m3"}, {"pressure", "Pa"},
-                                                   {"stress", "Pa"},    {"height", "m"}, {"column", "1"}};
+    const std::map<const char*, const char*> units{{"velocity", "m/s"}, {"mass", "kg"},   {"volume", "m3"},
+                                                   {"pressure", "Pa"},  {"stress", "Pa"}, {"height", "m"},
+                                                   {"column", "1"}};
     for (const auto& [name, unit] : units) {
         INFO(name);
         const Numbers numbers = hdf5_numbers(h5, name);
@@ -156,9 +159,10 @@ TEST_CASE("A run without VTK files gives the same points from run.h5", "[convert
     INFO(outcome.err);
     CHECK(outcome.code == 0);
     CHECK(text_of(finished_run().folder() / "h5.csv") == of_vtk);
-    CHECK(refused("only_h5 --time 7 --spacing 0.25 --out h5.csv").err ==
-          "--time 7: is past the last frame of only_h5/run.h5; expected 0 to 2 s; give a time of the run, or let the run "
-          "go further\n");
+    CHECK(
+        refused("only_h5 --time 7 --spacing 0.25 --out h5.csv").err ==
+        "--time 7: is past the last frame of only_h5/run.h5; expected 0 to 2 s; give a time of the run, or let the run "
+        "go further\n");
 }
 
 TEST_CASE("The nearest frame is taken, and said; a window takes its columns only", "[convert]") {
@@ -183,15 +187,17 @@ TEST_CASE("Without depth and mass in its frames a run is refused, and the fields
     REQUIRE(scene.frana("run CASE --out out --quiet --until 0.1").code == 0);
     const Outcome outcome = scene.frana("convert out --time 0 --spacing 1 --out a.h5");
     CHECK(outcome.code == 2);
-    CHECK(outcome.err == "out/particles.pvd: its particles have no depth, mass; expected position, depth, velocity, mass, "
-                         "volume and pressure; add them to output.fields and run the case again\n");
+    CHECK(outcome.err ==
+          "out/particles.pvd: its particles have no depth, mass; expected position, depth, velocity, mass, "
+          "volume and pressure; add them to output.fields and run the case again\n");
     CHECK_FALSE(fs::exists(scene.folder() / "a.h5"));
 }
 
 TEST_CASE("What cannot be converted is refused with one sentence, and no file appears", "[convert]") {
     const std::string rest = " --time 1 --spacing 0.25 --out bad.h5";
     CHECK(refused("out --time 2.5 --spacing 0.25 --out bad.h5").err ==
-          "--time 2.5: is past the last frame of out/particles.pvd; expected 0 to 2 s; give a time of the run, or let the "
+          "--time 2.5: is past the last frame of out/particles.pvd; expected 0 to 2 s; give a time of the run, or let "
+          "the "
           "run go further\n");
     CHECK(refused("out --time -1 --spacing 0.25 --out bad.h5").err ==
           "--time -1: lies before the first frame of out/particles.pvd; expected 0 to 2 s; give a time of the run\n");
@@ -200,21 +206,25 @@ TEST_CASE("What cannot be converted is refused with one sentence, and no file ap
               "--spacing: found " + spacing +
                   "; expected a distance above 0 in metres; give the size of the 3D points\n");
     CHECK(refused("out --time 1 --spacing 0.25 --out bad.xyz").err ==
-          "--out bad.xyz: found the extension \".xyz\"; expected .h5, .json, .csv, .vtp or .mdpa; name the file after the "
+          "--out bad.xyz: found the extension \".xyz\"; expected .h5, .json, .csv, .vtp or .mdpa; name the file after "
+          "the "
           "format you want\n");
     CHECK(refused("out --window 500,500,600,600" + rest).err ==
-          "--window 500,500,600,600: lies outside the terrain; expected a part of 0,0,150,100; give map coordinates of the "
+          "--window 500,500,600,600: lies outside the terrain; expected a part of 0,0,150,100; give map coordinates of "
+          "the "
           "run\n");
     CHECK(refused("out --window 100,0,150,20" + rest).err ==
           "--window 100,0,150,20: holds no material at 1 s; expected columns of the flow in it; give another window or "
           "time\n");
     CHECK(refused("out --window 40,0,30,20" + rest).err ==
-          "--window 40,0,30,20: is empty; expected xmin,ymin,xmax,ymax with xmin < xmax and ymin < ymax; give the corners "
+          "--window 40,0,30,20: is empty; expected xmin,ymin,xmax,ymax with xmin < xmax and ymin < ymax; give the "
+          "corners "
           "in that order\n");
     CHECK_THAT(refused("out --window 40,0,30" + rest).err, Contains("--window"));
     CHECK_THAT(refused("out --profile cubic" + rest).err, Contains("bagnold"));
-    CHECK(refused("." + rest).err == ".: holds neither particles.pvd nor run.h5; expected the folder of a run with \"vtk\" "
-                                     "or \"xdmf\" in output.formats, such as the one after --out of frana run\n");
+    CHECK(refused("." + rest).err ==
+          ".: holds neither particles.pvd nor run.h5; expected the folder of a run with \"vtk\" "
+          "or \"xdmf\" in output.formats, such as the one after --out of frana run\n");
     // Metres in slices of a nanometre: known before any memory is asked for.
     const Outcome many = refused("out --time 0 --spacing 1e-9 --out bad.h5");
     const std::string number = fmt::format("{:.3g} points, about {:.3g} GB; ", sum(run_particles(0, "depth")) * 1e9,

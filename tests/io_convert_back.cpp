@@ -53,7 +53,8 @@ void write_foreign(const fs::path& file, const Numbers& mass, bool velocity = tr
 
 }  // namespace
 
-TEST_CASE("Points of a run come back as rasters of its volume and momentum, and a case goes on from them", "[convert]") {
+TEST_CASE("Points of a run come back as rasters of its volume and momentum, and a case goes on from them",
+          "[convert]") {
     const fs::path points = convert("there.h5");
     const Outcome back = finished_run().frana("convert out --points there.h5 --back back");
     INFO(back.err);
@@ -73,10 +74,11 @@ TEST_CASE("Points of a run come back as rasters of its volume and momentum, and 
     CHECK(depth.area * sum(depth.values) == Approx(sum(hdf5_numbers(points, "volume"))).epsilon(1e-7));
     CHECK(std::abs(of_pixels - of_points) < 2e-7 * moved);
 
-    frana::write_text(finished_run().folder() / "on.toml",
-                      "[terrain]\ndem = \"dem.asc\"\n[[release]]\nmask = \"back/depth.tif\"\ndepth = \"back/depth.tif\"\n"
-                      "velocity = [\"back/velocity_x.tif\", \"back/velocity_y.tif\"]\n[material]\ndensity = 1300\n"
-                      "[time]\nend = 0.5\n");
+    frana::write_text(
+        finished_run().folder() / "on.toml",
+        "[terrain]\ndem = \"dem.asc\"\n[[release]]\nmask = \"back/depth.tif\"\ndepth = \"back/depth.tif\"\n"
+        "velocity = [\"back/velocity_x.tif\", \"back/velocity_y.tif\"]\n[material]\ndensity = 1300\n"
+        "[time]\nend = 0.5\n");
     const Outcome on = finished_run().frana("check on.toml");
     INFO(on.err);
     CHECK(on.code == 0);
@@ -106,16 +108,19 @@ TEST_CASE("Points that are none, and half a command line, are refused with a sen
     CHECK_THAT(refused("out --points text.h5 --back none").err, Contains("text.h5: cannot be read: "));
     write_foreign(folder / "still.h5", {1, 1, 1}, false);
     CHECK(refused("out --points still.h5 --back none").err ==
-          "still.h5: has no velocity of 3 per point; expected position (N, 3), velocity (N, 3), mass (N) and volume (N), as "
+          "still.h5: has no velocity of 3 per point; expected position (N, 3), velocity (N, 3), mass (N) and volume "
+          "(N), as "
           "frana convert writes them; write these\n");
     write_foreign(folder / "light.h5", {1, 1, -2});
     CHECK(refused("out --points light.h5 --back none").err ==
-          "light.h5: point 2 has mass -2 and volume 2; expected finite numbers for each of its points, mass and volume above "
+          "light.h5: point 2 has mass -2 and volume 2; expected finite numbers for each of its points, mass and volume "
+          "above "
           "0; write them so\n");
     CHECK_THAT(refused("still --points light.h5 --back none").err,
                Contains("still: holds neither terrain.vti nor run.h5"));
     CHECK(refused("out --time 1 --out a.h5").err ==
-          "command line: found no --spacing; expected --time, --spacing and --out, or --points and --back for the way from "
+          "command line: found no --spacing; expected --time, --spacing and --out, or --points and --back for the way "
+          "from "
           "3D; see `frana convert --help`\n");
     CHECK_THAT(refused("out --back none").err, Contains("found no --points; expected"));
     CHECK_THAT(refused("out --time 1 --points light.h5 --back none").err, Contains("found both ways at once"));

@@ -14,8 +14,7 @@ public:
         std::ostringstream dem;
         dem << "ncols 30\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n";
         for (int row = 0; row < 20; ++row)
-            for (int column = 0; column < 30; ++column)
-                dem << 100.0 - 0.5 * column << (column < 29 ? ' ' : '\n');
+            for (int column = 0; column < 30; ++column) dem << 100.0 - 0.5 * column << (column < 29 ? ' ' : '\n');
         frana::write_text(folder_.path() / "dem.asc", dem.str());
         frana::write_text(folder_.path() / "release.geojson",
                           R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {},

@@ -1,5 +1,6 @@
 #pragma once
-// A Kratos .mdpa body read back as Kratos reads it: blocks of words, comments dropped, hexahedra to centroids and volumes.
+// A Kratos .mdpa body read back as Kratos reads it: blocks of words, comments dropped, hexahedra to centroids and
+// volumes.
 #include <array>
 #include <filesystem>
 #include <map>
@@ -20,9 +21,7 @@ struct Mdpa {
     std::vector<long> part_nodes, part_elements;
 
     /// Corner c of an element.
-    const std::array<double, 3>& corner(long element, std::size_t c) const {
-        return nodes.at(elements.at(element)[c]);
-    }
+    const std::array<double, 3>& corner(long element, std::size_t c) const { return nodes.at(elements.at(element)[c]); }
     std::array<double, 3> centroid(long element) const {
         std::array<double, 3> middle{};
         for (std::size_t c = 0; c < 8; ++c)
@@ -37,8 +36,9 @@ struct Mdpa {
         for (std::size_t c = 0; c < 8; ++c)
             for (std::size_t a = 0; a < 3; ++a)
                 for (std::size_t b = 0; b < 3; ++b) j[a][b] += signs[c][b] * corner(element, c)[a] / 8.0;
-        return 8.0 * (j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1]) - j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0]) +
-                      j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0]));
+        return 8.0 *
+               (j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1]) - j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0]) +
+                j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0]));
     }
 };
 

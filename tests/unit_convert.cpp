@@ -53,9 +53,9 @@ TEST_CASE("A column has as many layers as spacings fit, at least one, also where
     CHECK(layer_count(0.49, 0.5) == 1);
     CHECK(layer_count(3.0, 1.0) == 3);
     CHECK(layer_count(3.99, 1.0) == 3);
-    CHECK(layer_count(0.3, 0.1) == 3);                           // 0.3 / 0.1 < 3 in double
-    CHECK(layer_count(static_cast<float>(0.7), 0.1) == 7);       // 0.7 as a frame holds it, 0.699999988
-    CHECK(layer_count(1e300, 1e-10) == 1000000000000000000);     // no overflow
+    CHECK(layer_count(0.3, 0.1) == 3);                        // 0.3 / 0.1 < 3 in double
+    CHECK(layer_count(static_cast<float>(0.7), 0.1) == 7);    // 0.7 as a frame holds it, 0.699999988
+    CHECK(layer_count(1e300, 1e-10) == 1000000000000000000);  // no overflow
 }
 
 TEST_CASE("Points stand in the middle of equal slices, or from bed to surface; a lone one in the middle", "[convert]") {
@@ -222,8 +222,7 @@ TEST_CASE("The paper's error measures are the same from columns as from the poin
 TEST_CASE("The paper's error measure is the root of a mean over the volume", "[convert]") {
     // Two columns of 2 and 1 layers: points of 3, 3 and 9 kg, 1, 1 and 4 m3; 15 kg over three points are 5 kg each.
     const ErrorColumn two[] = {{2.5, 6.0, 2.0, 12.0}, {1.0, 9.0, 4.0, 0.0}};
-    const ConversionErrors errors =
-        conversion_errors(2, [&](Index p) { return two[p]; }, 1.0, {15.0, 12.0});
+    const ConversionErrors errors = conversion_errors(2, [&](Index p) { return two[p]; }, 1.0, {15.0, 12.0});
     CHECK(errors.points == 3.0);
     CHECK(errors.mass == Approx(std::sqrt((2 * 4.0 + 4 * 16.0) / 6.0)).epsilon(1e-14));
     CHECK(errors.momentum == Approx(std::sqrt((2 * 4.0 + 4 * 16.0) / 6.0)).epsilon(1e-14));  // 6, 6, 0 around 4

@@ -67,8 +67,9 @@ TEST_CASE("Coarse pixels hold the sums of their columns, and the motion within i
         CHECK(relative(back.columns.mass[b], mass[pixel], mass[pixel]) <= kGate);
         CHECK(relative(back.columns.mass[b] * back.columns.vx[b], momentum[pixel], speed[pixel]) <= kGate);
         CHECK(back.kinetic[b] > 0.0);
-        kinetic += back.kinetic[b] + 0.5 * back.columns.mass[b] *
-                                         (back.columns.vx[b] * back.columns.vx[b] + back.columns.vy[b] * back.columns.vy[b]);
+        kinetic +=
+            back.kinetic[b] + 0.5 * back.columns.mass[b] *
+                                  (back.columns.vx[b] * back.columns.vx[b] + back.columns.vy[b] * back.columns.vy[b]);
     }
     const Conservation c = conservation_of(columns, points, choice);
     CHECK(kinetic == Approx(c.kinetic_points + c.kinetic_vertical).epsilon(kGate));

@@ -11,9 +11,8 @@ void TextFile::commit() {
     flush();
     stream_.close();
     if (!stream_)
-        throw UserError(
-            fmt::format("{}: cannot be written; check that the folder exists, its permissions and free space",
-                        target_.string()));
+        throw UserError(fmt::format(
+            "{}: cannot be written; check that the folder exists, its permissions and free space", target_.string()));
     file_.commit();
 }
 

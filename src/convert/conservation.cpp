@@ -115,14 +115,16 @@ std::string conservation_json(const Conservation& c) {
     std::string text = "{";
     for (const Kept& kept : c.kept)
         text += fmt::format(
-            "\n  \"{}\": {{\"unit\": \"{}\", \"columns\": {}, \"points\": {}, \"relative_error\": {}, \"worst_column\": {}}},",
+            "\n  \"{}\": {{\"unit\": \"{}\", \"columns\": {}, \"points\": {}, \"relative_error\": {}, "
+            "\"worst_column\": {}}},",
             kept.name, kept.unit, kept.columns, kept.points, kept.relative_error, kept.worst_column);
     text += fmt::format(
         "\n  \"kinetic_energy\": {{\"unit\": \"J\", \"columns\": {}, \"points\": {}, \"vertical\": {}, \"factor\": {}, "
         "\"exact_factor\": {}}},",
         c.kinetic_columns, c.kinetic_points, c.kinetic_vertical, c.energy_factor, c.exact_factor);
-    return text + fmt::format("\n  \"columns\": {},\n  \"points\": {},\n  \"most_layers\": {},\n  \"outside\": {}\n}}\n",
-                              c.columns, c.points, c.most_layers, c.outside);
+    return text +
+           fmt::format("\n  \"columns\": {},\n  \"points\": {},\n  \"most_layers\": {},\n  \"outside\": {}\n}}\n",
+                       c.columns, c.points, c.most_layers, c.outside);
 }
 
 }  // namespace frana

@@ -8,9 +8,9 @@ namespace frana {
 namespace {
 
 constexpr std::vector<double> FlowColumns::*kNumbers[] = {
-    &FlowColumns::x,       &FlowColumns::y,  &FlowColumns::bed, &FlowColumns::depth, &FlowColumns::slope_x,
-    &FlowColumns::slope_y, &FlowColumns::vx, &FlowColumns::vy,  &FlowColumns::mass,  &FlowColumns::volume,
-    &FlowColumns::bed_pressure, &FlowColumns::id};
+    &FlowColumns::x,       &FlowColumns::y,       &FlowColumns::bed,          &FlowColumns::depth,
+    &FlowColumns::slope_x, &FlowColumns::slope_y, &FlowColumns::vx,           &FlowColumns::vy,
+    &FlowColumns::mass,    &FlowColumns::volume,  &FlowColumns::bed_pressure, &FlowColumns::id};
 
 /// Slope between the elevations half a cell before, at, and half a cell behind a point.
 double quotient(double before, double here, double behind, double cell) {

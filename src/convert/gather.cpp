@@ -51,7 +51,8 @@ void add_column(GatheredFlow& flow, Index pixel, const Bin& bin, const Raster& b
     const GridGeometry& g = bed.geometry;
     FlowColumns& c = flow.columns;
     const double mass = bin.mass.value(), volume = bin.volume.value();
-    const double x = g.x(pixel % g.nx) + bin.place[0].value() / mass, y = g.y(pixel / g.nx) + bin.place[1].value() / mass;
+    const double x = g.x(pixel % g.nx) + bin.place[0].value() / mass,
+                 y = g.y(pixel / g.nx) + bin.place[1].value() / mass;
     const double vx = bin.momentum[0].value() / mass, vy = bin.momentum[1].value() / mass;
     c.x.push_back(x);
     c.y.push_back(y);

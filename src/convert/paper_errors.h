@@ -1,7 +1,7 @@
 #pragma once
 // The error measures of Fois, de Falco, Formaggia (2025), eq. (4): how far the points' masses and momenta are from
-// those of points that were all alike. They are absolute and shrink with the points themselves; what conversion keeps is
-// in conservation.h.
+// those of points that were all alike. They are absolute and shrink with the points themselves; what conversion keeps
+// is in conservation.h.
 #include <functional>
 
 #include "convert/solid_points.h"

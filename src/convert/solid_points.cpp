@@ -13,8 +13,9 @@ namespace {
 void require_sound(const FlowColumns& columns, const ConversionChoice& choice) {
     require_spacing(choice.spacing);
     const std::size_t n = columns.count();
-    for (const auto* numbers : {&columns.y, &columns.bed, &columns.depth, &columns.slope_x, &columns.slope_y, &columns.vx,
-                                &columns.vy, &columns.mass, &columns.volume, &columns.bed_pressure, &columns.id})
+    for (const auto* numbers :
+         {&columns.y, &columns.bed, &columns.depth, &columns.slope_x, &columns.slope_y, &columns.vx, &columns.vy,
+          &columns.mass, &columns.volume, &columns.bed_pressure, &columns.id})
         expect(numbers->size() == n, "the columns' arrays have equal lengths");
     expect(columns.stress.empty() || columns.stress.size() == 3 * n, "every column has a stress, or none has");
 }
@@ -44,8 +45,8 @@ void fill_column(const FlowColumns& columns, std::size_t p, const ConversionChoi
         const double pressure = columns.bed_pressure[p] * (1.0 - heights[i]);
         const double place[3] = {columns.x[p], columns.y[p], columns.bed[p] + heights[i] * depth};
         const double velocity[3] = {columns.vx[p] * speeds[i], columns.vy[p] * speeds[i], climb * speeds[i]};
-        const double stress[6] = {sigma[0] - pressure, sigma[1] - pressure, -sigma[0] - sigma[1] - pressure,
-                                  sigma[2],            0.0,                 0.0};
+        const double stress[6] = {
+            sigma[0] - pressure, sigma[1] - pressure, -sigma[0] - sigma[1] - pressure, sigma[2], 0.0, 0.0};
         std::copy(place, place + 3, &points.position[3 * k]);
         std::copy(velocity, velocity + 3, &points.velocity[3 * k]);
         std::copy(stress, stress + 6, &points.stress[6 * k]);

@@ -50,8 +50,8 @@ Raster read_bed(const Access& access, hid_t frame) {
     if (elevation.shape.size() != 3 || origin.size() < 2 || cell.empty())
         throw access.failure("its grid is not that of a run");
     Raster bed;
-    bed.geometry = {static_cast<Index>(elevation.shape[2]), static_cast<Index>(elevation.shape[1]), origin[0], origin[1],
-                    cell[0]};
+    bed.geometry = {static_cast<Index>(elevation.shape[2]), static_cast<Index>(elevation.shape[1]), origin[0],
+                    origin[1], cell[0]};
     bed.values = std::move(elevation.values);
     bed.source = access.file().string();
     if (H5Lexists(grid, "outside", H5P_DEFAULT) > 0) {

@@ -66,21 +66,23 @@ std::vector<double> read_column(const Access& access, hid_t file, const char* na
     const bool there = H5Lexists(file, name, H5P_DEFAULT) > 0;
     hdf5::Numbers numbers;
     if (there) numbers = hdf5::read_numbers(access, file, name);
-    const bool fits = components == 1 ? numbers.shape.size() == 1
-                                      : numbers.shape.size() == 2 && numbers.shape[1] == components;
+    const bool fits =
+        components == 1 ? numbers.shape.size() == 1 : numbers.shape.size() == 2 && numbers.shape[1] == components;
     if (!there || !fits)
-        throw UserError(fmt::format("{}: has no {} of {} per point; expected position (N, 3), velocity (N, 3), mass (N) and "
-                                    "volume (N), as frana convert writes them; write these",
-                                    access.file().string(), name, components));
+        throw UserError(
+            fmt::format("{}: has no {} of {} per point; expected position (N, 3), velocity (N, 3), mass (N) and "
+                        "volume (N), as frana convert writes them; write these",
+                        access.file().string(), name, components));
     return std::move(numbers.values);
 }
 
 void require_sound(const std::filesystem::path& file, const SolidPoints& points) {
     const std::size_t n = points.mass.size();
     const auto wrong = [&](const std::string& what) {
-        return UserError(fmt::format("{}: {}; expected finite numbers for each of its points, mass and volume above 0; "
-                                     "write them so",
-                                     file.string(), what));
+        return UserError(
+            fmt::format("{}: {}; expected finite numbers for each of its points, mass and volume above 0; "
+                        "write them so",
+                        file.string(), what));
     };
     if (n == 0) throw wrong("holds no points");
     if (points.position.size() != 3 * n || points.velocity.size() != 3 * n || points.volume.size() != n ||

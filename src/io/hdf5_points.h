@@ -12,9 +12,9 @@ namespace frana {
 /// finite.
 void write_points_hdf5(const std::filesystem::path& file, const PointTable& table);
 
-/// 3D points of any program that writes position (N, 3) [m], velocity (N, 3) [m/s], mass (N) [kg] and volume (N) [m3] as
-/// above; a pressure (N) [Pa] is taken when there is one. The other arrays of the result stay empty. Throws UserError
-/// when the file cannot be read, lacks one of them, or holds a number that no point can have.
+/// 3D points of any program that writes position (N, 3) [m], velocity (N, 3) [m/s], mass (N) [kg] and volume (N) [m3]
+/// as above; a pressure (N) [Pa] is taken when there is one. The other arrays of the result stay empty. Throws
+/// UserError when the file cannot be read, lacks one of them, or holds a number that no point can have.
 SolidPoints read_points_hdf5(const std::filesystem::path& file);
 
 }  // namespace frana

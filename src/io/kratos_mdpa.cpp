@@ -111,7 +111,9 @@ void write_material(const std::filesystem::path& file, const KratosMaterial& mat
 
 KratosMaterial kratos_fluid(double density, double viscosity, double sound_speed) {
     return {"DispNewtonianFluid3DLaw",
-            {{"DENSITY", density}, {"BULK_MODULUS", density * sound_speed * sound_speed}, {"DYNAMIC_VISCOSITY", viscosity}}};
+            {{"DENSITY", density},
+             {"BULK_MODULUS", density * sound_speed * sound_speed},
+             {"DYNAMIC_VISCOSITY", viscosity}}};
 }
 
 void write_kratos(const std::filesystem::path& file, const SolidPoints& points, const KratosMaterial& material,

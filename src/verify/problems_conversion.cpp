@@ -12,13 +12,14 @@ namespace frana::verify {
 namespace {
 
 constexpr double kSide = 5.0, kSpeed = 2.001, kDensity = 1000.0;  // the paper names no density
-constexpr double kSpacings[] = {0.01, 0.00001};  // the largest and the smallest h_z of the paper [m]
+constexpr double kSpacings[] = {0.01, 0.00001};                   // the largest and the smallest h_z of the paper [m]
 
 double depth_at(double x, double y) { return 10.0 - std::sin(2.0 * x) * std::cos(y); }
 
 /// Integral of the depth over [x0, x1] x [y0, y1] [m3].
 double volume_over(double x0, double x1, double y0, double y1) {
-    return 10.0 * (x1 - x0) * (y1 - y0) - 0.5 * (std::cos(2.0 * x0) - std::cos(2.0 * x1)) * (std::sin(y1) - std::sin(y0));
+    return 10.0 * (x1 - x0) * (y1 - y0) -
+           0.5 * (std::cos(2.0 * x0) - std::cos(2.0 * x1)) * (std::sin(y1) - std::sin(y0));
 }
 
 /// How the mass came onto the columns: evenly, as the paper's generation does it, or each the mass over its own square.
@@ -111,11 +112,14 @@ std::vector<Residual> total_volume() {
 std::vector<Problem> conversion_problems() {
     Problem conversion{"conversion",
                        "columns into 3D points: what is kept, and the measures of Fois et al. 2025, section 4.3",
-                       {250, 500, 1000}, total_volume, run_conversion};
+                       {250, 500, 1000},
+                       total_volume,
+                       run_conversion};
     conversion.order_of = "mass_measure";
-    conversion.gates = {{0, "mass_error", 1e-12, "issue gate, in total and per column"},
-                        {0, "momentum_error", 1e-12, "issue gate, in total and per column"},
-                        {0, "order_gap", 0.05, "first order in h_z, second in h_x: eqs. 7, 8 and figure 12 of the paper"}};
+    conversion.gates = {
+        {0, "mass_error", 1e-12, "issue gate, in total and per column"},
+        {0, "momentum_error", 1e-12, "issue gate, in total and per column"},
+        {0, "order_gap", 0.05, "first order in h_z, second in h_x: eqs. 7, 8 and figure 12 of the paper"}};
     return {conversion};
 }
 
