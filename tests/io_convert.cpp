@@ -150,11 +150,11 @@ TEST_CASE("A Kratos body of a run has its volume, and the material its density a
     CHECK(fs::exists(finished_run().folder() / "flow_Body.conservation.json"));
 }
 
-TEST_CASE("A run without VTK files gives the same points from run.h5", "[convert]") {
+TEST_CASE("A run without VTK files, and one that has not ended, give the same points from run.h5", "[convert]") {
     const std::string of_vtk = text_of(convert("vtk.csv"));
     fs::copy(finished_run().folder() / "out", finished_run().folder() / "only_h5", fs::copy_options::recursive);
-    for (const char* name : {"particles.pvd", "terrain.vti", "grid.pvd"})
-        fs::remove(finished_run().folder() / "only_h5" / name);
+    for (const char* name : {"particles.pvd", "terrain.vti", "grid.pvd", "run.json", "report.md", "rasters"})
+        fs::remove_all(finished_run().folder() / "only_h5" / name);
     const Outcome outcome = finished_run().frana("convert only_h5 --time 1 --spacing 0.25 --out h5.csv");
     INFO(outcome.err);
     CHECK(outcome.code == 0);
