@@ -37,10 +37,16 @@ ConversionChoice choice_of(const ConvertOptions& options) {
     return choice;
 }
 
+std::string listed(const double* numbers, std::size_t count) {
+    std::string text;
+    for (std::size_t k = 0; k < count; ++k) text += fmt::format("{}{}", k > 0 ? "," : "", numbers[k]);
+    return text;
+}
+
 /// What lies in the window; everything when there is none.
 FlowColumns chosen_columns(const RunState& state, const std::vector<double>& window) {
     if (window.empty()) return state.columns;
-    const std::string text = fmt::format("--window {}", fmt::join(window, ","));
+    const std::string text = "--window " + listed(window.data(), window.size());
     if (!(window[0] < window[2] && window[1] < window[3]))
         throw UserError(text +
                         ": is empty; expected xmin,ymin,xmax,ymax with xmin < xmax and ymin < ymax; give the "
@@ -49,7 +55,7 @@ FlowColumns chosen_columns(const RunState& state, const std::vector<double>& win
     if (window[2] < terrain[0] || window[0] > terrain[2] || window[3] < terrain[1] || window[1] > terrain[3])
         throw UserError(
             fmt::format("{}: lies outside the terrain; expected a part of {}; give map coordinates of the run", text,
-                        fmt::join(terrain, ",")));
+                        listed(terrain.data(), terrain.size())));
     FlowColumns inside = columns_within(state.columns, {window[0], window[1], window[2], window[3]});
     if (inside.count() == 0)
         throw UserError(
@@ -140,7 +146,8 @@ void write_for_kratos(const ConvertOptions& options, const RunState& state, cons
 
 std::string record_json(const RunState& state, const ConvertOptions& options, const std::string& conservation) {
     std::string window;
-    if (!options.window.empty()) window = fmt::format("\n\"window\": [{}],", fmt::join(options.window, ", "));
+    if (!options.window.empty())
+        window = fmt::format("\n\"window\": [{}],", listed(options.window.data(), options.window.size()));
     return fmt::format(
         "{{\n\"frames\": {},\n\"time\": {},\n\"asked_time\": {},\n\"spacing\": {},\n\"layers\": {},\n"
         "\"vertical\": {},\n\"profile\": {},{}\n\"conservation\": {}}}\n",
