@@ -75,6 +75,26 @@ void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
     command->callback([&] { action = [&] { return particles_command(options); }; });
 }
 
+void add_convert(CLI::App& app, ConvertOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("convert", "columns of a run to 3D points, with what is kept on the way");
+    command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
+    command->add_option("--time", options.time, "simulated time [s]; the nearest frame is taken");
+    command->add_option("--spacing", options.spacing, "vertical distance of the points [m]");
+    command->add_option("--out", options.out, "file to write: .h5, .json, .csv, .vtp or .mdpa");
+    command->add_option("--layers", options.layers, "centres (of equal slices, default) or end-points (bed to surface)")
+        ->check(CLI::IsMember({"centres", "end-points"}));
+    command->add_option("--vertical", options.vertical, "velocity: along-bed (default) or zero")
+        ->check(CLI::IsMember({"along-bed", "zero"}));
+    command->add_option("--profile", options.profile, "of the velocity: plug (default), linear, parabolic, bagnold")
+        ->check(CLI::IsMember({"plug", "linear", "parabolic", "bagnold"}));
+    command->add_option("--window", options.window, "only columns within: xmin,ymin,xmax,ymax")
+        ->delimiter(',')
+        ->expected(4);
+    command->add_option("--points", options.points, "3D points (.h5) to bring back onto the run's grid, with --back");
+    command->add_option("--back", options.back, "folder for depth.tif, velocity_x.tif, velocity_y.tif of --points");
+    command->callback([&] { action = [&] { return convert_command(options); }; });
+}
+
 /// "1600x1200" into width and height.
 void read_size(const std::string& text, FiguresOptions& options) {
     int end = 0;
@@ -209,6 +229,7 @@ int run_program(int argc, char** argv) {
     CheckOptions check;
     std::string key;
     ParticlesOptions particles;
+    ConvertOptions convert;
     FiguresOptions figures;
     std::string size;
     CompareOptions compare;
@@ -221,6 +242,7 @@ int run_program(int argc, char** argv) {
     add_check(app, check, action);
     add_describe(app, key, action);
     add_particles(app, particles, action);
+    add_convert(app, convert, action);
     add_figures(app, figures, size, action);
     add_compare(app, compare, action);
     add_states(app, states, action);

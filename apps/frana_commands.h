@@ -55,6 +55,18 @@ struct ParticlesOptions {
     std::optional<long long> count;  ///< as particles.count
 };
 
+/// `frana convert RUN_DIR --time T --spacing R --out FILE [--layers centres|end-points] [--vertical along-bed|zero]
+/// [--profile plug|linear|parabolic|bagnold] [--window xmin,ymin,xmax,ymax]`, or
+/// `frana convert RUN_DIR --points FILE.h5 --back DIR`
+struct ConvertOptions {
+    std::filesystem::path run_dir, out;
+    std::optional<double> time;          ///< [s]
+    std::optional<double> spacing;       ///< vertical, between points [m]
+    std::filesystem::path points, back;  ///< the other way: 3D points to read, folder of the rasters
+    std::string layers = "centres", vertical = "along-bed", profile = "plug";
+    std::vector<double> window;          ///< map coordinates; empty: everything
+};
+
 /// `frana verify [NAME...] [--list] [--cells N,N,...] [--preset P] [--points N] [--json FILE] [--table FILE]
 /// [--against FILE]
 /// [--figure FILE.png] [--study]`
@@ -108,5 +120,7 @@ int states_command(const StatesOptions& options);        // frana_states_command
 int check_command(const CheckOptions& options);          // frana_check.cpp
 int describe_command(const std::string& key);            // frana_describe.cpp; empty: every key
 int particles_command(const ParticlesOptions& options);  // frana_particles.cpp
+int convert_command(const ConvertOptions& options);      // frana_convert.cpp
+int convert_back(const ConvertOptions& options);         // frana_convert_back.cpp
 
 }  // namespace frana

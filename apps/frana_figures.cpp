@@ -12,7 +12,6 @@
 #include "frana_figures.h"
 #include "frana_run_film.h"
 #include "io/gdal_reader.h"
-#include "scene/case_file.h"
 #include "vtk_io/reader.h"
 
 namespace frana {
@@ -48,8 +47,7 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
 /// Lines, points and the survey, from the case in full. Files that it names may have gone; a survey that has
 /// is left out.
 void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::string>& warnings) {
-    const fs::path file = run_dir / "resolved.toml";
-    const CaseFile run_case = CaseFile::parse(text_of(file), file);
+    const CaseFile run_case = case_of_run(run_dir);
     for (Index i = 0; i < run_case.count("profile"); ++i) {
         const std::string table = fmt::format("profile.{}.", i);
         source.profiles.push_back({run_case.word(table + "name"), run_case.points(table + "line")});
@@ -83,8 +81,7 @@ ProductRaster from_frame(const LoadedFrame& frame, const std::string& field, con
 
 /// The elevation model that the case names, for runs that wrote no VTK files.
 Raster bed_of_case(const fs::path& run_dir) {
-    const fs::path file = run_dir / "resolved.toml";
-    const CaseFile run_case = CaseFile::parse(text_of(file), file);
+    const CaseFile run_case = case_of_run(run_dir);
     DemRequest request;
     if (run_case.has("terrain.window")) {
         const auto& w = run_case.numbers("terrain.window");
@@ -157,6 +154,11 @@ void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigur
 }
 
 }  // namespace
+
+CaseFile case_of_run(const fs::path& run_dir) {
+    const fs::path file = run_dir / "resolved.toml";
+    return CaseFile::parse(text_of(file), file);
+}
 
 std::string title_of_run(const fs::path& run_dir) {
     FigureSource source;

@@ -5,11 +5,15 @@
 #include <vector>
 
 #include "frana_run_figures.h"
+#include "scene/case_file.h"
 
 namespace frana {
 
 /// The title in the folder's run.json. UserError when the folder holds no finished run.
 std::string title_of_run(const std::filesystem::path& run_dir);
+
+/// The case of the folder's resolved.toml; files that it names may have gone. UserError when it is not there.
+CaseFile case_of_run(const std::filesystem::path& run_dir);
 
 /// Title, footer, limit of the covered area, rasters and terrain of a run, from its files. The terrain is that of
 /// terrain.vti, else the elevation model that the case names, on the rasters' nodes; without either it is empty, and

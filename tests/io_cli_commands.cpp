@@ -8,7 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "catch.h"
-#include "program.h"
+#include "plane_case.h"
 #include "scene/parameters.h"
 
 namespace fs = std::filesystem;
@@ -16,49 +16,13 @@ using Catch::Contains;
 
 namespace {
 
-/// A plane of 30 x 20 nodes, 5 m apart, with a release; files that need no GIS to write.
-class Case {
-public:
-    Case() {
-        std::ostringstream dem;
-        dem << "ncols 30\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n";
-        for (int row = 0; row < 20; ++row)
-            for (int column = 0; column < 30; ++column)
-                dem << 100.0 - 0.5 * column << (column < 29 ? ' ' : '\n');
-        frana::write_text(folder_.path() / "dem.asc", dem.str());
-        frana::write_text(folder_.path() / "release.geojson",
-                          R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {},
-                          "geometry": {"type": "Polygon", "coordinates":
-                          [[[20, 30], [50, 30], [50, 70], [20, 70], [20, 30]]]}}]})");
-        write("");
-    }
-    void write(const std::string& rest) const {
-        frana::write_text(file(),
-                          "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"release.geojson\"\n"
-                          "depth = 1.5\n[time]\nend = 2\n" +
-                              rest);
-    }
-    fs::path file() const { return folder_.path() / "case.toml"; }
-    const fs::path& folder() const { return folder_.path(); }
-
-    /// Calls the program, which is built beside this test; CASE in the arguments stands for the case file.
-    Outcome frana(std::string arguments) const {
-        const std::size_t place = arguments.find("CASE");
-        if (place != std::string::npos) arguments.replace(place, 4, file().string());
-        return call_frana(folder(), arguments);
-    }
-
-private:
-    FreshFolder folder_;
-};
-
 /// What the parameter table expects of a key.
 std::string expected_of(const char* key) { return frana::find_parameter(key)->expected(); }
 
 }  // namespace
 
 TEST_CASE("--version names the libraries, --help the commands, and both leave with 0", "[cli]") {
-    const Case scene;
+    const PlaneCase scene;
     const Outcome version = scene.frana("--version");
     CHECK(version.code == 0);
     CHECK_THAT(version.out,
@@ -70,14 +34,14 @@ TEST_CASE("--version names the libraries, --help the commands, and both leave wi
 }
 
 TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr", "[cli]") {
-    const Case scene;
+    const PlaneCase scene;
     CHECK(scene.frana("").code == 2);
     const Outcome unknown = scene.frana("chekc CASE");
     CHECK(unknown.code == 2);
     CHECK(unknown.out.empty());
     CHECK(unknown.err ==
           "command line: found the unknown command \"chekc\"; expected one of run, check, describe, "
-          "particles, figures, compare, states, verify, bench, stress; did you mean check?\n");
+          "particles, convert, figures, compare, states, verify, bench, stress; did you mean check?\n");
     const Outcome threads = scene.frana("run CASE --threads 0");
     CHECK(threads.code == 2);
     CHECK_THAT(threads.err, Contains("--threads"));
@@ -91,7 +55,7 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
 }
 
 TEST_CASE("describe explains a key, and leaves with 2 for one that does not exist", "[cli]") {
-    const Case scene;
+    const PlaneCase scene;
     const Outcome cell = scene.frana("describe grid.cell");
     CHECK(cell.code == 0);
     CHECK_THAT(cell.out, Contains("grid.cell [m]") && Contains("the pixel of the elevation model"));
@@ -101,7 +65,7 @@ TEST_CASE("describe explains a key, and leaves with 2 for one that does not exis
 }
 
 TEST_CASE("check tells grid, particles and volume of a good case without running it", "[cli]") {
-    const Case scene;
+    const PlaneCase scene;
     const Outcome check = scene.frana("check CASE");
     CHECK(check.err.empty());
     CHECK(check.code == 0);
@@ -116,7 +80,7 @@ TEST_CASE("check tells grid, particles and volume of a good case without running
 }
 
 TEST_CASE("An in-situ entry that cannot work is refused before the run folder is touched", "[cli][insitu]") {
-    const Case scene;
+    const PlaneCase scene;
     const std::string name = scene.file().string();
     const auto refused = [&](const std::string& rest, const std::string& sentence) {
         scene.write(rest);
@@ -136,7 +100,7 @@ TEST_CASE("An in-situ entry that cannot work is refused before the run folder is
 }
 
 TEST_CASE("A run without formats leaves its in-situ products only", "[cli][insitu]") {
-    const Case scene;
+    const PlaneCase scene;
     scene.write("[output]\nformats = []\n[[insitu]]\nname = \"most\"\nkind = \"reduce\"\n");
     const Outcome check = scene.frana("check CASE");
     CHECK(check.code == 0);
@@ -148,7 +112,7 @@ TEST_CASE("A run without formats leaves its in-situ products only", "[cli][insit
 }
 
 TEST_CASE("check lists all problems of a bad case on stderr and is not ready", "[cli]") {
-    const Case scene;
+    const PlaneCase scene;
     scene.write("[grid]\ncel = 3\n[survey]\nfootprint = \"none.geojson\"\n");
     const Outcome check = scene.frana("check CASE --set scheme.cfl=7");
     CHECK(check.code == 2);
@@ -166,7 +130,7 @@ TEST_CASE("check lists all problems of a bad case on stderr and is not ready", "
 }
 
 TEST_CASE("particles writes every format, with the count asked for", "[cli]") {
-    const Case scene;
+    const PlaneCase scene;
     for (const char* name : {"p.csv", "p.json", "p.h5", "deep/p.vtp"}) {
         CAPTURE(name);
         const Outcome outcome =
@@ -184,7 +148,7 @@ TEST_CASE("particles writes every format, with the count asked for", "[cli]") {
 }
 
 TEST_CASE("verify names the problem that was meant, writes JSON with the contract's keys, and compares tables", "[cli]") {
-    const Case scene;
+    const PlaneCase scene;
     const Outcome unknown = scene.frana("verify stokr");
     CHECK(unknown.code == 2);
     CHECK_THAT(unknown.err, Contains("did you mean stoker?"));
@@ -202,7 +166,7 @@ TEST_CASE("verify names the problem that was meant, writes JSON with the contrac
 }
 
 TEST_CASE("bench leaves with 2 and a sentence for numbers that cannot be", "[cli]") {
-    const Case scene;
+    const PlaneCase scene;
     const Outcome few = scene.frana("bench --particles 70000,5 --json b.json");
     CHECK(few.code == 2);
     CHECK(few.err == "--particles: found 5; expected 1000 to 100000000; choose a number in this range\n");

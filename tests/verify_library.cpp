@@ -34,7 +34,7 @@ TEST_CASE("Problems have names of their own, grids, and gates on quantities that
         for (const verify::Gate& gate : problem.gates) CHECK_FALSE(gate.source.empty());
     }
     for (const char* name : {"lake_z1", "lake_z2", "lake_island", "ritter", "stoker", "thacker_planar", "thacker_radial",
-                             "radial_dam", "pile", "obstacle"})
+                             "radial_dam", "pile", "obstacle", "conversion"})
         CHECK(names.count(name) == 1);
 }
 

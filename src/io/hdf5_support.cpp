@@ -57,6 +57,18 @@ void put_numbers(const Access& access, hid_t object, const char* name, const std
     access.check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, numbers.data()));
 }
 
+Numbers read_numbers(const Access& access, hid_t group, const std::string& name) {
+    const Handle set(access, H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
+    const Handle space(access, H5Dget_space(set), H5Sclose);
+    Numbers numbers;
+    numbers.shape.resize(static_cast<std::size_t>(access.check(H5Sget_simple_extent_ndims(space))));
+    access.check(H5Sget_simple_extent_dims(space, numbers.shape.data(), nullptr));
+    numbers.values.resize(static_cast<std::size_t>(access.check(H5Sget_simple_extent_npoints(space))));
+    if (!numbers.values.empty())
+        access.check(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.values.data()));
+    return numbers;
+}
+
 void reserve(const Access& access, const std::filesystem::path& path, off_t bytes) {
     const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (file < 0) throw access.failure(std::strerror(errno));

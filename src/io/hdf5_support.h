@@ -74,6 +74,13 @@ private:
 void put_text(const Access& access, hid_t object, const char* name, const std::string& text);
 void put_numbers(const Access& access, hid_t object, const char* name, const std::vector<double>& numbers);
 
+/// A dataset's shape and its values as double.
+struct Numbers {
+    std::vector<hsize_t> shape;
+    std::vector<double> values;
+};
+Numbers read_numbers(const Access& access, hid_t group, const std::string& name);
+
 /// Asks the system for the space before HDF5 writes: HDF5 leaves a broken file behind (and crashes at exit)
 /// when the disk fills up under it. What is too much is given back when HDF5 closes the file.
 void reserve(const Access& access, const std::filesystem::path& file, off_t bytes);

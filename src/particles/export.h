@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/point_table.h"
 #include "particles/seeds.h"
 #include "terrain/raster.h"
 
@@ -32,6 +33,9 @@ struct SeedsColumn {
 /// The quantities that every format holds, beside the id 0, 1, ... Throws InternalError on a number that is
 /// not finite, so that none reaches a file.
 std::vector<SeedsColumn> seeds_columns(const SeedsExport& data);
+
+/// The same as a table that writers take; `columns` is what seeds_columns() gave and must outlive it.
+PointTable seeds_table(const SeedsExport& data, const std::vector<SeedsColumn>& columns);
 
 /// Text table with the header id,x,y,elevation,depth,size,vx,vy,volume,mass; units m, m/s, m3, kg. Numbers
 /// read back to the same bits. Throws UserError when the file cannot be written.

@@ -23,5 +23,6 @@ std::vector<Problem> track_problems();       // problems_tracks.cpp
 std::vector<Problem> sheet_problems();       // problems_sheet.cpp
 std::vector<Problem> deposit_problems();     // problems_deposit.cpp
 std::vector<Problem> spreading_problems();   // problems_spreading.cpp
+std::vector<Problem> conversion_problems();  // problems_conversion.cpp
 
 }  // namespace frana::verify

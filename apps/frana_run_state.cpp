@@ -1,0 +1,163 @@
+#include "frana_run_state.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "frana_products.h"
+#include "io/hdf5_particles.h"
+#include "vtk_io/pvd.h"
+#include "vtk_io/reader.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// Position of the frame nearest to `time`.
+Index choose_frame(const std::vector<double>& times, double time, const fs::path& frames) {
+    if (times.empty())
+        throw UserError(fmt::format("{}: lists no frame yet; expected the frames of a run; wait for its first output",
+                                    frames.string()));
+    const double first = times.front(), last = times.back(), slack = 1e-9 * std::max(1.0, std::abs(last));
+    const auto range = fmt::format("expected {:.6g} to {:.6g} s", first, last);
+    if (!(time >= first - slack))
+        throw UserError(fmt::format("--time {:.6g}: lies before the first frame of {}; {}; give a time of the run",
+                                    time, frames.string(), range));
+    if (time > last + slack)
+        throw UserError(
+            fmt::format("--time {:.6g}: is past the last frame of {}; {}; give a time of the run, or let the "
+                        "run go further",
+                        time, frames.string(), range));
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < times.size(); ++k)
+        if (std::abs(times[k] - time) < std::abs(times[nearest] - time)) nearest = k;
+    return static_cast<Index>(nearest);
+}
+
+/// Component c of a column.
+template <class Loaded>
+std::vector<double> component(const Loaded& loaded, const std::string& name, std::size_t c = 0) {
+    const auto stride = static_cast<std::size_t>(loaded.components.at(name));
+    const std::vector<double>& all = loaded.columns.at(name);
+    std::vector<double> values;
+    values.reserve(all.size() / stride);
+    for (std::size_t k = c; k < all.size(); k += stride) values.push_back(all[k]);
+    return values;
+}
+
+/// What a state needs, with the number of components.
+template <class Loaded>
+void require_fields(const Loaded& loaded, const fs::path& frames) {
+    std::string missing;
+    for (const auto& [name, components] : {std::pair<const char*, int>{"position", 3},
+                                           {"depth", 1},
+                                           {"velocity", 3},
+                                           {"mass", 1},
+                                           {"volume", 1},
+                                           {"pressure", 1}}) {
+        const auto found = loaded.components.find(name);
+        if (found == loaded.components.end() || found->second != components)
+            missing += (missing.empty() ? "" : ", ") + std::string(name);
+    }
+    if (!missing.empty())
+        throw UserError(
+            fmt::format("{}: its particles have no {}; expected position, depth, velocity, mass, volume and "
+                        "pressure; add them to output.fields and run the case again",
+                        frames.string(), missing));
+}
+
+template <class Loaded>
+FlowColumns columns_of(const Loaded& loaded, const fs::path& frames) {
+    require_fields(loaded, frames);
+    FlowColumns columns;
+    columns.x = component(loaded, "position", 0);
+    columns.y = component(loaded, "position", 1);
+    columns.bed = component(loaded, "position", 2);  // the free surface so far
+    columns.depth = component(loaded, "depth");
+    for (std::size_t p = 0; p < columns.count(); ++p) columns.bed[p] -= columns.depth[p];
+    columns.vx = component(loaded, "velocity", 0);
+    columns.vy = component(loaded, "velocity", 1);
+    columns.mass = component(loaded, "mass");
+    columns.volume = component(loaded, "volume");
+    columns.bed_pressure = component(loaded, "pressure");
+    columns.id = component(loaded, "id");
+    if (loaded.components.count("stress") && loaded.components.at("stress") == 3)
+        columns.stress = loaded.columns.at("stress");
+    return columns;
+}
+
+Raster vtk_bed(const fs::path& run_dir) {
+    LoadedFrame terrain = read_terrain(run_dir);
+    Raster bed;
+    bed.geometry = terrain.grid;
+    bed.values = std::move(terrain.nodes.at("elevation"));
+    bed.source = (run_dir / "terrain.vti").string();
+    return bed;
+}
+
+/// The coordinate system of the run's rasters, where it wrote some.
+std::string crs_of(const fs::path& run_dir) {
+    const auto rasters = read_rasters(run_dir);
+    return rasters.empty() ? "" : rasters.front().raster.crs_wkt;
+}
+
+UserError no_frames(const fs::path& run_dir, const char* file) {
+    return UserError(
+        fmt::format("{}: holds neither {} nor run.h5; expected the folder of a run with \"vtk\" or \"xdmf\" in "
+                    "output.formats, such as the one after --out of frana run",
+                    run_dir.string(), file));
+}
+
+RunState state_of_vtk(const fs::path& run_dir, double time) {
+    RunState state;
+    const fs::path list = run_dir / "particles.pvd";
+    std::vector<double> times;
+    for (const PvdEntry& entry : read_pvd(list)) times.push_back(entry.time);
+    const Index number = choose_frame(times, time, list);
+    const LoadedParticles particles = read_particles(run_dir, number);
+    state.time = particles.time;
+    state.columns = columns_of(particles, list);
+    state.bed = vtk_bed(run_dir);
+    state.frames = list.string();
+    return state;
+}
+
+RunState state_of_hdf5(const fs::path& run_dir, double time) {
+    RunState state;
+    const fs::path file = run_dir / "run.h5";
+    const Index number = choose_frame(hdf5_frame_times(file), time, file);
+    StoredParticles particles = read_hdf5_particles(file, number);
+    state.time = particles.time;
+    state.columns = columns_of(particles, file);
+    state.bed = std::move(particles.bed);
+    state.frames = file.string();
+    return state;
+}
+
+}  // namespace
+
+RunState read_run_state(const fs::path& run_dir, double time) {
+    const bool vtk = fs::exists(run_dir / "particles.pvd");
+    if (!vtk && !fs::exists(run_dir / "run.h5")) throw no_frames(run_dir, "particles.pvd");
+    RunState state = vtk ? state_of_vtk(run_dir, time) : state_of_hdf5(run_dir, time);
+    if (state.columns.count() == 0)
+        throw UserError(
+            fmt::format("{}: has no particles at {:.6g} s: everything has left the terrain; give an earlier "
+                        "--time",
+                        state.frames, state.time));
+    take_slopes(state.columns, state.bed);
+    state.bed.crs_wkt = crs_of(run_dir);
+    return state;
+}
+
+Raster bed_of_run(const fs::path& run_dir) {
+    const bool vtk = fs::exists(run_dir / "terrain.vti");
+    if (!vtk && !fs::exists(run_dir / "run.h5")) throw no_frames(run_dir, "terrain.vti");
+    Raster bed = vtk ? vtk_bed(run_dir) : read_hdf5_particles(run_dir / "run.h5", 0).bed;
+    bed.crs_wkt = crs_of(run_dir);
+    return bed;
+}
+
+}  // namespace frana

@@ -1,0 +1,9 @@
+#pragma once
+
+namespace frana {
+
+/// Memory that this process can still get without swapping: what the system has left, or the container's limit leaves
+/// where that is less [bytes]. Infinite where neither is known.
+double free_memory();
+
+}  // namespace frana

@@ -1,0 +1,37 @@
+#include "base/text_file.h"
+
+#include "base/error.h"
+
+namespace frana {
+
+TextFile::TextFile(const std::filesystem::path& target)
+    : target_(target), file_(target), stream_(file_.path(), std::ios::binary) {}
+
+void TextFile::commit() {
+    flush();
+    stream_.close();
+    if (!stream_)
+        throw UserError(fmt::format(
+            "{}: cannot be written; check that the folder exists, its permissions and free space", target_.string()));
+    file_.commit();
+}
+
+void TextFile::flush() {
+    stream_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    buffer_.clear();
+}
+
+std::string json_text(const std::string& text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            quoted += {'\\', c};
+        else if (static_cast<unsigned char>(c) < 0x20)
+            quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            quoted += c;
+    }
+    return quoted + '"';
+}
+
+}  // namespace frana

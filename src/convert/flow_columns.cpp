@@ -1,0 +1,51 @@
+#include "convert/flow_columns.h"
+
+#include <cmath>
+
+#include "particles/bed_points.h"
+
+namespace frana {
+namespace {
+
+constexpr std::vector<double> FlowColumns::*kNumbers[] = {
+    &FlowColumns::x,       &FlowColumns::y,       &FlowColumns::bed,          &FlowColumns::depth,
+    &FlowColumns::slope_x, &FlowColumns::slope_y, &FlowColumns::vx,           &FlowColumns::vy,
+    &FlowColumns::mass,    &FlowColumns::volume,  &FlowColumns::bed_pressure, &FlowColumns::id};
+
+/// Slope between the elevations half a cell before, at, and half a cell behind a point.
+double quotient(double before, double here, double behind, double cell) {
+    if (std::isfinite(before) && std::isfinite(behind)) return (behind - before) / cell;
+    if (std::isfinite(before) && std::isfinite(here)) return (here - before) / (0.5 * cell);
+    if (std::isfinite(behind) && std::isfinite(here)) return (behind - here) / (0.5 * cell);
+    return 0.0;
+}
+
+}  // namespace
+
+void FlowColumns::reserve(std::size_t columns) {
+    for (const auto member : kNumbers) (this->*member).reserve(columns);
+}
+
+void FlowColumns::take(const FlowColumns& other, std::size_t k) {
+    for (const auto member : kNumbers) (this->*member).push_back((other.*member)[k]);
+    if (other.stress.empty()) return;
+    for (std::size_t c = 0; c < 3; ++c) stress.push_back(other.stress[3 * k + c]);
+}
+
+Vec2 bed_gradient(const Raster& bed, double x, double y) {
+    const double half = 0.5 * bed.geometry.cell, here = bed_elevation(bed, x, y);
+    return {quotient(bed_elevation(bed, x - half, y), here, bed_elevation(bed, x + half, y), bed.geometry.cell),
+            quotient(bed_elevation(bed, x, y - half), here, bed_elevation(bed, x, y + half), bed.geometry.cell)};
+}
+
+void take_slopes(FlowColumns& columns, const Raster& bed) {
+    columns.slope_x.resize(columns.count());
+    columns.slope_y.resize(columns.count());
+    for (std::size_t p = 0; p < columns.count(); ++p) {
+        const Vec2 slope = bed_gradient(bed, columns.x[p], columns.y[p]);
+        columns.slope_x[p] = slope[0];
+        columns.slope_y[p] = slope[1];
+    }
+}
+
+}  // namespace frana
