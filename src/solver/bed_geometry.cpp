@@ -73,22 +73,27 @@ double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index
 }
 
 /// The same up to kTile nodes beyond the domain on every side, whatever the tiles: filters that run often carry in what
-/// lies at the rim, and mirror images must stay so.
+/// lies at the rim, and mirror images must stay so. The outer `margin_x` columns and `margin_y` rows are left out.
 template <class Body>
-void for_each_node_around(const TileGrid& grid, Index margin, Body&& body) {
+void for_each_node_around(const TileGrid& grid, Index margin_x, Index margin_y, Body&& body) {
 #pragma omp parallel for schedule(static)
-    for (Index j = margin - kTile; j < grid.ny() + kTile - margin; ++j)
-        for (Index i = margin - kTile; i < grid.nx() + kTile - margin; ++i) body(grid.at(i, j));
+    for (Index j = margin_y - kTile; j < grid.ny() + kTile - margin_y; ++j)
+        for (Index i = margin_x - kTile; i < grid.nx() + kTile - margin_x; ++i) body(grid.at(i, j));
 }
 
-/// Applies the symmetric weights w[0] (centre), w[1], w[2] along one direction (step 1: x, stride: y).
-void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch, Index step,
+enum class Axis { x, y };
+
+/// Applies the symmetric weights w[0] (centre), w[1], w[2] along one direction, in all of its lines: only so do the two
+/// directions commute, and what is symmetric about a diagonal stays so.
+void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch, Axis axis,
             const std::array<double, 3>& w) {
-    for_each_node_around(grid, 2, [&](Index k) {
+    const Index step = axis == Axis::x ? 1 : grid.stride();
+    const Index margin_x = axis == Axis::x ? 2 : 0, margin_y = 2 - margin_x;
+    for_each_node_around(grid, margin_x, margin_y, [&](Index k) {
         scratch[k] = w[0] * field[k] + w[1] * (field[k - step] + field[k + step]) +
                      w[2] * (field[k - 2 * step] + field[k + 2 * step]);
     });
-    for_each_node_around(grid, 2, [&](Index k) { field[k] = scratch[k]; });
+    for_each_node_around(grid, margin_x, margin_y, [&](Index k) { field[k] = scratch[k]; });
 }
 
 /// Average of a bilinear bed with the scheme's own shape function: B-splines of two degrees more at whole numbers.
@@ -103,8 +108,8 @@ std::array<double, 3> averaging(const Scene& scene) {
 
 void average(const Scene& scene, const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch) {
     if (scene.scheme.shape == Shape::linear) return;
-    smooth(grid, field, scratch, 1, averaging(scene));
-    smooth(grid, field, scratch, grid.stride(), averaging(scene));
+    smooth(grid, field, scratch, Axis::x, averaging(scene));
+    smooth(grid, field, scratch, Axis::y, averaging(scene));
 }
 
 /// Change of slope over a cell that a step can follow: it moves a point by up to scheme.cfl of a cell, and a sharper bend
@@ -124,8 +129,8 @@ void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<
     const Index passes = std::min<Index>(static_cast<Index>(std::lround(2.0 * length * length / (cell * cell))), 400);
     const std::array<double, 3> binomial{0.5, 0.25, 0.0};
     for (Index pass = 0; pass < passes; ++pass) {
-        smooth(grid, smoothed, scratch, 1, binomial);
-        smooth(grid, smoothed, scratch, grid.stride(), binomial);
+        smooth(grid, smoothed, scratch, Axis::x, binomial);
+        smooth(grid, smoothed, scratch, Axis::y, binomial);
     }
     bed.hxx = LazyArray<double>(grid.size());
     bed.hxy = LazyArray<double>(grid.size());

@@ -48,11 +48,15 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     if (start == Start::kept) return;
     flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
     if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
-    else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear)
+    else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear) {
+        // Points wide enough to split would spread over other nodes than those they were fitted on.
+        while (splitter_.split(flow_) > 0) sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active);
         fit_ = fit_masses(flow_, *scene.still_surface);
+    }
     if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(flow_);
     const double longest = longest_step();
     arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest); }));
+    if (fit_) fit_->level_error = off_level(flow_, *scene.still_surface);
     start_momentum_ = status_.momentum;
     signal_ += std::sqrt(flow_.gravity * status_.max_depth);
 }
@@ -255,8 +259,8 @@ Index DepthAveraged::particle_bytes() const {
 std::vector<std::string> DepthAveraged::remarks() const {
     if (!fit_) return {};
     return {fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
-                        "{} points at their limits",
-                        fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped)};
+                        "{} points at their limits; level within {:.2g} m",
+                        fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped, fit_->level_error)};
 }
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start) {

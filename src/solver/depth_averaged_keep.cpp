@@ -106,6 +106,7 @@ void DepthAveraged::keep_sums(Archive& archive) {
     archive.number("fit_iterations", fit.iterations);
     archive.number("fit_largest_change", fit.largest_change);
     archive.number("fit_clipped", fit.clipped);
+    archive.number("fit_level_error", fit.level_error);
     if (!archive.loading()) return;
     splitter_.set_next_id(next_id);
     if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(most);

@@ -160,6 +160,16 @@ bool inside(const Flow& flow, Index i, Index j) {
 
 }  // namespace
 
+double off_level(const Flow& flow, double level) {
+    double most = 0.0;
+    for (const Index tile : flow.active.work)
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+            const bool inside = i >= 0 && j >= 0 && i < flow.grid.nx() && j < flow.grid.ny();
+            if (inside && flow.nodes.flags[k] & kWet) most = std::max(most, std::abs(flow.nodes.surface[k] - level));
+        });
+    return most;
+}
+
 MassFit fit_masses(Flow& flow, double level) {
     MassFit fit;
     const std::vector<double> start(flow.columns.mass.begin(), flow.columns.mass.end());

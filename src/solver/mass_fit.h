@@ -9,7 +9,11 @@ struct MassFit {
     Index iterations = 0;        ///< of the conjugate gradients, all rounds
     double largest_change = 0.0; ///< largest |m - m0| / m0 of a point [1]
     Index clipped = 0;           ///< points whose mass met the limits [0.03, 5] m0
+    double level_error = 0.0;    ///< largest distance of the surface from the level where it is wet (off_level) [m]
 };
+
+/// Largest distance of the free surface, margins included, from `level` on the wet nodes of the domain [m].
+double off_level(const Flow& flow, double level);
 
 /// Changes the points' masses so that depth + bed equals `level` [m] on the wet nodes: a lake that starts at exact
 /// rest, wherever the points stand. Least change, weighted by mass: m = m0 + W B^T y, (B W B^T) y = t - B m0 with

@@ -63,15 +63,21 @@ void halve(Flow& flow, Index p, Index q, bool first) {
     c.each([&](auto& column) { column[q] = column[p]; });
     const Real dvx = static_cast<Real>(flow.cell * (held.cxx[p] * dx + held.cxy[p] * dy));
     const Real dvy = static_cast<Real>(flow.cell * (held.cyx[p] * dx + held.cyy[p] * dy));
-    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-    c.x[q] = std::clamp(c.x[p] - dx, 0.0, x_max);
-    c.y[q] = std::clamp(c.y[p] - dy, 0.0, y_max);
+    c.x[q] = c.x[p] - dx;
+    c.y[q] = c.y[p] - dy;
     held.vx[q] -= dvx;
     held.vy[q] -= dvy;
-    c.x[p] = std::clamp(c.x[p] + dx, 0.0, x_max);
-    c.y[p] = std::clamp(c.y[p] + dy, 0.0, y_max);
+    c.x[p] += dx;
+    c.y[p] += dy;
     held.vx[p] += dvx;
     held.vy[p] += dvy;
+}
+
+/// Only after all halving, or its order would tell.
+void hold_inside(Flow& flow, Index p) {
+    Columns& c = flow.columns;
+    c.x[p] = std::clamp(c.x[p], 0.0, static_cast<double>(flow.grid.nx() - 1));
+    c.y[p] = std::clamp(c.y[p], 0.0, static_cast<double>(flow.grid.ny() - 1));
 }
 
 }  // namespace
@@ -115,10 +121,13 @@ Index Splitter::split_as(Flow& flow) {
             const Index q = count + next;
             for (int part = 1; part < parts; ++part, ++next) c.id[count + next] = next_id_ + next;
             halve<Real>(flow, p, q, first_is_longer<Real>(c, p));
-            if (parts == 2) continue;
-            const bool other = first_is_longer<Real>(c, p);  // the edge that is still whole
-            halve<Real>(flow, p, q + 1, other);
-            halve<Real>(flow, q, q + 2, other);
+            if (parts == 4) {
+                const bool other = first_is_longer<Real>(c, p);  // the edge that is still whole
+                halve<Real>(flow, p, q + 1, other);
+                halve<Real>(flow, q, q + 2, other);
+            }
+            hold_inside(flow, p);
+            for (int part = 1; part < parts; ++part) hold_inside(flow, q + part - 1);
         }
     });
     next_id_ += added;

@@ -14,7 +14,7 @@ enum class Mirror { none, x, y, diagonal };
 
 /// What must hold of a scene beyond what holds of any.
 struct Claims {
-    bool rests = false;             ///< nothing moves by one bit (a lake: unless the fit of masses met its limits)
+    bool rests = false;             ///< nothing moves by one bit (a lake: no more than its level asks for)
     Mirror mirror = Mirror::none;   ///< x: west and east change places, y: south and north, diagonal: x and y
     bool threads = false;           ///< one thread and two give the same bits
 };

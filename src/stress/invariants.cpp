@@ -86,6 +86,11 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
         facts.release_depth = std::max(facts.release_depth, depth);
         facts.release_energy += 0.5 * mass * scene.gravity * depth;
     }
+    if (scene.still_surface) {
+        constexpr double kRoundOff = 16.0 * std::numeric_limits<double>::epsilon();  // of elevations, depths and their sum
+        facts.level_error = std::max(off_level(flow, *scene.still_surface),
+                                     kRoundOff * (std::abs(*scene.still_surface) + facts.release_depth));
+    }
     constexpr double kSmooth = 0.02, kThin = 0.1;  // slope a cell; depth over radius of curvature
     const Bends bends = bends_of(flow);
     facts.energy_law = bends.unresolved < kSmooth && bends.sharpest * facts.release_depth < kThin &&
@@ -209,6 +214,9 @@ std::optional<Violation> Watch::rest(const Snapshot& state) {
         for (const auto* component : {&held.vx, &held.vy})
             for (const double v : *component) fastest = std::max(fastest, std::abs(v));
     });
+    if (facts_.level_error)
+        return judged("rest", fastest, 2.0 * std::sqrt(facts_.gravity * *facts_.level_error), state,
+                      "speed of a lake, beyond that of a dam break as high as its surface is off the level [m/s]");
     const bool moved = a.id == b.id && (a.x != b.x || a.y != b.y);  // what splits stands elsewhere and has not moved
     return judged("rest", moved ? std::max(fastest, 1e-300) : fastest, 0.0, state, "speed of what should rest [m/s]");
 }

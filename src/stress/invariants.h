@@ -36,6 +36,7 @@ struct Facts {
     double release_depth = 0.0;  ///< largest of the release; nodes see it averaged over a cell and more [m]
     double release_energy = 0.0; ///< that its depth alone could set free [J]
     double one_cell_drop = 0.0;  ///< largest difference of the bed between neighbouring nodes [m]
+    std::optional<double> level_error;  ///< of a lake: how far its surface is off the level at the start, or round-off [m]
     double one_cell_bend = 0.0;  ///< largest second difference of the bed between neighbouring nodes [m]
 };
 Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
@@ -58,7 +59,9 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
 ///   a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what stays behind. kConvergence: that in turn is a bound
 ///   along one direction; streams that converge from two may pass it a little (1 % has been seen), while what is
 ///   unstable passes it by factors.
-/// rest: points' positions and velocities are those of the start, bit for bit (claimed scenes).
+/// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
+///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
+///   as high as its surface is off the level, 2 sqrt(g e) (Ritter 1892).
 /// symmetry: depth and momentum of mirrored nodes agree within `kMirrorError` of the largest (claimed scenes).
 class Watch {
 public:

@@ -16,6 +16,8 @@ bool is_needed(const std::string& key) {
 
 /// A pile rests by its friction and its shape: without either the claim would be none.
 bool is_pile(const Draft& draft) { return draft.claims.rests && draft.has("release.depth"); }
+/// Through open sides a lake runs out.
+bool is_lake(const Draft& draft) { return draft.claims.rests && draft.has("release.surface"); }
 bool holds_pile(const std::string& key) { return key.rfind("material.bed.", 0) == 0 || key.rfind("terrain.", 0) == 0; }
 
 /// Keeps pixels [i0, i0 + nx) x [j0, j0 + ny) of all rasters.
@@ -92,7 +94,7 @@ void add_material(const Draft& draft, std::vector<Change>& changes) {
 /// Keys at their defaults, fewer points, no motion.
 void add_defaults(const Draft& draft, std::vector<Change>& changes) {
     for (const auto& [key, value] : draft.keys) {
-        if (is_needed(key) || (is_pile(draft) && holds_pile(key))) continue;
+        if (is_needed(key) || (is_pile(draft) && holds_pile(key)) || (is_lake(draft) && key == "boundary.sides")) continue;
         const std::string name = key;
         changes.push_back([name](Draft& d) { d.keys.erase(name); });
     }

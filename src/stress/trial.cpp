@@ -38,9 +38,7 @@ void compare_threads(const Scene& scene, Verdict& verdict) {
 
 void run(const Scene& scene, const Claims& claims, Index steps, const Falsify& falsify, Verdict& verdict) {
     DepthAveraged simulation(scene);
-    Facts facts = facts_of(scene, simulation.flow(), claims);
-    // A lake is level only where points at these places can make it so; the fit says when they cannot.
-    if (simulation.mass_fit() && simulation.mass_fit()->clipped > 0) facts.claims.rests = false;
+    const Facts facts = facts_of(scene, simulation.flow(), claims);
     Snapshot state = snapshot_of(simulation, facts.steep);
     Watch watch(facts, state);
     const Status& status = simulation.status();
