@@ -276,6 +276,12 @@ void wait_briefly(int argc, char** argv) {
     if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0) execv(self.c_str(), argv);
 }
 
+/// Threads, memory or file handles that the system will not give.
+bool is_shortage(const std::error_code& code) {
+    return code == std::errc::resource_unavailable_try_again || code == std::errc::not_enough_memory ||
+           code == std::errc::too_many_files_open || code == std::errc::too_many_files_open_in_system;
+}
+
 }  // namespace
 }  // namespace frana
 
@@ -294,11 +300,14 @@ int main(int argc, char** argv) {
         return complain(fmt::format("{}; check the folder, its permissions and free space", error.what()), 2);
     } catch (const std::bad_alloc&) {
         return complain(
-            "memory: found too little for this case; expected what `frana check` tells; use fewer particles "
-            "or a larger grid.cell",
+            "memory: found too little; expected what `frana check` tells of the case; use fewer particles or points, or "
+            "a larger grid.cell",
             2);
-    } catch (const std::system_error& error) {  // a thread or a file handle that the system will not give
-        return complain(fmt::format("{}; the system gives the program no more of that; free memory, or raise its limits",
+    } catch (const std::system_error& error) {
+        if (!is_shortage(error.code()))
+            return complain(fmt::format("{} (a mistake of the program; please report it with the case)", error.what()), 1);
+        return complain(fmt::format("{}; expected a system with memory, threads and file handles to spare; free some, or "
+                                    "raise the limits of the process",
                                     error.what()),
                         2);
     } catch (const std::exception& error) {

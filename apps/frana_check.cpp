@@ -18,9 +18,9 @@ constexpr double seconds_per_particle_step = 150e-9;  ///< whole step on one cor
 
 /// What a run needs at its peak: of libraries, and for each node and particle.
 struct Needs { double base, node, particle; };
-/// Least squares of 36 runs of the case `bindo` (cells of 1.5 to 4 m, 20 000 to 400 000 particles); off by 11 % at most.
+/// From 36 runs of the case `bindo` (cells of 1.5 to 4 m, 20 000 to 400 000 particles).
 constexpr Needs solver_needs{85e6, 315.0, 431.0};
-constexpr Needs vtk_needs{4e6, 193.0, 191.0};  ///< besides, for frames that VTK writes
+constexpr Needs vtk_needs{4e6, 240.0, 388.0};  ///< besides, for frames that VTK writes: the grid or the particles
 constexpr double graphics_need = 350e6;        ///< besides, for pictures: software OpenGL, 290 to 420 MB [bytes]
 
 std::string crs_name(const std::string& wkt) {
@@ -78,13 +78,12 @@ struct Forecast {
 };
 
 double memory_of(const Scene& scene) {
-    const auto of = [&](const Needs& needs) {
-        return needs.base + needs.node * double(scene.bed.geometry.size()) +
-               needs.particle * double(scene.particles.count());
-    };
+    const double nodes = double(scene.bed.geometry.size()), particles = double(scene.particles.count());
+    const double solver = solver_needs.base + solver_needs.node * nodes + solver_needs.particle * particles;
+    const double vtk = vtk_needs.base + std::max(vtk_needs.node * nodes, vtk_needs.particle * particles);
     const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(),
                                    [](const Insitu& entry) { return kind_word(entry.kind) == std::string("figure"); });
-    return of(solver_needs) + (scene.output.vtk ? of(vtk_needs) : 0.0) +
+    return solver + (scene.output.vtk ? vtk : 0.0) +
            (scene.output.png || draws ? graphics_need : 0.0);
 }
 

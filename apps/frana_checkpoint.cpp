@@ -114,7 +114,8 @@ void require_same(const fs::path& file, const CheckpointLabels& there, const Che
         if (differs(name))
             throw refused(fmt::format("found a state of {} {}; expected {} {}", name, label(there, name), name,
                                       label(here, name)),
-                          "use the program that left it");
+                          std::string(name) == "version" ? "use the program that left it"
+                                                         : "give scheme.precision as it was");
     if (differs("case"))
         throw refused("found the state of another case: " + difference(label(there, "case"), label(here, "case")),
                       "give the case and the --set it was left with");

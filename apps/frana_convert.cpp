@@ -155,6 +155,14 @@ std::string record_json(const RunState& state, const ConvertOptions& options, co
         json_text(options.vertical), json_text(options.profile), window, conservation);
 }
 
+/// The run's own files stay what they are.
+void require_own_name(const ConvertOptions& options) {
+    for (const char* name : {"run.h5", "checkpoint.h5", "run.json", "compare.json", "history.csv"})
+        if (fs::weakly_canonical(options.out) == fs::weakly_canonical(options.run_dir / name))
+            throw UserError(fmt::format("--out {}: is a file of the run itself; expected another name; choose one",
+                                        options.out.string()));
+}
+
 /// One way or the other, with all that it needs.
 void require_options(const ConvertOptions& options) {
     std::string missing;
@@ -172,7 +180,11 @@ void require_options(const ConvertOptions& options) {
             fmt::format("command line: found no {}; expected --time, --spacing and --out, or --points and --back "
                         "for the way from 3D; see `frana convert --help`",
                         missing));
-    if (back && (options.time || options.spacing || !options.out.empty()))
+    const ConvertOptions usual;
+    const bool forward = options.time || options.spacing || !options.out.empty() || !options.window.empty() ||
+                         options.layers != usual.layers || options.vertical != usual.vertical ||
+                         options.profile != usual.profile;
+    if (back && forward)
         throw UserError(
             "command line: found both ways at once; expected --time, --spacing and --out, or --points and --back "
             "for the way from 3D; call frana convert twice");
@@ -184,6 +196,7 @@ int convert_command(const ConvertOptions& options) {
     require_options(options);
     if (!options.back.empty()) return convert_back(options);
     const std::string format = export_format(options.out, {".mdpa"});
+    require_own_name(options);
     const ConversionChoice choice = choice_of(options);
     const RunState state = read_run_state(options.run_dir, *options.time);
     if (std::abs(state.time - *options.time) > 1e-9 * std::max(1.0, std::abs(state.time)))

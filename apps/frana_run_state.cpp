@@ -3,7 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
+#include <utility>
 
 #include "base/error.h"
 #include "frana_products.h"
@@ -68,6 +71,38 @@ void require_fields(const Loaded& loaded, const fs::path& frames) {
                         frames.string(), missing));
 }
 
+/// No file of ours has such numbers; one that was changed or damaged may.
+void require_sound(const FlowColumns& columns, const fs::path& frames) {
+    const auto refuse = [&](std::size_t p, const char* what, double found, const char* expected) {
+        throw UserError(fmt::format("{}: {} of particle {} is {}; expected {}; run the case again", frames.string(), what,
+                                    columns.id[p], found, expected));
+    };
+    for (std::size_t p = 0; p < columns.count(); ++p) {
+        const std::pair<const char*, double> numbers[] = {
+            {"depth", columns.depth[p]},  {"mass", columns.mass[p]},    {"volume", columns.volume[p]},
+            {"velocity", columns.vx[p]},  {"velocity", columns.vy[p]},  {"pressure", columns.bed_pressure[p]},
+            {"position", columns.x[p]},   {"position", columns.y[p]},   {"position", columns.bed[p]}};
+        for (const auto& [what, number] : numbers)
+            if (!std::isfinite(number)) refuse(p, what, number, "a finite number");
+        if (columns.depth[p] < 0.0) refuse(p, "depth", columns.depth[p], "0 or more");
+        if (columns.mass[p] <= 0.0) refuse(p, "mass", columns.mass[p], "more than 0");
+        if (columns.volume[p] <= 0.0) refuse(p, "volume", columns.volume[p], "more than 0");
+    }
+}
+
+/// The run's bed is smoother than the terrain (the scheme averages it over a cell). Where the run says how fast a particle
+/// climbs, the slope along its way follows that.
+void follow_climb(FlowColumns& columns, const std::vector<double>& climb) {
+    if (std::all_of(climb.begin(), climb.end(), [](double w) { return w == 0.0; })) return;  // shallow terrain has none
+    for (std::size_t p = 0; p < columns.count(); ++p) {
+        const double vx = columns.vx[p], vy = columns.vy[p], v2 = vx * vx + vy * vy;
+        if (!(v2 > 0.0) || !std::isfinite(climb[p])) continue;
+        const double wrong = (climb[p] - vx * columns.slope_x[p] - vy * columns.slope_y[p]) / v2;
+        columns.slope_x[p] += wrong * vx;
+        columns.slope_y[p] += wrong * vy;
+    }
+}
+
 template <class Loaded>
 FlowColumns columns_of(const Loaded& loaded, const fs::path& frames) {
     require_fields(loaded, frames);
@@ -85,6 +120,7 @@ FlowColumns columns_of(const Loaded& loaded, const fs::path& frames) {
     columns.id = component(loaded, "id");
     if (loaded.components.count("stress") && loaded.components.at("stress") == 3)
         columns.stress = loaded.columns.at("stress");
+    require_sound(columns, frames);
     return columns;
 }
 
@@ -120,18 +156,35 @@ RunState state_of_vtk(const fs::path& run_dir, double time) {
     state.time = particles.time;
     state.columns = columns_of(particles, list);
     state.bed = vtk_bed(run_dir);
+    take_slopes(state.columns, state.bed);
+    follow_climb(state.columns, component(particles, "velocity", 2));
     state.frames = list.string();
     return state;
+}
+
+/// A run that goes on changes the tables of run.h5 while they are read: another look a moment later meets them whole.
+template <class Read>
+auto between_writes(Read&& read) {
+    for (int look = 0; look < 9; ++look) {
+        try {
+            return read();
+        } catch (const UserError&) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20 << std::min(look, 4)));
+        }
+    }
+    return read();
 }
 
 RunState state_of_hdf5(const fs::path& run_dir, double time) {
     RunState state;
     const fs::path file = run_dir / "run.h5";
-    const Index number = choose_frame(hdf5_frame_times(file), time, file);
-    StoredParticles particles = read_hdf5_particles(file, number);
+    StoredParticles particles =
+        between_writes([&] { return read_hdf5_particles(file, choose_frame(hdf5_frame_times(file), time, file)); });
     state.time = particles.time;
     state.columns = columns_of(particles, file);
     state.bed = std::move(particles.bed);
+    take_slopes(state.columns, state.bed);
+    follow_climb(state.columns, component(particles, "velocity", 2));
     state.frames = file.string();
     return state;
 }
@@ -147,7 +200,6 @@ RunState read_run_state(const fs::path& run_dir, double time) {
             fmt::format("{}: has no particles at {:.6g} s: everything has left the terrain; give an earlier "
                         "--time",
                         state.frames, state.time));
-    take_slopes(state.columns, state.bed);
     state.bed.crs_wkt = crs_of(run_dir);
     return state;
 }
@@ -155,7 +207,7 @@ RunState read_run_state(const fs::path& run_dir, double time) {
 Raster bed_of_run(const fs::path& run_dir) {
     const bool vtk = fs::exists(run_dir / "terrain.vti");
     if (!vtk && !fs::exists(run_dir / "run.h5")) throw no_frames(run_dir, "terrain.vti");
-    Raster bed = vtk ? vtk_bed(run_dir) : read_hdf5_particles(run_dir / "run.h5", 0).bed;
+    Raster bed = vtk ? vtk_bed(run_dir) : between_writes([&] { return read_hdf5_particles(run_dir / "run.h5", 0).bed; });
     bed.crs_wkt = crs_of(run_dir);
     return bed;
 }

@@ -15,7 +15,8 @@ struct RunState {
 };
 
 /// The frame nearest to `time` [s], of particles.pvd or, in runs without VTK files, of run.h5. The bed under a particle
-/// is the run's own (free surface minus depth); slopes are those of the terrain that the run wrote. Throws UserError
+/// is the run's own (free surface minus depth); slopes are those of the terrain that the run wrote, along
+/// the way of a particle those by which the run says that it climbs. Throws UserError
 /// when the folder holds no frames, when `time` lies before the first or past the last of them, or when a file is
 /// missing, damaged or has not the fields that a state needs.
 RunState read_run_state(const std::filesystem::path& run_dir, double time);

@@ -190,7 +190,7 @@ TEST_CASE("a state of another version or precision is refused", "[resume]") {
                Contains("checkpoint.h5: found a state of version 0.0.1; expected version " + here.at("version") +
                         "; use the program that left it, or run"));
     CHECK_THAT(refused("precision", "float"),
-               Contains("found a state of precision float; expected precision double; use the program that left it"));
+               Contains("found a state of precision float; expected precision double; give scheme.precision as it was"));
     CHECK(refused("build", "another compiler").empty());
     const CheckpointKeeper keeper(folder.path(), here, {}, open_checkpoint(folder.path(), here));
     REQUIRE(keeper.warnings().size() == 1);

@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <new>
 
 #include "base/error.h"
 
@@ -69,8 +71,8 @@ void require_spacing(double spacing) {
 FlowColumns columns_within(const FlowColumns& columns, const std::array<double, 4>& window) {
     FlowColumns inside;
     for (std::size_t p = 0; p < columns.count(); ++p)
-        if (columns.x[p] >= window[0] && columns.x[p] <= window[2] && columns.y[p] >= window[1] &&
-            columns.y[p] <= window[3])
+        if (columns.x[p] >= window[0] && columns.x[p] < window[2] && columns.y[p] >= window[1] &&
+            columns.y[p] < window[3])
             inside.take(columns, p);
     return inside;
 }
@@ -89,8 +91,16 @@ SolidPoints columns_to_points(const FlowColumns& columns, const ConversionChoice
     for (const double depth : columns.depth)
         points.first.push_back(points.first.back() + static_cast<std::size_t>(layer_count(depth, choice.spacing)));
     make_room(points, points.first.back());
+    std::atomic<bool> short_of_memory{false};  // no exception may leave the loop
 #pragma omp parallel for schedule(static)
-    for (std::size_t p = 0; p < columns.count(); ++p) fill_column(columns, p, choice, points);
+    for (std::size_t p = 0; p < columns.count(); ++p) {
+        try {
+            fill_column(columns, p, choice, points);
+        } catch (const std::bad_alloc&) {
+            short_of_memory = true;
+        }
+    }
+    if (short_of_memory) throw std::bad_alloc();
     return points;
 }
 
