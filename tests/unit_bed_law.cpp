@@ -43,6 +43,18 @@ TEST_CASE("A decelerating Voellmy block follows tan and stops within the step th
     }
     CHECK(time - end < 0.05);
     CHECK(time >= end);
+    for (const double dt : {0.5, 1.5, 2.5})  // one long step is as exact
+        CHECK(speed_after(law, flat(1.0), 10.0, 10.0, dt) == Approx(scale * std::tan(rate * (end - dt))).epsilon(1e-12));
+    CHECK(speed_after(law, flat(1.0), 10.0, 10.0, 1.001 * end) == 0.0);
+}
+
+TEST_CASE("The series of tanh(sqrt(x)) / sqrt(x) is right to round-off as far as it is used, on either side", "[law]") {
+    for (const double x : {0.0, 1e-6, 1e-3, 3e-3, 7e-3, 0.999 * kTangentSeries})
+        for (const double signed_x : {x, -x}) {
+            CAPTURE(signed_x);
+            // root, tan and quotient: three roundings, the first halved by its root's slope; the next term adds 1.5e-17
+            CHECK(tangent_series(signed_x) == Approx(tangent_ratio(signed_x)).epsilon(1e-15));
+        }
 }
 
 TEST_CASE("No law speeds a node up or turns it round", "[law]") {
