@@ -105,3 +105,19 @@ TEST_CASE("The paper's pressure pushes with g m h / 2 and weighs with g m grad Z
     CHECK(fx_x == Approx(push - 0.3 * weight_x).epsilon(kRoundOff));
     CHECK(fy_y == Approx(push + 0.2 * weight_y).epsilon(kRoundOff));
 }
+
+TEST_CASE("The paper's depth thins by the divergence of the velocity (eq. 30)", "[transfer]") {
+    Scene scene = plane();
+    scene.scheme.transfer = Transfer::pic;
+    scene.scheme.shape = GENERATE(Shape::linear, Shape::quadratic);
+    scene.scheme.paper_pressure = true;
+    Flow flow(scene);
+    add_points(flow);
+    const auto transfer = make_plain_transfer(scene);
+    transfer->deposit(flow, 0.1);
+    set_nodes(flow);
+    const Columns before = flow.columns;
+    transfer->gather(flow, 0.1);
+    for (Index p = 0; p < before.count(); ++p)
+        CHECK(flow.columns.depth[p] == Approx(before.depth[p] / (1.0 + 0.1 * (0.11 + 0.03))).epsilon(kRoundOff));
+}
