@@ -19,7 +19,7 @@ public:
 
 private:
     struct Lines { std::vector<std::string> all; };
-    explicit UserError(Lines lines) : std::runtime_error(joined(lines.all)), problems_(std::move(lines.all)) {}
+    explicit UserError(const Lines& lines) : std::runtime_error(joined(lines.all)), problems_(lines.all) {}
 
     static std::vector<std::string> in_lines(std::vector<std::string> problems) {
         for (std::string& problem : problems)
