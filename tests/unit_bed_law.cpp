@@ -43,6 +43,18 @@ TEST_CASE("A decelerating Voellmy block follows tan and stops within the step th
     }
     CHECK(time - end < 0.05);
     CHECK(time >= end);
+    for (const double dt : {0.5, 1.5, 2.5})  // one long step is as exact
+        CHECK(speed_after(law, flat(1.0), 10.0, 10.0, dt) == Approx(scale * std::tan(rate * (end - dt))).epsilon(1e-12));
+    CHECK(speed_after(law, flat(1.0), 10.0, 10.0, 1.001 * end) == 0.0);
+}
+
+TEST_CASE("The series of tanh(sqrt(x)) / sqrt(x) is right to round-off as far as it is used, on either side", "[law]") {
+    for (const double x : {0.0, 1e-6, 1e-3, 3e-3, 7e-3, 0.999 * kTangentSeries})
+        for (const double signed_x : {x, -x}) {
+            CAPTURE(signed_x);
+            // root, tan and quotient: three roundings, the first halved by its root's slope; the next term adds 1.5e-17
+            CHECK(tangent_series(signed_x) == Approx(tangent_ratio(signed_x)).epsilon(1e-15));
+        }
 }
 
 TEST_CASE("No law speeds a node up or turns it round", "[law]") {
@@ -173,4 +185,49 @@ TEST_CASE("Bingham stress in plane strain equals 2 mu eps plus the yield stress 
     CHECK(sigma.xy == Approx((20.0 + 100.0 / 0.5) * 0.4).epsilon(kRoundOff));
     const Plane capped = stress(law, StrainState<double>{rate, 0.0, 1.0, 0.0, 7.0});
     CHECK(capped.yy == Approx(-7.0 * 0.3).epsilon(kRoundOff));
+}
+
+TEST_CASE("On a slope every law holds its steady speed along the bed", "[law]") {
+    const double kappa = 1.25, h = 0.8, rho = 1500.0, normal = 6.0, g = 9.81;
+    const BedState bed{normal, h, kappa, 0.8, g, rho};
+    for (const double dt : {0.01, 1.0, 100.0}) {
+        CAPTURE(dt);
+        const auto keeps = [&](const auto& law, double along, double drive) {  // the speed along the map is 1 / kappa of it
+            const double speed = along / kappa;
+            CHECK(speed_after(law, bed, speed, speed + dt * drive, dt) == Approx(speed).epsilon(kRoundOff));
+        };
+        // tau / (rho h), along the map 1 / kappa of it, is what the drive must make up for
+        keeps(bed::Voellmy{0.2, 400.0}, 7.0, 0.2 * normal + g * 7.0 * 7.0 / (400.0 * h * kappa));
+        keeps(bed::Manning{0.05, 0.2}, 7.0, 0.2 * normal + g * 0.05 * 0.05 * 7.0 * 7.0 / (h * std::cbrt(h) * kappa));
+        const double zeta = 0.4, bed_stress = 300.0 / zeta, mu = 40.0;
+        keeps(bed::Bingham{mu, 300.0, 0.1}, bed_stress * h / (6.0 * mu) * (2.0 + zeta) * (1.0 - zeta) * (1.0 - zeta),
+              0.1 * normal + bed_stress / (rho * h * kappa));
+        const bed::Pouliquen grains{0.38, 0.65, 0.3, 2e-3, 0.6};
+        const double inertial = 0.2, friction = 0.38 + (0.65 - 0.38) / (0.3 / inertial + 1.0);
+        keeps(grains, inertial * 2.0 * h * std::sqrt(0.6 * g * 0.8 * h) / (5.0 * 2e-3), friction * normal);
+        const double plastic = 5.0 - dt * 300.0 / (rho * h * kappa);
+        CHECK(speed_after(bed::Bingham{0.0, 300.0, 0.0}, bed, 5.0, 5.0, dt) ==
+              Approx(std::max(plastic, 0.0)).epsilon(kRoundOff));
+    }
+}
+
+TEST_CASE("Bingham stress of a moving sheet has its vertical part and its vertical shear in I2", "[law]") {
+    const rheology::Bingham law{10.0, 100.0};
+    const Plane rate{0.3, 0.1, 0.4};
+    const double speed = 2.0, depth = 0.5, zeta = bingham_sheet(0.0, 6.0 * 10.0 * speed / (100.0 * depth)).plug;
+    const double shear = 3.0 / (2.0 + zeta) * speed / depth;
+    const double i2 = 0.5 * (0.09 + 0.01 + 0.16) + 0.16 + 0.25 * shear * shear;
+    const Plane sigma = stress(law, StrainState<double>{rate, speed, depth, 0.0, 1e9});
+    CHECK(sigma.xx == Approx((20.0 + 100.0 / std::sqrt(i2)) * 0.3).epsilon(kRoundOff));
+    CHECK(sigma.yy == Approx((20.0 + 100.0 / std::sqrt(i2)) * 0.1).epsilon(kRoundOff));
+}
+
+TEST_CASE("Newtonian stress is 2 mu eps, capped", "[law]") {
+    const Plane rate{0.3, -0.1, 0.4};
+    for (const double cap : {1e9, 7.0}) {
+        const double factor = std::min(20.0, cap);
+        const StrainState<double> state{rate, 2.0, 0.5, 0.0, cap};
+        CHECK(stress(rheology::Newtonian{10.0}, state).xy == Approx(factor * 0.4).epsilon(kRoundOff));
+        CHECK(stress(rheology::Bingham{10.0, 0.0}, state).yy == Approx(factor * -0.1).epsilon(kRoundOff));
+    }
 }

@@ -131,9 +131,10 @@ TEST_CASE("Gathering and depositing in one sweep gives the bits of two", "[trans
     const auto one = make_packed_transfer(scene), two = make_packed_transfer(scene);
     Crowd a(scene, 3), b(scene, 3);
     set_motion(a.flow), set_motion(b.flow);
-    one->carry(a.flow, 0.3, 0.01);
+    const PointSums swept = one->carry(a.flow, 0.3, 0.01);
     two->gather(b.flow, 0.3);
-    two->deposit(b.flow, 0.01);
+    CHECK(swept.stress_power == two->deposit(b.flow, 0.01).stress_power);
+    CHECK(swept.stress_power > 0.0);
     for_each_work_tile(a.flow.active, [&](Index, Index tile) {
         for_each_node_of(a.flow.grid, tile, [&](Index k, Index, Index) {
             REQUIRE(std::memcmp(&a.flow.nodes.deposits()[k], &b.flow.nodes.deposits()[k], sizeof(Deposit)) == 0);

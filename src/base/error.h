@@ -9,15 +9,24 @@
 
 namespace frana {
 
-/// The case file, its data or the command line is wrong. Holds every problem found, one sentence each.
+/// The case file, its data or the command line is wrong. Holds every problem found, one sentence each on a line of its
+/// own: line breaks and other control characters, which files may bring in, become spaces.
 class UserError : public std::runtime_error {
 public:
     explicit UserError(const std::string& problem) : UserError(std::vector<std::string>{problem}) {}
-    explicit UserError(std::vector<std::string> problems)
-        : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
+    explicit UserError(std::vector<std::string> problems) : UserError(Lines{in_lines(std::move(problems))}) {}
     const std::vector<std::string>& problems() const { return problems_; }
 
 private:
+    struct Lines { std::vector<std::string> all; };
+    explicit UserError(const Lines& lines) : std::runtime_error(joined(lines.all)), problems_(lines.all) {}
+
+    static std::vector<std::string> in_lines(std::vector<std::string> problems) {
+        for (std::string& problem : problems)
+            for (char& letter : problem)
+                if (static_cast<unsigned char>(letter) < ' ' || letter == 127) letter = ' ';
+        return problems;
+    }
     static std::string joined(const std::vector<std::string>& problems) {
         std::string text;
         for (const auto& problem : problems) text += (text.empty() ? "" : "\n") + problem;

@@ -90,24 +90,24 @@ template <class Real>
 /// Four pairs side by side: the first and the second numbers.
 [[gnu::always_inline]] inline void unzip(const void* pairs, Double4& first, Double4& second) {
     const Double4 a = load(pairs), b = load(static_cast<const double*>(pairs) + 4);
-    first = __builtin_shuffle(a, b, Mask4{0, 2, 4, 6});
-    second = __builtin_shuffle(a, b, Mask4{1, 3, 5, 7});
+    first = __builtin_shufflevector(a, b, 0, 2, 4, 6);
+    second = __builtin_shufflevector(a, b, 1, 3, 5, 7);
 }
 
 /// Back again.
 [[gnu::always_inline]] inline void zip(Double4 first, Double4 second, void* pairs) {
-    store(pairs, __builtin_shuffle(first, second, Mask4{0, 4, 1, 5}));
-    store(static_cast<double*>(pairs) + 4, __builtin_shuffle(first, second, Mask4{2, 6, 3, 7}));
+    store(pairs, __builtin_shufflevector(first, second, 0, 4, 1, 5));
+    store(static_cast<double*>(pairs) + 4, __builtin_shufflevector(first, second, 2, 6, 3, 7));
 }
 
 /// Rows to columns: lane n of a, b, c, d becomes the value to[n].
 [[gnu::always_inline]] inline void transpose(Double4 a, Double4 b, Double4 c, Double4 d, Double4 to[4]) {
-    const Double4 ab0 = __builtin_shuffle(a, b, Mask4{0, 4, 2, 6}), ab1 = __builtin_shuffle(a, b, Mask4{1, 5, 3, 7});
-    const Double4 cd0 = __builtin_shuffle(c, d, Mask4{0, 4, 2, 6}), cd1 = __builtin_shuffle(c, d, Mask4{1, 5, 3, 7});
-    to[0] = __builtin_shuffle(ab0, cd0, Mask4{0, 1, 4, 5});
-    to[1] = __builtin_shuffle(ab1, cd1, Mask4{0, 1, 4, 5});
-    to[2] = __builtin_shuffle(ab0, cd0, Mask4{2, 3, 6, 7});
-    to[3] = __builtin_shuffle(ab1, cd1, Mask4{2, 3, 6, 7});
+    const Double4 ab0 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Double4 cd0 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    to[0] = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5);
+    to[1] = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+    to[2] = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7);
+    to[3] = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
 
 }  // namespace frana

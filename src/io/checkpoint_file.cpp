@@ -74,7 +74,12 @@ protected:
         const Handle space(access_, H5Dget_space(set), H5Sclose);
         const Handle type(access_, H5Dget_type(set), H5Tclose);
         if (H5Tequal(type, number_type(kind).file) <= 0) throw stranger(name);
-        return static_cast<std::size_t>(access_.check(H5Sget_simple_extent_npoints(space)));
+        const auto count = static_cast<std::size_t>(access_.check(H5Sget_simple_extent_npoints(space)));
+        if (count > fs::file_size(access_.file()) / H5Tget_size(type))  // arrays are not packed
+            throw UserError(fmt::format("{}: claims {} values of {}, more than a file of its size holds; it is damaged, "
+                                        "run without --resume",
+                                        access_.file().string(), count, name));
+        return count;
     }
     void exchange(const std::string& name, Kind kind, void* data, std::size_t count) override {
         const Handle set(access_, open(name), H5Dclose);
@@ -163,8 +168,9 @@ void put_labels(Archive& archive, const CheckpointLabels& labels) {
 CheckpointLabels taken_labels(Archive& archive) {
     std::vector<std::string> names, texts;
     keep_labels(archive, names, texts);
+    if (names.size() != texts.size()) Archive::wrong_length("labels/texts", texts.size(), names.size());
     CheckpointLabels labels;
-    for (std::size_t i = 0; i < names.size(); ++i) labels[names[i]] = texts.at(i);
+    for (std::size_t i = 0; i < names.size(); ++i) labels[names[i]] = texts[i];
     return labels;
 }
 

@@ -76,6 +76,16 @@ void RasterFile::take_geotransform() {
                         "{:g} {:g} {:g}: rotated or mirrored); expected pixels along the axes of the "
                         "map; run: {}",
                         file_.string(), t[0], t[1], t[2], t[3], t[4], t[5], straight_line(file_)));
+    constexpr double least = 1e-6, most = 1e9;  // of a pixel, in degrees or metres
+    bool placed = t[1] > least && std::abs(t[5]) > least && t[1] < most && std::abs(t[5]) < most;
+    for (const double number : t) placed = placed && std::abs(number) < 1e12;
+    if (!placed)
+        throw UserError(
+            fmt::format("{}: its georeference (geotransform {:g} {:g} {:g}, {:g} {:g} {:g}) is no place on "
+                        "a map; expected pixels of a size in metres; run: gdal_translate -a_ullr XMIN YMAX "
+                        "XMAX YMIN {} {}",
+                        file_.string(), t[0], t[1], t[2], t[3], t[4], t[5], shell(file_.string()),
+                        shell(beside(file_, "_placed"))));
     south_up_ = t[5] > 0.0;
     x_ = {nx, t[0], t[1]};
     y_ = {ny, south_up_ ? t[3] : t[3] + double(ny) * t[5], std::abs(t[5])};

@@ -25,7 +25,9 @@ GridGeometry widened(const GridGeometry& grid, const std::array<double, 4>& exte
     const auto has = grid.pixel_extent();
     const auto extra = [&](double by) {
         constexpr double round_off = 1e-6;  // of a cell: edges that are meant to coincide
-        return std::max<Index>(0, static_cast<Index>(std::ceil(by / grid.cell - round_off)));
+        constexpr double most = 1e8;        // more than anyone has memory for, and a product that is still a number
+        const double cells = std::ceil(by / grid.cell - round_off);
+        return cells > 0.0 ? static_cast<Index>(std::min(cells, most)) : Index{0};
     };
     const Index left = extra(has[0] - extent[0]), low = extra(has[1] - extent[1]);
     GridGeometry wide = grid;

@@ -80,9 +80,10 @@ void keep(Archive& archive, const std::string& name, std::vector<PhaseTime>& pha
     archive.array("cpu_seconds", cpu_seconds);
     archive.array("calls", calls);
     if (!archive.loading()) return;
+    for (const std::size_t length : {seconds.size(), cpu_seconds.size(), calls.size()})
+        if (length != names.size()) Archive::wrong_length(name, length, names.size());
     phases.clear();
-    for (std::size_t i = 0; i < names.size(); ++i)
-        phases.push_back({names[i], seconds.at(i), cpu_seconds.at(i), calls.at(i)});
+    for (std::size_t i = 0; i < names.size(); ++i) phases.push_back({names[i], seconds[i], cpu_seconds[i], calls[i]});
 }
 
 }  // namespace frana

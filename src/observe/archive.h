@@ -40,6 +40,9 @@ public:
     /// Numbers that belong together, as one array in the order given.
     void numbers(const std::string& name, const std::vector<double*>& values);
 
+    /// Refuses a state: `found` values of `name` where `expected` belong.
+    [[noreturn]] static void wrong_length(const std::string& name, std::size_t found, std::size_t expected);
+
     /// Names that are given while this lives stand under "name/".
     class Part {
     public:
@@ -69,7 +72,6 @@ private:
         return std::is_same_v<T, double> ? Kind::real : std::is_same_v<T, std::uint8_t> ? Kind::bytes : Kind::whole;
     }
     void exchange_one(const std::string& name, Kind kind, void* value);
-    [[noreturn]] static void wrong_length(const std::string& name, std::size_t found, std::size_t expected);
 
     std::string prefix_;
 };

@@ -1,0 +1,53 @@
+// The terrain under a kick, at one node, against its formulas.
+#include "analytic_scene.h"
+#include "catch.h"
+#include "solver/kick_bed.h"
+
+using namespace frana;
+
+namespace {
+constexpr double kRoundOff = 1e-12;  ///< differences of elevations near 10 m over a cell of 2 m
+
+/// A bowl on a plane: slopes 0.3 and -0.2 in its middle, node (20, 15), second derivatives 0.004, 0.002 (xy), -0.006.
+Scene bent() {
+    return verify::scene_on(41, 31, 2.0, [](double x, double y) {
+        const double a = x - 40.0, b = y - 30.0;
+        return 0.3 * a - 0.2 * b + 0.002 * a * a + 0.002 * a * b - 0.003 * b * b;
+    });
+}
+}  // namespace
+
+TEST_CASE("The drive divides by 1 + q where the surface falls with the bed and not where against it", "[kick]") {
+    const Flow flow(bent());
+    const SteepBed<double, Curvature::none, false> bed(flow, flow.grid.at(20, 15));
+    REQUIRE(bed.bx == Approx(0.3).epsilon(kRoundOff));
+    REQUIRE(bed.by == Approx(-0.2).epsilon(kRoundOff));
+    const double q = 0.3 * 0.5 + 0.2 * 0.1;
+    CHECK(bed.drive(0.5, -0.1, 1.0).x == Approx(0.5 / (1.0 + q)).epsilon(kRoundOff));
+    CHECK(bed.drive(0.5, -0.1, 1.0).y == Approx(-0.1 / (1.0 + q)).epsilon(kRoundOff));
+    CHECK(bed.drive(-0.5, 0.1, 1.0).x == -0.5);
+    CHECK(bed.drive(-0.5, 0.1, 1.0).y == 0.1);
+}
+
+TEST_CASE("The linear drive is that to first order in the depth's gradient", "[kick]") {
+    const Flow flow(bent());
+    const Index k = flow.grid.at(20, 15);
+    const SteepBed<double, Curvature::none, false> whole(flow, k);
+    const SteepBed<double, Curvature::none, true> linear(flow, k);
+    const double cosine = 1.0 / std::sqrt(1.0 + 0.09 + 0.04), small = 1e-6;
+    const double ex = 0.3 + 0.7 * small, ey = -0.2 + 0.4 * small;
+    // The terms left out are of second order, with factors below one.
+    CHECK(linear.drive(ex, ey, cosine).x == Approx(whole.drive(ex, ey, cosine).x).margin(small * small));
+    CHECK(linear.drive(ex, ey, cosine).y == Approx(whole.drive(ex, ey, cosine).y).margin(small * small));
+}
+
+TEST_CASE("The bed's bend adds v.H.v to gravity, and never turns it", "[kick]") {
+    Scene scene = bent();
+    scene.scheme.curvature_length = 0.0;  // averages keep a quadratic bed's second derivatives
+    const Flow flow(scene);
+    const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));
+    for (const auto& [vx, vy] : {std::pair{3.0, 4.0}, std::pair{3.0, -4.0}, std::pair{0.0, 5.0}})
+        CHECK(bed.gravity(9.81, vx, vy) ==
+              Approx(9.81 + 0.004 * vx * vx + 2.0 * 0.002 * vx * vy - 0.006 * vy * vy).epsilon(1e-10));
+    CHECK(bed.gravity(9.81, 0.0, 100.0) == 0.0);
+}

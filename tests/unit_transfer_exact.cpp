@@ -1,0 +1,122 @@
+// The plain transfers against what they must reproduce exactly: fields linear in x and y, and the forces of one point.
+#include "analytic_scene.h"
+#include "catch.h"
+#include "solver/transfer.h"
+
+using namespace frana;
+
+namespace {
+
+constexpr double kRoundOff = 1e-12;  ///< sums of sixteen terms of some tens
+
+Scene plane() {
+    return verify::scene_on(40, 40, 2.0, [](double x, double y) { return 0.3 * x - 0.2 * y; });
+}
+
+/// Some points away from the sides, with velocities of their own.
+void add_points(Flow& flow) {
+    Columns& c = flow.columns;
+    c.resize(7);
+    for (Index p = 0; p < c.count(); ++p) {
+        const double n = static_cast<double>(p);
+        c.x[p] = 11.03 + 2.31 * n, c.y[p] = 9.57 + 1.73 * n;
+        c.vx[p] = 1.0 + 0.3 * n, c.vy[p] = -0.5 * n;
+        c.mass[p] = 1000.0 + n;
+        c.depth[p] = 0.5 + 0.1 * n;
+        c.r1x[p] = c.r2y[p] = 0.5;
+        c.id[p] = p;
+    }
+    TileSorter().sort(c, flow.grid, {}, flow.active);
+}
+
+/// A velocity that is linear in x and y [m].
+struct Linear2 {
+    double bx, by, xx, xy, yx, yy;
+    double vx(double x, double y) const { return bx + xx * x + xy * y; }
+    double vy(double x, double y) const { return by + yx * x + yy * y; }
+};
+constexpr Linear2 kAfter{1.0, -2.0, 0.11, 0.07, -0.05, 0.03}, kBefore{0.4, 0.2, -0.02, 0.05, 0.08, 0.01};
+
+void set_nodes(Flow& flow) {
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+            const double x = 2.0 * static_cast<double>(i), y = 2.0 * static_cast<double>(j);
+            flow.nodes.motions()[k] = {kAfter.vx(x, y), kAfter.vy(x, y), 1.0, 0.0};
+            flow.nodes.before[k] = {kBefore.vx(x, y), kBefore.vy(x, y)};
+        });
+    });
+}
+
+}  // namespace
+
+TEST_CASE("Every transfer gathers a linear velocity and its gradient exactly", "[transfer]") {
+    const Transfer transfer = GENERATE(Transfer::tpic, Transfer::apic, Transfer::pic, Transfer::flip);
+    const Shape shape = GENERATE(Shape::linear, Shape::quadratic, Shape::cubic);
+    if (transfer == Transfer::apic && shape == Shape::linear) return;  // its inertia is that of splines
+    CAPTURE(static_cast<int>(transfer), static_cast<int>(shape));
+    Scene scene = plane();
+    scene.scheme.transfer = transfer;
+    scene.scheme.shape = shape;
+    Flow flow(scene);
+    add_points(flow);
+    set_nodes(flow);
+    TransferKernel::Probe seen;
+    make_plain_transfer(scene)->probe(flow, seen);
+    const double keep = transfer == Transfer::flip ? scene.scheme.flip_ratio : 0.0;
+    const Columns& c = flow.columns;
+    for (std::size_t p = 0; p < seen.vx.size(); ++p) {
+        const double x = 2.0 * c.x[p], y = 2.0 * c.y[p];
+        // FLIP adds the nodes' change to the point's own velocity, and takes the rest from the nodes.
+        CHECK(seen.vx[p] == Approx(kAfter.vx(x, y) + keep * (c.vx[p] - kBefore.vx(x, y))).epsilon(kRoundOff));
+        CHECK(seen.vy[p] == Approx(kAfter.vy(x, y) + keep * (c.vy[p] - kBefore.vy(x, y))).epsilon(kRoundOff));
+        CHECK(seen.cxx[p] == Approx(kAfter.xx).margin(kRoundOff));
+        CHECK(seen.cxy[p] == Approx(kAfter.xy).margin(kRoundOff));
+        CHECK(seen.cyx[p] == Approx(kAfter.yx).margin(kRoundOff));
+        CHECK(seen.cyy[p] == Approx(kAfter.yy).margin(kRoundOff));
+    }
+}
+
+TEST_CASE("The paper's pressure pushes with g m h / 2 and weighs with g m grad Z", "[transfer]") {
+    Scene scene = plane();
+    scene.scheme.transfer = Transfer::pic;
+    scene.scheme.shape = GENERATE(Shape::linear, Shape::quadratic);
+    scene.scheme.paper_pressure = true;
+    Flow flow(scene);
+    add_points(flow);
+    make_plain_transfer(scene)->deposit(flow, 0.1);
+    const Columns& c = flow.columns;
+    double fx = 0.0, fy = 0.0, fx_x = 0.0, fy_y = 0.0;  // sums of the nodes' forces, and of their moments about (0, 0)
+    for (const Index tile : flow.active.work)
+        for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+            const Pair force = flow.nodes.force[k];
+            fx += force.x, fy += force.y;
+            fx_x += force.x * 2.0 * static_cast<double>(i), fy_y += force.y * 2.0 * static_cast<double>(j);
+        });
+    // The sum of grad N is 0, that of x_i grad N is 1: eq. 13 of Fois et al. 2024 summed over the nodes.
+    double weight = 0.0, push = 0.0, weight_x = 0.0, weight_y = 0.0;
+    for (Index p = 0; p < c.count(); ++p) {
+        const double gm = scene.gravity * c.mass[p];
+        weight += gm, push += 0.5 * gm * c.depth[p];
+        weight_x += gm * 2.0 * c.x[p], weight_y += gm * 2.0 * c.y[p];
+    }
+    CHECK(fx == Approx(-0.3 * weight).epsilon(kRoundOff));
+    CHECK(fy == Approx(0.2 * weight).epsilon(kRoundOff));
+    CHECK(fx_x == Approx(push - 0.3 * weight_x).epsilon(kRoundOff));
+    CHECK(fy_y == Approx(push + 0.2 * weight_y).epsilon(kRoundOff));
+}
+
+TEST_CASE("The paper's depth thins by the divergence of the velocity (eq. 30)", "[transfer]") {
+    Scene scene = plane();
+    scene.scheme.transfer = Transfer::pic;
+    scene.scheme.shape = GENERATE(Shape::linear, Shape::quadratic);
+    scene.scheme.paper_pressure = true;
+    Flow flow(scene);
+    add_points(flow);
+    const auto transfer = make_plain_transfer(scene);
+    transfer->deposit(flow, 0.1);
+    set_nodes(flow);
+    const Columns before = flow.columns;
+    transfer->gather(flow, 0.1);
+    for (Index p = 0; p < before.count(); ++p)
+        CHECK(flow.columns.depth[p] == Approx(before.depth[p] / (1.0 + 0.1 * (0.11 + 0.03))).epsilon(kRoundOff));
+}
