@@ -22,7 +22,8 @@ std::vector<Row> first_rows() {
     std::vector<Row> rows;
     int per_cell = 0;
     for (std::string line; std::getline(file, line);) {
-        Row row{line};
+        Row row;
+        row.text = line;
         std::istringstream words(line);
         if (!(words >> row.problem >> row.preset >> row.cells >> per_cell >> row.particles >> row.steps)) continue;
         if (rows.empty() || rows.back().problem != row.problem) rows.push_back(row);

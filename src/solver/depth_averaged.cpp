@@ -49,9 +49,12 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
     if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear) {
-        // Points wide enough to split would spread over other nodes than those they were fitted on.
-        while (splitter_.split(flow_) > 0) sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active);
-        fit_ = fit_masses(flow_, *scene.still_surface);
+        // Points that split later would spread over other nodes than those they were fitted on; the fit makes some heavy
+        // enough to split.
+        const auto split = [&] { return splitter_.split(flow_) > 0; };
+        const auto sort = [&] { sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active); };
+        while (split()) sort();
+        for (fit_ = fit_masses(flow_, *scene.still_surface); split(); fit_ = fit_masses(flow_, *scene.still_surface)) sort();
     }
     if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(flow_);
     const double longest = longest_step();
