@@ -69,6 +69,18 @@ Real inertia_of(const Flow& flow, Real mass, Real depth) {
     return max(mass, 0.5 * flow.density * flow.area * depth);
 }
 
+/// Depth that a node's inertia is reckoned with. Linear shapes push a node as hard however little of a point's mass it
+/// gets, and depth goes with mass there: what lies on the nodes around counts too.
+template <class Real>
+Real resisting_depth(const Flow& flow, Index k) {
+    Real depth = read<Real>(&flow.nodes.depth[k]);
+    if (flow.scheme.shape != Shape::linear) return depth;
+    const Index up = flow.grid.stride();
+    for (const Index row : {k - up, k, k + up})
+        for (Index m = row - 1; m <= row + 1; ++m) depth = max(depth, read<Real>(&flow.nodes.depth[m]));
+    return depth;
+}
+
 template <class Law, class Terrain>
 class Kernel final : public KickKernel {
 public:
@@ -209,7 +221,7 @@ private:
             node.push_y = node.loss_y = scale * (nodes.viscous_flux[k - up].y - nodes.viscous_flux[k].y);
         }
         if (nodes.force) {
-            const double inertia = inertia_of(flow, node.mass, node.depth);
+            const double inertia = inertia_of(flow, node.mass, resisting_depth<double>(flow, k));
             node.push_x += nodes.force[k].x / inertia;
             node.push_y += nodes.force[k].y / inertia;
         }
@@ -238,7 +250,7 @@ private:
         if (nodes.force) {
             Double4 fx, fy;
             unzip(&nodes.force[k], fx, fy);
-            const Double4 share = 1.0 / inertia_of(flow, node.mass, node.depth);
+            const Double4 share = 1.0 / inertia_of(flow, node.mass, resisting_depth<Double4>(flow, k));
             node.push_x += fx * share;
             node.push_y += fy * share;
         }

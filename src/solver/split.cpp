@@ -37,9 +37,9 @@ template <class Real>
 int parts_of(const Columns& c, Index p, double split_length, double least_mass) {
     const Edges e = edges_of(c.carried<Real>(), p);
     const double l1 = e.length1_2(), l2 = e.length2_2();
-    const bool splits =
-        std::max(l1, l2) >= split_length * split_length && std::abs(e.area()) >= 0.1 && c.mass[p] > least_mass;
-    if (!splits) return 1;
+    // Edges are cut to the splitting length where that is a cell or more: it must not take more than round-off to reach it.
+    const bool is_long = std::max(l1, l2) >= (1.0 - kSame<Real>) * split_length * split_length;
+    if (!is_long || std::abs(e.area()) < 0.1 || c.mass[p] <= least_mass) return 1;
     return std::abs(l1 - l2) <= kSame<Real> * std::max(l1, l2) ? 4 : 2;
 }
 
