@@ -56,7 +56,9 @@ bool same_bits(const Report& report) {
         if (entry.second != report.hashes.begin()->second) return false;
     for (const Timed& a : report.timed)
         for (const Timed& b : report.timed)
-            if (a.model == b.model && a.precision == b.precision && a.cost.particles == b.cost.particles && a.cost.hash != b.cost.hash) return false;
+            if (a.model == b.model && a.precision == b.precision && a.cost.particles == b.cost.particles &&
+                a.cost.hash != b.cost.hash)
+                return false;
     const Timed* asleep = find(report, "depth_averaged_resting", 0, 1);
     const Timed* awake = find(report, "depth_averaged_resting_awake", 0, 1);
     return !asleep || !awake || asleep->cost.hash == awake->cost.hash;

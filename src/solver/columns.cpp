@@ -131,7 +131,10 @@ void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, A
 }
 
 void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
-    for (auto& positions : active.colour) positions.clear();
+    for (auto& positions : active.colour) {
+        positions.clear();
+        positions.reserve(active.tile.capacity());  // grows with the list of tiles, not some steps later
+    }
     active.in_work.resize(static_cast<std::size_t>(grid.tiles()));
     active.quiet.resize(static_cast<std::size_t>(grid.tiles()));
     for (const Index tile : active.work) active.in_work[tile] = 0;

@@ -41,8 +41,8 @@ struct Moments {
     }
 };
 
-/// The rectangle that has these second moments, r1 its longer edge: edges along their principal directions, sqrt(12 lambda) long. A square
-/// lies along the grid.
+/// The rectangle that has these second moments, r1 its longer edge: edges along their principal directions,
+/// sqrt(12 lambda) long. A square lies along the grid.
 inline Edges rectangle_of(const Moments& s) {
     const double mean = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
     const double radius = std::sqrt(half * half + s.xy * s.xy);
