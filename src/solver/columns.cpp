@@ -28,7 +28,7 @@ template <class Field>
 void permute_field(Field& field, const std::int32_t* order, Index kept, Column& scratch) {
     using Number = typename Field::value_type;
     static_assert(sizeof(Number) <= sizeof(double), "the scratch is too narrow");
-    resize_sparingly(scratch, static_cast<std::size_t>(kept));
+    resize_sparingly(scratch, static_cast<std::size_t>(kept));  // after a change of places it may be longer
     const Number* from = field.data();
     if constexpr (std::is_same_v<Field, Column>) {
         for (Index p = 0; p < kept; ++p) scratch[p] = from[order[p]];
@@ -87,6 +87,8 @@ void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<
 void TileSorter::permute(Columns& columns, Index kept) {
     const Fields fields(columns);
     scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(omp_get_max_threads())));
+    // Here, not when a thread first takes a field: which does is chance.
+    for (Column& scratch : scratch_) resize_sparingly(scratch, static_cast<std::size_t>(kept));
 #pragma omp parallel for schedule(dynamic, 1) if (kept > 4096)
     for (Index f = 0; f < fields.count; ++f)
         std::visit([&](auto* field) { permute_field(*field, order_.data(), kept, scratch_[omp_get_thread_num()]); },
