@@ -1,5 +1,6 @@
 #include "observe/insitu.h"
 
+#include <new>
 #include <fmt/core.h>
 
 #include <cmath>
@@ -52,6 +53,8 @@ void InsituObserver::look(const Frame& frame) {
     try {
         work_->look(frame, tally_.made);
         ++tally_.made;
+    } catch (const std::bad_alloc&) {  // the run will not get far either, and can be resumed
+        throw;
     } catch (const std::exception& error) {
         if (tally_.failed == 0) tally_.first_failure = fmt::format("t = {:.6g} s: {}", frame.status.time, error.what());
         ++tally_.failed;
