@@ -1,10 +1,10 @@
 #include "observe/insitu.h"
 
-#include <new>
 #include <fmt/core.h>
 
 #include <cmath>
 #include <exception>
+#include <new>
 
 namespace frana {
 namespace {
