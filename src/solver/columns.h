@@ -82,7 +82,7 @@ private:
     }
 };
 
-/// Stable counting sort by tile; points whose `keep` says no are dropped. Needs no memory once warmed up.
+/// Stable counting sort by tile; points marked in `gone` are dropped. Needs no memory once warmed up.
 class TileSorter {
 public:
     /// Sorts `columns` and rebuilds `active`. Same bits for any number of threads.
