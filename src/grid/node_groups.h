@@ -79,6 +79,23 @@ void for_each_four_of(const TileGrid& grid, Index tile, NodeGroups groups, Body&
     }
 }
 
+/// Calls body(place in the run, storage index, i, j) for the first node of each group of groups_of(tile), row by row.
+/// The groups of one tile come in the order of for_each_four_of.
+template <class GroupsOf, class Body>
+void for_each_four_of_run(const TileGrid& grid, const TileRun& run, GroupsOf&& groups_of, Body&& body) {
+    std::array<NodeGroups, kRunTiles> groups;
+    NodeGroups rows = 0;
+    for (Index n = 0; n < run.count; ++n) rows |= groups[static_cast<std::size_t>(n)] = groups_of(run.tile[n]);
+    if (rows == 0) return;
+    const Index i0 = grid.tile_i(run.tile[0]), j0 = grid.tile_j(run.tile[0]), k0 = grid.at(i0, j0);
+    for (Index row = 0; row < kTile; ++row)
+        for (Index n = 0; n < run.count; ++n)
+            for (unsigned of_row = groups[static_cast<std::size_t>(n)] >> (4 * row) & 0xf; of_row != 0; of_row &= of_row - 1) {
+                const Index along = n * kTile + 4 * __builtin_ctz(of_row);
+                body(n, k0 + row * grid.stride() + along, i0 + along, j0 + row);
+            }
+}
+
 /// The same for each node of the groups.
 template <class Body>
 void for_each_node_of(const TileGrid& grid, Index tile, NodeGroups groups, Body&& body) {

@@ -86,6 +86,7 @@ struct ActiveTiles {
     std::vector<Index> begin;                 ///< first particle of each, and the count at the end
     std::array<std::vector<Index>, 4> colour; ///< positions in `tile`, by colour
     std::vector<Index> work;                  ///< ids of tiles with particles and their neighbours, ascending
+    std::vector<Index> run;                   ///< positions in `work` where runs begin, and the count at the end
     std::vector<std::uint8_t> in_work;        ///< per tile of the domain: 1 when it is on the work list
     std::vector<std::uint8_t> quiet;          ///< per tile of the domain: gathers in a row that left its points at rest
 
@@ -112,6 +113,23 @@ void for_each_tile(const ActiveTiles& active, Body&& body) {
     const Index count = active.count();
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) body(n);
+}
+
+/// Tiles of the work list side by side, at most so many. Loops that go through a run row by row read memory in long
+/// stretches: twice as fast as tile by tile where arrays do not fit into the caches.
+constexpr Index kRunTiles = 8;
+struct TileRun {
+    const Index* tile;  ///< their ids
+    Index count;
+};
+
+/// Runs body(run) for all runs of the work list, in parallel; the body writes to its own nodes only.
+template <class Body>
+void for_each_work_run(const ActiveTiles& active, Body&& body) {
+    const Index count = static_cast<Index>(active.run.size()) - 1;
+#pragma omp parallel for schedule(dynamic, 1) if (static_cast<Index>(active.work.size()) >= kTilesForThreads)
+    for (Index n = 0; n < count; ++n)
+        body(TileRun{active.work.data() + active.run[n], active.run[n + 1] - active.run[n]});
 }
 
 /// Runs body(position, tile id) for all tiles of the work list, in parallel; the body writes to its own nodes only.

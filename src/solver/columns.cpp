@@ -157,6 +157,20 @@ void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
             }
     }
     std::sort(active.work.begin(), active.work.end());
+    list_runs(width, active);
+}
+
+/// Tiles of a run lie in one row of tiles.
+void TileSorter::list_runs(Index width, ActiveTiles& active) {
+    active.run.clear();
+    active.run.reserve(active.work.capacity() + 1);
+    const Index count = static_cast<Index>(active.work.size());
+    for (Index n = 0; n < count; ++n) {
+        const Index tile = active.work[n];
+        const bool goes_on = n > 0 && tile == active.work[n - 1] + 1 && tile % width != 0;
+        if (!goes_on || n - active.run.back() == kRunTiles) active.run.push_back(n);
+    }
+    active.run.push_back(count);
 }
 
 }  // namespace frana

@@ -101,6 +101,7 @@ public:
 
 private:
     void wake(Index count, ActiveTiles& active);
+    static void list_runs(Index width, ActiveTiles& active);
     void permute(Columns& columns, Index kept);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile

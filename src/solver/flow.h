@@ -47,6 +47,9 @@ struct Flow {
     Rest rest;
     /// Nodes that the passes walk.
     NodeGroups walked(Index tile) const { return rest.stirred[tile] ? touched[tile] : 0; }
+    auto walked() const {
+        return [this](Index tile) { return walked(tile); };
+    }
     StencilMarks marks_of(Index tile) const { return {grid.tile_i(tile) + kTile, grid.tile_j(tile) + kTile}; }
     /// Whether a node was touched.
     bool touches(Index i, Index j) const {

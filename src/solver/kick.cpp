@@ -89,17 +89,12 @@ public:
     KickSums kick(Flow& flow, double dt, double drift) override {
         drift_ = drift;
         if (!parts_) parts_ = LazyArray<KickSums>(flow.grid.tiles());
-        for_each_work_tile(flow.active, [&](Index, Index tile) {
-            flow.rest.moving[tile] = 0;
-            if (!flow.rest.stirred[tile]) return;
-            Sums<double> single;
-            Sums<Double4> four;
-            for_each_four_of(flow.grid, tile, flow.walked(tile),
-                             [&](Index k, Index i, Index j) { kick_four(flow, k, i, j, dt, four, single); });
-            flow.rest.moving[tile] = flow.rest.some_asleep ? moving_groups(flow, tile) : kAllGroups;
-            parts_[tile] = {single.kinetic + sum(four.kinetic), single.dissipated + sum(four.dissipated),
-                         single.impulse_x + sum(four.impulse_x), single.impulse_y + sum(four.impulse_y),
-                         std::max(single.max_signal, largest(four.max_signal))};
+        for_each_work_run(flow.active, [&](const TileRun& run) {
+            std::array<TileWork, kRunTiles> work{};
+            for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index n, Index k, Index i, Index j) {
+                kick_four(flow, k, i, j, dt, work[static_cast<std::size_t>(n)]);
+            });
+            for (Index n = 0; n < run.count; ++n) finish(flow, run.tile[n], work[static_cast<std::size_t>(n)]);
         });
         KickSums total;
         for (const Index tile : flow.active.work) {
@@ -131,6 +126,25 @@ public:
     }
 
 private:
+    template <class Real>
+    struct Sums { Real kinetic{}, dissipated{}, impulse_x{}, impulse_y{}, max_signal{}; };
+    struct TileWork {
+        Sums<Double4> four;
+        Sums<double> single;
+        KickSums total() const {
+            return {single.kinetic + sum(four.kinetic), single.dissipated + sum(four.dissipated),
+                    single.impulse_x + sum(four.impulse_x), single.impulse_y + sum(four.impulse_y),
+                    std::max(single.max_signal, largest(four.max_signal))};
+        }
+    };
+
+    void finish(Flow& flow, Index tile, const TileWork& work) {
+        flow.rest.moving[tile] = 0;
+        if (!flow.rest.stirred[tile]) return;
+        flow.rest.moving[tile] = flow.rest.some_asleep ? moving_groups(flow, tile) : kAllGroups;
+        parts_[tile] = work.total();
+    }
+
     static NodeGroups moving_groups(const Flow& flow, Index tile) {
         NodeGroups moving = 0;
         for_each_four_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
@@ -142,23 +156,20 @@ private:
         return moving;
     }
 
-    template <class Real>
-    struct Sums { Real kinetic{}, dissipated{}, impulse_x{}, impulse_y{}, max_signal{}; };
-
     /// Four nodes in a row: together where all lie inside the flow, otherwise one by one.
-    void kick_four(Flow& flow, Index k, Index i, Index j, double dt, Sums<Double4>& four, Sums<double>& single) {
+    void kick_four(Flow& flow, Index k, Index i, Index j, double dt, TileWork& work) {
         const std::uint8_t* f = flow.nodes.flags.data() + k;
         constexpr int kInside = kMoving | kWideX | kWideY;
         Motion* motion = flow.nodes.motions() + k;
         if ((f[0] & f[1] & f[2] & f[3] & kInside) == kInside && !pressure_on_points_ && dt > 0.0 && inside(flow, i, j)) {
             const Node<Double4> node = prepared_four(flow, k);
             const auto after = kicked(flow, typename Terrain::template Bed<Double4>(flow, k), node, dt);
-            add(flow, node, after, 1.0, four);
+            add(flow, node, after, 1.0, work.four);
             Double4 out[4];
             transpose(after.vx, after.vy, node.depth, Double4{}, out);
             for (int n = 0; n < 4; ++n) store(motion + n, out[n]);
         } else {
-            for (Index n = 0; n < 4; ++n) kick_node(flow, k + n, i + n, j, dt, single);
+            for (Index n = 0; n < 4; ++n) kick_node(flow, k + n, i + n, j, dt, work.single);
         }
     }
 

@@ -36,8 +36,8 @@ BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, doubl
 }
 
 void update_peaks(const Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, flow.walked(tile), [&](Index k, Index, Index) {
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) {
             const Double4 h = load(&flow.nodes.depth[k]), none = {};
             if (!any(h > 0.0)) return;
             if (any((h > footprint_depth) & (load(&peaks.depth[k]) <= footprint_depth)))

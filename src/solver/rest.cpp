@@ -105,8 +105,9 @@ void put_back(Flow& flow) {
 
 void clear(Flow& flow, const LazyArray<NodeGroups>& groups) {
     Deposit* deposits = flow.nodes.deposits();
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, groups[tile], [&](Index k, Index, Index) {
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        const auto groups_of = [&](Index tile) { return groups[tile]; };
+        for_each_four_of_run(flow.grid, run, groups_of, [&](Index, Index k, Index, Index) {
             std::memset(deposits + k, 0, 4 * sizeof(Deposit));
             std::memset(&flow.nodes.column_mass[k], 0, 4 * sizeof(double));
             if (flow.nodes.force) std::memset(&flow.nodes.force[k], 0, 4 * sizeof(Pair));

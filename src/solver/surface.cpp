@@ -241,14 +241,16 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
 }  // namespace
 
 NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        if (!flow.rest.stirred[tile]) return;
-        DepthSums sums;
-        const NodeGroups touched = flow.touched[tile];
-        for_each_four_of(flow.grid, tile, touched,
-                         [&](Index k, Index i, Index j) { depth_of_four(flow, request, k, i, j, sums); });
-        for_each_four_of(flow.grid, tile, flow.near[tile] & ~touched, [&](Index k, Index, Index) { dry_four(flow, k); });
-        flow.depth_sums[tile] = sums.of_tile();
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        std::array<DepthSums, kRunTiles> sums{};
+        const auto dry = [&](Index tile) { return flow.rest.stirred[tile] ? flow.near[tile] & ~flow.touched[tile] : 0; };
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index n, Index k, Index i, Index j) {
+            depth_of_four(flow, request, k, i, j, sums[static_cast<std::size_t>(n)]);
+        });
+        for_each_four_of_run(flow.grid, run, dry, [&](Index, Index k, Index, Index) { dry_four(flow, k); });
+        for (Index n = 0; n < run.count; ++n)
+            if (flow.rest.stirred[run.tile[n]])
+                flow.depth_sums[run.tile[n]] = sums[static_cast<std::size_t>(n)].of_tile();
     });
     NodeSums total;
     for (const Index tile : flow.active.work) {
@@ -315,11 +317,11 @@ void filter(Flow& flow) {
     Nodes& nodes = flow.nodes;
     const Index up = flow.grid.stride();
     const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, flow.walked(tile), [&](Index k, Index, Index) { wave_along_x(nodes, k); });
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) { wave_along_x(nodes, k); });
     });
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        for_each_four_of(flow.grid, tile, flow.walked(tile), [&](Index k, Index, Index) {
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) {
             if (calm(nodes, k, up)) {
                 filter_calm(flow, nodes, k, up);
             } else {

@@ -1,6 +1,10 @@
 // The nodes' side of the transfers: sums, walls.
 #include "solver/transfer.h"
 
+#include <cstring>
+
+#include "base/simd.h"
+
 namespace frana {
 
 void PointSums::add(const PointSums& o) {
@@ -29,15 +33,13 @@ PointSums total(const ActiveTiles& active, const LazyArray<PointSums>& parts) {
 
 PointSums node_sums(Flow& flow) {
     const Deposit* deposits = flow.nodes.deposits();
-    for_each_work_tile(flow.active, [&](Index, Index tile) {
-        if (!flow.rest.stirred[tile]) return;
-        TileSums sums{};
-        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index, Index) {
-            sums[0] += deposits[k].mass;
-            sums[1] += deposits[k].px;
-            sums[2] += deposits[k].py;
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        Double4 sums[kRunTiles] = {};
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index n, Index k, Index, Index) {
+            for (Index m = k; m < k + 4; ++m) sums[n] += load(deposits + m);
         });
-        flow.deposit_sums[tile] = sums;
+        for (Index n = 0; n < run.count; ++n)
+            if (flow.rest.stirred[run.tile[n]]) std::memcpy(&flow.deposit_sums[run.tile[n]], &sums[n], sizeof sums[n]);
     });
     PointSums all;
     for (const Index tile : flow.active.work) {
