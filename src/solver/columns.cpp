@@ -44,7 +44,7 @@ void permute_field(Field& field, const std::int32_t* order, Index kept, Column& 
 
 }  // namespace
 
-void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
+void TileSorter::plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
                       ActiveTiles& active) {
     const Index count = columns.count();
     expect(count < std::numeric_limits<std::int32_t>::max() && grid.tiles() < std::numeric_limits<std::int32_t>::max(),
@@ -78,8 +78,6 @@ void TileSorter::sort(Columns& columns, const TileGrid& grid, const std::vector<
     for (Index p = 0; p < count; ++p)
         if (key[p] >= 0) order_[tile_count_[key[p]]++] = static_cast<std::int32_t>(p);
     for (const Index tile : used_) tile_count_[tile] = 0;
-
-    permute(columns, kept);
     list_tiles(grid, active);
 }
 
@@ -109,16 +107,29 @@ void TileSorter::wake(Index count, ActiveTiles& active) {
         if (key_[p] >= 0) active.quiet[key_[p]] = 0;
 }
 
-void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
-    resize_sparingly(order_, static_cast<std::size_t>(columns.count()));
-    std::int32_t kept = 0;
-    for (Index n = 0, p = 0; n < active.count(); ++n) {
+template <class At>
+void TileSorter::keep(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at) {
+    Index kept = 0;
+    for (Index n = 0, place = 0; n < active.count(); ++n) {
         const Index end = active.begin[n + 1];
         active.begin[n] = kept;
-        for (; p < end; ++p)
-            if (!gone[static_cast<std::size_t>(p)]) order_[static_cast<std::size_t>(kept++)] = static_cast<std::int32_t>(p);
+        for (; place < end; ++place) {
+            const std::int32_t p = at(place);
+            if (!gone[static_cast<std::size_t>(p)]) order_[static_cast<std::size_t>(kept++)] = p;
+        }
     }
     active.begin[active.count()] = kept;
+    order_.resize(static_cast<std::size_t>(kept));
+}
+
+void TileSorter::leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+    keep(gone, active, [&](Index place) { return order_[static_cast<std::size_t>(place)]; });
+}
+
+void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+    resize_sparingly(order_, static_cast<std::size_t>(columns.count()));
+    keep(gone, active, [](Index place) { return static_cast<std::int32_t>(place); });
+    const Index kept = static_cast<Index>(order_.size());
     const std::int32_t* order = order_.data();
     const Fields fields(columns);
 #pragma omp parallel for schedule(dynamic, 1) if (kept > 4096)

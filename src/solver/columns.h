@@ -87,7 +87,17 @@ class TileSorter {
 public:
     /// Sorts `columns` and rebuilds `active`. Same bits for any number of threads.
     /// `gone` (one byte per particle, may be empty) marks particles to drop.
-    void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+        plan(columns, grid, gone, active);
+        carry_out(columns);
+    }
+    /// The same in two, so that points can be dropped between: `active` and order() first, then the columns.
+    void plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    void carry_out(Columns& columns) { permute(columns, static_cast<Index>(order_.size())); }
+    /// Of a plan: the point that will lie at each place.
+    const std::vector<std::int32_t>& order() const { return order_; }
+    /// Leaves points marked in `gone` out of a plan.
+    void leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Drops the points marked in `gone`; the others keep their order and tiles.
     void drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.
@@ -102,6 +112,9 @@ public:
 private:
     void wake(Index count, ActiveTiles& active);
     static void list_runs(Index width, ActiveTiles& active);
+    /// Makes order_ of the points that stay, place by place of `active`; at(place) is the point there.
+    template <class At>
+    void keep(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at);
     void permute(Columns& columns, Index kept);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile

@@ -173,12 +173,12 @@ void DepthAveraged::adapt_points(bool deposit_follows, bool points_left) {
     if (!deposit_follows) return;
     Index born = 0;
     if (has_domains && due) born = timed_("split", [&] { return splitter_.split(flow_); });
-    if (born > 0 || drift_ > kDriftLimit || due) {
-        timed_("sort", [&] { sorter_.sort(flow_.columns, flow_.grid, none, flow_.active); });
-        drift_ = 0.0;
-    }
-    if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_, transfer_->gone()); }) > 0)
-        timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
+    if (born == 0 && drift_ <= kDriftLimit && !due) return;
+    timed_("sort", [&] { sorter_.plan(flow_.columns, flow_.grid, none, flow_.active); });
+    if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_, sorter_.order(), transfer_->gone()); }) > 0)
+        timed_("sort", [&] { sorter_.leave_out(transfer_->gone(), flow_.active); });
+    timed_("sort", [&] { sorter_.carry_out(flow_.columns); });
+    drift_ = 0.0;
 }
 
 /// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs

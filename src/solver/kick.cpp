@@ -50,11 +50,11 @@ Double4 wide_gradients(const Flow& flow, Index k, Index step) {
 /// A node, or four in a row.
 template <class Real>
 struct Node {
-    Real vx{}, vy{};          ///< before the kick [m/s]
-    Real ex{}, ey{};          ///< gradient of the free surface [1]
-    Real depth{}, mass{};
-    Real push_x{}, push_y{};  ///< artificial viscosity and stress [m/s^2]
-    Real loss_x{}, loss_y{};  ///< the viscosity's part, whose work is lost [m/s^2]
+    Real vx, vy;          ///< before the kick [m/s]
+    Real ex, ey;          ///< gradient of the free surface [1]
+    Real depth, mass;
+    Real push_x, push_y;  ///< artificial viscosity and stress [m/s^2]
+    Real loss_x, loss_y;  ///< the viscosity's part, whose work is lost [m/s^2]
 };
 
 template <class Real>
@@ -218,7 +218,7 @@ private:
     Node<double> prepared(const Flow& flow, Index k) const {
         const Nodes& nodes = flow.nodes;
         const Index up = flow.grid.stride();
-        Node<double> node;
+        Node<double> node{};
         node.vx = nodes.before[k].x, node.vy = nodes.before[k].y;
         node.depth = nodes.depth[k], node.mass = nodes.deposits()[k].mass;
         if (!pressure_on_points_) {
@@ -243,8 +243,9 @@ private:
     Node<Double4> prepared_four(const Flow& flow, Index k) const {
         const Nodes& nodes = flow.nodes;
         const Index up = flow.grid.stride();
-        Node<Double4> node;
+        Node<Double4> node;  // set one by one: to clear it first would be a loop of its own
         unzip(&nodes.before[k], node.vx, node.vy);
+        node.push_x = node.push_y = node.loss_x = node.loss_y = Double4{};
         const Deposit* d = nodes.deposits() + k;
         node.depth = load(&nodes.depth[k]), node.mass = Double4{d[0].mass, d[1].mass, d[2].mass, d[3].mass};
         node.ex = wide_gradients(flow, k, 1);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "solver/domain.h"
 
@@ -21,17 +22,21 @@ constexpr double kNoResplit = 0.95;
 /// The points of one tile in the order of its half-cell squares.
 class Squares {
 public:
-    /// `order` has room for the tile's points.
-    Squares(const Flow& flow, Index n, std::int32_t* order)
+    /// `sorted`: the point at each place; `order` has room for the tile's points.
+    Squares(const Flow& flow, Index n, const std::int32_t* sorted, std::int32_t* order)
         : i0_(2 * flow.grid.tile_i(flow.active.tile[n]) + 1), j0_(2 * flow.grid.tile_j(flow.active.tile[n]) + 1),
           c_(flow.columns), order_(order) {
         const Index begin = flow.active.begin[n], end = flow.active.begin[n + 1];
         Index held = 0;
-        for (Index p = begin; p < end; ++p)
+        for (Index place = begin; place < end; ++place) {
+            const Index p = sorted[place];
             if (!on_edge(p)) ++end_of_[square(p)], ++held;
+        }
         for (Index s = 1; s < kSide * kSide; ++s) end_of_[s] += end_of_[s - 1];
-        for (Index p = end; p-- > begin;)
-            if (!on_edge(p)) order[--end_of_[square(p)]] = static_cast<std::int32_t>(p);
+        for (Index place = end; place-- > begin;) {
+            const std::int32_t p = sorted[place];
+            if (!on_edge(p)) order[--end_of_[square(p)]] = p;
+        }
         for (Index s = 0; s + 1 < kSide * kSide; ++s) end_of_[s] = end_of_[s + 1];
         end_of_[kSide * kSide - 1] = held;
     }
@@ -85,20 +90,22 @@ Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
 
 Merger::Merger(const Flow& flow) {
     resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
+    std::vector<std::int32_t> sorted(order_.size());  // points lie as they are sorted
+    std::iota(sorted.begin(), sorted.end(), 0);
     for (Index n = 0; n < flow.active.count(); ++n) {
-        const Squares squares(flow, n, order_.data() + flow.active.begin[n]);
+        const Squares squares(flow, n, sorted.data(), order_.data() + flow.active.begin[n]);
         for (Index s = 0; s < kSide * kSide; ++s) most_ = std::max(most_, squares.held(s));
     }
 }
 
-Index Merger::merge(Flow& flow, std::vector<std::uint8_t>& gone) {
+Index Merger::merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone) {
     assign_sparingly(gone, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
     resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
     for_each_tile(flow.active, [&](Index n) {
         std::uint8_t& quiet = flow.active.quiet[flow.active.tile[n]];
         if (quiet >= kAsleep) return;
-        merged_[n] = merge_tile(flow, n, gone);
+        merged_[n] = merge_tile(flow, n, sorted.data(), gone);
         if (merged_[n] > 0) quiet = 0;
     });
     Index total = 0;
@@ -106,8 +113,8 @@ Index Merger::merge(Flow& flow, std::vector<std::uint8_t>& gone) {
     return total;
 }
 
-Index Merger::merge_tile(Flow& flow, Index n, std::vector<std::uint8_t>& gone) {
-    const Squares squares(flow, n, order_.data() + flow.active.begin[n]);
+Index Merger::merge_tile(Flow& flow, Index n, const std::int32_t* sorted, std::vector<std::uint8_t>& gone) {
+    const Squares squares(flow, n, sorted, order_.data() + flow.active.begin[n]);
     const double longest = kNoResplit * flow.scheme.split_length;
     Index merged = 0;
     for (Index s = 0; s < kSide * kSide; ++s) {

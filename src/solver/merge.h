@@ -15,13 +15,14 @@ public:
     /// mass-weighted means, the domain is the rectangle with the union's second moments. Mass and momentum are kept
     /// exactly. No union when its domain would be nearly long enough to split again. Where two unions
     /// tie, none is made: round-off must not choose, or mirror images part.
-    /// Needs columns sorted by tile. Marks merged-away points in `gone` (resized); returns how many. The caller drops them.
-    Index merge(Flow& flow, std::vector<std::uint8_t>& gone);
+    /// Needs tiles that are up to date; `sorted`: the point at each place of them (TileSorter::order). Marks merged-away
+    /// points in `gone` (resized); returns how many. The caller drops them.
+    Index merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone);
     /// Memory that grows with the points [bytes].
     Index bytes() const { return allocated(order_); }
 
 private:
-    Index merge_tile(Flow& flow, Index n, std::vector<std::uint8_t>& gone);
+    Index merge_tile(Flow& flow, Index n, const std::int32_t* sorted, std::vector<std::uint8_t>& gone);
     template <class Real>
     static bool unite(Flow& flow, Index a, Index b, double longest, std::vector<std::uint8_t>& gone);
 

@@ -240,16 +240,17 @@ private:
         window_weights(tx - ax, one, wx[1]), window_weights(ty - ay, quarter, wy[1]);
         window_weights(tx + bx, one, wx[2]), window_weights(ty + by, quarter, wy[2]);
         window_weights(tx - bx, one, wx[3]), window_weights(ty - by, quarter, wy[3]);
-        double mass[4][4][4];  // row, column, lane
-        for (int b = 0; b < 4; ++b)
+        Double4 of_lane[4][4];  // row, lane: the masses of four nodes
+        for (int b = 0; b < 4; ++b) {
+            Double4 of_node[4];
             for (int a = 0; a < 4; ++a)
-                store(mass[b][a], (wy[0][b] * wx[0][a] + wy[1][b] * wx[1][a]) +
-                                      (wy[2][b] * wx[2][a] + wy[3][b] * wx[3][a]));
+                of_node[a] = (wy[0][b] * wx[0][a] + wy[1][b] * wx[1][a]) + (wy[2][b] * wx[2][a] + wy[3][b] * wx[3][a]);
+            transpose(of_node[0], of_node[1], of_node[2], of_node[3], of_lane[b]);
+        }
         const Index stride = flow.grid.stride();
         for (int lane = 0; lane < lanes; ++lane) {
             double* row = flow.nodes.column_mass.data() + j[lane] * stride + i[lane];
-            for (int b = 0; b < 4; ++b, row += stride)
-                for (int a = 0; a < 4; ++a) row[a] += mass[b][a][lane];
+            for (int b = 0; b < 4; ++b, row += stride) store(row, load(row) + of_lane[b][lane]);
         }
     }
 
@@ -259,13 +260,14 @@ private:
         const Carried<Real>& held = c.carried<Real>();
         const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), depth = load(&held.depth[p], lanes);
         const Double4 cxy = load(&held.cxy[p], lanes), cyx = load(&held.cyx[p], lanes), zero = {};
+        const double per_density = 1.0 / flow.density, per_cell = 1.0 / flow.cell;
         const PlaneOf<Double4> rate{load(&held.cxx[p], lanes), load(&held.cyy[p], lanes), 0.5 * (cxy + cyx)};
         const PlaneOf<Double4> sigma =
             stress(law_, StrainState<Double4>{rate, sqrt(vx * vx + vy * vy), max(depth, all(flow.dry_depth())),
                                               flow.scheme.strain_rate_floor, cap});
-        const Double4 volume = depth > flow.dry_depth() ? load(&c.mass[p], lanes) / flow.density : zero;
+        const Double4 volume = depth > flow.dry_depth() ? per_density * load(&c.mass[p], lanes) : zero;
         sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
-        return scaled(sigma, volume / flow.cell);
+        return scaled(sigma, per_cell * volume);
     }
 
     /// -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21).
