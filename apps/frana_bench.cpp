@@ -4,6 +4,8 @@
 #include "base/atomic_file.h"
 #include "bench/print.h"
 #include "frana_commands.h"
+#include "io/xdmf_writer.h"
+#include "vtk_io/writers.h"
 
 namespace frana {
 
@@ -12,6 +14,12 @@ int bench_command(const BenchOptions& options) {
     if (!options.particles.empty()) wanted.particles.assign(options.particles.begin(), options.particles.end());
     if (!options.threads.empty()) wanted.threads = options.threads;
     wanted.quick = options.quick;
+    wanted.writers = {
+        {bench::kGatedWriter, true, false, [](const auto& folder) { return make_xdmf_writer(folder); }},
+        {"VTK, particles", true, false, [](const auto& folder) { return make_particle_writer(folder); }},
+        {"VTK, grid", false, true, [](const auto& folder) { return make_grid_writer(folder); }},
+        {"HDF5, particles and grid", true, true, [](const auto& folder) { return make_xdmf_writer(folder); }},
+    };
     const bench::Report report = bench::run(wanted, [](const std::string& text) {
         fmt::print(stderr, "{}\n", text);
     });

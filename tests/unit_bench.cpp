@@ -1,5 +1,6 @@
 // The measuring itself, on scenes far too small to tell anything about speed.
 #include <cmath>
+#include <filesystem>
 #include <regex>
 
 #include "base/error.h"
@@ -131,6 +132,52 @@ TEST_CASE("A gate that was not measured is not met", "[bench]") {
     bench::Report alone;
     alone.options = one;
     for (const bench::Gate& gate : bench::gates(alone)) CHECK_FALSE(gate.met());
+}
+
+namespace {
+
+/// Notes what it is shown.
+struct Shown { std::size_t particle_fields = 0, node_fields = 0, frames = 0; };
+class Witness final : public Observer {
+public:
+    explicit Witness(Shown& shown) : shown_(shown) {}
+    std::string name() const override { return "witness"; }
+    void see(const Frame& frame) override {
+        CHECK(frame.number == static_cast<Index>(shown_.frames++));
+        shown_.particle_fields = frame.particles.size();
+        shown_.node_fields = frame.nodes.size();
+    }
+
+private:
+    Shown& shown_;
+};
+
+}  // namespace
+
+TEST_CASE("bench shows twelve particle fields to writers of particles, the grid to others, and cleans up", "[bench]") {
+    const std::filesystem::path above = std::filesystem::temp_directory_path() / "frana_test_bench";
+    std::filesystem::remove_all(above);
+    Shown points, grid;
+    const auto costs = bench::time_frames(
+        1000,
+        {{bench::kGatedWriter, true, false, [&](const auto& folder) {
+              CHECK(std::filesystem::is_directory(folder));
+              return std::make_unique<Witness>(points);
+          }},
+         {"grid", false, true, [&](const auto&) { return std::make_unique<Witness>(grid); }}},
+        above);
+    CHECK(std::filesystem::is_empty(above));
+    std::filesystem::remove_all(above);
+    CHECK(points.particle_fields == 12);
+    CHECK(points.node_fields == 0);
+    CHECK(points.frames > 1);
+    CHECK(grid.particle_fields == 1);  // the position, for writers that cannot do without
+    CHECK(grid.node_fields > 10);
+    REQUIRE(costs.size() == 3);
+    for (const bench::FrameCost& cost : costs) CHECK((cost.seconds > 0.0 && cost.steps > 0.0));
+    CHECK(costs[1].fields == 12);
+    CHECK(bench::steps_of(costs, bench::kGatedWriter) == Approx(costs[0].steps + costs[1].steps));
+    CHECK(std::isnan(bench::steps_of(costs, "nobody")));
 }
 
 TEST_CASE("bench refuses particles and threads that cannot be", "[bench]") {

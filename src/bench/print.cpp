@@ -42,6 +42,14 @@ std::string phase_lines(const Report& report) {
     return text;
 }
 
+std::string frame_lines(const Report& report) {
+    if (report.frames.empty()) return "";
+    std::string text = fmt::format("{:44} {:>9} {:>9} {:>9}\n", "one frame, one thread", "fields", "wall [ms]", "steps");
+    for (const FrameCost& cost : report.frames)
+        text += fmt::format("{:44} {:>9} {:>9.2f} {:>9.2f}\n", cost.name, cost.fields, 1e3 * cost.seconds, cost.steps);
+    return text + "\n";
+}
+
 std::string gate_lines(const Report& report) {
     std::string text = fmt::format("{:44} {:>9} {:>9} {:>9}\n", "gate", "measured", "gate", "aim");
     for (const Gate& gate : gates(report)) {
@@ -93,6 +101,11 @@ std::string json_speeds(const std::map<int, double>& speeds) {
     return "{" + text + "}";
 }
 
+std::string json_frame(const FrameCost& cost) {
+    return fmt::format(R"({{"writer": "{}", "fields": {}, "wall_ms": {:.6g}, "steps": {:.6g}}})", cost.name, cost.fields,
+                       1e3 * cost.seconds, cost.steps);
+}
+
 std::string json_gate(const Gate& gate) {
     return fmt::format(R"({{"what": "{}", "measured": {}, "gate": {:g}, "aim": {:g}, "at_least": {}}})", gate.what,
                        std::isnan(gate.measured) ? "null" : fmt::format("{:.6g}", gate.measured), gate.gate, gate.aim,
@@ -102,23 +115,24 @@ std::string json_gate(const Gate& gate) {
 }  // namespace
 
 std::string table_of(const Report& report) {
-    return calibration_lines(report.calibration) + "\n" + phase_lines(report) + "\n" + gate_lines(report) + "\n" +
+    return calibration_lines(report.calibration) + "\n" + phase_lines(report) + "\n" + frame_lines(report) + gate_lines(report) + "\n" +
            hash_lines(report) + warning(report);
 }
 
 std::string json_of(const Report& report) {
-    std::string kernels, held;
+    std::string kernels, frames, held;
     for (const Timed& timed : report.timed)
         for (const PhaseCost& phase : timed.cost.phases) {
             if (phase.bytes == 0.0) continue;  // "other": nothing is known of its traffic
             kernels += (kernels.empty() ? "\n  " : ",\n  ") + json_kernel(report, timed, phase);
         }
+    for (const FrameCost& cost : report.frames) frames += (frames.empty() ? "\n  " : ",\n  ") + json_frame(cost);
     for (const Gate& gate : gates(report)) held += (held.empty() ? "\n  " : ",\n  ") + json_gate(gate);
     const Calibration& c = report.calibration;
     return fmt::format("{{\"stream_triad_GBps\": {},\n\"stream_triad_wall_GBps\": {},\n\"node_touch_ns\": {:.6g},\n"
-                       "\"same_bits\": {},\n\"kernels\": [{}],\n\"gates\": [{}]}}\n",
+                       "\"same_bits\": {},\n\"kernels\": [{}],\n\"frames\": [{}],\n\"gates\": [{}]}}\n",
                        json_speeds(c.triad_GBps), json_speeds(c.triad_wall_GBps), c.node_touch_ns, same_bits(report),
-                       kernels, held);
+                       kernels, frames, held);
 }
 
 }  // namespace frana::bench

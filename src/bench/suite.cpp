@@ -124,6 +124,11 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
     single.single = true;
     for (const int threads : options.threads) time("depth_averaged", blob_scene(single), threads);
     for (const Variant& variant : variants(options)) time(variant.model, blob_scene(variant.blob), 1);
+    if (!options.writers.empty()) {
+        say("frames: made and written");
+        report.frames =
+            time_frames(reference_particles(options), options.writers, std::filesystem::temp_directory_path());
+    }
     say("the same run with different numbers of threads");
     report.hashes = hashes(options);
     return report;

@@ -7,6 +7,7 @@
 
 #include "bench/calibrate.h"
 #include "bench/measure.h"
+#include "bench/output.h"
 
 namespace frana::bench {
 
@@ -15,6 +16,7 @@ struct Options {
     std::vector<int> threads{1, 2};
     bool quick = false;      ///< fewer rounds and windows, no more than 500 000 particles, no wide grid
     Index array_bytes = 0;   ///< of the triad, 0: as the machine's caches ask for
+    std::vector<FrameWriter> writers;  ///< timed with the reference blob
 };
 
 /// A scene that was timed. `model` begins the contract's MODEL/PHASE/PRECISION: "depth_averaged" is the whole physics,
@@ -30,6 +32,7 @@ struct Report {
     Calibration calibration;
     std::vector<Timed> timed;
     std::map<int, std::uint64_t> hashes;  ///< of one short run, by threads
+    std::vector<FrameCost> frames;        ///< empty without writers
 };
 
 /// Runs everything; `say` is called with a line of progress before each part. Throws UserError for particles or threads

@@ -52,8 +52,7 @@ protected:
         Handle set(access_,
                    H5Dcreate2(file_, name.c_str(), number_type(kind).file, space, links_, creation_, H5P_DEFAULT),
                    H5Dclose);
-        if (count > 0)
-            access_.check(H5Dwrite(set, number_type(kind).memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
+        hdf5::write_whole(access_, set, number_type(kind).memory, data);
         set.close();
     }
 

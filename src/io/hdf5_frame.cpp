@@ -49,8 +49,7 @@ void put_array(Output& output, hid_t group, const std::string& name, const std::
         output,
         H5Dcreate2(group, name.c_str(), number_type<T>().file, space, H5P_DEFAULT, creation, H5P_DEFAULT),
         H5Dclose);
-    if (H5Sget_simple_extent_npoints(space) > 0)
-        output.check(H5Dwrite(set, number_type<T>().memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+    hdf5::write_whole(output, set, number_type<T>().memory, values);
     put_text(output, set, "unit", unit);
     std::string listed;
     for (const auto& component : components) listed += (listed.empty() ? "" : " ") + component;

@@ -30,7 +30,7 @@ void put_dataset(const Access& access, hid_t file, const std::string& name, cons
     const Handle space(access, H5Screate_simple(components > 1 ? 2 : 1, shape, nullptr), H5Sclose);
     const Handle set(access, H5Dcreate2(file, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                      H5Dclose);
-    access.check(H5Dwrite(set, held, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+    write_whole(access, set, held, values);
     put_text(access, set, "unit", unit);
 }
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -55,6 +56,28 @@ void put_numbers(const Access& access, hid_t object, const char* name, const std
     const Handle attribute(access, H5Acreate2(object, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
                            H5Aclose);
     access.check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, numbers.data()));
+}
+
+void write_whole(const Access& access, hid_t set, hid_t type, const void* values) {
+    constexpr hsize_t kPiece = hsize_t{1} << 20;  // bytes
+    const Handle space(access, H5Dget_space(set), H5Sclose);
+    std::vector<hsize_t> shape(static_cast<std::size_t>(access.check(H5Sget_simple_extent_ndims(space))));
+    if (shape.empty()) return;
+    access.check(H5Sget_simple_extent_dims(space, shape.data(), nullptr));
+    std::size_t axis = 0;  // the first that is more than a formality
+    while (axis + 1 < shape.size() && shape[axis] == 1) ++axis;
+    hsize_t row = H5Tget_size(type);
+    for (std::size_t n = axis + 1; n < shape.size(); ++n) row *= shape[n];
+    if (row == 0) return;
+    const hsize_t rows = shape[axis], at_once = std::max<hsize_t>(1, kPiece / row);
+    std::vector<hsize_t> start(shape.size(), 0), count = shape;
+    for (hsize_t first = 0; first < rows; first += at_once) {
+        start[axis] = first;
+        count[axis] = std::min(at_once, rows - first);
+        const Handle piece(access, H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
+        access.check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+        access.check(H5Dwrite(set, type, piece, space, H5P_DEFAULT, static_cast<const char*>(values) + first * row));
+    }
 }
 
 Numbers read_numbers(const Access& access, hid_t group, const std::string& name) {

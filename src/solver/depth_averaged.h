@@ -88,7 +88,12 @@ private:
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
     void stress_fields(Frame& frame);
-    Field& add_field(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
+    template <class Law>
+    void stress_at_points(const Law& law, double* stresses) const;
+    void stress_on_nodes(const double* stresses);
+    /// A new field's numbers: left over from the last frame; or zero.
+    double* add_column(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
+    double* add_field(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
 
     Flow flow_;
     std::unique_ptr<TransferKernel> transfer_;
@@ -111,6 +116,8 @@ private:
     double stress_power_ = 0.0; ///< of the present deposit [W]
     Vec2 centre_{0, 0};         ///< of the release [cells]
 
+    struct StressSum { double stress[3], mass; };
+    LazyArray<StressSum> stress_sums_;  ///< per node, of the points' stress times mass [Pa kg], and mass [kg]
     TransferKernel::Probe probe_;
     std::vector<std::vector<double>> frame_storage_;  ///< what the last frame's fields point to
     std::size_t frame_used_ = 0;                      ///< of them

@@ -1,6 +1,7 @@
 // What a depth-averaged run shows of itself: fields of points and nodes at the present time.
 #include <algorithm>
 
+#include "base/simd.h"
 #include "grid/stencil.h"
 #include "law/rheology.h"
 #include "solver/depth_averaged.h"
@@ -44,13 +45,20 @@ BedHere bed_at(const Flow& flow, double x, double y) {
 
 }  // namespace
 
-Field& DepthAveraged::add_field(std::vector<Field>& fields, const char* name, const char* unit, int components,
-                                Index count) {
+double* DepthAveraged::add_column(std::vector<Field>& fields, const char* name, const char* unit, int components,
+                                  Index count) {
     if (frame_used_ == frame_storage_.size()) frame_storage_.emplace_back();
     std::vector<double>& storage = frame_storage_[frame_used_++];  // frames come alike: memory is asked for once
-    storage.assign(static_cast<std::size_t>(count * components), 0.0);
+    storage.resize(static_cast<std::size_t>(count * components));
     fields.push_back({name, unit, components, storage.data(), count});
-    return fields.back();
+    return storage.data();
+}
+
+double* DepthAveraged::add_field(std::vector<Field>& fields, const char* name, const char* unit, int components,
+                                 Index count) {
+    double* const column = add_column(fields, name, unit, components, count);
+    std::fill_n(column, count * components, 0.0);
+    return column;
 }
 
 /// Velocities are half a step behind: nodes are kicked by the missing half on a copy, points gather from it.
@@ -68,12 +76,13 @@ Frame DepthAveraged::frame() {
         frame.status.impulse[0] += sums.impulse_x;
         frame.status.impulse[1] += sums.impulse_y;
         frame.status.momentum = {0.0, 0.0};
-        frame.status.max_speed = 0.0;
+        double speed2 = 0.0;
         for (Index p = 0; p < flow_.columns.count(); ++p) {
             frame.status.momentum[0] += flow_.columns.mass[p] * probe_.vx[p];
             frame.status.momentum[1] += flow_.columns.mass[p] * probe_.vy[p];
-            frame.status.max_speed = std::max(frame.status.max_speed, std::hypot(probe_.vx[p], probe_.vy[p]));
+            speed2 = std::max(speed2, probe_.vx[p] * probe_.vx[p] + probe_.vy[p] * probe_.vy[p]);
         }
+        frame.status.max_speed = std::sqrt(speed2);
         if (flow_.walls)
             for (int axis = 0; axis < 2; ++axis)
                 frame.status.impulse[axis] =
@@ -90,7 +99,7 @@ void DepthAveraged::particle_fields(Frame& frame) {
     const Index count = c.count();
     const GridGeometry& g = flow_.grid.geometry();
     const auto column = [&](const char* name, const char* unit, int components) {
-        return const_cast<double*>(add_field(frame.particles, name, unit, components, count).data);
+        return add_column(frame.particles, name, unit, components, count);
     };
     double* position = column("position", "m", 3);
     double* depth = column("depth", "m", 1);
@@ -130,7 +139,7 @@ void DepthAveraged::particle_fields(Frame& frame) {
 void DepthAveraged::node_fields(Frame& frame) {
     const Index count = flow_.grid.geometry().size();
     const auto column = [&](const char* name, const char* unit, int components) {
-        return const_cast<double*>(add_field(frame.nodes, name, unit, components, count).data);
+        return add_field(frame.nodes, name, unit, components, count);
     };
     double* elevation = column("elevation", "m", 1);
     double* depth = column("depth", "m", 1);
@@ -173,48 +182,66 @@ void DepthAveraged::node_fields(Frame& frame) {
 /// Stress of the rheology at the points and, mass-weighted, on the nodes; effective_stress adds the depth-averaged
 /// pressure: sigma - rho g h / 2 (Fois et al. 2024, before eq. 10).
 void DepthAveraged::stress_fields(Frame& frame) {
-    const Columns& c = flow_.columns;
-    const Index count = c.count(), nodes = flow_.grid.geometry().size();
-    double* at_points = const_cast<double*>(add_field(frame.particles, "stress", "Pa", 3, count).data);
-    double* effective = const_cast<double*>(add_field(frame.particles, "effective_stress", "Pa", 3, count).data);
-    double* at_nodes = const_cast<double*>(add_field(frame.nodes, "stress", "Pa", 3, nodes).data);
-    double* effective_nodes = const_cast<double*>(add_field(frame.nodes, "effective_stress", "Pa", 3, nodes).data);
-    std::vector<double> weight(static_cast<std::size_t>(nodes), 0.0);
-    const double kick = status_.dt > 0.0 ? status_.dt : longest_step();
-    const double cap = flow_.scheme.stress_cap * flow_.density * flow_.area / kick;
+    const Index count = flow_.columns.count(), nodes = flow_.grid.geometry().size();
+    double* at_points = add_column(frame.particles, "stress", "Pa", 3, count);
+    double* effective = add_column(frame.particles, "effective_stress", "Pa", 3, count);
+    double* at_nodes = add_field(frame.nodes, "stress", "Pa", 3, nodes);
+    double* effective_nodes = add_field(frame.nodes, "effective_stress", "Pa", 3, nodes);
+    std::visit([&](const auto& law) { stress_at_points(law, at_points); }, rheology_);
+    stress_on_nodes(at_points);
     const double half_weight = 0.5 * flow_.density * flow_.gravity;
-    for (Index p = 0; p < count; ++p) {
-        const Plane rate{probe_.cxx[p], probe_.cyy[p], 0.5 * (probe_.cxy[p] + probe_.cyx[p])};
-        Plane sigma;
-        const double h = probe_.depth[p];
-        if (h > flow_.dry_depth())
-            std::visit(
-                [&](const auto& law) {
-                    if constexpr (!std::is_same_v<std::decay_t<decltype(law)>, rheology::None>)
-                        sigma = stress(law, StrainState<double>{rate, std::hypot(probe_.vx[p], probe_.vy[p]), h,
-                                                                flow_.scheme.strain_rate_floor, cap});
-                },
-                rheology_);
-        const double s[3] = {sigma.xx, sigma.yy, sigma.xy};
-        for (int n = 0; n < 3; ++n) {
-            at_points[3 * p + n] = s[n];
-            effective[3 * p + n] = s[n] - (n < 2 ? half_weight * std::max(h, 0.0) : 0.0);
-        }
-        const Quadratic sx(c.x[p]), sy(c.y[p]);
-        for (int j = 0; j < 3; ++j)
-            for (int i = 0; i < 3; ++i) {
-                const Index ni = sx.base + i, nj = sy.base + j;
-                if (ni < 0 || nj < 0 || ni >= flow_.grid.nx() || nj >= flow_.grid.ny()) continue;
-                const Index to = nj * flow_.grid.nx() + ni;
-                const double w = c.mass[p] * sx.w[i] * sy.w[j];
-                weight[to] += w;
-                for (int n = 0; n < 3; ++n) at_nodes[3 * to + n] += w * s[n];
-            }
-    }
+#pragma omp parallel for schedule(static)
+    for (Index p = 0; p < count; ++p)
+        for (int n = 0; n < 3; ++n)
+            effective[3 * p + n] = at_points[3 * p + n] - (n < 2 ? half_weight * std::max(probe_.depth[p], 0.0) : 0.0);
     for_each_output_node(flow_, [&](Index k, Index to) {
+        const StressSum& sum = stress_sums_[k];
         for (int n = 0; n < 3; ++n) {
-            if (weight[to] > 0.0) at_nodes[3 * to + n] /= weight[to];
+            if (sum.mass > 0.0) at_nodes[3 * to + n] = sum.stress[n] / sum.mass;
             effective_nodes[3 * to + n] = at_nodes[3 * to + n] - (n < 2 ? half_weight * flow_.nodes.depth[k] : 0.0);
+        }
+    });
+}
+
+template <class Law>
+void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
+    if constexpr (!std::is_same_v<Law, rheology::None>) {
+        const Index count = flow_.columns.count();
+        const double kick = status_.dt > 0.0 ? status_.dt : longest_step();
+        const double cap = flow_.scheme.stress_cap * flow_.density * flow_.area / kick;
+#pragma omp parallel for schedule(static)
+        for (Index p = 0; p < count; p += 4) {
+            const int lanes = static_cast<int>(std::min<Index>(4, count - p));
+            const auto four = [&](const std::vector<double>& column) { return load(&column[p], lanes); };
+            const Double4 vx = four(probe_.vx), vy = four(probe_.vy), depth = four(probe_.depth), none = {};
+            const Mask4 wet = depth > flow_.dry_depth();
+            const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy), 0.5 * (four(probe_.cxy) + four(probe_.cyx))};
+            const PlaneOf<Double4> sigma =
+                stress(law, StrainState<Double4>{rate, sqrt(vx * vx + vy * vy), max(depth, all(flow_.dry_depth())),
+                                                 flow_.scheme.strain_rate_floor, cap});
+            const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none), xy = select(wet, sigma.xy, none);
+            for (int n = 0; n < lanes; ++n)
+                stresses[3 * (p + n)] = xx[n], stresses[3 * (p + n) + 1] = yy[n], stresses[3 * (p + n) + 2] = xy[n];
+        }
+    }
+}
+
+/// Weighted with mass and shape function, whatever the scheme's: quadratic.
+void DepthAveraged::stress_on_nodes(const double* stresses) {
+    if (!stress_sums_) stress_sums_ = LazyArray<StressSum>(flow_.grid.size());
+    for (const Index tile : flow_.active.work)
+        for_each_node_of(flow_.grid, tile, kAllGroups, [&](Index k, Index, Index) { stress_sums_[k] = {}; });
+    const Columns& c = flow_.columns;
+    for_each_tile_coloured(flow_.active, [&](Index n) {
+        for (Index p = flow_.active.begin[n]; p < flow_.active.begin[n + 1]; ++p) {
+            const Quadratic sx(c.x[p]), sy(c.y[p]);
+            const double* s = stresses + 3 * p;
+            const Double4 value = c.mass[p] * Double4{s[0], s[1], s[2], 1.0};
+            for (int j = 0; j < 3; ++j) {
+                StressSum* row = &stress_sums_[flow_.grid.at(sx.base, sy.base + j)];
+                const Double4 weighted = sy.w[j] * value;
+                for (int i = 0; i < 3; ++i) store(row + i, load(row + i) + sx.w[i] * weighted);
+            }
         }
     });
 }
