@@ -26,7 +26,7 @@ struct Way { std::string name, preset; int per_side; double split_length; };
 const std::vector<Way>& ways() {
     static const std::vector<Way> all = {{"frana, 4 points a cell", "default", 2, 0.8},
                                          {"frana, 1 point a cell", "default", 1, 1.2},
-                                         {"frana, 9 points a cell", "default", 3, 0.8},
+                                         {"frana, float", "float", 2, 0.8},
                                          {"frana, preset paper", "paper", 2, 0.8}};
     return all;
 }

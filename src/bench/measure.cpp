@@ -76,7 +76,7 @@ private:
         for (const PhaseTime& phase : between(before, simulation_.timings())) {
             const Traffic traffic = traffic_of(phase.name, simulation_.flow());
             // A phase of several clock readings a step (deposit, kick) still goes over its arrays once a step.
-            const double calls = std::min<double>(static_cast<double>(phase.calls), plan_.window_steps * often(phase));
+            const double calls = std::min<double>(static_cast<double>(phase.calls), plan_.window_steps);
             phases.push_back({phase.name, phase.cpu_seconds * scale, phase.seconds * scale,
                               (traffic.particle + traffic.node * nodes() / particles) * calls / plan_.window_steps});
             phases.front().bytes += phases.back().bytes;
@@ -86,9 +86,6 @@ private:
         phases.push_back(other);
         if (cost_.phases.empty() || cost_.ns(full) < cost_.ns(cost_.full())) cost_.phases = std::move(phases);
     }
-
-    /// How often in a step a phase may do its work.
-    static double often(const PhaseTime& phase) { return phase.name == "sort" ? 3.0 : 1.0; }
 
     Plan plan_;
     TeamClock clock_;  // before the solver: its threads must be there when the solver prepares them

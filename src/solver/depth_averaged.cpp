@@ -174,9 +174,9 @@ void DepthAveraged::adapt_points(bool deposit_follows, bool points_left) {
     Index born = 0;
     if (has_domains && due) born = timed_("split", [&] { return splitter_.split(flow_); });
     if (born == 0 && drift_ <= kDriftLimit && !due) return;
-    timed_("sort", [&] { sorter_.plan(flow_.columns, flow_.grid, none, flow_.active); });
+    timed_("order", [&] { sorter_.plan(flow_.columns, flow_.grid, none, flow_.active); });
     if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_, sorter_.order(), transfer_->gone()); }) > 0)
-        timed_("sort", [&] { sorter_.leave_out(transfer_->gone(), flow_.active); });
+        timed_("order", [&] { sorter_.leave_out(transfer_->gone(), flow_.active); });
     timed_("sort", [&] { sorter_.carry_out(flow_.columns); });
     drift_ = 0.0;
 }
