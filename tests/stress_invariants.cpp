@@ -179,7 +179,8 @@ TEST_CASE("A pile that is shrunk keeps what it rests by, an image its symmetry",
 
     Draft image = draw(1, 0);
     for (std::uint64_t n = 1; image.claims.mirror != Mirror::diagonal; ++n) image = draw(1, n);
-    const Raster& dem = shrink(image, always).draft.dem();
+    const Draft shrunk = shrink(image, always).draft;
+    const Raster& dem = shrunk.dem();
     for (Index j = 0; j < dem.geometry.ny; ++j)
         for (Index i = 0; i < dem.geometry.nx; ++i) REQUIRE(dem.at(i, j) == dem.at(j, i));
 }

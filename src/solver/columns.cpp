@@ -38,7 +38,7 @@ void permute_field(Field& field, const std::int32_t* order, Index kept, Column& 
         constexpr std::size_t size = sizeof(Number);
         for (Index p = 0; p < kept; ++p) std::memcpy(room + static_cast<std::size_t>(p) * size, from + order[p], size);
         field.resize(static_cast<std::size_t>(kept));
-        std::memcpy(field.data(), room, static_cast<std::size_t>(kept) * size);
+        if (kept > 0) std::memcpy(field.data(), room, static_cast<std::size_t>(kept) * size);
     }
 }
 
