@@ -8,6 +8,7 @@
 #include "bench/print.h"
 #include "bench/traffic.h"
 #include "catch.h"
+#include "fresh_folder.h"
 #include "solver/depth_averaged.h"
 
 using namespace frana;
@@ -155,8 +156,7 @@ private:
 }  // namespace
 
 TEST_CASE("bench shows twelve particle fields to writers of particles, the grid to others, and cleans up", "[bench]") {
-    const std::filesystem::path above = std::filesystem::temp_directory_path() / "frana_test_bench";
-    std::filesystem::remove_all(above);
+    const FreshFolder above;
     Shown points, grid;
     const auto costs = bench::time_frames(
         1000,
@@ -165,9 +165,8 @@ TEST_CASE("bench shows twelve particle fields to writers of particles, the grid 
               return std::make_unique<Witness>(points);
           }},
          {"grid", false, true, [&](const auto&) { return std::make_unique<Witness>(grid); }}},
-        above);
-    CHECK(std::filesystem::is_empty(above));
-    std::filesystem::remove_all(above);
+        above.path());
+    CHECK(std::filesystem::is_empty(above.path()));
     CHECK(points.particle_fields == 12);
     CHECK(points.node_fields == 0);
     CHECK(points.frames > 1);

@@ -82,7 +82,8 @@ void TileSorter::plan(const Columns& columns, const TileGrid& grid, const std::v
 }
 
 /// Each thread permutes one field at a time: scattering all fields in one loop keeps too many streams open.
-void TileSorter::permute(Columns& columns, Index kept) {
+void TileSorter::carry_out(Columns& columns) {
+    const Index kept = static_cast<Index>(order_.size());
     const Fields fields(columns);
     scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(omp_get_max_threads())));
     // Here, not when a thread first takes a field: which does is chance.

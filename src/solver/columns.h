@@ -93,7 +93,7 @@ public:
     }
     /// The same in two, so that points can be dropped between: `active` and order() first, then the columns.
     void plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
-    void carry_out(Columns& columns) { permute(columns, static_cast<Index>(order_.size())); }
+    void carry_out(Columns& columns);
     /// Of a plan: the point that will lie at each place.
     const std::vector<std::int32_t>& order() const { return order_; }
     /// Leaves points marked in `gone` out of a plan.
@@ -115,7 +115,6 @@ private:
     /// Makes order_ of the points that stay, place by place of `active`; at(place) is the point there.
     template <class At>
     void keep(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at);
-    void permute(Columns& columns, Index kept);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile
     std::vector<Index> tile_count_;   ///< per tile of the domain; only entries in `used_` are non-zero
