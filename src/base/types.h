@@ -8,5 +8,7 @@ namespace frana {
 using Index = std::int64_t;
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
 
 }  // namespace frana

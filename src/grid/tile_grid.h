@@ -84,7 +84,7 @@ private:
 struct ActiveTiles {
     std::vector<Index> tile;                  ///< ids of tiles with particles, ascending
     std::vector<Index> begin;                 ///< first particle of each, and the count at the end
-    std::array<std::vector<Index>, 4> colour; ///< positions in `tile`, by colour
+    std::array<std::vector<Index>, 8> colour; ///< positions in `tile`, by colour; in the plane the first four
     std::vector<Index> work;                  ///< ids of tiles with particles and their neighbours, ascending
     std::vector<Index> run;                   ///< positions in `work` where runs begin, and the count at the end
     std::vector<std::uint8_t> in_work;        ///< per tile of the domain: 1 when it is on the work list
@@ -96,15 +96,22 @@ struct ActiveTiles {
 /// Fewer tiles than this are not worth waking other threads for.
 constexpr Index kTilesForThreads = 8;
 
-/// Runs body(position) for all particle tiles, colour after colour.
-template <class Body>
-void for_each_tile_coloured(const ActiveTiles& active, Body&& body) {
-#pragma omp parallel if (active.count() >= kTilesForThreads)
-    for (const auto& positions : active.colour) {
+/// Runs body(position) for the positions of each list, in parallel, list after list.
+template <class Lists, class Body>
+void for_each_listed(const Lists& lists, bool in_parallel, Body&& body) {
+#pragma omp parallel if (in_parallel)
+    for (const auto& positions : lists) {
         const Index count = static_cast<Index>(positions.size());
+        if (count == 0) continue;
 #pragma omp for schedule(dynamic, 1)
         for (Index n = 0; n < count; ++n) body(positions[static_cast<std::size_t>(n)]);
     }
+}
+
+/// Runs body(position) for all particle tiles, colour after colour.
+template <class Body>
+void for_each_tile_coloured(const ActiveTiles& active, Body&& body) {
+    for_each_listed(active.colour, active.count() >= kTilesForThreads, body);
 }
 
 /// Runs body(position) for all particle tiles, in parallel; the body writes to its own particles only.

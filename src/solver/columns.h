@@ -5,51 +5,52 @@
 #include <vector>
 
 #include "base/staggered.h"
+#include "grid/point_order.h"
 #include "grid/tile_grid.h"
 
 namespace frana {
 
-/// Memory that an array holds [bytes].
-template <class Array>
-Index allocated(const Array& array) {
-    return static_cast<Index>(array.capacity() * sizeof(typename Array::value_type));
-}
-
 /// What a point carries from node to node, in double or single precision.
 template <class Real>
 struct Carried {
-    ColumnOf<Real> vx, vy;                ///< velocity [m/s], half a step behind the position
-    ColumnOf<Real> cxx, cxy, cyx, cyy;    ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
-    ColumnOf<Real> r1x, r1y, r2x, r2y;    ///< edges of the point's domain [cells]
-    ColumnOf<Real> depth;                 ///< sampled from the nodes (paper preset: carried) [m]
+    ColumnOf<Real> vx, vy;              ///< velocity [m/s], half a step behind the position
+    ColumnOf<Real> cxx, cxy, cyx, cyy;  ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
+    ColumnOf<Real> r1x, r1y, r2x, r2y;  ///< edges of the point's domain [cells]
+    ColumnOf<Real> depth;               ///< sampled from the nodes (paper preset: carried) [m]
 
     template <class Self, class Visit>
     static void each(Self& s, Visit&& visit) {
-        for (auto* column : {&s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.r1x, &s.r1y, &s.r2x, &s.r2y, &s.depth})
+        for (auto* column :
+             {&s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.r1x, &s.r1y, &s.r2x, &s.r2y, &s.depth})
             visit(*column);
     }
 };
 
-/// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI. Positions and masses
-/// are always in double precision: a step moves a point by little, and mass is exact.
+/// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI. Positions
+/// and masses are always in double precision: a step moves a point by little, and mass is exact.
 struct Columns : Carried<double> {
-    Column x, y;           ///< position [cells]
-    Column mass;           ///< [kg]
-    Carried<float> narrow; ///< with scheme.precision = "float" instead of the base's columns, which are empty then
+    Column x, y;  ///< position [cells]
+    Column mass;  ///< [kg]
+    Carried<float>
+        narrow;  ///< with scheme.precision = "float" instead of the base's columns, which are empty then
     std::vector<std::int64_t> id;  ///< constant through sorting; children of a split get new ones
-    bool single = false;   ///< what points carry is in `narrow`
+    bool single = false;           ///< what points carry is in `narrow`
 
     Index count() const { return static_cast<Index>(x.size()); }
 
     template <class Real>
     Carried<Real>& carried() {
-        if constexpr (std::is_same_v<Real, float>) return narrow;
-        else return *this;
+        if constexpr (std::is_same_v<Real, float>)
+            return narrow;
+        else
+            return *this;
     }
     template <class Real>
     const Carried<Real>& carried() const {
-        if constexpr (std::is_same_v<Real, float>) return narrow;
-        else return *this;
+        if constexpr (std::is_same_v<Real, float>)
+            return narrow;
+        else
+            return *this;
     }
     /// Calls work(Real{}), Real being what points carry: a choice made once for a loop over points.
     template <class Work>
@@ -59,9 +60,13 @@ struct Columns : Carried<double> {
 
     /// The one list of floating-point columns in use: sorting and growing walk it.
     template <class Visit>
-    void each(Visit&& visit) { each_of(*this, visit); }
+    void each(Visit&& visit) {
+        each_of(*this, visit);
+    }
     template <class Visit>
-    void each(Visit&& visit) const { each_of(*this, visit); }
+    void each(Visit&& visit) const {
+        each_of(*this, visit);
+    }
     Index bytes() const {
         Index sum = allocated(id);
         each([&](const auto& column) { sum += allocated(column); });
@@ -76,50 +81,50 @@ private:
     template <class Self, class Visit>
     static void each_of(Self& s, Visit& visit) {
         visit(s.x), visit(s.y), visit(s.mass);
-        if (s.single) Carried<float>::each(s.narrow, visit);
-        else Carried<double>::each(static_cast<std::conditional_t<std::is_const_v<Self>, const Carried<double>,
-                                                                  Carried<double>>&>(s), visit);
+        if (s.single)
+            Carried<float>::each(s.narrow, visit);
+        else
+            Carried<double>::each(
+                static_cast<
+                    std::conditional_t<std::is_const_v<Self>, const Carried<double>, Carried<double>>&>(s),
+                visit);
     }
 };
 
-/// Stable counting sort by tile; points marked in `gone` are dropped. Needs no memory once warmed up.
+/// Sorts columns by tile; points marked in `gone` are dropped. Needs no memory once warmed up.
 class TileSorter {
 public:
     /// Sorts `columns` and rebuilds `active`. Same bits for any number of threads.
     /// `gone` (one byte per particle, may be empty) marks particles to drop.
-    void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+    void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
+              ActiveTiles& active) {
         plan(columns, grid, gone, active);
         carry_out(columns);
     }
     /// The same in two, so that points can be dropped between: `active` and order() first, then the columns.
-    void plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    void plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
+              ActiveTiles& active);
     void carry_out(Columns& columns);
     /// Of a plan: the point that will lie at each place.
-    const std::vector<std::int32_t>& order() const { return order_; }
+    const std::vector<std::int32_t>& order() const { return order_.order(); }
     /// Leaves points marked in `gone` out of a plan.
-    void leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    void leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+        order_.leave_out(gone, active);
+    }
     /// Drops the points marked in `gone`; the others keep their order and tiles.
     void drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.
     void list_tiles(const TileGrid& grid, ActiveTiles& active);
     /// Memory that grows with the points [bytes].
-    Index bytes() const {
-        Index sum = allocated(key_) + allocated(order_);
-        for (const Column& column : scratch_) sum += allocated(column);
-        return sum;
-    }
+    Index bytes() const { return order_.bytes(); }
 
 private:
     void wake(Index count, ActiveTiles& active);
     static void list_runs(Index width, ActiveTiles& active);
-    /// Makes order_ of the points that stay, place by place of `active`; at(place) is the point there.
-    template <class At>
-    void keep(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at);
+    const std::vector<PointField>& fields_of(Columns& columns);
 
-    std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile
-    std::vector<Index> tile_count_;   ///< per tile of the domain; only entries in `used_` are non-zero
-    std::vector<Index> used_;
-    std::vector<Column> scratch_;     ///< one per thread: columns are permuted one by one through it
+    PointOrder order_;
+    std::vector<PointField> fields_;
 };
 
 }  // namespace frana

@@ -26,17 +26,6 @@ double least_split_mass(const Scene& scene) {
 
 }  // namespace
 
-void StepClock::add(const char* phase, double seconds, double cpu_seconds) {
-    for (PhaseTime& time : times_)
-        if (time.name == phase) {
-            time.seconds += seconds;
-            time.cpu_seconds += cpu_seconds;
-            time.calls += 1;
-            return;
-        }
-    times_.push_back({phase, seconds, cpu_seconds, 1});
-}
-
 DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
       peaks_(flow_.grid), rheology_(scene.rheology), steep_(scene.terrain != TerrainModel::shallow),

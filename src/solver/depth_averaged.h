@@ -1,51 +1,19 @@
 #pragma once
 // The depth-averaged material point method: scheme S2 on steep, curved terrain, or the choices of Fois et al. 2024.
-#include <chrono>
 #include <memory>
 #include <optional>
 
-#include "base/cpu_time.h"
 #include "solver/kick.h"
 #include "solver/mass_fit.h"
 #include "solver/merge.h"
 #include "solver/peaks.h"
 #include "solver/simulation.h"
 #include "solver/split.h"
+#include "solver/step_clock.h"
 #include "solver/surface.h"
 #include "solver/transfer.h"
 
 namespace frana {
-
-/// Wall time of the named phases of a step, and CPU time where asked for.
-class StepClock {
-public:
-    /// Reads the CPU clock too from now on: a system call at both ends of a phase.
-    void count_cpu_time() { counts_cpu_ = true; }
-    template <class Body>
-    auto operator()(const char* phase, Body&& body) {
-        const Lap lap(*this, phase);
-        return body();
-    }
-    std::vector<PhaseTime> times() const { return times_; }
-    void keep(Archive& archive) { frana::keep(archive, "clock", times_); }
-
-private:
-    struct Lap {
-        StepClock& clock;
-        const char* phase;
-        double cpu_start;
-        std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-        Lap(StepClock& c, const char* p) : clock(c), phase(p), cpu_start(c.cpu_now()) {}
-        ~Lap() {
-            const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-            clock.add(phase, wall.count(), clock.cpu_now() - cpu_start);
-        }
-    };
-    double cpu_now() const { return counts_cpu_ ? thread_cpu_seconds() : 0.0; }
-    void add(const char* phase, double seconds, double cpu_seconds);
-    std::vector<PhaseTime> times_;
-    bool counts_cpu_ = false;
-};
 
 class DepthAveraged final : public Simulation {
 public:
