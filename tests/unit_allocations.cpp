@@ -5,6 +5,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "solid_maker.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -54,4 +55,12 @@ TEST_CASE("Steps of a warm run allocate nothing", "[speed]") {
     const long before = allocations;
     const std::vector<double> proof(1000);
     CHECK(allocations == before + 1);  // and that would be seen
+}
+
+TEST_CASE("Warm steps in space allocate nothing", "[speed][solid]") {
+    SolidFlow flow(lump(solid::Bingham{4e5, 1e5, 10.0, 500.0}));
+    for (int step = 0; step < 10; ++step) flow.advance(1e9);
+    const long before = allocations;
+    for (int step = 0; step < 10; ++step) flow.advance(1e9);
+    CHECK(allocations == before);
 }

@@ -1,0 +1,219 @@
+#include "solid/solid_flow.h"
+
+#include <fmt/core.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/flush_denormals.h"
+
+namespace frana {
+namespace {
+
+/// Cells a point may have moved since the last sort: tiles of one colour stand 16 nodes apart and reach 8 + 2
+/// nodes and twice the drift; images, 32 apart, reach 8 + 2 + 2 * 8.2 and twice the drift.
+constexpr double kDriftLimit = 1.5;
+
+}  // namespace
+
+SolidBody::SolidBody(const SolidScene& scene)
+    : grid(scene.grid),
+      nodes(grid.size()),
+      surfaces(scene.surfaces),
+      impulse(scene.surfaces.size(), Vec3::Zero()),
+      gravity(scene.gravity),
+      averaging(scene.averaging) {
+    if (!surfaces.empty()) real = LazyArray<Node>(grid.size());
+}
+
+SolidFlow::SolidFlow(const SolidScene& scene)
+    : body_(scene),
+      kernel_(make_solid_kernel(scene.law, scene.affine)),
+      law_(scene.law),
+      density_(scene.density),
+      cfl_(scene.cfl),
+      sound_(kernel_->sound_speed(scene.density)),
+      apic_(scene.affine == Affine::apic) {
+    expect(scene.surfaces.size() <= kMostSurfaces, "more surfaces than a set of them can hold");
+    flush_denormals_on_all_threads();
+    body_.mass_j = LazyArray<double>(body_.grid.size());
+    MaterialPoints& q = body_.points;
+    q.states = kernel_->states();
+    const Index count = static_cast<Index>(scene.points.mass.size());
+    q.resize(count);
+    for (Index p = 0; p < count; ++p) {
+        const std::size_t n = static_cast<std::size_t>(p);
+        const Vec3 x = (scene.points.position[n] - scene.grid.origin) / scene.grid.cell;
+        for (int k = 0; k < 3; ++k) q.x[k][p] = x[k], q.v[k][p] = scene.points.velocity[n][k];
+        q.mass[p] = scene.points.mass[n];
+        q.rest_volume[p] = scene.points.mass[n] / scene.density;
+        q.j[p] = kernel_->compressed(scene.points.pressure.empty() ? 0.0 : scene.points.pressure[n]);
+        q.id[p] = p;
+        start_momentum_ += q.mass[p] * scene.points.velocity[n];
+        status_.centre += q.mass[p] * scene.points.position[n];
+        status_.mass += q.mass[p];
+        status_.kinetic += 0.5 * q.mass[p] * scene.points.velocity[n].squaredNorm();
+        status_.volume += q.j[p] * q.rest_volume[p];
+        status_.max_speed = std::max(status_.max_speed, scene.points.velocity[n].norm());
+    }
+    if (status_.mass > 0.0) status_.centre /= status_.mass;
+    sort();
+    status_.points = count;
+    status_.momentum = start_momentum_;
+}
+
+void SolidFlow::sort() {
+    sorter_.sort(body_.points, body_.grid, body_.gone, body_.active);
+    body_.gone.assign(static_cast<std::size_t>(body_.points.count()), 0);
+    drift_ = 0.0;
+    mark_near();
+}
+
+/// Which tiles can meet which surfaces until the next sort.
+void SolidFlow::mark_near() {
+    const SpaceGrid& grid = body_.grid;
+    const double h = grid.cell();
+    const std::size_t surfaces = body_.surfaces.size();
+    body_.near_points.assign(body_.active.tile.size(), 0);
+    body_.near_nodes.assign(body_.active.work.size(), 0);
+    body_.sums.resize(body_.active.tile.size());
+    body_.tile_impulse.resize(body_.active.work.size() * surfaces);
+    body_.point_impulse.resize(body_.active.tile.size() * surfaces);
+    for (auto& colour : body_.image_colour) colour.clear();
+    if (surfaces == 0) return;
+    const auto near = [&](Index tile, double before, double behind) {
+        const std::array<Index, 3> t = grid.tile_place(tile);
+        Vec3 low, high;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double first = static_cast<double>(grid.first_node(t[axis]));
+            low[axis] = grid.geometry().origin[axis] + h * (first - before);
+            high[axis] =
+                grid.geometry().origin[axis] + h * (first + static_cast<double>(kSpaceTile) + behind);
+        }
+        return surfaces_near(body_.surfaces, low, high, h, 0.0);
+    };
+    for (Index n = 0; n < body_.active.count(); ++n) {
+        // A point whose first node is n lies from n + 1/2 to n + 3/2.
+        const SurfaceSet set = near(body_.active.tile[n], kDriftLimit - 0.5, kDriftLimit + 0.5);
+        body_.near_points[static_cast<std::size_t>(n)] = set;
+        if (set == 0) continue;
+        const std::array<Index, 3> t = grid.tile_place(body_.active.tile[n]);
+        body_.image_colour[static_cast<std::size_t>(t[0] % 4 + 4 * (t[1] % 4) + 16 * (t[2] % 4))].push_back(
+            n);
+    }
+    for (std::size_t n = 0; n < body_.active.work.size(); ++n)
+        body_.near_nodes[n] = near(body_.active.work[n], 0.0, -1.0);
+}
+
+/// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
+double SolidFlow::step_length(double until) const {
+    const double h = body_.grid.cell(), viscosity = kernel_->explicit_viscosity();
+    double longest = cfl_ * h / (sound_ + status_.max_speed);
+    constexpr double kViscous =
+        0.1;  // of rho h^2 / mu: half of what a slice was stable with, for the third direction
+    if (viscosity > 0.0) longest = std::min(longest, kViscous * density_ * h * h / viscosity);
+    const double left = until - status_.time;
+    if (left <= longest) return left;
+    return left < 2.0 * longest ? 0.5 * left : longest;
+}
+
+/// One step: points give mass, momentum and stress to the nodes, surfaces show their images, nodes meet the
+/// surfaces, points are carried and strained.
+void SolidFlow::advance(double until) {
+    const double dt = step_length(until);
+    timed_("clear", [&] { kernel_->clear(body_); });
+    timed_("scatter", [&] { kernel_->scatter(body_, dt); });
+    timed_("images", [&] { kernel_->scatter_images(body_, dt); });
+    timed_("nodes", [&] { kernel_->move_nodes(body_); });
+    timed_("gather", [&] { kernel_->gather(body_, dt); });
+    status_.time = dt >= until - status_.time ? until : status_.time + dt;
+    book(dt);
+    if (drift_ > kDriftLimit - 0.5 || status_.points != body_.points.count()) timed_("sort", [&] { sort(); });
+}
+
+/// Sums in the order of the tiles: the same bits for any number of threads.
+void SolidFlow::book(double dt) {
+    const SpaceGeometry& g = body_.grid.geometry();
+    SolidSums all;
+    Index left = 0;
+    for (const SolidSums& sums : body_.sums) {
+        all.mass += sums.mass, all.momentum += sums.momentum, all.moment += sums.moment;
+        all.kinetic += sums.kinetic, all.volume += sums.volume;
+        all.left_mass += sums.left_mass, all.left_momentum += sums.left_momentum;
+        all.max_speed2 = std::max(all.max_speed2, sums.max_speed2);
+        all.max_shift = std::max(all.max_shift, sums.max_shift);
+        if (sums.bad >= 0) all.bad = sums.bad;
+    }
+    for (const auto gone : body_.gone) left += gone;
+    for (const std::vector<Vec3>* list : {&body_.tile_impulse, &body_.point_impulse})
+        for (std::size_t n = 0; n < list->size(); ++n) body_.impulse[n % body_.surfaces.size()] += (*list)[n];
+    status_.weight_impulse += dt * (all.mass + all.left_mass) * body_.gravity;
+    status_.step += 1;
+    status_.dt = dt;
+    require_sound(all);
+    status_.points = body_.points.count() - left;
+    status_.mass = all.mass;
+    status_.momentum = all.momentum;
+    status_.kinetic = all.kinetic;
+    status_.volume = all.volume;
+    status_.max_speed = std::sqrt(all.max_speed2);
+    status_.mass_left += all.left_mass;
+    status_.momentum_left += all.left_momentum;
+    if (all.mass > 0.0) status_.centre = g.origin + g.cell / all.mass * all.moment;
+    drift_ += all.max_shift;
+}
+
+void SolidFlow::require_sound(const SolidSums& sums) const {
+    if (sums.bad < 0) return;
+    const Vec3 x = position(sums.bad);
+    throw NumericsError(fmt::format(
+        "step {}, t = {:.6g} s, dt = {:.3g} s: the point at ({:.6g}, {:.6g}, {:.6g}) would move by more than "
+        "a cell in "
+        "one step or is not finite; reduce the time step (cfl is {}) or look at the surfaces there",
+        status_.step, status_.time, status_.dt, x.x(), x.y(), x.z(), cfl_));
+}
+
+Vec3 SolidFlow::position(Index p) const {
+    const MaterialPoints& q = body_.points;
+    const SpaceGeometry& g = body_.grid.geometry();
+    return g.origin + g.cell * Vec3(q.x[0][p], q.x[1][p], q.x[2][p]);
+}
+
+Sym3 SolidFlow::stress(Index p) const {
+    const MaterialPoints& q = body_.points;
+    double state[7];
+    for (int n = 0; n < q.states; ++n) state[n] = q.state[n][p];
+    return std::visit([&](const auto& law) { return law.stress(q.j[p], state, gradient(p)); }, law_) *
+           (1.0 / q.j[p]);
+}
+
+Mat3 SolidFlow::gradient(Index p) const {
+    Mat3 gradient;
+    for (int n = 0; n < 9; ++n) gradient(n % 3, n / 3) = body_.points.gradient[n][p];
+    return gradient;
+}
+
+Vec3 SolidFlow::momentum_residual() const {
+    Vec3 given = start_momentum_ + status_.weight_impulse;
+    for (const Vec3& impulse : body_.impulse) given += impulse;
+    return status_.momentum + status_.momentum_left - given;
+}
+
+/// Of the affine motion: m h^2 / 4 times the axial vector of the gradient's skew part, Jiang et al. (2015),
+/// eq. 6 there.
+Vec3 SolidFlow::angular_momentum() const {
+    Vec3 sum = Vec3::Zero();
+    const double h = body_.grid.cell();
+    for (Index p = 0; p < body_.points.count(); ++p) {
+        sum += body_.points.mass[p] * position(p).cross(velocity(p));
+        if (!apic_) continue;
+        const Mat3 l = gradient(p);
+        sum += body_.points.mass[p] * 0.25 * h * h *
+               Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1));
+    }
+    return sum;
+}
+
+}  // namespace frana

@@ -1,0 +1,155 @@
+#pragma once
+// The 3D material point method: explicit, quadratic B-splines, TPIC or APIC, against rigid surfaces.
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "law/solid_law.h"
+#include "observe/frame.h"
+#include "solid/material_points.h"
+#include "solid/surfaces.h"
+#include "solver/step_clock.h"
+
+namespace frana {
+
+using SolidLaw = std::variant<solid::Fluid, solid::Bingham, solid::Elastic, solid::DruckerPrager>;
+
+/// tpic: the velocity's gradient and the stress's divergence by the shape function's slopes; the quieter
+/// pressure. apic: both by its first moments (Jiang et al. 2015; Hu et al. 2018); angular momentum is kept
+/// exactly.
+enum class Affine { tpic, apic };
+
+/// Material points at the start, equal lengths; the state of the law starts at zero but for J.
+struct SolidSeeds {
+    std::vector<Vec3> position;    ///< [m]
+    std::vector<Vec3> velocity;    ///< [m/s]
+    std::vector<double> mass;      ///< [kg]
+    std::vector<double> pressure;  ///< that fluids start with [Pa], or empty: none
+
+    void add(const Vec3& x, const Vec3& v, double m, double p = 0.0) {
+        position.push_back(x), velocity.push_back(v), mass.push_back(m), pressure.push_back(p);
+    }
+};
+
+struct SolidScene {
+    SpaceGeometry grid;
+    Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
+    double density = 1000.0;    ///< without stress [kg/m^3]
+    SolidLaw law = solid::Fluid{};
+    Affine affine = Affine::tpic;
+    double averaging = 0.005;       ///< share of J's mean taken over in a step, of laws that average [1]
+    double cfl = 0.4;               ///< fraction of a cell that sound and flow may pass in a step [1]
+    std::vector<Surface> surfaces;  ///< at most kMostSurfaces
+    SolidSeeds points;
+};
+
+/// Sums over the points after a step.
+struct SolidStatus {
+    Index step = 0;
+    double time = 0.0, dt = 0.0;  ///< [s]
+    Index points = 0;
+    double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
+    Vec3 momentum{0, 0, 0};              ///< [kg m/s]
+    Vec3 momentum_left{0, 0, 0};         ///< carried out [kg m/s]
+    Vec3 weight_impulse{0, 0, 0};        ///< of gravity since the start [kg m/s]
+    Vec3 centre{0, 0, 0};                ///< of mass [m]
+    double kinetic = 0.0;                ///< sum of m v^2 / 2 [J]
+    double volume = 0.0;                 ///< sum of J V_0 [m^3]
+    double max_speed = 0.0;              ///< [m/s]
+};
+
+/// Sums of the loops over points, tile by tile.
+struct SolidSums {
+    double mass = 0.0, kinetic = 0.0, volume = 0.0, max_speed2 = 0.0, max_shift = 0.0;
+    Vec3 momentum{0, 0, 0}, moment{0, 0, 0};  ///< moment: sum of m x
+    double left_mass = 0.0;
+    Vec3 left_momentum{0, 0, 0};
+    Index bad = -1;  ///< a point whose numbers are not finite
+};
+
+/// All that the kernels share.
+struct SolidBody {
+    explicit SolidBody(const SolidScene& scene);
+    SpaceGrid grid;
+    MaterialPoints points;
+    ActiveTiles active;
+    std::array<std::vector<Index>, 64>
+        image_colour;                     ///< positions of tiles near surfaces, four colours an axis
+    std::vector<SurfaceSet> near_points;  ///< per particle tile
+    std::vector<SurfaceSet> near_nodes;   ///< per tile of the work list
+    std::vector<std::uint8_t> gone;       ///< per point: left the grid in this step
+
+    struct Node {
+        double m, x, y, z;
+    };                            ///< mass and momentum; then mean J and velocity
+    LazyArray<Node> nodes, real;  ///< real: without images, near surfaces
+    LazyArray<double> mass_j;     ///< sum of w m J, of laws that average
+    std::vector<Surface> surfaces;
+    std::vector<Vec3> impulse;        ///< of each surface on the material since the start [kg m/s]
+    std::vector<Vec3> tile_impulse;   ///< of the step, per tile of the work list and surface
+    std::vector<Vec3> point_impulse;  ///< the same, per particle tile: of points put back
+    std::vector<SolidSums> sums;      ///< of the step, per particle tile
+    Vec3 gravity;
+    double averaging;
+};
+
+/// The loops of a step, made for one law and transfer.
+class SolidKernel {
+public:
+    virtual ~SolidKernel() = default;
+    virtual void clear(SolidBody& body) const = 0;
+    virtual void scatter(SolidBody& body, double dt) const = 0;
+    virtual void scatter_images(SolidBody& body, double dt) const = 0;
+    virtual void move_nodes(SolidBody& body) const = 0;
+    virtual void gather(SolidBody& body, double dt) const = 0;
+    virtual double sound_speed(double density) const = 0;
+    virtual double explicit_viscosity() const = 0;
+    virtual int states() const = 0;
+    /// J of a point at rest under the pressure p.
+    virtual double compressed(double p) const = 0;
+};
+
+std::unique_ptr<SolidKernel> make_solid_kernel(const SolidLaw& law, Affine affine);
+
+/// A body of points in space, and its time loop.
+class SolidFlow {
+public:
+    explicit SolidFlow(const SolidScene& scene);
+
+    /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
+    void advance(double until);
+    const SolidStatus& status() const { return status_; }
+    const SolidBody& body() const { return body_; }
+    std::vector<PhaseTime> timings() const { return timed_.times(); }
+    /// Position of a point [m].
+    Vec3 position(Index p) const;
+    Vec3 velocity(Index p) const {
+        return {body_.points.v[0][p], body_.points.v[1][p], body_.points.v[2][p]};
+    }
+    /// Cauchy stress at a point [Pa].
+    Sym3 stress(Index p) const;
+    /// Momentum + carried out - at the start - impulses of gravity and surfaces: round-off [kg m/s]
+    Vec3 momentum_residual() const;
+    /// Angular momentum about the origin; with apic that of the affine motion too [kg m^2/s].
+    Vec3 angular_momentum() const;
+
+private:
+    void sort();
+    void mark_near();
+    double step_length(double until) const;
+    void book(double dt);
+    void require_sound(const SolidSums& sums) const;
+    Mat3 gradient(Index p) const;
+
+    SolidBody body_;
+    std::unique_ptr<SolidKernel> kernel_;
+    SolidLaw law_;
+    SpaceSorter sorter_;
+    StepClock timed_;
+    SolidStatus status_;
+    Vec3 start_momentum_{0, 0, 0};
+    double density_, cfl_, sound_, drift_ = 0.0;
+    bool apic_;
+};
+
+}  // namespace frana

@@ -1,0 +1,367 @@
+// The loops of the 3D step, one instance for each law and transfer.
+#include <algorithm>
+#include <type_traits>
+
+#include "base/simd.h"
+#include "solid/solid_flow.h"
+
+namespace frana {
+namespace {
+
+constexpr double kLongestShift = 1.0;  ///< of a point in a step [cells]: ten times what the time step allows
+
+/// Quadratic B-splines of a point: along each axis three nodes with weights, slopes [1/m] and distances [m].
+/// Affine::apic takes 4 w d / h^2 for the slope, the first moment of the weights.
+template <Affine affine>
+struct SpaceStencil {
+    Index place[3][3];  ///< shares of the nodes' storage indices
+    double w[3][3], slope[3][3], d[3][3];
+
+    [[gnu::always_inline]] SpaceStencil(const SpaceGrid& grid, const Vec3& x) {
+        const double h = grid.cell(), per_h = 1.0 / h;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double first = std::floor(x[axis] - 0.5), f = x[axis] - first;
+            const Index* const from = grid.place(axis, static_cast<Index>(first));
+            for (int n = 0; n < 3; ++n) place[axis][n] = from[n];
+            double* const wa = w[axis];
+            wa[0] = 0.5 * (1.5 - f) * (1.5 - f);
+            wa[1] = 0.75 - (f - 1.0) * (f - 1.0);
+            wa[2] = 0.5 * (f - 0.5) * (f - 0.5);
+            for (int n = 0; n < 3; ++n) d[axis][n] = (n - f) * h;
+            if constexpr (affine == Affine::tpic) {
+                slope[axis][0] = (f - 1.5) * per_h;
+                slope[axis][1] = (2.0 - 2.0 * f) * per_h;
+                slope[axis][2] = (f - 0.5) * per_h;
+            } else {
+                for (int n = 0; n < 3; ++n) slope[axis][n] = 4.0 * per_h * per_h * wa[n] * d[axis][n];
+            }
+        }
+    }
+};
+
+[[gnu::always_inline]] inline Double4 lanes(double m, const Vec3& v) { return Double4{m, v[0], v[1], v[2]}; }
+
+/// What a point gives its nodes: w (base + affine d) + force grad w; lanes are mass and momentum.
+struct Gift {
+    Double4 base, affine[3], force[3];
+    double mass_j;
+};
+
+template <Affine affine, bool averages>
+[[gnu::always_inline]] inline void give(SolidBody& body, const SpaceStencil<affine>& s, const Gift& gift) {
+    SolidBody::Node* const nodes = body.nodes.data();
+    double* const mass_j = body.mass_j.data();
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j) {
+            const double w = s.w[1][j] * s.w[2][k];
+            const Double4 row = w * (gift.base + gift.affine[1] * s.d[1][j] + gift.affine[2] * s.d[2][k]) +
+                                (s.slope[1][j] * s.w[2][k]) * gift.force[1] +
+                                (s.w[1][j] * s.slope[2][k]) * gift.force[2];
+            const Double4 along = w * gift.affine[0], push = w * gift.force[0];
+            const Index at = s.place[1][j] + s.place[2][k];
+            for (int i = 0; i < 3; ++i) {
+                SolidBody::Node* const node = nodes + at + s.place[0][i];
+                store(node,
+                      load(node) + s.w[0][i] * row + (s.w[0][i] * s.d[0][i]) * along + s.slope[0][i] * push);
+                if constexpr (averages) mass_j[at + s.place[0][i]] += w * s.w[0][i] * gift.mass_j;
+            }
+        }
+}
+
+template <class Law, Affine affine>
+class Kernel final : public SolidKernel {
+public:
+    explicit Kernel(const Law& law) : law_(law) {}
+
+    double sound_speed(double density) const override { return law_.sound_speed(density); }
+    double explicit_viscosity() const override { return law_.explicit_viscosity(); }
+    int states() const override { return Law::kStates; }
+    double compressed(double p) const override {
+        if constexpr (Law::kAverages)
+            return 1.0 - p / law_.bulk;
+        else
+            return 1.0;
+    }
+
+    void clear(SolidBody& body) const override {
+        for_each_work_tile(body.active, [&](Index, Index tile) {
+            std::fill_n(&body.nodes[tile * kTileNodes], kTileNodes, SolidBody::Node{});
+            if constexpr (Law::kAverages) std::fill_n(&body.mass_j[tile * kTileNodes], kTileNodes, 0.0);
+        });
+    }
+
+    void scatter(SolidBody& body, double dt) const override {
+        for_each_tile_coloured(body.active, [&](Index n) {
+            for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
+                const Point point(*this, body, p);
+                give<affine, Law::kAverages>(body, SpaceStencil<affine>(body.grid, point.x),
+                                             gift_of(point, point.v + dt * body.gravity, dt));
+            }
+        });
+    }
+
+    /// Images lie on the far side of surfaces, up to nine cells from their points: tiles that scatter them at
+    /// once stand four apart.
+    void scatter_images(SolidBody& body, double dt) const override {
+        for_each_work_tile(body.active, [&](Index n, Index tile) {
+            if (body.near_nodes[static_cast<std::size_t>(n)] != 0)
+                std::copy_n(&body.nodes[tile * kTileNodes], kTileNodes, &body.real[tile * kTileNodes]);
+        });
+        const double h = body.grid.cell();
+        const Vec3& origin = body.grid.geometry().origin;
+        for_each_listed(body.image_colour, body.active.count() >= kTilesForThreads, [&](Index n) {
+            for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
+                Point point(*this, body, p);
+                const Images images(body.surfaces, body.near_points[static_cast<std::size_t>(n)],
+                                    origin + h * point.x, h);
+                for (const Image& image : images) {
+                    const Vec3 place = (image.place - origin) / h;
+                    std::array<Index, 3> first;
+                    for (int axis = 0; axis < 3; ++axis)
+                        first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5));
+                    if (!body.grid.holds(first) || !worked(body, first)) continue;
+                    const Gift gift =
+                        gift_of(mirrored(point, image), image.motion * (point.v + dt * body.gravity), dt);
+                    give<affine, false>(body, SpaceStencil<affine>(body.grid, place), gift);
+                }
+            }
+        });
+    }
+
+    void move_nodes(SolidBody& body) const override {
+        for_each_work_tile(body.active, [&](Index n, Index tile) {
+            const SurfaceSet near = body.near_nodes[static_cast<std::size_t>(n)];
+            const Index first = tile * kTileNodes;
+            Vec3* const impulse = body.tile_impulse.data() + n * static_cast<Index>(body.surfaces.size());
+            std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
+            for (Index k = first; k < first + kTileNodes; ++k) {
+                auto& node = body.nodes[k];
+                const double real = near ? body.real[k].m : node.m;
+                if (!(real > 0.0)) {
+                    node = {};
+                    continue;
+                }
+                Vec3 v = Vec3(node.x, node.y, node.z) / node.m;
+                if (near)
+                    v = meet(body, near, place_of(body.grid, tile, k - first), body.real[k], v, impulse);
+                double mean_j = 0.0;
+                if constexpr (Law::kAverages) mean_j = body.mass_j[k] / real;
+                node = {mean_j, v[0], v[1], v[2]};
+            }
+        });
+    }
+
+    void gather(SolidBody& body, double dt) const override {
+        for_each_tile(body.active, [&](Index n) {
+            SolidSums sums;
+            const SurfaceSet near = body.near_points[static_cast<std::size_t>(n)];
+            Vec3* const impulse = body.point_impulse.data() + n * static_cast<Index>(body.surfaces.size());
+            std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
+            for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
+                const Vec3 from = position(body, p);
+                gather_point(body, p, from, dt);
+                if (near != 0) push_out(body, near, p, impulse);
+                book(body, p, from, sums);
+            }
+            body.sums[static_cast<std::size_t>(n)] = sums;
+        });
+    }
+
+private:
+    struct Point {
+        Vec3 x, v;
+        Mat3 gradient;
+        Mat3 stress;  ///< Cauchy stress times present volume [J]
+        double mass, j;
+        Point() = default;
+        [[gnu::always_inline]] Point(const Kernel& kernel, const SolidBody& body, Index p) {
+            const MaterialPoints& q = body.points;
+            for (int k = 0; k < 3; ++k) x[k] = q.x[k][p], v[k] = q.v[k][p];
+            for (int l = 0; l < 9; ++l) gradient(l % 3, l / 3) = q.gradient[l][p];
+            double state[7];
+            for (int s = 0; s < Law::kStates; ++s) state[s] = q.state[s][p];
+            mass = q.mass[p], j = q.j[p];
+            stress = (kernel.law_.stress(j, state, gradient) * q.rest_volume[p]).matrix();
+        }
+    };
+
+    [[gnu::always_inline]] static Gift gift_of(const Point& point, const Vec3& v, double dt) {
+        Gift gift;
+        gift.base = lanes(point.mass, point.mass * v);
+        for (int l = 0; l < 3; ++l) {
+            gift.affine[l] = lanes(0.0, point.mass * point.gradient.col(l));
+            gift.force[l] = lanes(0.0, -dt * point.stress.col(l));
+        }
+        gift.mass_j = point.mass * point.j;
+        return gift;
+    }
+
+    /// The motion and the stress that an image shows; a point and it push each other alike.
+    static Point mirrored(const Point& p, const Image& image) {
+        Point other;
+        other.mass = p.mass, other.j = p.j;
+        other.gradient = image.motion * p.gradient * image.turn.transpose();
+        other.stress = image.motion * p.stress * image.turn.transpose();
+        return other;
+    }
+
+    /// Whether any tile that a stencil touches is on the work list.
+    static bool worked(const SolidBody& body, const std::array<Index, 3>& first) {
+        bool listed = false;
+        for (int corner = 0; corner < 8; ++corner)
+            listed |=
+                body.active.in_work[body.grid.tile_of(first[0] + 2 * (corner & 1), first[1] + (corner & 2),
+                                                      first[2] + (corner & 4) / 2)] != 0;
+        return listed;
+    }
+
+    static Vec3 place_of(const SpaceGrid& grid, Index tile, Index within) {
+        const std::array<Index, 3> t = grid.tile_place(tile);
+        const Vec3 node(static_cast<double>(grid.first_node(t[0]) + within % kSpaceTile),
+                        static_cast<double>(grid.first_node(t[1]) + within / kSpaceTile % kSpaceTile),
+                        static_cast<double>(grid.first_node(t[2]) + within / (kSpaceTile * kSpaceTile)));
+        return grid.geometry().origin + grid.cell() * node;
+    }
+
+    /// The velocity of a node near surfaces. `mixed` is what points and images gave it: free surfaces take
+    /// from it only what it has along their normal (along themselves images would brake material that
+    /// shears), and only as a push: surfaces never pull. No velocity leads into a surface behind which the
+    /// node lies; friction follows from the push. Books the surfaces' impulses on the real material.
+    static Vec3 meet(const SolidBody& body, SurfaceSet near, const Vec3& x, const SolidBody::Node& real,
+                     const Vec3& mixed, Vec3* impulse) {
+        const Vec3 before = Vec3(real.x, real.y, real.z) / real.m;
+        Vec3 v = before, normals[3];
+        int touched[3], count = 0;
+        for (; near != 0 && count < 3; near &= near - 1) {
+            const int s = __builtin_ctz(near);
+            const Surface& surface = body.surfaces[static_cast<std::size_t>(s)];
+            const Contact c = contact(surface, x);
+            if (c.distance > 0.5 * image_reach(c.normal) * body.grid.cell()) continue;
+            touched[count] = s;
+            normals[count++] = c.normal;
+            double push = (mixed - v).dot(c.normal);
+            if (c.distance <= 0.0) push = std::max(push, -v.dot(c.normal));
+            if (!(push > 0.0)) continue;
+            v += push * c.normal;
+            if (surface.hold == Hold::stuck)
+                v = along_of(c.distance <= 0.0 ? Vec3::Zero() : mixed, v, c.normal);
+            else if (surface.friction > 0.0)
+                v = braked(v, c.normal, surface.friction * push);
+        }
+        if (count == 0) return v;
+        Vec3 parts[3];
+        share_out(real.m * (v - before), normals, count, parts);
+        for (int n = 0; n < count; ++n) impulse[touched[n]] += parts[n];
+        return v;
+    }
+
+    /// v across the surface, `along` along it.
+    static Vec3 along_of(const Vec3& along, const Vec3& v, const Vec3& normal) {
+        return along + (v - along).dot(normal) * normal;
+    }
+
+    /// Less speed along a surface by `brake`, or none at all.
+    static Vec3 braked(const Vec3& v, const Vec3& normal, double brake) {
+        const Vec3 across = v.dot(normal) * normal, along = v - across;
+        const double speed = along.norm();
+        return across + along * (speed > brake ? 1.0 - brake / speed : 0.0);
+    }
+
+    static Vec3 position(const SolidBody& body, Index p) {
+        return {body.points.x[0][p], body.points.x[1][p], body.points.x[2][p]};
+    }
+
+    void gather_point(SolidBody& body, Index p, const Vec3& x, double dt) const {
+        MaterialPoints& q = body.points;
+        const SpaceStencil<affine> s(body.grid, x);
+        const SolidBody::Node* const nodes = body.nodes.data();
+        Double4 sum = {}, slopes[3] = {};
+        for (int k = 0; k < 3; ++k)
+            for (int j = 0; j < 3; ++j) {
+                Double4 row = {}, push = {};
+                const Index at = s.place[1][j] + s.place[2][k];
+                for (int i = 0; i < 3; ++i) {
+                    const Double4 node = load(nodes + at + s.place[0][i]);
+                    row += s.w[0][i] * node;
+                    push += s.slope[0][i] * node;
+                }
+                const double w = s.w[1][j] * s.w[2][k];
+                sum += w * row;
+                slopes[0] += w * push;
+                slopes[1] += (s.slope[1][j] * s.w[2][k]) * row;
+                slopes[2] += (s.w[1][j] * s.slope[2][k]) * row;
+            }
+        Deformation d;
+        d.dt = dt;
+        for (int l = 0; l < 3; ++l)
+            for (int k = 0; k < 3; ++k) d.gradient(k, l) = slopes[l][k + 1];
+        double state[7], j = q.j[p];
+        for (int n = 0; n < Law::kStates; ++n) state[n] = q.state[n][p];
+        if constexpr (Law::kAverages) j += body.averaging * (sum[0] - j);
+        law_.update(d, j, state);
+        for (int n = 0; n < Law::kStates; ++n) q.state[n][p] = state[n];
+        for (int l = 0; l < 9; ++l) q.gradient[l][p] = d.gradient(l % 3, l / 3);
+        q.j[p] = j;
+        for (int k = 0; k < 3; ++k) {
+            q.v[k][p] = sum[k + 1];
+            q.x[k][p] = x[k] + dt / body.grid.cell() * sum[k + 1];
+        }
+    }
+
+    /// Points that came to lie behind a surface are put back on it, without their speed into it: it rarely
+    /// happens.
+    static void push_out(SolidBody& body, SurfaceSet near, Index p, Vec3* impulse) {
+        MaterialPoints& q = body.points;
+        const double h = body.grid.cell();
+        for (; near != 0; near &= near - 1) {
+            const int s = __builtin_ctz(near);
+            const Contact c = contact(body.surfaces[static_cast<std::size_t>(s)],
+                                      body.grid.geometry().origin + h * position(body, p));
+            if (!(c.distance < 0.0)) continue;
+            const double inward = q.v[0][p] * c.normal[0] + q.v[1][p] * c.normal[1] + q.v[2][p] * c.normal[2];
+            const Vec3 change = -std::min(0.0, inward) * c.normal;
+            for (int k = 0; k < 3; ++k) q.x[k][p] -= c.distance / h * c.normal[k], q.v[k][p] += change[k];
+            impulse[s] += q.mass[p] * change;
+        }
+    }
+
+    static void book(SolidBody& body, Index p, const Vec3& from, SolidSums& sums) {
+        const MaterialPoints& q = body.points;
+        const Vec3 x = position(body, p), v(q.v[0][p], q.v[1][p], q.v[2][p]);
+        const double mass = q.mass[p], speed2 = v.squaredNorm(), shift = (x - from).cwiseAbs().maxCoeff();
+        if (!std::isfinite(speed2 + q.j[p]) || !(shift < kLongestShift)) sums.bad = p;
+        bool inside = true;
+        for (int k = 0; k < 3; ++k)
+            inside =
+                inside && x[k] >= 0.5 && x[k] <= static_cast<double>(body.grid.geometry().nodes[k]) - 1.5;
+        if (!inside) {
+            body.gone[static_cast<std::size_t>(p)] = 1;
+            sums.left_mass += mass;
+            sums.left_momentum += mass * v;
+            return;
+        }
+        sums.mass += mass;
+        sums.momentum += mass * v;
+        sums.moment += mass * x;
+        sums.kinetic += 0.5 * mass * speed2;
+        sums.volume += q.j[p] * q.rest_volume[p];
+        sums.max_speed2 = std::max(sums.max_speed2, speed2);
+        sums.max_shift = std::max(sums.max_shift, shift);
+    }
+
+    Law law_;
+};
+
+}  // namespace
+
+std::unique_ptr<SolidKernel> make_solid_kernel(const SolidLaw& law, Affine affine) {
+    return std::visit(
+        [&](const auto& chosen) -> std::unique_ptr<SolidKernel> {
+            using Law = std::decay_t<decltype(chosen)>;
+            if (affine == Affine::apic) return std::make_unique<Kernel<Law, Affine::apic>>(chosen);
+            return std::make_unique<Kernel<Law, Affine::tpic>>(chosen);
+        },
+        law);
+}
+
+}  // namespace frana

@@ -1,0 +1,116 @@
+// Laws of material in space against numbers found another way.
+#include <Eigen/Eigenvalues>
+
+#include "catch.h"
+#include "law/solid_law.h"
+
+using namespace frana;
+
+namespace {
+
+Mat3 function_of(const Mat3& a, double (*f)(double)) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(a);
+    return solver.eigenvectors() * solver.eigenvalues().unaryExpr(f).asDiagonal() *
+           solver.eigenvectors().transpose();
+}
+
+double log_of(double x) { return std::log(x); }
+double exp_of(double x) { return std::exp(x); }
+
+}  // namespace
+
+TEST_CASE("Elastic strain is carried by any deformation, small or large, to round-off", "[solid]") {
+    const double size = GENERATE(1e-6, 1e-3, 4e-3, 0.02, 0.3);
+    const Sym3 e{0.9 * size, -0.5 * size, 0.2 * size, 0.4 * size, -0.7 * size, 0.1 * size};
+    Mat3 grown;
+    grown << 0.3, -0.8, 0.5, 0.6, -0.2, 0.1, -0.4, 0.7, 0.25;
+    grown *= size;
+    const Mat3 factor = Mat3::Identity() + grown;
+    const Mat3 exact =
+        0.5 * function_of(factor * function_of(2.0 * e.matrix(), exp_of) * factor.transpose(), log_of);
+    CAPTURE(size);
+    // The reference itself loses 1e-16 of one, which the series do not.
+    CHECK((carried_strain(e, grown).matrix() - exact).cwiseAbs().maxCoeff() < 4e-15);
+}
+
+TEST_CASE("Small strains keep their digits", "[solid]") {
+    // A stretch along x: ln(1 + g) exactly.
+    Mat3 grown = Mat3::Zero();
+    grown(0, 0) = 1e-9;
+    CHECK(carried_strain({}, grown).xx == Approx(std::log1p(1e-9)).epsilon(1e-14));
+}
+
+TEST_CASE("A turned elastic body has the turned stress", "[solid]") {
+    const auto law = solid::Elastic::of(1e6, 0.3);
+    double state[7] = {1e-3, -2e-3, 5e-4, 3e-4, 0.0, -1e-4, 0.0}, j = 1.0;
+    const Mat3 before = law.stress(j, state, Mat3::Zero()).matrix();
+    const double a = 0.7;
+    const Mat3 turn =
+        (Mat3() << std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1).finished();
+    law.update({turn - Mat3::Identity(), 1.0}, j, state);
+    CHECK((law.stress(j, state, Mat3::Zero()).matrix() - turn * before * turn.transpose()).norm() <
+          1e-11 * before.norm());
+    CHECK(j == Approx(1.0).epsilon(1e-14));
+}
+
+TEST_CASE("Sand is never stressed beyond Drucker and Prager's cone, and flows without a change of volume",
+          "[solid]") {
+    const double phi = 0.5, cohesion = GENERATE(0.0, 300.0);
+    const auto law = solid::DruckerPrager::of(solid::Elastic::of(1e6, 0.3), phi, cohesion);
+    double state[7] = {-1e-3, -1e-3, -1e-3, 0, 0, 0, 0}, j = std::exp(-3e-3);
+    Deformation shear{Mat3::Zero(), 1e-3};
+    shear.gradient(0, 1) = 1.0;
+    for (int step = 0; step < 20; ++step) law.update(shear, j, state);
+    const Sym3 stress = law.stress(j, state, Mat3::Zero());
+    const double p = -stress.trace() / 3.0;
+    // Triaxial compression of Mohr and Coulomb's law: q = (6 sin(phi) p + 6 c cos(phi)) / (3 - sin(phi)), |s|
+    // = sqrt(2/3) q.
+    const double q = (6.0 * std::sin(phi) * p + 6.0 * cohesion * std::cos(phi)) / (3.0 - std::sin(phi));
+    CHECK(stress.deviator().norm() == Approx(std::sqrt(2.0 / 3.0) * q).epsilon(1e-10));
+    CHECK(Sym3::read(state).trace() == Approx(-3e-3).epsilon(1e-9));
+}
+
+TEST_CASE("Sand that was pulled apart carries nothing until the gap is closed", "[solid]") {
+    const auto law = solid::DruckerPrager::of(solid::Elastic::of(1e6, 0.3), 0.5, 0.0);
+    double state[7] = {}, j = 1.0;
+    const auto stretch = [&](double rate) {
+        Deformation d{Mat3::Zero(), 1.0};
+        d.gradient.diagonal().setConstant(rate);
+        law.update(d, j, state);
+        return -law.stress(j, state, Mat3::Zero()).trace() / 3.0;
+    };
+    CHECK(stretch(0.01) == 0.0);
+    CHECK(stretch(-0.005) == 0.0);
+    const double closed = stretch(1.0 / 1.01 / 0.995 - 1.0);  // back to the first volume
+    const double bulk = 1e6 / (3.0 * (1.0 - 0.6));
+    CHECK(std::abs(closed) < 1e-10 * bulk);
+    CHECK(stretch(-1e-3) == Approx(-3.0 * bulk * std::log(1.0 - 1e-3)).epsilon(1e-9));
+}
+
+TEST_CASE("Bingham's stress below the yield stress is elastic; sheared on, it goes to tau_Y + mu rate",
+          "[solid]") {
+    const solid::Bingham law{1e6, 1e5, 50.0, 1000.0};
+    double state[7] = {}, j = 1.0;
+    Deformation d{Mat3::Zero(), 1e-4};
+    d.gradient(0, 2) = 4.0;
+    law.update(d, j, state);
+    CHECK(law.stress(j, state, d.gradient).xz == Approx(1e5 * 4e-4).epsilon(1e-12));
+    for (int step = 0; step < 4000; ++step) law.update(d, j, state);
+    const double size = Sym3::read(state).norm() / std::sqrt(2.0);
+    // The spin of simple shear turns the elastic part by tau / G: a second-order term.
+    CHECK(size == Approx(1000.0 + 50.0 * 4.0).epsilon(1e-3));
+}
+
+TEST_CASE("A fluid's pressure follows its volume and is never a tension", "[solid]") {
+    const solid::Fluid law{2e6, 3.0};
+    double j = 1.0;
+    Deformation d{Mat3::Zero(), 1e-3};
+    d.gradient(1, 1) = -2.0;
+    law.update(d, j, nullptr);
+    CHECK(j == Approx(0.998).epsilon(1e-14));
+    CHECK(law.stress(j, nullptr, Mat3::Zero()).yy == Approx(-2e6 * 0.002 * 0.998).epsilon(1e-12));
+    d.gradient(1, 1) = 5.0;
+    law.update(d, j, nullptr);
+    CHECK(j == 1.0);
+    CHECK(law.stress(j, nullptr, Mat3::Zero()).yy == 0.0);
+}
