@@ -32,6 +32,7 @@ struct Measurement {
     std::string name, preset;
     Index cells = 0, particles = 0, steps = 0;
     int per_side = 2;
+    int dimensions = 2;          ///< in which points are per_side a cell
     double wall_seconds = 0.0;   ///< of the time loop
     double l1_depth = kNone, l2_depth = kNone, linf_depth = kNone;
     double l1_momentum = kNone, l2_momentum = kNone;  ///< of depth times velocity
@@ -41,6 +42,7 @@ struct Measurement {
     std::vector<Extra> extras;
     double observed_order = kNone;  ///< of Problem::order_of, against the next coarser grid; none at round-off
 
+    Index per_cell() const { return dimensions == 3 ? per_side * per_side * per_side : per_side * per_side; }
     /// Any of the above, or of the extras, by name; kNone when there is none.
     double value(const std::string& quantity) const;
     void add(const std::string& extra, double value, const std::string& unit = "1");
@@ -70,6 +72,7 @@ struct Problem {
     std::vector<Gate> gates = {};
     std::string order_of = "l1_depth";    ///< quantity whose order is observed
     bool needs_level = false;             ///< the paper preset is given the still level
+    bool in_space = false;                ///< of the 3D model: knows no presets
 };
 
 /// Runs the problem on each grid and fills observed_order in.

@@ -1,0 +1,173 @@
+// Solids in space: a bar that vibrates, a disc that turns, a bar that strikes a wall, a block that slides.
+#include <algorithm>
+#include <cmath>
+
+#include "verify/body.h"
+#include "verify/library.h"
+
+namespace frana::verify {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// An elastic bar without sideways strain (nu = 0): waves run with sqrt(E / rho).
+struct Bar {
+    double young = 1e6, density = 1000.0, length = 1.0;  ///< [Pa], [kg/m^3], [m]
+    double wave() const { return std::sqrt(young / density); }
+};
+
+/// A free bar in its first mode, v = v_0 cos(pi x / L): the mode's amplitude is back after 2 L / c.
+Measurement run_bar(const Setup& setup) {
+    const Bar bar;
+    const double cell = bar.length / static_cast<double>(setup.cells), side = 4.0 * cell,
+                 v0 = 1e-3 * bar.wave();
+    SolidScene s;
+    s.gravity.setZero();
+    s.density = bar.density;
+    s.law = solid::Elastic::of(bar.young, 0.0);
+    s.grid = grid_around({}, {-0.5 * bar.length, 0, 0}, {1.5 * bar.length, side, side}, cell);
+    const auto mode = [&](double x) { return std::cos(M_PI * x / bar.length); };
+    std::vector<double> shape;
+    for_each_part({0, 0, 0}, {bar.length, side, side}, cell, setup.per_side,
+                  [&](const Vec3& x, double volume) {
+                      shape.push_back(mode(x.x()));
+                      s.points.add(x, {v0 * shape.back(), 0, 0}, bar.density * volume);
+                  });
+    SolidFlow flow(s);
+    const auto amplitude = [&] {
+        double sum = 0.0, all = 0.0;
+        for (Index p = 0; p < flow.body().points.count(); ++p) {
+            const double a = shape[static_cast<std::size_t>(flow.body().points.id[p])];
+            sum += a * flow.velocity(p).x(), all += a * a;
+        }
+        return sum / all;
+    };
+    // Zeros of the amplitude: a quarter of a period after the start, then half a period apart.
+    const double period = 2.0 * bar.length / bar.wave();
+    std::vector<double> zeros;
+    double before = amplitude(), before_time = 0.0;
+    Measurement m = run_body(flow, 2.2 * period, [&](const SolidFlow& now) {
+        const double a = amplitude(), t = now.status().time;
+        if (a * before < 0.0) zeros.push_back(before_time + (t - before_time) * before / (before - a));
+        before = a, before_time = t;
+    });
+    const double found = 2.0 * (zeros.back() - zeros.front()) / static_cast<double>(zeros.size() - 1);
+    m.add("frequency_error", period / found - 1.0);
+    return m;
+}
+
+/// An elastic disc turning about its axis, one turn: with first moments, no turning motion is lost.
+Measurement run_disc(const Setup& setup) {
+    constexpr double kRadius = 1.0, kSpin = 2.0;  // [m], [1/s]
+    const double cell = kRadius / static_cast<double>(setup.cells), side = 3.0 * cell;
+    SolidScene s;
+    s.gravity.setZero();
+    s.law = solid::Elastic::of(1e5, 0.3);
+    s.affine = Affine::apic;
+    s.grid = grid_around({}, {-1.3, -1.3, 0}, {1.3, 1.3, side}, cell);
+    for_each_part({-1, -1, 0}, {1, 1, side}, cell, setup.per_side, [&](const Vec3& x, double volume) {
+        if (std::hypot(x.x(), x.y()) < kRadius)
+            s.points.add(x, {-kSpin * x.y(), kSpin * x.x(), 0}, s.density * volume);
+    });
+    SolidFlow flow(s);
+    flow.advance(1e-9);  // points learn the motion around them
+    const Vec3 start = flow.angular_momentum();
+    const double kinetic = flow.status().kinetic;
+    Measurement m = run_body(flow, 2.0 * M_PI / kSpin);
+    m.add("angular_momentum_error", (flow.angular_momentum() - start).norm() / start.norm());
+    m.add("kinetic_kept", flow.status().kinetic / kinetic);
+    return m;
+}
+
+/// A bar strikes a wall with a thousandth of the wave speed: until the wave is back the wall is pushed by rho
+/// c v.
+Measurement run_bar_impact(const Setup& setup) {
+    const Bar bar;
+    const double cell = bar.length / static_cast<double>(setup.cells), side = 4.0 * cell,
+                 v0 = 1e-3 * bar.wave();
+    SolidScene s;
+    s.gravity.setZero();
+    s.density = bar.density;
+    s.law = solid::Elastic::of(bar.young, 0.0);
+    s.grid = grid_around({}, {0, 0, 0}, {1.5 * bar.length, side, side}, cell);
+    s.surfaces.push_back(Surface::plane({0, 0, 0}, {1, 0, 0}));
+    for_each_part({0, 0, 0}, {bar.length, side, side}, cell, setup.per_side,
+                  [&](const Vec3& x, double volume) {
+                      s.points.add(x, {-v0, 0, 0}, bar.density * volume);
+                  });
+    SolidFlow flow(s);
+    const double back = 2.0 * bar.length / bar.wave();
+    std::vector<std::pair<double, double>> push;
+    Measurement m = run_body(flow, 1.5 * back, [&](const SolidFlow& now) {
+        push.emplace_back(now.status().time, now.body().impulse[0].x());
+    });
+    const auto at = [&](double t) {
+        const auto it = std::lower_bound(push.begin(), push.end(), std::make_pair(t, -1e300));
+        return *it;
+    };
+    const auto a = at(0.2 * back), b = at(0.8 * back);
+    const double force = (b.second - a.second) / (b.first - a.first) / (side * side);
+    m.add("stress_error", force / (bar.density * bar.wave() * v0) - 1.0);
+    m.add("rebound", flow.status().momentum.x() / (flow.status().mass * v0));
+    return m;
+}
+
+/// A block of elastic material that slides down a plane which is turned in the grid. It rocks on its elastic
+/// base, and what pushes it more brakes it more: v_along + mu v_across = v_0 + g (sin - mu cos) t at any
+/// time.
+double slide_error(const Setup& setup, double mu, Measurement& m) {
+    constexpr double kSlope = 30.0, kGravity = 9.81, kEnd = 0.5, kStart = 1.0;
+    const double cell = 1.0 / static_cast<double>(setup.cells), side = 4.0 * cell;
+    const Frame3 frame = turned_about_y(kSlope);
+    const Vec3 along = frame.at({1, 0, 0}), across = frame.at({0, 0, 1});
+    SolidScene s;
+    s.gravity = {0, 0, -kGravity};
+    s.law = solid::Elastic::of(1e6, 0.3);
+    s.grid = grid_around(frame, {0, 0, 0}, {3.5, side, 0.6}, cell);
+    s.surfaces = {Surface::plane({0, 0, 0}, across, Hold::free, mu)};
+    for_each_part({0.3, 0, 0}, {1.3, side, 0.5}, cell, setup.per_side, [&](const Vec3& x, double volume) {
+        s.points.add(frame.at(x), kStart * along, s.density * volume);
+    });
+    SolidFlow flow(s);
+    m = run_body(flow, kEnd);
+    const Vec3 v = flow.status().momentum / flow.status().mass;
+    const double gained = kGravity * (std::sin(kSlope * kDegree) - mu * std::cos(kSlope * kDegree)) * kEnd;
+    return (v.dot(along) + mu * v.dot(across) - kStart) / gained - 1.0;
+}
+
+Measurement run_sliding_block(const Setup& setup) {
+    Measurement m;
+    const double smooth = slide_error(setup, 0.0, m), rough = slide_error(setup, 0.3, m);
+    m.add("speed_error_smooth", smooth);
+    m.add("speed_error", std::abs(smooth) > std::abs(rough) ? smooth : rough);
+    return m;
+}
+
+}  // namespace
+
+std::vector<Problem> body_problems() {
+    const Gate closed{0, "momentum_residual", 1e-12, "round-off"};
+    Problem bar{
+        "vibrating_bar", "a free elastic bar in its first mode: period 2 L / c", {16, 32, 64}, {}, run_bar};
+    bar.order_of = "frequency_error";
+    bar.gates = {{64, "frequency_error", 0.01, "issue gate"}, closed};
+    Problem disc{
+        "rotating_disc", "an elastic disc turns once: angular momentum stays", {8, 16}, {}, run_disc};
+    disc.order_of = "angular_momentum_error";
+    disc.gates = {{0, "angular_momentum_error", 1e-10, "issue gate"}, closed};
+    Problem impact{
+        "bar_impact", "an elastic bar strikes a wall: stress rho c v", {16, 32, 64}, {}, run_bar_impact};
+    impact.order_of = "stress_error";
+    impact.gates = {closed};
+    Problem block{"sliding_block",
+                  "an elastic block on a turned incline: a = g (sin - mu cos)",
+                  {8, 16},
+                  {},
+                  run_sliding_block};
+    block.order_of = "speed_error";
+    block.gates = {{0, "speed_error", 1e-3, "issue gate"}, closed};
+    for (Problem* problem : {&bar, &disc, &impact, &block}) problem->in_space = true;
+    return {bar, disc, impact, block};
+}
+
+}  // namespace frana::verify

@@ -1,0 +1,119 @@
+// Masses with strength in space: granular columns that collapse, a slump that its yield stress stops.
+#include <algorithm>
+#include <cmath>
+
+#include "verify/body.h"
+#include "verify/library.h"
+
+namespace frana::verify {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0, kGravity = 9.81;
+constexpr double kWidthCells = 3.0;  // of a slice
+
+/// The place beyond which so much of the points lies.
+double quantile(const SolidFlow& flow, double share) {
+    std::vector<double> x;
+    for (Index p = 0; p < flow.body().points.count(); ++p) x.push_back(flow.position(p).x());
+    std::sort(x.begin(), x.end());
+    return x[static_cast<std::size_t>((1.0 - share) * static_cast<double>(x.size() - 1))];
+}
+
+/// End of the deposit that holds together: the first gap of a cell.
+double tip(const SolidFlow& flow, double cell) {
+    std::vector<double> x;
+    for (Index p = 0; p < flow.body().points.count(); ++p) x.push_back(flow.position(p).x());
+    std::sort(x.begin(), x.end());
+    std::size_t n = 1;
+    while (n < x.size() && x[n] - x[n - 1] < cell) ++n;
+    return x[n - 1];
+}
+
+/// Half of a column of sand, against its plane of symmetry: a floor and two smooth sides.
+SolidScene column(double length, double height, double room, double cell) {
+    const double width = kWidthCells * cell;
+    SolidScene s;
+    s.gravity = {0, 0, -kGravity};
+    s.grid = grid_around({}, {0, 0, 0}, {room, width, height}, cell);
+    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}), Surface::plane({0, 0, 0}, {1, 0, 0})};
+    add_slice(s, width);
+    return s;
+}
+
+/// Plane columns of sand, height over half-length 0.5, 1, 2, 3; runout over length by Lube et al. (2005): 1.2
+/// a below 2.3, 1.9 a^(2/3) above.
+Measurement run_column_collapse(const Setup& setup) {
+    constexpr double kLength = 0.1, kDensity = 1600.0, kPhi = 31.0;
+    const double cell = kLength / static_cast<double>(setup.cells);
+    Measurement m;
+    double worst = 0.0;
+    std::vector<std::pair<std::string, double>> found;
+    for (const double a : {0.5, 1.0, 2.0, 3.0}) {
+        const double height = a * kLength, law = a < 2.3 ? 1.2 * a : 1.9 * std::pow(a, 2.0 / 3.0);
+        SolidScene s = column(kLength, height, (2.0 + 1.5 * law) * kLength, cell);
+        s.density = kDensity;
+        s.surfaces[0].friction = std::tan(kPhi * kDegree);
+        s.law = solid::DruckerPrager::of(solid::Elastic::of(2e5, 0.3), kPhi * kDegree, 0.0,
+                                         solid::Cone::plane_strain);
+        for_each_part(
+            {0, 0, 0}, {kLength, kWidthCells * cell, height}, cell, setup.per_side,
+            [&](const Vec3& x, double volume) { s.points.add(x, Vec3::Zero(), kDensity * volume); });
+        SolidFlow flow(s);
+        m = run_body(flow, 4.0 * std::sqrt(height / kGravity) + 0.1);
+        const double runout = tip(flow, cell) / kLength - 1.0;
+        found.emplace_back("runout_" + std::to_string(a).substr(0, 3), runout);
+        worst = std::max(worst, std::abs(runout / law - 1.0));
+    }
+    for (const auto& [name, value] : found) m.add(name, value);
+    m.add("runout_error", worst);
+    return m;
+}
+
+/// Half a block of yield-stress material, 1 m by 1 m, on a floor that holds it: it stops where the floor's
+/// yield stress carries the slope of its surface, h^2 = 2 tau_Y (x_f - x) / (rho g), (9 rho g V^2 / (8
+/// tau_Y))^(1/3) long.
+Measurement run_slump(const Setup& setup) {
+    constexpr double kYield = 1000.0, kDensity = 1000.0;
+    const double cell = 1.0 / static_cast<double>(setup.cells), sound = 10.0 * std::sqrt(kGravity);
+    SolidScene s = column(1.0, 1.0, 3.5, cell);
+    s.density = kDensity;
+    s.surfaces[0].hold = Hold::stuck;
+    s.law = solid::Bingham{kDensity * sound * sound, 100.0 * kYield, 10.0, kYield};
+    for_each_part({0, 0, 0}, {1, kWidthCells * cell, 1}, cell, setup.per_side,
+                  [&](const Vec3& x, double volume) {
+                      s.points.add(x, Vec3::Zero(), kDensity * volume, kDensity * kGravity * (1.0 - x.z()));
+                  });
+    SolidFlow flow(s);
+    Measurement m = run_body(flow, 3.0);
+    const double before = quantile(flow, 0.002);
+    while (flow.status().time < 4.0) flow.advance(4.0);
+    const double front = quantile(flow, 0.002), exact = std::cbrt(9.0 * kDensity * kGravity / (8.0 * kYield));
+    m.steps = flow.status().step;
+    m.add("front", front, "m");
+    m.front_error = front - exact;
+    m.add("length_error", front / exact - 1.0);
+    m.add("creep", front - before, "m");
+    m.add("speed", std::sqrt(2.0 * flow.status().kinetic / flow.status().mass), "m/s");
+    m.add("volume_error", flow.status().volume / kWidthCells / cell - 1.0);
+    return m;
+}
+
+}  // namespace
+
+std::vector<Problem> column_problems() {
+    const Gate closed{0, "momentum_residual", 1e-12, "round-off"};
+    Problem sand{"column_collapse",
+                 "plane columns of sand collapse: runout by Lube et al. (2005)",
+                 {8},
+                 {},
+                 run_column_collapse};
+    sand.order_of = "runout_error";
+    sand.gates = {{0, "runout_error", 0.2, "scatter of published runouts"}, closed};
+    Problem slump{"slump", "a block of yield-stress material slumps and stops", {16}, {}, run_slump};
+    slump.order_of = "length_error";
+    slump.gates = {{0, "length_error", 0.1, "thin-layer theory at an aspect of 0.3, three_d 8"}, closed};
+    for (Problem* problem : {&sand, &slump}) problem->in_space = true;
+    return {sand, slump};
+}
+
+}  // namespace frana::verify
