@@ -51,3 +51,29 @@ TEST_CASE("The bed's bend adds v.H.v to gravity, and never turns it", "[kick]") 
               Approx(9.81 + 0.004 * vx * vx + 2.0 * 0.002 * vx * vy - 0.006 * vy * vy).epsilon(1e-10));
     CHECK(bed.gravity(9.81, 0.0, 100.0) == 0.0);
 }
+
+TEST_CASE("A bend turns what is higher than it is wide, and adds nothing to its pressure", "[kick]") {
+    Scene scene = bent();
+    scene.scheme.curvature_length = 0.0;
+    const Flow flow(scene);
+    const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));
+    const double g = 9.81, vx = 3.0, vy = 4.0, cosine = 1.0 / std::sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
+    const double k = bed.gravity(g, vx, vy) - g, wide = (vx * vx + vy * vy) / std::abs(k);
+    const Drive<double> slope = bed.drive(bed.bx - 7.0, bed.by + 2.0, cosine);  // of a steep depth
+    const auto pull = [&](double high) { return bed.pull(slope, g, high, vx, vy, cosine); };
+    for (const double high : {0.0, 0.5 * wide, 0.999 * wide}) {
+        CHECK(pull(high).x == (g + k) * slope.x);
+        CHECK(pull(high).y == (g + k) * slope.y);
+    }
+    const double c2 = cosine * cosine;
+    for (const double high : {2.0 * wide, 100.0 * wide}) {
+        CHECK(pull(high).x == Approx(g * slope.x + k * c2 * bed.bx).epsilon(kRoundOff));
+        CHECK(pull(high).y == Approx(g * slope.y + k * c2 * bed.by).epsilon(kRoundOff));
+    }
+    CHECK(pull(1.5 * wide).x == Approx(0.5 * (pull(wide).x + pull(2.0 * wide).x)).epsilon(kRoundOff));
+    // What is left of the bend works on the velocity along the bed, of which w = B.v is the vertical part, as much as the
+    // bend changes w: dw/dt = B.a + k.
+    const double ax = pull(2.0 * wide).x - g * slope.x, ay = pull(2.0 * wide).y - g * slope.y;
+    const double w = bed.bx * vx + bed.by * vy, work = -(vx * ax + vy * ay) + w * (k - (bed.bx * ax + bed.by * ay));
+    CHECK(std::abs(work) <= kRoundOff * (g + std::abs(k)) * 5.0 * 7.0);  // speed, slope of the surface
+}

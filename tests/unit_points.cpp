@@ -1,4 +1,5 @@
 // Points that split, merge and touch nodes: what each must keep.
+#include <algorithm>
 #include <numeric>
 #include <random>
 
@@ -125,6 +126,45 @@ TEST_CASE("Equal points at the corners of a square are not merged: nothing but r
     pool.sort();
     std::vector<std::uint8_t> gone;
     CHECK(merger.merge(pool.flow, pool.as_sorted(), gone) == 0);
+}
+
+TEST_CASE("A crowd is thinned by where its points lie, not by the order they are stored in", "[points]") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(5.01, 5.49);
+    std::vector<Vec2> places(100);  // more than are compared at a time
+    for (Vec2& at : places) at = Vec2(place(random), place(random));
+    const auto left_of = [&] {
+        Pool pool;
+        for (const Vec2& at : places) pool.add(at.x(), at.y(), 1.0 + at.x() * at.y(), 0.01);
+        pool.sort();
+        std::vector<std::uint8_t> gone;
+        CHECK(Merger(2).merge(pool.flow, pool.as_sorted(), gone) > 1);  // each part for itself
+        pool.sort(gone);
+        std::vector<double> left(pool.flow.columns.x.begin(), pool.flow.columns.x.end());
+        std::sort(left.begin(), left.end());
+        return left;
+    };
+    const std::vector<double> left = left_of();
+    std::reverse(places.begin(), places.end());
+    const std::vector<double> again = left_of();
+    REQUIRE(left.size() == again.size());
+    for (std::size_t k = 0; k < left.size(); ++k) CHECK(std::abs(left[k] - again[k]) <= 1e-15 * 5.5);  // a union's mean
+}
+
+TEST_CASE("Parts that splitting holds at the sides lie in the outermost cells of linear shapes", "[points]") {
+    for (const Shape shape : {Shape::linear, Shape::quadratic}) {
+        Pool pool;
+        pool.flow.scheme.shape = shape;
+        pool.add(0.05, 10.0, 1.0, 1.0);
+        pool.add(18.95, 10.0, 1.0, 1.0);
+        pool.sort();
+        Splitter splitter(0.0);
+        splitter.set_next_id(2);
+        CHECK(splitter.split(pool.flow) == 6);
+        const auto [least, most] = std::minmax_element(pool.flow.columns.x.begin(), pool.flow.columns.x.end());
+        CHECK(*least == 0.0);
+        CHECK(*most == (shape == Shape::linear ? std::nextafter(19.0, 0.0) : 19.0));
+    }
 }
 
 TEST_CASE("Splitting keeps mass, momentum and centre: two parts along the longer edge, four of a square", "[points]") {

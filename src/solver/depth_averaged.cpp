@@ -250,9 +250,13 @@ Index DepthAveraged::particle_bytes() const {
 
 std::vector<std::string> DepthAveraged::remarks() const {
     if (!fit_) return {};
+    constexpr double kLevel = 1e-6;  // [cells]; far above round-off, and currents of it are slow
+    const bool rests = fit_->level_error <= kLevel * flow_.cell;
     return {fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
-                        "{} points at their limits; level within {:.2g} m",
-                        fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped, fit_->level_error)};
+                        "{} points at their limits; level within {:.2g} m{}",
+                        fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped, fit_->level_error,
+                        rests ? "" : ", so the lake does not rest; give more points (particles.per_cell) or a finer "
+                                     "grid.cell")};
 }
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start) {

@@ -286,18 +286,27 @@ private:
         const double g = flow.gravity;
         const Real cosine = 1.0 / sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
         const Drive<Real> slope = bed.drive(n.ex, n.ey, cosine);
+        const Real high = height_around(flow, bed, n);
+        Drive<Real> pull = bed.pull(slope, g, high, n.vx, n.vy, cosine);
         Real gravity = bed.gravity(g, n.vx, n.vy);
         if constexpr (kCurvature != Curvature::none) {
-            const auto [mx, my] = midpoint(bed, n, {gravity * slope.x, gravity * slope.y}, g, cosine, dt);
+            const auto [mx, my] = midpoint(bed, n, pull, g, cosine, dt);
+            pull = bed.pull(slope, g, high, mx, my, cosine);
             gravity = bed.gravity(g, mx, my);
         }
-        const Real dx = n.vx + dt * (n.push_x - gravity * slope.x), dy = n.vy + dt * (n.push_y - gravity * slope.y);
+        const Real dx = n.vx + dt * (n.push_x - pull.x), dy = n.vy + dt * (n.push_y - pull.y);
         const Real along = dx * bed.bx + dy * bed.by, speed2 = dx * dx + dy * dy;
         const Real kappa = sqrt(1.0 + select(speed2 > 0.0, along * along / speed2, Real{}));
         const Real normal = kCurvature == Curvature::full ? gravity : Real{} + g;
         const BedStateOf<Real> state{normal * cosine / kappa, max(n.depth * cosine, Real{} + 1e-9), kappa, cosine, g,
                                      flow.density};
         return braked(state, n, dx, dy, bed.bx, bed.by, max(Real{} + g, gravity), dt);
+    }
+
+    /// Depth a cell away, up its gradient: what pushes a node at the foot of a column is the column.
+    template <class Real, Curvature kCurvature, bool kLinear>
+    static Real height_around(const Flow& flow, const SteepBed<Real, kCurvature, kLinear>& bed, const Node<Real>& n) {
+        return n.depth + flow.cell * (abs(n.ex - bed.bx) + abs(n.ey - bed.by));
     }
 
     bool rests_midway(const Flow&, const GentleBed<double>&, const Node<double>&) const { return true; }

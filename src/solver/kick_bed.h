@@ -32,6 +32,22 @@ struct SteepBed {
         if constexpr (kCurvature == Curvature::none) return Real{} + g;
         return max(Real{}, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
     }
+    /// gravity(g, vx, vy) times `slope` (drive()), less where the flow is high against the bend. With k = v.H.v,
+    /// k * slope has two parts: k B / (1 + B^2) turns the velocity along the bed and does no work; the rest is k added
+    /// to the pressure. That works at -k v.grad(h) / (1 + q), of nothing: what takes it back is of second order in the
+    /// depth times the bed's bend, and not in the model. So the rest fades where the slope of the bed along the path
+    /// changes by more than one within the depth, |k| high > v^2, and is gone at two. `high`: depth a cell around [m].
+    Drive<Real> pull(const Drive<Real>& slope, double g, Real high, Real vx, Real vy, Real cosine) const {
+        const Real weight = gravity(g, vx, vy);
+        const Drive<Real> whole{weight * slope.x, weight * slope.y};
+        if constexpr (kCurvature == Curvature::none) return whole;
+        const Real k = vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy, speed2 = vx * vx + vy * vy;
+        const auto too_high = abs(k) * high > speed2;
+        if (!any(too_high)) return whole;
+        const Real share = max(Real{}, 2.0 - abs(k) * high / max(speed2, Real{} + 1e-300));
+        const Real lift = select(too_high, weight - max(Real{}, g + share * k), Real{}), c2 = cosine * cosine;
+        return {whole.x - lift * (slope.x - c2 * bx), whole.y - lift * (slope.y - c2 * by)};
+    }
     /// grad(eta) / (1 + q), q = gradZ . grad(eta): a column that accelerates vertically with its bed. Where the surface
     /// slopes against the bed (q < 0) that would grow without bound and make energy of nothing (at q = -1 the column would
     /// weigh nothing): there the plain gradient. Linear:

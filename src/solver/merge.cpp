@@ -10,14 +10,33 @@ namespace frana {
 namespace {
 
 constexpr Index kSide = 2 * kTile;  ///< half-cell squares along a tile's edge
-/// Squares hold few points; of a crowd only so many are compared at a time.
+/// Squares hold few points; a crowd of more than this is compared quarter by quarter, each for itself.
 constexpr Index kMostCompared = 64;
+/// Quarters of quarters so deep at most; what is crowded still is compared in part.
+constexpr int kDeepest = 10;
 /// A point so near to a square's edge [half cells] is in no square: round-off must not choose one, or mirror images part.
 constexpr double kEdge = 1e-6;
 /// Unions whose costs differ by less than this share tie, for the same reason.
 constexpr double kTie = 1e-6;
 /// A union shorter than this share of the splitting length will not split at once.
 constexpr double kNoResplit = 0.95;
+
+/// Whether a coordinate [half cells] lies so near to an edge that round-off would choose its side.
+bool near_edge(double u, double edge) { return std::abs(u - edge) < kEdge; }
+
+/// Lower corner and edge of a square [half cells]; how many times a half-cell square was quartered for it.
+struct Square {
+    double u, v, edge;
+    int depth;
+    double middle_u() const { return u + 0.5 * edge; }
+    double middle_v() const { return v + 0.5 * edge; }
+    Square quarter(int q) const { return {q & 1 ? middle_u() : u, q & 2 ? middle_v() : v, 0.5 * edge, depth + 1}; }
+    /// The quarter that (x, y) [cells] lies in, or none (4) between two.
+    int quarter_of(double x, double y) const {
+        if (near_edge(2.0 * x, middle_u()) || near_edge(2.0 * y, middle_v())) return 4;
+        return (2.0 * x > middle_u() ? 1 : 0) + (2.0 * y > middle_v() ? 2 : 0);
+    }
+};
 
 /// The points of one tile in the order of its half-cell squares.
 class Squares {
@@ -40,13 +59,16 @@ public:
         for (Index s = 0; s + 1 < kSide * kSide; ++s) end_of_[s] = end_of_[s + 1];
         end_of_[kSide * kSide - 1] = held;
     }
-    const std::int32_t* points(Index s) const { return order_ + (s == 0 ? 0 : end_of_[s - 1]); }
+    std::int32_t* points(Index s) const { return order_ + (s == 0 ? 0 : end_of_[s - 1]); }
     Index held(Index s) const { return end_of_[s] - (s == 0 ? 0 : end_of_[s - 1]); }
+    Square at(Index s) const {
+        return {static_cast<double>(i0_ + s % kSide), static_cast<double>(j0_ + s / kSide), 1.0, 0};
+    }
 
 private:
     bool on_edge(Index p) const {
-        const auto near = [](double u) { return std::abs(u - std::round(u)) < kEdge; };
-        return near(2.0 * c_.x[p]) || near(2.0 * c_.y[p]);
+        const double u = 2.0 * c_.x[p], v = 2.0 * c_.y[p];
+        return near_edge(u, std::round(u)) || near_edge(v, std::round(v));
     }
     /// A point that the rounding of 2 x puts outside belongs to the nearest square.
     Index square(Index p) const {
@@ -86,6 +108,24 @@ Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
     return second <= best * (1.0 + kTie) ? Pick{} : pick;
 }
 
+/// Calls body(points, count) for a square, or for those parts of a crowded one that hold more than their share of
+/// `most` points, and sums what it returns. Parts are places: were a crowd cut off in the order it is stored in, mirror
+/// images would part.
+template <class Body>
+Index in_parts(const Columns& c, const Square& square, std::int32_t* points, Index count, Index most, Body&& body) {
+    if (count <= kMostCompared || square.depth == kDeepest) return body(points, count);
+    std::int32_t *from = points, *const end = points + count;
+    Index sum = 0;
+    for (int q = 0; q < 4; ++q) {
+        std::int32_t* const next =
+            std::partition(from, end, [&](std::int32_t p) { return square.quarter_of(c.x[p], c.y[p]) == q; });
+        if (next - from > std::max<Index>(1, most / 4))
+            sum += in_parts(c, square.quarter(q), from, next - from, most / 4, body);
+        from = next;
+    }
+    return sum;
+}
+
 }  // namespace
 
 Merger::Merger(const Flow& flow) {
@@ -116,14 +156,16 @@ Index Merger::merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::ve
 Index Merger::merge_tile(Flow& flow, Index n, const std::int32_t* sorted, std::vector<std::uint8_t>& gone) {
     const Squares squares(flow, n, sorted, order_.data() + flow.active.begin[n]);
     const double longest = kNoResplit * flow.scheme.split_length;
-    Index merged = 0;
-    for (Index s = 0; s < kSide * kSide; ++s) {
-        if (squares.held(s) <= most_) continue;
-        const Pick pick = cheapest(flow.columns, squares.points(s), std::min(squares.held(s), kMostCompared));
-        if (pick.a < 0) continue;
-        merged += flow.columns.with_real(
+    const auto unite_cheapest = [&](const std::int32_t* points, Index count) -> Index {
+        const Pick pick = cheapest(flow.columns, points, std::min(count, kMostCompared));
+        if (pick.a < 0) return 0;
+        return flow.columns.with_real(
             [&](auto real) { return unite<decltype(real)>(flow, pick.a, pick.b, longest, gone); });
-    }
+    };
+    Index merged = 0;
+    for (Index s = 0; s < kSide * kSide; ++s)
+        if (squares.held(s) > most_)
+            merged += in_parts(flow.columns, squares.at(s), squares.points(s), squares.held(s), most_, unite_cheapest);
     return merged;
 }
 

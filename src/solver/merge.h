@@ -14,7 +14,8 @@ public:
     /// (m_a m_b / (m_a + m_b) |x_a - x_b|^2; Ward 1963) become one: mass, place, velocity and its gradient are the
     /// mass-weighted means, the domain is the rectangle with the union's second moments. Mass and momentum are kept
     /// exactly. No union when its domain would be nearly long enough to split again. Where two unions
-    /// tie, none is made: round-off must not choose, or mirror images part.
+    /// tie, none is made: round-off must not choose, or mirror images part. A crowd (more than 64 points) is thinned in
+    /// each quarter of its square.
     /// Needs tiles that are up to date; `sorted`: the point at each place of them (TileSorter::order). Marks merged-away
     /// points in `gone` (resized); returns how many. The caller drops them.
     Index merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone);

@@ -73,11 +73,16 @@ void halve(Flow& flow, Index p, Index q, bool first) {
     held.vy[p] += dvy;
 }
 
-/// Only after all halving, or its order would tell.
+/// Only after all halving, or its order would tell. Slopes of linear shapes jump at nodes, and a point on the last
+/// node would take those of the cell beyond, while one on the first takes those of the cell inside: it stays below.
 void hold_inside(Flow& flow, Index p) {
     Columns& c = flow.columns;
-    c.x[p] = std::clamp(c.x[p], 0.0, static_cast<double>(flow.grid.nx() - 1));
-    c.y[p] = std::clamp(c.y[p], 0.0, static_cast<double>(flow.grid.ny() - 1));
+    const auto hold = [&](double& u, Index nodes) {
+        const double last = static_cast<double>(nodes - 1);
+        u = std::clamp(u, 0.0, flow.scheme.shape == Shape::linear ? std::nextafter(last, 0.0) : last);
+    };
+    hold(c.x[p], flow.grid.nx());
+    hold(c.y[p], flow.grid.ny());
 }
 
 }  // namespace

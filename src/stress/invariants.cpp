@@ -68,6 +68,7 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
     facts.gravity = scene.gravity;
     facts.walls = flow.walls;
     facts.steep = flow.steep;
+    facts.cell = flow.cell;
     facts.nodes_x = flow.grid.nx(), facts.nodes_y = flow.grid.ny();
     double steepest2 = 0.0;
     for (Index j = 0; j < flow.grid.ny(); ++j)
@@ -87,15 +88,16 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
         facts.release_energy += 0.5 * mass * scene.gravity * depth;
     }
     if (scene.still_surface) {
-        constexpr double kRoundOff = 16.0 * std::numeric_limits<double>::epsilon();  // of elevations, depths and their sum
-        facts.level_error = std::max(off_level(flow, *scene.still_surface),
-                                     kRoundOff * (std::abs(*scene.still_surface) + facts.release_depth));
+        facts.lake = true;
+        facts.level_error = off_level(flow, *scene.still_surface);
+        facts.level_round_off = 16.0 * kEps * (std::abs(*scene.still_surface) + facts.release_depth);
     }
     constexpr double kSmooth = 0.02, kThin = 0.1;  // slope a cell; depth over radius of curvature
     const Bends bends = bends_of(flow);
     facts.energy_law = bends.unresolved < kSmooth && bends.sharpest * facts.release_depth < kThin &&
                        scene.terrain != TerrainModel::linearised && !scene.scheme.paper_pressure;
     if (!facts.energy_law && facts.steep) facts.stretch = std::sqrt(1.0 + steepest2);
+    if (facts.steep) facts.steepest = std::sqrt(steepest2);
     return facts;
 }
 
@@ -174,7 +176,8 @@ std::optional<Violation> Watch::mass(const Snapshot& state) {
 
 std::optional<Violation> Watch::momentum(const Snapshot& state) {
     // A step rounds each point's velocity some ten times, half of them on the way to the nodes.
-    const double allowed = 16.0 * kEps * mass_ * fastest_ * static_cast<double>(state.between.step + 10);
+    const double roundings = 16.0 * static_cast<double>(state.between.step + 10) + static_cast<double>(points_);
+    const double allowed = kEps * mass_ * fastest_ * roundings;  // two sums over points, half a unit each time
     std::optional<Violation> first;
     for (const auto& [from, to] : {std::pair{&start_.between, &state.between}, std::pair{&start_.now, &state.now}}) {
         const Budget left = budget(*from, *to);
@@ -194,7 +197,10 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double booked = now.mass_left * facts_.gravity * (facts_.one_cell_drop + deepest_);
     const double round_off = kEps * static_cast<double>(points_) * std::abs(first.potential);
     const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
-    return judged("energy", growth, kEnergyShare * (at_hand_ + turned_over_) + booked + bends + round_off, state,
+    const double slope = std::min(facts_.steepest, deepest_ / facts_.cell);
+    const double uphill = slope * slope / (1.0 + slope * slope) * now.kinetic;
+    const double share = kEnergyShare * (at_hand_ + turned_over_);
+    return judged("energy", growth, share + uphill + booked + bends + round_off, state,
                   "mechanical energy gained beyond the work of gravity [J]");
 }
 
@@ -214,9 +220,13 @@ std::optional<Violation> Watch::rest(const Snapshot& state) {
         for (const auto* component : {&held.vx, &held.vy})
             for (const double v : *component) fastest = std::max(fastest, std::abs(v));
     });
-    if (facts_.level_error)
-        return judged("rest", fastest, 2.0 * std::sqrt(facts_.gravity * *facts_.level_error), state,
+    if (facts_.lake) {
+        const bool level = facts_.level_error <= facts_.level_round_off;
+        const double factor = level ? 1.0 : (1.0 + kConvergence) * facts_.stretch * facts_.stretch;
+        const double high = level ? facts_.level_round_off : facts_.level_error;
+        return judged("rest", fastest, factor * 2.0 * std::sqrt(facts_.gravity * high), state,
                       "speed of a lake, beyond that of a dam break as high as its surface is off the level [m/s]");
+    }
     const bool moved = a.id == b.id && (a.x != b.x || a.y != b.y);  // what splits stands elsewhere and has not moved
     return judged("rest", moved ? std::max(fastest, 1e-300) : fastest, 0.0, state, "speed of what should rest [m/s]");
 }

@@ -36,7 +36,11 @@ struct Facts {
     double release_depth = 0.0;  ///< largest of the release; nodes see it averaged over a cell and more [m]
     double release_energy = 0.0; ///< that its depth alone could set free [J]
     double one_cell_drop = 0.0;  ///< largest difference of the bed between neighbouring nodes [m]
-    std::optional<double> level_error;  ///< of a lake: how far its surface is off the level at the start, or round-off [m]
+    double cell = 1.0;           ///< [m]
+    double steepest = 0.0;       ///< largest slope of the bed that a velocity follows; none on shallow terrain [1]
+    bool lake = false;
+    double level_error = 0.0;    ///< of a lake: how far its surface is off the level at the start [m]
+    double level_round_off = 0.0; ///< of elevations, depths and their sum in a lake [m]
     double one_cell_bend = 0.0;  ///< largest second difference of the bed between neighbouring nodes [m]
 };
 Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
@@ -46,12 +50,17 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
 /// mass: sum of points and what left is the start's, to eps (points + steps) / 2, each sum and merger rounding once.
 /// positive: depth > 0 on wet nodes and >= 0 on all, mass > 0 of each point.
 /// momentum: points' momentum changes by the impulse booked, to round-off of mass times the largest speed so far a
-///   step. Between walls it holds by definition (Status::impulse).
+///   step, and of the two sums over points, each of which rounds once a point. Between walls it holds by definition
+///   (Status::impulse).
 /// energy: K + E_p + E_left <= start + `kEnergyShare` of the energy at hand (start's kinetic, that of its depth) and
 ///   turned over, where the model has an energy law. Truncation errs by a share of what is there, most at steps of the
 ///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. Over a bed bent
 ///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
-///   second differences of the bed. Not for the paper preset, whose explicit forces act on nodes of vanishing mass.
+///   second differences of the bed. Where the surface slopes against the bed (the flank of a heap that runs uphill) the
+///   drive is the plain gradient (kick_bed.h), and keeps the energy of the horizontal velocity: what the vertical one
+///   adds, B^2 / (1 + B^2) of K, is the model's own. That takes a depth that changes by more than the bed, so B there is
+///   at most the largest depth over a cell. Not for the paper preset, whose explicit forces act on nodes of vanishing
+///   mass.
 /// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
 ///   start, h the largest depth and drop to the lowest bed so far. stretch is 1 where the model has an energy law;
 ///   elsewhere a bend may turn a speed along the map into `stretch` times that along the bed, which carries it up by
@@ -61,7 +70,8 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
 ///   unstable passes it by factors.
 /// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
 ///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
-///   as high as its surface is off the level, 2 sqrt(g e) (Ritter 1892).
+///   as high as round-off, 2 sqrt(g e) (Ritter 1892), where the fit met the level; otherwise than one as high as its
+///   surface is off the level, on that bed: with the factors (1 + kConvergence) stretch^2 of `speed`.
 /// symmetry: depth and momentum of mirrored nodes agree within `kMirrorError` of the largest (claimed scenes).
 class Watch {
 public:

@@ -18,6 +18,7 @@ Snapshot snapshot_of(DepthAveraged& simulation, bool steep) {
     for (const Index tile : flow.active.work)
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
             if (i < 0 || j < 0 || i >= flow.grid.nx() || j >= flow.grid.ny()) return;
+            if (!flow.touches(i, j)) return;  // holds what an earlier step left, which no pass reads
             const Motion& motion = flow.nodes.motions()[k];
             const double vz = steep ? motion.vx * flow.bed.slope_x[k] + motion.vy * flow.bed.slope_y[k] : 0.0;
             const double along = std::sqrt(motion.vx * motion.vx + motion.vy * motion.vy + vz * vz);
