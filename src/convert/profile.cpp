@@ -36,8 +36,9 @@ double exact_energy_factor(VelocityProfile profile) {
 }
 
 Index layer_count(double depth, double spacing) {
-    constexpr double kDigits = 1e-7;
-    return static_cast<Index>(std::clamp(std::floor(depth / spacing * (1.0 + kDigits)), 1.0, 1e18));
+    constexpr double kDigits = 1e-7, kMost = 1e18;
+    if (depth >= kMost * spacing) return static_cast<Index>(kMost);
+    return static_cast<Index>(std::clamp(std::floor(depth / spacing * (1.0 + kDigits)), 1.0, kMost));
 }
 
 std::vector<double> layer_heights(Layers layers, Index count) {

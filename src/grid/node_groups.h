@@ -37,8 +37,8 @@ public:
             std::uint64_t nodes = 0;  // bit 0 is the first node of the tile to the left
             for (int shift = -before; shift <= after; ++shift) nodes |= marks << (kEdge - kSpare + shift);
             const int across = (row + kEdge) / kEdge * 3, line = 4 * ((row + kEdge) % kEdge);
-            for (int tile = 0; tile < 3; ++tile)
-                reach[static_cast<std::size_t>(across + tile)] |= in_fours(nodes >> (tile * kEdge)) << line;
+            NodeGroups* const three = &reach[static_cast<std::size_t>(across)];
+            for (int tile = 0; tile < 3; ++tile) three[tile] |= in_fours(nodes >> (tile * kEdge)) << line;
         }
         return reach;
     }
@@ -91,7 +91,7 @@ void for_each_four_of_run(const TileGrid& grid, const TileRun& run, GroupsOf&& g
     for (Index row = 0; row < kTile; ++row)
         for (Index n = 0; n < run.count; ++n)
             for (unsigned of_row = groups[static_cast<std::size_t>(n)] >> (4 * row) & 0xf; of_row != 0; of_row &= of_row - 1) {
-                const Index along = n * kTile + 4 * __builtin_ctz(of_row);
+                const Index along = n * kTile + Index{4} * __builtin_ctz(of_row);
                 body(n, k0 + row * grid.stride() + along, i0 + along, j0 + row);
             }
 }

@@ -118,6 +118,7 @@ void DepthAveraged::keep_nodes(Archive& archive) {
     Nodes& nodes = flow_.nodes;
     const std::vector<Index>& tiles = flow_.active.work;
     std::vector<std::uint64_t> touched;
+    touched.reserve(tiles.size());
     for (const Index tile : tiles) touched.push_back(flow_.touched[tile]);
     archive.array("touched", touched);
     if (touched.size() != tiles.size()) throw misfit("its nodes are not those of the tiles");

@@ -1,6 +1,8 @@
 #pragma once
 // Node arrays of the depth-averaged step, on the storage of a TileGrid.
+#include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "grid/tile_grid.h"
 
@@ -82,8 +84,9 @@ private:
     static Index around(const TileGrid& grid) { return 2 * grid.stride() + 8; }
     template <class T>
     static T* aligned(T* p) {  // calloc promises 16 bytes only
-        const auto address = reinterpret_cast<std::uintptr_t>(p);
-        return reinterpret_cast<T*>((address + 31) / 32 * 32);
+        using Byte = std::conditional_t<std::is_const_v<T>, const char, char>;
+        const std::uintptr_t beyond = reinterpret_cast<std::uintptr_t>(p) % 32;
+        return reinterpret_cast<T*>(reinterpret_cast<Byte*>(p) + (32 - beyond) % 32);
     }
 };
 

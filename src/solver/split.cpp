@@ -10,7 +10,7 @@ namespace {
 /// Long thin domains of points that may not split would throw their sub-points far ahead of the mass.
 template <class Real>
 bool clamp_edge(Real& x, Real& y, double longest) {
-    const double length = std::sqrt(double{x} * x + double{y} * y);
+    const double length = std::sqrt(static_cast<double>(x) * x + static_cast<double>(y) * y);
     if (length <= longest) return false;
     x = static_cast<Real>(x * (longest / length));
     y = static_cast<Real>(y * (longest / length));
