@@ -23,7 +23,7 @@ struct Traps : ListenerBase {
         bool excused = false;
 #endif
         for (const char* tag : {"[bench]", "[conserve]", "[insitu]", "[lake]", "[nan]", "[nodes]", "[precision]", "[resume]",
-                                "[rest]", "[solver]", "[speed]", "[stress]", "[verify]"})
+                                "[rest]", "[solid]", "[solver]", "[speed]", "[stress]", "[verify]"})
             excused = excused || tags.find(tag) != std::string::npos;
         feclearexcept(FE_ALL_EXCEPT);
         feenableexcept(FE_OVERFLOW);

@@ -152,7 +152,7 @@ std::vector<Problem> body_problems() {
     bar.order_of = "frequency_error";
     bar.gates = {{64, "frequency_error", 0.01, "issue gate"}, closed};
     Problem disc{
-        "rotating_disc", "an elastic disc turns once: angular momentum stays", {8, 16}, {}, run_disc};
+        "rotating_disc", "an elastic disc turns once: angular momentum stays", {8}, {}, run_disc};
     disc.order_of = "angular_momentum_error";
     disc.gates = {{0, "angular_momentum_error", 1e-10, "issue gate"}, closed};
     Problem impact{
