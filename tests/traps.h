@@ -11,7 +11,8 @@ using ListenerBase = Catch::TestEventListenerBase;
 
 /// Overflow traps in all tests. Where the solver takes steps, invalid operations and divisions by zero do not: its kernels
 /// compute both sides of a choice, for four nodes at once, and a node at rest divides by its speed in the side not taken.
-/// Nor where a test is about what is no number ([nan]). With clang they trap nowhere: it computes both sides of any choice.
+/// Nor where a test has what is no number ([nan]): nodata is NaN, and to compare with it, always false, is invalid. With
+/// clang they trap nowhere: it computes both sides of any choice.
 struct Traps : ListenerBase {
     using ListenerBase::ListenerBase;
     void testCaseStarting(const Catch::TestCaseInfo& info) override {

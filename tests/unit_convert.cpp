@@ -175,7 +175,7 @@ TEST_CASE("The kinetic energy of the converted flow is that of the profile", "[c
     }
 }
 
-TEST_CASE("A plane bed has one gradient everywhere, also at its rim and beside unknown nodes", "[convert]") {
+TEST_CASE("A plane bed has one gradient everywhere, also at its rim and beside unknown nodes", "[convert][nan]") {
     Raster bed = tilted_bed(6, 2.0);
     bed.at(3, 3) = Raster::nodata;
     const GridGeometry& g = bed.geometry;

@@ -200,7 +200,7 @@ TEST_CASE("Map coordinates of millions of metres cost neither particles nor volu
     check_volume(there, volume_in_box(near, 0, 0, 100, 100));
 }
 
-TEST_CASE("Two releases keep their own books and velocities", "[particles]") {
+TEST_CASE("Two releases keep their own books and velocities", "[particles][nan]") {
     Release first = release_of({{{rotated_square({30, 30}, 20, 0.1)}}}, 1.0);
     Release second = release_of({{{rotated_square({70, 60}, 25, 0.7)}}}, 2.0);
     first.velocity = Vec2(1.0, -2.0);
@@ -238,7 +238,7 @@ TEST_CASE("An outline that reaches beyond its depth raster is said", "[particles
     CHECK(make({release}, flat_bed(51, 51, 1.0)).said("50 % of its outline has no depth in depth.tif"));
 }
 
-TEST_CASE("A release that cannot be is explained", "[particles]") {
+TEST_CASE("A release that cannot be is explained", "[particles][nan]") {
     const Raster bed = flat_bed(51, 51, 1.0);
     const auto square = [](double x) { return rectangle(x, 10, x + 20, 30); };
     CHECK_THROWS_WITH(make({release_of_ring(square(1000), 1.0)}, bed),
