@@ -68,13 +68,17 @@ TEST_CASE("A box is near a surface when its nearest corner is", "[solid]") {
     CHECK(surfaces_near(list, {0, 0, 2.4}, {1, 1, 3}, 0.1, 0.2) == 2u);
 }
 
-TEST_CASE("Shares of an impulse add up to it, along the surfaces' normals where these explain it",
-          "[solid]") {
-    const Vec3 normals[3] = {{0, 0, 1}, Vec3(1, 0, 1).normalized(), {0, 1, 0}};
-    const Vec3 impulse = 2.0 * normals[0] + 3.0 * normals[1] + 5.0 * normals[2];
-    Vec3 parts[3];
-    share_out(impulse, normals, 3, parts);
-    CHECK((parts[0] + parts[1] + parts[2] - impulse).norm() < 1e-14);
-    CHECK((parts[1] - 3.0 * normals[1]).norm() < 1e-7);  // of the little on the diagonal
-    CHECK((parts[2] - 5.0 * normals[2]).norm() < 1e-7);
+TEST_CASE("In corners of any width no image stands where material may be", "[solid]") {
+    const double wide = GENERATE(60.0, 70.0, 90.0, 110.0, 130.0, 150.0, 170.0) * M_PI / 180.0;
+    // A floor towards +x, and a plane that rises from the origin at the angle `wide` to it.
+    const std::vector<Surface> corner = {Surface::plane({0, 0, 0}, {0, 0, 1}),
+                                         Surface::plane({0, 0, 0}, {std::sin(wide), 0, -std::cos(wide)})};
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+        const double angle = share * wide;
+        for (const Image& image : images_of(corner, {1.5 * std::cos(angle), 0, 1.5 * std::sin(angle)})) {
+            CAPTURE(wide, share, image.place.x(), image.place.z());
+            CHECK((contact(corner[0], image.place).distance < 1e-12 ||
+                   contact(corner[1], image.place).distance < 1e-12));
+        }
+    }
 }

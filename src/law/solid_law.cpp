@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "base/error.h"
+
 namespace frana {
 namespace {
 
@@ -99,6 +101,8 @@ void Elastic::update(const Deformation& d, double& j, double* state) const {
 /// sqrt(2/3) q; in plane strain half the difference of the principal stresses is sin(phi) times their mean,
 /// and |s| = sqrt(2) times that half.
 DruckerPrager DruckerPrager::of(const Elastic& elastic, double friction_angle, double cohesion, Cone cone) {
+    expect(friction_angle > 0.0 || cohesion == 0.0,
+           "cohesion of this law needs friction: its cone has an apex");
     const double sine = std::sin(friction_angle);
     const double alpha =
         cone == Cone::compression ? std::sqrt(2.0 / 3.0) * 6.0 * sine / (3.0 - sine) : std::sqrt(2.0) * sine;

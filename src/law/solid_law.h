@@ -1,11 +1,16 @@
 #pragma once
 // Laws of material in space: stress of a point from its own numbers, and how these change with the
 // deformation. A law is a struct of parameters with
-//   kStates           numbers that a point keeps for it,
-//   kAverages         whether J is drawn to its mean over the neighbourhood (a cure for noisy pressure in
-//   fluids), stress(j, state, gradient)   Cauchy stress times J, tension positive [Pa], update(deformation,
-//   j, state)  the same numbers after a step, sound_speed(rho)  the fastest wave of small amplitude [m/s],
-//   explicit_viscosity()  that bounds the step [Pa s].
+//
+//   kStates      numbers that a point keeps for it
+//
+//   kAverages    whether J is drawn to its mean over the neighbourhood, a cure for noisy pressure in fluids
+//
+//   stress()     Cauchy stress times J, tension positive [Pa]
+//
+//   update()     the same numbers after a step
+//
+//   sound_speed(), explicit_viscosity()   what bounds the step [m/s], [Pa s]
 #include <cmath>
 
 #include "base/types.h"
@@ -116,8 +121,8 @@ enum class Cone { compression, plane_strain };
 
 /// Sand, soil: elastic as above within the cone |s| = alpha (p + p_t) of Drucker and Prager, in Kirchhoff
 /// stress, p_t = c cot(phi). Flow keeps the volume (no dilatancy). At the apex the material parts: it carries
-/// no stress, and the volume it gained has to be closed before it carries pressure again (Tampubolon et al.
-/// 2017, sec. 4.3.4).
+/// the tension p_t and no more, and the volume it gained has to be closed before it carries pressure again
+/// (Tampubolon et al. 2017, sec. 4.3.4).
 struct DruckerPrager {
     static constexpr int kStates = 7;  ///< logarithmic elastic strain; volume gained at the apex, ln J [1]
     static constexpr bool kAverages = false;

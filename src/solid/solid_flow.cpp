@@ -13,8 +13,24 @@ namespace frana {
 namespace {
 
 /// Cells a point may have moved since the last sort: tiles of one colour stand 16 nodes apart and reach 8 + 2
-/// nodes and twice the drift; images, 32 apart, reach 8 + 2 + 2 * 8.2 and twice the drift.
+/// nodes and twice the drift; images, 32 apart, reach 8 + 2 + 2 * 9 and twice the drift.
 constexpr double kDriftLimit = 1.5;
+
+/// Seeds that would not be where the solver looks for them.
+void require_inside(const SolidScene& scene) {
+    const SolidSeeds& seeds = scene.points;
+    const std::size_t count = seeds.mass.size();
+    expect(seeds.position.size() == count && seeds.velocity.size() == count &&
+               (seeds.pressure.empty() || seeds.pressure.size() == count),
+           "points in space have a place, a velocity and a mass each");
+    for (std::size_t p = 0; p < count; ++p) {
+        const Vec3 x = (seeds.position[p] - scene.grid.origin) / scene.grid.cell;
+        for (int k = 0; k < 3; ++k)
+            expect(x[k] >= 0.5 && x[k] <= static_cast<double>(scene.grid.nodes[k]) - 1.5,
+                   "points in space lie in the grid");
+        expect(seeds.mass[p] > 0.0, "points in space have mass");
+    }
+}
 
 }  // namespace
 
@@ -37,6 +53,7 @@ SolidFlow::SolidFlow(const SolidScene& scene)
       sound_(kernel_->sound_speed(scene.density)),
       apic_(scene.affine == Affine::apic) {
     expect(scene.surfaces.size() <= kMostSurfaces, "more surfaces than a set of them can hold");
+    require_inside(scene);
     flush_denormals_on_all_threads();
     body_.mass_j = LazyArray<double>(body_.grid.size());
     MaterialPoints& q = body_.points;
@@ -122,6 +139,7 @@ double SolidFlow::step_length(double until) const {
 /// One step: points give mass, momentum and stress to the nodes, surfaces show their images, nodes meet the
 /// surfaces, points are carried and strained.
 void SolidFlow::advance(double until) {
+    expect(until > status_.time, "a step goes forward in time");
     const double dt = step_length(until);
     timed_("clear", [&] { kernel_->clear(body_); });
     timed_("scatter", [&] { kernel_->scatter(body_, dt); });

@@ -64,7 +64,7 @@ struct SolidSums {
     Vec3 momentum{0, 0, 0}, moment{0, 0, 0};  ///< moment: sum of m x
     double left_mass = 0.0;
     Vec3 left_momentum{0, 0, 0};
-    Index bad = -1;  ///< a point whose numbers are not finite
+    Index bad = -1;  ///< a point whose numbers are not finite, or that ran away
 };
 
 /// All that the kernels share.

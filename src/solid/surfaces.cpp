@@ -1,6 +1,5 @@
 #include "solid/surfaces.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "base/error.h"
@@ -99,25 +98,13 @@ void Images::reflect(const Near* near, int count, const Image& from, int depth) 
         int left = 0;
         for (int m = n + 1; m < count; ++m) {
             if (normal.dot(near[m].contact.normal) < kOpposite) continue;
-            others[left] = near[m];
-            others[left++].contact.distance += near[m].contact.normal.dot(image.place - from.place);
+            Near other = near[m];
+            other.contact.distance += other.contact.normal.dot(image.place - from.place);
+            if (other.contact.distance > 0.0)
+                others[left++] = other;  // in a wide corner it may lie behind already
         }
         reflect(others, left, image, depth + 1);
     }
-}
-
-void share_out(const Vec3& impulse, const Vec3* normals, int count, Vec3* parts) {
-    expect(count >= 1 && count <= 3, "an impulse is shared by one to three surfaces");
-    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> n(3, count);
-    for (int s = 0; s < count; ++s) n.col(s) = normals[s];
-    // Nearly parallel normals have no unique parts: a little is added to the diagonal.
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram = n.transpose() * n;
-    gram.diagonal().array() += 1e-9;
-    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> a =
-        gram.partialPivLu().solve(n.transpose() * impulse);
-    Vec3 rest = impulse;
-    for (int s = 1; s < count; ++s) rest -= parts[s] = a[s] * normals[s];
-    parts[0] = rest;
 }
 
 }  // namespace frana

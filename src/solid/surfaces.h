@@ -58,8 +58,9 @@ struct Image {
 };
 
 /// The images of a point: one in each surface near it; in a corner also those of the images, which together
-/// leave no gap there. Surfaces at more than 120 degrees from each other's normal, as both sides of a wall,
-/// have no common corner.
+/// leave no gap there, as long as they do not lie behind the other surface already. Surfaces whose normals
+/// are more than 120 degrees apart, such as both sides of a slice, have no common corner. The first four
+/// surfaces of the list count.
 class Images {
 public:
     Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell);
@@ -76,10 +77,5 @@ private:
     std::array<Image, kMost> list_;
     int count_ = 0;
 };
-
-/// Splits an impulse that surfaces with these normals gave together: parts a_s n_s that come closest to it,
-/// in least squares; what no normal explains (friction) goes to the first, so that the parts add up to the
-/// impulse.
-void share_out(const Vec3& impulse, const Vec3* normals, int count, Vec3* parts);
 
 }  // namespace frana

@@ -1,5 +1,6 @@
 #include "verify/body.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -66,6 +67,16 @@ Measurement run_body(SolidFlow& flow, double end, const std::function<void(const
     given += now.weight_impulse.norm();
     for (const Vec3& impulse : flow.body().impulse) given += impulse.norm();
     m.add("momentum_residual", given > 0.0 ? flow.momentum_residual().norm() / given : 0.0);
+    return m;
+}
+
+Measurement joined(const Measurement& before, const Measurement& now) {
+    Measurement m = now;
+    m.steps += before.steps;
+    m.wall_seconds += before.wall_seconds;
+    for (Extra& extra : m.extras)
+        if (extra.name == "momentum_residual" && before.steps > 0)
+            extra.value = std::max(extra.value, before.value("momentum_residual"));
     return m;
 }
 

@@ -27,7 +27,12 @@ SpaceGeometry grid_around(const Frame3& frame, const Vec3& low, const Vec3& high
 /// The two planes at y = 0 and y = width that make a slice of a plane problem.
 void add_slice(SolidScene& scene, double width);
 
-/// A run to `end`, timed; calls each(flow) after every step.
+/// A run to `end`, timed; calls each(flow) after every step. momentum_residual: what the ledger of surfaces
+/// and gravity leaves open, over all momentum that went round.
 Measurement run_body(SolidFlow& flow, double end, const std::function<void(const SolidFlow&)>& each = {});
+
+/// Runs of one problem as one: steps and times add up, and the larger residual counts; the rest is the later
+/// run's.
+Measurement joined(const Measurement& before, const Measurement& now);
 
 }  // namespace frana::verify

@@ -1,4 +1,4 @@
-// Fluid in space: a tank at rest, a dam that breaks, a yield stress that stops a slump.
+// Fluid in space: a tank at rest, a dam that breaks.
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +9,8 @@ namespace frana::verify {
 namespace {
 
 constexpr double kGravity = 10.0, kDensity = 1000.0;  // [m/s^2], [kg/m^3]
-constexpr double kWidthCells = 3.0;  // of a slice: images of images reach past it only from outside
-
-/// A box of water in its own axes, at rest, with hydrostatic pressure; sound ten times as fast as a fall from
+// Of a slice: so wide, mirror images in both of its sides do not meet where material is.
+constexpr double kWidthCells = 3.0;
 /// the surface.
 struct Water {
     Frame3 frame;
@@ -70,10 +69,11 @@ Measurement run_tank(const Setup& setup) {
         double since = 0.0;
         const Vec3 start = flow.status().centre;
         const double mass = flow.status().mass;
-        m = run_body(flow, kEnd, [&](const SolidFlow& now) {
+        const Measurement run = run_body(flow, kEnd, [&](const SolidFlow& now) {
             if (half.empty() && now.status().time >= 0.5 * kEnd)
                 half = now.body().impulse, since = now.status().time;
         });
+        m = joined(m, run);
         const auto force = [&](std::size_t s) {
             return (flow.body().impulse[s] - half[s]).norm() / (kEnd - since) / width;
         };
@@ -97,8 +97,9 @@ Measurement run_tank(const Setup& setup) {
     return m;
 }
 
-/// Front of a column 1 m wide and 2 m high that slumps along a smooth floor; by the place beyond which 1 % of
-/// the mass lies. Martin and Moyce (1952), Fig. 3, n^2 = 2: Z against T = t sqrt(2 g / a).
+/// Front of a column 1 m wide and 2 m high that slumps along a smooth floor. Martin and Moyce (1952), Fig. 3,
+/// n^2 = 2, have the tip at Z = 3.22 at T = t sqrt(2 g / a) = 2.65, where codes without friction are a tenth
+/// ahead; here it is the place beyond which 1 % of the mass lies, since single points run ahead.
 Measurement run_dam_front(const Setup& setup) {
     const double cell = 1.0 / static_cast<double>(setup.cells), width = kWidthCells * cell;
     const Water water{{}, cell, {1.0, width, 2.0}, {4.5, width, 2.6}, setup.per_side};
@@ -113,7 +114,7 @@ Measurement run_dam_front(const Setup& setup) {
     m.add("front", front, "m");
     m.front_error = front - 3.22;
     const double fallen = now.mass * kGravity * (1.0 - now.centre.z());
-    m.add("energy_kept", now.kinetic / fallen);
+    m.add("energy_lost", 1.0 - now.kinetic / fallen);
     return m;
 }
 
@@ -135,21 +136,19 @@ std::vector<Problem> tank_problems() {
         tank_residuals,
         run_tank};
     tank.order_of = "wall_force_error";
-    const std::string slice = "prototype in a slice, three_d 8";
-    tank.gates = {{16, "bed_pressure_error", 0.01, slice},
-                  {16, "bed_force_error", 0.005, slice},
-                  {16, "wall_force_error", 0.005, slice},
-                  {16, "pressure_noise", 0.02, slice},
-                  {0, "momentum_residual", 1e-12, "round-off"}};
+    const std::string slice = "a slice of the same scheme was within it";
+    tank.gates = {
+        {16, "bed_pressure_error", 0.01, slice},        {16, "bed_force_error", 0.005, slice},
+        {16, "wall_force_error", 0.005, slice},         {16, "pressure_noise", 0.02, slice},
+        {16, "max_speed", 0.008, "that slice, turned"}, {0, "momentum_residual", 1e-12, "round-off"}};
     Problem dam{"dam_front",
                 "a column of water 1 m by 2 m slumps: front after 0.59 s (Martin and Moyce 1952: 3.22 m)",
                 {8, 16},
                 {},
                 run_dam_front};
     dam.order_of = "front_error";
-    dam.gates = {
-        {16, "front_error", 0.1 * 3.22, "a tenth: codes without friction lead the experiment by 12 to 16 %"},
-        {0, "momentum_residual", 1e-12, "round-off"}};
+    dam.gates = {{16, "energy_lost", 0.01, "a slice of the same scheme kept 99 %"},
+                 {0, "momentum_residual", 1e-12, "round-off"}};
     for (Problem* problem : {&tank, &dam}) problem->in_space = true;
     return {tank, dam};
 }
