@@ -14,25 +14,30 @@ constexpr double kDegree = M_PI / 180.0;
 struct Bar {
     double young = 1e6, density = 1000.0, length = 1.0;  ///< [Pa], [kg/m^3], [m]
     double wave() const { return std::sqrt(young / density); }
+
+    /// The bar from x = 0 on, four cells thick, with the speed v(x) along itself and room at both ends.
+    SolidScene scene(const Setup& setup, const std::function<double(double x)>& v) const {
+        const double cell = length / static_cast<double>(setup.cells), side = 4.0 * cell;
+        SolidScene s;
+        s.gravity.setZero();
+        s.density = density;
+        s.law = solid::Elastic::of(young, 0.0);
+        s.grid = grid_around({}, {-0.5 * length, 0, 0}, {1.5 * length, side, side}, cell);
+        for_each_part({0, 0, 0}, {length, side, side}, cell, setup.per_side,
+                      [&](const Vec3& x, double volume) {
+                          s.points.add(x, {v(x.x()), 0, 0}, density * volume);
+                      });
+        return s;
+    }
 };
 
 /// A free bar in its first mode, v = v_0 cos(pi x / L): the mode's amplitude is back after 2 L / c.
 Measurement run_bar(const Setup& setup) {
     const Bar bar;
-    const double cell = bar.length / static_cast<double>(setup.cells), side = 4.0 * cell,
-                 v0 = 1e-3 * bar.wave();
-    SolidScene s;
-    s.gravity.setZero();
-    s.density = bar.density;
-    s.law = solid::Elastic::of(bar.young, 0.0);
-    s.grid = grid_around({}, {-0.5 * bar.length, 0, 0}, {1.5 * bar.length, side, side}, cell);
     const auto mode = [&](double x) { return std::cos(M_PI * x / bar.length); };
+    const SolidScene s = bar.scene(setup, [&](double x) { return 1e-3 * bar.wave() * mode(x); });
     std::vector<double> shape;
-    for_each_part({0, 0, 0}, {bar.length, side, side}, cell, setup.per_side,
-                  [&](const Vec3& x, double volume) {
-                      shape.push_back(mode(x.x()));
-                      s.points.add(x, {v0 * shape.back(), 0, 0}, bar.density * volume);
-                  });
+    for (const Vec3& x : s.points.position) shape.push_back(mode(x.x()));
     SolidFlow flow(s);
     const auto amplitude = [&] {
         double sum = 0.0, all = 0.0;
@@ -84,18 +89,9 @@ Measurement run_disc(const Setup& setup) {
 /// c v.
 Measurement run_bar_impact(const Setup& setup) {
     const Bar bar;
-    const double cell = bar.length / static_cast<double>(setup.cells), side = 4.0 * cell,
-                 v0 = 1e-3 * bar.wave();
-    SolidScene s;
-    s.gravity.setZero();
-    s.density = bar.density;
-    s.law = solid::Elastic::of(bar.young, 0.0);
-    s.grid = grid_around({}, {0, 0, 0}, {1.5 * bar.length, side, side}, cell);
+    const double side = 4.0 * bar.length / static_cast<double>(setup.cells), v0 = 1e-3 * bar.wave();
+    SolidScene s = bar.scene(setup, [&](double) { return -v0; });
     s.surfaces.push_back(Surface::plane({0, 0, 0}, {1, 0, 0}));
-    for_each_part({0, 0, 0}, {bar.length, side, side}, cell, setup.per_side,
-                  [&](const Vec3& x, double volume) {
-                      s.points.add(x, {-v0, 0, 0}, bar.density * volume);
-                  });
     SolidFlow flow(s);
     const double back = 2.0 * bar.length / bar.wave();
     std::vector<std::pair<double, double>> push;
