@@ -1,5 +1,5 @@
 #pragma once
-// A small 3D scene for tests: a lump of material that falls on a floor and slides to a corner.
+// A small 3D scene for tests: a lump of material that falls on a rough slope, beside a wall.
 #include "verify/body.h"
 
 namespace frana {

@@ -188,8 +188,7 @@ void SolidFlow::require_sound(const SolidSums& sums) const {
     const Vec3 x = position(sums.bad);
     throw NumericsError(fmt::format(
         "step {}, t = {:.6g} s, dt = {:.3g} s: the point at ({:.6g}, {:.6g}, {:.6g}) would move by more than "
-        "a cell in "
-        "one step or is not finite; reduce the time step (cfl is {}) or look at the surfaces there",
+        "a cell in one step or is not finite; reduce the time step (cfl is {}) or look at the surfaces there",
         status_.step, status_.time, status_.dt, x.x(), x.y(), x.z(), cfl_));
 }
 

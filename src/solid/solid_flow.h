@@ -73,15 +73,16 @@ struct SolidBody {
     SpaceGrid grid;
     MaterialPoints points;
     ActiveTiles active;
-    std::array<std::vector<Index>, 64>
-        image_colour;                     ///< positions of tiles near surfaces, four colours an axis
+    /// Positions of tiles near surfaces, four colours an axis.
+    std::array<std::vector<Index>, 64> image_colour;
     std::vector<SurfaceSet> near_points;  ///< per particle tile
     std::vector<SurfaceSet> near_nodes;   ///< per tile of the work list
     std::vector<std::uint8_t> gone;       ///< per point: left the grid in this step
 
+    /// Mass and momentum; then mean J and velocity.
     struct Node {
         double m, x, y, z;
-    };                            ///< mass and momentum; then mean J and velocity
+    };
     LazyArray<Node> nodes, real;  ///< real: without images, near surfaces
     LazyArray<double> mass_j;     ///< sum of w m J, of laws that average
     std::vector<Surface> surfaces;

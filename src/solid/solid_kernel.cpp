@@ -8,8 +8,8 @@
 namespace frana {
 namespace {
 
-constexpr double kFarthestImage =
-    9.0;  ///< along an axis [cells], for the distances of colours (solid_flow.cpp)
+/// Of an image from its point along an axis [cells], for the distances of colours (solid_flow.cpp).
+constexpr double kFarthestImage = 9.0;
 constexpr double kLongestShift = 1.0;  ///< of a point in a step [cells]: the time step allows its cfl
 
 /// Quadratic B-splines of a point: along each axis three nodes with weights, slopes [1/m] and distances [m].

@@ -11,7 +11,9 @@ namespace {
 constexpr double kGravity = 10.0, kDensity = 1000.0;  // [m/s^2], [kg/m^3]
 // Of a slice: so wide, mirror images in both of its sides do not meet where material is.
 constexpr double kWidthCells = 3.0;
-/// the surface.
+
+/// A box of water in its own axes, at rest, with hydrostatic pressure; sound ten times as fast as a wave on
+/// it.
 struct Water {
     Frame3 frame;
     double cell;
