@@ -12,6 +12,7 @@
 //
 //   sound_speed(), explicit_viscosity()   what bounds the step [m/s], [Pa s]
 #include <cmath>
+#include <variant>
 
 #include "base/types.h"
 
@@ -141,6 +142,8 @@ struct DruckerPrager {
 };
 
 }  // namespace solid
+
+using SolidLaw = std::variant<solid::Fluid, solid::Bingham, solid::Elastic, solid::DruckerPrager>;
 
 /// What becomes of the logarithmic strain e by an elastic deformation F = I + grown: ln(F exp(2 e) F^T) / 2,
 /// to round-off.

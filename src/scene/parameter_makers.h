@@ -14,6 +14,9 @@ using Table = std::vector<Parameter>;
 /// The keys of [[insitu]] and [[camera]] (parameter_table_insitu.cpp).
 void add_insitu(Table& table);
 
+/// The keys of [[stage]] (parameter_table_stages.cpp).
+void add_stages(Table& table);
+
 namespace rows {
 
 inline const double infinity = std::numeric_limits<double>::infinity();

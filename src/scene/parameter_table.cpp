@@ -215,6 +215,7 @@ void add_run(Table& table) {
     Parameter point = make("gauge.point", Kind::numbers, "m", "where the gauge stands: [x, y]");
     point.length = 2;
     table.push_back(required(point));
+    add_stages(table);
     add_insitu(table);
     table.push_back(absent(make("survey.footprint", Kind::path, "",
                                 "surveyed extent that the run is compared with: any OGR vector file of polygons, or a "
@@ -240,13 +241,13 @@ const std::vector<Parameter>& parameters() {
 }
 
 const std::vector<std::string>& repeated_tables() {
-    static const std::vector<std::string> names = {"release", "profile", "gauge", "insitu", "camera"};
+    static const std::vector<std::string> names = {"release", "profile", "gauge",
+                                                   "stage",   "insitu",  "camera"};
     return names;
 }
 
 const std::vector<UnbuiltTable>& unbuilt_tables() {
-    static const std::vector<UnbuiltTable> tables = {{"barrier", "barriers"},
-                                                     {"stage", "stages with other laws or loads"}};
+    static const std::vector<UnbuiltTable> tables = {{"barrier", "barriers"}};
     return tables;
 }
 

@@ -47,8 +47,9 @@ private:
             out_ += fmt::format("{} = {}\n", parameter.name(), value_text(parameter, *case_.find(key)));
             return;
         }
+        const std::string choice = parameter.switch_key.empty() ? "" : parameter.switch_of(key);
         const bool unused =
-            !parameter.switch_key.empty() && !contains(parameter.used_by, case_.word(parameter.switch_of(key)));
+            !choice.empty() && (!case_.has(choice) || !contains(parameter.used_by, case_.word(choice)));
         const bool said_otherwise = !parameter.instead_of.empty() &&
                                     case_.given(prefix + find_parameter(parameter.instead_of)->name());
         if (unused || said_otherwise) return;

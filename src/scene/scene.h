@@ -1,12 +1,15 @@
 #pragma once
 // The checked, plain description of one run: SI units, no files, no text to parse. `build_scene` makes it from a
 // case file (scene/build_scene.h); `make_simulation` turns it into a solver (solver/simulation.h).
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "convert/profile.h"
+#include "law/solid_law.h"
 #include "particles/seeds.h"
 #include "scene/insitu.h"
 #include "terrain/raster.h"
@@ -82,6 +85,24 @@ struct Profile { std::string name; Polyline line; };
 /// A named point at which the flow is recorded every step.
 struct Gauge { std::string name; Vec2 point{0, 0}; };
 
+/// From a time on, the material in a window of the map is points in space (solid/solid_flow.h); what flows into the
+/// window later becomes points as it crosses the edge.
+struct SolidStage {
+    double from = 0.0;                 ///< [s]
+    std::array<Index, 4> window{};     ///< first and last nodes of the terrain's grid in it: i0, j0, i1, j1
+    double cell = 1.0;                 ///< of the grid in space [m]
+    double spacing = 0.5;              ///< of the points at the start [m]
+    SolidLaw law;                      ///< of fluids without the bulk modulus, which the speed of sound gives
+    std::optional<double> sound_speed; ///< of fluids [m/s]; nothing: chosen when the stage begins
+    std::optional<double> top;         ///< elevation where the space ends [m]; nothing: chosen when the stage begins
+    bool stuck = false;                ///< the lowest material does not slide on the bed
+    double bed_friction = 0.0;         ///< Coulomb's coefficient [1]
+    double cfl = 0.4;                  ///< fraction of a cell that sound and flow may pass in a step [1]
+    bool apic = false;                 ///< otherwise tpic
+    VelocityProfile profile = VelocityProfile::plug;
+    bool along_bed = true;             ///< points start along the bed; otherwise without vertical velocity
+};
+
 /// What is written, and when.
 struct Output {
     double every = 1.0;                ///< [s]; frames are hit exactly
@@ -121,6 +142,7 @@ struct Scene {
     std::vector<Gauge> gauges;
     std::vector<Insitu> insitu;        ///< looked at while the case runs
     std::optional<Polygons> survey;    ///< surveyed footprint, to compare with
+    std::optional<SolidStage> solid;   ///< where and when the run goes into space
 
     std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)
 };

@@ -44,9 +44,10 @@ public:
     /// `active`: tiles with points in eight colours, and on the work list those and their 26 neighbours.
     void sort(MaterialPoints& points, const SpaceGrid& grid, const std::vector<std::uint8_t>& gone,
               ActiveTiles& active);
+    /// Makes `active` whole from its tiles and their ranges.
+    static void list_tiles(const SpaceGrid& grid, ActiveTiles& active);
 
 private:
-    static void list_tiles(const SpaceGrid& grid, ActiveTiles& active);
     PointOrder order_;
     std::vector<PointField> fields_;
 };

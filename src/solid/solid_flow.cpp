@@ -17,16 +17,15 @@ namespace {
 constexpr double kDriftLimit = 1.5;
 
 /// Seeds that would not be where the solver looks for them.
-void require_inside(const SolidScene& scene) {
-    const SolidSeeds& seeds = scene.points;
+void require_inside(const SolidSeeds& seeds, const SpaceGeometry& grid) {
     const std::size_t count = seeds.mass.size();
     expect(seeds.position.size() == count && seeds.velocity.size() == count &&
                (seeds.pressure.empty() || seeds.pressure.size() == count),
            "points in space have a place, a velocity and a mass each");
     for (std::size_t p = 0; p < count; ++p) {
-        const Vec3 x = (seeds.position[p] - scene.grid.origin) / scene.grid.cell;
+        const Vec3 x = (seeds.position[p] - grid.origin) / grid.cell;
         for (int k = 0; k < 3; ++k)
-            expect(x[k] >= 0.5 && x[k] <= static_cast<double>(scene.grid.nodes[k]) - 1.5,
+            expect(x[k] >= 0.5 && x[k] <= static_cast<double>(grid.nodes[k]) - 1.5,
                    "points in space lie in the grid");
         expect(seeds.mass[p] > 0.0, "points in space have mass");
     }
@@ -53,32 +52,55 @@ SolidFlow::SolidFlow(const SolidScene& scene)
       sound_(kernel_->sound_speed(scene.density)),
       apic_(scene.affine == Affine::apic) {
     expect(scene.surfaces.size() <= kMostSurfaces, "more surfaces than a set of them can hold");
-    require_inside(scene);
     flush_denormals_on_all_threads();
     body_.mass_j = LazyArray<double>(body_.grid.size());
-    MaterialPoints& q = body_.points;
-    q.states = kernel_->states();
-    const Index count = static_cast<Index>(scene.points.mass.size());
-    q.resize(count);
-    for (Index p = 0; p < count; ++p) {
-        const std::size_t n = static_cast<std::size_t>(p);
-        const Vec3 x = (scene.points.position[n] - scene.grid.origin) / scene.grid.cell;
-        for (int k = 0; k < 3; ++k) q.x[k][p] = x[k], q.v[k][p] = scene.points.velocity[n][k];
-        q.mass[p] = scene.points.mass[n];
-        q.rest_volume[p] = scene.points.mass[n] / scene.density;
-        q.j[p] = kernel_->compressed(scene.points.pressure.empty() ? 0.0 : scene.points.pressure[n]);
-        q.id[p] = p;
-        start_momentum_ += q.mass[p] * scene.points.velocity[n];
-        status_.centre += q.mass[p] * scene.points.position[n];
-        status_.mass += q.mass[p];
-        status_.kinetic += 0.5 * q.mass[p] * scene.points.velocity[n].squaredNorm();
-        status_.volume += q.j[p] * q.rest_volume[p];
-        status_.max_speed = std::max(status_.max_speed, scene.points.velocity[n].norm());
-    }
-    if (status_.mass > 0.0) status_.centre /= status_.mass;
+    body_.points.states = kernel_->states();
+    place(scene.points);
     sort();
-    status_.points = count;
-    status_.momentum = start_momentum_;
+}
+
+/// Seeds become points behind those that are there, and count from now on.
+void SolidFlow::place(const SolidSeeds& seeds) {
+    require_inside(seeds, body_.grid.geometry());
+    MaterialPoints& q = body_.points;
+    const SpaceGeometry& g = body_.grid.geometry();
+    const Index before = q.count(), count = static_cast<Index>(seeds.mass.size());
+    q.resize(before + count);
+    Vec3 moment = status_.mass * status_.centre;
+    for (Index p = before; p < before + count; ++p) {
+        const std::size_t n = static_cast<std::size_t>(p - before);
+        const Vec3 x = (seeds.position[n] - g.origin) / g.cell;
+        const double mass = seeds.mass[n], speed = seeds.velocity[n].norm();
+        for (int k = 0; k < 3; ++k) q.x[k][p] = x[k], q.v[k][p] = seeds.velocity[n][k];
+        for (Column& column : q.gradient) column[p] = 0.0;
+        for (int k = 0; k < q.states; ++k) q.state[k][p] = 0.0;
+        q.mass[p] = mass;
+        q.rest_volume[p] = mass / density_;
+        q.j[p] = kernel_->compressed(seeds.pressure.empty() ? 0.0 : seeds.pressure[n]);
+        q.id[p] = next_id_++;
+        status_.momentum_given += mass * seeds.velocity[n];
+        status_.momentum += mass * seeds.velocity[n];
+        moment += mass * seeds.position[n];
+        status_.mass += mass;
+        status_.kinetic += 0.5 * mass * speed * speed;
+        status_.potential -= mass * body_.gravity.dot(seeds.position[n]);
+        status_.speeds += mass * speed;
+        status_.volume += q.j[p] * q.rest_volume[p];
+        status_.max_speed = std::max(status_.max_speed, speed);
+    }
+    if (status_.mass > 0.0) status_.centre = moment / status_.mass;
+    status_.points = q.count();
+}
+
+void SolidFlow::add(const SolidSeeds& seeds) {
+    place(seeds);
+    body_.gone.resize(static_cast<std::size_t>(body_.points.count()), 0);
+    sort();
+}
+
+void SolidFlow::start_at(double time) {
+    expect(status_.step == 0, "a clock is set before the first step");
+    status_.time = time;
 }
 
 void SolidFlow::sort() {
@@ -122,6 +144,35 @@ void SolidFlow::mark_near() {
     }
     for (std::size_t n = 0; n < body_.active.work.size(); ++n)
         body_.near_nodes[n] = near(body_.active.work[n], 0.0, -1.0);
+    mark_seen_images();
+}
+
+/// Images in a surface that bends may stand where its nodes lie farther from it than images reach in a plane: there too
+/// the real material has to be told from them. An image stands up to nine cells from its point (solid_kernel.cpp).
+void SolidFlow::mark_seen_images() {
+    SurfaceSet bent = 0;
+    for (std::size_t s = 0; s < body_.surfaces.size(); ++s)
+        if (body_.surfaces[s].kind != Surface::Kind::plane) bent |= SurfaceSet{1} << s;
+    if (bent == 0) return;
+    constexpr Index kTilesAway = 2;
+    const SpaceGrid& grid = body_.grid;
+    for (Index n = 0; n < body_.active.count(); ++n) {
+        const SurfaceSet set = body_.near_points[static_cast<std::size_t>(n)] & bent;
+        if (set == 0) continue;
+        const std::array<Index, 3> t = grid.tile_place(body_.active.tile[n]);
+        for (Index k = -kTilesAway; k <= kTilesAway; ++k)
+            for (Index j = -kTilesAway; j <= kTilesAway; ++j)
+                for (Index i = -kTilesAway; i <= kTilesAway; ++i) {
+                    const std::array<Index, 3> to = {t[0] + i, t[1] + j, t[2] + k};
+                    bool inside = true;
+                    for (int axis = 0; axis < 3; ++axis)
+                        inside = inside && to[axis] >= 0 && to[axis] < grid.tiles_along(axis);
+                    if (!inside || !body_.active.in_work[grid.tile_at(to)]) continue;
+                    const auto& work = body_.active.work;
+                    const auto at = std::lower_bound(work.begin(), work.end(), grid.tile_at(to)) - work.begin();
+                    body_.near_nodes[static_cast<std::size_t>(at)] |= set;
+                }
+    }
 }
 
 /// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
@@ -158,8 +209,9 @@ void SolidFlow::book(double dt) {
     Index left = 0;
     for (const SolidSums& sums : body_.sums) {
         all.mass += sums.mass, all.momentum += sums.momentum, all.moment += sums.moment;
-        all.kinetic += sums.kinetic, all.volume += sums.volume;
+        all.kinetic += sums.kinetic, all.speeds += sums.speeds, all.volume += sums.volume;
         all.left_mass += sums.left_mass, all.left_momentum += sums.left_momentum;
+        all.left_energy += sums.left_energy;
         all.max_speed2 = std::max(all.max_speed2, sums.max_speed2);
         all.max_shift = std::max(all.max_shift, sums.max_shift);
         if (sums.bad >= 0) all.bad = sums.bad;
@@ -175,11 +227,14 @@ void SolidFlow::book(double dt) {
     status_.mass = all.mass;
     status_.momentum = all.momentum;
     status_.kinetic = all.kinetic;
+    status_.speeds = all.speeds;
     status_.volume = all.volume;
     status_.max_speed = std::sqrt(all.max_speed2);
     status_.mass_left += all.left_mass;
     status_.momentum_left += all.left_momentum;
+    status_.energy_left += all.left_energy;
     if (all.mass > 0.0) status_.centre = g.origin + g.cell / all.mass * all.moment;
+    status_.potential = -all.mass * body_.gravity.dot(status_.centre);
     drift_ += all.max_shift;
 }
 
@@ -213,7 +268,7 @@ Mat3 SolidFlow::gradient(Index p) const {
 }
 
 Vec3 SolidFlow::momentum_residual() const {
-    Vec3 given = start_momentum_ + status_.weight_impulse;
+    Vec3 given = status_.momentum_given + status_.weight_impulse;
     for (const Vec3& impulse : body_.impulse) given += impulse;
     return status_.momentum + status_.momentum_left - given;
 }

@@ -1,7 +1,6 @@
 #pragma once
 // The 3D material point method: explicit, quadratic B-splines, TPIC or APIC, against rigid surfaces.
 #include <memory>
-#include <variant>
 #include <vector>
 
 #include "law/solid_law.h"
@@ -11,8 +10,6 @@
 #include "solver/step_clock.h"
 
 namespace frana {
-
-using SolidLaw = std::variant<solid::Fluid, solid::Bingham, solid::Elastic, solid::DruckerPrager>;
 
 /// tpic: the velocity's gradient and the stress's divergence by the shape function's slopes; the quieter
 /// pressure. apic: both by its first moments (Jiang et al. 2015; Hu et al. 2018); angular momentum is kept
@@ -51,18 +48,22 @@ struct SolidStatus {
     double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
     Vec3 momentum{0, 0, 0};              ///< [kg m/s]
     Vec3 momentum_left{0, 0, 0};         ///< carried out [kg m/s]
+    Vec3 momentum_given{0, 0, 0};        ///< at the start and with what was added since [kg m/s]
+    double energy_left = 0.0;            ///< kinetic and potential, carried out [J]
     Vec3 weight_impulse{0, 0, 0};        ///< of gravity since the start [kg m/s]
     Vec3 centre{0, 0, 0};                ///< of mass [m]
     double kinetic = 0.0;                ///< sum of m v^2 / 2 [J]
+    double potential = 0.0;              ///< sum of -m gravity . x [J]
+    double speeds = 0.0;                 ///< sum of m |v| [kg m/s]
     double volume = 0.0;                 ///< sum of J V_0 [m^3]
     double max_speed = 0.0;              ///< [m/s]
 };
 
 /// Sums of the loops over points, tile by tile.
 struct SolidSums {
-    double mass = 0.0, kinetic = 0.0, volume = 0.0, max_speed2 = 0.0, max_shift = 0.0;
+    double mass = 0.0, kinetic = 0.0, speeds = 0.0, volume = 0.0, max_speed2 = 0.0, max_shift = 0.0;
     Vec3 momentum{0, 0, 0}, moment{0, 0, 0};  ///< moment: sum of m x
-    double left_mass = 0.0;
+    double left_mass = 0.0, left_energy = 0.0;
     Vec3 left_momentum{0, 0, 0};
     Index bad = -1;  ///< a point whose numbers are not finite, or that ran away
 };
@@ -119,6 +120,12 @@ public:
 
     /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
     void advance(double until);
+    /// More material, between two steps. Its points get the next numbers.
+    void add(const SolidSeeds& seeds);
+    /// Sets the clock of a flow that has not begun to move [s].
+    void start_at(double time);
+    /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
+    void keep(Archive& archive);
     const SolidStatus& status() const { return status_; }
     const SolidBody& body() const { return body_; }
     std::vector<PhaseTime> timings() const { return timed_.times(); }
@@ -135,8 +142,10 @@ public:
     Vec3 angular_momentum() const;
 
 private:
+    void place(const SolidSeeds& seeds);
     void sort();
     void mark_near();
+    void mark_seen_images();
     double step_length(double until) const;
     void book(double dt);
     void require_sound(const SolidSums& sums) const;
@@ -148,8 +157,8 @@ private:
     SpaceSorter sorter_;
     StepClock timed_;
     SolidStatus status_;
-    Vec3 start_momentum_{0, 0, 0};
     double density_, cfl_, sound_, drift_ = 0.0;
+    Index next_id_ = 0;
     bool apic_;
 };
 

@@ -382,14 +382,17 @@ private:
                 inside && x[k] >= 0.5 && x[k] <= static_cast<double>(body.grid.geometry().nodes[k]) - 1.5;
         if (!inside) {
             body.gone[static_cast<std::size_t>(p)] = 1;
+            const Vec3 place = body.grid.geometry().origin + body.grid.cell() * x;
             sums.left_mass += mass;
             sums.left_momentum += mass * v;
+            sums.left_energy += mass * (0.5 * speed2 - body.gravity.dot(place));
             return;
         }
         sums.mass += mass;
         sums.momentum += mass * v;
         sums.moment += mass * x;
         sums.kinetic += 0.5 * mass * speed2;
+        sums.speeds += mass * std::sqrt(speed2);
         sums.volume += q.j[p] * q.rest_volume[p];
         sums.max_speed2 = std::max(sums.max_speed2, speed2);
         sums.max_shift = std::max(sums.max_shift, shift);

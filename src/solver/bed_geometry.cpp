@@ -159,7 +159,7 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     for_each_node(grid, 0, [&](Index i, Index j, Index k) {
         bed.z[k] = bed.ground[k] = extended(z, nx, ny, i, j, wall);
         const bool inside = i >= 0 && i < nx && j >= 0 && j < ny;
-        bed.exit[k] = inside && std::isnan(scene.bed.at(i, j));
+        bed.exit[k] = inside && std::isnan(scene.bed.at(i, j)) ? kNoData : 0;
     });
     for (Index j = 0; j < ny; ++j)
         for (Index i = 0; i < nx; ++i) bed.has_exits = bed.has_exits || std::isnan(scene.bed.at(i, j));

@@ -7,6 +7,9 @@
 
 namespace frana {
 
+/// Kinds of exits: the elevation model has no data; or points that leave are noted, for another model to take them up.
+constexpr std::uint8_t kNoData = 1, kNoted = 2;
+
 /// Node values on the storage of a TileGrid, filled on all of it (beyond walls mirrored, beyond open sides
 /// extended linearly, over nodata by the nearest known value).
 struct BedGeometry {
@@ -17,7 +20,7 @@ struct BedGeometry {
     LazyArray<double> slope_x;  ///< dz/dx by the 4th-order stencil that also differentiates the free surface [1]
     LazyArray<double> slope_y;  ///< [1]
     LazyArray<double> hxx, hxy, hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
-    LazyArray<std::uint8_t> exit;     ///< 1 where the elevation model has no data: material leaves there
+    LazyArray<std::uint8_t> exit;     ///< kNoData or kNoted where material leaves
     bool has_exits = false;           ///< any of them
 };
 

@@ -91,6 +91,16 @@ private:
     }
 };
 
+/// A column that left at an exit where that is noted, as it was when it left.
+struct Departed {
+    std::int64_t id;
+    double x, y;    ///< position [cells]
+    double vx, vy;  ///< [m/s]
+    double depth;   ///< [m]
+    double mass;    ///< [kg]
+    double energy;  ///< kinetic and potential, as it was booked [J]
+};
+
 /// Sorts columns by tile; points marked in `gone` are dropped. Needs no memory once warmed up.
 class TileSorter {
 public:

@@ -259,8 +259,4 @@ std::vector<std::string> DepthAveraged::remarks() const {
                                      "grid.cell")};
 }
 
-std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start) {
-    return std::make_unique<DepthAveraged>(scene, start);
-}
-
 }  // namespace frana

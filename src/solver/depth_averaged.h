@@ -28,6 +28,12 @@ public:
     std::vector<std::string> remarks() const override;
     void keep(Archive& archive) override;
 
+    /// From now on columns leave at the nodes marked (1; row after row from the south) and are noted; with `leave_now`
+    /// also those that stand there, which are not.
+    void open_exits(const std::vector<std::uint8_t>& marks, bool leave_now);
+    /// The columns that left so since the last call, by id.
+    std::vector<Departed> take_departed();
+
     const Flow& flow() const { return flow_; }
     /// timings() tell CPU time too from now on.
     void count_cpu_time() { timed_.count_cpu_time(); }
@@ -39,6 +45,7 @@ public:
 private:
     template <class Real>
     void place(const Seeds& seeds);
+    void leave_at_exits();
     void level_points(double level);
     void arrive(const PointSums& points);
     NodeSums raise_surface();

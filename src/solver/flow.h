@@ -43,6 +43,7 @@ struct Flow {
     LazyArray<TileReach> reach;       ///< what the points of each tile touch
     std::vector<Index> shore;         ///< tiles of the work list that have margin nodes (mark_margin)
     std::vector<std::uint8_t> marked; ///< scratch of mark_margin, one per tile of the work list
+    std::vector<std::vector<Departed>> departed;  ///< in the last gather, by thread
     LazyArray<TileSums> deposit_sums, depth_sums;  ///< per tile, of node_sums and depth_pass
     Rest rest;
     /// Nodes that the passes walk.

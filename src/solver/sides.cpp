@@ -1,13 +1,14 @@
 #include "solver/sides.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace frana {
-namespace {
 
 template <class Real>
-void leave(const Flow& flow, Index p, Index k, PointSums& sums) {
+double leave(const Flow& flow, Index p, Index k, PointSums& sums) {
     const Carried<Real>& held = flow.columns.carried<Real>();
     const double m = flow.columns.mass[p], vx = held.vx[p], vy = held.vy[p], depth = held.depth[p];
     sums.left_count += 1;
@@ -15,37 +16,46 @@ void leave(const Flow& flow, Index p, Index k, PointSums& sums) {
     sums.left_px += m * vx;
     sums.left_py += m * vy;
     const double vz = flow.steep ? vx * flow.bed.slope_x[k] + vy * flow.bed.slope_y[k] : 0.0;
-    sums.left_energy += m * (0.5 * (vx * vx + vy * vy + vz * vz) +
-                             flow.gravity * (flow.bed.z[k] + 0.5 * std::max(depth, 0.0)));
+    const double energy = m * (0.5 * (vx * vx + vy * vy + vz * vz) +
+                               flow.gravity * (flow.bed.z[k] + 0.5 * std::max(depth, 0.0)));
+    sums.left_energy += energy;
+    return energy;
 }
-
-}  // namespace
 
 template <class Real>
 void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
-    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-    const bool outside_x = !(c.x[p] >= 0.0 && c.x[p] <= x_max), outside_y = !(c.y[p] >= 0.0 && c.y[p] <= y_max);
+    const double x_max = static_cast<double>(flow.grid.nx() - 1),
+                 y_max = static_cast<double>(flow.grid.ny() - 1);
+    const bool outside_x = !(c.x[p] >= 0.0 && c.x[p] <= x_max),
+               outside_y = !(c.y[p] >= 0.0 && c.y[p] <= y_max);
     if (flow.walls) {
         if (outside_x) {
             c.x[p] = c.x[p] < 0.0 ? -c.x[p] : 2.0 * x_max - c.x[p];
-            for (auto* odd : {&held.vx[p], &held.cxy[p], &held.cyx[p], &held.r1x[p], &held.r2x[p]}) *odd = -*odd;
+            for (auto* odd : {&held.vx[p], &held.cxy[p], &held.cyx[p], &held.r1x[p], &held.r2x[p]})
+                *odd = -*odd;
         }
         if (outside_y) {
             c.y[p] = c.y[p] < 0.0 ? -c.y[p] : 2.0 * y_max - c.y[p];
-            for (auto* odd : {&held.vy[p], &held.cxy[p], &held.cyx[p], &held.r1y[p], &held.r2y[p]}) *odd = -*odd;
+            for (auto* odd : {&held.vy[p], &held.cxy[p], &held.cyx[p], &held.r1y[p], &held.r2y[p]})
+                *odd = -*odd;
         }
     }
     const Index k = flow.grid.at(static_cast<Index>(std::floor(c.x[p] + 0.5)),
                                  static_cast<Index>(std::floor(c.y[p] + 0.5)));
     if ((!flow.walls && (outside_x || outside_y)) || flow.bed.exit[k]) {
         gone[p] = 1;
-        leave<Real>(flow, p, k, sums);
+        const double energy = leave<Real>(flow, p, k, sums);
+        if (flow.bed.exit[k] == kNoted)
+            flow.departed[static_cast<std::size_t>(omp_get_thread_num())].push_back(
+                {c.id[p], c.x[p], c.y[p], held.vx[p], held.vy[p], held.depth[p], c.mass[p], energy});
         c.mass[p] = 0.0;
     }
 }
 
+template double leave<double>(const Flow&, Index, Index, PointSums&);
+template double leave<float>(const Flow&, Index, Index, PointSums&);
 template void meet_side<double>(Flow&, Index, std::vector<std::uint8_t>&, PointSums&);
 template void meet_side<float>(Flow&, Index, std::vector<std::uint8_t>&, PointSums&);
 

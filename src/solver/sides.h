@@ -4,6 +4,10 @@
 
 namespace frana {
 
+/// Books in `sums` that point p leaves at node k. Returns its kinetic and potential energy [J].
+template <class Real>
+double leave(const Flow& flow, Index p, Index k, PointSums& sums);
+
 /// Walls reflect point p; beyond open sides, and where the elevation model has no data, it leaves: marked in `gone`,
 /// booked in `sums`, without mass from then on.
 template <class Real>

@@ -1,0 +1,95 @@
+// The keys of [[stage]]: which model carries the material until when, and how the one in space is set up.
+#include "scene/parameter_makers.h"
+
+namespace frana {
+namespace {
+
+using namespace rows;
+
+const char* const model = "stage.model";
+const std::vector<std::string> in_space = {"solid_flow"};
+
+Parameter of_space(Parameter parameter, const char* otherwise) {
+    return absent(with(std::move(parameter), model, in_space), otherwise);
+}
+
+/// Keys of one law of material in space; other laws refuse them.
+void add_laws(Table& table) {
+    const char* const law = "stage.law";
+    Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in space");
+    choice_of_law.choices = {"fluid", "bingham", "drucker_prager", "elastic"};
+    table.push_back(of_space(choice_of_law, "fluid, or bingham where the rheology is"));
+    table.push_back(
+        of_space(number("stage.viscosity", "Pa s", not_negative, "viscosity of a fluid, or of bingham"),
+                 "the rheology's"));
+    table.push_back(of_space(number("stage.yield_stress", "Pa", positive, "yield stress of bingham in shear"),
+                             "the rheology's"));
+    table.push_back(
+        of_space(number("stage.shear_modulus", "Pa", positive, "stiffness of bingham below its yield stress"),
+                 "a hundred yield stresses"));
+    table.push_back(
+        of_space(number("stage.sound_speed", "m/s", positive,
+                        "artificial speed of sound of a fluid, or of bingham: the density changes by about "
+                        "(speed / sound_speed)^2"),
+                 "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
+    table.push_back(with(number("stage.friction_angle_deg", "degree", {0.0, 90.0, false, true},
+                                "internal friction angle of drucker_prager"),
+                         law, {"drucker_prager"}, {"drucker_prager"}));
+    table.push_back(with(number("stage.cohesion", "Pa", not_negative, 0.0, "cohesion of drucker_prager"), law,
+                         {"drucker_prager"}));
+    table.push_back(
+        with(number("stage.young_modulus", "Pa", positive, "stiffness of drucker_prager or elastic"), law,
+             {"drucker_prager", "elastic"}, {"drucker_prager", "elastic"}));
+    table.push_back(with(number("stage.poisson_ratio", "1", {0.0, 0.5, false, true}, 0.3,
+                                "share of a strain that shows across it, of drucker_prager or elastic"),
+                         law, {"drucker_prager", "elastic"}));
+}
+
+}  // namespace
+
+void add_stages(Table& table) {
+    Parameter choice_of_model =
+        make(model, Kind::choice, "",
+             "depth_averaged: columns; solid_flow: points in space, within the stage's window");
+    choice_of_model.choices = {"depth_averaged", "solid_flow"};
+    table.push_back(required(choice_of_model));
+    table.push_back(
+        absent(number("stage.until", "s", positive, "time at which the stage ends and the next begins"),
+               "the end of the run"));
+    Parameter window =
+        make("stage.window", Kind::numbers, "m",
+             "where material becomes points in space: [xmin, ymin, xmax, ymax] in map coordinates; "
+                            "cells whose nodes lie in it belong to it");
+    window.length = 4;
+    table.push_back(of_space(window, "the whole terrain"));
+    table.push_back(of_space(number("stage.cell", "m", positive, "node distance of the grid in space"),
+                             "half of the grid's cell"));
+    table.push_back(
+        of_space(number("stage.spacing", "m", positive, "distance of the points in space at the start"),
+                 "half of the stage's cell: eight points a cell"));
+    table.push_back(of_space(number("stage.top", "m", any, "elevation above which points leave the space"),
+                             "twice as high above the lowest ground as the energy of the material reaches"));
+    add_laws(table);
+    table.push_back(
+        with(flag("stage.stuck", false, "the lowest material does not slide on the bed"), model, in_space));
+    table.push_back(of_space(number("stage.bed_friction", "1", between(0.0, 10.0),
+                                    "Coulomb's friction coefficient between the points and the bed"),
+                             "the friction coefficient of material.bed, without its other terms"));
+    table.push_back(with(number("stage.cfl", "1", above_to(0.0, 1.0), 0.4,
+                                "largest way of sound and flow in one time step, in cells"),
+                         model, in_space));
+    table.push_back(
+        with(choice("stage.transfer", {"tpic", "apic"}, "tpic",
+                    "how velocity passes between points and grid: tpic has the quieter pressure, apic keeps "
+                    "angular momentum"),
+             model, in_space));
+    table.push_back(with(choice("stage.profile", {"plug", "linear", "parabolic", "bagnold"}, "plug",
+                                "velocity over the depth that columns become points with"),
+                         model, in_space));
+    table.push_back(
+        with(choice("stage.vertical", {"along-bed", "zero"}, "along-bed",
+                    "vertical velocity that columns become points with; zero: Fois et al. (2025)"),
+             model, in_space));
+}
+
+}  // namespace frana

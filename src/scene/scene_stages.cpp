@@ -1,0 +1,204 @@
+// The [[stage]]s of a case: columns first, or from the start points in space.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+/// Coulomb's part of a bed law.
+double friction_of(const BedLaw& law) {
+    return std::visit(
+        [](const auto& chosen) {
+            using Law = std::decay_t<decltype(chosen)>;
+            if constexpr (std::is_same_v<Law, bed::None>)
+                return 0.0;
+            else if constexpr (std::is_same_v<Law, bed::Pouliquen>)
+                return chosen.mu_s;
+            else
+                return chosen.mu;
+        },
+        law);
+}
+
+class StageReader {
+public:
+    StageReader(const CaseFile& file, const Scene& scene, Problems& problems)
+        : case_(file), scene_(scene), problems_(problems) {}
+
+    std::optional<SolidStage> read() {
+        double begin = 0.0;
+        for (Index i = 0; i < case_.count("stage"); ++i) {
+            const std::string table = fmt::format("stage.{}", i);
+            prefix_ = table + ".";
+            const bool last = i + 1 == case_.count("stage"),
+                       in_space = case_.word(prefix_ + "model") == "solid_flow";
+            if (in_space && last) return solid(begin);
+            if (last) break;
+            if (in_space || i > 0) {
+                problems_.add(case_.table_place(table), "found another stage after it",
+                              "expected depth_averaged, then solid_flow, then the end",
+                              "remove what follows; `frana convert --points --back` makes columns of points");
+                return {};
+            }
+            if (!case_.given(prefix_ + "until")) {
+                problems_.add(case_.table_place(table), "not given until, and another stage follows",
+                              "expected the time at which the next stage begins",
+                              "add until = ... under [[stage]]");
+                return {};
+            }
+            begin = case_.number(prefix_ + "until");
+        }
+        return {};
+    }
+
+private:
+    bool given(const char* name) const { return case_.given(prefix_ + name); }
+    double number(const char* name) const { return case_.number(prefix_ + name); }
+    double number_or(const char* name, double otherwise) const {
+        return given(name) ? number(name) : otherwise;
+    }
+
+    std::optional<SolidStage> solid(double begin) {
+        SolidStage stage;
+        stage.from = begin;
+        if (begin >= scene_.end)
+            problems_.add(case_.place("stage.0.until"), fmt::format("found {:.10g} s", begin),
+                          fmt::format("expected a time before time.end = {:.10g} s", scene_.end),
+                          "let the run end later, or the stage earlier");
+        if (given("until") && number("until") != scene_.end)
+            problems_.add(case_.place(prefix_ + "until"), fmt::format("found {:.10g} s", number("until")),
+                          fmt::format("expected none in the last stage, or time.end = {:.10g} s", scene_.end),
+                          "remove it, or change time.end");
+        if (read_window(stage)) require_ground(stage);
+        stage.cell = number_or("cell", 0.5 * scene_.bed.geometry.cell);
+        stage.spacing = number_or("spacing", 0.5 * stage.cell);
+        if (given("top")) stage.top = number("top");
+        if (stage.spacing > stage.cell)
+            problems_.add(
+                case_.place(prefix_ + "spacing"), fmt::format("found {:.6g} m", stage.spacing),
+                fmt::format("expected at most the stage's cell, {:.6g} m, or gaps open between the points",
+                            stage.cell),
+                "give a smaller spacing, or a larger cell");
+        if (given("sound_speed")) stage.sound_speed = number("sound_speed");
+        stage.law = law();
+        stage.stuck = case_.flag(prefix_ + "stuck");
+        stage.bed_friction = number_or("bed_friction", friction_of(scene_.bed_law));
+        stage.cfl = number("cfl");
+        stage.apic = case_.word(prefix_ + "transfer") == "apic";
+        stage.profile = profile_of(case_.word(prefix_ + "profile"));
+        stage.along_bed = case_.word(prefix_ + "vertical") == "along-bed";
+        return stage;
+    }
+
+    /// The cells whose nodes lie in the window.
+    bool read_window(SolidStage& stage) {
+        const GridGeometry& g = scene_.bed.geometry;
+        stage.window = {0, 0, g.nx - 1, g.ny - 1};
+        if (!given("window")) return true;
+        const auto& w = case_.numbers(prefix_ + "window");
+        const auto e = g.pixel_extent();
+        const bool inside = w[0] >= e[0] && w[1] >= e[1] && w[2] <= e[2] && w[3] <= e[3];
+        constexpr double kRoundOff = 1e-9;
+        const auto first = [&](double at, double start) {
+            return static_cast<Index>(std::ceil((at - start) / g.cell - kRoundOff));
+        };
+        const auto last = [&](double at, double start) {
+            return static_cast<Index>(std::floor((at - start) / g.cell + kRoundOff));
+        };
+        stage.window = {first(w[0], g.x0), first(w[1], g.y0), last(w[2], g.x0), last(w[3], g.y0)};
+        if (inside && w[0] < w[2] && w[1] < w[3] && stage.window[2] - stage.window[0] >= 2 &&
+            stage.window[3] - stage.window[1] >= 2)
+            return true;
+        stage.window = {0, 0, g.nx - 1, g.ny - 1};
+        problems_.add(
+            case_.place(prefix_ + "window"), "found " + toml_text(w),
+            fmt::format(
+                "expected [xmin, ymin, xmax, ymax] of at least 3 x 3 cells of {:.6g} m within x {:.10g} "
+                "to {:.10g}, y {:.10g} to {:.10g}",
+                g.cell, e[0], e[2], e[1], e[3]),
+            "correct the coordinates, or widen terrain.window");
+        return false;
+    }
+
+    /// Points in space need ground below them everywhere.
+    void require_ground(const SolidStage& stage) {
+        const std::array<Index, 4>& w = stage.window;
+        for (Index j = w[1]; j <= w[3]; ++j)
+            for (Index i = w[0]; i <= w[2]; ++i) {
+                if (std::isfinite(scene_.bed.at(i, j))) continue;
+                const GridGeometry& g = scene_.bed.geometry;
+                problems_.add(given("window") ? case_.place(prefix_ + "window")
+                                              : case_.table_place(prefix_.substr(0, prefix_.size() - 1)),
+                              fmt::format("found no elevation at x {:.10g}, y {:.10g}", g.x(i), g.y(j)),
+                              "expected ground everywhere in the window", "give a window without nodata");
+                return;
+            }
+    }
+
+    SolidLaw law() {
+        const std::string law = given("law") ? case_.word(prefix_ + "law")
+                                : std::holds_alternative<rheology::Bingham>(scene_.rheology) ? "bingham"
+                                                                                             : "fluid";
+        if (law == "drucker_prager" || law == "elastic") {
+            for (const char* name : {"viscosity", "yield_stress", "shear_modulus", "sound_speed"})
+                if (given(name)) unused(name, law);
+            const solid::Elastic elastic =
+                solid::Elastic::of(number("young_modulus"), number("poisson_ratio"));
+            if (law == "elastic") return elastic;
+            return solid::DruckerPrager::of(elastic, number("friction_angle_deg") * kDegree,
+                                            number("cohesion"));
+        }
+        for (const char* name : {"friction_angle_deg", "cohesion", "young_modulus", "poisson_ratio"})
+            if (given(name)) unused(name, law);
+        double viscosity = 0.0, yield_stress = 0.0;
+        if (const auto* newtonian = std::get_if<rheology::Newtonian>(&scene_.rheology))
+            viscosity = newtonian->viscosity;
+        if (const auto* bingham = std::get_if<rheology::Bingham>(&scene_.rheology))
+            viscosity = bingham->viscosity, yield_stress = bingham->yield_stress;
+        viscosity = number_or("viscosity", viscosity);
+        if (law == "fluid") {
+            for (const char* name : {"yield_stress", "shear_modulus"})
+                if (given(name)) unused(name, law);
+            return solid::Fluid{0.0, viscosity};
+        }
+        yield_stress = number_or("yield_stress", yield_stress);
+        if (!(yield_stress > 0.0))
+            problems_.add(case_.place(prefix_ + "law"), "found \"bingham\" without a yield stress",
+                          "expected stage.yield_stress, or that of material.rheology",
+                          "give one, or choose \"fluid\"");
+        constexpr double kStiff = 100.0;  // yield stresses: stiffer costs steps and changes nothing
+        return solid::Bingham{0.0, number_or("shear_modulus", kStiff * yield_stress), viscosity,
+                              yield_stress};
+    }
+
+    void unused(const char* name, const std::string& law) {
+        problems_.add(case_.place(prefix_ + name),
+                      fmt::format("found, but the law \"{}\" does not use it", law),
+                      "expected it with another law only", "remove it, or choose another stage.law");
+    }
+
+    static VelocityProfile profile_of(const std::string& word) {
+        if (word == "linear") return VelocityProfile::linear;
+        if (word == "parabolic") return VelocityProfile::parabolic;
+        return word == "bagnold" ? VelocityProfile::bagnold : VelocityProfile::plug;
+    }
+
+    const CaseFile& case_;
+    const Scene& scene_;
+    Problems& problems_;
+    std::string prefix_;
+};
+
+}  // namespace
+
+std::optional<SolidStage> read_solid_stage(const CaseFile& file, const Scene& scene, Problems& problems) {
+    return StageReader(file, scene, problems).read();
+}
+
+}  // namespace frana

@@ -1,0 +1,134 @@
+#include "stages/flow_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "convert/flow_columns.h"
+
+namespace frana {
+
+FlowMap::FlowMap(const Scene& scene)
+    : grid_(scene.bed.geometry),
+      density_(scene.density),
+      gravity_(scene.gravity),
+      footprint_depth_(scene.output.footprint_depth),
+      nodes_(static_cast<std::size_t>(grid_.size())),
+      peaks_(static_cast<std::size_t>(grid_.size())) {
+    const auto share = [&](Index k, Index count) {
+        return scene.sides == Sides::wall && (k == 0 || k == count - 1) ? 0.5 : 1.0;
+    };
+    areas_.reserve(nodes_.size());
+    steepening_.reserve(nodes_.size());
+    for (Index j = 0; j < grid_.ny; ++j)
+        for (Index i = 0; i < grid_.nx; ++i)
+            areas_.push_back(grid_.cell * grid_.cell * share(i, grid_.nx) * share(j, grid_.ny)),
+                steepening_.push_back(1.0 + bed_gradient(scene.bed, grid_.x(i), grid_.y(j)).squaredNorm());
+    double volume = 0.0;
+    for (std::size_t p = 0; p < scene.particles.x.size(); ++p) {
+        centre_ += scene.particles.volume[p] * Vec2(scene.particles.x[p], scene.particles.y[p]);
+        volume += scene.particles.volume[p];
+    }
+    if (volume > 0.0) centre_ /= volume;
+}
+
+double FlowMap::pressure(Index k) const {
+    return density_ * gravity_ * depth(k) / steepening_[static_cast<std::size_t>(k)];
+}
+
+namespace {
+
+/// Four nodes around a map point, with their weights.
+struct Around {
+    Index first, row;
+    double fu, fv;
+
+    Around(const GridGeometry& g, double x, double y) : row(g.nx) {
+        const double u = std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
+        const double v = std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
+        const Index i = std::min(static_cast<Index>(u), g.nx - 2),
+                    j = std::min(static_cast<Index>(v), g.ny - 2);
+        first = j * row + i;
+        fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
+    }
+    template <class Body>
+    void each(Body&& body) const {
+        for (Index b = 0; b < 2; ++b)
+            for (Index a = 0; a < 2; ++a)
+                body(first + b * row + a, (a ? fu : 1.0 - fu) * (b ? fv : 1.0 - fv));
+    }
+};
+
+}  // namespace
+
+Sample FlowMap::at(const Vec2& point) const {
+    Sample sample;
+    Vec2 flux(0, 0);
+    Around(grid_, point.x(), point.y()).each([&](Index k, double w) {
+        sample.depth += w * depth(k);
+        flux += w * depth(k) * velocity(k).head<2>();
+    });
+    if (sample.depth > 0.0) sample.velocity = flux / sample.depth;
+    return sample;
+}
+
+/// One thread: it takes a hundredth of the steps between two looks.
+void FlowMap::look(const SolidFlow& flow, double time) {
+    std::fill(nodes_.begin(), nodes_.end(), Node{});
+    for (Index p = 0; p < flow.body().points.count(); ++p) {
+        const Vec3 x = flow.position(p);
+        const double mass = flow.body().points.mass[p];
+        const Vec3 momentum = mass * flow.velocity(p);
+        Around(grid_, x[0], x[1]).each([&](Index k, double w) {
+            Node& node = nodes_[static_cast<std::size_t>(k)];
+            node.mass += w * mass;
+            node.momentum += w * momentum;
+        });
+    }
+    note_peaks(time);
+}
+
+void FlowMap::note_peaks(double time) {
+    max_depth_ = covered_area_ = front_ = 0.0;
+    for (Index k = 0; k < grid_.size(); ++k) {
+        const double h = depth(k);
+        if (!(h > 0.0)) continue;
+        Peak& peak = peaks_[static_cast<std::size_t>(k)];
+        max_depth_ = std::max(max_depth_, h);
+        peak.depth = std::max(peak.depth, h);
+        peak.pressure = std::max(peak.pressure, pressure(k));
+        if (h >= 0.1 * footprint_depth_) {
+            const double speed = velocity(k).norm();
+            peak.speed = std::max(peak.speed, speed);
+            peak.dynamic_pressure = std::max(peak.dynamic_pressure, density_ * speed * speed);
+        }
+        if (!(h > footprint_depth_)) continue;
+        if (peak.arrival < 0.0) peak.arrival = time;
+        covered_area_ += areas_[static_cast<std::size_t>(k)];
+        front_ = std::max(front_, (Vec2(grid_.x(k % grid_.nx), grid_.y(k / grid_.nx)) - centre_).norm());
+    }
+}
+
+void FlowMap::keep(Archive& archive) {
+    const Archive::Part part(archive, "map");
+    constexpr std::size_t kNumbers = 9;  // of a node and its peak
+    std::vector<double> all;
+    if (!archive.loading())
+        for (std::size_t k = 0; k < nodes_.size(); ++k) {
+            const Node& n = nodes_[k];
+            const Peak& q = peaks_[k];
+            all.insert(all.end(), {n.mass, n.momentum[0], n.momentum[1], n.momentum[2], q.depth, q.speed,
+                                   q.pressure, q.dynamic_pressure, q.arrival});
+        }
+    archive.array("nodes", all);
+    archive.numbers("sums", {&max_depth_, &covered_area_, &front_});
+    if (all.size() != kNumbers * nodes_.size())
+        Archive::wrong_length("nodes", all.size(), kNumbers * nodes_.size());
+    if (!archive.loading()) return;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+        const double* const v = &all[kNumbers * k];
+        nodes_[k] = {v[0], {v[1], v[2], v[3]}};
+        peaks_[k] = {v[4], v[5], v[6], v[7], v[8]};
+    }
+}
+
+}  // namespace frana

@@ -1,0 +1,69 @@
+#pragma once
+// Points in space seen from above: depth and velocity on the nodes of the terrain, and their peaks.
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "observe/archive.h"
+#include "observe/observer.h"
+#include "scene/scene.h"
+#include "solid/solid_flow.h"
+
+namespace frana {
+
+class FlowMap {
+public:
+    /// A node's material: what the points around it give it, bilinear.
+    struct Node {
+        double mass = 0.0;       ///< [kg]
+        Vec3 momentum{0, 0, 0};  ///< [kg m/s]
+    };
+    /// What a node ever saw; the same quantities as of the depth-averaged model (solver/peaks.h). The
+    /// pressure is the weight of what stands there, normal to the bed.
+    struct Peak {
+        double depth = 0.0, speed = 0.0, pressure = 0.0, dynamic_pressure = 0.0;
+        double arrival = -1.0;  ///< first time deeper than the footprint depth [s]
+    };
+
+    explicit FlowMap(const Scene& scene);
+    /// Takes the points as they are now, and the peaks. Same bits for any number of threads.
+    void look(const SolidFlow& flow, double time);
+
+    const GridGeometry& grid() const { return grid_; }
+    /// Volume without stress over the area of a cell: a pile of air and drops is as deep as if it had settled
+    /// [m].
+    double depth(Index k) const {
+        return nodes_[static_cast<std::size_t>(k)].mass / (density_ * areas_[static_cast<std::size_t>(k)]);
+    }
+    Vec3 velocity(Index k) const {
+        const Node& node = nodes_[static_cast<std::size_t>(k)];
+        return node.mass > 0.0 ? Vec3(node.momentum / node.mass) : Vec3(0, 0, 0);
+    }
+    /// Of what stands on a node, normal to the bed [Pa].
+    double pressure(Index k) const;
+    double cosine(Index k) const {
+        return 1.0 / std::sqrt(steepening_[static_cast<std::size_t>(k)]);
+    }  ///< of the slope
+    /// Depth and velocity between the nodes, bilinear; beyond them the nearest. No elevation.
+    Sample at(const Vec2& point) const;
+    const Peak& peak(Index k) const { return peaks_[static_cast<std::size_t>(k)]; }
+
+    double max_depth() const { return max_depth_; }        ///< [m]
+    double covered_area() const { return covered_area_; }  ///< deeper than the footprint depth [m2]
+    double front() const { return front_; }  ///< of these nodes the farthest from the release's centre [m]
+    void keep(Archive& archive);
+
+private:
+    void note_peaks(double time);
+
+    GridGeometry grid_;
+    double density_, gravity_, footprint_depth_;
+    Vec2 centre_{0, 0};               ///< of the release [m]
+    std::vector<double> areas_;       ///< of the nodes' cells, half of one at a wall [m2]
+    std::vector<double> steepening_;  ///< 1 + |grad Z|^2 at the nodes
+    std::vector<Node> nodes_;
+    std::vector<Peak> peaks_;
+    double max_depth_ = 0.0, covered_area_ = 0.0, front_ = 0.0;
+};
+
+}  // namespace frana

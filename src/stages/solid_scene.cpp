@@ -1,0 +1,149 @@
+#include "stages/solid_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "base/error.h"
+
+namespace frana {
+namespace {
+
+/// Lowest and highest ground in the window and two nodes around it, where points still are.
+std::pair<double, double> ground_of(const Scene& scene) {
+    const std::array<Index, 4>& w = scene.solid->window;
+    const GridGeometry& g = scene.bed.geometry;
+    double low = INFINITY, high = -INFINITY;
+    for (Index j = std::max<Index>(0, w[1] - 2); j <= std::min(g.ny - 1, w[3] + 2); ++j)
+        for (Index i = std::max<Index>(0, w[0] - 2); i <= std::min(g.nx - 1, w[2] + 2); ++i)
+            if (const double z = scene.bed.at(i, j); std::isfinite(z))
+                low = std::min(low, z), high = std::max(high, z);
+    expect(low <= high, "a window has ground");
+    return {low, high};
+}
+
+/// Ground where nothing is known of it, outside the window: that of the neighbour before it in the row or the
+/// column, and for what is left that behind it.
+Raster without_gaps(Raster bed) {
+    const Index nx = bed.geometry.nx, ny = bed.geometry.ny;
+    const auto take = [&](Index i, Index j, Index di, Index dj) {
+        if (std::isfinite(bed.at(i, j)) || i + di < 0 || j + dj < 0 || i + di >= nx || j + dj >= ny) return;
+        if (std::isfinite(bed.at(i + di, j + dj))) bed.at(i, j) = bed.at(i + di, j + dj);
+    };
+    for (int round = 0; round < 2; ++round) {
+        for (Index j = 0; j < ny; ++j)
+            for (Index i = 0; i < nx; ++i) take(i, j, -1, 0), take(i, j, 0, -1);
+        for (Index j = ny - 1; j >= 0; --j)
+            for (Index i = nx - 1; i >= 0; --i) take(i, j, 1, 0), take(i, j, 0, 1);
+    }
+    return bed;
+}
+
+SolidLaw with_sound(SolidLaw law, double density, double sound_speed) {
+    std::visit(
+        [&](auto& chosen) {
+            using Law = std::decay_t<decltype(chosen)>;
+            if constexpr (std::is_same_v<Law, solid::Fluid> || std::is_same_v<Law, solid::Bingham>)
+                chosen.bulk = density * sound_speed * sound_speed;
+        },
+        law);
+    return law;
+}
+
+/// Cells that a grid in space has beyond a side, so that nodes that points and images touch exist: beside
+/// walls; and at open sides as many as a point needs, so that it leaves where the side is (solid_kernel.cpp).
+constexpr double kBehindWalls = 3.0, kAtOpenSides = 0.5;
+
+}  // namespace
+
+std::array<double, 4> window_of(const Scene& scene) {
+    const GridGeometry& g = scene.bed.geometry;
+    const std::array<Index, 4>& w = scene.solid->window;
+    const double half = 0.5 * g.cell;
+    return {std::max(g.x0, g.x(w[0]) - half), std::max(g.y0, g.y(w[1]) - half),
+            std::min(g.x_max(), g.x(w[2]) + half), std::min(g.y_max(), g.y(w[3]) + half)};
+}
+
+std::array<double, 4> reach_of(const Scene& scene) {
+    const GridGeometry& g = scene.bed.geometry;
+    const std::array<Index, 4>& w = scene.solid->window;
+    const bool walls = scene.sides == Sides::wall;
+    std::array<double, 4> reach = window_of(scene);
+    const double more = 0.5 * g.cell;
+    if (!walls || w[0] > 0) reach[0] -= more;
+    if (!walls || w[1] > 0) reach[1] -= more;
+    if (!walls || w[2] < g.nx - 1) reach[2] += more;
+    if (!walls || w[3] < g.ny - 1) reach[3] += more;
+    return reach;
+}
+
+std::vector<std::uint8_t> nodes_in_window(const Scene& scene) {
+    const GridGeometry& g = scene.bed.geometry;
+    const std::array<Index, 4>& w = scene.solid->window;
+    std::vector<std::uint8_t> marks(static_cast<std::size_t>(g.size()), 0);
+    for (Index j = w[1]; j <= w[3]; ++j)
+        for (Index i = w[0]; i <= w[2]; ++i) marks[static_cast<std::size_t>(j * g.nx + i)] = 1;
+    return marks;
+}
+
+SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
+    double fastest = 0.0, head = -INFINITY;
+    for (std::size_t k = 0; k < columns.count(); ++k) {
+        const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
+        const double v2 = columns.vx[k] * columns.vx[k] + columns.vy[k] * columns.vy[k] + climb * climb;
+        fastest = std::max({fastest, std::sqrt(v2), std::sqrt(2.0 * scene.gravity * columns.depth[k])});
+        head = std::max(head, columns.bed[k] + columns.depth[k] + 0.5 * v2 / scene.gravity);
+    }
+    const auto [low, high] = ground_of(scene);
+    SolidStart start;
+    start.sound_speed = scene.solid->sound_speed.value_or(10.0 * std::max(fastest, 0.1));
+    constexpr double kRoom = 8.0;  // cells above the ground at least
+    start.top =
+        scene.solid->top.value_or(std::max(low + 2.0 * (head - low), high + kRoom * scene.solid->cell));
+    return start;
+}
+
+SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
+    const SolidStage& stage = *scene.solid;
+    const GridGeometry& g = scene.bed.geometry;
+    const std::array<double, 4> window = window_of(scene);
+    const bool walls = scene.sides == Sides::wall;
+    SolidScene result;
+    result.grid.cell = stage.cell;
+    double high[3];
+    for (int axis = 0; axis < 2; ++axis) {
+        const Index nodes = axis == 0 ? g.nx : g.ny;
+        const auto room = [&](bool at_terrain_side) {
+            return walls && at_terrain_side ? kBehindWalls * stage.cell : g.cell + kAtOpenSides * stage.cell;
+        };
+        const double low = window[static_cast<std::size_t>(axis)],
+                     top = window[static_cast<std::size_t>(axis) + 2];
+        const bool first = stage.window[static_cast<std::size_t>(axis)] == 0;
+        const bool last = stage.window[static_cast<std::size_t>(axis) + 2] == nodes - 1;
+        result.grid.origin[axis] = low - room(first);
+        high[axis] = top + room(last);
+        if (!walls) continue;
+        Vec3 normal = Vec3::Zero(), at(window[0], window[1], 0.0);
+        normal[axis] = 1.0;
+        if (first) result.surfaces.push_back(Surface::plane(at, normal));
+        at[axis] = top;
+        if (last) result.surfaces.push_back(Surface::plane(at, -normal));
+    }
+    result.grid.origin[2] = ground_of(scene).first - kBehindWalls * stage.cell;
+    high[2] = start.top + kAtOpenSides * stage.cell;
+    for (int axis = 0; axis < 3; ++axis)
+        result.grid.nodes[static_cast<std::size_t>(axis)] =
+            static_cast<Index>(std::ceil((high[axis] - result.grid.origin[axis]) / stage.cell)) + 1;
+    Surface ground = Surface::ground(without_gaps(scene.bed), stage.stuck ? Hold::stuck : Hold::free,
+                                     stage.stuck ? 0.0 : stage.bed_friction);
+    ground.name = "ground";
+    result.surfaces.insert(result.surfaces.begin(), std::move(ground));
+    result.gravity = {0.0, 0.0, -scene.gravity};
+    result.density = scene.density;
+    result.law = with_sound(stage.law, scene.density, start.sound_speed);
+    result.affine = stage.apic ? Affine::apic : Affine::tpic;
+    result.cfl = stage.cfl;
+    return result;
+}
+
+}  // namespace frana

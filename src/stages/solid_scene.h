@@ -1,0 +1,35 @@
+#pragma once
+// The scene in space that a stage of a case describes.
+#include "convert/flow_columns.h"
+#include "scene/scene.h"
+#include "solid/solid_flow.h"
+
+namespace frana {
+
+/// What is chosen when a stage begins, from the material there and the stage's keys.
+struct SolidStart {
+    double sound_speed = 0.0;  ///< of fluids [m/s]
+    double top = 0.0;          ///< elevation where the space ends [m]
+};
+
+/// Sound ten times as fast as the material is and as it becomes when it falls by its own depth twice, so that
+/// the density changes by 1 % (Monaghan 1994); room twice as high above the lowest ground as the energy of
+/// `columns` reaches.
+SolidStart choose_start(const Scene& scene, const FlowColumns& columns);
+
+/// Grid, law and surfaces of scene.solid, without points. The ground comes first, then walls where the window
+/// reaches sides of the terrain that are walls. Open sides lie a cell of the terrain's grid outside the
+/// window: columns that cross its edge are wider than a point.
+SolidScene solid_scene(const Scene& scene, const SolidStart& start);
+
+/// [xmin, ymin, xmax, ymax] of the window [m]: the edges of its nodes' cells, or the outer nodes of the
+/// terrain.
+std::array<double, 4> window_of(const Scene& scene);
+
+/// The same, where points may start: out to half a cell of the terrain's grid beyond open sides.
+std::array<double, 4> reach_of(const Scene& scene);
+
+/// Nodes of the terrain in the window: 1; row after row from the south.
+std::vector<std::uint8_t> nodes_in_window(const Scene& scene);
+
+}  // namespace frana

@@ -1,0 +1,130 @@
+// What a run in stages shows: fields of columns and points together, and of the nodes that both stand on.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "particles/bed_points.h"
+#include "stages/staged_run.h"
+
+namespace frana {
+namespace {
+
+/// Writes over a scalar at all nodes.
+template <class At>
+void each_node(double* values, Index count, At&& at) {
+    for (Index k = 0; k < count; ++k) values[k] = at(k);
+}
+
+}  // namespace
+
+double* StagedRun::add_field(std::vector<Field>& fields, const Field& like, int components, Index count) {
+    if (frame_used_ == frame_storage_.size()) frame_storage_.emplace_back();
+    std::vector<double>& storage = frame_storage_[frame_used_++];
+    storage.assign(static_cast<std::size_t>(count * components), 0.0);
+    fields.push_back({like.name, like.unit, components, storage.data(), count});
+    return storage.data();
+}
+
+Frame StagedRun::frame() {
+    if (!points_) return columns_->frame();
+    Frame frame = columns_->frame();
+    frame_used_ = 0;
+    timed_("frame", [&] {
+        const Status now = status_;
+        const double mean_speed = peak_mean_speed_, mach = largest_mach_;
+        book(frame.status);  // of the columns at the points' time
+        frame.status = status_;
+        frame.status.step = now.step;
+        status_ = now, peak_mean_speed_ = mean_speed, largest_mach_ = mach;
+        particle_fields(frame);
+        node_fields(frame);
+    });
+    return frame;
+}
+
+/// Columns keep what they have of the fields that both share; stress is xx, yy, zz, xy, yz, xz.
+void StagedRun::particle_fields(Frame& frame) {
+    const std::vector<Field> columns = std::move(frame.particles);
+    frame.particles.clear();
+    const Index before = columns.empty() ? 0 : columns.front().count, more = points_->status().points;
+    const Index count = before + more;
+    const auto take = [&](const char* name) {
+        const auto found = std::find_if(columns.begin(), columns.end(),
+                                        [&](const Field& field) { return field.name == name; });
+        expect(found != columns.end(), "columns have the quantities that points share");
+        double* const values = add_field(frame.particles, *found, found->components, count);
+        std::copy_n(found->data, before * found->components, values);
+        return values + before * found->components;
+    };
+    double *position = take("position"), *velocity = take("velocity"), *speed = take("speed"),
+           *depth = take("depth"), *elevation = take("elevation"), *surface = take("surface"),
+           *pressure = take("pressure"), *mass = take("mass"), *volume = take("volume"), *id = take("id");
+    double* const model = add_field(frame.particles, {"model", "1"}, 1, count) + before;
+    double* const stress = add_field(frame.particles, {"stress", "Pa"}, 6, count) + 6 * before;
+    const MaterialPoints& q = points_->body().points;
+#pragma omp parallel for schedule(static)
+    for (Index p = 0; p < more; ++p) {
+        const Vec3 x = points_->position(p), v = points_->velocity(p);
+        const Sym3 s = points_->stress(p);
+        std::copy_n(x.data(), 3, position + 3 * p);
+        std::copy_n(v.data(), 3, velocity + 3 * p);
+        s.write(stress + 6 * p);
+        speed[p] = v.norm();
+        const double ground = bed_elevation(scene_.bed, x[0], x[1]);
+        elevation[p] = std::isfinite(ground) ? ground : x[2];
+        depth[p] = map_.at({x[0], x[1]}).depth;
+        surface[p] = elevation[p] + depth[p];
+        pressure[p] = -s.trace() / 3.0;
+        mass[p] = q.mass[p];
+        volume[p] = q.j[p] * q.rest_volume[p];
+        id[p] = static_cast<double>(q.id[p]);
+        model[p] = 1.0;
+    }
+}
+
+/// Depths and pressures of both add; velocities are those of their common momentum.
+void StagedRun::node_fields(Frame& frame) {
+    const Index count = map_.grid().size();
+    std::vector<Field> columns = std::move(frame.nodes);
+    frame.nodes.clear();
+    double* depth = nullptr;
+    const double* depth_of_columns = nullptr;
+    for (const Field& field : columns) {
+        double* const values = add_field(frame.nodes, field, field.components, count);
+        std::copy_n(field.data, count * field.components, values);
+        const auto more = [&](const auto& at) {
+            each_node(values, count, [&](Index k) { return values[k] + at(k); });
+        };
+        const auto most = [&](double FlowMap::Peak::*peak) {
+            each_node(values, count, [&](Index k) { return std::max(values[k], map_.peak(k).*peak); });
+        };
+        if (field.name == "depth") depth = values, depth_of_columns = field.data;
+        if (field.name == "depth" || field.name == "surface") more([&](Index k) { return map_.depth(k); });
+        if (field.name == "thickness") more([&](Index k) { return map_.depth(k) * map_.cosine(k); });
+        if (field.name == "pressure") more([&](Index k) { return map_.pressure(k); });
+        if (field.name == "peak_depth") most(&FlowMap::Peak::depth);
+        if (field.name == "peak_speed") most(&FlowMap::Peak::speed);
+        if (field.name == "peak_pressure") most(&FlowMap::Peak::pressure);
+        if (field.name == "peak_dynamic_pressure") most(&FlowMap::Peak::dynamic_pressure);
+        if (field.name == "arrival_time")
+            each_node(values, count, [&](Index k) {
+                const double here = map_.peak(k).arrival;
+                return values[k] < 0.0 ? here : here < 0.0 ? values[k] : std::min(values[k], here);
+            });
+        if (field.name == "velocity")
+            for (Index k = 0; k < count; ++k) {
+                const double before = depth_of_columns[k], all = depth[k];
+                const Vec3 v = map_.velocity(k);
+                for (Index c = 0; c < 3 && all > 0.0; ++c)
+                    values[3 * k + c] = (before * values[3 * k + c] + (all - before) * v[c]) / all;
+            }
+        if (field.name == "speed")
+            each_node(values, count, [&](Index k) {
+                const double all = depth[k], before = depth_of_columns[k];
+                return all > 0.0 ? (before * values[k] + (all - before) * map_.velocity(k).norm()) / all
+                                 : 0.0;
+            });
+    }
+}
+
+}  // namespace frana

@@ -1,0 +1,262 @@
+#include "stages/staged_run.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/free_memory.h"
+
+namespace frana {
+
+StagedRun::StagedRun(const Scene& scene, Start start)
+    : scene_(scene), columns_(std::make_unique<DepthAveraged>(scene, start)), map_(scene) {
+    expect(scene.solid.has_value(), "a staged run has a stage in space");
+    scene_.particles = {};
+    status_ = columns_->status();
+    if (start == Start::placed && scene.solid->from == 0.0)
+        begin_space(columns_of(scene.particles, scene, nodes_in_window(scene)));
+}
+
+/// One step of the model in charge: columns until their stage ends; then points, with the columns that are
+/// left a step ahead of them, so that what flows into the window is there when the points arrive at that
+/// time.
+void StagedRun::advance(double until) {
+    if (!points_) {
+        columns_->advance(std::min(until, scene_.solid->from));
+        status_ = columns_->status();
+        peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
+        if (status_.time < scene_.solid->from) return;
+        begin_space(columns_of(columns_->frame(), scene_.bed, nodes_in_window(scene_)));
+        return;
+    }
+    if (columns_->status().time <= points_->status().time) step_columns(until);
+    const bool alone = columns_->status().particles == 0 && pending_.empty();
+    points_->advance(alone ? until : std::min(until, columns_->status().time));
+    if (points_->status().time == columns_->status().time) hand_over();
+    status_.step += 1;
+    moved_ += points_->status().max_speed * points_->status().dt;
+    look(until);
+    book(columns_->status());
+}
+
+/// Columns in the window become points, those outside stay; none of them is in both.
+void StagedRun::begin_space(const FlowColumns& columns) {
+    const std::array<double, 2> momentum = columns_->status().momentum;
+    const double energy = columns_->status().energy_left, mass = columns_->status().mass;
+    timed_("hand over", [&] {
+        start_ = choose_start(scene_, columns);
+        SolidScene space = solid_scene(scene_, start_);
+        space.points = seeds_of_window(columns);
+        points_ = std::make_unique<SolidFlow>(space);
+        points_->start_at(scene_.solid->from);
+        columns_->open_exits(nodes_in_window(scene_), true);
+    });
+    handed_.mass = mass - columns_->status().mass;
+    handed_.energy = columns_->status().energy_left - energy;
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        handed_.momentum[axis] = momentum[axis] - columns_->status().momentum[axis];
+    handed_.energy_taken = points_->status().kinetic + points_->status().potential;
+    look(points_->status().time);
+    book(columns_->status());
+}
+
+/// Refuses what does not fit below the top of the space, or into memory before it is asked for.
+void StagedRun::require_room(const FlowColumns& columns) const {
+    constexpr double kBytes =
+        450.0;  // of a point: its numbers, room to sort, and both forms while it is handed over
+    for (std::size_t k = 0; k < columns.count(); ++k)
+        if (columns.bed[k] + columns.depth[k] > start_.top)
+            throw UserError(
+                fmt::format("stage.top: found {:.6g} m; expected more than the {:.6g} m that material "
+                            "reaches at x {:.10g}, y {:.10g}, "
+                            "t = {:.6g} s; give a higher top",
+                            start_.top, columns.bed[k] + columns.depth[k], columns.x[k], columns.y[k],
+                            std::max(columns_->status().time, scene_.solid->from)));
+    const double points = forecast_points(columns, scene_.solid->spacing), free = free_memory();
+    if (points * kBytes <= free) return;
+    throw UserError(
+        fmt::format("stage.spacing = {:.6g}: makes {:.3g} points, about {:.3g} GB; expected what fits into "
+                    "the {:.3g} GB that are free; "
+                    "give a larger spacing or a smaller window",
+                    scene_.solid->spacing, points, points * kBytes / 1e9, free / 1e9));
+}
+
+SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns) const {
+    const FlowColumns parts =
+        in_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell, scene_.bed, reach_of(scene_));
+    require_room(parts);
+    return seeds_of(parts, *scene_.solid);
+}
+
+void StagedRun::step_columns(double until) {
+    if (columns_->status().particles == 0) return;
+    columns_->advance(until);
+    pending_ = columns_->take_departed();
+    for (const Departed& column : pending_) {
+        handed_.mass += column.mass, handed_.mass_later += column.mass;
+        handed_.energy += column.energy;
+        handed_.momentum[0] += column.mass * column.vx, handed_.momentum[1] += column.mass * column.vy;
+    }
+}
+
+/// The columns that flowed into the window in the columns' last step.
+void StagedRun::hand_over() {
+    if (pending_.empty()) return;
+    timed_("hand over", [&] {
+        const GridGeometry& g = scene_.bed.geometry;
+        Seeds seeds;
+        for (const Departed& column : pending_) {
+            seeds.x.push_back(g.x0 + g.cell * column.x);
+            seeds.y.push_back(g.y0 + g.cell * column.y);
+            seeds.vx.push_back(column.vx);
+            seeds.vy.push_back(column.vy);
+            seeds.volume.push_back(column.mass / scene_.density);
+            seeds.depth.push_back(std::max(column.depth, 0.0));
+        }
+        pending_.clear();
+        const FlowColumns columns = columns_of(seeds, scene_, nodes_in_window(scene_));
+        const SolidStatus before = points_->status();
+        points_->add(seeds_of_window(columns));
+        handed_.energy_taken +=
+            points_->status().kinetic + points_->status().potential - before.kinetic - before.potential;
+    });
+}
+
+/// The map follows when material has moved by a quarter of a cell, and at output times.
+void StagedRun::look(double until) {
+    constexpr double kShare = 0.25;
+    if (points_->status().time < until && moved_ < kShare * scene_.bed.geometry.cell) return;
+    timed_("map", [&] { map_.look(*points_, points_->status().time); });
+    moved_ = 0.0;
+}
+
+/// Sums of both models. Energy of the points that is neither motion nor height (pressed together, or gone
+/// into friction, yielding and the scheme) counts as dissipated.
+void StagedRun::book(const Status& columns) {
+    const SolidStatus& s = points_->status();
+    const Index step = status_.step;
+    double mass = 0.0, energy = 0.0;  // on their way, in neither model
+    Vec2 momentum(0, 0);
+    for (const Departed& column : pending_) {
+        mass += column.mass, energy += column.energy;
+        momentum += column.mass * Vec2(column.vx, column.vy);
+    }
+    Vec3 impulse = s.momentum_given + s.weight_impulse;
+    for (const Vec3& of_surface : points_->body().impulse) impulse += of_surface;
+    status_ = columns;
+    status_.step = step;
+    status_.time = s.time;
+    status_.dt = s.dt;
+    status_.particles += s.points + static_cast<Index>(pending_.size());
+    status_.mass += s.mass + mass;
+    status_.mass_left += s.mass_left - handed_.mass;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const auto k = static_cast<Eigen::Index>(axis);
+        status_.momentum[axis] += s.momentum[k] + momentum[k];
+        status_.impulse[axis] += impulse[k] + momentum[k] - handed_.momentum[axis];
+        status_.momentum_left[axis] += s.momentum_left[k] - handed_.momentum[axis];
+    }
+    status_.kinetic += s.kinetic;
+    status_.potential += s.potential + energy;
+    status_.dissipated += handed_.energy_taken - s.kinetic - s.potential - s.energy_left;
+    status_.energy_left += s.energy_left - handed_.energy;
+    status_.max_depth = std::max(columns.max_depth, map_.max_depth());
+    status_.max_speed = std::max(columns.max_speed, s.max_speed);
+    status_.mean_speed =
+        status_.mass > 0.0 ? (columns.mean_speed * columns.mass + s.speeds) / status_.mass : 0.0;
+    status_.covered_area += map_.covered_area();
+    status_.front = std::max(columns.front, map_.front());
+    peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
+    if (start_.sound_speed > 0.0) largest_mach_ = std::max(largest_mach_, s.max_speed / start_.sound_speed);
+}
+
+bool StagedRun::at_rest() const {
+    if (!points_) return columns_->at_rest() && scene_.solid->from > scene_.end;
+    return status_.max_speed == 0.0 || status_.mean_speed < scene_.rest_fraction * peak_mean_speed_;
+}
+
+Sample StagedRun::at(const Vec2& point) const {
+    Sample sample = columns_->at(point);
+    if (!points_) return sample;
+    const Sample more = map_.at(point);
+    const double depth = sample.depth + more.depth;
+    if (depth > 0.0) sample.velocity = (sample.depth * sample.velocity + more.depth * more.velocity) / depth;
+    sample.depth = depth;
+    return sample;
+}
+
+std::vector<std::string> StagedRun::remarks() const {
+    std::vector<std::string> remarks = columns_->remarks();
+    if (!points_) return remarks;
+    const SolidStatus& s = points_->status();
+    const double density = scene_.density, rest = s.mass / density;
+    remarks.push_back(fmt::format(
+        "points in space from {:.6g} s on: {} now, {:.6g} m3 of them came in over the window's edges later, "
+        "{:.6g} m3 left "
+        "through its sides; top of the space {:.6g} m",
+        scene_.solid->from, s.points, handed_.mass_later / density, s.mass_left / density, start_.top));
+    const bool fluid = scene_.solid->law.index() < 2;
+    if (fluid)
+        remarks.push_back(fmt::format(
+            "speed of sound {:.4g} m/s (artificial): the fastest point had {:.2g} of it, so that densities "
+            "err by up to "
+            "{:.2g} %{}; volume {:.4g} of that without pressure",
+            start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
+            largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : "", rest > 0.0 ? s.volume / rest : 1.0));
+    return remarks;
+}
+
+std::vector<PhaseTime> StagedRun::timings() const {
+    std::vector<PhaseTime> all = columns_->timings();
+    if (points_)
+        for (PhaseTime phase : points_->timings()) {
+            phase.name = "points: " + phase.name;
+            all.push_back(phase);
+        }
+    for (const PhaseTime& phase : timed_.times())
+        if (phase.name != "frame") all.push_back(phase);
+    return all;
+}
+
+void StagedRun::keep(Archive& archive) {
+    Index in_space = points_ ? 1 : 0;
+    archive.number("in_space", in_space);
+    archive.numbers("start", {&start_.sound_speed, &start_.top});
+    if (archive.loading() && in_space) {
+        points_ = std::make_unique<SolidFlow>(solid_scene(scene_, start_));
+        columns_->open_exits(nodes_in_window(scene_), false);
+    }
+    {
+        const Archive::Part part(archive, "columns");
+        columns_->keep(archive);
+    }
+    frana::keep(archive, "status", status_);
+    archive.numbers("sums",
+                    {&handed_.mass, &handed_.energy, &handed_.energy_taken, &handed_.mass_later,
+                     &handed_.momentum[0], &handed_.momentum[1], &moved_, &peak_mean_speed_, &largest_mach_});
+    timed_.keep(archive);
+    std::vector<std::int64_t> ids;
+    std::vector<double> numbers;
+    for (const Departed& c : pending_) {
+        ids.push_back(c.id);
+        numbers.insert(numbers.end(), {c.x, c.y, c.vx, c.vy, c.depth, c.mass, c.energy});
+    }
+    archive.array("pending_id", ids);
+    archive.array("pending", numbers);
+    if (numbers.size() != 7 * ids.size()) Archive::wrong_length("pending", numbers.size(), 7 * ids.size());
+    if (archive.loading()) {
+        pending_.clear();
+        for (std::size_t n = 0; n < ids.size(); ++n) {
+            const double* const c = &numbers[7 * n];
+            pending_.push_back({ids[n], c[0], c[1], c[2], c[3], c[4], c[5], c[6]});
+        }
+    }
+    if (!points_) return;
+    map_.keep(archive);
+    const Archive::Part part(archive, "points");
+    points_->keep(archive);
+}
+
+}  // namespace frana

@@ -1,0 +1,68 @@
+#pragma once
+// A run in two stages: columns, and from a time on points in space in a window of the map (Fois, de Falco,
+// Formaggia 2025, with the tail that still flows into the window handed over column by column).
+#include <memory>
+
+#include "solver/depth_averaged.h"
+#include "stages/flow_map.h"
+#include "stages/hand_over.h"
+#include "stages/solid_scene.h"
+
+namespace frana {
+
+class StagedRun final : public Simulation {
+public:
+    /// `scene` has a solid stage. Throws UserError when its points would not fit into memory.
+    explicit StagedRun(const Scene& scene, Start start = Start::placed);
+
+    void advance(double until) override;
+    const Status& status() const override { return status_; }
+    bool at_rest() const override;
+    /// In space: columns first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
+    /// those of the map at its place. Between outputs columns and map may be ahead or behind by a step of the
+    /// columns.
+    Frame frame() override;
+    Sample at(const Vec2& point) const override;
+    std::vector<std::string> remarks() const override;
+    std::vector<PhaseTime> timings() const override;
+    void keep(Archive& archive) override;
+
+    /// The points in space; nullptr before their stage.
+    const SolidFlow* points() const { return points_.get(); }
+    const DepthAveraged& columns() const { return *columns_; }
+
+private:
+    /// What the columns gave away, as they booked it, and what the points took.
+    struct Handed {
+        double mass = 0.0, energy = 0.0, energy_taken = 0.0, mass_later = 0.0;
+        std::array<double, 2> momentum{};
+    };
+
+    void begin_space(const FlowColumns& columns);
+    void step_columns(double until);
+    void hand_over();
+    SolidSeeds seeds_of_window(const FlowColumns& columns) const;
+    void require_room(const FlowColumns& columns) const;
+    void look(double until);
+    void book(const Status& columns);
+    void particle_fields(Frame& frame);
+    void node_fields(Frame& frame);
+    double* add_field(std::vector<Field>& fields, const Field& like, int components, Index count);
+
+    Scene scene_;
+    std::unique_ptr<DepthAveraged> columns_;
+    std::unique_ptr<SolidFlow> points_;
+    SolidStart start_;
+    FlowMap map_;
+    std::vector<Departed> pending_;  ///< columns that left into the window, ahead of the points' time
+    Handed handed_;
+    Status status_;
+    StepClock timed_;
+    double moved_ = 0.0;  ///< farthest way of a point since the last look at the map [m]
+    double peak_mean_speed_ = 0.0;
+    double largest_mach_ = 0.0;  ///< fastest point over the speed of sound [1]
+    std::vector<std::vector<double>> frame_storage_;
+    std::size_t frame_used_ = 0;
+};
+
+}  // namespace frana

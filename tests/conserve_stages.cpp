@@ -1,0 +1,143 @@
+// Runs in stages: columns that become points in space keep mass, momentum and energy, at once and as they
+// flow in.
+#include <omp.h>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "memory_archive.h"
+#include "stages/staged_run.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+/// A slab that slides down a slope of 1 in 4 into a window whose upper edge it crosses, and out of it below.
+Scene slide(double from = 0.4) {
+    Scene scene = scene_on(41, 13, 1.0, [](double x, double) { return 20.0 - 0.25 * x; });
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return x > 3 && x < 15 && y > 3 && y < 9 ? 1.5 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 8.0);
+    scene.end = 2.0;
+    SolidStage stage;
+    stage.from = from;
+    stage.window = {12, 0, 30, 12};
+    stage.cell = 0.5;
+    stage.spacing = 0.25;
+    stage.law = solid::Fluid{};
+    scene.solid = stage;
+    return scene;
+}
+
+double total(const Field* field, Index from, Index to) {
+    double sum = 0.0;
+    for (Index p = from; p < to; ++p) sum += field->data[p];
+    return sum;
+}
+
+using Bits = std::map<std::string, MemoryArchive::Entry>;
+
+Bits bits(StagedRun& run) {
+    MemoryArchive archive;
+    run.keep(archive);
+    Bits entries = archive.entries();
+    for (auto entry = entries.begin(); entry != entries.end();)
+        entry = entry->first.find("clock/") != std::string::npos ? entries.erase(entry) : std::next(entry);
+    return entries;
+}
+
+}  // namespace
+
+TEST_CASE("Columns that become points keep mass, momentum and energy, at once and later", "[stages]") {
+    const Scene scene = slide();
+    StagedRun run(scene);
+    const double mass = run.status().mass, momentum = run.status().momentum[0];
+    run_to(run, scene.solid->from);
+    REQUIRE(run.points() != nullptr);
+    REQUIRE(run.points()->status().points > 1000);
+    REQUIRE(run.columns().status().particles > 50);
+    // The energies of columns and points differ by the bed: averaged over a cell, or bilinear; on a plane
+    // they agree.
+    const double round_off = 1e-12;
+    const Status before = run.status();
+    CHECK(mass_error(before, mass) < round_off);
+    CHECK(std::abs(before.energy_left) < round_off * before.potential);
+    double worst = 0.0;
+    Index most = 0;
+    while (run.status().time < scene.end) {
+        run.advance(scene.end);
+        const Status& now = run.status();
+        worst = std::max(worst, std::abs(now.mass + now.mass_left - mass) / mass);
+        const double left = now.momentum[0] + now.momentum_left[0] - momentum - now.impulse[0];
+        worst = std::max(worst, std::abs(left) / (mass * now.max_speed));
+        most = std::max(most, run.points()->status().points);
+    }
+    CHECK(worst < round_off);
+    CHECK(run.columns().status().particles ==
+          0);  // everything has flowed into the window, and some of it out again
+    CHECK(run.status().mass_left > 0.1 * mass);
+    CHECK(most > run.points()->status().points);
+}
+
+TEST_CASE("A frame in space has the mass of both models on its particles and on its nodes", "[stages]") {
+    const Scene scene = slide();
+    StagedRun run(scene);
+    run_to(run, 0.6);
+    Frame frame = run.frame();
+    const Field *mass = frame.particle("mass"), *model = frame.particle("model"),
+                *depth = frame.node("depth");
+    REQUIRE(mass->count == frame.status.particles);
+    const double points = total(model, 0, model->count);
+    CHECK(points == static_cast<double>(run.points()->status().points));
+    CHECK(total(mass, 0, mass->count) == Approx(frame.status.mass).epsilon(1e-12));
+    // Nodes hold all that lies between them; at open sides nothing is yet.
+    const double on_nodes = scene.density * total(depth, 0, depth->count);
+    CHECK(on_nodes == Approx(frame.status.mass).epsilon(1e-12));
+    const Sample probe = run.at({16.3, 6.1});
+    CHECK(probe.depth > 0.5);
+    CHECK(probe.velocity.x() > 6.0);
+}
+
+TEST_CASE("A stage in space from the start takes the release as it is", "[stages]") {
+    Scene scene = slide(0.0);
+    scene.solid->window = {0, 0, 40, 12};
+    StagedRun run(scene);
+    const SolidStatus& points = run.points()->status();
+    CHECK(run.columns().status().particles == 0);
+    CHECK(points.mass == Approx(scene.density * 12 * 6 * 1.5).epsilon(1e-12));
+    CHECK(points.points == 48 * 24 * 6);
+    CHECK(points.momentum.x() == Approx(8.0 * points.mass).epsilon(1e-12));
+    // Along the bed: the vertical velocity is the slope's.
+    CHECK(points.momentum.z() == Approx(-2.0 * points.mass).epsilon(1e-12));
+}
+
+TEST_CASE("Runs in stages have the same bits for any number of threads, and when taken up again",
+          "[stages]") {
+    const Scene scene = slide();
+    const int threads = omp_get_max_threads();
+    StagedRun straight(scene);
+    run_to(straight, 0.3);
+    MemoryArchive early, late;
+    straight.keep(early);
+    while (straight.status().time < 0.55) straight.advance(0.7);
+    straight.keep(late);
+    run_to(straight, 0.7);
+    const Bits expected = bits(straight);
+    for (const int other : {1, 3}) {
+        omp_set_num_threads(other);
+        for (MemoryArchive* archive : {&early, &late}) {
+            StagedRun resumed(scene, Start::kept);
+            resumed.keep(archive->rewind());
+            if (archive == &early)
+                while (resumed.status().time < 0.55) resumed.advance(0.7);
+            run_to(resumed, 0.7);
+            const Bits found = bits(resumed);
+            REQUIRE(found.size() == expected.size());
+            for (const auto& [name, entry] : expected) {
+                INFO(name << " with " << other << " threads");
+                CHECK((found.at(name) == entry));
+            }
+        }
+    }
+    omp_set_num_threads(threads);
+}

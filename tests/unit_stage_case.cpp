@@ -1,0 +1,107 @@
+// [[stage]]: from the case file to the scene, and what is refused before the first step.
+#include "base/error.h"
+#include "catch.h"
+#include "fake_gis.h"
+#include "scene/build_scene.h"
+
+using namespace frana;
+
+namespace {
+
+/// 40 x 30 nodes, 5 m apart, on a plane that rises 1 in 2 to the east from 100 m; one node without elevation.
+FakeGis slope_gis() {
+    FakeGis gis;
+    gis.rasters["dem.tif"] =
+        sampled({40, 30, 1002.5, 2002.5, 5.0}, [](double x, double) { return 100.0 + 0.5 * (x - 1000.0); });
+    gis.rasters["dem.tif"].at(39, 29) = Raster::nodata;
+    gis.polygons["release.geojson"] = rectangle(1050, 2050, 1100, 2080);
+    return gis;
+}
+
+Scene scene_of(const std::string& rest) {
+    const std::string text =
+        "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\n"
+        "end = 20\n[material.bed]\nlaw = \"voellmy\"\nmu = 0.2\nxi = 500\n" +
+        rest;
+    return build_scene(CaseFile::parse(text, "slide/case.toml"), slope_gis());
+}
+
+/// The one problem of a case that has exactly one; the lines of `rest` begin at 12.
+std::string problem_of(const std::string& rest) {
+    std::vector<std::string> problems;
+    try {
+        scene_of(rest);
+    } catch (const UserError& error) {
+        problems = error.problems();
+    }
+    CAPTURE(problems);
+    REQUIRE(problems.size() == 1);
+    return problems[0];
+}
+
+const std::string two =
+    "[[stage]]\nmodel = \"depth_averaged\"\nuntil = 8\n[[stage]]\nmodel = \"solid_flow\"\n";
+const std::string west = "window = [1005, 2000, 1060, 2100]\n";
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("A stage in space has the scene's laws where it gives none of its own", "[stages]") {
+    const SolidStage stage = scene_of(two + west).solid.value();
+    CHECK(stage.from == 8.0);
+    // Nodes stand at 1002.5, 1007.5, ...: those in the window.
+    CHECK(stage.window == std::array<Index, 4>{1, 0, 11, 19});
+    CHECK(stage.cell == 2.5);
+    CHECK(stage.spacing == 1.25);
+    CHECK(stage.bed_friction == 0.2);
+    CHECK(std::holds_alternative<solid::Fluid>(stage.law));
+    CHECK_FALSE(stage.sound_speed.has_value());
+    const Scene bingham = scene_of(
+        "[material.rheology]\nlaw = \"bingham\"\nviscosity = 20\nyield_stress = 300\n[[stage]]\nmodel = "
+        "\"solid_flow\"\n" +
+        west + "viscosity = 30\n");
+    CHECK(bingham.solid->from == 0.0);
+    const auto& law = std::get<solid::Bingham>(bingham.solid->law);
+    CHECK(law.viscosity == 30.0);
+    CHECK(law.yield_stress == 300.0);
+    CHECK(law.shear == 3e4);
+}
+
+TEST_CASE("A stage of columns to the end changes nothing", "[stages]") {
+    CHECK_FALSE(scene_of("[[stage]]\nmodel = \"depth_averaged\"\n").solid.has_value());
+    CHECK_FALSE(scene_of("").solid.has_value());
+}
+
+TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
+    CHECK(has(problem_of(two + "window = [1005, 2000, 1060, 2300]\n"),
+              "case.toml:17: stage.1.window: found [1005.0, 2000.0, 1060.0, 2300.0]; expected [xmin, ymin, "
+              "xmax, ymax] of "
+              "at least 3 x 3 cells of 5 m within x 1000 to 1200, y 2000 to 2150"));
+    CHECK(has(problem_of(two), "case.toml:15: stage.1: found no elevation at x 1197.5, y 2147.5"));
+    CHECK(has(
+        problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 25\n[[stage]]\nmodel = \"solid_flow\"\n" +
+                   west),
+        "stage.0.until: found 25 s; expected a time before time.end = 20 s"));
+    CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\n[[stage]]\nmodel = \"solid_flow\"\n" + west),
+              "stage.0: not given until, and another stage follows"));
+    CHECK(has(problem_of("[[stage]]\nmodel = \"solid_flow\"\nuntil = 5\n" + west +
+                         "[[stage]]\nmodel = \"depth_averaged\"\n"),
+              "stage.0: found another stage after it"));
+    CHECK(has(problem_of(two + west + "until = 15\n"),
+              "stage.1.until: found 15 s; expected none in the last stage"));
+    CHECK(has(problem_of(two + west + "spacing = 3\n"),
+              "stage.1.spacing: found 3 m; expected at most the stage's cell"));
+    CHECK(has(problem_of(two + west + "yield_stress = 3\n"),
+              "stage.1.yield_stress: found, but the law \"fluid\" does not"));
+    CHECK(has(problem_of(two + west + "cohesion = 3\n"),
+              "stage.1.cohesion: found, but the law \"fluid\" does not"));
+    CHECK(has(problem_of(two + west + "law = \"bingham\"\n"),
+              "stage.1.law: found \"bingham\" without a yield stress"));
+    CHECK(has(problem_of(two + west + "law = \"elastic\"\nyoung_modulus = 1e6\nsound_speed = 3\n"),
+              "stage.1.sound_speed: found, but the law \"elastic\" does not"));
+    CHECK(has(problem_of(two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\n"),
+              "stage.1.friction_angle_deg: not given, but stage.law = \"drucker_prager\" needs it"));
+    CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\ncell = 2\n"),
+              "stage.0.cell: found, but stage.model = \"depth_averaged\" does not use it"));
+}
