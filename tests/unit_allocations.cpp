@@ -64,3 +64,16 @@ TEST_CASE("Warm steps in space allocate nothing", "[speed][solid]") {
     for (int step = 0; step < 10; ++step) flow.advance(1e9);
     CHECK(allocations == before);
 }
+
+TEST_CASE("Warm steps against a barrier allocate nothing", "[speed][solid][barriers]") {
+    SolidScene scene = lump(solid::Fluid{4e5, 1.0});
+    const std::vector<Vec2> corners = {{1.3, -0.5}, {1.5, -0.5}, {1.5, 2.0}, {1.3, 2.0}};
+    scene.surfaces.push_back(Surface::barrier(Prism({{Polygon{{corners}}}, "", ""}, 0.6)));
+    for (Vec3& v : scene.points.velocity) v.x() = 3.0;
+    SolidFlow flow(scene);
+    while (flow.body().ledger.face(2, 3).impulse.norm() == 0.0) flow.advance(1e9);
+    for (int step = 0; step < 10; ++step) flow.advance(1e9);
+    const long before = allocations;
+    for (int step = 0; step < 10; ++step) flow.advance(1e9);
+    CHECK(allocations == before);
+}

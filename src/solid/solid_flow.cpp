@@ -41,6 +41,11 @@ SolidBody::SolidBody(const SolidScene& scene)
       gravity(scene.gravity),
       averaging(scene.averaging) {
     if (!surfaces.empty()) real = LazyArray<Node>(grid.size());
+    for (std::size_t s = 0; s < surfaces.size(); ++s)
+        if (surfaces[s].is_barrier()) barriers |= SurfaceSet{1} << s;
+    Vec3 high = scene.grid.origin;
+    for (int k = 0; k < 3; ++k) high[k] += scene.grid.cell * static_cast<double>(scene.grid.nodes[k] - 1);
+    ledger = FaceLedger(surfaces, scene.grid.origin, high, scene.grid.cell);
 }
 
 SolidFlow::SolidFlow(const SolidScene& scene)
@@ -145,6 +150,7 @@ void SolidFlow::mark_near() {
     for (std::size_t n = 0; n < body_.active.work.size(); ++n)
         body_.near_nodes[n] = near(body_.active.work[n], 0.0, -1.0);
     mark_seen_images();
+    if (body_.barriers != 0) make_room_for_pushes();
 }
 
 /// Images in a surface that bends may stand where its nodes lie farther from it than images reach in a plane: there too
@@ -173,6 +179,23 @@ void SolidFlow::mark_seen_images() {
                     body_.near_nodes[static_cast<std::size_t>(at)] |= set;
                 }
     }
+}
+
+/// Lists that a step fills without asking for memory: of nodes, a push or two in every one.
+void SolidFlow::make_room_for_pushes() {
+    constexpr std::size_t kPushesOfNode = 2;
+    const auto make_room = [&](std::vector<std::vector<FacePush>>& lists, const std::vector<SurfaceSet>& near,
+                               const auto& room) {
+        if (lists.size() < near.size()) lists.resize(near.size());
+        for (std::size_t n = 0; n < lists.size(); ++n) {
+            lists[n].clear();
+            if (n < near.size() && (near[n] & body_.barriers) != 0) lists[n].reserve(room(n));
+        }
+    };
+    make_room(body_.node_pushes, body_.near_nodes, [&](std::size_t) { return kPushesOfNode * kTileNodes; });
+    make_room(body_.point_pushes, body_.near_points, [&](std::size_t n) {
+        return static_cast<std::size_t>(body_.active.begin[n + 1] - body_.active.begin[n]);
+    });
 }
 
 /// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
@@ -219,6 +242,7 @@ void SolidFlow::book(double dt) {
     for (const auto gone : body_.gone) left += gone;
     for (const std::vector<Vec3>* list : {&body_.tile_impulse, &body_.point_impulse})
         for (std::size_t n = 0; n < list->size(); ++n) body_.impulse[n % body_.surfaces.size()] += (*list)[n];
+    if (body_.barriers != 0) book_pushes();
     status_.weight_impulse += dt * (all.mass + all.left_mass) * body_.gravity;
     status_.step += 1;
     status_.dt = dt;
@@ -236,6 +260,16 @@ void SolidFlow::book(double dt) {
     if (all.mass > 0.0) status_.centre = g.origin + g.cell / all.mass * all.moment;
     status_.potential = -all.mass * body_.gravity.dot(status_.centre);
     drift_ += all.max_shift;
+}
+
+void SolidFlow::book_pushes() {
+    for (const auto* lists : {&body_.node_pushes, &body_.point_pushes})
+        for (const std::vector<FacePush>& list : *lists)
+            for (const FacePush& push : list) {
+                body_.ledger.add(push);
+                body_.impulse[static_cast<std::size_t>(
+                    body_.ledger.faces()[static_cast<std::size_t>(push.face)].surface)] += push.impulse;
+            }
 }
 
 void SolidFlow::require_sound(const SolidSums& sums) const {

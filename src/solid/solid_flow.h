@@ -5,6 +5,7 @@
 
 #include "law/solid_law.h"
 #include "observe/frame.h"
+#include "solid/face_ledger.h"
 #include "solid/material_points.h"
 #include "solid/surfaces.h"
 #include "solver/step_clock.h"
@@ -90,7 +91,12 @@ struct SolidBody {
     std::vector<Vec3> impulse;        ///< of each surface on the material since the start [kg m/s]
     std::vector<Vec3> tile_impulse;   ///< of the step, per tile of the work list and surface
     std::vector<Vec3> point_impulse;  ///< the same, per particle tile: of points put back
-    std::vector<SolidSums> sums;      ///< of the step, per particle tile
+    SurfaceSet barriers = 0;          ///< which of the surfaces are
+    FaceLedger ledger;                ///< of barriers' faces since the start
+    /// Of the step: what barriers gave to the nodes of each tile of the work list, and to the points of each
+    /// particle tile that they put back.
+    std::vector<std::vector<FacePush>> node_pushes, point_pushes;
+    std::vector<SolidSums> sums;  ///< of the step, per particle tile
     Vec3 gravity;
     double averaging;
 };
@@ -146,8 +152,10 @@ private:
     void sort();
     void mark_near();
     void mark_seen_images();
+    void make_room_for_pushes();
     double step_length(double until) const;
     void book(double dt);
+    void book_pushes();
     void require_sound(const SolidSums& sums) const;
     Mat3 gradient(Index p) const;
 

@@ -1,4 +1,6 @@
 // The loops of the 3D step, one instance for each law and transfer.
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <type_traits>
 
@@ -123,6 +125,10 @@ public:
                         first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5));
                     const bool far = (place - point.x).cwiseAbs().maxCoeff() > kFarthestImage;
                     if (far || !body.grid.holds(first) || !worked(body, first)) continue;
+                    if (image.cuts > 0) {
+                        show_before_cuts(body, p, image, place, dt);
+                        continue;
+                    }
                     const Gift gift =
                         gift_of(mirrored(point, image), image.motion * (point.v + dt * body.gravity), dt);
                     give<affine, false>(body, SpaceStencil<affine>(body.grid, place), gift);
@@ -137,6 +143,9 @@ public:
             const Index first = tile * kTileNodes;
             Vec3* const impulse = body.tile_impulse.data() + n * static_cast<Index>(body.surfaces.size());
             std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
+            const Given given{
+                impulse, near & body.barriers ? &body.node_pushes[static_cast<std::size_t>(n)] : nullptr};
+            if (given.faces) given.faces->clear();
             for (Index k = first; k < first + kTileNodes; ++k) {
                 auto& node = body.nodes[k];
                 const double real = near ? body.real[k].m : node.m;
@@ -145,8 +154,7 @@ public:
                     continue;
                 }
                 Vec3 v = Vec3(node.x, node.y, node.z) / node.m;
-                if (near)
-                    v = meet(body, near, place_of(body.grid, tile, k - first), body.real[k], v, impulse);
+                if (near) v = meet(body, near, place_of(body.grid, tile, k - first), body.real[k], v, given);
                 double mean_j = 0.0;
                 if constexpr (Law::kAverages) mean_j = body.mass_j[k] / real;
                 node = {mean_j, v[0], v[1], v[2]};
@@ -160,6 +168,7 @@ public:
             const SurfaceSet near = body.near_points[static_cast<std::size_t>(n)];
             Vec3* const impulse = body.point_impulse.data() + n * static_cast<Index>(body.surfaces.size());
             std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
+            if (near & body.barriers) body.point_pushes[static_cast<std::size_t>(n)].clear();
             for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
                 const Vec3 from = position(body, p);
                 gather_point(body, p, from, dt);
@@ -167,7 +176,8 @@ public:
                     sums.bad = p;
                     continue;
                 }
-                if (near != 0) push_out(body, near, p, impulse);
+                if (near != 0) push_out(body, near & ~body.barriers, p, impulse);
+                if (near & body.barriers) keep_out(body, n, p, from);
                 book(body, p, from, sums);
             }
             body.sums[static_cast<std::size_t>(n)] = sums;
@@ -212,6 +222,28 @@ private:
         return other;
     }
 
+    /// A point gives its image in a barrier to those nodes only that the image shows at.
+    [[gnu::noinline]] void show_before_cuts(SolidBody& body, Index p, const Image& image, const Vec3& place,
+                                            double dt) const {
+        const Point point(*this, body, p);
+        const Gift gift = gift_of(mirrored(point, image), image.motion * (point.v + dt * body.gravity), dt);
+        const SpaceStencil<affine> s(body.grid, place);
+        const Vec3& origin = body.grid.geometry().origin;
+        for (int n = 0; n < 27; ++n) {
+            const int i = n % 3, j = n / 3 % 3, k = n / 9;
+            const Vec3 d(s.d[0][i], s.d[1][j], s.d[2][k]);
+            if (!image.shows_at(origin + body.grid.cell() * place + d)) continue;
+            const double w = s.w[0][i] * s.w[1][j] * s.w[2][k];
+            SolidBody::Node* const node = body.nodes.data() + s.place[0][i] + s.place[1][j] + s.place[2][k];
+            store(node, load(node) +
+                            w * (gift.base + gift.affine[0] * d[0] + gift.affine[1] * d[1] +
+                                 gift.affine[2] * d[2]) +
+                            (s.slope[0][i] * s.w[1][j] * s.w[2][k]) * gift.force[0] +
+                            (s.w[0][i] * s.slope[1][j] * s.w[2][k]) * gift.force[1] +
+                            (s.w[0][i] * s.w[1][j] * s.slope[2][k]) * gift.force[2]);
+        }
+    }
+
     /// Whether any tile that a stencil touches is on the work list.
     static bool worked(const SolidBody& body, const std::array<Index, 3>& first) {
         bool listed = false;
@@ -247,9 +279,31 @@ private:
         int count = 0;
         for (; near != 0 && count < kMostTouched; near &= near - 1) {
             const int s = __builtin_ctz(near);
+            if (body.barriers >> s & 1) {
+                count = touched_barrier(body, s, x, mixed, list, count);
+                continue;
+            }
             const Contact c = contact(body.surfaces[static_cast<std::size_t>(s)], x);
             if (c.distance > 0.5 * image_reach(c.normal) * body.grid.cell()) continue;
             const double asked = mixed.dot(c.normal);
+            list[count++] = {s, c, c.distance <= 0.0 ? std::max(asked, 0.0) : asked};
+        }
+        return count;
+    }
+
+    /// The same for the faces of a barrier. In one so thin that material of both sides shares a node, neither
+    /// side knows what the other's images ask for: nothing goes into either.
+    [[gnu::noinline]] static int touched_barrier(const SolidBody& body, int s, const Vec3& x,
+                                                 const Vec3& mixed, Touch* list, int count) {
+        Contact found[kMostContacts];
+        const int faces = contacts(body.surfaces[static_cast<std::size_t>(s)], x, body.grid.cell(), found);
+        bool thin = false;
+        for (int n = 1; n < faces; ++n) thin |= found[0].normal.dot(found[n].normal) < kOpposite;
+        thin = thin && found[0].distance <= 0.0;
+        for (int n = 0; n < faces && count < kMostTouched; ++n) {
+            const Contact& c = found[n];
+            if (c.distance > 0.5 * image_reach(c.normal) * body.grid.cell()) continue;
+            const double asked = thin ? 0.0 : mixed.dot(c.normal);
             list[count++] = {s, c, c.distance <= 0.0 ? std::max(asked, 0.0) : asked};
         }
         return count;
@@ -268,12 +322,18 @@ private:
             }
     }
 
+    /// Where impulses on the nodes of a tile are booked.
+    struct Given {
+        Vec3* impulse;                 ///< per surface
+        std::vector<FacePush>* faces;  ///< of barriers, where some are near
+    };
+
     /// The velocity of a node near surfaces. `mixed` is what points and images gave it: free surfaces take
     /// from it only what it has along their normal (along themselves images would brake material that
     /// shears), and only as a push: surfaces never pull. Friction follows from the push. Books each surface's
     /// impulse on the real material.
     static Vec3 meet(const SolidBody& body, SurfaceSet near, const Vec3& x, const SolidBody::Node& real,
-                     const Vec3& mixed, Vec3* impulse) {
+                     const Vec3& mixed, const Given& given) {
         Touch list[kMostTouched];
         const int count = touched(body, near, x, mixed, list);
         Vec3 v = Vec3(real.x, real.y, real.z) / real.m;
@@ -289,9 +349,31 @@ private:
                     v = braked(v, normal, surface.friction * t->push);
                 t->brake = v - before;
             }
-            impulse[t->surface] += real.m * (t->push * normal + t->brake);
+            if (body.barriers >> t->surface & 1)
+                list_push(body, t->surface, t->contact,
+                          {real.m, x, t->push * normal + t->brake, Vec3::Zero(), Vec3::Zero()}, *given.faces);
+            else
+                given.impulse[t->surface] += real.m * (t->push * normal + t->brake);
         }
         return v;
+    }
+
+    /// What a barrier does to a node or a point: changes its speed, and moves it at the speed it then has.
+    struct PushAt {
+        double mass;
+        Vec3 place, change, shift, v;
+    };
+    /// Books it with the face. Not inlined, like all that barriers need, so that scenes without them have the
+    /// bits they had: in place, it would share sums with other code, and so change what is fused there.
+    [[gnu::noinline]] static void list_push(const SolidBody& body, int surface, const Contact& c,
+                                            const PushAt& push, std::vector<FacePush>& list) {
+        const Vec3 impulse = push.mass * push.change;
+        if (impulse.isZero(0.0) && push.shift.isZero(0.0)) return;
+        const int face = body.ledger.first(surface) + c.face;
+        const Patches& patches = body.ledger.faces()[static_cast<std::size_t>(face)].patches;
+        list.push_back({face, patches.at(push.place - c.distance * c.normal), impulse,
+                        (push.place - body.grid.geometry().origin).cross(impulse) +
+                            push.mass * push.shift.cross(push.v)});
     }
 
     /// v across the surface, `along` along it.
@@ -362,6 +444,55 @@ private:
             for (int k = 0; k < 3; ++k) q.x[k][p] -= c.distance / h * c.normal[k], q.v[k][p] += change[k];
             impulse[s] += q.mass[p] * change;
         }
+    }
+
+    /// Points stay outside of barriers: one whose way from its last place crosses a face is put back on that
+    /// face, a hair before it so that it never starts inside; where there is no such place, where it was.
+    [[gnu::noinline]] static void keep_out(SolidBody& body, Index tile, Index p, const Vec3& from) {
+        constexpr int kTurns = 8;
+        const SurfaceSet near = body.near_points[static_cast<std::size_t>(tile)] & body.barriers;
+        const Vec3& origin = body.grid.geometry().origin;
+        const double h = body.grid.cell();
+        const Vec3 start = origin + h * from;
+        bool free = false;
+        for (int turn = 0; turn < kTurns && !free; ++turn) {
+            free = true;
+            for (SurfaceSet left = near; left != 0; left &= left - 1)
+                free = !put_before(body, tile, p, __builtin_ctz(left), start) && free;
+        }
+        if (free) return;
+        MaterialPoints& q = body.points;
+        for (int k = 0; k < 3; ++k) q.x[k][p] = from[k];
+    }
+
+    /// Puts a point before the face of a barrier that it crossed, without its speed into it. Returns whether
+    /// it did. A point that lay inside from the start comes out by the nearest face.
+    [[gnu::noinline]] static bool put_before(SolidBody& body, Index tile, Index p, int s, const Vec3& start) {
+        constexpr double kHair = 1e-9;  // of a cell: above round-off of places, below all that matters
+        const Surface& surface = body.surfaces[static_cast<std::size_t>(s)];
+        MaterialPoints& q = body.points;
+        const double h = body.grid.cell();
+        const Vec3& origin = body.grid.geometry().origin;
+        const Vec3 x = origin + h * position(body, p);
+        Contact c;
+        Entry entry;
+        if (enters(surface, start, x, entry)) {
+            const Vec3 crossing = start + entry.share * (x - start);
+            c = {entry.normal.dot(x - crossing), entry.normal, entry.face};
+        } else if (surface.inside(x)) {
+            c = contact(surface, x);
+        } else {
+            return false;
+        }
+        const Vec3 v(q.v[0][p], q.v[1][p], q.v[2][p]);
+        const Vec3 change = -std::min(0.0, v.dot(c.normal)) * c.normal;
+        for (int k = 0; k < 3; ++k) {
+            q.x[k][p] += (kHair - c.distance / h) * c.normal[k];
+            q.v[k][p] += change[k];
+        }
+        list_push(body, s, c, {q.mass[p], x, change, (kHair * h - c.distance) * c.normal, v + change},
+                  body.point_pushes[static_cast<std::size_t>(tile)]);
+        return true;
     }
 
     /// Whether a point's numbers are finite, and it did not run away.

@@ -1,30 +1,11 @@
 #include "solid/surfaces.h"
 
 #include <algorithm>
+#include <limits>
 
-#include "base/error.h"
+#include "solid/bed_height.h"
 
 namespace frana {
-namespace {
-
-/// Elevation and gradient of the bilinear bed.
-struct Ground {
-    double z, slope_x, slope_y;
-};
-
-Ground ground_at(const Raster& bed, double x, double y) {
-    const GridGeometry& g = bed.geometry;
-    const double u = std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
-    const double v = std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
-    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-    const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
-    const double a = bed.at(i, j), b = bed.at(i + 1, j), c = bed.at(i, j + 1), d = bed.at(i + 1, j + 1);
-    return {(1 - fv) * ((1 - fu) * a + fu * b) + fv * ((1 - fu) * c + fu * d),
-            ((1 - fv) * (b - a) + fv * (d - c)) / g.cell, ((1 - fu) * (c - a) + fu * (d - b)) / g.cell};
-}
-
-}  // namespace
-
 Surface Surface::plane(const Vec3& through, const Vec3& normal, Hold hold, double friction) {
     Surface s;
     s.normal = normal.normalized();
@@ -43,11 +24,55 @@ Surface Surface::ground(Raster bed, Hold hold, double friction) {
     return s;
 }
 
+Surface Surface::barrier(Prism prism, Hold hold, double friction) {
+    Surface s;
+    s.kind = Kind::prism;
+    s.prism = std::make_shared<const Prism>(std::move(prism));
+    s.hold = hold;
+    s.friction = friction;
+    return s;
+}
+
+Surface Surface::barrier(DistanceField shape, Hold hold, double friction) {
+    Surface s;
+    s.kind = Kind::shape;
+    s.shape = std::make_shared<const DistanceField>(std::move(shape));
+    s.hold = hold;
+    s.friction = friction;
+    return s;
+}
+
+bool Surface::inside(const Vec3& x) const {
+    if (kind == Kind::prism) return prism->inside(x);
+    return contact(*this, x).distance < 0.0;
+}
+
 Contact contact(const Surface& surface, const Vec3& x) {
     if (surface.kind == Surface::Kind::plane) return {surface.normal.dot(x) - surface.offset, surface.normal};
-    const Ground g = ground_at(surface.bed, x.x(), x.y());
+    if (surface.kind != Surface::Kind::ground) {
+        Contact list[kMostContacts];
+        contacts(surface, x, std::numeric_limits<double>::infinity(), list);
+        return list[0];
+    }
+    const BedHeight g = bed_height(surface.bed, x.x(), x.y());
     const Vec3 normal = Vec3(-g.slope_x, -g.slope_y, 1.0).normalized();
     return {(x.z() - g.z) * normal.z(), normal};
+}
+
+int contacts(const Surface& barrier, const Vec3& x, double cell, Contact* list) {
+    if (barrier.kind == Surface::Kind::prism) return barrier.prism->contacts(x, cell, list);
+    list[0] = barrier.shape->contact(x);
+    return 1;
+}
+
+bool enters(const Surface& barrier, const Vec3& from, const Vec3& to, Entry& entry) {
+    return barrier.kind == Surface::Kind::prism ? barrier.prism->enters(from, to, entry)
+                                                : barrier.shape->enters(from, to, entry);
+}
+
+double thickness(const Surface& barrier, const Vec3& from, const Vec3& way) {
+    return barrier.kind == Surface::Kind::prism ? barrier.prism->thickness(from, way)
+                                                : barrier.shape->thickness(from, way);
 }
 
 SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
@@ -60,6 +85,11 @@ SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, 
         if (surface.kind == Surface::Kind::plane) {
             const double span = surface.normal.cwiseAbs().dot(half);
             near = contact(surface, centre).distance - span < image_reach(surface.normal) * cell + more;
+        } else if (surface.is_barrier()) {
+            const auto [least, most] =
+                surface.kind == Surface::Kind::prism ? surface.prism->box() : surface.shape->box();
+            const double reach = kLongestReach * cell + more;
+            near = (least - high).maxCoeff() < reach && (low - most).maxCoeff() < reach;
         } else {
             const double step = std::min(surface.bed.geometry.cell, cell);
             for (double y = low.y(); y < high.y() + step && !near; y += step)
@@ -78,20 +108,42 @@ Images::Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3
     int count = 0;
     for (; near != 0 && count < kMostNear; near &= near - 1) {
         const Surface& surface = surfaces[static_cast<std::size_t>(__builtin_ctz(near))];
+        if (surface.is_barrier()) {
+            count = near_barrier(surface, x, cell, list, count);
+            continue;
+        }
         const Contact c = contact(surface, x);
-        if (c.distance < image_reach(c.normal) * cell) list[count++] = {c, surface.hold == Hold::stuck};
+        if (c.distance < image_reach(c.normal) * cell)
+            list[count++] = {c, surface.hold == Hold::stuck, std::numeric_limits<double>::infinity()};
     }
-    reflect(list, count, {x, Mat3::Identity(), Mat3::Identity()}, 0);
+    reflect(list, count, {x, Mat3::Identity(), Mat3::Identity(), 0, {}}, 0);
+}
+
+int Images::near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count) {
+    Contact found[kMostContacts];
+    const int faces = contacts(surface, x, cell, found);
+    for (const Contact* c = found; c < found + faces && count < kMostNear; ++c) {
+        if (c->distance < 0.0 || c->distance >= image_reach(c->normal) * cell) continue;
+        const double thick = thickness(surface, x - c->distance * c->normal, -c->normal);
+        list[count++] = {*c, surface.hold == Hold::stuck, thick};
+    }
+    return count;
 }
 
 /// Reflects in each of the surfaces, and these images in those listed behind; at most three times in a row.
 void Images::reflect(const Near* near, int count, const Image& from, int depth) {
-    constexpr double kOpposite = -0.5;
     for (int n = 0; n < count && count_ < kMost; ++n) {
         const Vec3& normal = near[n].contact.normal;
         const Mat3 mirror = Mat3::Identity() - 2.0 * normal * normal.transpose();
-        const Image image{from.place - 2.0 * near[n].contact.distance * normal, mirror * from.turn,
-                          near[n].stuck ? Mat3(-from.motion) : Mat3(mirror * from.motion)};
+        Image image{from.place - 2.0 * near[n].contact.distance * normal,
+                    mirror * from.turn,
+                    near[n].stuck ? Mat3(-from.motion) : Mat3(mirror * from.motion),
+                    from.cuts,
+                    {from.cut[0], from.cut[1]}};
+        if (near[n].thick < std::numeric_limits<double>::infinity() && image.cuts < 2)
+            image.cut[image.cuts++] = {
+                {normal[0], normal[1], normal[2]},
+                normal.dot(from.place) - near[n].contact.distance - 0.5 * near[n].thick};
         list_[static_cast<std::size_t>(count_++)] = image;
         if (depth == 2) continue;
         Near others[kMostNear];

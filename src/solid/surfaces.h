@@ -1,10 +1,14 @@
 #pragma once
-// Rigid surfaces that 3D material meets: planes, and the ground as a height field.
+// Rigid surfaces that 3D material meets: planes, the ground as a height field, and barriers.
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "base/types.h"
+#include "solid/contact.h"
+#include "solid/distance_field.h"
+#include "solid/prism.h"
 #include "terrain/raster.h"
 
 namespace frana {
@@ -12,13 +16,16 @@ namespace frana {
 /// How material moves along a surface. free: nothing holds it but friction; stuck: it does not move along it.
 enum class Hold { free, stuck };
 
-/// A surface with material on the side that its normal points to.
+/// A surface with material on the side that its normal points to. Barriers are solids: material may be all
+/// around them, and no point passes through, however thin they are and however fast it comes.
 struct Surface {
-    enum class Kind { plane, ground };
+    enum class Kind { plane, ground, prism, shape };
     Kind kind = Kind::plane;
     Vec3 normal{0, 0, 1};  ///< of a plane, a unit vector
     double offset = 0.0;   ///< of a plane: normal . x on it [m]
     Raster bed;            ///< of the ground: elevation [m], bilinear between nodes; beyond them the nearest
+    std::shared_ptr<const Prism> prism;          ///< of a barrier with a footprint
+    std::shared_ptr<const DistanceField> shape;  ///< of a barrier of any shape
     Hold hold = Hold::free;
     double friction = 0.0;  ///< Coulomb's coefficient of a free surface [1]
     std::string name;
@@ -26,41 +33,59 @@ struct Surface {
     static Surface plane(const Vec3& through, const Vec3& normal, Hold hold = Hold::free,
                          double friction = 0.0);
     static Surface ground(Raster bed, Hold hold = Hold::free, double friction = 0.0);
-};
+    static Surface barrier(Prism prism, Hold hold = Hold::free, double friction = 0.0);
+    /// The field reaches image_reach() cells beyond the solid wherever material comes near.
+    static Surface barrier(DistanceField shape, Hold hold = Hold::free, double friction = 0.0);
 
-/// The tangent plane of a surface at the place nearest to a point.
-struct Contact {
-    double distance;  ///< of the point, negative inside of the surface [m]
-    Vec3 normal;      ///< unit vector away from the surface
+    bool is_barrier() const { return kind == Kind::prism || kind == Kind::shape; }
+    int faces() const { return kind == Kind::prism ? prism->faces() : kind == Kind::shape ? 6 : 1; }
+    /// Whether a place is in the solid, or behind the plane or the ground.
+    bool inside(const Vec3& x) const;
 };
 
 /// For the ground the tangent plane below the point: exact for a plane, and of first order in distance over
-/// radius of curvature.
+/// radius of curvature. For a barrier its nearest face.
 Contact contact(const Surface& surface, const Vec3& x);
+
+/// All faces of a barrier that a point in cells of that size can meet, at most kMostContacts.
+int contacts(const Surface& barrier, const Vec3& x, double cell, Contact* list);
+/// Whether the way between two places, the first outside, goes into a barrier.
+bool enters(const Surface& barrier, const Vec3& from, const Vec3& to, Entry& entry);
+/// How far a barrier reaches on from a place on its surface into the unit direction `way` [m].
+double thickness(const Surface& barrier, const Vec3& from, const Vec3& way);
 
 /// Numbers of surfaces, a bit each.
 using SurfaceSet = std::uint32_t;
 constexpr int kMostSurfaces = 32;
-
-/// Cells from a surface within which the mirror image of a point touches nodes that material touches: a point
-/// reaches 3/2 cells along each axis, so its image counts up to 3 (|n_x| + |n_y| + |n_z|) cells from it.
-inline double image_reach(const Vec3& normal) { return 3.0 * normal.lpNorm<1>(); }
 
 /// Surfaces that a box from `low` to `high` [m] may come closer to than image_reach() cells and `more` [m].
 SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
                          double more);
 
 /// A mirror image of a point and of what surrounds it: dx' = turn dx, v' = motion v. A free surface mirrors
-/// both; a stuck one turns velocities round, so that all of them vanish on it.
+/// both; a stuck one turns velocities round, so that all of them vanish on it. In a barrier it shows only
+/// down to half of the barrier's thickness: the other half is for the other side's material.
 struct Image {
     Vec3 place;  ///< of the point's image [m]
     Mat3 turn, motion;
+    /// Places x with normal . x < least do not see it.
+    struct Cut {
+        double normal[3];
+        double least;  ///< [m]
+    };
+    int cuts;
+    Cut cut[2];
+    bool shows_at(const Vec3& x) const {
+        for (const Cut* c = cut; c < cut + cuts; ++c)
+            if (c->normal[0] * x[0] + c->normal[1] * x[1] + c->normal[2] * x[2] < c->least) return false;
+        return true;
+    }
 };
 
 /// The images of a point: one in each surface near it; in a corner also those of the images, which together
 /// leave no gap there, as long as they do not lie behind the other surface already. Surfaces whose normals
 /// are more than 120 degrees apart, such as both sides of a slice, have no common corner. The first four
-/// surfaces of the list count.
+/// surfaces, or faces of barriers, of the list count.
 class Images {
 public:
     Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell);
@@ -71,8 +96,10 @@ private:
     struct Near {
         Contact contact;
         bool stuck;
+        double thick;  ///< [m], without end but for barriers
     };
     static constexpr int kMostNear = 4, kMost = 14;
+    static int near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count);
     void reflect(const Near* near, int count, const Image& from, int depth);
     std::array<Image, kMost> list_;
     int count_ = 0;

@@ -1,0 +1,34 @@
+#pragma once
+// Where a point meets a surface.
+#include "base/types.h"
+
+namespace frana {
+
+/// The tangent plane of a surface at the place nearest to a point.
+struct Contact {
+    double distance;  ///< of the point, negative inside of the surface [m]
+    Vec3 normal;      ///< unit vector away from the surface
+    int face = 0;     ///< of surfaces with several
+};
+
+/// Faces of one surface that a point can meet at once.
+constexpr int kMostContacts = 4;
+
+/// Where a straight way first goes into a solid.
+struct Entry {
+    double share;  ///< of the way that lies before it [1]
+    Vec3 normal;   ///< of the face that it crosses
+    int face;
+};
+
+/// Cells from a surface within which the mirror image of a point touches nodes that material touches: a point
+/// reaches 3/2 cells along each axis, so its image counts up to 3 (|n_x| + |n_y| + |n_z|) cells from it.
+inline double image_reach(const Vec3& normal) { return 3.0 * normal.lpNorm<1>(); }
+
+/// Of any normal.
+constexpr double kLongestReach = 5.2;
+
+/// Surfaces whose normals are more than 120 degrees apart have no common corner: they are two sides.
+constexpr double kOpposite = -0.5;
+
+}  // namespace frana

@@ -1,0 +1,72 @@
+#pragma once
+// A solid with vertical walls on a footprint, which reaches down without end: walls, houses, dams.
+#include <utility>
+#include <vector>
+
+#include "solid/contact.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// The area of polygons that do not overlap one another, from their top downwards. Faces are numbered: the
+/// sides in the order of the polygons' edges, parts and rings in turn, and the top behind the last of them.
+class Prism {
+public:
+    /// A level top [m]. Throws UserError when the outline has no area or a side without length.
+    Prism(const Polygons& outline, double top);
+    /// A top that follows a height field [m].
+    Prism(const Polygons& outline, Raster top);
+
+    /// Faces that a point can meet, the nearest first, at most kMostContacts of them no farther than a point
+    /// and its image reach. Before an edge that stands out the one direction to it; in a corner that stands
+    /// in both of its planes, which a point inside sees as well. Where the solid is so thin that material of
+    /// both sides shares nodes (3 (|n_x| + |n_y|) cells) a place inside meets both sides and the top.
+    int contacts(const Vec3& x, double cell, Contact* list) const;
+    bool inside(const Vec3& x) const { return x.z() < top_at(x.head<2>()) && within(x.head<2>()); }
+    /// Whether the way between two places, the first outside, goes into the solid.
+    bool enters(const Vec3& from, const Vec3& to, Entry& entry) const;
+    /// Length of the solid from a place on its surface into the unit direction `way` [m].
+    double thickness(const Vec3& from, const Vec3& way) const;
+
+    int faces() const { return static_cast<int>(edges_.size()) + 1; }
+    int top_face() const { return static_cast<int>(edges_.size()); }
+    /// Corners of the box around it; the lower one has no height of its own.
+    std::pair<Vec3, Vec3> box() const { return {low_, high_}; }
+    /// A side: its start and its end in plan, and its outward normal.
+    struct Edge {
+        Vec2 from, along, normal;  ///< along, normal: unit vectors
+        double length;             ///< [m]
+        int before, after;         ///< neighbours in the ring
+        bool starts_in, ends_in;   ///< whether the corner there stands in
+        Vec2 to() const { return from + length * along; }
+    };
+    const std::vector<Edge>& edges() const { return edges_; }
+    double top_at(const Vec2& p) const;
+
+private:
+    void add_ring(std::vector<Vec2> ring, bool hole);
+    void find_box();
+    bool within(const Vec2& p) const;
+    Contact top_contact(const Vec3& x) const;
+    Contact lifted(const Vec3& x, double distance, const Vec2& normal, int face) const;
+    int before_it(const Vec3& x, double reach, Contact* list) const;
+    int within_it(const Vec3& x, double cell, Contact* list) const;
+    bool sees(const Vec3& x, const Contact& contact, int nearest) const;
+
+    std::vector<Edge> edges_;
+    double level_ = 0.0;
+    Raster top_;
+    Vec3 low_, high_;
+};
+
+/// Outline of a wall along a line whose one face stands on the line: to the left of it, as one walks along,
+/// lies the material that counts (or to the right), to the other side its thickness [m]. Corners are mitred.
+/// Throws UserError when the line has less than two different points or turns by more than 120 degrees.
+enum class WetSide { left, right };
+Polygons wall_outline(const Polyline& line, WetSide wet, double thickness);
+
+/// The least thickness at which material on both sides of a wall along the line shares no node of cells of
+/// that size [m]: thinner walls are thickened to it, away from the wet side.
+double least_wall_thickness(const Polyline& line, double cell);
+
+}  // namespace frana

@@ -1,0 +1,180 @@
+// Meshes as barriers: distances of those that are closed, a sentence about those that are not.
+#include <Eigen/Geometry>
+
+#include <fstream>
+
+#include "base/error.h"
+#include "catch.h"
+#include "fresh_folder.h"
+#include "vtk_io/barrier_mesh.h"
+
+using namespace frana;
+
+namespace {
+
+using Corners = std::vector<Vec3>;
+using Sides = std::vector<std::array<int, 3>>;
+
+/// An ASCII STL file, which repeats the corners of each triangle.
+std::filesystem::path write_stl(const std::filesystem::path& file, const Corners& corners,
+                                const Sides& sides) {
+    std::ofstream out(file);
+    out << "solid made\n";
+    for (const auto& side : sides) {
+        out << "facet normal 0 0 0\nouter loop\n";
+        for (const int c : side) {
+            const Vec3& x = corners[static_cast<std::size_t>(c)];
+            out << "vertex " << x.x() << ' ' << x.y() << ' ' << x.z() << '\n';
+        }
+        out << "endloop\nendfacet\n";
+    }
+    out << "endsolid made\n";
+    return file;
+}
+
+std::filesystem::path write_obj(const std::filesystem::path& file, const Corners& corners,
+                                const Sides& sides) {
+    std::ofstream out(file);
+    for (const Vec3& x : corners) out << "v " << x.x() << ' ' << x.y() << ' ' << x.z() << '\n';
+    for (const auto& side : sides)
+        out << "f " << side[0] + 1 << ' ' << side[1] + 1 << ' ' << side[2] + 1 << '\n';
+    return file;
+}
+
+/// By hand, so that the reader meets a file that VTK did not write.
+std::filesystem::path write_vtp(const std::filesystem::path& file, const Corners& corners,
+                                const Sides& sides) {
+    std::ofstream out(file);
+    out << "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\"><PolyData><Piece "
+           "NumberOfPoints=\""
+        << corners.size() << "\" NumberOfPolys=\"" << sides.size()
+        << "\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">";
+    for (const Vec3& x : corners) out << x.x() << ' ' << x.y() << ' ' << x.z() << '\n';
+    out << "</DataArray></Points><Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">";
+    for (const auto& side : sides) out << side[0] << ' ' << side[1] << ' ' << side[2] << '\n';
+    out << "</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">";
+    for (std::size_t n = 1; n <= sides.size(); ++n) out << 3 * n << ' ';
+    out << "</DataArray></Polys></Piece></PolyData></VTKFile>\n";
+    return file;
+}
+
+Corners box_corners(const Vec3& low, const Vec3& high) {
+    Corners corners;
+    for (int c = 0; c < 8; ++c)
+        corners.push_back(
+            {c & 1 ? high.x() : low.x(), c & 2 ? high.y() : low.y(), c & 4 ? high.z() : low.z()});
+    return corners;
+}
+const Sides kBox = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+
+const Vec3 kLow(1, 2, -1), kHigh(3, 2.5, 1.25);
+
+double box_distance(const Vec3& x) {
+    const Vec3 q = (x - 0.5 * (kLow + kHigh)).cwiseAbs() - 0.5 * (kHigh - kLow);
+    return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+void check_box(const DistanceField& field) {
+    double worst = 0.0;
+    for (Index k = 0; k < field.nodes[2]; ++k)
+        for (Index j = 0; j < field.nodes[1]; ++j)
+            for (Index i = 0; i < field.nodes[0]; ++i)
+                worst = std::max(worst, std::abs(field.at(i, j, k) - box_distance(field.place(i, j, k))));
+    CHECK(worst < 1e-6);  // VTK keeps points as float: 1e-7 of 3 m
+}
+
+}  // namespace
+
+TEST_CASE("A closed box in any of the formats gives its exact distances, whichever way its triangles run",
+          "[mesh]") {
+    const FreshFolder fresh;
+    const std::filesystem::path& folder = fresh.path();
+    const Corners corners = box_corners(kLow, kHigh);
+    Sides inwards = kBox;
+    for (auto& side : inwards) std::swap(side[0], side[1]);
+    const MeshSampling sampling{0.125, 0.5};
+    check_box(read_barrier_mesh(write_stl(folder / "box.stl", corners, kBox), sampling));
+    check_box(read_barrier_mesh(write_obj(folder / "box.OBJ", corners, kBox), sampling));
+    check_box(read_barrier_mesh(write_vtp(folder / "box.vtp", corners, kBox), sampling));
+    check_box(read_barrier_mesh(write_stl(folder / "inwards.stl", corners, inwards), sampling));
+    const DistanceField field = read_barrier_mesh(folder / "box.stl", sampling);
+    for (int k = 0; k < 3; ++k) {
+        CHECK(field.origin[k] <= kLow[k] - 0.5 + 1e-12);
+        CHECK(field.end()[k] >= kHigh[k] + 0.5 - 1e-12);
+    }
+}
+
+TEST_CASE("Around a sharp spike the field knows inside from outside", "[mesh]") {
+    // Angles of 9 degrees at the tip: where the nearest place is an edge or the tip, single normals mislead.
+    const Corners corners = {{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}, {0.1, 0.1, 2}};
+    const Sides sides = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    const FreshFolder folder;
+    const DistanceField field =
+        read_barrier_mesh(write_obj(folder.path() / "spike.obj", corners, sides), {0.05, 0.4});
+    const auto inside = [&](const Vec3& x) {
+        double least = 1e9;
+        for (const auto& s : sides) {
+            const Vec3 a = corners[static_cast<std::size_t>(s[0])],
+                       b = corners[static_cast<std::size_t>(s[1])],
+                       c = corners[static_cast<std::size_t>(s[2])];
+            least = std::min(least, -(b - a).cross(c - a).normalized().dot(x - a));
+        }
+        return least;
+    };
+    Index wrong = 0;
+    for (Index k = 0; k < field.nodes[2]; ++k)
+        for (Index j = 0; j < field.nodes[1]; ++j)
+            for (Index i = 0; i < field.nodes[0]; ++i) {
+                const double depth = inside(field.place(i, j, k));
+                if (std::abs(depth) > 1e-6) wrong += (depth > 0.0) != (field.at(i, j, k) < 0.0) ? 1 : 0;
+            }
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("A mesh that is no solid is refused with what was found and what to do", "[mesh]") {
+    const FreshFolder fresh;
+    const std::filesystem::path& folder = fresh.path();
+    const Corners corners = box_corners(kLow, kHigh);
+    const MeshSampling sampling{0.25, 0.5};
+    const auto refused = [&](const std::filesystem::path& file, const std::string& what) {
+        CAPTURE(file.string());
+        CHECK_THROWS_AS(read_barrier_mesh(file, sampling), UserError);
+        CHECK_THROWS_WITH(read_barrier_mesh(file, sampling), Catch::Contains(what));
+    };
+    Sides open(kBox.begin() + 1, kBox.end());
+    refused(write_stl(folder / "open.stl", corners, open),
+            "3 edges of the mesh do not have exactly two triangles");
+    Sides turned = kBox;
+    std::swap(turned[4][0], turned[4][1]);
+    refused(write_stl(folder / "turned.stl", corners, turned), "opposite sides outwards");
+    // Two boxes, one through the other.
+    Corners two = corners;
+    for (const Vec3& x : box_corners({1.5, 1.5, -0.5}, {2.5, 3.0, 0.5})) two.push_back(x);
+    Sides both = kBox;
+    for (auto side : kBox) both.push_back({side[0] + 8, side[1] + 8, side[2] + 8});
+    refused(write_obj(folder / "through.obj", two, both), "cuts through itself");
+    refused(folder / "missing.stl", "not found");
+    std::ofstream(folder / "mesh.ply") << "ply\n";
+    refused(folder / "mesh.ply", "'.ply' is not known");
+    std::ofstream(folder / "empty.obj") << "# nothing\n";
+    refused(folder / "empty.obj", "no triangles");
+    std::ofstream(folder / "words.vtp") << "not a mesh at all\n";
+    refused(folder / "words.vtp", "cannot be read as a mesh");
+    Corners large = corners;
+    for (Vec3& x : large) x *= 1000.0;
+    refused(write_obj(folder / "millimetres.obj", large, kBox), "is it in metres?");
+}
+
+TEST_CASE("Parts that stand apart are one barrier", "[mesh]") {
+    Corners two = box_corners({0, 0, 0}, {1, 1, 1});
+    for (const Vec3& x : box_corners({2, 0, 0}, {3, 1, 1})) two.push_back(x);
+    Sides both = kBox;
+    for (auto side : kBox) both.push_back({side[0] + 8, side[1] + 8, side[2] + 8});
+    const FreshFolder folder;
+    const DistanceField field =
+        read_barrier_mesh(write_vtp(folder.path() / "two.vtp", two, both), {0.125, 0.5});
+    CHECK(field.inside({0.5, 0.5, 0.5}));
+    CHECK(field.inside({2.5, 0.5, 0.5}));
+    CHECK(!field.inside({1.5, 0.5, 0.5}));
+}

@@ -1,0 +1,244 @@
+// Barriers: distances, faces, corners, ways that end on them, walls along a line.
+#include <Eigen/Geometry>
+
+#include "base/error.h"
+#include "catch.h"
+#include "solid/face_ledger.h"
+
+using namespace frana;
+
+namespace {
+
+Polygons ring(const std::vector<Vec2>& corners) { return {{Polygon{{corners}}}, "", ""}; }
+Polygons box(double x0, double y0, double x1, double y1) {
+    return ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
+}
+/// Its corner that stands in is at (2, 2).
+Polygons l_shape() { return ring({{0, 0}, {6, 0}, {6, 2}, {2, 2}, {2, 6}, {0, 6}}); }
+
+std::vector<Contact> all_contacts(const Prism& prism, const Vec3& x, double cell) {
+    Contact list[kMostContacts];
+    const int count = prism.contacts(x, cell, list);
+    return {list, list + count};
+}
+
+/// Numbers from 0 to 1, the same everywhere.
+struct Dice {
+    std::uint32_t state = 12345;
+    double operator()() {
+        state = state * 1664525u + 1013904223u;
+        return state / 4294967296.0;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("A box's nearest face, edge or corner is found from all around, and from inside", "[solid]") {
+    const Surface house = Surface::barrier(Prism(box(0, 0, 10, 4), 3.0));
+    Dice dice;
+    for (int n = 0; n < 2000; ++n) {
+        const Vec3 x(-5 + 20 * dice(), -5 + 14 * dice(), -3 + 9 * dice());
+        const Vec3 q(std::abs(x.x() - 5) - 5, std::abs(x.y() - 2) - 2, x.z() - 3);
+        const double exact = q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+        const Contact c = contact(house, x);
+        CAPTURE(x.x(), x.y(), x.z());
+        REQUIRE(c.distance == Approx(exact).margin(1e-12));
+        REQUIRE(house.inside(x) == (exact < 0.0));
+        // Away from it the normal leads, as steep as a distance: checked by the foot that it leads to.
+        const Contact foot = contact(house, x - c.distance * c.normal);
+        REQUIRE(std::abs(foot.distance) < 1e-9);
+        REQUIRE(c.normal.norm() == Approx(1.0).epsilon(1e-12));
+    }
+    CHECK(contact(house, {5, -1, 0}).face == 0);
+    CHECK(contact(house, {11, 2, 0}).face == 1);
+    CHECK(contact(house, {5, 5, 0}).face == 2);
+    CHECK(contact(house, {-1, 2, 0}).face == 3);
+    CHECK(contact(house, {5, 2, 4}).face == 4);
+}
+
+TEST_CASE("Outlines may run either way round, have holes, and end where they began", "[solid]") {
+    const Prism with(box(0, 0, 4, 4), 1.0);
+    const Prism against(ring({{0, 4}, {4, 4}, {4, 0}, {0, 0}, {0, 4}}), 1.0);
+    Polygons court = box(0, 0, 10, 10);
+    court.parts[0].rings.push_back({{4, 4}, {6, 4}, {6, 6}, {4, 6}});
+    const Prism hole(court, 1.0);
+    Dice dice;
+    for (int n = 0; n < 500; ++n) {
+        const Vec3 x(-2 + 14 * dice(), -2 + 14 * dice(), -2 + 4 * dice());
+        REQUIRE(with.inside(x) == against.inside(x));
+        const auto in = [&](double low, double high) {
+            return x.x() > low && x.x() < high && x.y() > low && x.y() < high;
+        };
+        REQUIRE(hole.inside(x) == (in(0, 10) && !in(4, 6) && x.z() < 1.0));
+    }
+    CHECK(all_contacts(hole, {5, 4.5, 0}, 0.1).at(0).normal.isApprox(Vec3(0, 1, 0)));
+}
+
+TEST_CASE("A corner that stands in is a corner of two planes, from before it and from inside", "[solid]") {
+    const Prism angle(l_shape(), 3.0);
+    const auto before = all_contacts(angle, {2.3, 2.5, 1}, 0.5);
+    REQUIRE(before.size() == 2);
+    CHECK(before[0].distance == Approx(0.3));
+    CHECK(before[0].normal.isApprox(Vec3(1, 0, 0)));
+    CHECK(before[1].distance == Approx(0.5));
+    CHECK(before[1].normal.isApprox(Vec3(0, 1, 0)));
+    // Two planes there show the same images.
+    const std::vector<Surface> planes = {Surface::plane({2, 2, 0}, {1, 0, 0}),
+                                         Surface::plane({2, 2, 0}, {0, 1, 0})};
+    const std::vector<Surface> corner = {
+        Surface::barrier(Prism(ring({{-40, -40}, {60, -40}, {60, 2}, {2, 2}, {2, 60}, {-40, 60}}), 300.0))};
+    const Images of_planes(planes, 3u, {2.3, 2.5, 1}, 0.5), of_corner(corner, 1u, {2.3, 2.5, 1}, 0.5);
+    REQUIRE(of_planes.end() - of_planes.begin() == 3);
+    REQUIRE(of_corner.end() - of_corner.begin() == 3);
+    for (int n = 0; n < 3; ++n) {
+        CHECK((of_planes.begin()[n].place - of_corner.begin()[n].place).norm() < 1e-12);
+        CHECK((of_planes.begin()[n].motion - of_corner.begin()[n].motion).norm() < 1e-12);
+    }
+    // Inside: behind both faces, and behind one of them only.
+    const auto behind = all_contacts(angle, {1.8, 1.9, -10}, 0.2);
+    REQUIRE(behind.size() == 2);
+    CHECK(behind[0].distance + behind[1].distance == Approx(-0.3));
+    const auto beside = all_contacts(angle, {1.9, 2.2, -10}, 0.2);
+    REQUIRE(beside.size() == 2);
+    CHECK(beside[0].distance == Approx(-0.1));
+    CHECK(beside[1].distance == Approx(0.2));
+}
+
+TEST_CASE("In corners of a barrier of any width no image stands where material may be", "[solid]") {
+    const double wide = GENERATE(60.0, 70.0, 90.0, 110.0, 130.0) * M_PI / 180.0;
+    const Vec2 ray(std::cos(wide), std::sin(wide));
+    // A solid around the wedge between +x and the ray, large against the reach.
+    const std::vector<Surface> corner = {Surface::barrier(
+        Prism(ring({{0, 0}, 50 * ray, 50 * ray + Vec2(-90, 0), {-90, -50}, {50, -50}, {50, 0}}), 100.0))};
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+        const double angle = share * wide;
+        const Vec3 x(1.5 * std::cos(angle), 1.5 * std::sin(angle), 0);
+        REQUIRE(!corner[0].inside(x));
+        const Images images(corner, 1u, x, 1.0);
+        CHECK(images.end() - images.begin() >= 2);
+        for (const Image& image : images) {
+            CAPTURE(wide, share, image.place.x(), image.place.y());
+            CHECK(contact(corner[0], image.place).distance < 1e-9);
+        }
+    }
+}
+
+TEST_CASE("No way that ends inside or beyond a barrier misses its faces, seams included", "[solid]") {
+    const Prism angle(l_shape(), 3.0);
+    Dice dice;
+    int crossings = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const auto place = [&] { return Vec3(-2 + 10 * dice(), -2 + 10 * dice(), 5 * dice()); };
+        Vec3 from = place(), to = place();
+        // A third of the ways lead through an upright edge, another third through the rim of the top.
+        const Vec3 aim = n % 3 == 0 ? Vec3(n % 2 == 0 ? 6 : 2, 2, 3 * dice()) : Vec3(0, 6 * dice(), 3);
+        if (n % 3 != 2) to = from + (1.0 + dice()) * (aim - from);
+        if (angle.inside(from)) continue;
+        Entry entry;
+        const bool enters = angle.enters(from, to, entry);
+        bool met = false;
+        for (int k = 1; k <= 400; ++k) met |= angle.inside(from + k / 400.0 * (to - from));
+        if (met) {
+            REQUIRE(enters);
+            ++crossings;
+        }
+        if (enters) {
+            const Vec3 at = from + entry.share * (to - from);
+            Contact list[kMostContacts];
+            REQUIRE(angle.contacts(at, 1.0, list) > 0);
+            REQUIRE(std::abs(list[0].distance) < 1e-7);
+        }
+    }
+    CHECK(crossings > 3000);
+}
+
+TEST_CASE("Images in a wall stop at half of its thickness, and those in a thick one are not cut short",
+          "[solid]") {
+    const std::vector<Surface> wall = {Surface::barrier(Prism(box(0, -50, 2, 50), 50.0))};
+    const Images images(wall, 1u, {-0.7, 0, 0}, 1.0);
+    REQUIRE(images.end() - images.begin() == 1);
+    const Image& image = *images.begin();
+    CHECK((image.place - Vec3(0.7, 0, 0)).norm() < 1e-12);
+    CHECK(image.shows_at({0.99, 3, 3}));
+    CHECK(!image.shows_at({1.01, 3, 3}));
+}
+
+TEST_CASE("The top of a barrier may follow the ground", "[solid]") {
+    Raster top = Raster::filled({21, 21, -10.0, -10.0, 1.0}, 0.0);
+    for (Index j = 0; j < 21; ++j)
+        for (Index i = 0; i < 21; ++i) top.at(i, j) = 2.0 + 0.3 * top.geometry.x(i);
+    const Surface dam = Surface::barrier(Prism(box(-5, -2, 5, 2), top));
+    const Contact above = contact(dam, {1, 0, 3});
+    const Vec3 normal = Vec3(-0.3, 0, 1).normalized();
+    CHECK((above.normal - normal).norm() < 1e-12);
+    CHECK(above.distance == Approx((3 - 2.3) * normal.z()));
+    CHECK(dam.inside({4, 0, 3.1}));
+    CHECK(!dam.inside({-4, 0, 3.1}));
+    CHECK(contact(dam, {4, -3, 3.0}).distance == Approx(1.0));  // below the rim there
+    CHECK(contact(dam, {-4, -3, 3.8}).distance > 2.0);          // far above it here
+}
+
+TEST_CASE("A wall along a line keeps its wet face on the line", "[solid]") {
+    const Polyline line = {{0, 0}, {10, 0}, {10, 10}};
+    for (const WetSide wet : {WetSide::left, WetSide::right}) {
+        const Prism wall(wall_outline(line, wet, 1.5), 5.0);
+        const double sign = wet == WetSide::left ? 1.0 : -1.0;
+        CHECK(!wall.inside({5, sign * 1e-6, 0}));
+        CHECK(wall.inside({5, -sign * 1e-6, 0}));
+        CHECK(wall.inside({5, -sign * 1.499, 0}));
+        CHECK(!wall.inside({5, -sign * 1.501, 0}));
+        CHECK(wall.inside({10 + sign * 1.499, 8, 0}));
+        CHECK(!wall.inside({10 + sign * 1.501, 8, 0}));
+    }
+    CHECK(least_wall_thickness({{0, 0}, {10, 0}}, 0.5) == Approx(1.5));
+    CHECK(least_wall_thickness({{0, 0}, {10, 10}}, 0.5) == Approx(1.5 * std::sqrt(2.0)));
+    CHECK_THROWS_WITH(wall_outline({{0, 0}, {10, 0}, {1, 1}}, WetSide::left, 1.0),
+                      Catch::Contains("120 degrees"));
+    CHECK_THROWS_WITH(wall_outline({{1, 1}, {1, 1}}, WetSide::left, 1.0),
+                      Catch::Contains("two different points"));
+    CHECK_THROWS_WITH(Prism(ring({{0, 0}, {1, 1}}), 1.0), Catch::Contains("three corners or more"));
+    CHECK_THROWS_WITH(Prism({}, 1.0), Catch::Contains("no polygon"));
+    CHECK_THROWS_WITH(Prism(ring({{0, 0}, {1, 1}, {1, 1}, {0, 1}}), 1.0), Catch::Contains("twice in a row"));
+}
+
+TEST_CASE("A ball as a field of distances: values, faces, ways into it", "[solid]") {
+    DistanceField ball;
+    ball.origin = {-3, -3, -3}, ball.spacing = 0.1, ball.nodes = {61, 61, 61};
+    ball.distance.resize(61 * 61 * 61);
+    for (Index k = 0; k < 61; ++k)
+        for (Index j = 0; j < 61; ++j)
+            for (Index i = 0; i < 61; ++i) ball.at(i, j, k) = ball.place(i, j, k).norm() - 1.0;
+    Dice dice;
+    for (int n = 0; n < 500; ++n) {
+        const Vec3 x = 2.8 * Vec3(2 * dice() - 1, 2 * dice() - 1, 2 * dice() - 1);
+        if (x.norm() < 0.5) continue;
+        const Contact c = ball.contact(x);
+        // Trilinear: an error of s^2 / 8 times the sum of the second derivatives, 2 / r; of the slope, s / 2
+        // times them.
+        REQUIRE(std::abs(c.distance - (x.norm() - 1.0)) < 0.01 / 8 * 2 / (x.norm() - 0.18) + 1e-12);
+        REQUIRE((c.normal - x.normalized()).norm() < 0.2 / (x.norm() - 0.18));
+    }
+    CHECK(ball.contact({2, 0.1, 0.1}).face == 1);
+    CHECK(ball.contact({0.1, 0.1, -2}).face == 4);
+    // On from the grid straight along its last slope, which two one-sided differences turn by s / 2r each.
+    CHECK(ball.contact({13, 0, 0}).distance == Approx(12.0).margin(10 * 0.05 * 0.05 / 9 + 1e-3));
+    Entry entry;
+    REQUIRE(ball.enters({-2, 0, 0}, {2, 0, 0}, entry));
+    CHECK(entry.share == Approx(0.25).epsilon(1e-3));
+    CHECK(!ball.enters({-2, 1.2, 0}, {2, 1.2, 0}, entry));
+    CHECK(ball.thickness({-1, 0, 0}, {1, 0, 0}) == Approx(2.0).margin(0.1));
+}
+
+TEST_CASE("Patches of a face tell places apart, and a face's moment is about any point", "[solid]") {
+    const std::vector<Surface> list = {Surface::plane({0, 0, 0}, {0, 0, 1}),
+                                       Surface::barrier(Prism(box(2, 1, 3, 5), 2.0))};
+    FaceLedger ledger(list, {0, 0, -1}, {8, 8, 7}, 0.5);
+    REQUIRE(ledger.faces().size() == 5);
+    const Face& front = ledger.face(1, 3);  // at x = 2, from (2, 5) to (2, 1)
+    CHECK(front.patches.count == std::array<Index, 2>{8, 6});
+    const Index patch = front.patches.at({2, 4.2, 0.1});
+    CHECK(patch == 2 * 8 + 1);
+    ledger.add({3, patch, {-2, 0, 1}, Vec3(2, 4.2, 1.1).cross(Vec3(-2, 0, 1))});
+    CHECK((front.patches.impulse[static_cast<std::size_t>(patch)] - Vec3(-2, 0, 1)).norm() == 0.0);
+    CHECK(FaceLedger::moment_about(front, {2, 4.2, 1.1}).norm() < 1e-12);
+}

@@ -1,0 +1,238 @@
+#include "vtk_io/barrier_mesh.h"
+
+#include <fmt/core.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCleanPolyData.h>
+#include <vtkErrorCode.h>
+#include <vtkExecutive.h>
+#include <vtkIdList.h>
+#include <vtkImplicitPolyDataDistance.h>
+#include <vtkIntersectionPolyDataFilter.h>
+#include <vtkNew.h>
+#include <vtkOBJReader.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkSTLReader.h>
+#include <vtkSmartPointer.h>
+#include <vtkStaticCellLocator.h>
+#include <vtkTriangleFilter.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+
+namespace frana {
+namespace {
+
+using Path = std::filesystem::path;
+using Triangle = std::array<vtkIdType, 3>;
+
+template <class Reader>
+vtkSmartPointer<vtkPolyData> read_with(const Path& file) {
+    bool complained = false;
+    vtkNew<vtkCallbackCommand> listener;
+    listener->SetClientData(&complained);
+    listener->SetCallback(
+        [](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
+    vtkNew<Reader> reader;
+    for (const char* event : {"ErrorEvent", "WarningEvent"}) {
+        reader->AddObserver(event, listener);
+        reader->GetExecutive()->AddObserver(event, listener);
+    }
+    if constexpr (std::is_base_of_v<vtkXMLReader, Reader>) reader->SetParserErrorObserver(listener);
+    reader->SetFileName(file.string().c_str());
+    reader->Update();
+    if (complained || reader->GetErrorCode() != vtkErrorCode::NoError)
+        throw UserError(
+            fmt::format("{}: cannot be read as a mesh; expected triangles in a {} file: write it "
+                        "again from the program that made it",
+                        file.string(), file.extension().string()));
+    return reader->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> read_any(const Path& file) {
+    if (!std::filesystem::exists(file))
+        throw UserError(fmt::format("{}: not found; expected a mesh (.stl, .vtp or .obj)", file.string()));
+    std::string kind = file.extension().string();
+    std::transform(kind.begin(), kind.end(), kind.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (kind == ".stl") return read_with<vtkSTLReader>(file);
+    if (kind == ".obj") return read_with<vtkOBJReader>(file);
+    if (kind == ".vtp") return read_with<vtkXMLPolyDataReader>(file);
+    throw UserError(
+        fmt::format("{}: a mesh of the kind '{}' is not known; expected .stl, .vtp or .obj: convert it",
+                    file.string(), kind));
+}
+
+/// Triangles only, with one point at each place: files may repeat it for every triangle.
+vtkSmartPointer<vtkPolyData> read_triangles(const Path& file) {
+    const vtkSmartPointer<vtkPolyData> raw = read_any(file);
+    vtkNew<vtkTriangleFilter> triangles;
+    triangles->SetInputData(raw);
+    triangles->PassVertsOff(), triangles->PassLinesOff();
+    vtkNew<vtkCleanPolyData> clean;
+    clean->SetInputConnection(triangles->GetOutputPort());
+    clean->ToleranceIsAbsoluteOn();
+    clean->SetAbsoluteTolerance(0.0);
+    clean->Update();
+    vtkSmartPointer<vtkPolyData> mesh = clean->GetOutput();
+    mesh->GetPointData()->Initialize();
+    if (mesh->GetNumberOfPolys() == 0)
+        throw UserError(
+            fmt::format("{}: the mesh has no triangles; expected a closed surface", file.string()));
+    return mesh;
+}
+
+std::vector<Triangle> triangles_of(vtkPolyData* mesh) {
+    std::vector<Triangle> list;
+    vtkNew<vtkIdList> corners;
+    vtkCellArray* const cells = mesh->GetPolys();
+    for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c) {
+        cells->GetCellAtId(c, corners);
+        list.push_back({corners->GetId(0), corners->GetId(1), corners->GetId(2)});
+    }
+    return list;
+}
+
+Vec3 point_of(vtkPolyData* mesh, vtkIdType n) { return Vec3(mesh->GetPoint(n)); }
+
+std::string place_of(const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); }
+
+/// Every edge has two triangles, which run along it in opposite directions.
+void require_closed(const Path& file, vtkPolyData* mesh, const std::vector<Triangle>& triangles) {
+    std::map<std::pair<vtkIdType, vtkIdType>, int> ways;
+    for (const Triangle& t : triangles)
+        for (std::size_t k = 0; k < 3; ++k) ++ways[{t[k], t[(k + 1) % 3]}];
+    Index open = 0, turned = 0;
+    Vec3 first_open, first_turned;
+    for (const auto& [way, count] : ways) {
+        const auto back = ways.find({way.second, way.first});
+        const int returns = back == ways.end() ? 0 : back->second;
+        const Vec3 middle = 0.5 * (point_of(mesh, way.first) + point_of(mesh, way.second));
+        if (count + returns != 2) {
+            if (open++ == 0) first_open = middle;
+        } else if (count != 1) {
+            if (turned++ == 0) first_turned = middle;
+        }
+    }
+    if (open > 0)
+        throw UserError(
+            fmt::format("{}: {} edges of the mesh do not have exactly two triangles, the first at {}; "
+                        "expected a closed surface: fill its holes and remove inner walls",
+                        file.string(), open, place_of(first_open)));
+    if (turned > 0)
+        throw UserError(
+            fmt::format("{}: at {} edges of the mesh, the first at {}, neighbouring triangles turn "
+                        "opposite sides outwards; expected all triangles to run one way round: make "
+                        "its normals consistent",
+                        file.string(), turned, place_of(first_turned)));
+}
+
+bool share_point(const Triangle& a, const Triangle& b) {
+    for (const vtkIdType p : a)
+        for (const vtkIdType q : b)
+            if (p == q) return true;
+    return false;
+}
+
+/// No two triangles without a common point meet. Neighbours that fold onto each other are not noticed.
+void require_simple(const Path& file, vtkPolyData* mesh, const std::vector<Triangle>& triangles) {
+    vtkNew<vtkStaticCellLocator> locator;
+    locator->SetDataSet(mesh);
+    locator->BuildLocator();
+    vtkNew<vtkIdList> near;
+    for (std::size_t a = 0; a < triangles.size(); ++a) {
+        double bounds[6], corner[6][3];
+        mesh->GetCellBounds(static_cast<vtkIdType>(a), bounds);
+        locator->FindCellsWithinBounds(bounds, near);
+        for (std::size_t k = 0; k < 3; ++k) mesh->GetPoint(triangles[a][k], corner[k]);
+        for (vtkIdType n = 0; n < near->GetNumberOfIds(); ++n) {
+            const auto b = static_cast<std::size_t>(near->GetId(n));
+            if (b <= a || share_point(triangles[a], triangles[b])) continue;
+            for (std::size_t k = 0; k < 3; ++k) mesh->GetPoint(triangles[b][k], corner[3 + k]);
+            int coplanar = 0;
+            double one[3], two[3], surface[2];
+            if (vtkIntersectionPolyDataFilter::TriangleTriangleIntersection(
+                    corner[0], corner[1], corner[2], corner[3], corner[4], corner[5], coplanar, one, two,
+                    surface, 1e-9) != 0 &&
+                coplanar == 0)
+                throw UserError(
+                    fmt::format("{}: the mesh cuts through itself at {}; expected a surface that does "
+                                "not: unite its parts into one solid",
+                                file.string(), place_of(Vec3(one))));
+        }
+    }
+}
+
+/// Six times the volume inside: below zero where the triangles turn inwards.
+double volume6(vtkPolyData* mesh, const std::vector<Triangle>& triangles) {
+    const Vec3 from = point_of(mesh, 0);
+    double sum = 0.0;
+    for (const Triangle& t : triangles)
+        sum += (point_of(mesh, t[0]) - from)
+                   .dot((point_of(mesh, t[1]) - from).cross(point_of(mesh, t[2]) - from));
+    return sum;
+}
+
+/// An empty field around the mesh.
+DistanceField field_around(const Path& file, vtkPolyData* mesh, const MeshSampling& sampling) {
+    double bounds[6];
+    mesh->GetBounds(bounds);
+    DistanceField field;
+    field.spacing = sampling.spacing;
+    double count = 1.0;
+    for (int k = 0; k < 3; ++k) {
+        const double low = bounds[2 * k] - sampling.margin, size = bounds[2 * k + 1] + sampling.margin - low;
+        const double nodes = std::ceil(size / sampling.spacing) + 1.0;
+        // The box's middle is the field's, so that both ends have the margin.
+        field.origin[k] = low - 0.5 * ((nodes - 1.0) * sampling.spacing - size);
+        field.nodes[static_cast<std::size_t>(k)] =
+            std::isfinite(nodes) && nodes < 1e9 ? std::max<Index>(2, static_cast<Index>(nodes)) : 0;
+        count *= nodes;
+    }
+    constexpr double kMostNodes = 1e8;
+    if (!(count <= kMostNodes))
+        throw UserError(
+            fmt::format("{}: the mesh is {:.6g} m by {:.6g} m by {:.6g} m, and its distances every {} m "
+                        "would be {:.3g} numbers; expected 1e8 at most: is it in metres? otherwise take "
+                        "a larger spacing",
+                        file.string(), bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4],
+                        sampling.spacing, count));
+    field.distance.resize(static_cast<std::size_t>(field.nodes[0] * field.nodes[1] * field.nodes[2]));
+    return field;
+}
+
+}  // namespace
+
+DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSampling& sampling) {
+    expect(sampling.spacing > 0.0 && sampling.margin >= 0.0, "a mesh is sampled at a distance above zero");
+    const vtkSmartPointer<vtkPolyData> mesh = read_triangles(file);
+    const std::vector<Triangle> triangles = triangles_of(mesh);
+    require_closed(file, mesh, triangles);
+    require_simple(file, mesh, triangles);
+    DistanceField field = field_around(file, mesh, sampling);
+    const double sign = volume6(mesh, triangles) < 0.0 ? -1.0 : 1.0;
+    vtkNew<vtkImplicitPolyDataDistance> distance;
+    distance->SetInput(mesh);
+    for (Index k = 0; k < field.nodes[2]; ++k)
+        for (Index j = 0; j < field.nodes[1]; ++j)
+            for (Index i = 0; i < field.nodes[0]; ++i) {
+                Vec3 x = field.place(i, j, k);
+                field.at(i, j, k) = sign * distance->EvaluateFunction(x.data());
+            }
+    return field;
+}
+
+}  // namespace frana
