@@ -17,11 +17,15 @@ namespace {
 constexpr double seconds_per_particle_step = 150e-9;  ///< whole step on one core
 
 /// What a run needs at its peak: of libraries, and for each node and particle.
-struct Needs { double base, node, particle; };
+struct Needs {
+    double base, node, particle;
+};
 /// From 36 runs of the case `bindo` (cells of 1.5 to 4 m, 20 000 to 400 000 particles).
 constexpr Needs solver_needs{85e6, 315.0, 431.0};
-constexpr Needs vtk_needs{4e6, 240.0, 388.0};  ///< besides, for frames that VTK writes: the grid or the particles
-constexpr double graphics_need = 350e6;        ///< besides, for pictures: software OpenGL, 290 to 420 MB [bytes]
+constexpr Needs vtk_needs{4e6, 240.0,
+                          388.0};  ///< besides, for frames that VTK writes: the grid or the particles
+constexpr double seconds_per_point_step = 300e-9, bytes_per_point = 450.0;  ///< of points in space
+constexpr double graphics_need = 350e6;  ///< besides, for pictures: software OpenGL, 290 to 420 MB [bytes]
 
 std::string crs_name(const std::string& wkt) {
     const std::size_t begin = wkt.find('"');
@@ -77,13 +81,22 @@ struct Forecast {
     double bytes = 0.0;
 };
 
+/// Points if all of the release were in the window, 8 a cell of (2 spacing)^3.
+double most_points(const Scene& scene) {
+    double volume = 0.0;
+    for (const double part : scene.particles.volume) volume += part;
+    return std::ceil(volume / std::pow(scene.solid->spacing, 3));
+}
+
 double memory_of(const Scene& scene) {
     const double nodes = double(scene.bed.geometry.size()), particles = double(scene.particles.count());
     const double solver = solver_needs.base + solver_needs.node * nodes + solver_needs.particle * particles;
     const double vtk = vtk_needs.base + std::max(vtk_needs.node * nodes, vtk_needs.particle * particles);
-    const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(),
-                                   [](const Insitu& entry) { return kind_word(entry.kind) == std::string("figure"); });
-    return solver + (scene.output.vtk ? vtk : 0.0) +
+    const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(), [](const Insitu& entry) {
+        return kind_word(entry.kind) == std::string("figure");
+    });
+    const double space = scene.solid ? bytes_per_point * most_points(scene) : 0.0;
+    return solver + space + (scene.output.vtk ? vtk : 0.0) +
            (scene.output.png || draws ? graphics_need : 0.0);
 }
 
@@ -121,6 +134,22 @@ std::string seconds_text(double seconds) {
                             : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
+/// The stage in space: sound is ten times as fast as the material.
+std::string stage_text(const Scene& scene) {
+    const SolidStage& stage = *scene.solid;
+    double depth = 0.0;
+    for (const double here : scene.particles.depth) depth = std::max(depth, here);
+    const double sound = stage.sound_speed.value_or(10.0 * std::sqrt(2.0 * scene.gravity * depth));
+    const double steps = std::ceil((scene.end - stage.from) * sound / (stage.cfl * stage.cell)),
+                 points = most_points(scene);
+    return fmt::format(
+        "stage       points in space from {:.6g} s on, at most about {:.3g} of them, {:.3g} MB; {:.0f} steps "
+        "or more with "
+        "sound at {:.3g} m/s, {} on one core if all are there, assuming {:.0f} ns per point and step\n",
+        stage.from, points, points * bytes_per_point / 1e6, steps, sound,
+        seconds_text(steps * points * seconds_per_point_step), seconds_per_point_step * 1e9);
+}
+
 std::string forecast_text(const Scene& scene) {
     const Forecast f = forecast(scene);
     const double per_step = double(scene.particles.count()) * seconds_per_particle_step;
@@ -143,6 +172,7 @@ int check_command(const CheckOptions& options) {
     std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
     std::cout << total_text(built) << forecast_text(built.scene);
+    if (built.scene.solid) std::cout << stage_text(built.scene);
     check_insitu(built.scene);
     for (const Insitu& entry : built.scene.insitu)
         std::cout << fmt::format("in situ     {} \"{}\"\n", kind_word(entry.kind), entry.name);

@@ -146,6 +146,20 @@ ChartFigure gauge_chart(const FigureSource& source) {
     return figure;
 }
 
+ChartFigure barrier_chart(const FigureSource& source, const std::string& name, const Table& table) {
+    ChartFigure figure = chart(source, "barrier " + name, "time [s]");
+    figure.height = std::max(source.width * 4 / 5, 300);
+    const Column &t = table.column("t"), &fx = table.column("fx"), &fy = table.column("fy"), &fz = table.column("fz");
+    ChartPanel mean{"force [N]", {}, false, {}, 1.4}, parts{"force of a step [N]", {}, false, {}, 1.0},
+        up{"run-up [m]", {}, false, {}, 0.7}, over{"over it [m3]", {}, false, {}, 0.7};
+    mean.curves = {curve("horizontal, mean", t, table.column("mean_force"))};
+    parts.curves = {curve("east", t, fx), curve("north", t, fy), curve("up", t, fz)};
+    up.curves = {curve("highest so far", t, table.column("run_up"))};
+    over.curves = {curve("volume that was over it", t, table.column("overtopped"))};
+    figure.panels = {mean, parts, up, over};
+    return figure;
+}
+
 }  // namespace
 
 void draw_profile(const FigureSource& source, const std::string& name, std::vector<DrawnFigure>& figures,
@@ -168,6 +182,26 @@ void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures,
             [&](const fs::path& png, std::string& why_not) {
                 return render_chart(gauge_chart(source), png, why_not);
             });
+}
+
+void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+    std::vector<fs::path> tables;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(source.run_dir / "barriers", none))
+        if (entry.path().extension() == ".csv") tables.push_back(entry.path());
+    std::sort(tables.begin(), tables.end());
+    for (const fs::path& file : tables) {
+        const std::string name = file.stem().string();
+        attempt(source, {fmt::format("figures/barrier_{}.png", name), fmt::format("barrier {}", name)}, figures, warnings,
+                [&](const fs::path& png, std::string& why_not) {
+                    const Table table = read_table(file);
+                    if (table.rows() == 0) {
+                        why_not = "its table has no rows";
+                        return false;
+                    }
+                    return render_chart(barrier_chart(source, name, table), png, why_not);
+                });
+    }
 }
 
 void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures,

@@ -16,6 +16,9 @@ void draw_profile(const FigureSource& source, const std::string& name, std::vect
 void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures,
                  std::vector<std::string>& warnings);
 
+/// figures/barrier_<name>.png: force, run-up and what went over each barrier with a table in barriers/.
+void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+
 /// figures/budget_energy.png and budget_motion.png, from history.csv.
 void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures,
                   std::vector<std::string>& warnings);

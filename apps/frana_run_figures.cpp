@@ -86,6 +86,7 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     draw_filmstrip(source, figures, warnings);
     for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
     draw_gauges(source, figures, warnings);
+    draw_barriers(source, figures, warnings);
     draw_budgets(source, figures, warnings);
     return figures;
 }

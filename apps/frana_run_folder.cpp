@@ -25,6 +25,8 @@ const std::vector<ProductKind>& product_kinds() {
         {"grid", "grid_\\d+\\.vti", "frames of the grid", true},
         {"", "profiles\\.pvd", "profiles over time, for ParaView", false},
         {"profiles", "profiles_\\d+\\.vtp", "frames of the profiles", true},
+        {"", "barriers\\.pvd", "pressure on barriers over time, for ParaView", false},
+        {"barriers", "barriers_\\d+\\.vtp", "frames of the barriers", true},
         {"", "survey_(areas|outlines)\\.vtp", "the survey on the terrain, for ParaView", false},
         {"", "terrain\\.vti", "bed elevation, slope and hillshade", false},
         {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
@@ -34,7 +36,8 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
-        {"figures", "((map|view|filmstrip|profile|gauges|budget)_[^.].*|compare)\\.png", "figure", false},
+        {"barriers", "[^.].*\\.csv", "forces and moments on a barrier, after every step", false},
+        {"figures", "((map|view|filmstrip|profile|gauges|barrier|budget)_[^.].*|compare)\\.png", "figure", false},
         {"figures", "film_[^.].*\\.(mp4|gif)", "film", false},
         {"insitu", "[^.].*\\.csv", "looked at while the case ran", false},
         {"insitu", "[^.].*\\.pvd", "looked at while the case ran, for ParaView", false},
@@ -90,9 +93,9 @@ UserError trouble(const fs::path& run_dir, const std::string& what) {
 
 /// Whether files of a kind are written while the run goes on, and not at its end.
 bool grows(const ProductKind& kind) {
-    for (const char* folder : {"particles", "grid", "profiles", "gauges", "insitu", "insitu/*"})
+    for (const char* folder : {"particles", "grid", "profiles", "gauges", "barriers", "insitu", "insitu/*"})
         if (kind.folder == folder) return true;
-    static const std::regex growing("(history|particles|grid|profiles|run|terrain|checkpoint|resolved).*");
+    static const std::regex growing("(history|particles|grid|profiles|barriers|run|terrain|checkpoint|resolved).*");
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);
 }
 

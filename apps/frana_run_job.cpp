@@ -100,7 +100,8 @@ FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const Ru
 
 }  // namespace
 
-Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vector<ProductRaster>& rasters) {
+Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vector<BarrierSummary>& barriers,
+                         std::vector<ProductRaster>& rasters) {
     const Output& output = scene.output;
     Observers observers;
     const auto lines = output.history_per_step ? History::Lines::per_step : History::Lines::per_output;
@@ -108,12 +109,16 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
     std::vector<GaugePoint> gauges;
     for (const Gauge& gauge : scene.gauges) gauges.push_back({gauge.name, gauge.point});
     if (!gauges.empty()) observers.push_back(std::make_unique<Gauges>(run_dir, gauges));
+    std::vector<std::string> names;
+    for (const Barrier& barrier : scene.barriers) names.push_back(barrier.name);
+    if (!names.empty()) observers.push_back(std::make_unique<Barriers>(run_dir, names, barriers));
     std::vector<ProfileLine> profiles;
     for (const Profile& profile : scene.profiles) profiles.push_back({profile.name, profile.line});
     if (!profiles.empty()) observers.push_back(std::make_unique<Profiles>(run_dir, profiles));
     if (output.vtk) {
         observers.push_back(only_fields(make_particle_writer(run_dir), output.fields));
         observers.push_back(only_fields(make_grid_writer(run_dir), output.fields));
+        if (!names.empty()) observers.push_back(make_barrier_writer(run_dir));
         if (!profiles.empty()) observers.push_back(make_profile_writer(run_dir, profiles));
     }
     if (output.xdmf) observers.push_back(only_fields(make_xdmf_writer(run_dir), output.fields));
@@ -124,7 +129,7 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
 RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& run_dir, RunRecord record,
                     const Interrupt& interrupt, Progress& progress, CheckpointKeeper* keeper) {
     std::vector<ProductRaster> rasters;
-    Observers observers = make_observers(scene, run_dir, rasters);
+    Observers observers = make_observers(scene, run_dir, record.barriers, rasters);
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 

@@ -11,7 +11,7 @@
 namespace frana {
 
 /// The observers that the scene's output asks for, writing into `run_dir`. `rasters` is filled at the end.
-Observers make_observers(const Scene& scene, const std::filesystem::path& run_dir,
+Observers make_observers(const Scene& scene, const std::filesystem::path& run_dir, std::vector<BarrierSummary>& barriers,
                          std::vector<ProductRaster>& rasters);
 
 /// Runs `simulation` to the scene's end in a prepared folder and leaves everything a run leaves there;

@@ -143,6 +143,22 @@ std::string reason_text(const RunSummary& summary) {
     return "numerics: " + summary.failure_text;
 }
 
+Json barriers_json(const std::vector<BarrierSummary>& barriers) {
+    Json list = Json::array();
+    for (const BarrierSummary& b : barriers)
+        list.push_back({{"name", b.name},
+                        {"first_contact", b.first_contact},
+                        {"peak_force", b.peak_force},
+                        {"peak_force_time", b.peak_force_time},
+                        {"averaged_over", b.blur},
+                        {"raw_peak_force", b.raw_peak_force},
+                        {"impulse", {b.impulse[0], b.impulse[1], b.impulse[2]}},
+                        {"moments_about", {b.about[0], b.about[1], b.about[2]}},
+                        {"run_up", b.run_up},
+                        {"overtopped_volume", b.overtopped}});
+    return list;
+}
+
 std::string run_json(const RunRecord& record) {
     const RunSummary& s = record.summary;
     const double per_second = s.wall_seconds > 0.0 ? s.particle_steps / s.wall_seconds : 0.0;
@@ -176,6 +192,7 @@ std::string run_json(const RunRecord& record) {
         {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},
         {"figures", figures},
         {"insitu", insitu_json(record.insitu)},
+        {"barriers", barriers_json(record.barriers)},
         {"checkpoints",
          {{"written", record.checkpoints.written},
           {"failed", record.checkpoints.failed},

@@ -7,6 +7,7 @@
 
 #include "compare/comparison.h"
 #include "frana_checkpoint.h"
+#include "observe/barriers.h"
 #include "observe/insitu.h"
 #include "observe/run_loop.h"
 #include "scene/scene.h"
@@ -48,6 +49,7 @@ struct RunRecord {
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
+    std::vector<BarrierSummary> barriers;
     CheckpointKeeper::Progress checkpoints;
     std::vector<std::string> warnings;
 };

@@ -48,6 +48,12 @@ MadeScene obstacle() {
             {{"release.geojson", rectangle(5.0, 3.0, 42.5, 17.0)}}};
 }
 
+MadeScene wall() {
+    const auto z = [](double x, double) { return 10.0 - std::min(x, 10.0) / 3.0; };
+    return {{{"dem.tif", on_nodes(25.0, 5.0, 0.5, z)}},
+            {{"release.geojson", rectangle(1.5, 0.0, 5.0, 5.0)}, {"wall.geojson", rectangle(20.0, -1.0, 21.0, 6.0)}}};
+}
+
 MadeScene tiff_particles() {
     // The ground reaches 5 m beyond the picture, so that the picture's outer half pixels lie on it as well.
     Raster ground = on_nodes(109.0, 109.0, 1.0, [](double, double) { return 0.0; });
@@ -87,6 +93,7 @@ const std::vector<NamedScene>& made_scenes() {
         {"lake_z2", "lake at rest over a step (Fois et al. 2024, 4.1)", lake_z2},
         {"obstacle", "collapse onto an obstacle (Fois et al. 2024, 4.2)", obstacle},
         {"bindo", "mountainside with river, after Fois et al. 2024, 4.3", bindo},
+        {"wall", "slope, flat ground and a wall (Fois et al. 2025, 4.4.1)", wall},
         {"tiff_particles", "picture of 100 x 100 pixels (Fois et al. 2025, 4.1)", tiff_particles},
         {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track}};
     return scenes;

@@ -38,6 +38,9 @@ MadeScene obstacle();
 /// m, and 1.2e6 m3 of rock, 38 m deep and 400 m long, standing on it; with a made-up survey of its trace
 /// (terrain_bindo.cpp has the design).
 MadeScene bindo();
+/// Sliding to the wall, Fois et al. (2025), section 4.4.1: Z = 10 - x/3 down to x = 10, then flat, on [0, 25] x [0, 5], with
+/// the water of [1.5, 5] and a wall at x = 20.
+MadeScene wall();
 /// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on
 /// flat ground.
 MadeScene tiff_particles();

@@ -111,6 +111,22 @@ TEST_CASE("A stage in space from the start takes the release as it is", "[stages
     CHECK(points.momentum.z() == Approx(-2.0 * points.mass).epsilon(1e-12));
 }
 
+TEST_CASE("Points do not cross a closed side that columns still flow in over", "[stages]") {
+    Scene scene = slide(0.05);
+    std::fill(scene.bed.values.begin(), scene.bed.values.end(), 20.0);
+    scene.particles.vx.assign(scene.particles.x.size(), 0.0);  // slower than its waves
+    const auto left_of = [&](bool closed) {
+        scene.solid->closed = {closed, true, true, true};
+        StagedRun run(scene);
+        run_to(run, 0.8);
+        CHECK(mass_error(run.status(), scene.density * 12 * 6 * 1.5) < 1e-12);
+        CHECK(run.points()->status().mass > 0.1 * run.status().mass);
+        return run.points()->status().mass_left;
+    };
+    CHECK(left_of(false) > 0.0);
+    CHECK(left_of(true) == 0.0);
+}
+
 TEST_CASE("Runs in stages have the same bits for any number of threads, and when taken up again",
           "[stages]") {
     const Scene scene = slide();

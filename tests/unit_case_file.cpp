@@ -138,9 +138,8 @@ TEST_CASE("Tables in the wrong shape are named", "[case]") {
           "describe grid` "
           "lists them");
     CHECK(problem_of(least + "[[barrier]]\nheight = 20\n") ==
-          "case.toml:7: barrier: found barriers, which this version does not build; expected a case without "
-          "them; remove "
-          "[[barrier]] and run without");
+          "case.toml:7: barrier.0.outline: not given, and no line either; expected where the barrier stands; add outline = "
+          "... or line = ... under [[barrier]]");
 }
 
 TEST_CASE("A law needs its parameters and refuses those of others", "[case]") {

@@ -32,7 +32,7 @@ TEST_CASE("describe selects by key, by table and by beginning", "[case][describe
     CHECK(describe("xi").find("only with material.bed.law = voellmy") != std::string::npos);
     CHECK(describe("scheme.cfl").find("default: 0.5; 0.25 with scheme.preset = \"paper\"") !=
           std::string::npos);
-    CHECK(describe("barrier").find("not in this version") != std::string::npos);
+    CHECK(describe("barrier").find("height above the bed") != std::string::npos);
     CHECK_THROWS_WITH(describe("grid.cel2"), Catch::Contains("did you mean grid.cell?"));
 }
 

@@ -68,6 +68,16 @@ TEST_CASE("A stage in space has the scene's laws where it gives none of its own"
     CHECK(law.shear == 3e4);
 }
 
+TEST_CASE("A window is closed where the case says so, and where it reaches walls of the terrain",
+          "[stages]") {
+    const std::string edge = "window = [1000, 2000, 1060, 2100]\n";
+    using Closed = std::array<bool, 4>;
+    CHECK(scene_of(two + edge).solid->closed == Closed{false, false, false, false});
+    CHECK(scene_of(two + edge + "closed = [\"north\"]\n").solid->closed == Closed{false, false, false, true});
+    CHECK(scene_of(two + edge + "[boundary]\nsides = \"wall\"\n").solid->closed ==
+          Closed{true, true, false, false});
+}
+
 TEST_CASE("A stage of columns to the end changes nothing", "[stages]") {
     CHECK_FALSE(scene_of("[[stage]]\nmodel = \"depth_averaged\"\n").solid.has_value());
     CHECK_FALSE(scene_of("").solid.has_value());

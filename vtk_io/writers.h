@@ -32,6 +32,11 @@ std::unique_ptr<Observer> make_grid_writer(const std::filesystem::path& run_dir)
 /// their names in the field data, `profile_names`. Errors as above.
 std::unique_ptr<Observer> make_profile_writer(const std::filesystem::path& run_dir, std::vector<ProfileLine> lines);
 
+/// barriers.pvd and barriers/barriers_NNNNNN.vtp, from the first frame on that has loads of barriers: their faces in squares
+/// of about a cell of the model in space. Cell data `pressure` (mean since the frame before, across the face),
+/// `peak_pressure` (largest of these) [Pa], `impulse_per_area` [Pa s], `barrier`, `face`. Errors as above.
+std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir);
+
 /// terrain.vti: "elevation" [m], "slope" [degree], "hillshade" [1, 0 dark to 1 bright] at the nodes of the
 /// bed.
 void write_terrain(const std::filesystem::path& run_dir, const Raster& bed);

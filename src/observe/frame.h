@@ -52,12 +52,22 @@ struct PhaseTime {
     Index calls = 0;
 };
 
+/// A face of a barrier in patches, and what material gave to each since the start.
+struct PatchedFace {
+    Index barrier = 0, face = 0;
+    std::array<double, 3> corner{}, right{}, up{};  ///< a corner [m]; unit vectors along its edges
+    double size = 1.0;                              ///< edge of a patch [m]
+    std::array<Index, 2> count{};                   ///< patches along right and up
+    std::vector<std::array<double, 3>> impulse;     ///< on the barrier, row after row from the corner [kg m/s]
+};
+
 /// A state at an output time; valid only during the call that hands it out.
 struct Frame {
     Index number = 0;                ///< 0, 1, 2, ... of the output frames
     Status status;
     std::vector<Field> particles;    ///< "position" (3: x, y, z on the free surface), "depth", "velocity" (3), ...
     GridGeometry grid;
+    std::vector<PatchedFace> faces;  ///< of barriers, where their loads are measured
     std::vector<Field> nodes;        ///< "elevation", "depth", "surface", "velocity" (3), "peak_depth", ...
 
     /// The field of that name, or nullptr.

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "observe/archive.h"
 #include "observe/frame.h"
@@ -13,11 +14,34 @@ struct Sample {
     Vec2 velocity{0, 0};     ///< [m/s]
 };
 
+/// What material did to a face of a barrier since the start.
+struct FaceLoad {
+    Vec3 impulse{0, 0, 0};  ///< on the barrier [kg m/s]
+    Vec3 moment{0, 0, 0};   ///< of it about BarrierLoad::about [kg m^2/s]
+};
+
+/// What material did to a barrier since the start.
+struct BarrierLoad {
+    std::vector<FaceLoad> faces;
+    Vec3 about{0, 0, 0};      ///< place that moments are about: the middle of the outline, on the bed [m]
+    double run_up = 0.0;      ///< highest elevation of material within two cells of it, ever [m]
+    double overtopped = 0.0;  ///< material that was over it at any time [m3]
+};
+
+struct BarrierLoads {
+    /// A time over which forces are to be averaged: a first contact is a blow as hard as sound is fast, which is
+    /// artificial [s]. Zero before anything can load barriers.
+    double blur = 0.0;
+    std::vector<BarrierLoad> barriers;  ///< in the order of the scene
+};
+
 /// Answers questions about the state between frames, cheaply: velocities are half a step behind.
 class Probe {
 public:
     virtual ~Probe() = default;
     virtual Sample at(const Vec2& point) const = 0;  ///< bilinear between nodes; beyond them the nearest
+    /// nullptr where nothing measures loads.
+    virtual const BarrierLoads* loads() const { return nullptr; }
 };
 
 /// Looks on while a case runs; never changes it.

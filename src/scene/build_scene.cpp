@@ -31,6 +31,7 @@ public:
         read_releases();
         read_survey();
         read_profiles_and_gauges();
+        scene_.barriers = read_barriers(case_, scene_.bed, reader_, scene_.log, problems_);
         scene_.solid = read_solid_stage(case_, scene_, problems_);
         scene_.insitu = read_insitu(case_, scene_, problems_);
         if (problems_.empty()) make_particles();

@@ -135,7 +135,6 @@ void CaseReader::read_table(const toml::table& table, const std::string& prefix)
 void CaseReader::read_entry(const toml::node& node, const std::string& key) {
     const int line = line_in(node);
     const std::string place = place_of(key, line);
-    if (refuse_unbuilt(key, line, place)) return;
     if (is_repeated(key)) return read_repeated(node, key);
     const Parameter* parameter = find_parameter(key);
     if (parameter) return read_leaf(node, *parameter, key);
@@ -177,18 +176,6 @@ void CaseReader::read_leaf(const toml::node& node, const Parameter& parameter, c
         misread_.insert(key);
 }
 
-bool CaseReader::refuse_unbuilt(const std::string& key, int line, const std::string& place) {
-    const std::string table = key.substr(0, key.find('.'));
-    for (const UnbuiltTable& unbuilt : unbuilt_tables()) {
-        if (table != unbuilt.name) continue;
-        problems_.add(line, place,
-                      fmt::format("found {}, which this version does not build", unbuilt.meaning),
-                      "expected a case without them", fmt::format("remove [[{}]] and run without", table));
-        return true;
-    }
-    return false;
-}
-
 void CaseReader::refuse_unknown(const std::string& key, int line, const std::string& place) {
     const std::string plain = without_numbers(key);
     const std::string table = plain.find('.') == std::string::npos ? "" : plain.substr(0, plain.rfind('.'));
@@ -210,7 +197,6 @@ void CaseReader::apply_set(const std::string& argument) {
     }
     const std::string key = trimmed(argument.substr(0, equals));
     const std::string place = "--set " + key;
-    if (refuse_unbuilt(key, Problems::no_line, place)) return;
     const Parameter* parameter = find_parameter(key);
     if (!parameter) return refuse_unknown(key, Problems::no_line, place);
     if (!count_repeated(key, place)) return;

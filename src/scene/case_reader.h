@@ -31,7 +31,6 @@ private:
     void read_entry(const toml::node& node, const std::string& key);
     void read_repeated(const toml::node& node, const std::string& name);
     void read_leaf(const toml::node& node, const Parameter& parameter, const std::string& key);
-    bool refuse_unbuilt(const std::string& key, int line, const std::string& place);
     void refuse_unknown(const std::string& key, int line, const std::string& place);
     bool count_repeated(const std::string& key, const std::string& place);
     void displace(const Parameter& parameter, const std::string& key);
@@ -42,6 +41,7 @@ private:
     void check_alternatives(const std::string& prefix, const std::string& table);
     void check_unused(const std::string& prefix, const std::string& table);
     void check_release(const std::string& prefix);
+    void check_barrier(const std::string& prefix);
     void check_line_names(const std::string& table);
     void check_meaning();
     void missing(const std::string& key, const Parameter& parameter, const std::string& why);

@@ -52,7 +52,7 @@ void CaseReader::missing(const std::string& key, const Parameter& parameter, con
 
 void CaseReader::check_rules() {
     check_tables();
-    for (const char* table : {"profile", "gauge", "insitu", "camera"}) check_line_names(table);
+    for (const char* table : {"profile", "gauge", "barrier", "insitu", "camera"}) check_line_names(table);
     check_meaning();
 }
 
@@ -71,6 +71,7 @@ void CaseReader::check_tables() {
             check_alternatives(prefix, table);
             check_unused(prefix, table);
             if (table == "release") check_release(prefix);
+            if (table == "barrier") check_barrier(prefix);
         }
     }
 }
@@ -138,6 +139,22 @@ void CaseReader::check_release(const std::string& prefix) {
         wrong(prefix + "included_in_dem", "found true together with surface",
               "expected depth, since the elevation model is the surface already",
               "give depth = ..., a number or a raster of the thickness");
+}
+
+void CaseReader::check_barrier(const std::string& prefix) {
+    const auto there = [&](const char* name) {
+        return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
+    };
+    if (!there("outline") && !there("line"))
+        wrong(prefix + "outline", "not given, and no line either", "expected where the barrier stands",
+              "add outline = ... or line = ... under [[barrier]]");
+    if (!there("height") && !there("top"))
+        wrong(prefix + "height", "not given, and no top either", "expected how high the barrier is [m]",
+              "add height = ... or top = ... under [[barrier]]");
+    if (there("line") || there("outline") == there("line")) return;
+    for (const char* name : {"thickness", "wet"})
+        if (case_.given(prefix + name))
+            wrong(prefix + name, "found together with outline", "expected it with line only", "remove it");
 }
 
 void CaseReader::check_line_names(const std::string& table) {

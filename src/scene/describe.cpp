@@ -77,9 +77,6 @@ std::string describe(const std::string& prefix) {
         text += entry(parameter);
     }
     if (!text.empty()) return text;
-    for (const UnbuiltTable& unbuilt : unbuilt_tables())
-        if (unbuilt.name == wanted)
-            return fmt::format("[[{}]]: {}, not in this version\n", wanted, unbuilt.meaning);
     for (const Parameter& parameter : parameters())  // "xi" alone is as good as material.bed.xi
         if (parameter.name() == wanted) text += entry(parameter);
     if (!text.empty()) return text;

@@ -14,7 +14,8 @@ using Table = std::vector<Parameter>;
 /// The keys of [[insitu]] and [[camera]] (parameter_table_insitu.cpp).
 void add_insitu(Table& table);
 
-/// The keys of [[stage]] (parameter_table_stages.cpp).
+/// The keys of [[barrier]] and of [[stage]] (parameter_table_stages.cpp).
+void add_barriers(Table& table);
 void add_stages(Table& table);
 
 namespace rows {

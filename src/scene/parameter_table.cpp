@@ -215,6 +215,7 @@ void add_run(Table& table) {
     Parameter point = make("gauge.point", Kind::numbers, "m", "where the gauge stands: [x, y]");
     point.length = 2;
     table.push_back(required(point));
+    add_barriers(table);
     add_stages(table);
     add_insitu(table);
     table.push_back(absent(make("survey.footprint", Kind::path, "",
@@ -241,14 +242,9 @@ const std::vector<Parameter>& parameters() {
 }
 
 const std::vector<std::string>& repeated_tables() {
-    static const std::vector<std::string> names = {"release", "profile", "gauge",
+    static const std::vector<std::string> names = {"release", "profile", "gauge", "barrier",
                                                    "stage",   "insitu",  "camera"};
     return names;
-}
-
-const std::vector<UnbuiltTable>& unbuilt_tables() {
-    static const std::vector<UnbuiltTable> tables = {{"barrier", "barriers"}};
-    return tables;
 }
 
 }  // namespace frana

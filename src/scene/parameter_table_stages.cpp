@@ -1,4 +1,5 @@
-// The keys of [[stage]]: which model carries the material until when, and how the one in space is set up.
+// The keys of [[barrier]]; and of [[stage]]: which model carries the material until when, and how the one in
+// space is set up.
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -47,6 +48,35 @@ void add_laws(Table& table) {
 
 }  // namespace
 
+void add_barriers(Table& table) {
+    table.push_back(absent(make("barrier.name", Kind::name, "", "name in reports and of the barrier's files"),
+                           "barrier_1, barrier_2, ..."));
+    table.push_back(
+        absent(instead(make("barrier.outline", Kind::path, "",
+                            "polygons on which the barrier stands with vertical walls: any OGR vector file"),
+                       "barrier.line"),
+               "line is needed"));
+    Parameter line = make("barrier.line", Kind::points, "m",
+                          "foot of a wall's face that material comes to: [[x, y], [x, y], ...]");
+    line.length = 2;
+    table.push_back(absent(instead(line, "barrier.outline"), "outline is needed"));
+    table.push_back(
+        choice("barrier.wet", {"left", "right"}, "left",
+               "side of the line, walking along it, that material comes from; the wall stands on the other"));
+    table.push_back(absent(number("barrier.thickness", "m", positive, "thickness of a wall along a line"),
+                           "as little as keeps both sides apart: about six cells of the stage"));
+    table.push_back(
+        absent(instead(number("barrier.height", "m", positive, "height above the bed, which the top follows"),
+                       "barrier.top"),
+               "top is needed"));
+    table.push_back(
+        absent(instead(number("barrier.top", "m", any, "elevation of a level top"), "barrier.height"),
+               "height is needed"));
+    table.push_back(number("barrier.friction", "1", between(0.0, 10.0), 0.0,
+                           "Coulomb's friction coefficient between points in space and the barrier"));
+    table.push_back(flag("barrier.stuck", false, "points in space do not slide along the barrier"));
+}
+
 void add_stages(Table& table) {
     Parameter choice_of_model =
         make(model, Kind::choice, "",
@@ -59,16 +89,23 @@ void add_stages(Table& table) {
     Parameter window =
         make("stage.window", Kind::numbers, "m",
              "where material becomes points in space: [xmin, ymin, xmax, ymax] in map coordinates; "
-                            "cells whose nodes lie in it belong to it");
+             "cells whose nodes lie in it belong to it");
     window.length = 4;
     table.push_back(of_space(window, "the whole terrain"));
+    Parameter closed = make("stage.closed", Kind::words, "",
+                            "sides of the window that points do not cross; columns still come in over them");
+    closed.choices = {"west", "east", "south", "north"};
+    closed.may_be_empty = true;
+    closed.fallback = std::vector<std::string>{};
+    table.push_back(with(closed, model, in_space));
     table.push_back(of_space(number("stage.cell", "m", positive, "node distance of the grid in space"),
                              "half of the grid's cell"));
     table.push_back(
         of_space(number("stage.spacing", "m", positive, "distance of the points in space at the start"),
                  "half of the stage's cell: eight points a cell"));
-    table.push_back(of_space(number("stage.top", "m", any, "elevation above which points leave the space"),
-                             "twice as high above the lowest ground as the energy of the material reaches"));
+    table.push_back(
+        of_space(number("stage.top", "m", any, "elevation above which points leave the space"),
+                 "four times as high above the lowest ground as the energy of the material reaches"));
     add_laws(table);
     table.push_back(
         with(flag("stage.stuck", false, "the lowest material does not slide on the bed"), model, in_space));

@@ -76,12 +76,6 @@ struct Parameter {
     std::string expected() const;  ///< "a number above 0 [m]"
 };
 
-/// A table of the contract that this version does not read.
-struct UnbuiltTable {
-    std::string name;
-    std::string meaning;
-};
-
 /// All keys, grouped by table, in the order of the documentation.
 const std::vector<Parameter>& parameters();
 /// The key's parameter ("release.0.depth" and "release.depth" are the same), or nullptr.
@@ -90,7 +84,6 @@ const Parameter* find_parameter(const std::string& key);
 std::string without_numbers(const std::string& key);
 /// Tables that are written [[name]] and may come several times.
 const std::vector<std::string>& repeated_tables();
-const std::vector<UnbuiltTable>& unbuilt_tables();
 /// The closest of `known` to `word` when it is close enough to be meant, otherwise empty.
 std::string closest(const std::string& word, const std::vector<std::string>& known);
 

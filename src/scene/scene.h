@@ -90,6 +90,7 @@ struct Gauge { std::string name; Vec2 point{0, 0}; };
 struct SolidStage {
     double from = 0.0;                 ///< [s]
     std::array<Index, 4> window{};     ///< first and last nodes of the terrain's grid in it: i0, j0, i1, j1
+    std::array<bool, 4> closed{};      ///< west, south, east, north: points do not cross these sides
     double cell = 1.0;                 ///< of the grid in space [m]
     double spacing = 0.5;              ///< of the points at the start [m]
     SolidLaw law;                      ///< of fluids without the bulk modulus, which the speed of sound gives
@@ -101,6 +102,19 @@ struct SolidStage {
     bool apic = false;                 ///< otherwise tpic
     VelocityProfile profile = VelocityProfile::plug;
     bool along_bed = true;             ///< points start along the bed; otherwise without vertical velocity
+};
+
+/// A rigid obstacle with vertical walls: what stands on an outline, or a wall along a line.
+struct Barrier {
+    std::string name;
+    Polygons outline;                   ///< no parts with a line
+    Polyline line;                      ///< foot of the face that material comes to
+    bool wet_left = true;               ///< that face is on the left as one walks along the line
+    std::optional<double> thickness;    ///< of a wall along a line [m]; nothing: as little as the model can hold apart
+    std::optional<double> top;          ///< elevation of a level top [m]
+    double height = 0.0;                ///< above the bed, which the top then follows [m]
+    bool stuck = false;                 ///< material does not slide along it
+    double friction = 0.0;              ///< Coulomb's coefficient [1]
 };
 
 /// What is written, and when.
@@ -142,6 +156,7 @@ struct Scene {
     std::vector<Gauge> gauges;
     std::vector<Insitu> insitu;        ///< looked at while the case runs
     std::optional<Polygons> survey;    ///< surveyed footprint, to compare with
+    std::vector<Barrier> barriers;
     std::optional<SolidStage> solid;   ///< where and when the run goes into space
 
     std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)

@@ -76,6 +76,7 @@ private:
                           fmt::format("expected none in the last stage, or time.end = {:.10g} s", scene_.end),
                           "remove it, or change time.end");
         if (read_window(stage)) require_ground(stage);
+        read_closed(stage);
         stage.cell = number_or("cell", 0.5 * scene_.bed.geometry.cell);
         stage.spacing = number_or("spacing", 0.5 * stage.cell);
         if (given("top")) stage.top = number("top");
@@ -124,6 +125,19 @@ private:
                 g.cell, e[0], e[2], e[1], e[3]),
             "correct the coordinates, or widen terrain.window");
         return false;
+    }
+
+    void read_closed(SolidStage& stage) {
+        const char* const sides[] = {"west", "south", "east", "north"};
+        const auto& closed = case_.words(prefix_ + "closed");
+        for (std::size_t side = 0; side < 4; ++side)
+            stage.closed[side] = std::find(closed.begin(), closed.end(), sides[side]) != closed.end();
+        const GridGeometry& g = scene_.bed.geometry;
+        if (scene_.sides != Sides::wall) return;  // walls of the terrain hold points back as well
+        stage.closed[0] = stage.closed[0] || stage.window[0] == 0;
+        stage.closed[1] = stage.closed[1] || stage.window[1] == 0;
+        stage.closed[2] = stage.closed[2] || stage.window[2] == g.nx - 1;
+        stage.closed[3] = stage.closed[3] || stage.window[3] == g.ny - 1;
     }
 
     /// Points in space need ground below them everywhere.

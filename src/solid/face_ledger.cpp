@@ -71,4 +71,20 @@ void FaceLedger::add(const FacePush& push) {
     face.patches.impulse[static_cast<std::size_t>(push.patch)] += push.impulse;
 }
 
+void FaceLedger::keep(Archive& archive) {
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+        Face& face = faces_[f];
+        std::vector<double> numbers;
+        for (const Vec3* v : {&face.impulse, &face.moment}) numbers.insert(numbers.end(), v->data(), v->data() + 3);
+        for (const Vec3& impulse : face.patches.impulse) numbers.insert(numbers.end(), impulse.data(), impulse.data() + 3);
+        const std::size_t expected = 3 * (2 + face.patches.impulse.size());
+        archive.array("face_" + std::to_string(f), numbers);
+        if (numbers.size() != expected) Archive::wrong_length("face", numbers.size(), expected);
+        if (!archive.loading()) continue;
+        const double* from = numbers.data();
+        for (Vec3* v : {&face.impulse, &face.moment}) *v = Vec3(from[0], from[1], from[2]), from += 3;
+        for (Vec3& impulse : face.patches.impulse) impulse = Vec3(from[0], from[1], from[2]), from += 3;
+    }
+}
+
 }  // namespace frana

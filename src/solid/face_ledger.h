@@ -2,6 +2,7 @@
 // What each face of each barrier has given to the material, and where on it.
 #include <vector>
 
+#include "observe/archive.h"
 #include "solid/surfaces.h"
 
 namespace frana {
@@ -50,6 +51,8 @@ public:
     /// Moment of a face's impulse about a point, both given from the grid's origin [kg m^2/s].
     static Vec3 moment_about(const Face& face, const Vec3& point);
     void add(const FacePush& push);
+    /// Saves what was given so far, or takes it up again.
+    void keep(Archive& archive);
 
 private:
     std::vector<Face> faces_;

@@ -41,6 +41,7 @@ void SolidFlow::keep(Archive& archive) {
     for (Vec3& impulse : body_.impulse)
         for (int k = 0; k < 3; ++k) impulses.push_back(&impulse[k]);
     if (!impulses.empty()) archive.numbers("impulses", impulses);
+    body_.ledger.keep(archive);
     archive.numbers("drift", {&drift_});
     archive.number("next_id", next_id_);
     archive.array("tile", body_.active.tile);

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "stages/barriers.h"
 
 namespace frana {
 namespace {
@@ -65,15 +66,9 @@ std::array<double, 4> window_of(const Scene& scene) {
 }
 
 std::array<double, 4> reach_of(const Scene& scene) {
-    const GridGeometry& g = scene.bed.geometry;
-    const std::array<Index, 4>& w = scene.solid->window;
-    const bool walls = scene.sides == Sides::wall;
     std::array<double, 4> reach = window_of(scene);
-    const double more = 0.5 * g.cell;
-    if (!walls || w[0] > 0) reach[0] -= more;
-    if (!walls || w[1] > 0) reach[1] -= more;
-    if (!walls || w[2] < g.nx - 1) reach[2] += more;
-    if (!walls || w[3] < g.ny - 1) reach[3] += more;
+    for (std::size_t side = 0; side < 4; ++side)
+        if (!scene.solid->closed[side]) reach[side] += (side < 2 ? -0.5 : 0.5) * scene.bed.geometry.cell;
     return reach;
 }
 
@@ -87,19 +82,26 @@ std::vector<std::uint8_t> nodes_in_window(const Scene& scene) {
 }
 
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
-    double fastest = 0.0, head = -INFINITY;
+    double fastest = 0.0, head = -INFINITY, deepest = scene.solid->cell;
     for (std::size_t k = 0; k < columns.count(); ++k) {
         const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
         const double v2 = columns.vx[k] * columns.vx[k] + columns.vy[k] * columns.vy[k] + climb * climb;
         fastest = std::max({fastest, std::sqrt(v2), std::sqrt(2.0 * scene.gravity * columns.depth[k])});
+        deepest = std::max(deepest, columns.depth[k]);
         head = std::max(head, columns.bed[k] + columns.depth[k] + 0.5 * v2 / scene.gravity);
     }
     const auto [low, high] = ground_of(scene);
     SolidStart start;
     start.sound_speed = scene.solid->sound_speed.value_or(10.0 * std::max(fastest, 0.1));
     constexpr double kRoom = 8.0;  // cells above the ground at least
+    constexpr double kSplash =
+        4.0;  // jets that a wall throws up rise to several times the energy of their flow
     start.top =
-        scene.solid->top.value_or(std::max(low + 2.0 * (head - low), high + kRoom * scene.solid->cell));
+        scene.solid->top.value_or(std::max(low + kSplash * (head - low), high + kRoom * scene.solid->cell));
+    constexpr double kTransits = 20.0;
+    const SolidLaw law = with_sound(scene.solid->law, scene.density, start.sound_speed);
+    start.blur = kTransits * deepest /
+                 std::visit([&](const auto& chosen) { return chosen.sound_speed(scene.density); }, law);
     return start;
 }
 
@@ -107,27 +109,25 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
     const SolidStage& stage = *scene.solid;
     const GridGeometry& g = scene.bed.geometry;
     const std::array<double, 4> window = window_of(scene);
-    const bool walls = scene.sides == Sides::wall;
     SolidScene result;
     result.grid.cell = stage.cell;
     double high[3];
+    const char* const names[] = {"west", "south", "east", "north"};
     for (int axis = 0; axis < 2; ++axis) {
-        const Index nodes = axis == 0 ? g.nx : g.ny;
-        const auto room = [&](bool at_terrain_side) {
-            return walls && at_terrain_side ? kBehindWalls * stage.cell : g.cell + kAtOpenSides * stage.cell;
+        const auto first = static_cast<std::size_t>(axis), last = first + 2;
+        const auto room = [&](std::size_t side) {
+            return stage.closed[side] ? kBehindWalls * stage.cell : g.cell + kAtOpenSides * stage.cell;
         };
-        const double low = window[static_cast<std::size_t>(axis)],
-                     top = window[static_cast<std::size_t>(axis) + 2];
-        const bool first = stage.window[static_cast<std::size_t>(axis)] == 0;
-        const bool last = stage.window[static_cast<std::size_t>(axis) + 2] == nodes - 1;
-        result.grid.origin[axis] = low - room(first);
-        high[axis] = top + room(last);
-        if (!walls) continue;
-        Vec3 normal = Vec3::Zero(), at(window[0], window[1], 0.0);
-        normal[axis] = 1.0;
-        if (first) result.surfaces.push_back(Surface::plane(at, normal));
-        at[axis] = top;
-        if (last) result.surfaces.push_back(Surface::plane(at, -normal));
+        result.grid.origin[axis] = window[first] - room(first);
+        high[axis] = window[last] + room(last);
+        for (const std::size_t side : {first, last}) {
+            if (!stage.closed[side]) continue;
+            Vec3 normal = Vec3::Zero(), at = Vec3::Zero();
+            normal[axis] = side == first ? 1.0 : -1.0;
+            at[axis] = window[side];
+            result.surfaces.push_back(Surface::plane(at, normal));
+            result.surfaces.back().name = names[side];
+        }
     }
     result.grid.origin[2] = ground_of(scene).first - kBehindWalls * stage.cell;
     high[2] = start.top + kAtOpenSides * stage.cell;
@@ -138,6 +138,12 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
                                      stage.stuck ? 0.0 : stage.bed_friction);
     ground.name = "ground";
     result.surfaces.insert(result.surfaces.begin(), std::move(ground));
+    for (const Barrier& barrier : scene.barriers) {
+        result.surfaces.push_back(Surface::barrier(solid_of(barrier, scene.bed, stage.cell),
+                                                   barrier.stuck ? Hold::stuck : Hold::free,
+                                                   barrier.stuck ? 0.0 : barrier.friction));
+        result.surfaces.back().name = barrier.name;
+    }
     result.gravity = {0.0, 0.0, -scene.gravity};
     result.density = scene.density;
     result.law = with_sound(stage.law, scene.density, start.sound_speed);

@@ -10,11 +10,12 @@ namespace frana {
 struct SolidStart {
     double sound_speed = 0.0;  ///< of fluids [m/s]
     double top = 0.0;          ///< elevation where the space ends [m]
+    double blur = 0.0;         ///< time over which forces on barriers are averaged: see BarrierLoads [s]
 };
 
 /// Sound ten times as fast as the material is and as it becomes when it falls by its own depth twice, so that
-/// the density changes by 1 % (Monaghan 1994); room twice as high above the lowest ground as the energy of
-/// `columns` reaches.
+/// the density changes by 1 % (Monaghan 1994); room four times as high above the lowest ground as the energy
+/// of `columns` reaches.
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns);
 
 /// Grid, law and surfaces of scene.solid, without points. The ground comes first, then walls where the window

@@ -38,6 +38,7 @@ Frame StagedRun::frame() {
         status_ = now, peak_mean_speed_ = mean_speed, largest_mach_ = mach;
         particle_fields(frame);
         node_fields(frame);
+        if (watch_) frame.faces = watch_->patched(*points_);
     });
     return frame;
 }

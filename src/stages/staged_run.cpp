@@ -10,8 +10,20 @@
 
 namespace frana {
 
+namespace {
+
+Scene on_bed(Scene scene, Raster bed) {
+    scene.bed = std::move(bed);
+    return scene;
+}
+
+}  // namespace
+
 StagedRun::StagedRun(const Scene& scene, Start start)
-    : scene_(scene), columns_(std::make_unique<DepthAveraged>(scene, start)), map_(scene) {
+    : scene_(scene),
+      columns_(std::make_unique<DepthAveraged>(
+          scene.barriers.empty() ? scene : on_bed(scene, with_barriers(scene)), start)),
+      map_(scene) {
     expect(scene.solid.has_value(), "a staged run has a stage in space");
     scene_.particles = {};
     status_ = columns_->status();
@@ -36,6 +48,7 @@ void StagedRun::advance(double until) {
     points_->advance(alone ? until : std::min(until, columns_->status().time));
     if (points_->status().time == columns_->status().time) hand_over();
     status_.step += 1;
+    if (watch_) watch_->weigh(*points_);
     moved_ += points_->status().max_speed * points_->status().dt;
     look(until);
     book(columns_->status());
@@ -43,20 +56,21 @@ void StagedRun::advance(double until) {
 
 /// Columns in the window become points, those outside stay; none of them is in both.
 void StagedRun::begin_space(const FlowColumns& columns) {
-    const std::array<double, 2> momentum = columns_->status().momentum;
-    const double energy = columns_->status().energy_left, mass = columns_->status().mass;
+    const Status before = columns_->status();
     timed_("hand over", [&] {
         start_ = choose_start(scene_, columns);
         SolidScene space = solid_scene(scene_, start_);
         space.points = seeds_of_window(columns);
         points_ = std::make_unique<SolidFlow>(space);
         points_->start_at(scene_.solid->from);
+        if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
         columns_->open_exits(nodes_in_window(scene_), true);
     });
-    handed_.mass = mass - columns_->status().mass;
-    handed_.energy = columns_->status().energy_left - energy;
+    const Status& now = columns_->status();  // what they gave counts as left
+    handed_.mass = now.mass_left - before.mass_left;
+    handed_.energy = now.energy_left - before.energy_left;
     for (std::size_t axis = 0; axis < 2; ++axis)
-        handed_.momentum[axis] = momentum[axis] - columns_->status().momentum[axis];
+        handed_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
     handed_.energy_taken = points_->status().kinetic + points_->status().potential;
     look(points_->status().time);
     book(columns_->status());
@@ -128,7 +142,10 @@ void StagedRun::hand_over() {
 void StagedRun::look(double until) {
     constexpr double kShare = 0.25;
     if (points_->status().time < until && moved_ < kShare * scene_.bed.geometry.cell) return;
-    timed_("map", [&] { map_.look(*points_, points_->status().time); });
+    timed_("map", [&] {
+        map_.look(*points_, points_->status().time);
+        if (watch_) watch_->look(*points_);
+    });
     moved_ = 0.0;
 }
 
@@ -223,9 +240,10 @@ std::vector<PhaseTime> StagedRun::timings() const {
 void StagedRun::keep(Archive& archive) {
     Index in_space = points_ ? 1 : 0;
     archive.number("in_space", in_space);
-    archive.numbers("start", {&start_.sound_speed, &start_.top});
+    archive.numbers("start", {&start_.sound_speed, &start_.top, &start_.blur});
     if (archive.loading() && in_space) {
         points_ = std::make_unique<SolidFlow>(solid_scene(scene_, start_));
+        if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
         columns_->open_exits(nodes_in_window(scene_), false);
     }
     {
@@ -255,8 +273,12 @@ void StagedRun::keep(Archive& archive) {
     }
     if (!points_) return;
     map_.keep(archive);
-    const Archive::Part part(archive, "points");
-    points_->keep(archive);
+    if (watch_) watch_->keep(archive);
+    {
+        const Archive::Part part(archive, "points");
+        points_->keep(archive);
+    }
+    if (watch_ && archive.loading()) watch_->weigh(*points_);
 }
 
 }  // namespace frana

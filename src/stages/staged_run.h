@@ -2,8 +2,10 @@
 // A run in two stages: columns, and from a time on points in space in a window of the map (Fois, de Falco,
 // Formaggia 2025, with the tail that still flows into the window handed over column by column).
 #include <memory>
+#include <optional>
 
 #include "solver/depth_averaged.h"
+#include "stages/barriers.h"
 #include "stages/flow_map.h"
 #include "stages/hand_over.h"
 #include "stages/solid_scene.h"
@@ -23,6 +25,7 @@ public:
     /// columns.
     Frame frame() override;
     Sample at(const Vec2& point) const override;
+    const BarrierLoads* loads() const override { return watch_ ? &watch_->loads() : nullptr; }
     std::vector<std::string> remarks() const override;
     std::vector<PhaseTime> timings() const override;
     void keep(Archive& archive) override;
@@ -54,7 +57,8 @@ private:
     std::unique_ptr<SolidFlow> points_;
     SolidStart start_;
     FlowMap map_;
-    std::vector<Departed> pending_;  ///< columns that left into the window, ahead of the points' time
+    std::optional<BarrierWatch> watch_;  ///< when there are barriers
+    std::vector<Departed> pending_;      ///< columns that left into the window, ahead of the points' time
     Handed handed_;
     Status status_;
     StepClock timed_;

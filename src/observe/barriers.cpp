@@ -1,0 +1,133 @@
+#include "observe/barriers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace frana {
+namespace {
+
+std::vector<std::string> columns_of(std::size_t faces) {
+    std::vector<std::string> columns = {"t [s]",      "fx [N]",         "fy [N]",   "fz [N]",
+                                        "mx [N m]",   "my [N m]",       "mz [N m]", "mean_force [N]",
+                                        "run_up [m]", "overtopped [m3]"};
+    for (std::size_t face = 0; face < faces; ++face) {
+        for (const char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("f{}{} [N]", face, axis));
+        for (const char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("m{}{} [N m]", face, axis));
+    }
+    return columns;
+}
+
+}  // namespace
+
+Barriers::Barriers(std::filesystem::path run_dir, std::vector<std::string> names,
+                   std::vector<BarrierSummary>& summaries)
+    : run_dir_(std::move(run_dir)), names_(std::move(names)), summaries_(summaries) {
+    summaries_.resize(names_.size());
+    for (std::size_t n = 0; n < names_.size(); ++n) summaries_[n].name = names_[n];
+}
+
+void Barriers::begin(const BarrierLoads& loads) {
+    expect(loads.barriers.size() == names_.size(), "every barrier has a name");
+    watched_.resize(names_.size());
+    for (std::size_t n = 0; n < names_.size(); ++n) {
+        tables_.emplace_back(run_dir_ / "barriers" / (names_[n] + ".csv"),
+                             columns_of(loads.barriers[n].faces.size()));
+        watched_[n].before.resize(loads.barriers[n].faces.size());
+        watched_[n].lately.push_back({time_, 0.0, 0.0});
+    }
+}
+
+void Barriers::step(const Status& now, const Probe& probe) {
+    const BarrierLoads* const loads = probe.loads();
+    const double dt = now.time - time_;
+    if (loads != nullptr && watched_.empty()) begin(*loads);
+    time_ = now.time;
+    if (loads == nullptr || !(dt > 0.0)) return;
+    for (std::size_t n = 0; n < names_.size(); ++n) {
+        const BarrierLoad& load = loads->barriers[n];
+        Watched& watched = watched_[n];
+        BarrierSummary& summary = summaries_[n];
+        std::vector<double> row(10), faces;
+        Vec3 force(0, 0, 0), moment(0, 0, 0), impulse(0, 0, 0);
+        for (std::size_t face = 0; face < load.faces.size(); ++face) {
+            const Vec3 f = (load.faces[face].impulse - watched.before[face].impulse) / dt;
+            const Vec3 m = (load.faces[face].moment - watched.before[face].moment) / dt;
+            force += f, moment += m, impulse += load.faces[face].impulse;
+            faces.insert(faces.end(), {f[0], f[1], f[2], m[0], m[1], m[2]});
+        }
+        watched.before = load.faces;
+        const double mean = mean_force(watched, {now.time, impulse[0], impulse[1]}, loads->blur);
+        row = {now.time,  force[0],  force[1], force[2],    moment[0],
+               moment[1], moment[2], mean,     load.run_up, load.overtopped};
+        row.insert(row.end(), faces.begin(), faces.end());
+        tables_[n].add(row);
+        if (summary.first_contact < 0.0 && force.norm() > 0.0) summary.first_contact = now.time;
+        if (mean > summary.peak_force) summary.peak_force = mean, summary.peak_force_time = now.time;
+        summary.raw_peak_force = std::max(summary.raw_peak_force, force.head<2>().norm());
+        summary.blur = loads->blur;
+        summary.impulse = impulse;
+        summary.about = load.about;
+        summary.run_up = load.run_up;
+        summary.overtopped = load.overtopped;
+    }
+}
+
+/// From the impulse now and that of `blur` ago, or of the beginning.
+double Barriers::mean_force(Watched& watched, const Moment& now, double blur) const {
+    std::vector<Moment>& lately = watched.lately;
+    lately.push_back(now);
+    const double start = now.time - blur;
+    std::size_t from = 0;
+    while (from + 2 < lately.size() && lately[from + 1].time <= start) ++from;
+    lately.erase(lately.begin(), lately.begin() + static_cast<std::ptrdiff_t>(from));
+    if (!(blur > 0.0)) return 0.0;
+    const Moment &a = lately[0], &b = lately[1];
+    const double share = std::clamp((start - a.time) / (b.time - a.time), 0.0, 1.0);
+    return std::hypot(now.x - a.x - share * (b.x - a.x), now.y - a.y - share * (b.y - a.y)) / blur;
+}
+
+void Barriers::see(const Frame&) {
+    for (TableWriter& table : tables_) table.flush();
+}
+
+void Barriers::keep(Archive& archive) {
+    archive.numbers("time", {&time_});
+    Index begun = watched_.empty() ? 0 : 1;
+    archive.number("begun", begun);
+    if (!begun) return;
+    std::vector<Index> faces;
+    for (const Watched& watched : watched_) faces.push_back(static_cast<Index>(watched.before.size()));
+    archive.array("faces", faces);
+    if (archive.loading()) {
+        BarrierLoads loads;
+        for (const Index count : faces)
+            loads.barriers.emplace_back().faces.resize(static_cast<std::size_t>(count));
+        begin(loads);
+    }
+    for (std::size_t n = 0; n < names_.size(); ++n) {
+        const Archive::Part part(archive, fmt::format("barrier_{}", n));
+        BarrierSummary& s = summaries_[n];
+        archive.numbers("summary", {&s.first_contact, &s.peak_force, &s.peak_force_time, &s.raw_peak_force,
+                                    &s.blur, &s.impulse[0], &s.impulse[1], &s.impulse[2], &s.about[0],
+                                    &s.about[1], &s.about[2], &s.run_up, &s.overtopped});
+        std::vector<double*> before;
+        for (FaceLoad& load : watched_[n].before)
+            for (int k = 0; k < 3; ++k) before.push_back(&load.impulse[k]), before.push_back(&load.moment[k]);
+        archive.numbers("before", before);
+        std::vector<double> lately;
+        for (const Moment& moment : watched_[n].lately)
+            lately.insert(lately.end(), {moment.time, moment.x, moment.y});
+        archive.array("lately", lately);
+        if (!archive.loading()) continue;
+        watched_[n].lately.clear();
+        for (std::size_t k = 0; k + 2 < lately.size(); k += 3)
+            watched_[n].lately.push_back({lately[k], lately[k + 1], lately[k + 2]});
+    }
+    keep_all(archive, tables_);
+}
+
+}  // namespace frana

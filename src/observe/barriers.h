@@ -1,0 +1,58 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "observe/observer.h"
+#include "observe/table.h"
+
+namespace frana {
+
+/// What a run did to a barrier.
+struct BarrierSummary {
+    std::string name;
+    double first_contact = -1.0;   ///< [s]; -1: never
+    double peak_force = 0.0;       ///< largest horizontal force, mean over `blur` [N]
+    double peak_force_time = 0.0;  ///< end of that interval [s]
+    double raw_peak_force = 0.0;   ///< largest of a single step: as hard as the artificial sound is fast [N]
+    double blur = 0.0;             ///< [s]
+    Vec3 impulse{0, 0, 0};         ///< since the start [kg m/s]
+    Vec3 about{0, 0, 0};           ///< place that moments are about [m]
+    double run_up = 0.0;           ///< highest elevation of material within two cells of it [m]
+    double overtopped = 0.0;       ///< material that was over it at any time [m3]
+};
+
+/// barriers/<name>.csv: forces and moments on each barrier after every step, means over the step; appended at
+/// every output. Columns: t [s], fx, fy, fz [N], mx, my, mz [N m], mean_force [N] (horizontal, mean over
+/// `blur` up to now), run_up [m], overtopped [m3], and f0x, f0y, f0z [N], m0x, m0y, m0z [N m] of face 0, and
+/// so on.
+class Barriers final : public Observer {
+public:
+    Barriers(std::filesystem::path run_dir, std::vector<std::string> names,
+             std::vector<BarrierSummary>& summaries);
+    std::string name() const override { return "barriers"; }
+    void step(const Status& now, const Probe& probe) override;
+    void see(const Frame& frame) override;
+    void keep(Archive& archive) override;
+
+private:
+    /// Impulse on a barrier at a time, for means.
+    struct Moment {
+        double time, x, y;
+    };
+    struct Watched {
+        std::vector<FaceLoad> before;
+        std::vector<Moment> lately;  ///< as old as the mean needs, and one before
+    };
+    void begin(const BarrierLoads& loads);
+    double mean_force(Watched& watched, const Moment& now, double blur) const;
+
+    std::filesystem::path run_dir_;
+    std::vector<std::string> names_;
+    std::vector<BarrierSummary>& summaries_;
+    std::vector<TableWriter> tables_;
+    std::vector<Watched> watched_;
+    double time_ = 0.0;
+};
+
+}  // namespace frana

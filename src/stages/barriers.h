@@ -1,0 +1,41 @@
+#pragma once
+// Barriers as both models see them.
+#include <vector>
+
+#include "observe/observer.h"
+#include "scene/scene.h"
+#include "solid/solid_flow.h"
+
+namespace frana {
+
+/// The solid of a barrier for material on cells of that size: walls along a line are thick enough that both
+/// of their sides are kept apart. Throws UserError for an outline without area or a line that turns too
+/// sharply.
+Prism solid_of(const Barrier& barrier, const Raster& bed, double cell);
+
+/// The bed as columns see it: where a node lies in a barrier, or within half a cell of it, as high as its
+/// top.
+Raster with_barriers(const Scene& scene);
+
+/// What points in space do to barriers.
+class BarrierWatch {
+public:
+    /// Barriers are the surfaces of that kind of the flow's scene, in the order of `scene`.
+    BarrierWatch(const Scene& scene, const SolidFlow& flow, double blur);
+    /// Takes the impulses of the faces.
+    void weigh(const SolidFlow& flow);
+    /// Takes run-up, and what stands over the barriers.
+    void look(const SolidFlow& flow);
+    const BarrierLoads& loads() const { return loads_; }
+    /// The faces with what each of their patches got.
+    std::vector<PatchedFace> patched(const SolidFlow& flow) const;
+    void keep(Archive& archive);
+
+private:
+    std::vector<int> surfaces_;                    ///< of each barrier
+    std::vector<std::vector<std::uint8_t>> over_;  ///< per barrier, by number of the point: was over it
+    BarrierLoads loads_;
+    double density_;
+};
+
+}  // namespace frana

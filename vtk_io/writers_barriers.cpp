@@ -1,0 +1,116 @@
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <algorithm>
+
+#include "vtk_io/pvd.h"
+#include "vtk_io/writers.h"
+#include "vtk_io/writers_xml.h"
+
+namespace frana {
+namespace {
+
+using Place = std::array<double, 3>;
+
+Place moved(const Place& from, const Place& right, double a, const Place& up, double b) {
+    return {from[0] + a * right[0] + b * up[0], from[1] + a * right[1] + b * up[1],
+            from[2] + a * right[2] + b * up[2]};
+}
+
+double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+class BarrierWriter final : public Observer {
+public:
+    explicit BarrierWriter(const std::filesystem::path& run_dir)
+        : series_(run_dir / "barriers.pvd", "barriers", ".vtp") {}
+
+    std::string name() const override { return "vtk barriers"; }
+
+    void see(const Frame& frame) override {
+        if (frame.faces.empty()) return;
+        const double span = frame.status.time - time_;
+        const auto data = polydata_of(frame, span > 0.0 ? span : 0.0);
+        add_time(data->GetFieldData(), frame.status.time);
+        vtkNew<vtkXMLPolyDataWriter> writer;
+        write_xml(writer, data, series_.file(frame.number));
+        series_.add(frame.number, frame.status.time);
+        if (span > 0.0) time_ = frame.status.time;
+    }
+    void keep(Archive& archive) override {
+        series_.keep(archive);
+        archive.numbers("time", {&time_});
+        archive.array("before", before_);
+        archive.array("peak", peak_);
+    }
+
+private:
+    vtkSmartPointer<vtkPolyData> polydata_of(const Frame& frame, double span) {
+        auto data = vtkSmartPointer<vtkPolyData>::New();
+        vtkNew<vtkPoints> points;
+        points->SetDataTypeToDouble();
+        vtkNew<vtkCellArray> cells;
+        vtkNew<vtkFloatArray> pressure, peak;
+        vtkNew<vtkFloatArray> impulse;
+        vtkNew<vtkIntArray> barrier, face_number;
+        std::size_t n = 0;
+        for (const PatchedFace& face : frame.faces) {
+            const Place normal = {face.right[1] * face.up[2] - face.right[2] * face.up[1],
+                                  face.right[2] * face.up[0] - face.right[0] * face.up[2],
+                                  face.right[0] * face.up[1] - face.right[1] * face.up[0]};
+            const double area = face.size * face.size;
+            for (Index b = 0; b < face.count[1]; ++b)
+                for (Index a = 0; a < face.count[0]; ++a, ++n) {
+                    const double u = face.size * static_cast<double>(a),
+                                 v = face.size * static_cast<double>(b);
+                    cells->InsertNextCell(4);
+                    for (const auto& [du, dv] :
+                         {std::pair{0.0, 0.0}, {face.size, 0.0}, {face.size, face.size}, {0.0, face.size}})
+                        cells->InsertCellPoint(points->InsertNextPoint(
+                            moved(face.corner, face.right, u + du, face.up, v + dv).data()));
+                    if (before_.size() <= n) before_.push_back(0.0), peak_.push_back(0.0);
+                    const Place& given = face.impulse[static_cast<std::size_t>(b * face.count[0] + a)];
+                    const double push = std::abs(dot(given, normal));
+                    const double mean = span > 0.0 ? (push - before_[n]) / (span * area) : 0.0;
+                    if (span > 0.0) before_[n] = push, peak_[n] = std::max(peak_[n], mean);
+                    pressure->InsertNextValue(static_cast<float>(mean));
+                    peak->InsertNextValue(static_cast<float>(peak_[n]));
+                    impulse->InsertNextValue(static_cast<float>(push / area));
+                    barrier->InsertNextValue(static_cast<int>(face.barrier));
+                    face_number->InsertNextValue(static_cast<int>(face.face));
+                }
+        }
+        data->SetPoints(points);
+        data->SetPolys(cells);
+        const auto add = [&](vtkDataArray* array, const char* name, const char* unit) {
+            array->SetName(name);
+            data->GetCellData()->AddArray(array);
+            add_unit(data->GetFieldData(), name, unit);
+        };
+        add(pressure, "pressure", "Pa");
+        add(peak, "peak_pressure", "Pa");
+        add(impulse, "impulse_per_area", "Pa s");
+        add(barrier, "barrier", "1");
+        add(face_number, "face", "1");
+        return data;
+    }
+
+    PvdSeries series_;
+    double time_ = 0.0;
+    std::vector<double> before_, peak_;  ///< per patch: impulse across the face [kg m/s]; largest mean [Pa]
+};
+
+}  // namespace
+
+std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir) {
+    return std::make_unique<BarrierWriter>(run_dir);
+}
+
+}  // namespace frana
