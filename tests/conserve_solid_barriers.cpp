@@ -187,6 +187,34 @@ TEST_CASE("Water at rest in the inner corner of an angle stays quiet, and pushes
     CHECK(flow.momentum_residual().norm() < 1e-12 * flow.status().weight_impulse.norm());
 }
 
+TEST_CASE("A blow on one side of a wall of the least thickness is not felt at all on the other side",
+          "[solid][barriers]") {
+    const double degrees = GENERATE(0.0, 20.0);
+    const Turn turn{degrees};
+    CAPTURE(degrees);
+    const double cell = 0.1;
+    const auto in_plan = [&](double x, double y) -> Vec2 { return turn.at(Vec3(x, y, 0)).head<2>(); };
+    const Polyline face = {in_plan(1, -1), in_plan(1, 2)};
+    const double thick = least_wall_thickness(face, cell);
+    SolidScene s = water(turn, {0.6, 0.6, 0.6}, {2.2, 0.6, 0.8}, cell);
+    s.gravity.setZero();
+    s.law = solid::Elastic::of(4e5, 0.3);
+    for (Vec3& v : s.points.velocity) v = turn.at({4, 0, 0});
+    const std::size_t struck = s.points.mass.size();
+    verify::for_each_part(
+        {1 + thick, 0, 0}, {1.6 + thick, 0.6, 0.6}, cell, 2,
+        [&](const Vec3& x, double volume) { s.points.add(turn.at(x), Vec3::Zero(), kDensity * volume); });
+    s.surfaces = {Surface::barrier(Prism(wall_outline(face, WetSide::left, thick), 3.0))};
+    SolidFlow flow(s);
+    run_to(flow, 0.15);
+    CHECK(flow.body().impulse[0].norm() > 4 * kDensity * 0.2);
+    double fastest = 0.0;
+    for (Index p = 0; p < flow.body().points.count(); ++p)
+        if (flow.body().points.id[p] >= static_cast<std::int64_t>(struck))
+            fastest = std::max(fastest, flow.velocity(p).norm());
+    CHECK(fastest == 0.0);
+}
+
 TEST_CASE("Water poured over a low wall ends on both sides of it, and its mass adds up",
           "[solid][barriers]") {
     const double cells = GENERATE(1.0, 4.0);
