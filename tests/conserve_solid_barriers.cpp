@@ -86,7 +86,7 @@ Index inside_barriers(const SolidFlow& flow) {
 TEST_CASE(
     "Water at rest pushes a wall by rho g h^2 / 2, low down more than high up, along the grid and turned",
     "[solid][barriers]") {
-    constexpr double kSpan = 0.2;  // s, from 0.15 on: two periods of sound through the water
+    constexpr double kSpan = 0.2;  // s, from 0.15 on: over one period of its slowest sound, 4 H / c
     const double cell = 0.125, width = 3 * cell, height = 1.0;
     const double degrees = GENERATE(0.0, 20.0);
     const Turn turn{degrees};
@@ -104,9 +104,8 @@ TEST_CASE(
     const Vec3 push = (front.impulse - early.impulse) / kSpan;
     const double exact = 0.5 * flow.status().mass * kGravity;  // of a square of water, which it is
     CAPTURE(degrees, push.norm() / exact);
-    // The tank of `frana verify` at eight cells: half a per cent along the grid, and when turned
-    // (tests/verification.txt).
-    CHECK(push.norm() == Approx(exact).epsilon(0.02));
+    // The gates of the tank in `frana verify`: half a per cent of the force, one per cent of the pressure.
+    CHECK(push.norm() == Approx(exact).epsilon(0.005));
     CHECK((push.normalized() - turn.at({-1, 0, 0})).norm() < 1e-9);
     // The same flow as before a plane without end, but for round-off, which a still tank does not grow.
     CHECK((flow.body().impulse[4] - other.body().impulse[4]).norm() < 1e-6 * other.body().impulse[4].norm());
@@ -118,7 +117,7 @@ TEST_CASE(
     const Vec3 foot = turn.at({1, 0.5 * width, 0}) - s.grid.origin;
     const Vec3 moment =
         (FaceLedger::moment_about(front, foot) - FaceLedger::moment_about(early, foot)) / kSpan;
-    CHECK(moment.norm() == Approx(push.norm() * height / 3.0).epsilon(0.05));
+    CHECK(moment.norm() == Approx(exact * height / 3.0).epsilon(0.01));
     // Patches: all of the impulse, and from row to row upwards ever less of it.
     std::vector<double> rows(static_cast<std::size_t>(front.patches.count[1]), 0.0);
     Vec3 all = Vec3::Zero();
@@ -182,9 +181,37 @@ TEST_CASE("Water at rest in the inner corner of an angle stays quiet, and pushes
     const Face& one = flow.body().ledger.face(3, 0);
     const Face& two = flow.body().ledger.face(3, 5);
     const double exact = 0.5 * kDensity * kGravity * height * height * side * 0.5;
-    CHECK(one.impulse.norm() == Approx(exact).epsilon(0.02));
-    CHECK(two.impulse.norm() == Approx(exact).epsilon(0.02));
+    CHECK(one.impulse.norm() == Approx(exact).epsilon(0.005));
+    CHECK(two.impulse.norm() == Approx(exact).epsilon(0.005));
     CHECK(flow.momentum_residual().norm() < 1e-12 * flow.status().weight_impulse.norm());
+}
+
+TEST_CASE("A blow on one side of a wall of the least thickness is not felt at all on the other side",
+          "[solid][barriers]") {
+    const double degrees = GENERATE(0.0, 20.0);
+    const Turn turn{degrees};
+    CAPTURE(degrees);
+    const double cell = 0.1;
+    const auto in_plan = [&](double x, double y) -> Vec2 { return turn.at(Vec3(x, y, 0)).head<2>(); };
+    const Polyline face = {in_plan(1, -1), in_plan(1, 2)};
+    const double thick = least_wall_thickness(face, cell);
+    SolidScene s = water(turn, {0.6, 0.6, 0.6}, {2.2, 0.6, 0.8}, cell);
+    s.gravity.setZero();
+    s.law = solid::Elastic::of(4e5, 0.3);
+    for (Vec3& v : s.points.velocity) v = turn.at({4, 0, 0});
+    const std::size_t struck = s.points.mass.size();
+    verify::for_each_part(
+        {1 + thick, 0, 0}, {1.6 + thick, 0.6, 0.6}, cell, 2,
+        [&](const Vec3& x, double volume) { s.points.add(turn.at(x), Vec3::Zero(), kDensity * volume); });
+    s.surfaces = {Surface::barrier(Prism(wall_outline(face, WetSide::left, thick), 3.0))};
+    SolidFlow flow(s);
+    run_to(flow, 0.15);
+    CHECK(flow.body().impulse[0].norm() > 4 * kDensity * 0.2);
+    double fastest = 0.0;
+    for (Index p = 0; p < flow.body().points.count(); ++p)
+        if (flow.body().points.id[p] >= static_cast<std::int64_t>(struck))
+            fastest = std::max(fastest, flow.velocity(p).norm());
+    CHECK(fastest == 0.0);
 }
 
 TEST_CASE("Water poured over a low wall ends on both sides of it, and its mass adds up",
