@@ -68,7 +68,7 @@ struct Fluid {
                j;
     }
     template <class Real>
-    [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>* state) const {
+    [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>*) const {
         j = min(j * (1.0 + d.dt * trace<Real>(d.gradient)), Real{} + 1.0);
     }
     double sound_speed(double density) const { return std::sqrt(bulk / density); }

@@ -72,15 +72,18 @@ template <bool averages, Affine affine>
     const Double4 w[3] = {all(from.w[0][0][point]), all(from.w[0][1][point]), all(from.w[0][2][point])};
     const Double4 x[3] = {from.share[0][0][point], from.share[0][1][point], from.share[0][2][point]};
     const Double4 weights{from.w[0][0][point], from.w[0][1][point], from.w[0][2][point], 0.0};
+    Double4* const first = block.node + at;
+    double* const first_j = block.mass_j + at;
     const Double4 row_j = averages ? from.mass_j[point] * weights : Double4{};
     for (int k = 0; k < 3; ++k) {
         const Double4 wk = all(from.w[2][k][point]);
         for (int j = 0; j < 3; ++j) {
             const Double4 wj = all(from.w[1][j][point]), wjk = wj * wk;
             const Double4 across = wk * from.share[1][j][point] + wj * from.share[2][k][point];
-            const Index row = at + k * NodeBlock::kPlane + j * NodeBlock::kRow;
-            for (int i = 0; i < 3; ++i) block.node[row + i] += wjk * x[i] + w[i] * across;
-            if constexpr (averages) store(block.mass_j + row, load(block.mass_j + row) + wjk * row_j);
+            const Index row = k * NodeBlock::kPlane + j * NodeBlock::kRow;
+            Double4* const node = first + row;
+            for (int i = 0; i < 3; ++i) node[i] = (node[i] + wjk * x[i]) + w[i] * across;
+            if constexpr (averages) store(first_j + row, load(first_j + row) + wjk * row_j);
         }
     }
 }
@@ -106,11 +109,12 @@ struct BatchWeights {
         const auto slope = [&](int axis, int n) { return all(along[axis].slope[n][point]); };
         const Double4 wi[3] = {w(0, 0), w(0, 1), w(0, 2)};
         const Double4 si[3] = {slope(0, 0), slope(0, 1), slope(0, 2)};
+        const Double4* const first = block.node + at;
         PointTaken taken{};
         for (int k = 0; k < 3; ++k) {
             Double4 plane{}, slope_x{}, slope_y{};
             for (int j = 0; j < 3; ++j) {
-                const Double4* const node = block.node + at + k * NodeBlock::kPlane + j * NodeBlock::kRow;
+                const Double4* const node = first + k * NodeBlock::kPlane + j * NodeBlock::kRow;
                 const Double4 row = wi[0] * node[0] + wi[1] * node[1] + wi[2] * node[2];
                 const Double4 tilt = si[0] * node[0] + si[1] * node[1] + si[2] * node[2];
                 const Double4 wj = w(1, j);
