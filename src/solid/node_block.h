@@ -14,7 +14,8 @@ struct NodeBox {
 /// Cells that a point may stray from its tile, before it is sorted again.
 constexpr Index kStray = 2;
 
-/// On the stack of the thread that works on the tile: 115 KiB, of which a full tile uses a third to two thirds.
+/// On the stack of the thread that works on the tile: 115 KiB, of which a full tile uses a third to two
+/// thirds.
 class NodeBlock {
 public:
     static constexpr Index kSide = kSpaceTile + 2 + 2 * kStray;
