@@ -11,49 +11,46 @@
 //   update()     the same numbers after a step
 //
 //   sound_speed(), explicit_viscosity()   what bounds the step [m/s], [Pa s]
+//
+// stress() and update() are for one point (Real is double) or for four at once (Double4).
 #include <cmath>
 #include <variant>
 
-#include "base/types.h"
+#include "law/strain.h"
 
 namespace frana {
 
-/// Symmetric tensor in space.
-struct Sym3 {
-    double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, yz = 0.0, xz = 0.0;
-
-    double trace() const { return xx + yy + zz; }
-    /// sqrt(a : a)
-    double norm() const {
-        return std::sqrt(xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + xz * xz));
-    }
-    Sym3 deviator() const {
-        const double mean = trace() / 3.0;
-        return {xx - mean, yy - mean, zz - mean, xy, yz, xz};
-    }
-    Sym3 operator+(const Sym3& b) const {
-        return {xx + b.xx, yy + b.yy, zz + b.zz, xy + b.xy, yz + b.yz, xz + b.xz};
-    }
-    Sym3 operator*(double s) const { return {s * xx, s * yy, s * zz, s * xy, s * yz, s * xz}; }
-    Sym3 plus_isotropic(double p) const { return {xx + p, yy + p, zz + p, xy, yz, xz}; }
-    Mat3 matrix() const { return (Mat3() << xx, xy, xz, xy, yy, yz, xz, yz, zz).finished(); }
-    static Sym3 of(const Mat3& m) {
-        return {m(0, 0),
-                m(1, 1),
-                m(2, 2),
-                0.5 * (m(0, 1) + m(1, 0)),
-                0.5 * (m(1, 2) + m(2, 1)),
-                0.5 * (m(0, 2) + m(2, 0))};
-    }
-    static Sym3 read(const double* s) { return {s[0], s[1], s[2], s[3], s[4], s[5]}; }
-    void write(double* s) const { s[0] = xx, s[1] = yy, s[2] = zz, s[3] = xy, s[4] = yz, s[5] = xz; }
-};
-
 /// What a law learns of a step: L_kl = dv_k/dx_l at the point [1/s], and the step [s].
-struct Deformation {
-    Mat3 gradient;
+template <class Real>
+struct DeformationOf {
+    Square<Real> gradient;
     double dt;
 };
+using Deformation = DeformationOf<double>;
+
+/// The stress-like state turned with the spin, W = (L - L^T) / 2: s + dt (W s - s W).
+template <class Real>
+[[gnu::always_inline]] inline SymOf<Real> spun(const SymOf<Real>& s, const DeformationOf<Real>& d) {
+    const double half = 0.5 * d.dt;
+    const Real xy = half * (d.gradient(0, 1) - d.gradient(1, 0)),
+               yz = half * (d.gradient(1, 2) - d.gradient(2, 1)),
+               xz = half * (d.gradient(0, 2) - d.gradient(2, 0));
+    return s + SymOf<Real>{2.0 * (xy * s.xy + xz * s.xz),
+                           2.0 * (yz * s.yz - xy * s.xy),
+                           -2.0 * (xz * s.xz + yz * s.yz),
+                           xy * (s.yy - s.xx) + xz * s.yz + yz * s.xz,
+                           yz * (s.zz - s.yy) - xy * s.xz - xz * s.xy,
+                           xz * (s.zz - s.xx) + xy * s.yz - yz * s.xy};
+}
+
+/// F - I of the step, F = I + dt L.
+template <class Real>
+[[gnu::always_inline]] inline Square<Real> grown_in(const DeformationOf<Real>& d) {
+    Square<Real> grown;
+    for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l) grown(k, l) = d.dt * d.gradient(k, l);
+    return grown;
+}
 
 namespace solid {
 
@@ -64,12 +61,17 @@ struct Fluid {
     double bulk = 1.0;       ///< K [Pa]
     double viscosity = 0.0;  ///< [Pa s]
 
-    Sym3 stress(double j, const double*, const Mat3& gradient) const {
-        return (Sym3::of(gradient).deviator() * (2.0 * viscosity))
-                   .plus_isotropic(-bulk * std::fmax(0.0, 1.0 - j)) *
+    template <class Real>
+    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>*,
+                                              const Square<Real>& gradient) const {
+        return (SymOf<Real>::of(gradient).deviator() * (Real{} + 2.0 * viscosity))
+                   .plus_isotropic(-bulk * max(1.0 - j, Real{})) *
                j;
     }
-    void update(const Deformation& d, double& j, double* state) const;
+    template <class Real>
+    [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>*) const {
+        j = min(j * (1.0 + d.dt * trace<Real>(d.gradient)), Real{} + 1.0);
+    }
     double sound_speed(double density) const { return std::sqrt(bulk / density); }
     double explicit_viscosity() const { return viscosity; }
 };
@@ -84,10 +86,22 @@ struct Bingham {
     double viscosity = 0.0;     ///< [Pa s]
     double yield_stress = 0.0;  ///< tau_Y [Pa], of sqrt(s:s / 2)
 
-    Sym3 stress(double j, const double* state, const Mat3&) const {
-        return Sym3::read(state).plus_isotropic(-bulk * std::fmax(0.0, 1.0 - j)) * j;
+    template <class Real>
+    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>* state, const Square<Real>&) const {
+        return SymOf<Real>::read(state).plus_isotropic(-bulk * max(1.0 - j, Real{})) * j;
     }
-    void update(const Deformation& d, double& j, double* state) const;
+    /// Elastic trial, then flow: of the stress beyond the yield stress what a viscous element in series
+    /// leaves after dt.
+    template <class Real>
+    [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>* state) const {
+        j = min(j * (1.0 + d.dt * trace<Real>(d.gradient)), Real{} + 1.0);
+        const SymOf<Real> trial = spun<Real>(SymOf<Real>::read(state), d) +
+                                  SymOf<Real>::of(d.gradient).deviator() * (Real{} + 2.0 * shear * d.dt);
+        const double relaxation = viscosity / (shear * d.dt);
+        const Real size = trial.norm() * std::sqrt(0.5), divisor = select(size > 0.0, size, Real{} + 1.0);
+        const Real left = (size * relaxation + yield_stress) / ((1.0 + relaxation) * divisor);
+        (trial * select(size > yield_stress, left, Real{} + 1.0)).deviator().write(state);
+    }
     double sound_speed(double density) const { return std::sqrt((bulk + 4.0 / 3.0 * shear) / density); }
     double explicit_viscosity() const { return 0.0; }
 };
@@ -102,11 +116,17 @@ struct Elastic {
     static Elastic of(double young, double poisson) {
         return {young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), 0.5 * young / (1.0 + poisson)};
     }
-    Sym3 stress(double, const double* state, const Mat3&) const {
-        const Sym3 e = Sym3::read(state);
-        return (e * (2.0 * shear)).plus_isotropic(lambda * e.trace());
+    template <class Real>
+    [[gnu::always_inline]] SymOf<Real> stress(Real, const Given<Real>* state, const Square<Real>&) const {
+        const SymOf<Real> e = SymOf<Real>::read(state);
+        return (e * (Real{} + 2.0 * shear)).plus_isotropic(lambda * e.trace());
     }
-    void update(const Deformation& d, double& j, double* state) const;
+    template <class Real>
+    [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>* state) const {
+        const Square<Real> grown = grown_in<Real>(d);
+        carried<Real>(SymOf<Real>::read(state), grown).write(state);
+        j *= volume_ratio<Real>(grown);
+    }
     double energy(const double* state) const {
         const Sym3 e = Sym3::read(state);
         return shear * e.norm() * e.norm() + 0.5 * lambda * e.trace() * e.trace();
@@ -133,10 +153,28 @@ struct DruckerPrager {
 
     static DruckerPrager of(const Elastic& elastic, double friction_angle, double cohesion,
                             Cone cone = Cone::compression);
-    Sym3 stress(double j, const double* state, const Mat3& gradient) const {
+    template <class Real>
+    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>* state,
+                                              const Square<Real>& gradient) const {
         return elastic.stress(j, state, gradient);
     }
-    void update(const Deformation& d, double& j, double* state) const;
+    template <class Real>
+    [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>* state) const {
+        const Square<Real> grown = grown_in<Real>(d);
+        const SymOf<Real> trial = carried<Real>(SymOf<Real>::read(state), grown);
+        j *= volume_ratio<Real>(grown);
+        const double bulk = elastic.lambda + 2.0 / 3.0 * elastic.shear;
+        const double apex = tension / bulk;  // the volume strain at which nothing is carried any more
+        const Real volume = trial.trace() + state[6];
+        const auto parted = volume >= apex;
+        const SymOf<Real> shear_strain = trial.deviator();
+        const Real size = 2.0 * elastic.shear * shear_strain.norm();
+        const Real strength = alpha * bulk * (apex - volume);
+        const Real yielding = strength / select(size > 0.0, size, Real{} + 1.0);
+        const Real kept = select(parted, Real{}, select(size > strength, yielding, Real{} + 1.0));
+        (shear_strain * kept).plus_isotropic(select(parted, Real{} + apex, volume) / 3.0).write(state);
+        state[6] = select(parted, volume - apex, Real{});
+    }
     double sound_speed(double density) const { return elastic.sound_speed(density); }
     double explicit_viscosity() const { return 0.0; }
 };
@@ -144,9 +182,5 @@ struct DruckerPrager {
 }  // namespace solid
 
 using SolidLaw = std::variant<solid::Fluid, solid::Bingham, solid::Elastic, solid::DruckerPrager>;
-
-/// What becomes of the logarithmic strain e by an elastic deformation F = I + grown: ln(F exp(2 e) F^T) / 2,
-/// to round-off.
-Sym3 carried_strain(const Sym3& e, const Mat3& grown);
 
 }  // namespace frana

@@ -123,6 +123,7 @@ void SolidFlow::mark_near() {
     body_.near_points.assign(body_.active.tile.size(), 0);
     body_.near_nodes.assign(body_.active.work.size(), 0);
     body_.sums.resize(body_.active.tile.size());
+    body_.boxes.resize(body_.active.tile.size());
     body_.tile_impulse.resize(body_.active.work.size() * surfaces);
     body_.point_impulse.resize(body_.active.tile.size() * surfaces);
     for (auto& colour : body_.image_colour) colour.clear();

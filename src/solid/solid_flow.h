@@ -7,15 +7,12 @@
 #include "observe/frame.h"
 #include "solid/face_ledger.h"
 #include "solid/material_points.h"
+#include "solid/node_block.h"
+#include "solid/spline.h"
 #include "solid/surfaces.h"
 #include "solver/step_clock.h"
 
 namespace frana {
-
-/// tpic: the velocity's gradient and the stress's divergence by the shape function's slopes; the quieter
-/// pressure. apic: both by its first moments (Jiang et al. 2015; Hu et al. 2018); angular momentum is kept
-/// exactly.
-enum class Affine { tpic, apic };
 
 /// Material points at the start, equal lengths; the state of the law starts at zero but for J.
 struct SolidSeeds {
@@ -80,6 +77,8 @@ struct SolidBody {
     std::vector<SurfaceSet> near_points;  ///< per particle tile
     std::vector<SurfaceSet> near_nodes;   ///< per tile of the work list
     std::vector<std::uint8_t> gone;       ///< per point: left the grid in this step
+
+    std::vector<NodeBox> boxes;  ///< of the step: nodes that the points of each particle tile touch
 
     /// Mass and momentum; then mean J and velocity.
     struct Node {

@@ -2,9 +2,12 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 
-#include "base/simd.h"
+#include "base/error.h"
+#include "solid/batch_sums.h"
+#include "solid/point_batch.h"
 #include "solid/solid_flow.h"
 
 namespace frana {
@@ -14,31 +17,18 @@ namespace {
 constexpr double kFarthestImage = 9.0;
 constexpr double kLongestShift = 1.0;  ///< of a point in a step [cells]: the time step allows its cfl
 
-/// Quadratic B-splines of a point: along each axis three nodes with weights, slopes [1/m] and distances [m].
-/// Affine::apic takes 4 w d / h^2 for the slope, the first moment of the weights.
+/// A point's 27 nodes in the grid, for images: they lie anywhere.
 template <Affine affine>
 struct SpaceStencil {
     Index place[3][3];  ///< shares of the nodes' storage indices
     double w[3][3], slope[3][3], d[3][3];
 
     [[gnu::always_inline]] SpaceStencil(const SpaceGrid& grid, const Vec3& x) {
-        const double h = grid.cell(), per_h = 1.0 / h;
         for (int axis = 0; axis < 3; ++axis) {
-            const double first = std::floor(x[axis] - 0.5), f = x[axis] - first;
-            const Index* const from = grid.place(axis, static_cast<Index>(first));
-            for (int n = 0; n < 3; ++n) place[axis][n] = from[n];
-            double* const wa = w[axis];
-            wa[0] = 0.5 * (1.5 - f) * (1.5 - f);
-            wa[1] = 0.75 - (f - 1.0) * (f - 1.0);
-            wa[2] = 0.5 * (f - 0.5) * (f - 0.5);
-            for (int n = 0; n < 3; ++n) d[axis][n] = (n - f) * h;
-            if constexpr (affine == Affine::tpic) {
-                slope[axis][0] = (f - 1.5) * per_h;
-                slope[axis][1] = (2.0 - 2.0 * f) * per_h;
-                slope[axis][2] = (f - 0.5) * per_h;
-            } else {
-                for (int n = 0; n < 3; ++n) slope[axis][n] = 4.0 * per_h * per_h * wa[n] * d[axis][n];
-            }
+            const double first = std::floor(x[axis] - 0.5);
+            const Spline<affine, double> s(x[axis] - first, grid.cell());
+            std::copy_n(grid.place(axis, static_cast<Index>(first)), 3, place[axis]);
+            std::copy_n(s.w, 3, w[axis]), std::copy_n(s.slope, 3, slope[axis]), std::copy_n(s.d, 3, d[axis]);
         }
     }
 };
@@ -48,13 +38,11 @@ struct SpaceStencil {
 /// What a point gives its nodes: w (base + affine d) + force grad w; lanes are mass and momentum.
 struct Gift {
     Double4 base, affine[3], force[3];
-    double mass_j;
 };
 
-template <Affine affine, bool averages>
+template <Affine affine>
 [[gnu::always_inline]] inline void give(SolidBody& body, const SpaceStencil<affine>& s, const Gift& gift) {
     SolidBody::Node* const nodes = body.nodes.data();
-    double* const mass_j = body.mass_j.data();
     for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 3; ++j) {
             const double w = s.w[1][j] * s.w[2][k];
@@ -67,7 +55,6 @@ template <Affine affine, bool averages>
                 SolidBody::Node* const node = nodes + at + s.place[0][i];
                 store(node,
                       load(node) + s.w[0][i] * row + (s.w[0][i] * s.d[0][i]) * along + s.slope[0][i] * push);
-                if constexpr (averages) mass_j[at + s.place[0][i]] += w * s.w[0][i] * gift.mass_j;
             }
         }
 }
@@ -94,13 +81,16 @@ public:
         });
     }
 
+    /// Tile by tile through a block of nodes.
     void scatter(SolidBody& body, double dt) const override {
         for_each_tile_coloured(body.active, [&](Index n) {
-            for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
-                const Point point(*this, body, p);
-                give<affine, Law::kAverages>(body, SpaceStencil<affine>(body.grid, point.x),
-                                             gift_of(point, point.v + dt * body.gravity, dt));
-            }
+            const Index begin = body.active.begin[n], end = body.active.begin[n + 1];
+            const NodeBox box = box_of(body.points, begin, end);
+            body.boxes[static_cast<std::size_t>(n)] = box;
+            NodeBlock block;
+            block.clear<Law::kAverages>(box);
+            scatter_points(body, begin, end, dt, box, block);
+            block.add_to<Law::kAverages>(body.grid, box, body.nodes.data(), body.mass_j.data());
         });
     }
 
@@ -131,7 +121,7 @@ public:
                     }
                     const Gift gift =
                         gift_of(mirrored(point, image), image.motion * (point.v + dt * body.gravity), dt);
-                    give<affine, false>(body, SpaceStencil<affine>(body.grid, place), gift);
+                    give<affine>(body, SpaceStencil<affine>(body.grid, place), gift);
                 }
             }
         });
@@ -164,23 +154,14 @@ public:
 
     void gather(SolidBody& body, double dt) const override {
         for_each_tile(body.active, [&](Index n) {
-            SolidSums sums;
-            const SurfaceSet near = body.near_points[static_cast<std::size_t>(n)];
             Vec3* const impulse = body.point_impulse.data() + n * static_cast<Index>(body.surfaces.size());
             std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
-            if (near & body.barriers) body.point_pushes[static_cast<std::size_t>(n)].clear();
-            for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
-                const Vec3 from = position(body, p);
-                gather_point(body, p, from, dt);
-                if (!sound(body, p, from)) {
-                    sums.bad = p;
-                    continue;
-                }
-                if (near != 0) push_out(body, near & ~body.barriers, p, impulse);
-                if (near & body.barriers) keep_out(body, n, p, from);
-                book(body, p, from, sums);
-            }
-            body.sums[static_cast<std::size_t>(n)] = sums;
+            if (body.near_points[static_cast<std::size_t>(n)] & body.barriers)
+                body.point_pushes[static_cast<std::size_t>(n)].clear();
+            const NodeBox& box = body.boxes[static_cast<std::size_t>(n)];
+            NodeBlock block;
+            block.take(body.grid, box, body.nodes.data());
+            body.sums[static_cast<std::size_t>(n)] = gather_points(body, n, dt, block);
         });
     }
 
@@ -209,7 +190,6 @@ private:
             gift.affine[l] = lanes(0.0, point.mass * point.gradient.col(l));
             gift.force[l] = lanes(0.0, -dt * point.stress.col(l));
         }
-        gift.mass_j = point.mass * point.j;
         return gift;
     }
 
@@ -392,41 +372,145 @@ private:
         return {body.points.x[0][p], body.points.x[1][p], body.points.x[2][p]};
     }
 
-    void gather_point(SolidBody& body, Index p, const Vec3& x, double dt) const {
+    /// The nodes that the points begin to end - 1 touch.
+    static NodeBox box_of(const MaterialPoints& q, Index begin, Index end) {
+        NodeBox box;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double* const x = q.x[axis].data();
+            Double4 low = all(x[begin]), high = low;
+            Index p = begin;
+            for (; p + 4 <= end; p += 4) low = min(low, load(x + p)), high = max(high, load(x + p));
+            for (; p < end; ++p) low = min(low, all(x[p])), high = max(high, all(x[p]));
+            const auto first = [](double at) { return static_cast<Index>(at - 0.5); };
+            box.first[axis] = first(-largest(-low));
+            box.count[axis] = first(largest(high)) - box.first[axis] + 3;
+        }
+        expect(NodeBlock::holds(box), "points in space strayed from their tile");
+        return box;
+    }
+
+    static void load_all(const Column* columns, int count, Index p, int lanes, Double4* to) {
+        for (int n = 0; n < count; ++n) to[n] = load(columns[n].data() + p, lanes);
+    }
+    static void store_all(const Double4* from, int count, Index p, int lanes, Column* columns) {
+        for (int n = 0; n < count; ++n) store(columns[n].data() + p, from[n], lanes);
+    }
+
+    /// Not inlined: into the function that holds the block the compiler would find each node's address
+    /// anew, two more instructions a node.
+    [[gnu::noinline]] void scatter_points(const SolidBody& body, Index begin, Index end, double dt,
+                                          const NodeBox& box, NodeBlock& block) const {
+        Index p = begin;
+        for (; p + 4 <= end; p += 4) scatter_batch(body, p, 4, dt, box, block);
+        if (p < end) scatter_batch(body, p, static_cast<int>(end - p), dt, box, block);
+    }
+    [[gnu::noinline]] SolidSums gather_points(SolidBody& body, Index tile, double dt,
+                                              const NodeBlock& block) const {
+        SolidSums sums;
+        BatchSums lane_sums;
+        const Index end = body.active.begin[tile + 1];
+        Index p = body.active.begin[tile];
+        for (; p + 4 <= end; p += 4) gather_batch(body, p, 4, dt, tile, block, lane_sums, sums);
+        if (p < end) gather_batch(body, p, static_cast<int>(end - p), dt, tile, block, lane_sums, sums);
+        lane_sums.add_to(sums);
+        return sums;
+    }
+
+    [[gnu::always_inline]] void scatter_batch(const SolidBody& body, Index p, int lanes, double dt,
+                                              const NodeBox& box, NodeBlock& block) const {
+        const MaterialPoints& q = body.points;
+        Double4 x[3], v[3], state[7];
+        Mat3x4 gradient;
+        load_all(q.x.data(), 3, p, lanes, x);
+        load_all(q.v.data(), 3, p, lanes, v);
+        load_all(q.gradient.data(), 9, p, lanes, gradient.entry);
+        load_all(q.state.data(), Law::kStates, p, lanes, state);
+        const Double4 j = load(q.j.data() + p, lanes), mass = load(q.mass.data() + p, lanes);
+        const Double4 push = -dt * load(q.rest_volume.data() + p, lanes);
+        const Mat3x4 stress = (law_.stress(j, state, gradient) * push).matrix();
+        BatchGift gift;
+        gift.mass = mass, gift.mass_j = mass * j;
+        for (int k = 0; k < 3; ++k) {
+            gift.momentum[k] = mass * (v[k] + dt * body.gravity[k]);
+            for (int l = 0; l < 3; ++l)
+                gift.affine[l][k] = mass * gradient(k, l), gift.force[l][k] = stress(k, l);
+        }
+        const BatchPlace place(x);
+        const BatchShares<affine> shares(place, gift, body.grid.cell());
+        const Int4 at = place.in_block(box);
+        for (int point = 0; point < lanes; ++point) give<Law::kAverages>(block, at[point], shares, point);
+    }
+
+    [[gnu::always_inline]] void gather_batch(SolidBody& body, Index p, int lanes, double dt, Index tile,
+                                             const NodeBlock& block, BatchSums& lane_sums,
+                                             SolidSums& sums) const {
         MaterialPoints& q = body.points;
-        const SpaceStencil<affine> s(body.grid, x);
-        const SolidBody::Node* const nodes = body.nodes.data();
-        Double4 sum = {}, slopes[3] = {};
-        for (int k = 0; k < 3; ++k)
-            for (int j = 0; j < 3; ++j) {
-                Double4 row = {}, push = {};
-                const Index at = s.place[1][j] + s.place[2][k];
-                for (int i = 0; i < 3; ++i) {
-                    const Double4 node = load(nodes + at + s.place[0][i]);
-                    row += s.w[0][i] * node;
-                    push += s.slope[0][i] * node;
-                }
-                const double w = s.w[1][j] * s.w[2][k];
-                sum += w * row;
-                slopes[0] += w * push;
-                slopes[1] += (s.slope[1][j] * s.w[2][k]) * row;
-                slopes[2] += (s.w[1][j] * s.slope[2][k]) * row;
-            }
-        Deformation d;
+        Double4 from[3], state[7];
+        load_all(q.x.data(), 3, p, lanes, from);
+        BatchTaken taken;
+        take(block, body.boxes[static_cast<std::size_t>(tile)], from, lanes, body.grid.cell(), taken);
+        DeformationOf<Double4> d;
         d.dt = dt;
         for (int l = 0; l < 3; ++l)
-            for (int k = 0; k < 3; ++k) d.gradient(k, l) = slopes[l][k + 1];
-        double state[7], j = q.j[p];
-        for (int n = 0; n < Law::kStates; ++n) state[n] = q.state[n][p];
-        if constexpr (Law::kAverages) j += body.averaging * (sum[0] - j);
+            for (int k = 0; k < 3; ++k) d.gradient(k, l) = taken.slope[l][k + 1];
+        Double4 j = load(q.j.data() + p, lanes);
+        load_all(q.state.data(), Law::kStates, p, lanes, state);
+        if constexpr (Law::kAverages) j += body.averaging * (taken.mean[0] - j);
         law_.update(d, j, state);
-        for (int n = 0; n < Law::kStates; ++n) q.state[n][p] = state[n];
-        for (int l = 0; l < 9; ++l) q.gradient[l][p] = d.gradient(l % 3, l / 3);
-        q.j[p] = j;
+        BatchPoints now;
         for (int k = 0; k < 3; ++k) {
-            q.v[k][p] = sum[k + 1];
-            q.x[k][p] = x[k] + dt / body.grid.cell() * sum[k + 1];
+            now.v[k] = taken.mean[k + 1];
+            now.x[k] = from[k] + dt / body.grid.cell() * now.v[k];
         }
+        now.mass = load(q.mass.data() + p, lanes);
+        now.volume = j * load(q.rest_volume.data() + p, lanes);
+        store_all(now.x, 3, p, lanes, q.x.data());
+        store_all(now.v, 3, p, lanes, q.v.data());
+        store_all(d.gradient.entry, 9, p, lanes, q.gradient.data());
+        store_all(state, Law::kStates, p, lanes, q.state.data());
+        store(q.j.data() + p, j, lanes);
+        finish(body, p, lanes, now, from, tile, lane_sums, sums);
+    }
+
+    /// Looks whether points are sound, puts them back before surfaces, and books them.
+    [[gnu::always_inline]] static void finish(SolidBody& body, Index p, int lanes, BatchPoints& now,
+                                              const Double4* from, Index tile, BatchSums& lane_sums,
+                                              SolidSums& sums) {
+        const Mask4 there = now.mass > 0.0;  // not beyond `lanes`
+        const Mask4 bad = there & ~sound(now, from);
+        if (any(bad)) {
+            for (int n = 0; n < lanes; ++n)
+                if (bad[n]) sums.bad = p + n;
+            return;
+        }
+        const SurfaceSet near = body.near_points[static_cast<std::size_t>(tile)];
+        if (near != 0) {
+            Vec3* const impulse = body.point_impulse.data() + tile * static_cast<Index>(body.surfaces.size());
+            for (int n = 0; n < lanes; ++n) {
+                push_out(body, near & ~body.barriers, p + n, impulse);
+                if (near & body.barriers) keep_out(body, tile, p + n, {from[0][n], from[1][n], from[2][n]});
+            }
+            load_all(body.points.x.data(), 3, p, lanes, now.x);
+            load_all(body.points.v.data(), 3, p, lanes, now.v);
+        }
+        const Mask4 inside = inside_of(body.grid, now.x), left = there & ~inside;
+        if (any(left))
+            for (int n = 0; n < lanes; ++n)
+                if (left[n]) leave(body, p + n, now, n, sums);
+        lane_sums.add(now, from, there & inside);
+    }
+
+    static void take(const NodeBlock& block, const NodeBox& box, const Double4* x, int lanes, double h,
+                     BatchTaken& taken) {
+        const BatchPlace place(x);
+        const BatchWeights<affine> weights(place, h);
+        const Int4 at = place.in_block(box);
+        PointTaken one[4];
+        for (int point = 0; point < 4; ++point)  // beyond `lanes`: any finite numbers
+            one[point] = weights.take(block, at[point < lanes ? point : 0], point);
+        transpose(one[0].mean, one[1].mean, one[2].mean, one[3].mean, taken.mean);
+        for (int l = 0; l < 3; ++l)
+            transpose(one[0].slope[l], one[1].slope[l], one[2].slope[l], one[3].slope[l], taken.slope[l]);
     }
 
     /// Points that came to lie behind a surface are put back on it, without their speed into it: it rarely
@@ -495,38 +579,29 @@ private:
         return true;
     }
 
-    /// Whether a point's numbers are finite, and it did not run away.
-    static bool sound(const SolidBody& body, Index p, const Vec3& from) {
-        const MaterialPoints& q = body.points;
-        const double speed = std::abs(q.v[0][p]) + std::abs(q.v[1][p]) + std::abs(q.v[2][p]);
-        return std::isfinite(speed + q.j[p]) &&
-               (position(body, p) - from).cwiseAbs().maxCoeff() < kLongestShift;
+    /// Where numbers are finite, and points did not run away.
+    [[gnu::always_inline]] static Mask4 sound(const BatchPoints& now, const Double4* from) {
+        const Double4 shift =
+            max(max(abs(now.x[0] - from[0]), abs(now.x[1] - from[1])), abs(now.x[2] - from[2]));
+        const Double4 size = abs(now.v[0]) + abs(now.v[1]) + abs(now.v[2]) + abs(now.volume);
+        return (size <= std::numeric_limits<double>::max()) & (shift < kLongestShift);
     }
 
-    static void book(SolidBody& body, Index p, const Vec3& from, SolidSums& sums) {
-        const MaterialPoints& q = body.points;
-        const Vec3 x = position(body, p), v(q.v[0][p], q.v[1][p], q.v[2][p]);
-        const double mass = q.mass[p], speed2 = v.squaredNorm(), shift = (x - from).cwiseAbs().maxCoeff();
-        bool inside = true;
+    [[gnu::always_inline]] static Mask4 inside_of(const SpaceGrid& grid, const Double4* x) {
+        Mask4 inside = x[0] >= 0.5;
         for (int k = 0; k < 3; ++k)
-            inside =
-                inside && x[k] >= 0.5 && x[k] <= static_cast<double>(body.grid.geometry().nodes[k]) - 1.5;
-        if (!inside) {
-            body.gone[static_cast<std::size_t>(p)] = 1;
-            const Vec3 place = body.grid.geometry().origin + body.grid.cell() * x;
-            sums.left_mass += mass;
-            sums.left_momentum += mass * v;
-            sums.left_energy += mass * (0.5 * speed2 - body.gravity.dot(place));
-            return;
-        }
-        sums.mass += mass;
-        sums.momentum += mass * v;
-        sums.moment += mass * x;
-        sums.kinetic += 0.5 * mass * speed2;
-        sums.speeds += mass * std::sqrt(speed2);
-        sums.volume += q.j[p] * q.rest_volume[p];
-        sums.max_speed2 = std::max(sums.max_speed2, speed2);
-        sums.max_shift = std::max(sums.max_shift, shift);
+            inside &= (x[k] >= 0.5) & (x[k] <= static_cast<double>(grid.geometry().nodes[k]) - 1.5);
+        return inside;
+    }
+
+    static void leave(SolidBody& body, Index p, const BatchPoints& now, int lane, SolidSums& sums) {
+        const double mass = now.mass[lane];
+        body.gone[static_cast<std::size_t>(p)] = 1;
+        sums.left_mass += mass;
+        const Vec3 v(now.v[0][lane], now.v[1][lane], now.v[2][lane]);
+        const Vec3 place = body.grid.geometry().origin + body.grid.cell() * position(body, p);
+        sums.left_momentum += mass * v;
+        sums.left_energy += mass * (0.5 * v.squaredNorm() - body.gravity.dot(place));
     }
 
     Law law_;
