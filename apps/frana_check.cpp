@@ -172,6 +172,10 @@ int check_command(const CheckOptions& options) {
     std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
     std::cout << total_text(built) << forecast_text(built.scene);
+    for (const Barrier& barrier : built.scene.barriers)
+        std::cout << (barrier.top
+                          ? fmt::format("barrier     {}, up to {:.6g} m\n", barrier.name, *barrier.top)
+                          : fmt::format("barrier     {}, {:.6g} m high\n", barrier.name, barrier.height));
     if (built.scene.solid) std::cout << stage_text(built.scene);
     check_insitu(built.scene);
     for (const Insitu& entry : built.scene.insitu)

@@ -71,6 +71,18 @@ void require_fields(const Loaded& loaded, const fs::path& frames) {
                         frames.string(), missing));
 }
 
+/// From a stage in space on, particles are no columns any more.
+template <class Loaded>
+void require_columns(const Loaded& loaded, const fs::path& frames) {
+    const auto model = loaded.columns.find("model");
+    if (model == loaded.columns.end()) return;
+    if (std::none_of(model->second.begin(), model->second.end(), [](double m) { return m != 0.0; })) return;
+    throw UserError(fmt::format(
+        "{}: its particles are points in space already at that time; expected columns; give a --time before the stage in "
+        "space begins",
+        frames.string()));
+}
+
 /// No file of ours has such numbers; one that was changed or damaged may.
 void require_sound(const FlowColumns& columns, const fs::path& frames) {
     const auto refuse = [&](std::size_t p, const char* what, double found, const char* expected) {
@@ -106,6 +118,7 @@ void follow_climb(FlowColumns& columns, const std::vector<double>& climb) {
 template <class Loaded>
 FlowColumns columns_of(const Loaded& loaded, const fs::path& frames) {
     require_fields(loaded, frames);
+    require_columns(loaded, frames);
     FlowColumns columns;
     columns.x = component(loaded, "position", 0);
     columns.y = component(loaded, "position", 1);

@@ -93,6 +93,7 @@ TEST_CASE("A frame in space has the mass of both models on its particles and on 
     // Nodes hold all that lies between them; at open sides nothing is yet.
     const double on_nodes = scene.density * total(depth, 0, depth->count);
     CHECK(on_nodes == Approx(frame.status.mass).epsilon(1e-12));
+    CHECK(frame.particle("stress")->components == 6);
     const Sample probe = run.at({16.3, 6.1});
     CHECK(probe.depth > 0.5);
     CHECK(probe.velocity.x() > 6.0);

@@ -14,6 +14,8 @@ FakeGis slope_gis() {
     gis.rasters["dem.tif"] =
         sampled({40, 30, 1002.5, 2002.5, 5.0}, [](double x, double) { return 100.0 + 0.5 * (x - 1000.0); });
     gis.rasters["dem.tif"].at(39, 29) = Raster::nodata;
+    gis.polygons["wall.geojson"] = rectangle(1030, 2040, 1035, 2090);
+    gis.polygons["away.geojson"] = rectangle(3030, 2040, 3035, 2090);
     gis.polygons["release.geojson"] = rectangle(1050, 2050, 1100, 2080);
     return gis;
 }
@@ -114,4 +116,38 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "stage.1.friction_angle_deg: not given, but stage.law = \"drucker_prager\" needs it"));
     CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\ncell = 2\n"),
               "stage.0.cell: found, but stage.model = \"depth_averaged\" does not use it"));
+}
+
+TEST_CASE("Barriers come with their places and heights", "[barrier]") {
+    const Scene scene = scene_of(
+        "[[barrier]]\noutline = \"wall.geojson\"\nheight = 4\n[[barrier]]\nname = \"dam\"\nline = "
+        "[[1020, 2040], [1020, 2060], [1030, 2080]]\ntop = 130\nwet = \"right\"\nfriction = 0.3\n");
+    REQUIRE(scene.barriers.size() == 2);
+    const Barrier &wall = scene.barriers[0], &dam = scene.barriers[1];
+    CHECK(wall.name == "barrier_1");
+    CHECK(wall.height == 4.0);
+    CHECK_FALSE(wall.top.has_value());
+    CHECK(wall.outline.parts.size() == 1);
+    CHECK(dam.name == "dam");
+    CHECK(dam.top == 130.0);
+    CHECK(dam.line.size() == 3);
+    CHECK_FALSE(dam.wet_left);
+    CHECK(dam.friction == 0.3);
+}
+
+TEST_CASE("Barriers that cannot be are refused in one sentence", "[barrier]") {
+    const auto barrier = [](const std::string& keys) { return problem_of("[[barrier]]\n" + keys); };
+    CHECK(has(barrier("outline = \"away.geojson\"\nheight = 4\n"),
+              "case.toml:13: barrier.0.outline: found no point of it on the terrain; expected the barrier "
+              "within x 1000 to 1200"));
+    CHECK(has(barrier("outline = \"wall.geojson\"\n"), "barrier.0.height: not given, and no top either"));
+    CHECK(has(barrier("outline = \"wall.geojson\"\nheight = 4\ntop = 130\n"), "found together with"));
+    CHECK(has(barrier("outline = \"wall.geojson\"\nheight = 4\nthickness = 2\n"),
+              "barrier.0.thickness: found together with outline; expected it with line only"));
+    CHECK(has(barrier("outline = \"none.geojson\"\nheight = 4\n"), "none.geojson: no such polygons"));
+    CHECK(has(barrier("height = 4\nline = [[1020, 2040], [1020, 2040]]\n"),
+              "barrier.0.line: found the point (1020, 2040) twice in a row"));
+    CHECK(has(barrier("height = 4\nline = [[1020, 2040], [1020, 2060], [1021, 2040]]\n"),
+              "barrier.0.line: found a turn by more than 120 degrees at (1020, 2060)"));
+    CHECK(has(barrier("height = -4\noutline = \"wall.geojson\"\n"), "barrier.0.height: found -4"));
 }

@@ -27,12 +27,14 @@ std::string number_attributes(Storage storage) {
 
 std::string attribute_text(const std::string& name, int components, const std::string& dimensions,
                            const std::string& numbers, const std::string& place) {
-    expect(components == 1 || components == 3, "XDMF takes columns of 1 or 3 components");
+    // A tensor goes as a matrix: XDMF's Tensor6 counts xx, xy, xz, yy, yz, zz; ours is in the file's `components`.
+    const char* const type = components == 1 ? "Scalar" : components == 3 ? "Vector" : "Matrix";
+    const std::string more = components == 1 ? "" : fmt::format(" {}", components);
     return fmt::format(
         "        <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"Node\">\n"
         "          <DataItem Format=\"HDF\" Dimensions=\"{2}{3}\" {4}>run.h5:/{5}/{0}</DataItem>\n"
         "        </Attribute>\n",
-        name, components == 3 ? "Vector" : "Scalar", dimensions, components == 3 ? " 3" : "", numbers, place);
+        name, type, dimensions, more, numbers, place);
 }
 
 std::string grid_text(const Frame& frame, bool has_outside) {

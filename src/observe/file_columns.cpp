@@ -37,6 +37,7 @@ Storage storage_of(const Field& field) {
 }
 
 std::vector<std::string> component_names(const Field& field) {
+    if (field.components == 6) return {"xx", "yy", "zz", "xy", "yz", "xz"};
     if (field.components != 3) return {};
     if (ends_with(field.name, "stress")) return {"xx", "yy", "xy"};
     return {"x", "y", "z"};

@@ -16,7 +16,8 @@ enum class Storage { float32, float64, int64 };
 /// `id`, float32 (7 digits) for the rest.
 Storage storage_of(const Field& field);
 
-/// Names of the components: x, y, z of a vector; xx, yy, xy of a stress; empty for a scalar.
+/// Names of the components: x, y, z of a vector; xx, yy, xy of a stress, in space xx, yy, zz, xy, yz, xz; empty for a
+/// scalar.
 std::vector<std::string> component_names(const Field& field);
 
 /// 1 where a node has no terrain (its "elevation" is NaN), 0 elsewhere; empty when every node has terrain or

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -15,12 +16,38 @@ bool meets(const std::vector<Vec2>& points, const std::array<double, 4>& extent)
     return low.x() <= extent[2] && high.x() >= extent[0] && low.y() <= extent[3] && high.y() >= extent[1];
 }
 
+/// A line that a wall can stand along: different points, and no turn by more than 120 degrees.
+void require_wall(const Polyline& line) {
+    constexpr double kSharpest = -0.5;  // cosine
+    for (std::size_t k = 1; k < line.size(); ++k) {
+        const Vec2 way = line[k] - line[k - 1];
+        if (!(way.norm() > 0.0))
+            throw UserError(fmt::format(
+                "found the point ({:.10g}, {:.10g}) twice in a row; expected different points; leave "
+                "one out",
+                line[k].x(), line[k].y()));
+        if (k + 1 == line.size()) continue;
+        const Vec2 next = line[k + 1] - line[k];
+        if (way.dot(next) < kSharpest * way.norm() * next.norm())
+            throw UserError(fmt::format(
+                "found a turn by more than 120 degrees at ({:.10g}, {:.10g}); expected a wall without "
+                "one; draw two walls",
+                line[k].x(), line[k].y()));
+    }
+}
+
 }  // namespace
 
 std::vector<Barrier> read_barriers(const CaseFile& file, const Raster& bed, const GisReader& reader,
                                    std::vector<std::string>& log, Problems& problems) {
     std::vector<Barrier> barriers;
     const auto extent = bed.geometry.pixel_extent();
+    constexpr Index kMost =
+        24;  // with the ground and the sides, within the surfaces that points can tell apart
+    if (file.count("barrier") > kMost)
+        problems.add(file.table_place(fmt::format("barrier.{}", kMost)),
+                     fmt::format("found {} barriers", file.count("barrier")),
+                     fmt::format("expected {} at most", kMost), "put several polygons into one outline");
     for (Index i = 0; i < file.count("barrier"); ++i) {
         const std::string prefix = fmt::format("barrier.{}.", i);
         const auto given = [&](const char* name) { return file.given(prefix + name); };
@@ -30,6 +57,7 @@ std::vector<Barrier> read_barriers(const CaseFile& file, const Raster& bed, cons
         std::vector<Vec2> vertices;
         if (given("line")) {
             vertices = barrier.line = file.points(prefix + "line");
+            if (!problems.attempt(where, [&] { require_wall(barrier.line); })) continue;
         } else {
             const bool read = problems.attempt(where, [&] {
                 barrier.outline = reader.read_polygons(file.path(prefix + "outline"), bed.crs_wkt, log);

@@ -190,7 +190,7 @@ void StagedRun::book(const Status& columns) {
 }
 
 bool StagedRun::at_rest() const {
-    if (!points_) return columns_->at_rest() && scene_.solid->from > scene_.end;
+    if (!points_) return false;  // what rests as columns may flow as points
     return status_.max_speed == 0.0 || status_.mean_speed < scene_.rest_fraction * peak_mean_speed_;
 }
 
