@@ -282,6 +282,27 @@ bool is_shortage(const std::error_code& code) {
            code == std::errc::too_many_files_open || code == std::errc::too_many_files_open_in_system;
 }
 
+/// TBB, which VTK may work with, tells of a shortage by an error without code that ends with the system's words for it.
+bool tells_of_shortage(const std::exception& error) {
+    const std::string text = error.what();
+    for (const std::errc code : {std::errc::resource_unavailable_try_again, std::errc::not_enough_memory}) {
+        const std::string words = std::make_error_code(code).message();
+        if (text.size() >= words.size() && text.compare(text.size() - words.size(), words.size(), words) == 0) return true;
+    }
+    return false;
+}
+
+int short_of(const std::exception& error) {
+    return complain(fmt::format("{}; expected a system with memory, threads and file handles to spare; free some, or raise "
+                                "the limits of the process",
+                                error.what()),
+                    2);
+}
+
+int mistake(const std::exception& error) {
+    return complain(fmt::format("{} (a mistake of the program; please report it with the case)", error.what()), 1);
+}
+
 }  // namespace
 }  // namespace frana
 
@@ -304,14 +325,8 @@ int main(int argc, char** argv) {
             "a larger grid.cell",
             2);
     } catch (const std::system_error& error) {
-        if (!is_shortage(error.code()))
-            return complain(fmt::format("{} (a mistake of the program; please report it with the case)", error.what()), 1);
-        return complain(fmt::format("{}; expected a system with memory, threads and file handles to spare; free some, or "
-                                    "raise the limits of the process",
-                                    error.what()),
-                        2);
+        return is_shortage(error.code()) ? short_of(error) : mistake(error);
     } catch (const std::exception& error) {
-        return complain(
-            fmt::format("{} (a mistake of the program; please report it with the case)", error.what()), 1);
+        return tells_of_shortage(error) ? short_of(error) : mistake(error);
     }
 }

@@ -127,30 +127,32 @@ std::string files(const RunRecord& r, const std::vector<Product>& products) {
 std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
     std::string text =
-        "## Barriers\n\n| Barrier | First contact | Largest horizontal force | Impulse x, y, z | Run-up to | Over it |\n"
+        "## Barriers\n\n| Barrier | First contact | Largest horizontal force | Impulse x, y, z | Run-up to | "
+        "Over it |\n"
         "|---|---|---|---|---|---|\n";
-    bool measured = false;
+    double blur = 0.0, hardest = 0.0;
     for (const BarrierSummary& b : r.barriers) {
+        blur = std::max(blur, b.blur), hardest = std::max(hardest, b.raw_peak_force);
         if (b.first_contact < 0.0) {
             text += fmt::format("| {} | none | - | - | - | {:.5g} m3 |\n", b.name, b.overtopped);
             continue;
         }
-        measured = true;
-        text += fmt::format("| {} | {:.4g} s | {:.4g} N at {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n",
-                            b.name, b.first_contact, b.peak_force, b.peak_force_time, b.impulse[0], b.impulse[1],
-                            b.impulse[2], b.run_up, b.overtopped);
-    }
-    if (measured)
         text += fmt::format(
-            "\nForces are means over {:.3g} s, twenty times what sound takes through the flow: the blow of a first contact is "
-            "as hard as the artificial sound is fast ({:.4g} N in the worst step of them all). Over it: what stood over the "
+            "| {} | {:.4g} s | {:.4g} N at {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n",
+            b.name, b.first_contact, b.peak_force, b.peak_force_time, b.impulse[0], b.impulse[1],
+            b.impulse[2], b.run_up, b.overtopped);
+    }
+    if (hardest > 0.0)
+        text += fmt::format(
+            "\nForces are means over {:.3g} s, twenty times what sound takes through the flow: the blow of a "
+            "first contact is "
+            "as hard as the artificial sound is fast ({:.4g} N in the worst step of them all). Over it: what "
+            "stood over the "
             "barrier at any time.\n",
-            r.barriers.front().blur,
-            std::max_element(r.barriers.begin(), r.barriers.end(), [](const auto& a, const auto& b) {
-                return a.raw_peak_force < b.raw_peak_force;
-            })->raw_peak_force);
+            blur, hardest);
     else
-        text += "\nForces are measured on points in space only ([[stage]]); columns take a barrier for ground.\n";
+        text +=
+            "\nForces are measured on points in space only ([[stage]]); columns take a barrier for ground.\n";
     return text + "\n";
 }
 
@@ -180,8 +182,8 @@ std::string remarks(const RunRecord& r) {
 std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir) {
     const std::vector<Product> products = products_in(run_dir);
     const std::string survey = record.comparison ? comparison_section(*record.comparison) : "";
-    return heading(record) + results(record) + survey + barriers(record) + budgets(record) + figures(record) + parameter_table(record) +
-           files(record, products) + times(record.summary) + remarks(record);
+    return heading(record) + results(record) + survey + barriers(record) + budgets(record) + figures(record) +
+           parameter_table(record) + files(record, products) + times(record.summary) + remarks(record);
 }
 
 std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_dir) {

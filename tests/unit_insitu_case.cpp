@@ -1,21 +1,13 @@
 // [[insitu]] and [[camera]]: from the case file to the scene, and what is refused before the first step.
 #include "base/error.h"
 #include "catch.h"
-#include "fake_gis.h"
 #include "scene/build_scene.h"
+#include "slope_case.h"
 
 using namespace frana;
+using namespace frana::test;
 
 namespace {
-
-/// 40 x 30 nodes, 5 m apart, on a plane that rises 1 in 2 to the east from 100 m.
-FakeGis slope_gis() {
-    FakeGis gis;
-    gis.rasters["dem.tif"] =
-        sampled({40, 30, 1002.5, 2002.5, 5.0}, [](double x, double) { return 100.0 + 0.5 * (x - 1000.0); });
-    gis.polygons["release.geojson"] = rectangle(1050, 2050, 1100, 2080);
-    return gis;
-}
 
 std::string with(const std::string& rest) {
     return "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = "
@@ -32,15 +24,7 @@ std::vector<Insitu> entries(const std::string& rest, const std::vector<std::stri
 
 /// The one problem of a case that has exactly one; the lines of `rest` begin at 8.
 std::string problem_of(const std::string& rest) {
-    std::vector<std::string> problems;
-    try {
-        entries(rest);
-    } catch (const UserError& error) {
-        problems = error.problems();
-    }
-    CAPTURE(problems);
-    REQUIRE(problems.size() == 1);
-    return problems[0];
+    return only_problem([&] { entries(rest); });
 }
 
 const std::string everything = R"([[camera]]

@@ -16,23 +16,16 @@ bool meets(const std::vector<Vec2>& points, const std::array<double, 4>& extent)
     return low.x() <= extent[2] && high.x() >= extent[0] && low.y() <= extent[3] && high.y() >= extent[1];
 }
 
-/// A line that a wall can stand along: different points, and no turn by more than 120 degrees.
+/// A line that a wall can stand along: no turn by more than 120 degrees.
 void require_wall(const Polyline& line) {
     constexpr double kSharpest = -0.5;  // cosine
-    for (std::size_t k = 1; k < line.size(); ++k) {
-        const Vec2 way = line[k] - line[k - 1];
-        if (!(way.norm() > 0.0))
-            throw UserError(fmt::format(
-                "found the point ({:.10g}, {:.10g}) twice in a row; expected different points; leave "
-                "one out",
-                line[k].x(), line[k].y()));
-        if (k + 1 == line.size()) continue;
-        const Vec2 next = line[k + 1] - line[k];
+    for (std::size_t k = 1; k + 1 < line.size(); ++k) {
+        const Vec2 way = line[k] - line[k - 1], next = line[k + 1] - line[k];
         if (way.dot(next) < kSharpest * way.norm() * next.norm())
-            throw UserError(fmt::format(
-                "found a turn by more than 120 degrees at ({:.10g}, {:.10g}); expected a wall without "
-                "one; draw two walls",
-                line[k].x(), line[k].y()));
+            throw UserError(
+                fmt::format("found a turn by more than 120 degrees at ({:.10g}, {:.10g}); expected a wall without one; draw "
+                            "two walls",
+                            line[k].x(), line[k].y()));
     }
 }
 

@@ -26,20 +26,16 @@ template <class Real>
 void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
-    const double x_max = static_cast<double>(flow.grid.nx() - 1),
-                 y_max = static_cast<double>(flow.grid.ny() - 1);
-    const bool outside_x = !(c.x[p] >= 0.0 && c.x[p] <= x_max),
-               outside_y = !(c.y[p] >= 0.0 && c.y[p] <= y_max);
+    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
+    const bool outside_x = !(c.x[p] >= 0.0 && c.x[p] <= x_max), outside_y = !(c.y[p] >= 0.0 && c.y[p] <= y_max);
     if (flow.walls) {
         if (outside_x) {
             c.x[p] = c.x[p] < 0.0 ? -c.x[p] : 2.0 * x_max - c.x[p];
-            for (auto* odd : {&held.vx[p], &held.cxy[p], &held.cyx[p], &held.r1x[p], &held.r2x[p]})
-                *odd = -*odd;
+            for (auto* odd : {&held.vx[p], &held.cxy[p], &held.cyx[p], &held.r1x[p], &held.r2x[p]}) *odd = -*odd;
         }
         if (outside_y) {
             c.y[p] = c.y[p] < 0.0 ? -c.y[p] : 2.0 * y_max - c.y[p];
-            for (auto* odd : {&held.vy[p], &held.cxy[p], &held.cyx[p], &held.r1y[p], &held.r2y[p]})
-                *odd = -*odd;
+            for (auto* odd : {&held.vy[p], &held.cxy[p], &held.cyx[p], &held.r1y[p], &held.r2y[p]}) *odd = -*odd;
         }
     }
     const Index k = flow.grid.at(static_cast<Index>(std::floor(c.x[p] + 0.5)),

@@ -138,10 +138,13 @@ void StagedRun::hand_over() {
     });
 }
 
-/// The map follows when material has moved by a quarter of a cell, and at output times.
+/// The map follows when material has moved by a quarter of a cell, and at output times; with barriers when it
+/// has moved by half a cell of the points, so that what goes over them is seen there.
 void StagedRun::look(double until) {
     constexpr double kShare = 0.25;
-    if (points_->status().time < until && moved_ < kShare * scene_.bed.geometry.cell) return;
+    double far = kShare * scene_.bed.geometry.cell;
+    if (watch_) far = std::min(far, 2.0 * kShare * scene_.solid->cell);
+    if (points_->status().time < until && moved_ < far) return;
     timed_("map", [&] {
         map_.look(*points_, points_->status().time);
         if (watch_) watch_->look(*points_);
