@@ -99,6 +99,21 @@ TEST_CASE("A frame in space has the mass of both models on its particles and on 
     CHECK(probe.velocity.x() > 6.0);
 }
 
+TEST_CASE("A window that nothing has reached yet waits with sound and room for what comes", "[stages]") {
+    Scene scene = slide();
+    scene.solid->window = {24, 0, 36, 12};
+    StagedRun run(scene);
+    const double mass = run.status().mass;
+    run_to(run, scene.solid->from);
+    CHECK(run.points()->status().points == 0);
+    CHECK(run.points()->body().grid.geometry().nodes[2] > 20);
+    run_to(run, 2.0);
+    CHECK(run.points()->status().points > 1000);
+    CHECK(mass_error(run.status(), mass) < 1e-12);
+    // Sound is ten times as fast as the 8 m/s and more of the columns: points of water stay nearly as dense.
+    CHECK(run.points()->status().volume == Approx(run.points()->status().mass / scene.density).epsilon(0.02));
+}
+
 TEST_CASE("A stage in space from the start takes the release as it is", "[stages]") {
     Scene scene = slide(0.0);
     scene.solid->window = {0, 0, 40, 12};

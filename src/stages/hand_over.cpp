@@ -16,6 +16,12 @@ bool marked(const std::vector<std::uint8_t>& marks, const GridGeometry& g, doubl
     return marks[static_cast<std::size_t>(near(y, g.y0, g.ny) * g.nx + near(x, g.x0, g.nx))] != 0;
 }
 
+/// The bed below a place; beyond the outer nodes, where columns may still be as they leave, that of the nearest.
+double bed_below(const Raster& bed, double x, double y) {
+    const GridGeometry& g = bed.geometry;
+    return bed_elevation(bed, std::clamp(x, g.x0, g.x_max()), std::clamp(y, g.y0, g.y_max()));
+}
+
 const double* numbers(const Frame& frame, const char* name) {
     const Field* const field = frame.particle(name);
     expect(field != nullptr, "columns have the quantities that points in space need");
@@ -54,7 +60,7 @@ FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector
         const Vec2 slope = bed_gradient(scene.bed, seeds.x[p], seeds.y[p]);
         columns.x.push_back(seeds.x[p]);
         columns.y.push_back(seeds.y[p]);
-        columns.bed.push_back(bed_elevation(scene.bed, seeds.x[p], seeds.y[p]));
+        columns.bed.push_back(bed_below(scene.bed, seeds.x[p], seeds.y[p]));
         columns.depth.push_back(seeds.depth[p]);
         columns.vx.push_back(seeds.vx[p]);
         columns.vy.push_back(seeds.vy[p]);
@@ -89,7 +95,7 @@ FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, 
                 parts.take(columns, k);
                 parts.x.back() = place(columns.x[k], i, extent[0], extent[2]);
                 parts.y.back() = place(columns.y[k], j, extent[1], extent[3]);
-                const double ground = bed_elevation(bed, parts.x.back(), parts.y.back());
+                const double ground = bed_below(bed, parts.x.back(), parts.y.back());
                 if (std::isfinite(ground)) parts.bed.back() = ground;
                 parts.mass.back() *= share;
                 parts.volume.back() *= share;

@@ -28,7 +28,7 @@ StagedRun::StagedRun(const Scene& scene, Start start)
     scene_.particles = {};
     status_ = columns_->status();
     if (start == Start::placed && scene.solid->from == 0.0)
-        begin_space(columns_of(scene.particles, scene, nodes_in_window(scene)));
+        begin_space([&](const Marks& marks) { return columns_of(scene.particles, scene, marks); });
 }
 
 /// One step of the model in charge: columns until their stage ends; then points, with the columns that are
@@ -40,7 +40,7 @@ void StagedRun::advance(double until) {
         status_ = columns_->status();
         peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
         if (status_.time < scene_.solid->from) return;
-        begin_space(columns_of(columns_->frame(), scene_.bed, nodes_in_window(scene_)));
+        begin_space([&](const Marks& marks) { return columns_of(columns_->frame(), scene_.bed, marks); });
         return;
     }
     if (columns_->status().time <= points_->status().time) step_columns(until);
@@ -55,16 +55,17 @@ void StagedRun::advance(double until) {
 }
 
 /// Columns in the window become points, those outside stay; none of them is in both.
-void StagedRun::begin_space(const FlowColumns& columns) {
+void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& columns_at) {
     const Status before = columns_->status();
     timed_("hand over", [&] {
-        start_ = choose_start(scene_, columns);
+        const Marks inside = nodes_in_window(scene_), everywhere(inside.size(), 1);
+        start_ = choose_start(scene_, columns_at(everywhere));  // what is outside still comes
         SolidScene space = solid_scene(scene_, start_);
-        space.points = seeds_of_window(columns);
+        space.points = seeds_of_window(columns_at(inside));
         points_ = std::make_unique<SolidFlow>(space);
         points_->start_at(scene_.solid->from);
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
-        columns_->open_exits(nodes_in_window(scene_), true);
+        columns_->open_exits(inside, true);
     });
     const Status& now = columns_->status();  // what they gave counts as left
     handed_.mass = now.mass_left - before.mass_left;

@@ -1,6 +1,7 @@
 #pragma once
 // A run in two stages: columns, and from a time on points in space in a window of the map (Fois, de Falco,
 // Formaggia 2025, with the tail that still flows into the window handed over column by column).
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -41,7 +42,8 @@ private:
         std::array<double, 2> momentum{};
     };
 
-    void begin_space(const FlowColumns& columns);
+    using Marks = std::vector<std::uint8_t>;  ///< of nodes, 1 or 0
+    void begin_space(const std::function<FlowColumns(const Marks&)>& columns_at);
     void step_columns(double until);
     void hand_over();
     SolidSeeds seeds_of_window(const FlowColumns& columns) const;
