@@ -141,7 +141,7 @@ public:
     }
     /// Cauchy stress at a point [Pa].
     Sym3 stress(Index p) const;
-    /// Momentum + carried out - at the start - impulses of gravity and surfaces: round-off [kg m/s]
+    /// Momentum + carried out - given with points - impulses of gravity and surfaces: round-off [kg m/s]
     Vec3 momentum_residual() const;
     /// Angular momentum about the origin; with apic that of the affine motion too [kg m^2/s].
     Vec3 angular_momentum() const;

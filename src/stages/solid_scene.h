@@ -13,13 +13,14 @@ struct SolidStart {
     double blur = 0.0;         ///< time over which forces on barriers are averaged: see BarrierLoads [s]
 };
 
-/// Sound ten times as fast as the material is and as it becomes when it falls by its own depth twice, so that
-/// the density changes by 1 % (Monaghan 1994); room four times as high above the lowest ground as the energy
-/// of `columns` reaches.
+/// Sound ten times as fast as the fastest of `columns`, or as one that falls by its own depth, so that the
+/// density changes by 1 % (Monaghan 1994); room four times as high above the lowest ground as their energy
+/// reaches. A first contact with a barrier lasts as long as sound takes through the flow: means over twenty
+/// times that know nothing of it.
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns);
 
-/// Grid, law and surfaces of scene.solid, without points. The ground comes first, then walls where the window
-/// reaches sides of the terrain that are walls. Open sides lie a cell of the terrain's grid outside the
+/// Grid, law and surfaces of scene.solid, without points. The ground comes first, then the window's closed sides,
+/// then the barriers in their order. Open sides lie a cell of the terrain's grid outside the
 /// window: columns that cross its edge are wider than a point.
 SolidScene solid_scene(const Scene& scene, const SolidStart& start);
 
