@@ -77,3 +77,49 @@ TEST_CASE("A bend turns what is higher than it is wide, and adds nothing to its 
     const double w = bed.bx * vx + bed.by * vy, work = -(vx * ax + vy * ay) + w * (k - (bed.bx * ax + bed.by * ay));
     CHECK(std::abs(work) <= kRoundOff * (g + std::abs(k)) * 5.0 * 7.0);  // speed, slope of the surface
 }
+
+TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothed curvature", "[kick]") {
+    // A ramp of 1 m/m over three cells of 2 m in a plain; smoothed over 40 m it is next to nothing.
+    Scene scene = verify::scene_on(41, 31, 2.0, [](double x, double) { return std::min(std::max(x - 38.0, 0.0), 6.0); });
+    scene.scheme.curvature_length = 40.0;
+    const Flow flow(scene);
+    const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));
+    REQUIRE(bed.bx > 0.9);
+    const double g = 9.81, dt = 0.01, own = *bed.smooth_x / bed.bx, cosine = 1.0;
+    REQUIRE(own < 0.1);
+    double vx = 8.0 - dt * g * bed.drive(bed.bx, 0.0, cosine).x, vy = 3.0;
+    bed.climb(bed.bx, 0.0, 0.0, g, g, dt, vx, vy);
+    // All of g e but for the share that the smoothed bed has, squared.
+    CHECK(8.0 - vx <= dt * g * bed.bx * (1.0 + 1e-12));
+    CHECK(8.0 - vx >= dt * g * bed.bx * (1.0 - own * own * own * own * bed.bx * bed.bx));
+    CHECK(vy == 3.0);
+
+    // A front on the bank, whose surface was mended to that of the pool before it.
+    double front = 8.0;
+    vy = 3.0;
+    bed.climb(0.0, 0.0, 1.0, g, g, dt, front, vy);
+    CHECK(8.0 - front <= dt * g * bed.bx * (1.0 + 1e-12));
+    CHECK(8.0 - front >= dt * g * bed.bx * (1.0 - 2.0 * own * own));
+    double inner = 8.0;
+    bed.climb(0.0, 0.0, 0.0, g, g, dt, inner, vy);
+    CHECK(inner == 8.0);
+
+    double down = -8.0, across = 3.0;
+    bed.climb(bed.bx, 0.0, 0.0, g, g, dt, down, across);
+    CHECK(down == -8.0);
+    double slow = 1e-6, still = 0.0;
+    bed.climb(bed.bx, 0.0, 0.0, g, g, dt, slow, still);
+    CHECK(slow == Approx(0.0).margin(1e-18));  // it stops, and is not turned
+    CHECK(slow >= -1e-18);
+}
+
+TEST_CASE("A climb on a smooth bed costs nothing more", "[kick]") {
+    Scene scene = bent();
+    scene.scheme.curvature_length = 0.0;
+    const Flow flow(scene);
+    const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));
+    double vx = 8.0, vy = -3.0;
+    bed.climb(bed.bx + 0.1, bed.by - 0.2, 1.0, 9.81, 12.0, 0.01, vx, vy);
+    CHECK(vx == Approx(8.0).epsilon(kRoundOff));
+    CHECK(vy == Approx(-3.0).epsilon(kRoundOff));
+}

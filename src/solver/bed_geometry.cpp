@@ -116,7 +116,12 @@ void average(const Scene& scene, const TileGrid& grid, LazyArray<double>& field,
 /// (a cliff's foot in one cell) would turn more than the speed at hand. What is sharper counts as this.
 constexpr double kSharpest = 0.5;
 
-/// The bed's Hessian, from the bed extended linearly whatever the sides: a slope that meets a wall is mirrored for
+/// Slope by the 4th-order stencil that also differentiates the free surface.
+double slope_at(const double* z, Index step, double cell) {
+    return (8.0 * (z[step] - z[-step]) - (z[2 * step] - z[-2 * step])) * (1.0 / (12.0 * cell));
+}
+
+/// The bed's Hessian and slopes as far as they are smooth, from the bed extended linearly whatever the sides: a slope that meets a wall is mirrored for
 /// the pressure, but it has no curvature there.
 void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<double>& z, BedGeometry& bed) {
     const double cell = grid.cell(), length = scene.scheme.curvature_length;
@@ -135,12 +140,16 @@ void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<
     bed.hxx = LazyArray<double>(grid.size());
     bed.hxy = LazyArray<double>(grid.size());
     bed.hyy = LazyArray<double>(grid.size());
+    bed.smooth_x = LazyArray<double>(grid.size());
+    bed.smooth_y = LazyArray<double>(grid.size());
     const Index up = grid.stride();
     for_each_node(grid, 3, [&](Index, Index, Index k) {
         const double* c = smoothed.data() + k;
         bed.hxx[k] = (c[1] - 2.0 * c[0] + c[-1]) / (cell * cell);
         bed.hyy[k] = (c[up] - 2.0 * c[0] + c[-up]) / (cell * cell);
         bed.hxy[k] = (c[up + 1] - c[up - 1] - c[-up + 1] + c[-up - 1]) / (4.0 * cell * cell);
+        bed.smooth_x[k] = slope_at(c, 1, cell);
+        bed.smooth_y[k] = slope_at(c, up, cell);
         for (auto* h : {&bed.hxx, &bed.hxy, &bed.hyy}) (*h)[k] = std::clamp((*h)[k], -kSharpest / cell, kSharpest / cell);
     });
 }
@@ -168,11 +177,10 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     bed.z_min = LazyArray<double>(grid.size());
     bed.slope_x = LazyArray<double>(grid.size());
     bed.slope_y = LazyArray<double>(grid.size());
-    const double scale = 1.0 / (12.0 * grid.cell());
     for_each_node(grid, 4, [&](Index, Index, Index k) {
         const double* c = bed.z.data() + k;
-        bed.slope_x[k] = (8.0 * (c[1] - c[-1]) - (c[2] - c[-2])) * scale;
-        bed.slope_y[k] = (8.0 * (c[up] - c[-up]) - (c[2 * up] - c[-2 * up])) * scale;
+        bed.slope_x[k] = slope_at(c, 1, grid.cell());
+        bed.slope_y[k] = slope_at(c, up, grid.cell());
         double least = c[0];
         for (Index dj = -2; dj <= 2; ++dj)
             for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);

@@ -55,6 +55,7 @@ struct Node {
     Real depth, mass;
     Real push_x, push_y;  ///< artificial viscosity and stress [m/s^2]
     Real loss_x, loss_y;  ///< the viscosity's part, whose work is lost [m/s^2]
+    Real rim;             ///< 1 at margins, whose surface may be that of what lies behind; otherwise 0
 };
 
 template <class Real>
@@ -221,6 +222,7 @@ private:
         Node<double> node{};
         node.vx = nodes.before[k].x, node.vy = nodes.before[k].y;
         node.depth = nodes.depth[k], node.mass = nodes.deposits()[k].mass;
+        node.rim = nodes.flags[k] & kMargin ? 1.0 : 0.0;
         if (!pressure_on_points_) {
             node.ex = surface_gradient(flow, k, 1, nodes.flags[k] & kWideX, flow.bed.slope_x[k]);
             node.ey = surface_gradient(flow, k, up, nodes.flags[k] & kWideY, flow.bed.slope_y[k]);
@@ -245,7 +247,7 @@ private:
         const Index up = flow.grid.stride();
         Node<Double4> node;  // set one by one: to clear it first would be a loop of its own
         unzip(&nodes.before[k], node.vx, node.vy);
-        node.push_x = node.push_y = node.loss_x = node.loss_y = Double4{};
+        node.push_x = node.push_y = node.loss_x = node.loss_y = node.rim = Double4{};
         const Deposit* d = nodes.deposits() + k;
         node.depth = load(&nodes.depth[k]), node.mass = Double4{d[0].mass, d[1].mass, d[2].mass, d[3].mass};
         node.ex = wide_gradients(flow, k, 1);
@@ -294,7 +296,8 @@ private:
             pull = bed.pull(slope, g, high, mx, my, cosine);
             gravity = bed.gravity(g, mx, my);
         }
-        const Real dx = n.vx + dt * (n.push_x - pull.x), dy = n.vy + dt * (n.push_y - pull.y);
+        Real dx = n.vx + dt * (n.push_x - pull.x), dy = n.vy + dt * (n.push_y - pull.y);
+        bed.climb(n.ex, n.ey, n.rim, g, gravity, dt, dx, dy);
         const Real along = dx * bed.bx + dy * bed.by, speed2 = dx * dx + dy * dy;
         const Real kappa = sqrt(1.0 + select(speed2 > 0.0, along * along / speed2, Real{}));
         const Real normal = kCurvature == Curvature::full ? gravity : Real{} + g;

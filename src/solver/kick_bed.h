@@ -20,11 +20,35 @@ struct Drive { Real x, y; };
 template <class Real, Curvature kCurvature, bool kLinear>
 struct SteepBed {
     Real bx, by, hxx{}, hxy{}, hyy{};
+    const double *smooth_x = nullptr, *smooth_y = nullptr;  ///< read where something climbs
     SteepBed(const Flow& flow, Index k) : bx(read<Real>(&flow.bed.slope_x[k])), by(read<Real>(&flow.bed.slope_y[k])) {
         if constexpr (kCurvature != Curvature::none) {
             hxx = read<Real>(&flow.bed.hxx[k]);
             hxy = read<Real>(&flow.bed.hxy[k]);
             hyy = read<Real>(&flow.bed.hyy[k]);
+            smooth_x = &flow.bed.smooth_x[k], smooth_y = &flow.bed.smooth_y[k];
+        }
+    }
+    /// What a velocity (dx, dy) that climbs loses besides, in dt; `weight`: gravity() of the kick. Where the bed is
+    /// smooth, v.H.v turns the velocity up a slope and the slope's own pull is 1/(1 + q) of gravity; together a climb by z
+    /// costs g z. A bend shorter than the curvature's length turns nothing: so much of the slope as the smoothed bed does
+    /// not have pulls with all of gravity, or a column would climb a bank of slope B at a cost of g z / (1 + B^2).
+    /// `rim`, 1 at margins: the surface there is that of what lies behind, which a front leaves on its way up such a
+    /// bank; there the bed's slope counts. This stops a climb and turns none round.
+    void climb(Real ex, Real ey, Real rim, double g, Real weight, double dt, Real& dx, Real& dy) const {
+        if constexpr (kCurvature != Curvature::none) {
+            const Real zero{}, one = zero + 1.0, up = dx * ex + dy * ey, up_bed = dx * bx + dy * by;
+            if (!any((up > 0.0) | (rim * up_bed > 0.0))) return;
+            const Real slope2 = bx * bx + by * by, along = read<Real>(smooth_x) * bx + read<Real>(smooth_y) * by;
+            const Real known = select(slope2 > 0.0, min(one, max(zero, along / max(slope2, zero + 1e-300))), one);
+            const Real share = known * known, q = max(zero, bx * ex + by * ey);
+            const Real bare = select(up_bed > up, rim * (1.0 - share), zero);
+            const Real cx = ex + bare * (bx - ex), cy = ey + bare * (by - ey);
+            const Real rise = dx * cx + dy * cy, square = max(cx * cx + cy * cy, zero + 1e-300);
+            const Real whole = (g + share * (weight - g)) / (1.0 + share * share * max(zero, bx * cx + by * cy));
+            const Real had = weight / (1.0 + q) * (ex * cx + ey * cy) / square;
+            const Real lost = select(rise > 0.0, min(dt * max(zero, whole - had), rise / square), zero);
+            dx -= lost * cx, dy -= lost * cy;
         }
     }
     /// Gravity plus the bed's own vertical acceleration along the path, (g + v.H.v)+
