@@ -9,6 +9,7 @@
 #include "frana_run_insitu.h"
 #include "io/gdal_reader.h"
 #include "scene/build_scene.h"
+#include "vtk_io/barrier_mesh.h"
 
 namespace frana {
 namespace {
@@ -168,12 +169,13 @@ std::string forecast_text(const Scene& scene) {
 
 int check_command(const CheckOptions& options) {
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
-    const BuiltScene built = build_scene_in_detail(file, GdalReader());
+    const BuiltScene built = build_scene_in_detail(file, GdalReader(), barrier_mesh_of);
     std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
     std::cout << total_text(built) << forecast_text(built.scene);
     for (const Barrier& barrier : built.scene.barriers)
-        std::cout << (barrier.top
+        std::cout << (barrier.shape ? fmt::format("barrier     {}, a mesh\n", barrier.name)
+                      : barrier.top
                           ? fmt::format("barrier     {}, up to {:.6g} m\n", barrier.name, *barrier.top)
                           : fmt::format("barrier     {}, {:.6g} m high\n", barrier.name, barrier.height));
     if (built.scene.solid) std::cout << stage_text(built.scene);

@@ -134,7 +134,7 @@ std::string barriers(const RunRecord& r) {
     for (const BarrierSummary& b : r.barriers) {
         blur = std::max(blur, b.blur), hardest = std::max(hardest, b.raw_peak_force);
         if (b.first_contact < 0.0) {
-            text += fmt::format("| {} | none | - | - | - | {:.5g} m3 |\n", b.name, b.overtopped);
+            text += fmt::format("| {} | - | - | - | {:.5g} m | {:.5g} m3 |\n", b.name, b.run_up, b.overtopped);
             continue;
         }
         text += fmt::format(
@@ -152,7 +152,8 @@ std::string barriers(const RunRecord& r) {
             blur, hardest);
     else
         text +=
-            "\nForces are measured on points in space only ([[stage]]); columns take a barrier for ground.\n";
+            "\nForces are measured on points in space only ([[stage]]); columns take a barrier for ground. Over it: "
+            "columns whose middle came onto it.\n";
     return text + "\n";
 }
 

@@ -14,6 +14,7 @@
 #include "io/gdal_reader.h"
 #include "scene/build_scene.h"
 #include "solver/simulation.h"
+#include "vtk_io/barrier_mesh.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -59,7 +60,7 @@ void say_what_runs(const RunRecord& record, const fs::path& run_dir) {
 int run_command(const RunOptions& options) {
     if (options.threads > 0) omp_set_num_threads(options.threads);
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
-    Scene scene = build_scene(file, GdalReader());
+    Scene scene = build_scene(file, GdalReader(), barrier_mesh_of);
     shorten(scene, options.until);
     check_insitu(scene);
     const fs::path run_dir = options.out.empty() ? fs::path("out") / scene.name : options.out;

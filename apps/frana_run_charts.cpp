@@ -149,13 +149,16 @@ ChartFigure gauge_chart(const FigureSource& source) {
 ChartFigure barrier_chart(const FigureSource& source, const std::string& name, const Table& table) {
     ChartFigure figure = chart(source, "barrier " + name, "time [s]");
     figure.height = std::max(source.width * 4 / 5, 300);
-    const Column &t = table.column("t"), &fx = table.column("fx"), &fy = table.column("fy"), &fz = table.column("fz");
+    const Column& t = table.column("t");
     ChartPanel mean{"force [N]", {}, false, {}, 1.4}, parts{"force of a step [N]", {}, false, {}, 1.0},
         up{"run-up [m]", {}, false, {}, 0.7}, over{"over it [m3]", {}, false, {}, 0.7};
-    mean.curves = {curve("horizontal, mean", t, table.column("mean_force"))};
-    parts.curves = {curve("east", t, fx), curve("north", t, fy), curve("up", t, fz)};
     up.curves = {curve("highest so far", t, table.column("run_up"))};
     over.curves = {curve("volume that was over it", t, table.column("overtopped"))};
+    figure.panels = {up, over};
+    if (!table.has("fx")) return figure;  // columns alone: no forces
+    mean.curves = {curve("horizontal, mean", t, table.column("mean_force"))};
+    parts.curves = {curve("east", t, table.column("fx")), curve("north", t, table.column("fy")),
+                    curve("up", t, table.column("fz"))};
     figure.panels = {mean, parts, up, over};
     return figure;
 }

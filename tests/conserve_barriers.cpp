@@ -7,7 +7,9 @@
 #include "fresh_folder.h"
 #include "memory_archive.h"
 #include "observe/barriers.h"
+#include "solid/distance_field.h"
 #include "stages/staged_run.h"
+#include "stages/walled_columns.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -103,18 +105,103 @@ TEST_CASE("Columns see a barrier as ground as high as its top", "[barrier]") {
     CHECK(bed.at(18, 4) == 2.0);
     CHECK(bed.at(26, 4) == 2.0);
     scene.solid.reset();
-    // A dam break's front has 4 times the energy of its depth; gentle slopes, since columns climb steep banks
-    // too easily.
+    // A dam break's front has 4 times the energy of its depth.
     scene.barriers[0].height = 4.5;
-    scene.terrain = TerrainModel::shallow;
     scene.particles.vx.assign(scene.particles.x.size(), 0.0);
-    const auto run = make_simulation(scene);
-    run_to(*run, 1.0);
-    CHECK(run->loads() == nullptr);
-    CHECK(run->at({11.0, 2.0}).elevation > 5.5);
-    CHECK(run->at({13.5, 2.0}).depth == 0.0);
+    for (const TerrainModel terrain : {TerrainModel::shallow, TerrainModel::steep}) {
+        scene.terrain = terrain;
+        const auto run = make_simulation(scene);
+        run_to(*run, 1.5);
+        CHECK(run->at({11.0, 2.0}).elevation > 5.5);
+        CHECK(run->at({13.5, 2.0}).depth == 0.0);
+        REQUIRE(run->loads() != nullptr);
+        CHECK(run->loads()->barriers.at(0).faces.empty());
+        // The foremost row of columns, a sixteenth of them all, is where the surface is known least.
+        CHECK(run->loads()->barriers.at(0).overtopped * scene.density < run->status().mass / 16.0);
+        CHECK(run->loads()->barriers.at(0).run_up > 2.5);
+    }
     scene.barriers[0].outline = rectangle_of(40, 40, 40, 41);
     CHECK_THROWS_AS(make_simulation(scene), UserError);
+}
+
+TEST_CASE("Columns that go over a low barrier are counted once, and the count is taken up again", "[barrier]") {
+    Scene scene = channel(0.5);
+    scene.solid.reset();
+    WalledColumns run(scene);
+    const double mass = run.status().mass;
+    while (run.status().time < 1.0) run.advance(2.0);
+    MemoryArchive kept;
+    run.keep(kept);
+    WalledColumns resumed(scene, Start::kept);
+    resumed.keep(kept.rewind());
+    for (WalledColumns* one : {&run, &resumed}) run_to(*one, 2.0);
+    const double over = run.loads()->barriers.at(0).overtopped * scene.density;
+    CHECK(resumed.loads()->barriers.at(0).overtopped * scene.density == over);
+    CHECK(resumed.loads()->barriers.at(0).run_up == run.loads()->barriers.at(0).run_up);
+    // What stands on it or behind it came over its edge, by itself or as a part of what did.
+    const Frame frame = run.frame();
+    const Field &place = *frame.particle("position"), &carried = *frame.particle("mass");
+    double there = 0.0;
+    for (Index p = 0; p < place.count; ++p)
+        if (place.data[3 * p] > 10.0) there += carried.data[p];
+    CHECK(there > 0.2 * mass);
+    CHECK(over >= there * (1.0 - 1e-12));
+    CHECK(over <= mass * (1.0 + 1e-12));
+}
+
+TEST_CASE("A stream meets a bank higher than its energy and stays below", "[barrier]") {
+    // Front of a dam break in a stream: 5 m/s and twice the speed of its waves, so up to 6.5 m; all else 2.3 m.
+    Scene scene = channel(8.0);
+    scene.solid.reset();
+    WalledColumns run(scene);
+    const double mass = run.status().mass;
+    run_to(run, 3.0);
+    CHECK(run.loads()->barriers.at(0).overtopped * scene.density < 0.01 * mass);  // the foremost cells see it late
+    CHECK(run.status().mass_left == 0.0);
+}
+
+/// The wall of channel(4.0) as distances, 1/8 m apart.
+std::shared_ptr<const DistanceField> box_shape() {
+    const Vec3 low(10, -2, -2), high(12, 6, 6);
+    auto field = std::make_shared<DistanceField>();
+    field->origin = low - Vec3::Constant(1.5);
+    field->spacing = 0.125;
+    for (int axis = 0; axis < 3; ++axis)
+        field->nodes[static_cast<std::size_t>(axis)] =
+            static_cast<Index>(std::lround((high[axis] - low[axis] + 3.0) / field->spacing)) + 1;
+    field->distance.resize(static_cast<std::size_t>(field->nodes[0] * field->nodes[1] * field->nodes[2]));
+    for (Index k = 0; k < field->nodes[2]; ++k)
+        for (Index j = 0; j < field->nodes[1]; ++j)
+            for (Index i = 0; i < field->nodes[0]; ++i) {
+                const Vec3 q = (field->place(i, j, k) - 0.5 * (low + high)).cwiseAbs() - 0.5 * (high - low);
+                field->at(i, j, k) = q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+            }
+    return field;
+}
+
+TEST_CASE("A barrier of any shape is ground to columns and a wall to points", "[barrier]") {
+    Scene scene = channel(4.0);
+    StagedRun prism(scene);
+    scene.barriers[0] = {};
+    scene.barriers[0].name = "mesh";
+    scene.barriers[0].shape = box_shape();
+    const Raster bed = with_barriers(scene);
+    CHECK(bed.at(20, 4) == Approx(6.0).epsilon(1e-12));
+    CHECK(bed.at(24, 4) == Approx(6.0).epsilon(1e-12));
+    CHECK(bed.at(18, 4) == 2.0);
+    CHECK(bed.at(26, 4) == 2.0);
+    StagedRun shape(scene);
+    const double mass = shape.status().mass;
+    for (StagedRun* run : {&prism, &shape}) run_to(*run, 1.0);
+    const BarrierLoad &load = shape.loads()->barriers.at(0), &other = prism.loads()->barriers.at(0);
+    REQUIRE(load.faces.size() == 6);
+    double taken = 0.0, expected = 0.0;
+    for (const FaceLoad& face : load.faces) taken += face.impulse.x();
+    for (const FaceLoad& face : other.faces) expected += face.impulse.x();
+    CHECK(taken == Approx(5.0 * mass - shape.status().momentum[0]).epsilon(1e-10));
+    CHECK(taken == Approx(expected).epsilon(0.02));  // its edges are round by half a spacing
+    CHECK(load.overtopped == 0.0);
+    CHECK(load.run_up > 2.5);
 }
 
 TEST_CASE("A run against a barrier has the same bits when it is taken up again", "[barrier]") {

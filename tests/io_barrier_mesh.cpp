@@ -93,11 +93,16 @@ TEST_CASE("A closed box in any of the formats gives its exact distances, whichev
     const Corners corners = box_corners(kLow, kHigh);
     Sides inwards = kBox;
     for (auto& side : inwards) std::swap(side[0], side[1]);
-    const MeshSampling sampling{0.125, 0.5};
+    const MeshSampling sampling{0.125, 0.5, Vec3(0, 0, 0)};
     check_box(read_barrier_mesh(write_stl(folder / "box.stl", corners, kBox), sampling));
     check_box(read_barrier_mesh(write_obj(folder / "box.OBJ", corners, kBox), sampling));
     check_box(read_barrier_mesh(write_vtp(folder / "box.vtp", corners, kBox), sampling));
     check_box(read_barrier_mesh(write_stl(folder / "inwards.stl", corners, inwards), sampling));
+    const Vec3 origin(500000, 4e6, 100);
+    const MeshField moved = barrier_mesh_of(folder / "box.stl", {0.125, 0.5, origin});
+    CHECK((moved.low - origin - kLow).norm() < 0.25);  // the box is that of the field, rounded up to its nodes
+    CHECK((moved.high - origin - kHigh).norm() < 0.25);
+    CHECK(moved.field->contact(origin + Vec3(2, 2.25, 1)).distance == Approx(-0.25).margin(1e-6));
     const DistanceField field = read_barrier_mesh(folder / "box.stl", sampling);
     for (int k = 0; k < 3; ++k) {
         CHECK(field.origin[k] <= kLow[k] - 0.5 + 1e-12);
@@ -136,7 +141,7 @@ TEST_CASE("A mesh that is no solid is refused with what was found and what to do
     const FreshFolder fresh;
     const std::filesystem::path& folder = fresh.path();
     const Corners corners = box_corners(kLow, kHigh);
-    const MeshSampling sampling{0.25, 0.5};
+    const MeshSampling sampling{0.25, 0.5, Vec3(0, 0, 0)};
     const auto refused = [&](const std::filesystem::path& file, const std::string& what) {
         CAPTURE(file.string());
         CHECK_THROWS_AS(read_barrier_mesh(file, sampling), UserError);

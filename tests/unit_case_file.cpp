@@ -138,8 +138,8 @@ TEST_CASE("Tables in the wrong shape are named", "[case]") {
           "describe grid` "
           "lists them");
     CHECK(problem_of(least + "[[barrier]]\nheight = 20\n") ==
-          "case.toml:7: barrier.0.outline: not given, and no line either; expected where the barrier stands; add outline = "
-          "... or line = ... under [[barrier]]");
+          "case.toml:7: barrier.0.outline: not given, and no line or mesh either; expected where the barrier stands; add outline = "
+          "..., line = ... or mesh = ... under [[barrier]]");
 }
 
 TEST_CASE("A law needs its parameters and refuses those of others", "[case]") {

@@ -3,6 +3,7 @@
 #include "catch.h"
 #include "scene/build_scene.h"
 #include "slope_case.h"
+#include "solid/distance_field.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -138,4 +139,39 @@ TEST_CASE("Barriers that cannot be are refused in one sentence", "[barrier]") {
     CHECK(has(barrier("height = 4\nline = [[1020, 2040], [1020, 2060], [1021, 2040]]\n"),
               "barrier.0.line: found a turn by more than 120 degrees at (1020, 2060)"));
     CHECK(has(barrier("height = -4\noutline = \"wall.geojson\"\n"), "barrier.0.height: found -4"));
+}
+
+TEST_CASE("A barrier of any shape comes from a mesh alone, through the reader that the program hands in", "[barrier]") {
+    MeshSampling asked;
+    std::string asked_file;
+    const MeshReader reader = [&](const std::filesystem::path& file, const MeshSampling& sampling) {
+        asked = sampling, asked_file = file.string();
+        const auto field = std::make_shared<DistanceField>();
+        return MeshField{field, Vec3(1020, 2040, 90) + sampling.origin, Vec3(1030, 2060, 130) + sampling.origin};
+    };
+    const auto scene_with = [&](const std::string& keys) {
+        const std::string text =
+            "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\n"
+            "end = 20\n[material.bed]\nlaw = \"voellmy\"\nmu = 0.2\nxi = 500\n[[barrier]]\n" + keys;
+        return build_scene(CaseFile::parse(text, "slide/case.toml"), walled_gis(), reader);
+    };
+    const std::string at_stage = "mesh = \"wall.stl\"\n" + two + west + "cell = 2.0\n";
+    REQUIRE(scene_with(at_stage).barriers.size() == 1);
+    CHECK(scene_with(at_stage).barriers[0].shape != nullptr);
+    CHECK(asked_file == "slide/wall.stl");
+    CHECK(asked.spacing == 1.0);
+    CHECK(asked.margin >= 3.0 * std::sqrt(3.0) * 2.0);
+    CHECK(asked.origin.isZero(0.0));
+    scene_with("mesh = \"wall.stl\"\norigin = [5, 6, 7]\n");
+    CHECK(asked.spacing == 2.5);  // half a cell of the columns
+    CHECK(asked.origin == Vec3(5, 6, 7));
+
+    const auto problem = [&](const std::string& keys) { return only_problem([&] { scene_with(keys); }); };
+    CHECK(has(problem("mesh = \"wall.stl\"\nheight = 4\n"),
+              "barrier.0.height: found together with mesh; expected the mesh alone"));
+    CHECK(has(problem("mesh = \"wall.stl\"\norigin = [5000, 0, 0]\n"),
+              "barrier.0.mesh: found no point of it on the terrain"));
+    CHECK(has(problem("outline = \"wall.geojson\"\nheight = 4\norigin = [5, 6, 7]\n"),
+              "barrier.0.origin: found without mesh"));
+    CHECK(has(problem_of("[[barrier]]\nmesh = \"wall.stl\"\n"), "barrier.0.mesh: found a mesh"));
 }

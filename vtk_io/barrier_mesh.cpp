@@ -232,7 +232,14 @@ DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSam
                 Vec3 x = field.place(i, j, k);
                 field.at(i, j, k) = sign * distance->EvaluateFunction(x.data());
             }
+    field.origin += sampling.origin;
     return field;
+}
+
+MeshField barrier_mesh_of(const std::filesystem::path& file, const MeshSampling& sampling) {
+    auto field = std::make_shared<DistanceField>(read_barrier_mesh(file, sampling));
+    const Vec3 around = Vec3::Constant(sampling.margin), low = field->origin + around, high = field->end() - around;
+    return {std::move(field), low, high};
 }
 
 }  // namespace frana

@@ -11,6 +11,7 @@ namespace frana {
 namespace {
 
 std::vector<std::string> columns_of(std::size_t faces) {
+    if (faces == 0) return {"t [s]", "run_up [m]", "overtopped [m3]"};
     std::vector<std::string> columns = {"t [s]",      "fx [N]",         "fy [N]",   "fz [N]",
                                         "mx [N m]",   "my [N m]",       "mz [N m]", "mean_force [N]",
                                         "run_up [m]", "overtopped [m3]"};
@@ -64,6 +65,7 @@ void Barriers::step(const Status& now, const Probe& probe) {
         row = {now.time,  force[0],  force[1], force[2],    moment[0],
                moment[1], moment[2], mean,     load.run_up, load.overtopped};
         row.insert(row.end(), faces.begin(), faces.end());
+        if (load.faces.empty()) row = {now.time, load.run_up, load.overtopped};
         tables_[n].add(row);
         if (summary.first_contact < 0.0 && force.norm() > 0.0) summary.first_contact = now.time;
         if (mean > summary.peak_force) summary.peak_force = mean, summary.peak_force_time = now.time;

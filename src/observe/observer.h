@@ -22,7 +22,7 @@ struct FaceLoad {
 
 /// What material did to a barrier since the start.
 struct BarrierLoad {
-    std::vector<FaceLoad> faces;
+    std::vector<FaceLoad> faces;  ///< none where no forces are known
     Vec3 about{0, 0, 0};      ///< place that moments are about: the middle of the outline, on the bed [m]
     double run_up = 0.0;      ///< highest elevation of material within two cells of it, ever [m]
     double overtopped = 0.0;  ///< material that was over it at any time [m3]

@@ -17,8 +17,8 @@ constexpr Index nodata_reach = 3;  ///< cells; the stencils of the first steps r
 
 class Builder {
 public:
-    Builder(const CaseFile& file, const GisReader& reader)
-        : case_(file), reader_(reader), scene_(built_.scene) {}
+    Builder(const CaseFile& file, const GisReader& reader, const MeshReader& meshes)
+        : case_(file), reader_(reader), meshes_(meshes), scene_(built_.scene) {}
 
     BuiltScene build() {
         scene_.name = case_.name();
@@ -31,8 +31,8 @@ public:
         read_releases();
         read_survey();
         read_profiles_and_gauges();
-        scene_.barriers = read_barriers(case_, scene_.bed, reader_, scene_.log, problems_);
         scene_.solid = read_solid_stage(case_, scene_, problems_);
+        read_barriers(case_, reader_, meshes_, scene_, problems_);
         scene_.insitu = read_insitu(case_, scene_, problems_);
         if (problems_.empty()) make_particles();
         problems_.throw_if_any();
@@ -215,6 +215,7 @@ private:
 
     const CaseFile& case_;
     const GisReader& reader_;
+    const MeshReader& meshes_;
     BuiltScene built_;
     Scene& scene_;
     Problems problems_;
@@ -223,12 +224,12 @@ private:
 
 }  // namespace
 
-BuiltScene build_scene_in_detail(const CaseFile& file, const GisReader& reader) {
-    return Builder(file, reader).build();
+BuiltScene build_scene_in_detail(const CaseFile& file, const GisReader& reader, const MeshReader& meshes) {
+    return Builder(file, reader, meshes).build();
 }
 
-Scene build_scene(const CaseFile& file, const GisReader& reader) {
-    return build_scene_in_detail(file, reader).scene;
+Scene build_scene(const CaseFile& file, const GisReader& reader, const MeshReader& meshes) {
+    return build_scene_in_detail(file, reader, meshes).scene;
 }
 
 }  // namespace frana

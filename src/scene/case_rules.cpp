@@ -145,9 +145,18 @@ void CaseReader::check_barrier(const std::string& prefix) {
     const auto there = [&](const char* name) {
         return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
     };
+    if (there("mesh")) {
+        for (const char* name : {"outline", "line", "wet", "thickness", "height", "top"})
+            if (case_.given(prefix + name))
+                wrong(prefix + name, "found together with mesh", "expected the mesh alone, which has its place and height",
+                      "remove one of them");
+        return;
+    }
+    if (case_.given(prefix + "origin"))
+        wrong(prefix + "origin", "found without mesh", "expected it with mesh only", "remove it");
     if (!there("outline") && !there("line"))
-        wrong(prefix + "outline", "not given, and no line either", "expected where the barrier stands",
-              "add outline = ... or line = ... under [[barrier]]");
+        wrong(prefix + "outline", "not given, and no line or mesh either", "expected where the barrier stands",
+              "add outline = ..., line = ... or mesh = ... under [[barrier]]");
     if (!there("height") && !there("top"))
         wrong(prefix + "height", "not given, and no top either", "expected how high the barrier is [m]",
               "add height = ... or top = ... under [[barrier]]");

@@ -60,6 +60,14 @@ void add_barriers(Table& table) {
                           "foot of a wall's face that material comes to: [[x, y], [x, y], ...]");
     line.length = 2;
     table.push_back(absent(instead(line, "barrier.outline"), "outline is needed"));
+    table.push_back(absent(make("barrier.mesh", Kind::path, "",
+                                "instead of outline, line, height and top: a closed surface in metres (.stl, .vtp or .obj)"),
+                           "outline or line is needed"));
+    Parameter origin = make("barrier.origin", Kind::numbers, "m",
+                            "where the mesh's own coordinates begin in the map: [x, y, elevation]; such files hold seven "
+                            "digits");
+    origin.length = 3;
+    table.push_back(absent(origin, "0, 0, 0"));
     table.push_back(
         choice("barrier.wet", {"left", "right"}, "left",
                "side of the line, walking along it, that material comes from; the wall stands on the other"));

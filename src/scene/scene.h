@@ -3,6 +3,7 @@
 // case file (scene/build_scene.h); `make_simulation` turns it into a solver (solver/simulation.h).
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -104,9 +105,12 @@ struct SolidStage {
     bool along_bed = true;             ///< points start along the bed; otherwise without vertical velocity
 };
 
-/// A rigid obstacle with vertical walls: what stands on an outline, or a wall along a line.
+struct DistanceField;
+
+/// A rigid obstacle: with vertical walls on an outline, or along a line; or of any shape.
 struct Barrier {
     std::string name;
+    std::shared_ptr<const DistanceField> shape;  ///< when it was given as a mesh: nothing below but hold and friction
     Polygons outline;                   ///< no parts with a line
     Polyline line;                      ///< foot of the face that material comes to
     bool wet_left = true;               ///< that face is on the left as one walks along the line

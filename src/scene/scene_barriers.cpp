@@ -29,51 +29,87 @@ void require_wall(const Polyline& line) {
     }
 }
 
+class BarrierReader {
+public:
+    BarrierReader(const CaseFile& file, const GisReader& reader, const MeshReader& meshes, Scene& scene,
+                  Problems& problems)
+        : case_(file), reader_(reader), meshes_(meshes), scene_(scene), problems_(problems) {}
+
+    void read(Index i) {
+        prefix_ = fmt::format("barrier.{}.", i);
+        Barrier barrier;
+        barrier.name = given("name") ? case_.word(prefix_ + "name") : fmt::format("barrier_{}", i + 1);
+        std::vector<Vec2> vertices;
+        if (given("mesh") ? !read_mesh(barrier, vertices) : !read_plan(barrier, vertices)) return;
+        const auto extent = scene_.bed.geometry.pixel_extent();
+        if (!meets(vertices, extent))
+            problems_.add(place(), "found no point of it on the terrain",
+                          fmt::format("expected the barrier within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}",
+                                      extent[0], extent[2], extent[1], extent[3]),
+                          "correct the coordinates or the CRS, or widen terrain.window");
+        barrier.wet_left = case_.word(prefix_ + "wet") == "left";
+        if (given("thickness")) barrier.thickness = case_.number(prefix_ + "thickness");
+        if (given("top")) barrier.top = case_.number(prefix_ + "top");
+        if (given("height")) barrier.height = case_.number(prefix_ + "height");
+        barrier.friction = case_.number(prefix_ + "friction");
+        barrier.stuck = case_.flag(prefix_ + "stuck");
+        scene_.barriers.push_back(std::move(barrier));
+    }
+
+private:
+    bool given(const char* name) const { return case_.given(prefix_ + name); }
+    std::string place() const {
+        return case_.place(prefix_ + (given("mesh") ? "mesh" : given("line") ? "line" : "outline"));
+    }
+
+    bool read_plan(Barrier& barrier, std::vector<Vec2>& vertices) {
+        if (given("line")) {
+            vertices = barrier.line = case_.points(prefix_ + "line");
+            return problems_.attempt(place(), [&] { require_wall(barrier.line); });
+        }
+        const bool read = problems_.attempt(place(), [&] {
+            barrier.outline = reader_.read_polygons(case_.path(prefix_ + "outline"), scene_.bed.crs_wkt, scene_.log);
+        });
+        for (const Polygon& polygon : barrier.outline.parts)
+            for (const auto& ring : polygon.rings) vertices.insert(vertices.end(), ring.begin(), ring.end());
+        return read;
+    }
+
+    /// Two nodes a cell hold edges to a quarter of it; the field reaches as far as images do, in any direction.
+    bool read_mesh(Barrier& barrier, std::vector<Vec2>& vertices) {
+        const double cell = scene_.solid ? scene_.solid->cell : scene_.bed.geometry.cell;
+        return problems_.attempt(place(), [&] {
+            if (!meshes_) throw UserError("found a mesh; this build of the library reads none");
+            const double reach = 3.0 * std::sqrt(3.0) + 0.5;
+            MeshSampling sampling{0.5 * cell, reach * cell};
+            if (given("origin"))
+                for (int axis = 0; axis < 3; ++axis)
+                    sampling.origin[axis] = case_.numbers(prefix_ + "origin")[static_cast<std::size_t>(axis)];
+            const MeshField mesh = meshes_(case_.path(prefix_ + "mesh"), sampling);
+            barrier.shape = mesh.field;
+            vertices = {{mesh.low.x(), mesh.low.y()}, {mesh.high.x(), mesh.high.y()}};
+        });
+    }
+
+    const CaseFile& case_;
+    const GisReader& reader_;
+    const MeshReader& meshes_;
+    Scene& scene_;
+    Problems& problems_;
+    std::string prefix_;
+};
+
 }  // namespace
 
-std::vector<Barrier> read_barriers(const CaseFile& file, const Raster& bed, const GisReader& reader,
-                                   std::vector<std::string>& log, Problems& problems) {
-    std::vector<Barrier> barriers;
-    const auto extent = bed.geometry.pixel_extent();
-    constexpr Index kMost =
-        24;  // with the ground and the sides, within the surfaces that points can tell apart
+void read_barriers(const CaseFile& file, const GisReader& reader, const MeshReader& meshes, Scene& scene,
+                   Problems& problems) {
+    constexpr Index kMost = 24;  // with the ground and the sides, within the surfaces that points can tell apart
     if (file.count("barrier") > kMost)
         problems.add(file.table_place(fmt::format("barrier.{}", kMost)),
                      fmt::format("found {} barriers", file.count("barrier")),
                      fmt::format("expected {} at most", kMost), "put several polygons into one outline");
-    for (Index i = 0; i < file.count("barrier"); ++i) {
-        const std::string prefix = fmt::format("barrier.{}.", i);
-        const auto given = [&](const char* name) { return file.given(prefix + name); };
-        Barrier barrier;
-        barrier.name = given("name") ? file.word(prefix + "name") : fmt::format("barrier_{}", i + 1);
-        const std::string where = file.place(prefix + (given("line") ? "line" : "outline"));
-        std::vector<Vec2> vertices;
-        if (given("line")) {
-            vertices = barrier.line = file.points(prefix + "line");
-            if (!problems.attempt(where, [&] { require_wall(barrier.line); })) continue;
-        } else {
-            const bool read = problems.attempt(where, [&] {
-                barrier.outline = reader.read_polygons(file.path(prefix + "outline"), bed.crs_wkt, log);
-            });
-            if (!read) continue;
-            for (const Polygon& polygon : barrier.outline.parts)
-                for (const auto& ring : polygon.rings)
-                    vertices.insert(vertices.end(), ring.begin(), ring.end());
-        }
-        if (!meets(vertices, extent))
-            problems.add(where, "found no point of it on the terrain",
-                         fmt::format("expected the barrier within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}",
-                                     extent[0], extent[2], extent[1], extent[3]),
-                         "correct the coordinates or the CRS, or widen terrain.window");
-        barrier.wet_left = file.word(prefix + "wet") == "left";
-        if (given("thickness")) barrier.thickness = file.number(prefix + "thickness");
-        if (given("top")) barrier.top = file.number(prefix + "top");
-        if (given("height")) barrier.height = file.number(prefix + "height");
-        barrier.friction = file.number(prefix + "friction");
-        barrier.stuck = file.flag(prefix + "stuck");
-        barriers.push_back(std::move(barrier));
-    }
-    return barriers;
+    BarrierReader barriers(file, reader, meshes, scene, problems);
+    for (Index i = 0; i < file.count("barrier"); ++i) barriers.read(i);
 }
 
 }  // namespace frana

@@ -24,9 +24,10 @@ void set_physics(const CaseFile& file, Scene& scene);
 std::optional<Release> read_release(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
                                     std::vector<std::string>& log, Problems& problems);
 
-/// All [[barrier]]. What is wrong with their files or their place goes to `problems`.
-std::vector<Barrier> read_barriers(const CaseFile& file, const Raster& bed, const GisReader& reader,
-                                   std::vector<std::string>& log, Problems& problems);
+/// All [[barrier]] of a scene that has its terrain and its stages. What is wrong with their files or their place goes to
+/// `problems`.
+void read_barriers(const CaseFile& file, const GisReader& reader, const MeshReader& meshes, Scene& scene,
+                   Problems& problems);
 
 /// The [[stage]] in space, when the case has one. What does not fit together or the terrain goes to `problems`.
 std::optional<SolidStage> read_solid_stage(const CaseFile& file, const Scene& scene, Problems& problems);

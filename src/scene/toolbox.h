@@ -3,6 +3,8 @@
 // without GDAL, the program hands in readers made with it (src/io/gdal_*.h).
 #include <array>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,5 +51,23 @@ public:
     virtual std::vector<Polyline> read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
                                              std::vector<std::string>& log) const = 0;
 };
+
+struct DistanceField;
+
+/// A closed mesh as distances, and the box around it [m].
+struct MeshField {
+    std::shared_ptr<const DistanceField> field;
+    Vec3 low, high;
+};
+
+/// How a mesh becomes a field of distances.
+struct MeshSampling {
+    double spacing = 1.0;    ///< between the field's nodes [m]
+    double margin = 0.0;     ///< that the field reaches beyond the mesh [m]
+    Vec3 origin{0, 0, 0};    ///< of the mesh's coordinates, in those of the map [m]
+};
+
+/// Reads a mesh. Throws UserError for what is no closed surface.
+using MeshReader = std::function<MeshField(const std::filesystem::path& file, const MeshSampling& sampling)>;
 
 }  // namespace frana

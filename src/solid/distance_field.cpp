@@ -69,4 +69,17 @@ double DistanceField::thickness(const Vec3& from, const Vec3& way) const {
     return std::numeric_limits<double>::infinity();
 }
 
+double DistanceField::top_at(const Vec2& p) const {
+    const Vec3 last = end();
+    constexpr double kNone = -std::numeric_limits<double>::infinity();
+    if (p.x() < origin.x() || p.y() < origin.y() || p.x() > last.x() || p.y() > last.y()) return kNone;
+    double above = 0.0;
+    for (Index k = nodes[2] - 1; k >= 0; --k) {
+        const double z = place(0, 0, k).z(), here = contact({p.x(), p.y(), z}).distance;
+        if (here < 0.0) return k + 1 == nodes[2] ? z : z + spacing * here / (here - above);
+        above = here;
+    }
+    return kNone;
+}
+
 }  // namespace frana

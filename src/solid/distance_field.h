@@ -37,6 +37,8 @@ struct DistanceField {
     bool enters(const Vec3& from, const Vec3& to, Entry& entry) const;
     /// Length of the solid from a place on its surface into the unit direction `way` [m], within a spacing.
     double thickness(const Vec3& from, const Vec3& way) const;
+    /// The highest place of the solid above or below a place of the map; minus infinity where there is none [m].
+    double top_at(const Vec2& p) const;
     std::pair<Vec3, Vec3> box() const { return {origin, end()}; }
 };
 

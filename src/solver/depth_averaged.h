@@ -34,6 +34,13 @@ public:
     /// The columns that left so since the last call, by id.
     std::vector<Departed> take_departed();
 
+    /// From now on columns that are split are noted.
+    void note_parents() { splitter_.note_parents(); }
+    /// A column that another one was split into, and that one, by id.
+    struct Birth { Index child, parent; };
+    /// All since the last call, the oldest first.
+    std::vector<Birth> take_births();
+
     const Flow& flow() const { return flow_; }
     /// timings() tell CPU time too from now on.
     void count_cpu_time() { timed_.count_cpu_time(); }

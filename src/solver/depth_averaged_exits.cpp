@@ -1,4 +1,4 @@
-// Where a depth-averaged run gives its material to another model.
+// Where a depth-averaged run gives its material to another model, and what it tells of its columns.
 #include <omp.h>
 
 #include <algorithm>
@@ -59,6 +59,14 @@ std::vector<Departed> DepthAveraged::take_departed() {
     }
     std::sort(all.begin(), all.end(), [](const Departed& a, const Departed& b) { return a.id < b.id; });
     return all;
+}
+
+std::vector<DepthAveraged::Birth> DepthAveraged::take_births() {
+    std::vector<Birth> births;
+    const std::vector<Index> parents = splitter_.take_parents();
+    const Index first = splitter_.next_id() - static_cast<Index>(parents.size());
+    for (std::size_t n = 0; n < parents.size(); ++n) births.push_back({first + static_cast<Index>(n), parents[n]});
+    return births;
 }
 
 }  // namespace frana

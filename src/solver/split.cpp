@@ -117,6 +117,8 @@ Index Splitter::split_as(Flow& flow) {
     const Index added = tile_first_.back();
     if (added == 0) return 0;
     c.resize(count + added);
+    const std::size_t noted = parents_.size();
+    if (notes_) parents_.resize(noted + static_cast<std::size_t>(added));
     for_each_tile(flow.active, [&](Index n) {
         Index next = tile_first_[n];
         if (next == tile_first_[n + 1]) return;
@@ -124,7 +126,10 @@ Index Splitter::split_as(Flow& flow) {
             const int parts = parts_of<Real>(c, p, length, least_mass_);
             if (parts == 1) continue;
             const Index q = count + next;
-            for (int part = 1; part < parts; ++part, ++next) c.id[count + next] = next_id_ + next;
+            for (int part = 1; part < parts; ++part, ++next) {
+                c.id[count + next] = next_id_ + next;
+                if (notes_) parents_[noted + static_cast<std::size_t>(next)] = c.id[p];
+            }
             halve<Real>(flow, p, q, first_is_longer<Real>(c, p));
             if (parts == 4) {
                 const bool other = first_is_longer<Real>(c, p);  // the edge that is still whole

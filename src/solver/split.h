@@ -1,4 +1,7 @@
 #pragma once
+#include <utility>
+#include <vector>
+
 #include "solver/flow.h"
 
 namespace frana {
@@ -14,6 +17,10 @@ public:
     /// Mass and momentum are kept exactly.
     /// New points are appended; returns how many. The caller sorts afterwards.
     Index split(Flow& flow);
+    /// From now on split() tells whose parts the new points are.
+    void note_parents() { notes_ = true; }
+    /// Numbers of the points that were split, for each new one since the last call; theirs end at next_id().
+    std::vector<Index> take_parents() { return std::exchange(parents_, {}); }
     Index next_id() const { return next_id_; }
     void set_next_id(Index id) { next_id_ = id; }
 
@@ -24,6 +31,8 @@ private:
     double least_mass_;
     Index next_id_ = 0;
     std::vector<Index> tile_first_;
+    bool notes_ = false;
+    std::vector<Index> parents_;
 };
 
 }  // namespace frana

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "particles/bed_points.h"
 #include "solid/face_ledger.h"
@@ -17,13 +18,57 @@ Raster lifted(Raster bed, double height) {
     return bed;
 }
 
+/// Of a shape without the room around it.
+std::pair<Vec3, Vec3> box_of(const Surface& barrier) {
+    if (barrier.prism) return barrier.prism->box();
+    const DistanceField& f = *barrier.shape;
+    Vec3 low = f.end(), high = f.origin;
+    for (Index k = 0; k < f.nodes[2]; ++k)
+        for (Index j = 0; j < f.nodes[1]; ++j)
+            for (Index i = 0; i < f.nodes[0]; ++i)
+                if (f.at(i, j, k) < 0.0) low = low.cwiseMin(f.place(i, j, k)), high = high.cwiseMax(f.place(i, j, k));
+    return {low, high};
+}
+
+/// Elevation of a barrier's top at a place of the map; minus infinity beside it.
+double top_of(const Surface& barrier, const Vec2& place) {
+    if (barrier.shape) return barrier.shape->top_at(place);
+    const double top = barrier.prism->top_at(place);
+    return barrier.prism->inside({place.x(), place.y(), top - 1.0}) ? top : -std::numeric_limits<double>::infinity();
+}
+
+bool near_box(const std::pair<Vec3, Vec3>& box, const Vec2& place, double margin) {
+    const auto& [low, high] = box;
+    return ((place - low.head<2>()).array() >= -margin).all() && ((high.head<2>() - place).array() >= -margin).all();
+}
+
 /// The middle of the footprint, on the bed.
-Vec3 middle_of(const Prism& solid, const Raster& bed) {
-    const auto [low, high] = solid.box();
+Vec3 middle_of(const Surface& barrier, const Raster& bed) {
+    const auto [low, high] = box_of(barrier);
     Vec3 middle = 0.5 * (low + high);
     const double z = bed_elevation(bed, middle.x(), middle.y());
     middle.z() = std::isfinite(z) ? z : high.z();
     return middle;
+}
+
+/// Whether a node stands in a barrier, or within half a cell of it.
+bool touches(const Surface& barrier, const Vec2& node, double top, double cell) {
+    if (barrier.shape) return true;  // top_near() has looked there
+    const Vec3 below(node.x(), node.y(), top - 2.0 * cell);
+    Contact contact[kMostContacts];
+    return barrier.prism->inside(below) ||
+           (barrier.prism->contacts(below, cell, contact) > 0 && contact[0].distance <= 0.5 * cell);
+}
+
+/// Top of a barrier at a node; of a shape the highest within half a cell.
+double top_near(const Surface& barrier, const Vec2& node, double cell) {
+    if (barrier.prism) return barrier.prism->top_at(node);
+    double top = -std::numeric_limits<double>::infinity();
+    const int steps = static_cast<int>(std::ceil(0.5 * cell / barrier.shape->spacing));
+    for (int j = -steps; j <= steps; ++j)
+        for (int i = -steps; i <= steps; ++i)
+            top = std::max(top, barrier.shape->top_at(node + 0.5 * cell / steps * Vec2(i, j)));
+    return top;
 }
 
 }  // namespace
@@ -39,27 +84,74 @@ Prism solid_of(const Barrier& barrier, const Raster& bed, double cell) {
     return Prism(outline, lifted(bed, barrier.height));
 }
 
+Surface surface_of(const Barrier& barrier, const Raster& bed, double cell) {
+    const Hold hold = barrier.stuck ? Hold::stuck : Hold::free;
+    const double friction = barrier.stuck ? 0.0 : barrier.friction;
+    Surface surface = barrier.shape ? Surface::barrier(*barrier.shape, hold, friction)
+                                    : Surface::barrier(solid_of(barrier, bed, cell), hold, friction);
+    surface.name = barrier.name;
+    return surface;
+}
+
 Raster with_barriers(const Scene& scene) {
     Raster bed = scene.bed;
     const GridGeometry& g = bed.geometry;
     for (const Barrier& barrier : scene.barriers) {
-        const Prism solid = solid_of(barrier, scene.bed, 0.0);
-        const auto [low, high] = solid.box();
+        const Surface solid = surface_of(barrier, scene.bed, 0.0);
+        const auto box = box_of(solid);
         for (Index j = 0; j < g.ny; ++j)
             for (Index i = 0; i < g.nx; ++i) {
-                const double x = g.x(i), y = g.y(j), near = 0.5 * g.cell;
-                if (x < low.x() - near || x > high.x() + near || y < low.y() - near || y > high.y() + near)
-                    continue;
-                const double top = solid.top_at({x, y});
-                if (!(top > bed.at(i, j))) continue;
-                Contact contact[kMostContacts];
-                const Vec3 below(x, y, top - 2.0 * g.cell);
-                if (solid.inside(below) ||
-                    (solid.contacts(below, g.cell, contact) > 0 && contact[0].distance <= near))
-                    bed.at(i, j) = top;
+                const Vec2 node(g.x(i), g.y(j));
+                if (!near_box(box, node, 0.5 * g.cell)) continue;
+                const double top = top_near(solid, node, g.cell);
+                if (top > bed.at(i, j) && touches(solid, node, top, g.cell)) bed.at(i, j) = top;
             }
     }
     return bed;
+}
+
+ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
+    constexpr double kOne = 1.0 / 6.0;  // walls along a line are made six of these thick: one cell of the columns
+    for (const Barrier& barrier : scene.barriers) {
+        surfaces_.push_back(surface_of(barrier, scene.bed, kOne * cell_));
+        boxes_.push_back(box_of(surfaces_.back()));
+        BarrierLoad load;
+        load.about = middle_of(surfaces_.back(), scene.bed);
+        load.run_up = load.about.z();
+        loads_.barriers.push_back(load);
+    }
+    seen_.resize(surfaces_.size());
+}
+
+void ColumnWatch::inherit(Index child, Index parent) {
+    const auto c = static_cast<std::size_t>(child), p = static_cast<std::size_t>(parent);
+    for (std::vector<std::uint8_t>& seen : seen_) {
+        if (seen.size() <= std::max(c, p)) seen.resize(std::max(c, p) + 1, kNever);
+        seen[c] = seen[p];
+    }
+}
+
+void ColumnWatch::look(const ColumnAt& column) {
+    constexpr double kClose = 2.0;  // cells
+    const auto id = static_cast<std::size_t>(column.id);
+    for (std::size_t n = 0; n < surfaces_.size(); ++n) {
+        const bool near = near_box(boxes_[n], column.place, kClose * cell_);
+        std::vector<std::uint8_t>& seen = seen_[n];
+        if (seen.size() <= id) seen.resize(id + 1, kNever);
+        const bool over = near && std::isfinite(top_of(surfaces_[n], column.place));
+        BarrierLoad& load = loads_.barriers[n];
+        if (near) load.run_up = std::max(load.run_up, column.surface);
+        if (over && seen[id] == kBeside) load.overtopped += column.volume;
+        if (over || seen[id] == kNever) seen[id] = over ? kOver : kBeside;
+    }
+}
+
+void ColumnWatch::keep(Archive& archive) {
+    const Archive::Part part(archive, "barriers");
+    for (std::size_t n = 0; n < seen_.size(); ++n) {
+        archive.array("seen_" + std::to_string(n), seen_[n]);
+        archive.numbers("sums_" + std::to_string(n), {&loads_.barriers[n].run_up, &loads_.barriers[n].overtopped});
+    }
 }
 
 BarrierWatch::BarrierWatch(const Scene& scene, const SolidFlow& flow, double blur) : density_(scene.density) {
@@ -69,9 +161,10 @@ BarrierWatch::BarrierWatch(const Scene& scene, const SolidFlow& flow, double blu
     loads_.blur = blur;
     for (const int s : surfaces_) {
         const Surface& surface = surfaces[static_cast<std::size_t>(s)];
+        boxes_.push_back(box_of(surface));
         BarrierLoad load;
         load.faces.resize(static_cast<std::size_t>(surface.faces()));
-        load.about = middle_of(*surface.prism, scene.bed);
+        load.about = middle_of(surface, scene.bed);
         load.run_up = load.about.z();
         loads_.barriers.push_back(load);
     }
@@ -93,20 +186,17 @@ void BarrierWatch::look(const SolidFlow& flow) {
     constexpr double kClose = 2.0;  // cells
     const double cell = flow.body().grid.cell();
     for (std::size_t n = 0; n < surfaces_.size(); ++n) {
-        const Prism& solid = *flow.body().surfaces[static_cast<std::size_t>(surfaces_[n])].prism;
+        const Surface& solid = flow.body().surfaces[static_cast<std::size_t>(surfaces_[n])];
         BarrierLoad& load = loads_.barriers[n];
-        const auto [low, high] = solid.box();
-        const Vec3 margin = Vec3::Constant(kClose * cell);
         for (Index p = 0; p < flow.body().points.count(); ++p) {
             const Vec3 x = flow.position(p);
-            if (((x - low + margin).head<2>().array() < 0.0).any() ||
-                ((high + margin - x).head<2>().array() < 0.0).any())
-                continue;
+            if (!near_box(boxes_[n], x.head<2>(), kClose * cell)) continue;
             load.run_up = std::max(load.run_up, x.z());
             const auto id = static_cast<std::size_t>(flow.body().points.id[p]);
             if (over_[n].size() <= id) over_[n].resize(id + 1, 0);
-            // Above the top: what a place under it would be inside of.
-            if (over_[n][id] || !solid.inside({x.x(), x.y(), solid.top_at(x.head<2>()) - cell})) continue;
+            if (over_[n][id]) continue;
+            const double top = top_of(solid, x.head<2>());
+            if (!std::isfinite(top) || x.z() < top - cell) continue;  // beside it, or below what it spans
             over_[n][id] = 1;
             load.overtopped += flow.body().points.mass[p] / density_;
         }

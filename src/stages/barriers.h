@@ -17,6 +17,38 @@ Prism solid_of(const Barrier& barrier, const Raster& bed, double cell);
 /// top.
 Raster with_barriers(const Scene& scene);
 
+/// A barrier of that scene as a surface in space. Throws as solid_of().
+Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);
+
+/// A column's place in the map [m], and what it reaches up to and holds there.
+struct ColumnAt {
+    Index id;
+    Vec2 place;
+    double surface;  ///< elevation of its top [m]
+    double volume;   ///< [m3]
+};
+
+/// Which columns run up barriers and over them. Nothing tells how hard they push: barriers are ground to them.
+class ColumnWatch {
+public:
+    explicit ColumnWatch(const Scene& scene);
+    /// A column was split: what is known of it holds for its part.
+    void inherit(Index child, Index parent);
+    /// Takes a column's place. It counts when it is first seen on a barrier after it was seen beside it, and once. Of
+    /// two that merge the one that keeps its number counts for both from then on.
+    void look(const ColumnAt& column);
+    const BarrierLoads& loads() const { return loads_; }
+    void keep(Archive& archive);
+
+private:
+    enum Seen : std::uint8_t { kNever, kBeside, kOver };
+    std::vector<Surface> surfaces_;                ///< of each barrier
+    std::vector<std::pair<Vec3, Vec3>> boxes_;     ///< around each
+    std::vector<std::vector<std::uint8_t>> seen_;  ///< per barrier, by number of the column
+    BarrierLoads loads_;
+    double cell_;
+};
+
 /// What points in space do to barriers.
 class BarrierWatch {
 public:
@@ -33,6 +65,7 @@ public:
 
 private:
     std::vector<int> surfaces_;                    ///< of each barrier
+    std::vector<std::pair<Vec3, Vec3>> boxes_;     ///< around each
     std::vector<std::vector<std::uint8_t>> over_;  ///< per barrier, by number of the point: was over it
     BarrierLoads loads_;
     double density_;

@@ -138,12 +138,8 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
                                      stage.stuck ? 0.0 : stage.bed_friction);
     ground.name = "ground";
     result.surfaces.insert(result.surfaces.begin(), std::move(ground));
-    for (const Barrier& barrier : scene.barriers) {
-        result.surfaces.push_back(Surface::barrier(solid_of(barrier, scene.bed, stage.cell),
-                                                   barrier.stuck ? Hold::stuck : Hold::free,
-                                                   barrier.stuck ? 0.0 : barrier.friction));
-        result.surfaces.back().name = barrier.name;
-    }
+    for (const Barrier& barrier : scene.barriers)
+        result.surfaces.push_back(surface_of(barrier, scene.bed, stage.cell));
     result.gravity = {0.0, 0.0, -scene.gravity};
     result.density = scene.density;
     result.law = with_sound(stage.law, scene.density, start.sound_speed);

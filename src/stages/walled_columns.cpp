@@ -1,0 +1,55 @@
+#include "stages/walled_columns.h"
+
+namespace frana {
+namespace {
+
+Scene with_walls(Scene scene) {
+    scene.bed = with_barriers(scene);
+    return scene;
+}
+
+}  // namespace
+
+WalledColumns::WalledColumns(const Scene& scene, Start start)
+    : density_(scene.density), columns_(std::make_unique<DepthAveraged>(with_walls(scene), start)), watch_(scene) {
+    columns_->note_parents();
+    if (start == Start::placed) look();
+}
+
+/// Looks when a column may have moved by half a cell, and at output times.
+void WalledColumns::advance(double until) {
+    columns_->advance(until);
+    for (const DepthAveraged::Birth& birth : columns_->take_births()) watch_.inherit(birth.child, birth.parent);
+    const Status& now = columns_->status();
+    moved_ += now.max_speed * now.dt;
+    if (moved_ < 0.5 * columns_->flow().cell && now.time < until) return;
+    timed_("barriers", [&] { look(); });
+    moved_ = 0.0;
+}
+
+void WalledColumns::look() {
+    const Flow& flow = columns_->flow();
+    const GridGeometry& g = flow.grid.geometry();
+    const Columns& c = flow.columns;
+    for (Index p = 0; p < c.count(); ++p) {
+        const Vec2 place(g.x0 + g.cell * c.x[p], g.y0 + g.cell * c.y[p]);
+        const Sample there = columns_->at(place);
+        watch_.look({c.id[p], place, there.elevation + there.depth, c.mass[p] / density_});
+    }
+}
+
+std::vector<PhaseTime> WalledColumns::timings() const {
+    std::vector<PhaseTime> all = columns_->timings();
+    for (const PhaseTime& phase : timed_.times()) all.push_back(phase);
+    return all;
+}
+
+void WalledColumns::keep(Archive& archive) {
+    columns_->keep(archive);
+    watch_.keep(archive);
+    archive.numbers("walled", {&moved_});
+    const Archive::Part part(archive, "walled_clock");
+    timed_.keep(archive);
+}
+
+}  // namespace frana

@@ -1,0 +1,33 @@
+#pragma once
+// Columns among barriers: they take them for ground, and what runs up and over is watched.
+#include "solver/depth_averaged.h"
+#include "stages/barriers.h"
+
+namespace frana {
+
+class WalledColumns final : public Simulation {
+public:
+    explicit WalledColumns(const Scene& scene, Start start = Start::placed);
+
+    void advance(double until) override;
+    const Status& status() const override { return columns_->status(); }
+    bool at_rest() const override { return columns_->at_rest(); }
+    Frame frame() override { return columns_->frame(); }
+    Sample at(const Vec2& point) const override { return columns_->at(point); }
+    /// Without faces: no force is known.
+    const BarrierLoads* loads() const override { return &watch_.loads(); }
+    std::vector<std::string> remarks() const override { return columns_->remarks(); }
+    std::vector<PhaseTime> timings() const override;
+    void keep(Archive& archive) override;
+
+private:
+    void look();
+
+    double density_;
+    std::unique_ptr<DepthAveraged> columns_;
+    ColumnWatch watch_;
+    StepClock timed_;
+    double moved_ = 0.0;  ///< farthest way of a column since the last look [m]
+};
+
+}  // namespace frana
