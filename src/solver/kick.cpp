@@ -222,7 +222,8 @@ private:
         Node<double> node{};
         node.vx = nodes.before[k].x, node.vy = nodes.before[k].y;
         node.depth = nodes.depth[k], node.mass = nodes.deposits()[k].mass;
-        node.rim = nodes.flags[k] & kMargin ? 1.0 : 0.0;
+        // Whoever is wide both ways may also be one of four, where rim is 0.
+        node.rim = (nodes.flags[k] & kMargin) && (nodes.flags[k] & (kWideX | kWideY)) != (kWideX | kWideY) ? 1.0 : 0.0;
         if (!pressure_on_points_) {
             node.ex = surface_gradient(flow, k, 1, nodes.flags[k] & kWideX, flow.bed.slope_x[k]);
             node.ey = surface_gradient(flow, k, up, nodes.flags[k] & kWideY, flow.bed.slope_y[k]);

@@ -15,6 +15,9 @@ struct GentleBed {
 template <class Real>
 struct Drive { Real x, y; };
 
+/// Slopes whose squares are far below this are smooth, whatever the ground around: what a bend there could turn is as small.
+constexpr double kFlat = 0.01;
+
 /// Steep terrain. kLinear: to first order in the depth gradient. kCurvature: none, inertia (v.H.v in the acceleration
 /// only), full (in the friction too).
 template <class Real, Curvature kCurvature, bool kLinear>
@@ -40,13 +43,14 @@ struct SteepBed {
             const Real zero{}, one = zero + 1.0, up = dx * ex + dy * ey, up_bed = dx * bx + dy * by;
             if (!any((up > 0.0) | (rim * up_bed > 0.0))) return;
             const Real slope2 = bx * bx + by * by, along = read<Real>(smooth_x) * bx + read<Real>(smooth_y) * by;
-            const Real known = select(slope2 > 0.0, min(one, max(zero, along / max(slope2, zero + 1e-300))), one);
+            const Real known = min(one, max(zero, (along + kFlat) / (slope2 + kFlat)));
             const Real share = known * known, q = max(zero, bx * ex + by * ey);
-            const Real bare = select(up_bed > up, rim * (1.0 - share), zero);
+            const Real hidden = max(zero, up_bed - up) / (abs(up_bed) + abs(up) + 1e-300);  // of the climb, by the margin
+            const Real bare = rim * (1.0 - share) * hidden;
             const Real cx = ex + bare * (bx - ex), cy = ey + bare * (by - ey);
             const Real rise = dx * cx + dy * cy, square = max(cx * cx + cy * cy, zero + 1e-300);
             const Real whole = (g + share * (weight - g)) / (1.0 + share * share * max(zero, bx * cx + by * cy));
-            const Real had = weight / (1.0 + q) * (ex * cx + ey * cy) / square;
+            const Real had = weight / (1.0 + q) * max(zero, ex * cx + ey * cy) / square;
             const Real lost = select(rise > 0.0, min(dt * max(zero, whole - had), rise / square), zero);
             dx -= lost * cx, dy -= lost * cy;
         }
