@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "bench/blob.h"
+#include "bench/body.h"
 #include "bench/print.h"
 #include "bench/traffic.h"
 #include "catch.h"
@@ -106,6 +107,13 @@ TEST_CASE("Every phase that the solver times has a traffic model, and phases mak
         CHECK(traffic.particle + traffic.node > 0.0);
         CHECK(phase.calls > 0);
         CHECK(phase.cpu_seconds == 0.0);  // not asked for
+    }
+    SolidFlow space(bench::body_scene(bench::BodyLaw::bingham, 1000));
+    for (int step = 0; step < 3; ++step) space.advance(1e9);
+    for (const PhaseTime& phase : space.timings()) {
+        CAPTURE(phase.name);
+        const bench::Traffic traffic = bench::traffic_of(phase.name, space.body());
+        CHECK(traffic.particle + traffic.node > 0.0);
     }
     const bench::Cost& cost = bench::find(report(), "depth_averaged", 4000, 1)->cost;
     double sum = 0.0;

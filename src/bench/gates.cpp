@@ -36,7 +36,15 @@ std::vector<Gate> gates(const Report& report) {
         {"float, one thread: ns x triad GB/s [B]", 450, 280},
         {"memory per particle, float [B]", 110, 60},
         {"12 particle fields made and written (HDF5): steps", 2, 1.5},
+        {"points in space, fluid, one thread [ns]", 90, 46},
+        {"points in space, Drucker-Prager, one thread [ns]", 150, 100},
+        {"points in space, fluid: two threads over one (wall)", 1.7, 1.9, true},
     };
+    const Timed* fluid = find(report, "solid_flow", 0, 1);
+    if (fluid) list[10].measured = fluid->cost.ns(fluid->cost.full());
+    if (const Timed* sand = find(report, "solid_flow_drucker_prager", 0, 1))
+        list[11].measured = sand->cost.ns(sand->cost.full());
+    list[12].measured = speed_up(fluid, find(report, "solid_flow", 0, 2));
     if (full) list[0].measured = full->cost.ns(full->cost.full()) * report.calibration.triad_GBps.at(1);
     list[1].measured = speed_up(full, find(report, "depth_averaged", reference, 2));
     if (small != large) list[2].measured = ratio(large, small);

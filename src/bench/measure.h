@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "solid/solid_flow.h"
 #include "solver/columns.h"
 
 namespace frana::bench {
@@ -42,8 +43,11 @@ struct Cost {
 
 /// Runs the scene and times it. From then on OpenMP uses plan.threads threads.
 Cost measure(const Scene& scene, const Plan& plan);
+/// The same for points in space. They are sorted when they have moved far enough, which few windows see.
+Cost measure(const SolidScene& scene, const Plan& plan);
 
 /// Of every bit of every column, in storage order (FNV-1a, Fowler, Noll and Vo 1991, on 8 bytes at a time).
 std::uint64_t hash_of(const Columns& columns);
+std::uint64_t hash_of(const MaterialPoints& points);
 
 }  // namespace frana::bench

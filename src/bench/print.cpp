@@ -51,10 +51,10 @@ std::string frame_lines(const Report& report) {
 }
 
 std::string gate_lines(const Report& report) {
-    std::string text = fmt::format("{:44} {:>9} {:>9} {:>9}\n", "gate", "measured", "gate", "aim");
+    std::string text = fmt::format("{:52} {:>9} {:>9} {:>9}\n", "gate", "measured", "gate", "aim");
     for (const Gate& gate : gates(report)) {
         const bool known = !std::isnan(gate.measured);
-        text += fmt::format("{:44} {:>9} {} {:>6} {:>9}  {}\n", gate.what,
+        text += fmt::format("{:52} {:>9} {} {:>6} {:>9}  {}\n", gate.what,
                             known ? fmt::format("{:.2f}", gate.measured) : "-", gate.at_least ? ">=" : "<=",
                             fmt::format("{:g}", gate.gate), fmt::format("{:g}", gate.aim),
                             !known ? "not measured" : gate.met() ? "met" : "MISSED");

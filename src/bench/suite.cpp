@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "bench/blob.h"
+#include "bench/body.h"
 
 namespace frana::bench {
 namespace {
@@ -124,6 +125,14 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
     single.single = true;
     for (const int threads : options.threads) time("depth_averaged", blob_scene(single), threads);
     for (const Variant& variant : variants(options)) time(variant.model, blob_scene(variant.blob), 1);
+    for (const BodyLaw law : {BodyLaw::fluid, BodyLaw::bingham, BodyLaw::drucker_prager}) {
+        const SolidScene scene = body_scene(law, reference_particles(options));
+        const auto points = static_cast<Index>(scene.points.mass.size());
+        for (const int threads : options.threads) {
+            say(fmt::format("{}: {} points, {} threads", name_of(law), points, threads));
+            report.timed.push_back({name_of(law), "double", measure(scene, plan_for(options, name_of(law), points, threads))});
+        }
+    }
     if (!options.writers.empty()) {
         say("frames: made and written");
         report.frames =

@@ -2,6 +2,7 @@
 // How many bytes each phase of a step has to move, from what it reads and writes: a model, not a measurement.
 #include <string>
 
+#include "solid/solid_flow.h"
 #include "solver/flow.h"
 
 namespace frana::bench {
@@ -15,5 +16,7 @@ struct Traffic {
 
 /// Traffic of the phase that the solver's timings call `phase`; nothing for one that is not known.
 Traffic traffic_of(const std::string& phase, const Flow& flow);
+/// The same for points in space.
+Traffic traffic_of(const std::string& phase, const SolidBody& body);
 
 }  // namespace frana::bench

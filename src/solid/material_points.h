@@ -31,6 +31,15 @@ struct MaterialPoints {
         visit(mass), visit(rest_volume), visit(j);
         for (int n = 0; n < states; ++n) visit(state[static_cast<std::size_t>(n)]);
     }
+    /// Memory of all of them.
+    Index bytes() const {
+        Index sum = allocated(mass) + allocated(rest_volume) + allocated(j) + allocated(id);
+        const auto add = [&](const auto& columns) {
+            for (const Column& column : columns) sum += allocated(column);
+        };
+        add(x), add(v), add(gradient), add(state);
+        return sum;
+    }
     void resize(Index count) {
         each([&](Column& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
         resize_sparingly(id, static_cast<std::size_t>(count));
@@ -46,6 +55,7 @@ public:
               ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.
     static void list_tiles(const SpaceGrid& grid, ActiveTiles& active);
+    Index bytes() const { return order_.bytes(); }
 
 private:
     PointOrder order_;

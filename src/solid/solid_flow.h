@@ -134,6 +134,10 @@ public:
     const SolidStatus& status() const { return status_; }
     const SolidBody& body() const { return body_; }
     std::vector<PhaseTime> timings() const { return timed_.times(); }
+    /// timings() tell CPU time too from now on.
+    void count_cpu_time() { timed_.count_cpu_time(); }
+    /// Memory that grows with the points, sort buffers included [bytes].
+    Index particle_bytes() const { return body_.points.bytes() + sorter_.bytes() + allocated(body_.gone); }
     /// Position of a point [m].
     Vec3 position(Index p) const;
     Vec3 velocity(Index p) const {
