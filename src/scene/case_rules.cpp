@@ -161,8 +161,9 @@ void CaseReader::check_barrier(const std::string& prefix) {
         wrong(prefix + "height", "not given, and no top either", "expected how high the barrier is [m]",
               "add height = ... or top = ... under [[barrier]]");
     if (there("line") || there("outline") == there("line")) return;
-    for (const char* name : {"thickness", "wet"})
-        if (case_.given(prefix + name))
+    const bool right = case_.given(prefix + "wet") && case_.word(prefix + "wet") == "right";
+    for (const char* name : {"thickness", "wet"})  // "left" is what resolved.toml writes for a case that says nothing
+        if (case_.given(prefix + name) && (name != std::string("wet") || right))
             wrong(prefix + name, "found together with outline", "expected it with line only", "remove it");
 }
 
