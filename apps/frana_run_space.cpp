@@ -54,9 +54,10 @@ public:
         figure.moment = moment(number);
         figure.view = view;
         figure.title = fmt::format("{}: points in space, t = {:.{}f} s", source_.title, time(number), digits);
-        figure.footer = figure.moment.typical_size > 0.0
-                            ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
-                            : source_.footer;
+        figure.footer =
+            figure.moment.typical_size > 0.0
+                ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
+                : source_.footer;
         figure.width = source_.width;
         figure.height = std::max(source_.width * 7 / 10, 300);
         return figure;
@@ -93,8 +94,9 @@ struct Wanted {
 std::vector<Wanted> wanted_moments(const SpaceRun& run, const FigureSource& source) {
     std::vector<Wanted> wanted;
     if (const auto hardest = run.hardest())
-        wanted.push_back({*hardest, "impact", fmt::format("at {:.4g} s, the output with the largest load on a barrier",
-                                                          run.time(*hardest))});
+        wanted.push_back(
+            {*hardest, "impact",
+             fmt::format("at {:.4g} s, the output with the largest load on a barrier", run.time(*hardest))});
     wanted.push_back({run.count() - 1, "points", "at the end"});
     if (source.time) {
         const Index number = run.nearest(*source.time);
@@ -106,7 +108,8 @@ std::vector<Wanted> wanted_moments(const SpaceRun& run, const FigureSource& sour
 
 }  // namespace
 
-void draw_space(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+void draw_space(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                std::vector<std::string>& warnings) {
     if (!has_points(source)) return;
     try {
         const SpaceRun run(source);
@@ -118,12 +121,15 @@ void draw_space(const FigureSource& source, std::vector<DrawnFigure>& figures, s
         for (const Wanted& one : wanted) {
             SpaceFigure figure = run.figure(one.number, shared.view(), run.digits());
             if (figure.moment.typical_size <= 0.0) continue;
-            attempt(source, {"figures/view_" + one.name + ".png", "points in space " + one.caption}, figures, warnings,
-                    [&](const fs::path& png, std::string& why_not) { return render_space(figure, png, why_not); });
+            attempt(source, {"figures/view_" + one.name + ".png", "points in space " + one.caption}, figures,
+                    warnings, [&](const fs::path& png, std::string& why_not) {
+                        return render_space(figure, png, why_not);
+                    });
             figure.title += ", section along the flow";
-            attempt(source, {"figures/section_" + one.name + ".png", "section along the flow " + one.caption}, figures,
-                    warnings,
-                    [&](const fs::path& png, std::string& why_not) { return render_section(figure, png, why_not); });
+            attempt(source, {"figures/section_" + one.name + ".png", "section along the flow " + one.caption},
+                    figures, warnings, [&](const fs::path& png, std::string& why_not) {
+                        return render_section(figure, png, why_not);
+                    });
         }
     } catch (const UserError& error) {
         warnings.push_back(fmt::format("figures/view_points.png was not drawn: {}", error.what()));
@@ -133,23 +139,25 @@ void draw_space(const FigureSource& source, std::vector<DrawnFigure>& figures, s
 void draw_space_film(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
                      std::vector<std::string>& warnings) {
     if (!has_points(source)) return;
-    attempt(source, {"figures/film_points." + kind, "points in space through time"}, figures, warnings,
-            [&](const fs::path& film, std::string& why_not) {
-                const SpaceRun run(source);
-                SharedSpace shared;  // every output is read twice, so that they need not fit the memory together
-                std::vector<Index> shown;
-                for (Index number = 0; number < run.count(); ++number) {
-                    const SpaceMoment moment = run.moment(number);
-                    if (moment.typical_size <= 0.0) continue;
-                    shared.add(moment);
-                    shown.push_back(number);
-                }
-                if (shown.empty()) return why_not = "no output has points in space", false;
-                return make_film(film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
+    attempt(
+        source, {"figures/film_points." + kind, "points in space through time"}, figures, warnings,
+        [&](const fs::path& film, std::string& why_not) {
+            const SpaceRun run(source);
+            SharedSpace shared;  // every output is read twice, so that they need not fit the memory together
+            std::vector<Index> shown;
+            for (Index number = 0; number < run.count(); ++number) {
+                const SpaceMoment moment = run.moment(number);
+                if (moment.typical_size <= 0.0) continue;
+                shared.add(moment);
+                shown.push_back(number);
+            }
+            if (shown.empty()) return why_not = "no output has points in space", false;
+            return make_film(
+                film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
                     const Index number = shown[static_cast<std::size_t>(k)];
                     return render_space(run.figure(number, shared.view(), run.digits()), png, why_not);
                 });
-            });
+        });
 }
 
 }  // namespace frana

@@ -130,7 +130,8 @@ void BlockDrawing::lines(vtkRenderer* renderer) const {
     double low = 1e300, high = -1e300;
     for (const double z : surface_.values)
         if (!std::isnan(z)) low = std::min(low, z), high = std::max(high, z);
-    const double interval = high > low ? round_up_125((high - low) / 25.0) : 0.0;
+    const bool relief = high - low > 1e-6 * g.cell;  // resampling leaves level ground level to round-off only
+    const double interval = relief ? round_up_125((high - low) / 25.0) : 0.0;
     std::vector<Polyline> contours;
     for (double n = std::ceil(low / interval); interval > 0.0 && n * interval <= high; ++n)
         for (const auto& line : level_lines(surface_, (n + 1e-4) * interval)) contours.push_back(line);
@@ -276,6 +277,8 @@ void BlockDrawing::explanations(Canvas& canvas) const {
                         {std::round(w - 7.0 * u), std::round(top - each), std::round(w - 5.9 * u), std::round(top)},
                         bars[n].range, bars[n].colormap, bars[n].label, u);
     }
+    const Vec2 corner(1.5 * u, h - captions_.title_height() - 1.7 * u);
+    draw_inset(canvas, figure_.objects.inset, corner, {0.34 * w, 0.16 * h}, u);
     if (figure_.survey) {
         LegendEntry entry;
         entry.kind = LegendEntry::Kind::cased_line;

@@ -189,7 +189,8 @@ std::vector<LoadedPatch> read_barriers(const std::filesystem::path& run_dir, Ind
         LoadedPatch patch;
         vtkIdList* points = faces->GetCell(k)->GetPointIds();
         if (points->GetNumberOfIds() != 4) throw UserError(file.string() + ": has faces other than of four corners");
-        for (std::size_t c = 0; c < 4; ++c) faces->GetPoint(points->GetId(static_cast<vtkIdType>(c)), patch.corners[c].data());
+        for (std::size_t c = 0; c < 4; ++c)
+            faces->GetPoint(points->GetId(static_cast<vtkIdType>(c)), patch.corners[c].data());
         patch.pressure = pressure->GetTuple1(k);
         patch.barrier = static_cast<int>(barrier->GetTuple1(k));
         patch.face = static_cast<int>(face->GetTuple1(k));

@@ -84,7 +84,8 @@ vtkSmartPointer<vtkActor> facets_actor(const std::vector<SpaceObjects::Facet>& f
     return unlit(data);
 }
 
-vtkSmartPointer<vtkActor> edges_actor(const std::vector<std::vector<Vec3>>& edges, const Vec2& origin, double width) {
+vtkSmartPointer<vtkActor> edges_actor(const std::vector<std::vector<Vec3>>& edges, const Vec2& origin,
+                                      double width) {
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> cells;
     for (const std::vector<Vec3>& edge : edges) {

@@ -19,7 +19,8 @@ struct Face {
     /// To the end of the last patch, which may be beyond the face's [m].
     double longest() const {
         double most = 0.0;
-        for (const LoadedPatch& patch : patches) most = std::max(most, right().dot(patch.corners[1] - corner()));
+        for (const LoadedPatch& patch : patches)
+            most = std::max(most, right().dot(patch.corners[1] - corner()));
         return most;
     }
 };
@@ -76,7 +77,8 @@ std::vector<double> smoothed(const Face& face, const Counts& counts) {
         double sum = 0.0, number = 0.0;
         for (long b = j - 1; b <= j + 1; ++b)
             for (long a = i - 1; a <= i + 1; ++a)
-                if (const auto found = at.find({a, b}); found != at.end()) sum += found->second->pressure, number += 1.0;
+                if (const auto found = at.find({a, b}); found != at.end())
+                    sum += found->second->pressure, number += 1.0;
         means.push_back(number > 0.0 ? sum / number : 0.0);
     }
     return means;
@@ -92,7 +94,8 @@ Polyline cut_to_square(Polyline ring, const Vec2& low, const Vec2& high) {
             const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
             const double from = sign * (a[axis] - limit), to = sign * (b[axis] - limit);
             if (from >= 0.0) kept.push_back(a);
-            if ((from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0)) kept.emplace_back(a + (b - a) * (from / (from - to)));
+            if ((from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0))
+                kept.emplace_back(a + (b - a) * (from / (from - to)));
         }
         ring = std::move(kept);
     }
@@ -123,7 +126,8 @@ private:
     void add_side(const Face& side, double length) {
         const Vec3 normal = side.right().cross(side.up()), corner = side.corner(), right = side.right();
         const std::vector<double> pressure = smoothed(side, [&](const LoadedPatch& patch) {
-            return patch.corners[3].z() > elevation_at(bed_, 0.5 * (patch.corners[0] + patch.corners[1]).head<2>());
+            return patch.corners[3].z() >
+                   elevation_at(bed_, 0.5 * (patch.corners[0] + patch.corners[1]).head<2>());
         });
         for (std::size_t k = 0; k < side.patches.size(); ++k) {
             const LoadedPatch& patch = side.patches[k];
@@ -134,12 +138,14 @@ private:
                 const double ground = elevation_at(bed_, p) - sunk;
                 return std::isnan(ground) ? low : std::max(low, ground);
             };
-            const double foot_a = foot(a), foot_b = foot(b), top_a = std::min(high, end(a)), top_b = std::min(high, end(b));
+            const double foot_a = foot(a), foot_b = foot(b), top_a = std::min(high, end(a)),
+                         top_b = std::min(high, end(b));
             if (u1 <= u0 || (top_a <= foot_a && top_b <= foot_b)) continue;
             const auto at = [](const Vec2& p, double z) { return Vec3(p.x(), p.y(), z); };
-            solid_.pieces.push_back({{at(a, std::min(foot_a, top_a)), at(b, std::min(foot_b, top_b)), at(b, top_b), at(a, top_a)},
-                                     normal,
-                                     pressure[k]});
+            solid_.pieces.push_back(
+                {{at(a, std::min(foot_a, top_a)), at(b, std::min(foot_b, top_b)), at(b, top_b), at(a, top_a)},
+                 normal,
+                 pressure[k]});
         }
     }
 
@@ -151,8 +157,10 @@ private:
             const LoadedPatch& patch = top.patches[k];
             const Vec2 low = patch.corners[0].head<2>(), high = patch.corners[2].head<2>();
             Polyline part{low, {high.x(), low.y()}, high, {low.x(), high.y()}};
-            if (solid_.rings.size() == 1) part = cut_to_square(solid_.rings.front(), low, high);
-            else if (!solid_.within(0.5 * (low + high))) part.clear();
+            if (solid_.rings.size() == 1)
+                part = cut_to_square(solid_.rings.front(), low, high);
+            else if (!solid_.within(0.5 * (low + high)))
+                part.clear();
             if (part.size() < 3) continue;
             BarrierSolid::Piece piece{{}, {0, 0, 1}, pressure[k]};
             for (const Vec2& p : part) piece.corners.emplace_back(p.x(), p.y(), end(p));
@@ -214,7 +222,8 @@ bool BarrierSolid::within(const Vec2& p) const {
     for (const Polyline& ring : rings)
         for (std::size_t k = 0; k < ring.size(); ++k) {
             const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-            if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()))
+            if ((a.y() > p.y()) != (b.y() > p.y()) &&
+                p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()))
                 inside = !inside;
         }
     return inside;
@@ -235,8 +244,8 @@ double top_at(const BarrierTop& top, const Raster& bed, const Vec2& p, double ot
     return std::isnan(z) ? otherwise : z;
 }
 
-std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches, const std::vector<BarrierTop>& tops,
-                                         const Raster& bed) {
+std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches,
+                                         const std::vector<BarrierTop>& tops, const Raster& bed) {
     int count = 0;
     for (const LoadedPatch& patch : patches) count = std::max(count, patch.barrier + 1);
     std::vector<BarrierSolid> solids;

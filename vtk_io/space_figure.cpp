@@ -11,8 +11,6 @@
 namespace frana {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
-
 bool holds(const std::array<double, 4>& box, const Vec3& p) {
     return p.x() >= box[0] && p.x() <= box[2] && p.y() >= box[1] && p.y() <= box[3];
 }
@@ -27,13 +25,15 @@ std::vector<Vec3> subjects_of(const SpaceFigure& figure) {
     const auto& material = figure.moment.material;
     for (std::size_t k = 0; k < material.size(); k += material.size() / kMost + 1)
         if (!material[k].is_column) places.push_back(material[k].place + Vec3(0, 0, material[k].size));
-    places.erase(std::remove_if(places.begin(), places.end(), [&](const Vec3& p) { return !holds(figure.view.box, p); }),
+    places.erase(std::remove_if(places.begin(), places.end(),
+                                [&](const Vec3& p) { return !holds(figure.view.box, p); }),
                  places.end());
     return places;
 }
 
 /// Share of the places that the ground does not hide from an eye far away against the direction of view.
-double share_in_sight(const SpaceFigure& figure, const std::vector<Vec3>& places, double azimuth, double down) {
+double share_in_sight(const SpaceFigure& figure, const std::vector<Vec3>& places, double azimuth,
+                      double down) {
     if (places.empty()) return 1.0;
     const Vec3 back(-std::sin(azimuth) * std::cos(down), -std::cos(azimuth) * std::cos(down), std::sin(down));
     const double step = figure.bed.geometry.cell;
@@ -47,12 +47,10 @@ double share_in_sight(const SpaceFigure& figure, const std::vector<Vec3>& places
     return seen / static_cast<double>(places.size());
 }
 
-struct Look {
-    double azimuth = 0.0, down = 0.4;  ///< of the direction of view, clockwise from north; below the horizon [radians]
-};
+}  // namespace
 
-/// From the side and a little upstream is best, the flow from left to right; then higher up, and other sides.
-Look best_look(const SpaceFigure& figure) {
+SpaceLook best_look(const SpaceFigure& figure) {
+    constexpr double kDegree = 0.017453292519943295;
     struct Choice {
         double turn, weight;  ///< from the flow's direction [degrees]
     };
@@ -60,16 +58,19 @@ Look best_look(const SpaceFigure& figure) {
     constexpr Choice downs[] = {{24, 1.0}, {36, 0.85}, {52, 0.7}};
     const double flow = std::atan2(figure.view.flow.x(), figure.view.flow.y());
     const std::vector<Vec3> places = subjects_of(figure);
-    Look best;
+    SpaceLook best;
     double best_score = -1.0;
     for (const Choice& turn : turns)
         for (const Choice& down : downs) {
-            const Look look{flow + turn.turn * kDegree, down.turn * kDegree};
-            const double score = turn.weight * down.weight * share_in_sight(figure, places, look.azimuth, look.down);
+            const SpaceLook look{flow + turn.turn * kDegree, down.turn * kDegree};
+            const double score =
+                turn.weight * down.weight * share_in_sight(figure, places, look.azimuth, look.down);
             if (score > best_score + 1e-9) best_score = score, best = look;
         }
     return best;
 }
+
+namespace {
 
 /// Sides a little darker than tops, and each direction differently.
 double light_on(const Vec3& normal, double azimuth) {
@@ -78,10 +79,27 @@ double light_on(const Vec3& normal, double azimuth) {
     return 0.86 + 0.1 * lamp.dot(normal.head<2>());
 }
 
+/// The sides that the load pushes, seen along it.
+SpaceObjects::Inset struck_face(const BarrierSolid& barrier, const SpaceColours& colours) {
+    SpaceObjects::Inset inset;
+    const Vec2 ahead = barrier.load.head<2>().normalized(), right(ahead.y(), -ahead.x());
+    constexpr double kFacing = -0.3;  // sides more than about 70 degrees askew show nothing
+    for (const auto& piece : barrier.pieces) {
+        if (piece.normal.head<2>().dot(ahead) > kFacing) continue;
+        SpaceObjects::Inset::Area area{{}, colours.of_pressure(piece.pressure)};
+        for (const Vec3& p : piece.corners) area.corners.emplace_back(right.dot(p.head<2>()), p.z());
+        inset.areas.push_back(area);
+    }
+    inset.caption = fmt::format("pressure on the barrier, seen along the load of {:.2g} kN",
+                                1e-3 * barrier.load.head<2>().norm());
+    return inset;
+}
+
 SpaceObjects objects_of(const SpaceFigure& figure, double azimuth) {
     SpaceObjects objects;
     const SpaceColours colours(figure.view);
-    constexpr double kTouching = 0.62;  // radius over size: neighbours overlap a little, so that no ground shines through
+    constexpr double kTouching =
+        0.62;  // radius over size: neighbours overlap a little, so that no ground shines through
     for (const auto& piece : figure.moment.material)
         if (holds(figure.view.box, piece.place))
             objects.balls.push_back(
@@ -89,11 +107,14 @@ SpaceObjects objects_of(const SpaceFigure& figure, double azimuth) {
     for (const BarrierSolid& barrier : figure.moment.barriers) {
         for (const auto& piece : barrier.pieces)
             if (holds(figure.view.box, piece.corners.front()))
-                objects.facets.push_back(
-                    {piece.corners, scaled(colours.of_pressure(piece.pressure), light_on(piece.normal, azimuth))});
+                objects.facets.push_back({piece.corners, scaled(colours.of_pressure(piece.pressure),
+                                                                light_on(piece.normal, azimuth))});
         for (const auto& edge : barrier.edges)
-            if (holds(figure.view.box, edge.front()) && holds(figure.view.box, edge.back())) objects.edges.push_back(edge);
+            if (holds(figure.view.box, edge.front()) && holds(figure.view.box, edge.back()))
+                objects.edges.push_back(edge);
     }
+    if (const BarrierSolid* barrier = figure.moment.most_loaded())
+        objects.inset = struck_face(*barrier, colours);
     objects.bars = colours.bars();
     return objects;
 }
@@ -102,10 +123,13 @@ SpaceObjects objects_of(const SpaceFigure& figure, double azimuth) {
 
 SpaceColours::SpaceColours(const SpaceView& view) : view_(view), kilo_(view.pressure >= 2000.0) {}
 
-Colour SpaceColours::of_speed(double speed) const { return colour_at(Colormap::speed, speed / view_.fastest); }
+Colour SpaceColours::of_speed(double speed) const {
+    return colour_at(Colormap::speed, speed / view_.fastest);
+}
 
 Colour SpaceColours::of_pressure(double pressure) const {
-    return view_.pressure > 0.0 ? colour_at(Colormap::pressure, pressure / view_.pressure) : colours::unloaded;
+    return view_.pressure > 0.0 ? colour_at(Colormap::pressure, pressure / view_.pressure)
+                                : colours::unloaded;
 }
 
 std::vector<ColourBar> SpaceColours::bars() const {
@@ -118,7 +142,8 @@ std::vector<ColourBar> SpaceColours::bars() const {
 }
 
 bool render_space(const SpaceFigure& figure, const std::filesystem::path& png, std::string& why_not) {
-    const Look look = best_look(figure);
+    constexpr double kDegree = 0.017453292519943295;
+    const SpaceLook look = best_look(figure);
     PerspectiveFigure view;
     view.bed = figure.bed;
     view.field.assign(figure.bed.values.size(), 0.0);

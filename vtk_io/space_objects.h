@@ -29,7 +29,20 @@ struct SpaceObjects {
     std::vector<Facet> facets;
     std::vector<std::vector<Vec3>> edges;  ///< drawn in black
     std::vector<ColourBar> bars;           ///< instead of the field's
+    /// A face that the balls hide, drawn flat in the upper left corner.
+    struct Inset {
+        struct Area {
+            std::vector<Vec2> corners;  ///< convex: to the right, upwards [m]
+            Colour colour;
+        };
+        std::vector<Area> areas;  ///< nothing: no inset
+        std::string caption;
+    } inset;
     bool empty() const { return balls.empty() && facets.empty(); }
 };
+
+/// Draws an inset with its upper left corner there, no larger than `most` [px].
+void draw_inset(Canvas& canvas, const SpaceObjects::Inset& inset, const Vec2& corner, const Vec2& most,
+                double unit);
 
 }  // namespace frana

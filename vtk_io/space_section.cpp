@@ -1,5 +1,4 @@
 // The vertical section of a moment in space.
-#include <fmt/core.h>
 #include <vtkNew.h>
 #include <vtkRenderer.h>
 
@@ -70,7 +69,8 @@ private:
             const Vec2 p = piece.place.head<2>();
             const double reach = piece.is_column ? 0.5 * piece.size : 2.0 * figure_.moment.typical_size;
             const double s = plane_.distance(p);
-            if (std::abs(plane_.beside(p)) <= reach && s >= 0.0 && s <= plane_.length) near_.push_back(&piece);
+            if (std::abs(plane_.beside(p)) <= reach && s >= 0.0 && s <= plane_.length)
+                near_.push_back(&piece);
         }
         std::stable_sort(near_.begin(), near_.end(), [&](const Piece* a, const Piece* b) {
             return std::abs(plane_.beside(a->place.head<2>())) > std::abs(plane_.beside(b->place.head<2>()));
@@ -82,7 +82,8 @@ private:
         const auto hold = [&](double z) {
             if (std::isfinite(z)) low_ = std::min(low_, z), high_ = std::max(high_, z);
         };
-        for (double s = 0.0; s <= plane_.length; s += plane_.length / 400.0) hold(elevation_at(figure_.bed, plane_.at(s)));
+        for (double s = 0.0; s <= plane_.length; s += plane_.length / 400.0)
+            hold(elevation_at(figure_.bed, plane_.at(s)));
         for (const Piece* piece : near_) hold(piece->place.z() + 0.6 * piece->size);
         for (const BarrierSolid& barrier : figure_.moment.barriers)
             for (const Stretch& part : cut(barrier)) hold(part.top);
@@ -95,7 +96,8 @@ private:
         const double tall = std::max(scale_ * (high_ - low_), std::min(most, 14.0 * unit_));
         high_ = low_ + tall / scale_;
         const double x0 = left + 0.5 * (wide - scale_ * plane_.length);
-        frame_ = {std::round(x0), std::round(foot), std::round(x0 + scale_ * plane_.length), std::round(foot + tall)};
+        frame_ = {std::round(x0), std::round(foot), std::round(x0 + scale_ * plane_.length),
+                  std::round(foot + tall)};
         height_ = static_cast<int>(std::lround(frame_.y1 + head));
     }
 
@@ -133,7 +135,8 @@ private:
     }
 
     void grid(Canvas& canvas) const {
-        for (const double s : ticks(true).at) canvas.stroke({pixel(s, low_), pixel(s, high_)}, {colours::grid, 1.0, {}});
+        for (const double s : ticks(true).at)
+            canvas.stroke({pixel(s, low_), pixel(s, high_)}, {colours::grid, 1.0, {}});
         for (const double z : ticks(false).at)
             canvas.stroke({pixel(0.0, z), pixel(plane_.length, z)}, {colours::grid, 1.0, {}});
     }
@@ -159,8 +162,9 @@ private:
                 const double s = plane_.distance(a.head<2>() + (b - a).head<2>() * (u / (u - v)));
                 const double inward = plane_.along.dot(piece.normal.head<2>()) > 0.0 ? -strip : strip;
                 const Vec2 p = pixel(s, a.z()), q = pixel(s, top.z());
-                canvas.fill(Rectangle{std::min(p.x(), p.x() + inward), p.y(), std::max(p.x(), p.x() + inward), q.y()},
-                            colours_.of_pressure(piece.pressure));
+                canvas.fill(
+                    Rectangle{std::min(p.x(), p.x() + inward), p.y(), std::max(p.x(), p.x() + inward), q.y()},
+                    colours_.of_pressure(piece.pressure));
             }
             for (const Stretch& part : cut(barrier)) {
                 const Vec2 a = pixel(part.from, low_), b = pixel(part.to, part.top);
@@ -178,7 +182,8 @@ private:
             if (std::isfinite(z)) line.push_back(pixel(s, z));
         }
         for (std::size_t k = 1; k < line.size(); ++k)
-            canvas.fill({{line[k - 1].x(), frame_.y0}, {line[k].x(), frame_.y0}, line[k], line[k - 1]}, colours::ground);
+            canvas.fill({{line[k - 1].x(), frame_.y0}, {line[k].x(), frame_.y0}, line[k], line[k - 1]},
+                        colours::ground);
         canvas.stroke(line, {colours::black, 0.1 * unit_, {}});
     }
 
@@ -188,7 +193,8 @@ private:
             const double s = plane_.distance(piece->place.head<2>());
             const Colour colour = colours_.of_speed(piece->speed);
             if (piece->is_column) {
-                const Vec2 a = pixel(s - 0.5 * piece->size, piece->ground), b = pixel(s + 0.5 * piece->size, piece->place.z());
+                const Vec2 a = pixel(s - 0.5 * piece->size, piece->ground),
+                           b = pixel(s + 0.5 * piece->size, piece->place.z());
                 canvas.fill(Rectangle{a.x(), a.y(), b.x(), b.y()}, colour);
                 continue;
             }
@@ -215,7 +221,8 @@ private:
         for (std::size_t k = 0; k < across.at.size(); ++k) {
             const double x = pixel(across.at[k], low_).x();
             canvas.stroke({{x, frame_.y0 - 0.4 * u}, {x, frame_.y0}}, {colours::black, 0.08 * u, {}});
-            canvas.text(across.labels[k], {x, frame_.y0 - 0.6 * u}, {u, Across::centre, Upward::top, 0.0, false, false, {}});
+            canvas.text(across.labels[k], {x, frame_.y0 - 0.6 * u},
+                        {u, Across::centre, Upward::top, 0.0, false, false, {}});
         }
         for (std::size_t k = 0; k < upward.at.size(); ++k) {
             const double y = pixel(0.0, upward.at[k]).y();
@@ -233,7 +240,8 @@ private:
     void bars(Canvas& canvas) const {
         const std::vector<ColourBar> bars = colours_.bars();
         const double gap = 1.5 * unit_, x = std::round(frame_.x1 + 1.8 * unit_);
-        const double each = std::min((frame_.height() + gap) / static_cast<double>(bars.size()) - gap, 16.0 * unit_);
+        const double each =
+            std::min((frame_.height() + gap) / static_cast<double>(bars.size()) - gap, 16.0 * unit_);
         for (std::size_t n = 0; n < bars.size(); ++n) {
             const double top = frame_.y1 - static_cast<double>(n) * (each + gap);
             draw_colour_bar(canvas, {x, std::round(top - each), x + std::round(1.1 * unit_), std::round(top)},
