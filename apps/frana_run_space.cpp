@@ -17,7 +17,9 @@ namespace {
 class SpaceRun {
 public:
     explicit SpaceRun(const FigureSource& source)
-        : source_(source), times_(particle_times(source.run_dir)), loads_(barrier_times(source.run_dir)) {}
+        : source_(source), times_(particle_times(source.run_dir)), loads_(barrier_times(source.run_dir)) {
+        if (!times_.empty()) named_ = read_particles(source.run_dir, -1).columns.count("model") > 0;
+    }
 
     Index count() const { return static_cast<Index>(times_.size()); }
     double time(Index number) const { return times_[static_cast<std::size_t>(number)]; }
@@ -45,7 +47,10 @@ public:
     }
 
     SpaceMoment moment(Index number) const {
-        return space_moment(read_particles(source_.run_dir, number), barriers(time(number)));
+        LoadedParticles particles = read_particles(source_.run_dir, number);
+        if (named_ && particles.columns.count("model") == 0)
+            particles.columns["model"].assign(static_cast<std::size_t>(particles.count), 0.0);
+        return space_moment(particles, barriers(time(number)));
     }
 
     SpaceFigure figure(Index number, const SpaceView& view, int digits) const {
@@ -79,6 +84,7 @@ private:
 
     const FigureSource& source_;
     std::vector<double> times_, loads_;
+    bool named_ = false;  ///< the last frame says which are points; then frames that do not have columns only
 };
 
 bool has_points(const FigureSource& source) {

@@ -79,8 +79,9 @@ def files_of(source):
 
 def arrays_in_sources():
     names = set()
+    time = simple.GetAnimationScene().AnimationTime  # points in space are not there from the start
     for source in simple.GetSources().values():
-        source.UpdatePipeline()
+        source.UpdatePipeline(time)
         information = source.GetDataInformation()
         for attributes in (information.GetPointDataInformation(), information.GetCellDataInformation(),
                            information.GetRowDataInformation()):
