@@ -64,7 +64,7 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         const std::string table = fmt::format("barrier.{}.", i);
         BarrierTop top;
         if (run_case.has(table + "top")) top.level = run_case.number(table + "top");
-        else top.height = run_case.number(table + "height");
+        else if (run_case.has(table + "height")) top.height = run_case.number(table + "height");
         source.barrier_tops.push_back(top);
     }
     if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;

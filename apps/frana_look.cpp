@@ -212,7 +212,16 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     return lacks;
 }
 
-/// The output with the largest load on a barrier, with its loads; the last one where there is never any.
+/// What 99.5 % of the loaded patches do not exceed at a time [Pa].
+double most_pressure(const std::vector<LoadedPatch>& patches) {
+    std::vector<double> pressures;
+    for (const LoadedPatch& patch : patches)
+        if (patch.pressure > 0.0) pressures.push_back(patch.pressure);
+    return most(std::move(pressures));
+}
+
+/// The output with the largest load on a barrier, with its loads; the last one where there is never any, or none that
+/// can be told (barriers of any shape).
 SpaceMoment hardest_moment(const fs::path& run_dir, const Raster& bed) {
     const std::vector<double> times = barrier_times(run_dir), frames = particle_times(run_dir);
     SpaceMoment hardest;
@@ -237,6 +246,10 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     figure.moment = hardest_moment(run_dir, figure.bed);
     SharedSpace shared;
     shared.add(figure.moment);
+    if (shared.empty()) {
+        look["states"]["impact"] = "there were no points in space yet; run the case further";
+        return;
+    }
     figure.view = shared.view();
     const SpaceLook eye = best_look(figure);
     Extent extent;
@@ -254,7 +267,10 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     look["impact_time"] = figure.moment.time;
     look["point_radius"] = 0.62 * figure.moment.typical_size;
     look["range"]["point_speed"] = {0.0, round_up(figure.view.fastest)};
-    look["range"]["pressure"] = {0.0, round_up(figure.view.pressure)};
+    double pressure = 0.0;  // as the patches have it, which ParaView shows
+    for (Index k = 0; k < static_cast<Index>(barrier_times(run_dir).size()); ++k)
+        pressure = std::max(pressure, most_pressure(read_barriers(run_dir, k)));
+    look["range"]["pressure"] = {0.0, round_up(pressure)};
     look["camera"]["impact"] = camera(position, focal, {0.0, 0.0, 1.0}, reach, reach);
 }
 

@@ -255,6 +255,10 @@ std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches
         BarrierTop top;
         top.level = 1e300;  // as high as its sides
         if (static_cast<std::size_t>(n) < tops.size()) top = tops[static_cast<std::size_t>(n)];
+        const bool has_one_top =
+            std::count_if(faces.begin(), faces.end(), [](const Face& f) { return !f.is_side(); }) == 1;
+        if (faces.size() < 4 || !has_one_top || faces.back().is_side())
+            continue;  // of any shape, seen as a box
         solids.push_back(Builder(std::move(faces), top, bed).solid());
     }
     return solids;

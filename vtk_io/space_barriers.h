@@ -33,9 +33,9 @@ struct BarrierSolid {
 };
 
 /// The solids of all barriers in `patches`, which has the faces of each in their order, the sides round the
-/// outline before the top (observe/frame.h). A barrier without an entry in `tops` is as high as its sides. A
-/// node pushes over three cells, but is booked with one patch: each piece has the mean of up to 3 x 3
-/// patches, without those of a side that are below the ground.
+/// outline before the top (observe/frame.h); a barrier of any shape, whose faces are those of a box, has no
+/// solid. A barrier without an entry in `tops` is as high as its sides. A node pushes over three cells, but is booked with one patch: each piece has the mean of up to
+/// 3 x 3 patches, without those of a side that are below the ground.
 std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches,
                                          const std::vector<BarrierTop>& tops, const Raster& bed);
 
