@@ -11,6 +11,7 @@
 #include "frana_commands.h"
 #include "frana_figures.h"
 #include "frana_run_film.h"
+#include "frana_run_space.h"
 #include "io/gdal_reader.h"
 #include "vtk_io/reader.h"
 
@@ -56,6 +57,15 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         const std::string table = fmt::format("gauge.{}.", i);
         const std::vector<double>& point = run_case.numbers(table + "point");
         source.gauges.push_back({run_case.word(table + "name"), Vec2(point[0], point[1])});
+    }
+    for (Index i = 0; i < run_case.count("stage"); ++i)
+        source.in_space |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
+    for (Index i = 0; i < run_case.count("barrier"); ++i) {
+        const std::string table = fmt::format("barrier.{}.", i);
+        BarrierTop top;
+        if (run_case.has(table + "top")) top.level = run_case.number(table + "top");
+        else if (run_case.has(table + "height")) top.height = run_case.number(table + "height");
+        source.barrier_tops.push_back(top);
     }
     if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;
     const fs::path survey = run_case.path("survey.footprint");
@@ -185,7 +195,10 @@ int figures_command(const FiguresOptions& options) {
     read_case(options.run_dir, source, warnings);
     std::vector<DrawnFigure> figures = draw_figures(source, warnings);
     if (options.time) draw_moment(source, *options.time, figures, warnings);
-    if (!options.film.empty()) draw_film(source, options.film, figures, warnings);
+    if (!options.film.empty()) {
+        draw_film(source, options.film, figures, warnings);
+        draw_space_film(source, options.film, figures, warnings);
+    }
     for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
     for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
     return 0;

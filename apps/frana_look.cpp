@@ -12,13 +12,14 @@
 #include "base/error.h"
 #include "observe/table.h"
 #include "vtk_io/reader.h"
+#include "vtk_io/space_figure.h"
 
 namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Vec3 = std::array<double, 3>;
+using Place = std::array<double, 3>;
 
 /// The next 1, 1.5, 2, 3, 5 or 7.5 times a power of ten: an end of a range that one can read off a colour bar.
 double round_up(double value) {
@@ -40,7 +41,7 @@ double most(std::vector<double> values) {
 /// Everything ever covered, and where the mass was first and last.
 struct Extent {
     double xmin = HUGE_VAL, xmax = -HUGE_VAL, ymin = HUGE_VAL, ymax = -HUGE_VAL, zmin = HUGE_VAL, zmax = -HUGE_VAL;
-    Vec3 first{}, last{};
+    Place first{}, last{};
 
     bool empty() const { return xmin > xmax; }
     void add(double x, double y, double z) {
@@ -48,7 +49,7 @@ struct Extent {
         ymin = std::min(ymin, y), ymax = std::max(ymax, y);
         zmin = std::min(zmin, z), zmax = std::max(zmax, z);
     }
-    Vec3 middle() const { return {0.5 * (xmin + xmax), 0.5 * (ymin + ymax), 0.5 * (zmin + zmax)}; }
+    Place middle() const { return {0.5 * (xmin + xmax), 0.5 * (ymin + ymax), 0.5 * (zmin + zmax)}; }
 };
 
 struct Seen {
@@ -63,13 +64,13 @@ struct Seen {
 void see_extent(const LoadedFrame& frame, Seen& seen, bool first) {
     const auto& depth = frame.nodes.at("depth");
     const auto& elevation = frame.nodes.at("elevation");
-    Vec3 centre{};
+    Place centre{};
     double weights = 0.0;
     for (Index j = 0, k = 0; j < frame.grid.ny; ++j)
         for (Index i = 0; i < frame.grid.nx; ++i, ++k) {
             const auto node = static_cast<std::size_t>(k);
             if (!(depth[node] > seen.thin) || !std::isfinite(elevation[node])) continue;
-            const Vec3 at{frame.grid.x(i), frame.grid.y(j), elevation[node]};
+            const Place at{frame.grid.x(i), frame.grid.y(j), elevation[node]};
             seen.extent.add(at[0], at[1], at[2]);
             for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] += depth[node] * at[axis];
             weights += depth[node];
@@ -128,7 +129,7 @@ Seen see_frames(const fs::path& run_dir) {
     return seen;
 }
 
-Json camera(const Vec3& position, const Vec3& focal, const Vec3& up, double half_height, double half_width) {
+Json camera(const Place& position, const Place& focal, const Place& up, double half_height, double half_width) {
     return {{"position", position},
             {"focal", focal},
             {"up", up},
@@ -149,8 +150,8 @@ double reach_of(const Extent& extent) {
 
 /// From above, north up.
 Json map_camera(const Extent& extent) {
-    const Vec3 middle = extent.middle();
-    const Vec3 top{middle[0], middle[1], extent.zmax + 4.0 * reach_of(extent)};
+    const Place middle = extent.middle();
+    const Place top{middle[0], middle[1], extent.zmax + 4.0 * reach_of(extent)};
     return camera(top, middle, {0.0, 1.0, 0.0}, 0.5 * around * (extent.ymax - extent.ymin),
                   0.5 * around * (extent.xmax - extent.xmin));
 }
@@ -159,13 +160,13 @@ Json map_camera(const Extent& extent) {
 Json view_camera(const Extent& extent) {
     constexpr double half_angle = 15.0 * pi / 180.0, above = 35.0 * pi / 180.0;
     const double reach = reach_of(extent);
-    const Vec3 middle = extent.middle();
+    const Place middle = extent.middle();
     double to_x = extent.last[0] - extent.first[0], to_y = extent.last[1] - extent.first[1];
     const double way = std::hypot(to_x, to_y);
     const bool moved = way > 0.05 * reach;
     to_x = moved ? to_x / way : 0.0, to_y = moved ? to_y / way : -1.0;
     const double distance = 1.25 * reach / std::tan(half_angle), flat = distance * std::cos(above);
-    const Vec3 before{middle[0] + to_x * flat, middle[1] + to_y * flat, middle[2] + distance * std::sin(above)};
+    const Place before{middle[0] + to_x * flat, middle[1] + to_y * flat, middle[2] + distance * std::sin(above)};
     return camera(before, middle, {0.0, 0.0, 1.0}, reach, reach);
 }
 
@@ -198,6 +199,9 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
             return fmt::format("there is no {}; add \"vtk\" to output.formats and run again", file);
     const std::string all = "set output.fields = \"all\" and run again";
     std::string lacks = lacks_arrays(seen, {"depth", "surface", "speed"}, all);
+    if (state == "impact" && !fs::exists(run_dir / "barriers.pvd"))
+        return "no points in space stood before a barrier; give a [[barrier]] and a [[stage]] with model = "
+               "\"solid_flow\"";
     if (state == "stress" && lacks.empty())
         lacks = lacks_arrays(seen, {"stress", "effective_stress"},
                              "give a [material.rheology], leave output.fields at \"all\", and run again");
@@ -206,6 +210,68 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     if (state == "survey" && lacks.empty() && !fs::exists(run_dir / "survey_areas.vtp"))
         return "the run was not held against a survey; use frana compare, or give [survey] footprint and run again";
     return lacks;
+}
+
+/// What 99.5 % of the loaded patches do not exceed at a time [Pa].
+double most_pressure(const std::vector<LoadedPatch>& patches) {
+    std::vector<double> pressures;
+    for (const LoadedPatch& patch : patches)
+        if (patch.pressure > 0.0) pressures.push_back(patch.pressure);
+    return most(std::move(pressures));
+}
+
+/// The output with the largest load on a barrier, with its loads; the last one where there is never any, or none that
+/// can be told (barriers of any shape).
+SpaceMoment hardest_moment(const fs::path& run_dir, const Raster& bed) {
+    const std::vector<double> times = barrier_times(run_dir), frames = particle_times(run_dir);
+    SpaceMoment hardest;
+    double most_load = -1.0;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+        SpaceMoment moment;
+        moment.barriers = barrier_solids(read_barriers(run_dir, static_cast<Index>(k)), {}, bed);
+        const double load = moment.most_loaded() ? moment.most_loaded()->load.head<2>().norm() : 0.0;
+        const auto frame = std::find(frames.begin(), frames.end(), times[k]);
+        if (frame == frames.end() || load < most_load) continue;
+        most_load = load;
+        hardest = space_moment(read_particles(run_dir, frame - frames.begin()), moment.barriers);
+    }
+    return hardest;
+}
+
+/// What the state "impact" shows.
+void look_at_impact(const fs::path& run_dir, Json& look) {
+    const LoadedFrame terrain = read_terrain(run_dir);
+    SpaceFigure figure;
+    figure.bed = Raster{terrain.grid, terrain.nodes.at("elevation"), "", ""};
+    figure.moment = hardest_moment(run_dir, figure.bed);
+    SharedSpace shared;
+    shared.add(figure.moment);
+    if (shared.empty()) {
+        look["states"]["impact"] = "there were no points in space yet; run the case further";
+        return;
+    }
+    figure.view = shared.view();
+    const SpaceLook eye = best_look(figure);
+    Extent extent;
+    const auto& box = figure.view.box;
+    for (const auto& piece : figure.moment.material)
+        if (!piece.is_column) extent.add(piece.place.x(), piece.place.y(), piece.place.z());
+    const double middle = 0.5 * (extent.zmin + extent.zmax);
+    extent = Extent{box[0], box[2], box[1], box[3], std::isfinite(middle) ? middle : 0.0,
+                    std::isfinite(middle) ? middle : 0.0, {}, {}};
+    const double reach = reach_of(extent), distance = 0.75 * reach / std::tan(15.0 * pi / 180.0);  // seen askew
+    const Place focal = extent.middle();
+    const Place position{focal[0] - distance * std::sin(eye.azimuth) * std::cos(eye.down),
+                         focal[1] - distance * std::cos(eye.azimuth) * std::cos(eye.down),
+                         focal[2] + distance * std::sin(eye.down)};
+    look["impact_time"] = figure.moment.time;
+    look["point_radius"] = 0.62 * figure.moment.typical_size;
+    look["range"]["point_speed"] = {0.0, round_up(figure.view.fastest)};
+    double pressure = 0.0;  // as the patches have it, which ParaView shows
+    for (Index k = 0; k < static_cast<Index>(barrier_times(run_dir).size()); ++k)
+        pressure = std::max(pressure, most_pressure(read_barriers(run_dir, k)));
+    look["range"]["pressure"] = {0.0, round_up(pressure)};
+    look["camera"]["impact"] = camera(position, focal, {0.0, 0.0, 1.0}, reach, reach);
 }
 
 /// Corner of the profile's chart that the terrain leaves free, in ParaView's numbers: 0 top left where it rises along
@@ -218,7 +284,7 @@ int free_corner(const fs::path& run_dir) {
 }  // namespace
 
 const std::vector<std::string>& state_names() {
-    static const std::vector<std::string> names = {"overview", "stress", "profiles", "survey", "budgets"};
+    static const std::vector<std::string> names = {"overview", "stress", "profiles", "survey", "impact", "budgets"};
     return names;
 }
 
@@ -256,6 +322,7 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
                      {"extent", {0, seen.grid.nx - 1, 0, seen.grid.ny - 1, 0, 0}}};
     if (look["states"]["profiles"] == "") look["legend"] = free_corner(run_dir);
     look["camera"] = cameras(run_dir, seen.extent, look["states"]["survey"] == "");
+    if (look["states"]["impact"] == "") look_at_impact(run_dir, look);
     return look;
 }
 

@@ -8,6 +8,7 @@
 #include "compare/overlap.h"
 #include "frana_run_charts.h"
 #include "frana_run_film.h"
+#include "frana_run_space.h"
 #include "vtk_io/map_figure.h"
 #include "vtk_io/map_figure_perspective.h"
 
@@ -86,6 +87,7 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     draw_filmstrip(source, figures, warnings);
     for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
     draw_gauges(source, figures, warnings);
+    draw_space(source, figures, warnings);
     draw_barriers(source, figures, warnings);
     draw_budgets(source, figures, warnings);
     return figures;

@@ -9,6 +9,7 @@
 #include "frana_products.h"
 #include "frana_run_record.h"
 #include "scene/scene.h"
+#include "vtk_io/space_barriers.h"
 
 namespace frana {
 
@@ -24,6 +25,8 @@ struct FigureSource {
     Polyline runout_path;  ///< drawn in the overlay with the survey; empty: none
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
+    bool in_space = false;                 ///< the case has a stage of points in space
+    std::vector<BarrierTop> barrier_tops;  ///< in the case's order
     std::optional<double> time;       ///< of the profiles besides the first and the last [s]
     int width = 1400, height = 1200;  ///< of the maps; charts are as wide and 0.6 as high [pixels]
 };

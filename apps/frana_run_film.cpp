@@ -37,7 +37,28 @@ MapFigure depth_map(const FigureSource& source, Index number) {
     return map;
 }
 
-/// Digits behind the point that the times need, at most three; one for the last, which may be any.
+/// Draws every frame twice over: once to know what all of them show, then for good. They need not fit the memory
+/// together.
+bool draw_frames(const FigureSource& source, const std::vector<double>& times, const fs::path& film,
+                 std::string& why_not) {
+    const Index count = static_cast<Index>(times.size());
+    SharedView view;
+    for (Index number = 0; number < count; ++number) view.add(depth_map(source, number));
+    const int digits = decimals_of(times);
+    return make_film(film, count, why_not, [&](Index number, const fs::path& png) {
+        MapFigure map = depth_map(source, number);
+        view.apply(map);
+        const double time = times[static_cast<std::size_t>(number)];
+        map.title = fmt::format("{}: depth, t = {:.{}f} s", source.title, time, digits);
+        map.footer = source.footer;
+        map.width = source.width;
+        map.height = source.height;
+        return render_map(map, png, why_not);
+    });
+}
+
+}  // namespace
+
 int decimals_of(const std::vector<double>& times) {
     int digits = 0;
     for (std::size_t k = 0; k < times.size(); ++k)
@@ -47,26 +68,16 @@ int decimals_of(const std::vector<double>& times) {
     return digits;
 }
 
-/// Draws every frame twice over: once to know what all of them show, then for good. They need not fit the memory
-/// together.
-bool fill_reel(const FigureSource& source, const std::vector<double>& times, FilmReel& reel, std::string& why_not) {
-    SharedView view;
-    for (Index number = 0; number < static_cast<Index>(times.size()); ++number) view.add(depth_map(source, number));
-    const int digits = decimals_of(times);
-    for (Index number = 0; number < static_cast<Index>(times.size()); ++number) {
-        MapFigure map = depth_map(source, number);
-        view.apply(map);
-        const double time = times[static_cast<std::size_t>(number)];
-        map.title = fmt::format("{}: depth, t = {:.{}f} s", source.title, time, digits);
-        map.footer = source.footer;
-        map.width = source.width;
-        map.height = source.height;
-        if (!render_map(map, reel.next(), why_not)) return false;
-    }
-    return true;
+bool make_film(const fs::path& film, Index count, std::string& why_not,
+               const std::function<bool(Index k, const fs::path& png)>& draw) {
+    why_not = no_film_reason();
+    if (!why_not.empty()) return false;
+    FilmReel reel(film);
+    for (Index k = 0; k < count; ++k)
+        if (!draw(k, reel.next())) return false;
+    constexpr double seconds = 8.0, slowest = 2.0, fastest = 25.0;
+    return reel.join(std::clamp(static_cast<double>(count) / seconds, slowest, fastest), why_not);
 }
-
-}  // namespace
 
 void draw_filmstrip(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
     if (source.bed.values.empty() || !fs::exists(source.run_dir / "grid.pvd")) return;
@@ -96,11 +107,7 @@ void draw_film(const FigureSource& source, const std::string& kind, std::vector<
                 }
                 const std::vector<double> times = frame_times(source.run_dir);
                 if (times.empty()) return why_not = "the run has no frames yet", false;
-                FilmReel reel(film);
-                if (!fill_reel(source, times, reel, why_not)) return false;
-                constexpr double seconds = 8.0, slowest = 2.0, fastest = 25.0;
-                const double rate = static_cast<double>(times.size()) / seconds;
-                return reel.join(std::clamp(rate, slowest, fastest), why_not);
+                return draw_frames(source, times, film, why_not);
             });
 }
 

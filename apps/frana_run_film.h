@@ -1,5 +1,6 @@
 #pragma once
 // Pictures of the depth through time, from the frames of a run.
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,5 +17,13 @@ void draw_filmstrip(const FigureSource& source, std::vector<DrawnFigure>& figure
 /// ffmpeg, frames on the grid or a renderer.
 void draw_film(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
                std::vector<std::string>& warnings);
+
+/// A film of `count` pictures, the k-th drawn by `draw(k, png)`, about eight seconds long. False with a reason when one
+/// cannot be drawn or there is no program ffmpeg.
+bool make_film(const std::filesystem::path& film, Index count, std::string& why_not,
+               const std::function<bool(Index k, const std::filesystem::path& png)>& draw);
+
+/// Digits behind the point that times need, at most three; one for the last, which may be any.
+int decimals_of(const std::vector<double>& times);
 
 }  // namespace frana

@@ -37,7 +37,7 @@ const std::vector<ProductKind>& product_kinds() {
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
         {"barriers", "[^.].*\\.csv", "forces and moments on a barrier, after every step", false},
-        {"figures", "((map|view|filmstrip|profile|gauges|barrier|budget)_[^.].*|compare)\\.png", "figure", false},
+        {"figures", "((map|view|section|filmstrip|profile|gauges|barrier|budget)_[^.].*|compare)\\.png", "figure", false},
         {"figures", "film_[^.].*\\.(mp4|gif)", "film", false},
         {"insitu", "[^.].*\\.csv", "looked at while the case ran", false},
         {"insitu", "[^.].*\\.pvd", "looked at while the case ran, for ParaView", false},

@@ -11,6 +11,7 @@
 #include "frana_comparison.h"
 #include "frana_run_figures.h"
 #include "frana_run_film.h"
+#include "frana_run_space.h"
 #include "frana_run_insitu.h"
 #include "frana_states.h"
 #include "io/xdmf_writer.h"
@@ -95,6 +96,8 @@ FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const Ru
     if (record.comparison) source.runout_path = record.comparison->path;
     source.profiles = scene.profiles;
     source.gauges = scene.gauges;
+    source.in_space = scene.solid.has_value();
+    for (const Barrier& barrier : scene.barriers) source.barrier_tops.push_back({barrier.top, barrier.height});
     return source;
 }
 
@@ -154,7 +157,9 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
         if (!scene.output.png && scene.output.film.empty()) return;
         const FigureSource source = figure_source(scene, run_dir, record, rasters);
         if (scene.output.png) record.figures = draw_figures(source, record.warnings);
-        if (!scene.output.film.empty()) draw_film(source, scene.output.film, record.figures, record.warnings);
+        if (scene.output.film.empty()) return;
+        draw_film(source, scene.output.film, record.figures, record.warnings);
+        draw_space_film(source, scene.output.film, record.figures, record.warnings);
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
     write_text(run_dir / "run.json", run_json(record));

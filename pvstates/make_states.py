@@ -1,11 +1,11 @@
 """Makes the .pvsm templates in this folder from the readable states beside them, in ParaView itself.
 
-    pvbatch make_states.py RUN_DIR [--out FOLDER]
+    pvbatch make_states.py RUN_DIR [STATE...] [--out FOLDER]
 
-RUN_DIR is a run that has everything (stress, a profile, a survey); which one does not matter, for all that belongs to
-the run becomes a slot: `frana run` and `frana states` put there what apps/frana_states.h says. To know what belongs to
-the run, each number and text of its look is replaced by one of a kind before the state is built, and searched for in
-what ParaView saved. Domains, informative properties, property ids and values that equal their defaults are left out:
+RUN_DIR is a run that has everything (stress, a profile, a survey; for the state impact, points in space and a
+barrier); which one does not matter, for all that belongs to the run becomes a slot: `frana run` and `frana states` put
+there what apps/frana_states.h says. To know what belongs to the run, each number and text of its look is replaced by one
+of a kind before the state is built, and searched for in what ParaView saved. Domains, informative properties, property ids and values that equal their defaults are left out:
 a state then is a tenth of its size, loads the same, and changes line by line.
 """
 import argparse
@@ -23,11 +23,12 @@ from paraview import servermanager, simple  # noqa: E402
 
 from frana_scene import NoState  # noqa: E402
 
-STATES = ["overview", "stress", "profiles", "survey", "budgets"]
+STATES = ["overview", "stress", "profiles", "survey", "impact", "budgets"]
 FILES = ["FileName", "FileNames"]
 WHOLE = {"VOI": "/cross/extent/%d", "SampleRateI": "/cross/stride", "SampleRateJ": "/cross/stride",
          "LegendLocation": "/legend", "EndTime": "/last_time"}  # what cannot be marked: whole numbers, the data's times
-OF_SOME = {"LegendLocation": ["profiles"], "EndTime": ["overview", "stress", "profiles"]}  # fixed in other states
+OF_SOME = {  # fixed in other states
+    "LegendLocation": ["profiles"], "EndTime": ["overview", "stress", "profiles", "impact"]}
 NEEDLESS = {  # names of arrays that ParaView picks by itself, and what belongs to a user's own settings
     "PointArrayStatus", "CellArrayStatus", "SelectionPointFieldDataArrayName", "SelectionCellFieldDataArrayName",
     "SetScaleArray", "OpacityArray", "OpacityArrayName", "OSPRayScaleArray", "GlyphTableIndexArray", "SelectScaleArray",
@@ -156,6 +157,7 @@ def save(name, run_dir, look, slots, folder):
 def main():
     parser = argparse.ArgumentParser(description="Makes the templates of frana's ParaView states.")
     parser.add_argument("run_dir")
+    parser.add_argument("states", nargs="*", help="the states to make; default: all that the run has")
     parser.add_argument("--out", default=os.path.dirname(os.path.abspath(__file__)))
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
@@ -168,7 +170,7 @@ def main():
             look, slots = marked(json.load(stream))
         with open(os.path.join(folder, "states", "look.json"), "w") as stream:
             json.dump(look, stream)
-        for name in STATES:
+        for name in given.states or [name for name in STATES if not look["states"][name]]:
             save(name, folder, look, slots, given.out)
 
 

@@ -53,9 +53,13 @@ TEST_CASE("The colour range leaves the largest half per cent to the tip of the b
     CHECK_FALSE(signed_range.more_below);
 }
 
-TEST_CASE("Both colour maps run evenly from light to dark or through light", "[figures]") {
+TEST_CASE("All colour maps run evenly from light to dark or through light", "[figures]") {
     for (double t = 0.0; t < 1.0; t += 0.02)
         CHECK(brightness(colour_at(Colormap::depth, t + 0.02)) < brightness(colour_at(Colormap::depth, t)));
+    for (double t = 0.0; t < 1.0; t += 0.02) {
+        CHECK(brightness(colour_at(Colormap::speed, t + 0.02)) > brightness(colour_at(Colormap::speed, t)));
+        CHECK(brightness(colour_at(Colormap::pressure, t + 0.02)) < brightness(colour_at(Colormap::pressure, t)));
+    }
     CHECK(brightness(colour_at(Colormap::diverging, 0.5)) > brightness(colour_at(Colormap::diverging, 0.1)));
     CHECK(brightness(colour_at(Colormap::diverging, 0.5)) > brightness(colour_at(Colormap::diverging, 0.9)));
 }

@@ -18,6 +18,7 @@
 #include "frana_states.h"
 #include "fresh_folder.h"
 #include "observe/table.h"
+#include "vtk_io/offscreen.h"
 #include "vtk_io/reader.h"
 
 using namespace frana;
@@ -44,6 +45,24 @@ const fs::path& full_run() {
     static const fs::path run = folder.path() / "run";
     return run;
 }
+
+/// A small run with points in space and a wall, which the state of the impact is for.
+const fs::path& impact_run() {
+    static const FreshFolder folder;
+    static const bool done = [] {
+        RunOptions options;
+        options.case_file = FRANA_SOURCE_DIR "/tests/states_case/impact.toml";
+        options.out = folder.path() / "run";
+        options.quiet = true;
+        return run_command(options) == 0;
+    }();
+    REQUIRE(done);
+    static const fs::path run = folder.path() / "run";
+    return run;
+}
+
+/// A run that has the files of a state.
+const fs::path& run_for(const std::string& state) { return state == "impact" ? impact_run() : full_run(); }
 
 std::set<std::string> all_matches(const std::string& text, const std::regex& pattern) {
     std::set<std::string> found;
@@ -97,6 +116,8 @@ std::set<std::string> arrays_written(const fs::path& run) {
     std::set<std::string> names;
     for (const auto& column : read_frame(run, -1).nodes) names.insert(column.first);
     for (const auto& column : read_particles(run, -1).columns) names.insert(column.first);
+    for (const auto& column : read_particles(impact_run(), -1).columns) names.insert(column.first);
+    add_arrays(polydata(impact_run() / "barriers/barriers_000020.vtp")->GetCellData(), names);
     for (const auto& column : read_terrain(run).nodes) names.insert(column.first);
     for (const char* file : {"survey_areas.vtp", "survey_outlines.vtp", "profiles/profiles_000000.vtp"}) {
         const auto data = polydata(run / file);
@@ -119,7 +140,7 @@ TEST_CASE("the templates read only files and arrays that a run writes") {
         CHECK(!files.empty());
         for (const std::string& file : files) {
             CAPTURE(file);
-            CHECK(fs::exists(full_run() / file));
+            CHECK(fs::exists(run_for(state.name) / file));
         }
         std::set<std::string> known = written;
         for (const auto& values : values_of(state.text, "ResultArrayName")) known.insert(values.begin(), values.end());
@@ -136,7 +157,7 @@ TEST_CASE("a run's states have its files, ranges and cameras, and no slot is lef
     const Json look = Json::parse(text_of(full_run() / "states" / "look.json"));
     for (const std::string& name : state_names()) {
         CAPTURE(name);
-        const std::string text = text_of(full_run() / "states" / (name + ".pvsm"));
+        const std::string text = text_of(run_for(name) / "states" / (name + ".pvsm"));
         CHECK(text.find("slot=") == std::string::npos);
         for (const auto& property : {"FileName", "FileNames"})
             for (const auto& values : values_of(text, property))
@@ -178,6 +199,7 @@ TEST_CASE("a state that the run lacks files for is not written, and asking for i
     CHECK_THROWS_WITH(states_command({options.out, {"stress"}}),
                       Contains("no state \"stress\": the frames of grid.pvd have no array stress") &&
                           Contains("material.rheology"));
+    CHECK_THROWS_WITH(states_command({options.out, {"impact"}}), Contains("no points in space stood before a barrier"));
     CHECK_THROWS_WITH(states_command({options.out, {"survey"}}), Contains("not held against a survey"));
     CHECK_THROWS_WITH(states_command({options.out, {"strss"}}), Contains("found \"strss\"; expected overview, stress"));
     CHECK_THROWS_AS(states_command({folder.path() / "nothing", {}}), UserError);
@@ -189,7 +211,9 @@ TEST_CASE("states written again after a move name the files where they lie now")
     fs::copy(full_run(), moved, fs::copy_options::recursive);
     CHECK(text_of(moved / "states" / "overview.pvsm").find(moved.filename().string()) == std::string::npos);
     REQUIRE(states_command({moved, {}}) == 0);
+    CHECK(!fs::exists(moved / "states" / "impact.pvsm"));  // it has no points in space
     for (const std::string& name : state_names()) {
+        if (name == "impact") continue;
         const std::string text = text_of(moved / "states" / (name + ".pvsm"));
         CHECK(text.find(folder.path().string() + "/a run &amp; more/") != std::string::npos);
         CHECK(text.find(full_run().string()) == std::string::npos);
@@ -197,4 +221,54 @@ TEST_CASE("states written again after a move name the files where they lie now")
     fs::remove(moved / "profiles.pvd");
     REQUIRE(states_command({moved, {}}) == 0);
     CHECK(!fs::exists(moved / "states" / "profiles.pvsm"));
+}
+
+TEST_CASE("the look of an impact has its time, the points' size and a camera on it", "[states]") {
+    const Json look = Json::parse(text_of(impact_run() / "states" / "look.json"));
+    REQUIRE(look["states"]["impact"] == "");
+    const std::vector<double> times = barrier_times(impact_run());
+    const double at = look["impact_time"].get<double>();
+    CHECK(std::find(times.begin(), times.end(), at) != times.end());
+    CHECK(look["range"]["pressure"][1].get<double>() > 0.0);
+    CHECK(look["range"]["point_speed"][1].get<double>() > 0.0);
+    const std::vector<double> frames = particle_times(impact_run());
+    const auto frame = std::find(frames.begin(), frames.end(), at);
+    REQUIRE(frame != frames.end());
+    const LoadedParticles then = read_particles(impact_run(), frame - frames.begin());
+    std::vector<double> volumes;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(then.count); ++k)
+        if (then.columns.at("model")[k] == 1.0) volumes.push_back(then.columns.at("volume")[k]);
+    std::sort(volumes.begin(), volumes.end());
+    REQUIRE(volumes.size() > 100);
+    CHECK(look["point_radius"].get<double>() == Approx(0.62 * std::cbrt(volumes[(volumes.size() - 1) / 2])).epsilon(1e-9));
+    const Json& camera = look["camera"]["impact"];
+    double distance = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        distance = std::hypot(distance, camera["position"][axis].get<double>() - camera["focal"][axis].get<double>());
+    CHECK(distance > 10.0);
+    CHECK(distance < 200.0);
+    CHECK(camera["focal"][0].get<double>() > 5.0);  // the wall stands at 20 m
+    CHECK(camera["focal"][0].get<double>() < 22.0);
+    CHECK(camera["position"][2].get<double>() > camera["focal"][2].get<double>());
+    CHECK(fs::exists(impact_run() / "states" / "impact.pvsm"));
+}
+
+TEST_CASE("a run with points in space draws them, and frana figures does it again", "[space]") {
+    const std::vector<std::string> pictures = {"view_impact.png", "section_impact.png", "view_points.png",
+                                               "section_points.png"};
+    const FreshFolder folder;
+    const fs::path copy = folder.path() / "run";
+    fs::copy(impact_run(), copy, fs::copy_options::recursive);
+    fs::remove_all(copy / "figures");
+    FiguresOptions options;
+    options.run_dir = copy;
+    options.time = 1.0;
+    REQUIRE(figures_command(options) == 0);
+    CHECK_FALSE(fs::exists(copy / "figures" / "view_points_t1s.png"));  // columns only
+    options.time = 2.3;
+    REQUIRE(figures_command(options) == 0);
+    if (!no_renderer_reason().empty()) return;
+    for (const std::string& picture : pictures) CHECK(fs::exists(copy / "figures" / picture));
+    CHECK(fs::exists(copy / "figures" / "view_points_t2.3s.png"));
+    CHECK(fs::exists(copy / "figures" / "section_points_t2.3s.png"));
 }

@@ -1,10 +1,10 @@
 """Loads the states of a run in ParaView, and holds each against the readable Python state that it was made from.
 
-Usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched
+Usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [impact]
 
-Checks for every state of RUN_DIR/states that every reader reads a file of this run, and every array of the state is
-there: loaded as it is (plain), or with RUN_DIR as data directory (searched); so are the files of the templates in
-PVSTATES_DIR.
+Checks for every state of RUN_DIR/states but impact, or for that one alone, that every reader reads a file of this run,
+and every array of the state is there: loaded as it is (plain), or with RUN_DIR as data directory (searched); so are the
+files of the templates in PVSTATES_DIR.
 full: both, and the picture equals that of the Python state, and is not blank (flow and areas are in colour, on grey
 terrain). Prints the count of checks and a sentence for each that failed; exits with 1 when there is one.
 """
@@ -17,11 +17,13 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 
 SIZE = [900, 600]
 COLOURED = {  # least share of coloured pixels, of those in the middle; a tenth of what the test's run shows
-    "overview": 0.02, "stress": 0.02, "profiles": 0.01, "survey": 0.02, "budgets": 0.0005}
+    "overview": 0.02, "stress": 0.02, "profiles": 0.01, "survey": 0.02, "impact": 0.02,
+    "budgets": 0.0005}
 ARRAYS = {  # what the state's own sources must have made, besides what its readers read
     "overview": ["depth", "surface", "speed"],
     "stress": ["sigma_xx", "sigma_yy", "sigma_xy", "effective_xx", "effective_yy", "principal_1", "principal_2"],
     "profiles": ["distance", "elevation", "initial_surface", "surface", "depth"],
+    "impact": ["model", "speed", "pressure", "barrier", "hillshade"],
     "survey": ["agreement", "extent", "hillshade"],
     "budgets": ["t", "kinetic", "dissipated", "potential_from_start", "max_speed", "front", "mass_error"]}
 
@@ -77,8 +79,9 @@ def files_of(source):
 
 def arrays_in_sources():
     names = set()
+    time = simple.GetAnimationScene().AnimationTime  # points in space are not there from the start
     for source in simple.GetSources().values():
-        source.UpdatePipeline()
+        source.UpdatePipeline(time)
         information = source.GetDataInformation()
         for attributes in (information.GetPointDataInformation(), information.GetCellDataInformation(),
                            information.GetRowDataInformation()):
@@ -129,10 +132,10 @@ def check_picture(state, run_dir, pictures):
     check(coloured(found) > COLOURED[state], "%s: the picture is blank" % state)
 
 
-def main(states_dir, run_dir, pictures, mode):
+def main(states_dir, run_dir, pictures, mode, impact):
     sys.path.insert(0, states_dir)
     os.makedirs(pictures, exist_ok=True)
-    for state in ARRAYS:
+    for state in ["impact"] if impact else [name for name in ARRAYS if name != "impact"]:
         file = os.path.join(run_dir, "states", state + ".pvsm")
         check(os.path.exists(file), "%s: not there" % file)
         if os.path.exists(file):
@@ -146,9 +149,11 @@ def main(states_dir, run_dir, pictures, mode):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 5 or sys.argv[4] not in ("full", "plain", "searched"):
-        print("usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched", file=sys.stderr)
+    impact = sys.argv[5:] == ["impact"]
+    if len(sys.argv) != 5 + impact or sys.argv[4] not in ("full", "plain", "searched"):
+        print("usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [impact]",
+              file=sys.stderr)
         sys.exit(2)
-    status = main(*[os.path.abspath(argument) for argument in sys.argv[1:4]], sys.argv[4])
+    status = main(*[os.path.abspath(argument) for argument in sys.argv[1:4]], sys.argv[4], impact)
     sys.stdout.flush()
     os._exit(status)  # pvbatch's own way out loses the status

@@ -21,9 +21,9 @@ if [ -z "${DISPLAY:-}" ]; then
     export DISPLAY=":$(cat "$work/display")"
 fi
 
-look() {  # RUN_DIR mode what
+look() {  # RUN_DIR mode what [impact]
     for _ in 1 2 3; do  # a loaded machine may refuse the connection to its X server
-        look_once "$1" "$2"
+        look_once "$1" "$2" ${4:-}
         grep -q "bad X server connection" "$work/states.log" || break
     done
     cat "$work/states.out"
@@ -32,14 +32,19 @@ look() {  # RUN_DIR mode what
 }
 
 look_once() {
-    run_pvbatch "$source/tests/pvbatch_states.py" "$source/pvstates" "$1" "$work/pictures" "$2" \
+    run_pvbatch "$source/tests/pvbatch_states.py" "$source/pvstates" "$1" "$work/pictures" "$2" ${3:-} \
         >"$work/states.out" 2>"$work/states.log"
     status=$?
 }
 
-rm -rf "$work/run" "$work/elsewhere"
+rm -rf "$work/run" "$work/impact" "$work/elsewhere"
 "$frana" run "$source/tests/states_case/case.toml" --out "$work/run" --threads 1 --quiet || exit 1
 look "$work/run" full "as the run left them"
+
+# Points in space before a wall: a run of its own.
+"$frana" run "$source/tests/states_case/impact.toml" --out "$work/impact" --threads 1 --quiet || exit 1
+look "$work/impact" full "the impact" impact
+look "$work/impact" searched "the impact, with the folder given to ParaView" impact
 
 moved="$work/elsewhere/a run & more"
 mkdir -p "$work/elsewhere" && mv "$work/run" "$moved" || exit 1

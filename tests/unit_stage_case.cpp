@@ -126,6 +126,21 @@ TEST_CASE("Barriers come with their places and heights", "[barrier]") {
     CHECK(dam.friction == 0.3);
 }
 
+TEST_CASE("What resolved.toml says of a barrier on an outline or of any shape is a case again", "[barrier]") {
+    const std::string text =
+        "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n"
+        "[material.bed]\nlaw = \"none\"\n[[barrier]]\n";
+    const auto resolved_of = [&](const std::string& keys) {
+        return resolved_toml(CaseFile::parse(text + keys, "slide/case.toml"));
+    };
+    CHECK_NOTHROW(CaseFile::parse(resolved_of("mesh = \"wall.stl\"\n"), "run/resolved.toml"));
+    const std::string resolved = resolved_of("outline = \"wall.geojson\"\nheight = 4\n");
+    REQUIRE(has(resolved, "wet = \"left\""));
+    CHECK(CaseFile::parse(resolved, "run/resolved.toml").number("barrier.0.height") == 4.0);
+    CHECK(has(problem_of("[[barrier]]\noutline = \"wall.geojson\"\nheight = 4\nwet = \"right\"\n"),
+              "barrier.0.wet: found together with outline; expected it with line only"));
+}
+
 TEST_CASE("Barriers that cannot be are refused in one sentence", "[barrier]") {
     const auto barrier = [](const std::string& keys) { return problem_of("[[barrier]]\n" + keys); };
     CHECK(has(barrier("outline = \"away.geojson\"\nheight = 4\n"),

@@ -21,6 +21,27 @@ constexpr std::array<Colour, 20> viridis{{{68, 1, 84},    {72, 21, 103},  {72, 3
                                           {41, 175, 127}, {60, 187, 117}, {85, 198, 103}, {115, 208, 85},
                                           {149, 216, 64}, {184, 222, 41}, {220, 227, 25}, {253, 231, 37}}};
 
+constexpr std::array<Colour, 10> plasma{{{13, 8, 135},
+                                         {70, 3, 159},
+                                         {114, 1, 168},
+                                         {156, 23, 158},
+                                         {189, 55, 134},
+                                         {216, 87, 107},
+                                         {237, 121, 83},
+                                         {251, 159, 58},
+                                         {253, 202, 38},
+                                         {240, 249, 33}}};
+
+constexpr std::array<Colour, 9> greens{{{247, 252, 245},
+                                        {229, 245, 224},
+                                        {199, 233, 192},
+                                        {161, 217, 155},
+                                        {116, 196, 118},
+                                        {65, 171, 93},
+                                        {35, 139, 69},
+                                        {0, 109, 44},
+                                        {0, 68, 27}}};
+
 constexpr std::array<Colour, 9> cool_to_warm{{{59, 76, 192},
                                               {98, 130, 234},
                                               {141, 176, 254},
@@ -64,7 +85,13 @@ Colour scaled(const Colour& colour, double factor) {
 
 Colour colour_at(Colormap map, double t) {
     const double place = t > 0.0 ? std::min(t, 1.0) : 0.0;
-    return map == Colormap::depth ? along(viridis, 1.0 - place) : along(cool_to_warm, place);
+    switch (map) {
+        case Colormap::depth: return along(viridis, 1.0 - place);
+        case Colormap::speed: return along(plasma, place);
+        case Colormap::pressure: return along(greens, place);
+        case Colormap::diverging: break;
+    }
+    return along(cool_to_warm, place);
 }
 
 double brightness(const Colour& colour) {

@@ -26,6 +26,8 @@ struct Pixels {
 /// How a value becomes a colour.
 enum class Colormap {
     depth,      ///< viridis (van der Walt & Smith 2015) reversed: small is light, large is dark, also in grey
+    speed,      ///< plasma (van der Walt & Smith 2015): slow is dark blue, fast is yellow
+    pressure,   ///< Greens (Brewer 2003): nearly white without any, dark green where it is large
     diverging,  ///< cool to warm (Moreland 2009): blue below, grey at the middle, red above; for signed
                 ///< fields
 };
@@ -57,6 +59,7 @@ inline constexpr Colour beyond{240, 180, 40};    ///< simulated only
 inline constexpr Colour missed{0, 62, 130};      ///< surveyed only
 inline constexpr Colour grid{218, 218, 218};     ///< grid lines of charts
 inline constexpr Colour note{70, 70, 70};        ///< footers
+inline constexpr Colour unloaded{238, 238, 232};  ///< barrier in a run without loads
 inline constexpr Colour ground{205, 195, 182};   ///< filled terrain in charts
 }  // namespace colours
 

@@ -19,6 +19,7 @@
 #include "vtk_io/map_figure_paint.h"
 #include "vtk_io/map_figure_piece.h"
 #include "vtk_io/offscreen.h"
+#include "vtk_io/space_actors.h"
 
 namespace frana {
 namespace {
@@ -28,6 +29,16 @@ constexpr double kDegree = 0.017453292519943295;
 using Vec3 = Eigen::Vector3d;
 
 Eigen::Vector4d with_one(const Vec3& p) { return {p.x(), p.y(), p.z(), 1.0}; }
+
+/// Few drops that are thrown up need not be in view.
+double height_of_most(const std::vector<SpaceObjects::Ball>& balls) {
+    if (balls.empty()) return 0.0;
+    std::vector<double> heights;
+    for (const auto& ball : balls) heights.push_back(ball.centre.z());
+    const auto at = heights.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(heights.size() - 1));
+    std::nth_element(heights.begin(), at, heights.end());
+    return *at;
+}
 
 class BlockDrawing {
 public:
@@ -119,7 +130,8 @@ void BlockDrawing::lines(vtkRenderer* renderer) const {
     double low = 1e300, high = -1e300;
     for (const double z : surface_.values)
         if (!std::isnan(z)) low = std::min(low, z), high = std::max(high, z);
-    const double interval = high > low ? round_up_125((high - low) / 25.0) : 0.0;
+    const bool relief = high - low > 1e-6 * g.cell;  // resampling leaves level ground level to round-off only
+    const double interval = relief ? round_up_125((high - low) / 25.0) : 0.0;
     std::vector<Polyline> contours;
     for (double n = std::ceil(low / interval); interval > 0.0 && n * interval <= high; ++n)
         for (const auto& line : level_lines(surface_, (n + 1e-4) * interval)) contours.push_back(line);
@@ -151,6 +163,12 @@ std::vector<Vec3> BlockDrawing::silhouette() const {
                 points.emplace_back(g.x(i) - origin_.x(), g.y(j) - origin_.y(), surface_.at(i, j));
     for (const double x : {g.x0, g.x_max()})
         for (const double y : {g.y0, g.y_max()}) points.emplace_back(x - origin_.x(), y - origin_.y(), foot_);
+    const Vec3 origin(origin_.x(), origin_.y(), 0.0);
+    const double highest = height_of_most(figure_.objects.balls);
+    for (const auto& ball : figure_.objects.balls)
+        if (ball.centre.z() <= highest) points.emplace_back(ball.centre - origin);
+    for (const auto& facet : figure_.objects.facets)
+        for (const Vec3& corner : facet.corners) points.emplace_back(corner - origin);
     return points;
 }
 
@@ -220,6 +238,10 @@ void BlockDrawing::scene(vtkRenderer* renderer) {
     renderer->AddActor(skin_actor(surface_, skin_, origin_));
     renderer->AddActor(wall_actor(surface_, foot_, origin_));
     lines(renderer);
+    const SpaceObjects& objects = figure_.objects;
+    if (!objects.facets.empty()) renderer->AddActor(facets_actor(objects.facets, origin_));
+    if (!objects.edges.empty()) renderer->AddActor(edges_actor(objects.edges, origin_, 0.1 * unit_));
+    if (!objects.balls.empty()) renderer->AddActor(balls_actor(objects.balls, origin_));
     figure_.eye ? aim_from_eye(renderer) : aim(renderer);
 }
 
@@ -246,10 +268,17 @@ void BlockDrawing::explanations(Canvas& canvas) const {
     const double u = unit_, w = figure_.width, h = figure_.height;
     const double tall = std::min(0.5 * room_.height(), 24.0 * u);
     const double middle = 0.5 * (room_.y0 + room_.y1);
-    draw_colour_bar(canvas,
-                    {std::round(w - 7.0 * u), std::round(middle - 0.5 * tall), std::round(w - 5.9 * u),
-                     std::round(middle + 0.5 * tall)},
-                    colours_, figure_.colormap, figure_.field_label, u);
+    std::vector<ColourBar> bars = figure_.objects.bars;
+    if (bars.empty()) bars.push_back({figure_.colormap, colours_, figure_.field_label});
+    const double gap = 1.5 * u, each = (tall + gap) / static_cast<double>(bars.size()) - gap;
+    for (std::size_t n = 0; n < bars.size(); ++n) {  // one above the other
+        const double top = middle + 0.5 * tall - static_cast<double>(n) * (each + gap);
+        draw_colour_bar(canvas,
+                        {std::round(w - 7.0 * u), std::round(top - each), std::round(w - 5.9 * u), std::round(top)},
+                        bars[n].range, bars[n].colormap, bars[n].label, u);
+    }
+    const Vec2 corner(1.5 * u, h - captions_.title_height() - 1.7 * u);
+    draw_inset(canvas, figure_.objects.inset, corner, {0.34 * w, 0.16 * h}, u);
     if (figure_.survey) {
         LegendEntry entry;
         entry.kind = LegendEntry::Kind::cased_line;

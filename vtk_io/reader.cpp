@@ -7,6 +7,7 @@
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
 #include <vtkCell.h>
+#include <vtkCellData.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
 #include <vtkIdList.h>
@@ -95,6 +96,12 @@ LoadedFrame read_image(const std::filesystem::path& file) {
     return frame_of(reader->GetOutput());
 }
 
+std::vector<double> times_in(const std::filesystem::path& pvd) {
+    std::vector<double> times;
+    for (const PvdEntry& entry : read_pvd(pvd)) times.push_back(entry.time);
+    return times;
+}
+
 /// Entry `number` of a .pvd (negative: from the end) and its position.
 std::pair<PvdEntry, Index> entry_of(const std::filesystem::path& pvd, Index number) {
     const auto entries = read_pvd(pvd);
@@ -109,10 +116,10 @@ std::pair<PvdEntry, Index> entry_of(const std::filesystem::path& pvd, Index numb
 
 }  // namespace
 
-std::vector<double> frame_times(const std::filesystem::path& run_dir) {
-    std::vector<double> times;
-    for (const PvdEntry& entry : read_pvd(run_dir / "grid.pvd")) times.push_back(entry.time);
-    return times;
+std::vector<double> frame_times(const std::filesystem::path& run_dir) { return times_in(run_dir / "grid.pvd"); }
+
+std::vector<double> particle_times(const std::filesystem::path& run_dir) {
+    return times_in(run_dir / "particles.pvd");
 }
 
 Index nearest_frame(const std::filesystem::path& run_dir, double time) {
@@ -161,6 +168,35 @@ std::pair<double, double> profile_ends(const std::filesystem::path& run_dir) {
     lines->GetPoint(stations->GetId(0), first);
     lines->GetPoint(stations->GetId(stations->GetNumberOfIds() - 1), last);
     return {first[2], last[2]};
+}
+
+std::vector<double> barrier_times(const std::filesystem::path& run_dir) {
+    const std::filesystem::path pvd = run_dir / "barriers.pvd";
+    return std::filesystem::exists(pvd) ? times_in(pvd) : std::vector<double>{};
+}
+
+std::vector<LoadedPatch> read_barriers(const std::filesystem::path& run_dir, Index number) {
+    const std::filesystem::path file = run_dir / entry_of(run_dir / "barriers.pvd", number).first.file;
+    vtkNew<vtkXMLPolyDataReader> reader;
+    read_file(reader, file);
+    vtkPolyData* faces = reader->GetOutput();
+    vtkDataArray *pressure = faces->GetCellData()->GetArray("pressure"),
+                 *barrier = faces->GetCellData()->GetArray("barrier"), *face = faces->GetCellData()->GetArray("face");
+    if (!pressure || !barrier || !face)
+        throw UserError(file.string() + ": has no loads of barriers; run the case again");
+    std::vector<LoadedPatch> patches;
+    for (vtkIdType k = 0; k < faces->GetNumberOfCells(); ++k) {
+        LoadedPatch patch;
+        vtkIdList* points = faces->GetCell(k)->GetPointIds();
+        if (points->GetNumberOfIds() != 4) throw UserError(file.string() + ": has faces other than of four corners");
+        for (std::size_t c = 0; c < 4; ++c)
+            faces->GetPoint(points->GetId(static_cast<vtkIdType>(c)), patch.corners[c].data());
+        patch.pressure = pressure->GetTuple1(k);
+        patch.barrier = static_cast<int>(barrier->GetTuple1(k));
+        patch.face = static_cast<int>(face->GetTuple1(k));
+        patches.push_back(patch);
+    }
+    return patches;
 }
 
 std::optional<std::array<double, 4>> bounds_of(const std::filesystem::path& vtp) {

@@ -41,6 +41,9 @@ struct LoadedParticles {
 /// Times [s] of the frames in RUN_DIR/grid.pvd, in order. Throws UserError when it is missing or not a .pvd.
 std::vector<double> frame_times(const std::filesystem::path& run_dir);
 
+/// The same of RUN_DIR/particles.pvd.
+std::vector<double> particle_times(const std::filesystem::path& run_dir);
+
 /// Position in frame_times of the frame nearest to `time`. Throws UserError when there is no frame.
 Index nearest_frame(const std::filesystem::path& run_dir, double time);
 
@@ -57,6 +60,19 @@ LoadedFrame read_terrain(const std::filesystem::path& run_dir);
 /// Elevation [m] at the first and the last station of the first profile of RUN_DIR/profiles.pvd; 0 and 0 when that
 /// has none.
 std::pair<double, double> profile_ends(const std::filesystem::path& run_dir);
+
+/// A square of a barrier's face with its load (writers.h).
+struct LoadedPatch {
+    int barrier = 0, face = 0;
+    std::array<Vec3, 4> corners;  ///< [m]; from the first to the second to the right, to the last upwards
+    double pressure = 0.0;        ///< mean since the frame before [Pa]
+};
+
+/// Times of RUN_DIR/barriers.pvd, in order; none when the run has no such file.
+std::vector<double> barrier_times(const std::filesystem::path& run_dir);
+
+/// The faces in frame `number` of RUN_DIR/barriers.pvd. UserError when there is no such frame or no file of it.
+std::vector<LoadedPatch> read_barriers(const std::filesystem::path& run_dir, Index number);
 
 /// [xmin, ymin, xmax, ymax] of the points of a .vtp file; nothing when it has none.
 std::optional<std::array<double, 4>> bounds_of(const std::filesystem::path& vtp);

@@ -145,9 +145,12 @@ void CaseReader::check_barrier(const std::string& prefix) {
     const auto there = [&](const char* name) {
         return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
     };
+    // "left" is what resolved.toml writes for a case that says nothing
+    const bool right = case_.given(prefix + "wet") && case_.word(prefix + "wet") == "right";
+    const auto said = [&](const std::string& name) { return case_.given(prefix + name) && (name != "wet" || right); };
     if (there("mesh")) {
         for (const char* name : {"outline", "line", "wet", "thickness", "height", "top"})
-            if (case_.given(prefix + name))
+            if (said(name))
                 wrong(prefix + name, "found together with mesh", "expected the mesh alone, which has its place and height",
                       "remove one of them");
         return;
@@ -162,7 +165,7 @@ void CaseReader::check_barrier(const std::string& prefix) {
               "add height = ... or top = ... under [[barrier]]");
     if (there("line") || there("outline") == there("line")) return;
     for (const char* name : {"thickness", "wet"})
-        if (case_.given(prefix + name))
+        if (said(name))
             wrong(prefix + name, "found together with outline", "expected it with line only", "remove it");
 }
 

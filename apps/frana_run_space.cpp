@@ -1,0 +1,169 @@
+#include "frana_run_space.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "frana_run_film.h"
+#include "vtk_io/space_figure.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// The outputs of a run that has points in space.
+class SpaceRun {
+public:
+    explicit SpaceRun(const FigureSource& source)
+        : source_(source), times_(particle_times(source.run_dir)), loads_(barrier_times(source.run_dir)) {
+        if (!times_.empty()) named_ = read_particles(source.run_dir, -1).columns.count("model") > 0;
+    }
+
+    Index count() const { return static_cast<Index>(times_.size()); }
+    double time(Index number) const { return times_[static_cast<std::size_t>(number)]; }
+
+    Index nearest(double time) const {
+        Index best = 0;
+        for (Index k = 1; k < count(); ++k)
+            if (std::abs(this->time(k) - time) < std::abs(this->time(best) - time)) best = k;
+        return best;
+    }
+
+    /// The output with the largest horizontal load on one barrier; nothing without any.
+    std::optional<Index> hardest() const {
+        double most = 0.0;
+        std::optional<Index> number;
+        for (const double time : loads_) {
+            SpaceMoment moment;
+            moment.barriers = barriers(time);
+            const BarrierSolid* barrier = moment.most_loaded();
+            if (!barrier || barrier->load.head<2>().norm() <= most) continue;
+            most = barrier->load.head<2>().norm();
+            number = nearest(time);
+        }
+        return number;
+    }
+
+    SpaceMoment moment(Index number) const {
+        LoadedParticles particles = read_particles(source_.run_dir, number);
+        if (named_ && particles.columns.count("model") == 0)
+            particles.columns["model"].assign(static_cast<std::size_t>(particles.count), 0.0);
+        return space_moment(particles, barriers(time(number)));
+    }
+
+    SpaceFigure figure(Index number, const SpaceView& view, int digits) const {
+        SpaceFigure figure;
+        figure.bed = source_.bed;
+        figure.moment = moment(number);
+        figure.view = view;
+        figure.title = fmt::format("{}: points in space, t = {:.{}f} s", source_.title, time(number), digits);
+        figure.footer =
+            figure.moment.typical_size > 0.0
+                ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
+                : source_.footer;
+        figure.width = source_.width;
+        figure.height = std::max(source_.width * 7 / 10, 300);
+        return figure;
+    }
+
+    int digits() const { return decimals_of(times_); }
+
+private:
+    /// At that time; before the first loads, and between, the faces that are known without any.
+    std::vector<BarrierSolid> barriers(double time) const {
+        if (loads_.empty()) return {};
+        const auto found = std::find(loads_.begin(), loads_.end(), time);
+        const bool known = found != loads_.end();
+        std::vector<LoadedPatch> patches = read_barriers(source_.run_dir, known ? found - loads_.begin() : 0);
+        if (!known)
+            for (LoadedPatch& patch : patches) patch.pressure = 0.0;
+        return barrier_solids(patches, source_.barrier_tops, source_.bed);
+    }
+
+    const FigureSource& source_;
+    std::vector<double> times_, loads_;
+    bool named_ = false;  ///< the last frame says which are points; then frames that do not have columns only
+};
+
+bool has_points(const FigureSource& source) {
+    return source.in_space && !source.bed.values.empty() && fs::exists(source.run_dir / "particles.pvd");
+}
+
+/// A moment of a run to be drawn, and what it is called.
+struct Wanted {
+    Index number;
+    std::string name, caption;
+};
+
+std::vector<Wanted> wanted_moments(const SpaceRun& run, const FigureSource& source) {
+    std::vector<Wanted> wanted;
+    if (const auto hardest = run.hardest())
+        wanted.push_back(
+            {*hardest, "impact",
+             fmt::format("at {:.4g} s, the output with the largest load on a barrier", run.time(*hardest))});
+    wanted.push_back({run.count() - 1, "points", "at the end"});
+    if (source.time) {
+        const Index number = run.nearest(*source.time);
+        const std::string moment = fmt::format("{:.6g}", run.time(number));
+        wanted.push_back({number, "points_t" + moment + "s", "at " + moment + " s"});
+    }
+    return wanted;
+}
+
+}  // namespace
+
+void draw_space(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                std::vector<std::string>& warnings) {
+    if (!has_points(source)) return;
+    try {
+        const SpaceRun run(source);
+        if (run.count() == 0) return;
+        const std::vector<Wanted> wanted = wanted_moments(run, source);
+        SharedSpace shared;
+        for (const Wanted& one : wanted) shared.add(run.moment(one.number));
+        if (shared.empty()) return;  // it ended before there were any
+        for (const Wanted& one : wanted) {
+            SpaceFigure figure = run.figure(one.number, shared.view(), run.digits());
+            if (figure.moment.typical_size <= 0.0) continue;
+            attempt(source, {"figures/view_" + one.name + ".png", "points in space " + one.caption}, figures,
+                    warnings, [&](const fs::path& png, std::string& why_not) {
+                        return render_space(figure, png, why_not);
+                    });
+            figure.title += ", section along the flow";
+            attempt(source, {"figures/section_" + one.name + ".png", "section along the flow " + one.caption},
+                    figures, warnings, [&](const fs::path& png, std::string& why_not) {
+                        return render_section(figure, png, why_not);
+                    });
+        }
+    } catch (const UserError& error) {
+        warnings.push_back(fmt::format("figures/view_points.png was not drawn: {}", error.what()));
+    }
+}
+
+void draw_space_film(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
+                     std::vector<std::string>& warnings) {
+    if (!has_points(source)) return;
+    attempt(
+        source, {"figures/film_points." + kind, "points in space through time"}, figures, warnings,
+        [&](const fs::path& film, std::string& why_not) {
+            const SpaceRun run(source);
+            SharedSpace shared;  // every output is read twice, so that they need not fit the memory together
+            std::vector<Index> shown;
+            for (Index number = 0; number < run.count(); ++number) {
+                const SpaceMoment moment = run.moment(number);
+                if (moment.typical_size <= 0.0) continue;
+                shared.add(moment);
+                shown.push_back(number);
+            }
+            if (shown.empty()) return why_not = "no output has points in space", false;
+            return make_film(
+                film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
+                    const Index number = shown[static_cast<std::size_t>(k)];
+                    return render_space(run.figure(number, shared.view(), run.digits()), png, why_not);
+                });
+        });
+}
+
+}  // namespace frana

@@ -1,0 +1,22 @@
+#pragma once
+// Pictures of points in space, from the frames of a run.
+#include <string>
+#include <vector>
+
+#include "frana_run_figures.h"
+
+namespace frana {
+
+/// For a run with points in space: figures/view_points.png and section_points.png at the last output, and
+/// where a barrier has a load, figures/view_impact.png and section_impact.png at the output with the largest.
+/// With `source.time` view_points_tTs.png and section_points_tTs.png at the output nearest to it as well.
+/// Nothing for a run without.
+void draw_space(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                std::vector<std::string>& warnings);
+
+/// figures/film_points.mp4 or .gif: that view at every output time that has points. Nothing for a run
+/// without.
+void draw_space_film(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
+                     std::vector<std::string>& warnings);
+
+}  // namespace frana
