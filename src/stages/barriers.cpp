@@ -43,7 +43,10 @@ Raster with_barriers(const Scene& scene) {
     Raster bed = scene.bed;
     const GridGeometry& g = bed.geometry;
     for (const Barrier& barrier : scene.barriers) {
-        const Prism solid = solid_of(barrier, scene.bed, 0.0);
+        // The solid that points will meet, so that none of them starts inside it; where there are none, a wall along a line
+        // that has no thickness of its own is a cell thick (least_wall_thickness() is three of the cells it is given).
+        const double alone = barrier.thickness ? 0.0 : g.cell / 3.0;
+        const Prism solid = solid_of(barrier, scene.bed, scene.solid ? scene.solid->cell : alone);
         const auto [low, high] = solid.box();
         for (Index j = 0; j < g.ny; ++j)
             for (Index i = 0; i < g.nx; ++i) {
@@ -102,11 +105,18 @@ void BarrierWatch::look(const SolidFlow& flow) {
             if (((x - low + margin).head<2>().array() < 0.0).any() ||
                 ((high + margin - x).head<2>().array() < 0.0).any())
                 continue;
+            // The place in plan, below the top: the box of a bent wall holds far more than what is near it.
+            const double below = solid.top_at(x.head<2>()) - cell;
+            const Vec3 foot(x.x(), x.y(), std::min(x.z(), below));
+            Contact near[kMostContacts];
+            if (!solid.inside(foot) &&
+                !(solid.contacts(foot, cell, near) > 0 && near[0].distance <= kClose * cell))
+                continue;
             load.run_up = std::max(load.run_up, x.z());
             const auto id = static_cast<std::size_t>(flow.body().points.id[p]);
             if (over_[n].size() <= id) over_[n].resize(id + 1, 0);
             // Above the top: what a place under it would be inside of.
-            if (over_[n][id] || !solid.inside({x.x(), x.y(), solid.top_at(x.head<2>()) - cell})) continue;
+            if (over_[n][id] || !solid.inside({x.x(), x.y(), below})) continue;
             over_[n][id] = 1;
             load.overtopped += flow.body().points.mass[p] / density_;
         }
