@@ -54,6 +54,21 @@ MadeScene wall() {
             {{"release.geojson", rectangle(1.5, 0.0, 5.0, 5.0)}, {"wall.geojson", rectangle(20.0, -1.0, 21.0, 6.0)}}};
 }
 
+MadeScene conversion() {
+    Raster floor = on_nodes(25.0, 25.0, 0.1, [](double, double) { return 0.0; });
+    floor.geometry.x0 = floor.geometry.y0 = -10.0;
+    const auto depth = [](double x, double y) { return 10.0 - std::sin(2.0 * x) * std::cos(y); };
+    return {{{"dem.tif", std::move(floor)}, {"depth.tif", on_nodes(5.0, 5.0, 0.05, depth)}},
+            {{"release.geojson", rectangle(0.0, 0.0, 5.0, 5.0)}}};
+}
+
+MadeScene column_collapse() {
+    const double side = 0.8, middle = 0.5 * side;
+    return {{{"dem.tif", on_nodes(side, side, 0.01, [](double, double) { return 0.0; })}},
+            {{"cylinder.geojson", ellipse({middle, middle}, 0.1, 0.1)},
+             {"slab.geojson", rectangle(middle - 0.05, 0.36, middle + 0.05, 0.44)}}};
+}
+
 MadeScene tiff_particles() {
     // The ground reaches 5 m beyond the picture, so that the picture's outer half pixels lie on it as well.
     Raster ground = on_nodes(109.0, 109.0, 1.0, [](double, double) { return 0.0; });
@@ -94,6 +109,9 @@ const std::vector<NamedScene>& made_scenes() {
         {"obstacle", "collapse onto an obstacle (Fois et al. 2024, 4.2)", obstacle},
         {"bindo", "mountainside with river, after Fois et al. 2024, 4.3", bindo},
         {"wall", "slope, flat ground and a wall (Fois et al. 2025, 4.4.1)", wall},
+        {"barrier_hill", "hill with cliffs and a terrace, after Fois et al. 2025, 4.4.2", barrier_hill},
+        {"conversion", "waves of 1 m on 10 m of water (Fois et al. 2025, 4.3)", conversion},
+        {"column_collapse", "flat plate with a column of sand", column_collapse},
         {"tiff_particles", "picture of 100 x 100 pixels (Fois et al. 2025, 4.1)", tiff_particles},
         {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track}};
     return scenes;

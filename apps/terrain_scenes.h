@@ -41,6 +41,13 @@ MadeScene bindo();
 /// Sliding to the wall, Fois et al. (2025), section 4.4.1: Z = 10 - x/3 down to x = 10, then flat, on [0, 25] x [0, 5], with
 /// the water of [1.5, 5] and a wall at x = 20.
 MadeScene wall();
+/// Section 4.4.2 on made-up ground: a hill of 750 x 1000 m with cliffs, and 5.8e3 m3 of mud on a terrace of it
+/// (terrain_barrier_hill.cpp has the design).
+MadeScene barrier_hill();
+/// Section 4.3: h = 10 - sin(2x) cos(y) on [0, 5]^2, on flat ground (eq. 10).
+MadeScene conversion();
+/// A flat plate of 0.8 x 0.8 m, and the foot of a column of sand of 0.1 m radius in its middle.
+MadeScene column_collapse();
 /// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on
 /// flat ground.
 MadeScene tiff_particles();

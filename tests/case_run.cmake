@@ -1,5 +1,6 @@
 # Runs a case as a user would, and compares it with the figures its README promises.
 # cmake -DFRANA=... -DCHECK_RUN=... -DCASE=case.toml -DEXPECTED=expected.csv -DOUT=dir -P case_run.cmake
+# and -DCONVERT="NAME TIME SPACING PROFILE,..." for 3D points in OUT/convert/NAME.h5, whose conservation is compared as well.
 # One thread: results are the same for any number, and tests run side by side.
 function(must)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
@@ -24,6 +25,15 @@ if(text MATCHES "\n\\[survey\\]")
     endif()
   endforeach()
 endif()
+string(REPLACE "," ";" conversions "${CONVERT}")
+foreach(conversion ${conversions})
+  separate_arguments(conversion UNIX_COMMAND "${conversion}")
+  list(GET conversion 0 name)
+  list(GET conversion 1 time)
+  list(GET conversion 2 spacing)
+  list(GET conversion 3 profile)
+  must(${FRANA} convert ${OUT} --time ${time} --spacing ${spacing} --profile ${profile} --out ${OUT}/convert/${name}.h5)
+endforeach()
 if(text MATCHES "\"solid_flow\"")
   must(${FRANA} figures ${OUT} --time 0)  # reads resolved.toml; draws them again
   foreach(product figures/view_points.png figures/section_points.png)

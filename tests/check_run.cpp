@@ -1,7 +1,8 @@
 // check_run RUN_DIR EXPECTED.csv: compares what a run left with the case's expected figures.
 // Lines of EXPECTED.csv: quantity,value,tolerance,unit,source. A quantity is
-//   budgets.mass.relative_error     a number of run.json
+//   budgets.mass.relative_error     a number of run.json; barriers.0.first_contact: of the first of a list
 //   compare/iou                     a number of compare.json
+//   convert/start/conservation.mass.relative_error   a number of convert/start.conservation.json
 //   table/insitu/stress.csv/depth_max/last   last (or first) number of a column of a table, named without its unit
 //   history/max_speed/max           largest absolute value (or: last) of a column of history.csv
 //   profile/x675/length/last        of a profile, last (or first) output: way from the first to the last
@@ -46,7 +47,8 @@ double from_json(const std::filesystem::path& file, const std::string& quantity)
     std::ifstream stream(file);
     if (!stream) throw std::runtime_error(file.string() + ": is not there");
     nlohmann::json value = nlohmann::json::parse(stream);
-    for (const std::string& key : split(quantity, '.')) value = nlohmann::json(value.at(key));
+    for (const std::string& key : split(quantity, '.'))
+        value = value.is_array() ? nlohmann::json(value.at(std::stoul(key))) : nlohmann::json(value.at(key));
     return value.get<double>();
 }
 
@@ -117,6 +119,8 @@ double obtained(const std::filesystem::path& run, const std::string& quantity) {
     if (path[0] == "profile") return from_profile(run, path);
     if (path[0] == "raster") return from_raster(run, path);
     if (path[0] == "table") return from_table(run, path);
+    if (path[0] == "convert")
+        return from_json(run / "convert" / (path.at(1) + ".conservation.json"), path.at(2));
     if (path[0] == "compare") return from_json(run / "compare.json", path.at(1));
     return from_json(run / "run.json", quantity);
 }

@@ -204,6 +204,38 @@ TEST_CASE("A barrier of any shape is ground to columns and a wall to points", "[
     CHECK(load.run_up > 2.5);
 }
 
+TEST_CASE("Run-up is what stands at a barrier, not between the legs of a bent one", "[barrier]") {
+    Scene scene = channel(4.0);
+    scene.barriers[0].outline = {};
+    // One leg along x = 12 across the channel, the other far beside it: the box around both holds all the water.
+    scene.barriers[0].line = {{3.0, 30.5}, {12.0, 30.5}, {12.0, 0.5}};
+    scene.barriers[0].wet_left = false;
+    scene.barriers[0].thickness = 1.0;
+    StagedRun run(scene);
+    const double foot = run.loads()->barriers.at(0).run_up;
+    run_to(run, 0.1);  // the water is 3.5 m before the wall
+    CHECK(run.loads()->barriers.at(0).run_up == foot);
+    run_to(run, 1.0);
+    CHECK(run.loads()->barriers.at(0).run_up > foot);
+}
+
+TEST_CASE("Columns see a wall along a line, its thickness given or not, with a stage in space or without", "[barrier]") {
+    Scene scene = channel(1.5);
+    scene.barriers[0].outline = {};
+    scene.barriers[0].line = {{10.0, 4.5}, {10.0, -0.5}};
+    scene.barriers[0].wet_left = false;  // from the west; least thickness with points: 3 * 0.25 m
+    for (const bool space : {true, false}) {
+        if (!space) scene.solid.reset();
+        const Raster bed = with_barriers(scene);
+        CHECK(bed.at(19, 4) == 2.0);  // x = 9.5
+        CHECK(bed.at(20, 4) == 3.5);
+        CHECK(bed.at(21, 4) == 3.5);
+        CHECK(bed.at(23, 4) == 2.0);
+    }
+    scene.barriers[0].thickness = 2.0;
+    CHECK(with_barriers(scene).at(24, 4) == 3.5);
+}
+
 TEST_CASE("A run against a barrier has the same bits when it is taken up again", "[barrier]") {
     const Scene scene = channel(0.5);
     StagedRun straight(scene);

@@ -72,7 +72,7 @@ void add_barriers(Table& table) {
         choice("barrier.wet", {"left", "right"}, "left",
                "side of the line, walking along it, that material comes from; the wall stands on the other"));
     table.push_back(absent(number("barrier.thickness", "m", positive, "thickness of a wall along a line"),
-                           "as little as keeps both sides apart: about six cells of the stage"));
+                           "as little as keeps both sides apart: three cells of the stage, up to 4.3 askew"));
     table.push_back(
         absent(instead(number("barrier.height", "m", positive, "height above the bed, which the top follows"),
                        "barrier.top"),

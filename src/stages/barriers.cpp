@@ -42,6 +42,17 @@ bool near_box(const std::pair<Vec3, Vec3>& box, const Vec2& place, double margin
     return ((place - low.head<2>()).array() >= -margin).all() && ((high.head<2>() - place).array() >= -margin).all();
 }
 
+/// Whether a place is within `distance` of a barrier in plan, below its top: the box of a bent wall holds far more.
+bool stands_near(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec3& x, double distance, double cell) {
+    if (!near_box(box, x.head<2>(), distance)) return false;
+    const double top = barrier.prism ? barrier.prism->top_at(x.head<2>()) : box.second.z();
+    const Vec3 foot(x.x(), x.y(), std::min(x.z(), top - cell));
+    if (barrier.shape) return barrier.shape->contact(foot).distance <= distance;
+    Contact near[kMostContacts];
+    return barrier.prism->inside(foot) ||
+           (barrier.prism->contacts(foot, cell, near) > 0 && near[0].distance <= distance);
+}
+
 /// The middle of the footprint, on the bed.
 Vec3 middle_of(const Surface& barrier, const Raster& bed) {
     const auto [low, high] = box_of(barrier);
@@ -58,6 +69,13 @@ bool touches(const Surface& barrier, const Vec2& node, double top, double cell) 
     Contact contact[kMostContacts];
     return barrier.prism->inside(below) ||
            (barrier.prism->contacts(below, cell, contact) > 0 && contact[0].distance <= 0.5 * cell);
+}
+
+/// Cells that make a wall along a line as thick as columns see it: as points will meet it, so that none of them starts
+/// inside; where there are none, and no thickness is given, a cell thick (least_wall_thickness() is three of them).
+double cell_for_columns(const Barrier& barrier, const Scene& scene) {
+    if (scene.solid) return scene.solid->cell;
+    return barrier.thickness ? 0.0 : scene.bed.geometry.cell / 3.0;
 }
 
 /// Top of a barrier at a node; of a shape the highest within half a cell.
@@ -97,7 +115,7 @@ Raster with_barriers(const Scene& scene) {
     Raster bed = scene.bed;
     const GridGeometry& g = bed.geometry;
     for (const Barrier& barrier : scene.barriers) {
-        const Surface solid = surface_of(barrier, scene.bed, 0.0);
+        const Surface solid = surface_of(barrier, scene.bed, cell_for_columns(barrier, scene));
         const auto box = box_of(solid);
         for (Index j = 0; j < g.ny; ++j)
             for (Index i = 0; i < g.nx; ++i) {
@@ -111,9 +129,8 @@ Raster with_barriers(const Scene& scene) {
 }
 
 ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
-    constexpr double kOne = 1.0 / 6.0;  // walls along a line are made six of these thick: one cell of the columns
     for (const Barrier& barrier : scene.barriers) {
-        surfaces_.push_back(surface_of(barrier, scene.bed, kOne * cell_));
+        surfaces_.push_back(surface_of(barrier, scene.bed, cell_for_columns(barrier, scene)));
         boxes_.push_back(box_of(surfaces_.back()));
         BarrierLoad load;
         load.about = middle_of(surfaces_.back(), scene.bed);
@@ -135,7 +152,8 @@ void ColumnWatch::look(const ColumnAt& column) {
     constexpr double kClose = 2.0;  // cells
     const auto id = static_cast<std::size_t>(column.id);
     for (std::size_t n = 0; n < surfaces_.size(); ++n) {
-        const bool near = near_box(boxes_[n], column.place, kClose * cell_);
+        const Vec3 top_of_it(column.place.x(), column.place.y(), column.surface);
+        const bool near = stands_near(surfaces_[n], boxes_[n], top_of_it, kClose * cell_, cell_);
         std::vector<std::uint8_t>& seen = seen_[n];
         if (seen.size() <= id) seen.resize(id + 1, kNever);
         const bool over = near && std::isfinite(top_of(surfaces_[n], column.place));
@@ -190,7 +208,7 @@ void BarrierWatch::look(const SolidFlow& flow) {
         BarrierLoad& load = loads_.barriers[n];
         for (Index p = 0; p < flow.body().points.count(); ++p) {
             const Vec3 x = flow.position(p);
-            if (!near_box(boxes_[n], x.head<2>(), kClose * cell)) continue;
+            if (!stands_near(solid, boxes_[n], x, kClose * cell, cell)) continue;
             load.run_up = std::max(load.run_up, x.z());
             const auto id = static_cast<std::size_t>(flow.body().points.id[p]);
             if (over_[n].size() <= id) over_[n].resize(id + 1, 0);
