@@ -90,8 +90,9 @@ SpaceObjects::Inset struck_face(const BarrierSolid& barrier, const SpaceColours&
         for (const Vec3& p : piece.corners) area.corners.emplace_back(right.dot(p.head<2>()), p.z());
         inset.areas.push_back(area);
     }
-    inset.caption = fmt::format("pressure on the barrier, seen along the load of {:.2g} kN",
-                                1e-3 * barrier.load.head<2>().norm());
+    const double load = 1e-3 * barrier.load.head<2>().norm();
+    inset.caption = fmt::format("pressure on the barrier, seen along the load of {} kN",
+                                load < 10.0 ? fmt::format("{:.2g}", load) : fmt::format("{:.0f}", load));
     return inset;
 }
 

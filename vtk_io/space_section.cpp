@@ -106,6 +106,7 @@ private:
     /// Where the plane is in a barrier.
     struct Stretch {
         double from, to, top;  ///< [m]; the elevation of the top is that of the middle
+        bool first, last;      ///< of a piece of the barrier
     };
     std::vector<Stretch> cut(const BarrierSolid& barrier) const {
         std::vector<double> crossings;
@@ -117,10 +118,14 @@ private:
             }
         std::sort(crossings.begin(), crossings.end());
         std::vector<Stretch> parts;
-        for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
-            const double middle = 0.5 * (crossings[k] + crossings[k + 1]);
-            parts.push_back({crossings[k], crossings[k + 1], top_of(barrier, plane_.at(middle))});
-        }
+        constexpr int kParts = 24;  // for a top that follows the ground
+        for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
+            for (int n = 0; n < kParts; ++n) {
+                const double step = (crossings[k + 1] - crossings[k]) / kParts,
+                             from = crossings[k] + n * step;
+                parts.push_back({from, from + step, top_of(barrier, plane_.at(from + 0.5 * step)), n == 0,
+                                 n == kParts - 1});
+            }
         return parts;
     }
     /// Elevation of the top there: of the nearest corner of the top's pieces.
@@ -168,7 +173,10 @@ private:
             }
             for (const Stretch& part : cut(barrier)) {
                 const Vec2 a = pixel(part.from, low_), b = pixel(part.to, part.top);
-                canvas.stroke({a, {a.x(), b.y()}, b, {b.x(), a.y()}}, {colours::black, 0.1 * unit_, {}});
+                std::vector<Vec2> edge{{a.x(), b.y()}, b};
+                if (part.first) edge.insert(edge.begin(), a);
+                if (part.last) edge.push_back({b.x(), a.y()});
+                canvas.stroke(edge, {colours::black, 0.1 * unit_, {}});
             }
         }
     }
