@@ -15,20 +15,23 @@ bool holds(const std::array<double, 4>& box, const Vec3& p) {
     return p.x() >= box[0] && p.x() <= box[2] && p.y() >= box[1] && p.y() <= box[3];
 }
 
-/// What has to be seen: some of the points, and the barriers.
-std::vector<Vec3> subjects_of(const SpaceFigure& figure) {
-    constexpr std::size_t kMost = 300;
-    std::vector<Vec3> places;
+/// What has to be seen.
+struct Subjects { std::vector<Vec3> points, barriers; };
+
+/// Some of the points, and the upper edges of the barriers' sides.
+Subjects subjects_of(const SpaceFigure& figure) {
+    constexpr std::size_t kMost = 400;
+    Subjects subjects;
+    const auto& box = figure.view.box;
     for (const BarrierSolid& barrier : figure.moment.barriers)
         for (const auto& piece : barrier.pieces)
-            if (piece.normal.z() < 0.5) places.push_back(piece.corners.back());
-    const auto& material = figure.moment.material;
-    for (std::size_t k = 0; k < material.size(); k += material.size() / kMost + 1)
-        if (!material[k].is_column) places.push_back(material[k].place + Vec3(0, 0, material[k].size));
-    places.erase(std::remove_if(places.begin(), places.end(),
-                                [&](const Vec3& p) { return !holds(figure.view.box, p); }),
-                 places.end());
-    return places;
+            if (piece.normal.z() < 0.5 && holds(box, piece.corners.back()))
+                subjects.barriers.push_back(piece.corners.back());
+    std::vector<Vec3> all;
+    for (const auto& piece : figure.moment.material)
+        if (!piece.is_column && holds(box, piece.place)) all.push_back(piece.place + Vec3(0, 0, piece.size));
+    for (std::size_t k = 0; k < all.size(); k += all.size() / kMost + 1) subjects.points.push_back(all[k]);
+    return subjects;
 }
 
 /// Share of the places that the ground does not hide from an eye far away against the direction of view.
@@ -54,17 +57,19 @@ SpaceLook best_look(const SpaceFigure& figure) {
     struct Choice {
         double turn, weight;  ///< from the flow's direction [degrees]
     };
-    constexpr Choice turns[] = {{-52, 1.0}, {52, 0.97}, {-128, 0.8}, {128, 0.8}, {0, 0.6}, {180, 0.6}};
+    constexpr Choice turns[] = {{-52, 1.0}, {52, 0.97}, {-128, 0.8}, {128, 0.8}, {-152, 0.75}, {152, 0.75},
+                                {0, 0.6},   {180, 0.6}};
     constexpr Choice downs[] = {{24, 1.0}, {36, 0.85}, {52, 0.7}};
     const double flow = std::atan2(figure.view.flow.x(), figure.view.flow.y());
-    const std::vector<Vec3> places = subjects_of(figure);
+    const Subjects subjects = subjects_of(figure);
     SpaceLook best;
     double best_score = -1.0;
     for (const Choice& turn : turns)
         for (const Choice& down : downs) {
             const SpaceLook look{flow + turn.turn * kDegree, down.turn * kDegree};
-            const double score =
-                turn.weight * down.weight * share_in_sight(figure, places, look.azimuth, look.down);
+            const double points = share_in_sight(figure, subjects.points, look.azimuth, look.down),
+                         barriers = share_in_sight(figure, subjects.barriers, look.azimuth, look.down);
+            const double score = turn.weight * down.weight * points * barriers;
             if (score > best_score + 1e-9) best_score = score, best = look;
         }
     return best;
