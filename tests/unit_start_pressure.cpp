@@ -46,11 +46,13 @@ TEST_CASE("A lake bears its whole weight on a slope, a sheet cos^2 of it, up to 
     const double cos2 = 1.0 / (1.0 + kSlope * kSlope);
     for (const double spacing : {1.0, 0.5, 0.25}) {
         CAPTURE(spacing);
-        FlowColumns lake = columns(scene, [](double x) { return 3.0 - kSlope * x; }, spacing);
+        FlowColumns lake = columns(
+            scene, [](double x) { return 3.0 - kSlope * x; }, spacing);
         take_start_pressure(lake, scene);
         CHECK(share(lake, scene).first == Approx(1.0).epsilon(1e-12));
         CHECK(share(lake, scene).second == Approx(1.0).epsilon(1e-12));
-        FlowColumns sheet = columns(scene, [](double) { return 0.7; }, spacing);
+        FlowColumns sheet = columns(
+            scene, [](double) { return 0.7; }, spacing);
         take_start_pressure(sheet, scene);
         CHECK(share(sheet, scene).first == Approx(cos2).epsilon(1e-12));
         CHECK(share(sheet, scene).second == Approx(cos2).epsilon(1e-12));
@@ -64,15 +66,17 @@ TEST_CASE("The pressure at the start lies between a lake's and a sheet's, whatev
     for (const auto& [rise, expected] : {std::pair{-2.0, 1.0}, {-0.5 * kSlope, half}, {3.0, cos2}}) {
         CAPTURE(rise);
         const double r = rise;
-        FlowColumns c = columns(scene, [&](double x) { return (r < 0.0 ? 20.0 : 1.0) + r * x; }, 0.5);
+        FlowColumns c = columns(
+            scene, [&](double x) { return (r < 0.0 ? 20.0 : 1.0) + r * x; }, 0.5);
         take_start_pressure(c, scene);
         CHECK(share(c, scene).first == Approx(expected).epsilon(1e-12));
         CHECK(share(c, scene).second == Approx(expected).epsilon(1e-12));
     }
-    FlowColumns one = columns(scene, [](double x) { return x < 1.3 ? 1.0 : 0.0; }, 0.5);
+    FlowColumns one = columns(
+        scene, [](double x) { return x < 1.3 ? 1.0 : 0.0; }, 0.5);
     one.x.resize(1);
-    for (auto* list : {&one.y, &one.bed, &one.depth, &one.vx, &one.vy, &one.mass, &one.volume, &one.bed_pressure, &one.id,
-                       &one.slope_x, &one.slope_y})
+    for (auto* list : {&one.y, &one.bed, &one.depth, &one.vx, &one.vy, &one.mass, &one.volume,
+                       &one.bed_pressure, &one.id, &one.slope_x, &one.slope_y})
         list->resize(1);
     take_start_pressure(one, scene);
     CHECK(share(one, scene).first == Approx(cos2).epsilon(1e-12));  // nothing is known of its surface

@@ -17,7 +17,8 @@ struct PlaneSums {
     }
     /// Slope of the plane per cell; false where the columns are too few or stand in a row.
     bool slope(Vec2& result) const {
-        constexpr double kLeast = 1e-3;  // variance of places across the row [cells^2]; that of a full cell is 0.17
+        constexpr double kLeast =
+            1e-3;  // variance of places across the row [cells^2]; that of a full cell is 0.17
         if (!(w > 0.0)) return false;
         const double a = xx / w - x * x / (w * w), b = xy / w - x * y / (w * w), d = yy / w - y * y / (w * w);
         const double det = a * d - b * b;
@@ -37,7 +38,8 @@ void for_each_corner(const GridGeometry& g, double x, double y, Visit&& visit) {
     for (Index n = j; n <= j + 1; ++n)
         for (Index m = i; m <= i + 1; ++m) {
             const Vec2 from(u - static_cast<double>(m), v - static_cast<double>(n));
-            visit(static_cast<std::size_t>(n * g.nx + m), (1.0 - std::abs(from.x())) * (1.0 - std::abs(from.y())), from);
+            visit(static_cast<std::size_t>(n * g.nx + m),
+                  (1.0 - std::abs(from.x())) * (1.0 - std::abs(from.y())), from);
         }
 }
 
@@ -47,9 +49,10 @@ void take_start_pressure(FlowColumns& columns, const Scene& scene) {
     const GridGeometry& g = scene.bed.geometry;
     std::vector<PlaneSums> nodes(static_cast<std::size_t>(g.size()));
     for (std::size_t k = 0; k < columns.count(); ++k)
-        for_each_corner(g, columns.x[k], columns.y[k], [&](std::size_t node, double weight, const Vec2& from) {
-            nodes[node].add(weight, from, columns.bed[k] + columns.depth[k]);
-        });
+        for_each_corner(g, columns.x[k], columns.y[k],
+                        [&](std::size_t node, double weight, const Vec2& from) {
+                            nodes[node].add(weight, from, columns.bed[k] + columns.depth[k]);
+                        });
     for (std::size_t k = 0; k < columns.count(); ++k) {
         const Vec2 bed(columns.slope_x[k], columns.slope_y[k]);
         Vec2 sum = Vec2::Zero();

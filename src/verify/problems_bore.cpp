@@ -14,8 +14,8 @@ constexpr double kGravity = 10.0, kDensity = 1000.0, kDepth = 1.0;  // [m/s^2], 
 constexpr double kWidthCells = 3.0;                                 // of a slice
 constexpr double kFrom = 0.3;  // of the record [s]: before, the first contact rings with the speed of sound
 
-/// A stream of depth h_1 and speed u_1 = Fr sqrt(g h_1) against a wall, without friction: a bore of depth h_2 moves away
-/// from the wall at U, and the wall carries g rho h_2^2 / 2. Jump of mass and momentum (Stoker 1957, sec. 10.6).
+/// A stream of depth h_1 and speed u_1 = Fr sqrt(g h_1) against a wall, without friction: a bore of depth h_2
+/// moves away from the wall at U, and the wall carries g rho h_2^2 / 2. Jump of mass and momentum (Stoker 1957).
 struct Bore {
     double froude;
 
@@ -33,24 +33,23 @@ struct Bore {
     }
     double retreat() const { return speed() * kDepth / (depth() - kDepth); }  ///< U [m/s]
     /// Force of the bore on the wall over rho u_1^2 h_1.
-    double force() const {
-        return 0.5 * kGravity * depth() * depth() / (speed() * speed() * kDepth);
-    }
-    /// Of a stream whose end the wall does not feel before `end`: the end collapses, which runs ahead at u_1 + sqrt(g h_1),
-    /// meets the bore and goes on through it at sqrt(g h_2).
+    double force() const { return 0.5 * kGravity * depth() * depth() / (speed() * speed() * kDepth); }
+    /// Of a stream whose end the wall does not feel before `end`: the end collapses, which runs ahead at u_1
+    /// + sqrt(g h_1), meets the bore and goes on through it at sqrt(g h_2).
     double length(double end) const {
         const double behind = std::sqrt(kGravity * depth());
         return end * (speed() + wave() + retreat()) / (1.0 + retreat() / behind);
     }
 };
 
-/// The stream as points that all move with u_1 towards the wall at x = 0, under hydrostatic pressure. Rows across move
-/// alike, so that one in a cell is enough.
+/// The stream as points that all move with u_1 towards the wall at x = 0, under hydrostatic pressure. Rows
+/// across move alike, so that one in a cell is enough.
 SolidScene stream(const Bore& bore, double end, const Setup& setup) {
     const double cell = kDepth / static_cast<double>(setup.cells), width = kWidthCells * cell;
     const double sound = 10.0 * std::max(bore.speed(), bore.wave());
     const double bulk = kDensity * sound * sound, length = bore.length(end);
-    // The end falls back at 2 sqrt(g h_1) through the stream; jets rise as high as their speed carries them, and splash.
+    // The end falls back at 2 sqrt(g h_1) through the stream; jets rise as high as their speed carries them,
+    // and splash.
     const double room = length + std::max(0.0, 2.0 * bore.wave() - bore.speed()) * end;
     const double top = 3.0 * (kDepth + 0.5 * bore.speed() * bore.speed() / kGravity);
     SolidScene s;
@@ -67,7 +66,8 @@ SolidScene stream(const Bore& bore, double end, const Setup& setup) {
                 const double x = (static_cast<double>(i) + 0.5) * spacing;
                 const double z = (static_cast<double>(k) + 0.5) * spacing;
                 const double p = kDensity * kGravity * (kDepth - z);
-                s.points.add({x, across * cell, z}, {-bore.speed(), 0, 0}, kDensity * part / (1.0 - p / bulk), p);
+                s.points.add({x, across * cell, z}, {-bore.speed(), 0, 0}, kDensity * part / (1.0 - p / bulk),
+                             p);
             }
     return s;
 }
@@ -92,7 +92,8 @@ Push push(const Bore& bore, double end, const Setup& setup) {
     return result;
 }
 
-/// Records that several jets along the wall rise and fall in: shorter ones err by tens of percent, either way.
+/// Records that several jets along the wall rise and fall in: shorter ones err by tens of percent, either
+/// way.
 Measurement run_reflected_bore(const Setup& setup) {
     const Push slow = push(Bore{1.0}, 4.6, setup), fast = push(Bore{2.0}, 6.0, setup);
     Measurement m = joined(slow.run, fast.run);
@@ -105,11 +106,13 @@ Measurement run_reflected_bore(const Setup& setup) {
 /// Mass and momentum across the bore, seen from it; and the forces that the canon of these problems lists.
 std::vector<Residual> bore_residuals() {
     std::vector<Residual> list;
-    for (const auto& [froude, listed] : {std::pair{1.0, 2.35464}, {2.0, 1.52597}, {3.0, 1.31436}, {5.0, 1.17038}}) {
+    for (const auto& [froude, listed] :
+         {std::pair{1.0, 2.35464}, {2.0, 1.52597}, {3.0, 1.31436}, {5.0, 1.17038}}) {
         const Bore bore{froude};
         const double in = bore.speed() + bore.retreat(), out = bore.retreat(), h = bore.depth();
         const double push_in = kDepth * in * in + 0.5 * kGravity * kDepth * kDepth;
-        list.push_back({fmt::format("mass through a bore at Fr = {}", froude), h * out / (kDepth * in) - 1.0, 1e-12});
+        list.push_back(
+            {fmt::format("mass through a bore at Fr = {}", froude), h * out / (kDepth * in) - 1.0, 1e-12});
         list.push_back({fmt::format("momentum through a bore at Fr = {}", froude),
                         (h * out * out + 0.5 * kGravity * h * h) / push_in - 1.0, 1e-12});
         list.push_back({fmt::format("listed force at Fr = {}", froude), bore.force() / listed - 1.0, 5e-6});

@@ -90,7 +90,7 @@ Measurement run_column_collapse(const Setup& setup) {
     return m;
 }
 
-/// Height of the material two cells around a place: its volume without stress over that area [m].
+/// Height of what lies within a cell of a place: its volume without stress over that area [m].
 double surface(const SolidFlow& flow, double x, double cell) {
     const double low = std::max(0.0, x - cell), high = x + cell;
     double volume = 0.0;
@@ -99,8 +99,8 @@ double surface(const SolidFlow& flow, double x, double cell) {
     return volume / (high - low) / (kWidthCells * cell);
 }
 
-/// Aluminium bars 0.2 m long and 0.1 m high, Bui et al. (2008, Int. J. Numer. Anal. Meth. Geomech. 32, 1537): bulk modulus
-/// 0.7 MPa, and the surface that they measured.
+/// Aluminium bars 0.2 m long and 0.1 m high, Bui et al. (2008, Int. J. Numer. Anal. Meth. Geomech. 32, 1537):
+/// bulk modulus 0.7 MPa, and the surface that they measured.
 Measurement run_column_bars(const Setup& setup) {
     constexpr double kLength = 0.2, kHeight = 0.1, kPoisson = 0.3;
     constexpr double kMeasured[][2] = {{0.0001, 0.0992}, {0.1001, 0.0776}, {0.2, 0.0474},
@@ -164,7 +164,9 @@ std::vector<Problem> column_problems() {
                  {},
                  run_column_bars};
     bars.order_of = "surface_error";
-    bars.gates = {{0, "front_share", 0.2, "as of sand"}, {0, "surface_error", 0.0625, "half a cell of the height"}, closed};
+    bars.gates = {{0, "front_share", 0.2, "as of sand"},
+                  {0, "surface_error", 0.0625, "half a cell of the height"},
+                  closed};
     Problem slump{"slump", "a block of yield-stress material slumps and stops", {16}, {}, run_slump};
     slump.order_of = "length_error";
     slump.gates = {{0, "length_error", 0.1, "thin-layer theory at an aspect of 0.3"},

@@ -14,8 +14,8 @@ namespace {
 constexpr double kGravity = 10.0, kDensity = 1000.0, kDeepest = 1.0;  // [m/s^2], [kg/m^3], [m]
 constexpr double kSlope = 20.0 * M_PI / 180.0;
 
-/// A wedge of water against a wall at x = 0, level at z = kDeepest over a bed of 20 degrees, as columns one cell wide, of
-/// which a stage in space from the start makes points half of that apart.
+/// A wedge of water against a wall at x = 0, level at z = kDeepest over a bed of 20 degrees, as columns one
+/// cell wide, of which a stage in space from the start makes points half of that apart.
 Scene wedge(const SolidLaw& law, double bed_friction, const Setup& setup) {
     constexpr Index kAcross = 4, kRoom = 4;  // nodes of the terrain
     const double cell = kDeepest / static_cast<double>(setup.cells);
@@ -56,7 +56,8 @@ double pressure_error(const SolidFlow& flow) {
         const double exact = kDensity * kGravity * std::max(0.0, kDeepest - flow.position(p).z());
         sum += std::pow(-flow.stress(p).trace() / 3.0 - exact, 2);
     }
-    return std::sqrt(sum / static_cast<double>(flow.body().points.count())) / (kDensity * kGravity * kDeepest);
+    return std::sqrt(sum / static_cast<double>(flow.body().points.count())) /
+           (kDensity * kGravity * kDeepest);
 }
 
 /// What bed and wall carry in some time: the bed the weight, the wall a triangle of pressure.
@@ -71,7 +72,8 @@ struct Forces {
 };
 
 struct Rest {
-    double creep, later, speed;  ///< rms way in the first second and in half of the next [cells]; rms speed then [m/s]
+    double creep, later,
+        speed;  ///< rms way in the first second and in half of the next [cells]; rms speed then [m/s]
     double pressure, pressure_at_start;
     double force, force_at_start;  ///< errors, of bed and wall the worse: from 0.5 to 1 s, in the first step
     Measurement run;
@@ -84,7 +86,9 @@ Rest rest(const SolidLaw& law, double bed_friction, bool stops, const Setup& set
     StagedRun run(wedge(law, bed_friction, setup));
     const SolidFlow& flow = *run.points();
     const std::vector<Vec3> start = places(flow);
-    const auto worse = [](const Forces& f) { return std::max(std::abs(f.bed_error), std::abs(f.wall_error)); };
+    const auto worse = [](const Forces& f) {
+        return std::max(std::abs(f.bed_error), std::abs(f.wall_error));
+    };
     Rest r{};
     r.pressure_at_start = pressure_error(flow);
     std::vector<Vec3> half = flow.body().impulse;
@@ -114,7 +118,8 @@ Rest rest(const SolidLaw& law, double bed_friction, bool stops, const Setup& set
 /// Water, whose creep nothing ends; water on a rough bed; and mud, which stops.
 Measurement run_conversion_at_rest(const Setup& setup) {
     constexpr double kYield = 100.0;  // of the mud [Pa]: a hundredth of the deepest pressure
-    const Rest water = rest(solid::Fluid{}, 0.0, false, setup), rough = rest(solid::Fluid{}, 0.3, true, setup),
+    const Rest water = rest(solid::Fluid{}, 0.0, false, setup),
+               rough = rest(solid::Fluid{}, 0.3, true, setup),
                mud = rest(solid::Bingham{0.0, 100.0 * kYield, 1.0, kYield}, 0.0, true, setup);
     Measurement m = joined(joined(water.run, rough.run), mud.run);
     m.add("pressure_at_start", water.pressure_at_start);
