@@ -39,8 +39,10 @@ void add_laws(Table& table) {
     table.push_back(with(number("stage.cohesion", "Pa", not_negative, 0.0, "cohesion of drucker_prager"), law,
                          {"drucker_prager"}));
     table.push_back(
-        with(number("stage.young_modulus", "Pa", positive, "stiffness of drucker_prager or elastic"), law,
-             {"drucker_prager", "elastic"}, {"drucker_prager", "elastic"}));
+        with(number("stage.young_modulus", "Pa", positive,
+                    "stiffness of drucker_prager or elastic; the stiffer, the more steps, each of which damps: about "
+                    "100 density gravity depth is enough"),
+             law, {"drucker_prager", "elastic"}, {"drucker_prager", "elastic"}));
     table.push_back(with(number("stage.poisson_ratio", "1", {0.0, 0.5, false, true}, 0.3,
                                 "share of a strain that shows across it, of drucker_prager or elastic"),
                          law, {"drucker_prager", "elastic"}));

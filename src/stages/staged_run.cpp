@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "stages/start_pressure.h"
 
 namespace frana {
 
@@ -61,7 +62,9 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
         const Marks inside = nodes_in_window(scene_), everywhere(inside.size(), 1);
         start_ = choose_start(scene_, columns_at(everywhere));  // what is outside still comes
         SolidScene space = solid_scene(scene_, start_);
-        space.points = seeds_of_window(columns_at(inside));
+        FlowColumns columns = columns_at(inside);
+        take_start_pressure(columns, scene_);
+        space.points = seeds_of_window(columns);
         points_ = std::make_unique<SolidFlow>(space);
         points_->start_at(scene_.solid->from);
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);

@@ -8,7 +8,8 @@ const std::vector<Problem>& library() {
         for (const auto& room : {dam_break_problems, bowl_problems, lake_problems, paper_problems, pile_problems,
                                  radial_dam_problems, slope_flow_problems, similarity_problems, block_problems,
                                  track_problems, bank_problems, sheet_problems, deposit_problems, spreading_problems,
-                                 conversion_problems, tank_problems, body_problems, column_problems})
+                                 conversion_problems, tank_problems, bore_problems, rest_problems, body_problems,
+                                 column_problems})
             for (Problem& problem : room()) problems.push_back(std::move(problem));
         return problems;
     }();

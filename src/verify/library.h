@@ -26,6 +26,8 @@ std::vector<Problem> deposit_problems();     // problems_deposit.cpp
 std::vector<Problem> spreading_problems();   // problems_spreading.cpp
 std::vector<Problem> conversion_problems();  // problems_conversion.cpp
 std::vector<Problem> tank_problems();        // problems_tank.cpp
+std::vector<Problem> bore_problems();        // problems_bore.cpp
+std::vector<Problem> rest_problems();        // problems_rest.cpp
 std::vector<Problem> body_problems();        // problems_body.cpp
 std::vector<Problem> column_problems();      // problems_column.cpp
 
