@@ -109,6 +109,16 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "stage.0.cell: found, but stage.model = \"depth_averaged\" does not use it"));
 }
 
+TEST_CASE("Sand is as strong as its angle says in triaxial compression, or where asked in plane strain", "[case]") {
+    const std::string sand = two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\nfriction_angle_deg = 30\n";
+    const auto alpha = [&](const std::string& keys) {
+        return std::get<solid::DruckerPrager>(scene_of(sand + keys).solid->law).alpha;
+    };
+    CHECK(alpha("") == Approx(std::sqrt(2.0 / 3.0) * 6.0 * 0.5 / 2.5).epsilon(1e-12));
+    CHECK(alpha("cone = \"plane_strain\"\n") == Approx(std::sqrt(2.0) * 0.5).epsilon(1e-12));
+    CHECK(has(problem_of(two + west + "cone = \"plane_strain\"\n"), "stage.1.cone: found, but"));
+}
+
 TEST_CASE("Barriers come with their places and heights", "[barrier]") {
     const Scene scene = scene_of(
         "[[barrier]]\noutline = \"wall.geojson\"\nheight = 4\n[[barrier]]\nname = \"dam\"\nline = "

@@ -38,6 +38,10 @@ void add_laws(Table& table) {
                          law, {"drucker_prager"}, {"drucker_prager"}));
     table.push_back(with(number("stage.cohesion", "Pa", not_negative, 0.0, "cohesion of drucker_prager"), law,
                          {"drucker_prager"}));
+    table.push_back(with(choice("stage.cone", {"triaxial", "plane_strain"}, "triaxial",
+                                "where drucker_prager is as strong as Mohr and Coulomb's law of that angle: in triaxial "
+                                "compression, or in plane strain, as heaps and slopes fail"),
+                         law, {"drucker_prager"}));
     table.push_back(
         with(number("stage.young_modulus", "Pa", positive,
                     "stiffness of drucker_prager or elastic; the stiffer, the more steps, each of which damps: about "

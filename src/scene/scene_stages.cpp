@@ -165,10 +165,11 @@ private:
             const solid::Elastic elastic =
                 solid::Elastic::of(number("young_modulus"), number("poisson_ratio"));
             if (law == "elastic") return elastic;
-            return solid::DruckerPrager::of(elastic, number("friction_angle_deg") * kDegree,
-                                            number("cohesion"));
+            const bool plane = case_.word(prefix_ + "cone") == "plane_strain";
+            return solid::DruckerPrager::of(elastic, number("friction_angle_deg") * kDegree, number("cohesion"),
+                                            plane ? solid::Cone::plane_strain : solid::Cone::compression);
         }
-        for (const char* name : {"friction_angle_deg", "cohesion", "young_modulus", "poisson_ratio"})
+        for (const char* name : {"friction_angle_deg", "cohesion", "cone", "young_modulus", "poisson_ratio"})
             if (given(name)) unused(name, law);
         double viscosity = 0.0, yield_stress = 0.0;
         if (const auto* newtonian = std::get_if<rheology::Newtonian>(&scene_.rheology))
