@@ -246,7 +246,7 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     figure.moment = hardest_moment(run_dir, figure.bed);
     SharedSpace shared;
     shared.add(figure.moment);
-    if (shared.empty()) {
+    if (shared.empty() || figure.moment.typical_size <= 0.0) {
         look["states"]["impact"] = "there were no points in space yet; run the case further";
         return;
     }
@@ -322,7 +322,11 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
                      {"extent", {0, seen.grid.nx - 1, 0, seen.grid.ny - 1, 0, 0}}};
     if (look["states"]["profiles"] == "") look["legend"] = free_corner(run_dir);
     look["camera"] = cameras(run_dir, seen.extent, look["states"]["survey"] == "");
-    if (look["states"]["impact"] == "") look_at_impact(run_dir, look);
+    try {
+        if (look["states"]["impact"] == "") look_at_impact(run_dir, look);
+    } catch (const UserError& error) {  // a list of output.fields without what it needs; the other states stand
+        look["states"]["impact"] = error.what();
+    }
     return look;
 }
 

@@ -134,7 +134,9 @@ std::string barriers(const RunRecord& r) {
     for (const BarrierSummary& b : r.barriers) {
         blur = std::max(blur, b.blur), hardest = std::max(hardest, b.raw_peak_force);
         if (b.first_contact < 0.0) {
-            text += fmt::format("| {} | - | - | - | {:.5g} m | {:.5g} m3 |\n", b.name, b.run_up, b.overtopped);
+            const bool reached = b.run_up > b.about[2];  // where it begins
+            text += fmt::format("| {} | none | - | - | {} | {:.5g} m3 |\n", b.name,
+                                reached ? fmt::format("{:.5g} m", b.run_up) : "-", b.overtopped);
             continue;
         }
         text += fmt::format(
@@ -150,7 +152,7 @@ std::string barriers(const RunRecord& r) {
             "stood over the "
             "barrier at any time.\n",
             blur, hardest);
-    else
+    else if (blur <= 0.0)
         text +=
             "\nForces are measured on points in space only ([[stage]]); columns take a barrier for ground. Over it: "
             "columns whose middle came onto it.\n";

@@ -36,7 +36,7 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
-        {"barriers", "[^.].*\\.csv", "forces and moments on a barrier, after every step", false},
+        {"barriers", "[^.].*\\.csv", "forces and moments on a barrier, run-up and what went over, after every step", false},
         {"figures", "((map|view|section|filmstrip|profile|gauges|barrier|budget)_[^.].*|compare)\\.png", "figure", false},
         {"figures", "film_[^.].*\\.(mp4|gif)", "film", false},
         {"insitu", "[^.].*\\.csv", "looked at while the case ran", false},

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "frana_run_film.h"
+#include "vtk_io/film.h"
 #include "vtk_io/space_figure.h"
 
 namespace frana {
@@ -112,6 +113,17 @@ std::vector<Wanted> wanted_moments(const SpaceRun& run, const FigureSource& sour
     return wanted;
 }
 
+/// Where points are, but for the highest per cent: single drops.
+void add_some(const SpaceMoment& moment, std::vector<Vec3>& places) {
+    constexpr std::size_t kMost = 500;
+    std::vector<Vec3> all;
+    for (const auto& piece : moment.material)
+        if (!piece.is_column) all.push_back(piece.place);
+    std::sort(all.begin(), all.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
+    const std::size_t count = all.size() - all.size() / 100, step = count / kMost + 1;
+    for (std::size_t k = 0; k < count; k += step) places.push_back(all[k]);
+}
+
 }  // namespace
 
 void draw_space(const FigureSource& source, std::vector<DrawnFigure>& figures,
@@ -148,20 +160,29 @@ void draw_space_film(const FigureSource& source, const std::string& kind, std::v
     attempt(
         source, {"figures/film_points." + kind, "points in space through time"}, figures, warnings,
         [&](const fs::path& film, std::string& why_not) {
+            why_not = no_film_reason();
+            if (!why_not.empty()) return false;
             const SpaceRun run(source);
             SharedSpace shared;  // every output is read twice, so that they need not fit the memory together
             std::vector<Index> shown;
+            std::vector<Vec3> room;
             for (Index number = 0; number < run.count(); ++number) {
                 const SpaceMoment moment = run.moment(number);
                 if (moment.typical_size <= 0.0) continue;
                 shared.add(moment);
                 shown.push_back(number);
+                add_some(moment, room);
             }
             if (shown.empty()) return why_not = "no output has points in space", false;
+            const SpaceLook look =
+                best_look(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
             return make_film(
                 film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
                     const Index number = shown[static_cast<std::size_t>(k)];
-                    return render_space(run.figure(number, shared.view(), run.digits()), png, why_not);
+                    SpaceFigure figure = run.figure(number, shared.view(), run.digits());
+                    figure.look = look;  // one for all, and one scale
+                    figure.room = room;
+                    return render_space(figure, png, why_not);
                 });
         });
 }

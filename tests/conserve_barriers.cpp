@@ -149,6 +149,23 @@ TEST_CASE("Columns that go over a low barrier are counted once, and the count is
     CHECK(over <= mass * (1.0 + 1e-12));
 }
 
+TEST_CASE("Columns that go over a wall of a tenth of a cell are counted too", "[barrier]") {
+    Scene scene = channel(0.3);
+    scene.solid.reset();
+    scene.barriers[0].outline = rectangle_of(10.0, -1.0, 10.05, 5.0);
+    WalledColumns run(scene);
+    run_to(run, 2.0);
+    const Frame frame = run.frame();
+    const Field &place = *frame.particle("position"), &carried = *frame.particle("mass");
+    double behind = 0.0;
+    for (Index p = 0; p < place.count; ++p)
+        if (place.data[3 * p] > 10.05) behind += carried.data[p];
+    CHECK(behind > 0.2 * run.status().mass);
+    const double over = run.loads()->barriers.at(0).overtopped * scene.density;
+    CHECK(over >= behind * (1.0 - 1e-12));
+    CHECK(over <= run.status().mass * (1.0 + 1e-12));
+}
+
 TEST_CASE("A stream meets a bank higher than its energy and stays below", "[barrier]") {
     // Front of a dam break in a stream: 5 m/s and twice the speed of its waves, so up to 6.5 m; all else 2.3 m.
     Scene scene = channel(8.0);

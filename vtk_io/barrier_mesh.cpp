@@ -232,6 +232,10 @@ DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSam
                 Vec3 x = field.place(i, j, k);
                 field.at(i, j, k) = sign * distance->EvaluateFunction(x.data());
             }
+    if (std::none_of(field.distance.begin(), field.distance.end(), [](double d) { return d < 0.0; }))
+        throw UserError(fmt::format("{}: the mesh is thinner than the {:.6g} m between the nodes of its distances; expected a "
+                                    "solid of a cell at least: take finer cells, or give the wall as a line with a height",
+                                    file.string(), sampling.spacing));
     field.origin += sampling.origin;
     return field;
 }

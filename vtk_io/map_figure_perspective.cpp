@@ -164,9 +164,10 @@ std::vector<Vec3> BlockDrawing::silhouette() const {
     for (const double x : {g.x0, g.x_max()})
         for (const double y : {g.y0, g.y_max()}) points.emplace_back(x - origin_.x(), y - origin_.y(), foot_);
     const Vec3 origin(origin_.x(), origin_.y(), 0.0);
+    for (const Vec3& place : figure_.objects.room) points.emplace_back(place - origin);
     const double highest = height_of_most(figure_.objects.balls);
     for (const auto& ball : figure_.objects.balls)
-        if (ball.centre.z() <= highest) points.emplace_back(ball.centre - origin);
+        if (figure_.objects.room.empty() && ball.centre.z() <= highest) points.emplace_back(ball.centre - origin);
     for (const auto& facet : figure_.objects.facets)
         for (const Vec3& corner : facet.corners) points.emplace_back(corner - origin);
     return points;

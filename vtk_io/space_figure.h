@@ -1,24 +1,29 @@
 #pragma once
 // Points in space on their terrain and against barriers: seen obliquely, and in a vertical section.
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "vtk_io/space_moment.h"
 
 namespace frana {
 
-struct SpaceFigure {
-    Raster bed;  ///< terrain [m]
-    SpaceMoment moment;
-    SpaceView view;
-    std::string title, footer;
-    int width = 1600, height = 1100;  ///< [px]; a section is as high as it needs, and at most this
-};
-
 struct SpaceLook {
     double azimuth = 0.0,
            down = 0.4;  ///< of the direction of view: clockwise from north, below the horizon [radians]
 };
+
+struct SpaceFigure {
+    Raster bed;  ///< terrain [m]
+    SpaceMoment moment;
+    SpaceView view;
+    std::optional<SpaceLook> look;  ///< nothing: best_look()
+    std::vector<Vec3> room;         ///< places that the picture has room for; none: those of the moment [m]
+    std::string title, footer;
+    int width = 1600, height = 1100;  ///< [px]; a section is as high as it needs, and at most this
+};
+
 /// From the side and a little upstream is best, the flow from left to right; then higher up, and other sides.
 /// What counts besides is how much the ground hides.
 SpaceLook best_look(const SpaceFigure& figure);

@@ -27,6 +27,7 @@ struct SpaceObjects {
     };
     std::vector<Ball> balls;
     std::vector<Facet> facets;
+    std::vector<Vec3> room;                ///< places that must fit in; none: the balls'
     std::vector<std::vector<Vec3>> edges;  ///< drawn in black
     std::vector<ColourBar> bars;           ///< instead of the field's
     /// A face that the balls hide, drawn flat in the upper left corner.

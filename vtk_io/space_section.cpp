@@ -130,13 +130,14 @@ private:
     }
     /// Elevation of the top there: of the nearest corner of the top's pieces.
     static double top_of(const BarrierSolid& barrier, const Vec2& p) {
-        double nearest = 1e300, top = -1e300;
+        double nearest = 1e300, top = -1e300, highest = -1e300;
         for (const auto& piece : barrier.pieces)
             for (const Vec3& corner : piece.corners) {
                 const double far = (corner.head<2>() - p).norm();
+                highest = std::max(highest, corner.z());
                 if (piece.normal.z() > 0.5 && far < nearest) nearest = far, top = corner.z();
             }
-        return top;
+        return nearest < 1e300 ? top : highest;  // a top too narrow to have pieces
     }
 
     void grid(Canvas& canvas) const {

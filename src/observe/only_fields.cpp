@@ -10,7 +10,7 @@ class OnlyFields : public Observer {
 public:
     OnlyFields(std::unique_ptr<Observer> inner, std::vector<std::string> names)
         : inner_(std::move(inner)), names_(std::move(names)) {
-        for (const char* always : {"position", "elevation", "id"}) names_.emplace_back(always);
+        for (const char* always : {"position", "elevation", "id", "model"}) names_.emplace_back(always);
     }
     std::string name() const override { return inner_->name(); }
     void step(const Status& now, const Probe& probe) override { inner_->step(now, probe); }

@@ -88,7 +88,25 @@ private:
             const MeshField mesh = meshes_(case_.path(prefix_ + "mesh"), sampling);
             barrier.shape = mesh.field;
             vertices = {{mesh.low.x(), mesh.low.y()}, {mesh.high.x(), mesh.high.y()}};
+            require_on_ground(mesh);
         });
+    }
+
+    /// Refuses what lies wholly under the ground below it, or above: an origin without its elevation.
+    void require_on_ground(const MeshField& mesh) const {
+        const GridGeometry& g = scene_.bed.geometry;
+        double low = INFINITY, high = -INFINITY;
+        for (Index j = 0; j < g.ny; ++j)
+            for (Index i = 0; i < g.nx; ++i) {
+                const double z = scene_.bed.at(i, j), x = g.x(i), y = g.y(j);
+                const bool near = x >= mesh.low.x() - g.cell && x <= mesh.high.x() + g.cell &&
+                                  y >= mesh.low.y() - g.cell && y <= mesh.high.y() + g.cell;
+                if (near && std::isfinite(z)) low = std::min(low, z), high = std::max(high, z);
+            }
+        if (low > high || (mesh.high.z() > low && mesh.low.z() < high + g.cell)) return;
+        throw UserError(fmt::format("found it from {:.6g} to {:.6g} m, the ground there from {:.6g} to {:.6g} m; expected a "
+                                    "barrier that stands on the ground; give the elevation of its origin",
+                                    mesh.low.z(), mesh.high.z(), low, high));
     }
 
     const CaseFile& case_;

@@ -53,6 +53,14 @@ bool stands_near(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const
            (barrier.prism->contacts(foot, cell, near) > 0 && near[0].distance <= distance);
 }
 
+/// Whether the way from a place beside a barrier to another one leads over it, however thin it is.
+bool crosses(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec2& from, const Vec2& to) {
+    const auto& [low, high] = box;
+    const double z = barrier.shape ? 0.5 * (low.z() + high.z()) : high.z() - 1e6;  // footprints reach down without end
+    Entry entry;
+    return enters(barrier, {from.x(), from.y(), z}, {to.x(), to.y(), z}, entry);
+}
+
 /// The middle of the footprint, on the bed.
 Vec3 middle_of(const Surface& barrier, const Raster& bed) {
     const auto [low, high] = box_of(barrier);
@@ -142,26 +150,34 @@ ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
 
 void ColumnWatch::inherit(Index child, Index parent) {
     const auto c = static_cast<std::size_t>(child), p = static_cast<std::size_t>(parent);
-    for (std::vector<std::uint8_t>& seen : seen_) {
-        if (seen.size() <= std::max(c, p)) seen.resize(std::max(c, p) + 1, kNever);
-        seen[c] = seen[p];
-    }
+    make_room(std::max(c, p));
+    for (std::vector<std::uint8_t>& seen : seen_) seen[c] = seen[p];
+    for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * c + axis] = last_[2 * p + axis];
+}
+
+void ColumnWatch::make_room(std::size_t id) {
+    for (std::vector<std::uint8_t>& seen : seen_)
+        if (seen.size() <= id) seen.resize(id + 1, kNever);
+    if (last_.size() < 2 * (id + 1)) last_.resize(2 * (id + 1), 0.0);
 }
 
 void ColumnWatch::look(const ColumnAt& column) {
     constexpr double kClose = 2.0;  // cells
     const auto id = static_cast<std::size_t>(column.id);
+    make_room(id);
+    const Vec2 from(last_[2 * id], last_[2 * id + 1]);
     for (std::size_t n = 0; n < surfaces_.size(); ++n) {
         const Vec3 top_of_it(column.place.x(), column.place.y(), column.surface);
         const bool near = stands_near(surfaces_[n], boxes_[n], top_of_it, kClose * cell_, cell_);
         std::vector<std::uint8_t>& seen = seen_[n];
-        if (seen.size() <= id) seen.resize(id + 1, kNever);
-        const bool over = near && std::isfinite(top_of(surfaces_[n], column.place));
+        const bool over = near && (std::isfinite(top_of(surfaces_[n], column.place)) ||
+                                   (seen[id] == kBeside && crosses(surfaces_[n], boxes_[n], from, column.place)));
         BarrierLoad& load = loads_.barriers[n];
         if (near) load.run_up = std::max(load.run_up, column.surface);
         if (over && seen[id] == kBeside) load.overtopped += column.volume;
         if (over || seen[id] == kNever) seen[id] = over ? kOver : kBeside;
     }
+    for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * id + axis] = column.place[static_cast<Eigen::Index>(axis)];
 }
 
 void ColumnWatch::keep(Archive& archive) {
@@ -170,6 +186,7 @@ void ColumnWatch::keep(Archive& archive) {
         archive.array("seen_" + std::to_string(n), seen_[n]);
         archive.numbers("sums_" + std::to_string(n), {&loads_.barriers[n].run_up, &loads_.barriers[n].overtopped});
     }
+    archive.array("last", last_);
 }
 
 BarrierWatch::BarrierWatch(const Scene& scene, const SolidFlow& flow, double blur) : density_(scene.density) {

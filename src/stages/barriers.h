@@ -34,17 +34,19 @@ public:
     explicit ColumnWatch(const Scene& scene);
     /// A column was split: what is known of it holds for its part.
     void inherit(Index child, Index parent);
-    /// Takes a column's place. It counts when it is first seen on a barrier after it was seen beside it, and once. Of
-    /// two that merge the one that keeps its number counts for both from then on.
+    /// Takes a column's place. It counts when its way from the last place first leads onto a barrier, and once. Of two
+    /// that merge the one that keeps its number counts for both from then on.
     void look(const ColumnAt& column);
     const BarrierLoads& loads() const { return loads_; }
     void keep(Archive& archive);
 
 private:
+    void make_room(std::size_t id);
     enum Seen : std::uint8_t { kNever, kBeside, kOver };
     std::vector<Surface> surfaces_;                ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;     ///< around each
     std::vector<std::vector<std::uint8_t>> seen_;  ///< per barrier, by number of the column
+    std::vector<double> last_;                     ///< x and y of each column's last place, by its number [m]
     BarrierLoads loads_;
     double cell_;
 };

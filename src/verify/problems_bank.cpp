@@ -78,7 +78,8 @@ std::vector<Problem> bank_problems() {
                     {50, 100, 200}, residuals, run_banks};
     problem.order_of = "steep_speed";
     for (const char* quantity : {"steep_speed", "bank_4m_speed", "bank_16m_speed"})
-        problem.gates.push_back({100, quantity, 0.01, "a sixteenth of what is missed where the bank turns nothing"});
+        for (const Index cells : {100, 200})
+            problem.gates.push_back({cells, quantity, 0.01, "a sixteenth of what is missed where the bank turns nothing"});
     problem.gates.push_back({0, "mass_error", 1e-13, "round-off"});
     return {problem};
 }

@@ -129,7 +129,7 @@ std::vector<Problem> bore_problems() {
                  bore_residuals,
                  run_reflected_bore};
     bore.order_of = "force_error_2";
-    const std::string slice = "a slice of the same scheme, 8 cells deep, was within it";
+    const std::string slice = "what a slice of the same scheme was within, 8 cells deep";
     bore.gates = {{0, "force_error_1", 0.02, slice},
                   {0, "force_error_2", 0.04, slice},
                   {0, "momentum_residual", 1e-12, "round-off"}};
