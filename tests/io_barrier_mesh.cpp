@@ -166,6 +166,7 @@ TEST_CASE("A mesh that is no solid is refused with what was found and what to do
     refused(folder / "empty.obj", "no triangles");
     std::ofstream(folder / "words.vtp") << "not a mesh at all\n";
     refused(folder / "words.vtp", "cannot be read as a mesh");
+    refused(write_stl(folder / "thin.stl", box_corners({1, 2, -1}, {3, 2.05, 1.25}), kBox), "thinner than the 0.25 m");
     Corners large = corners;
     for (Vec3& x : large) x *= 1000.0;
     refused(write_obj(folder / "millimetres.obj", large, kBox), "is it in metres?");

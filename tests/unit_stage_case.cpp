@@ -196,6 +196,9 @@ TEST_CASE("A barrier of any shape comes from a mesh alone, through the reader th
               "barrier.0.height: found together with mesh; expected the mesh alone"));
     CHECK(has(problem("mesh = \"wall.stl\"\norigin = [5000, 0, 0]\n"),
               "barrier.0.mesh: found no point of it on the terrain"));
+    CHECK(has(problem("mesh = \"wall.stl\"\norigin = [0, 0, -200]\n"),
+              "barrier.0.mesh: found it from -110 to -70 m, the ground there from"));
+    CHECK(has(problem("mesh = \"wall.stl\"\norigin = [0, 0, 200]\n"), "expected a barrier that stands on the ground"));
     CHECK(has(problem("outline = \"wall.geojson\"\nheight = 4\norigin = [5, 6, 7]\n"),
               "barrier.0.origin: found without mesh"));
     CHECK(has(problem_of("[[barrier]]\nmesh = \"wall.stl\"\n"), "barrier.0.mesh: found a mesh"));

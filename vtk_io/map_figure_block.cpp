@@ -22,15 +22,6 @@
 namespace frana {
 namespace {
 
-vtkSmartPointer<vtkActor> unlit_actor(vtkPolyData* data) {
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(data);
-    auto actor = vtkSmartPointer<vtkActor>::New();
-    actor->SetMapper(mapper);
-    actor->GetProperty()->LightingOff();
-    return actor;
-}
-
 vtkSmartPointer<vtkTexture> as_texture(const Pixels& picture) {
     vtkNew<vtkImageData> image;
     image->SetDimensions(picture.width, picture.height, 1);
@@ -73,6 +64,15 @@ void add_strip(vtkCellArray* cells, const std::vector<vtkIdType>& ids) {
 }
 
 }  // namespace
+
+vtkSmartPointer<vtkActor> unlit_actor(vtkPolyData* data) {
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(data);
+    auto actor = vtkSmartPointer<vtkActor>::New();
+    actor->SetMapper(mapper);
+    actor->GetProperty()->LightingOff();
+    return actor;
+}
 
 vtkSmartPointer<vtkActor> skin_actor(const Raster& surface, const Pixels& picture, const Vec2& origin) {
     const GridGeometry& g = surface.geometry;

@@ -8,8 +8,12 @@
 #include "vtk_io/colour.h"
 
 class vtkActor;
+class vtkPolyData;
 
 namespace frana {
+
+/// Cells in their own colours, whatever the light.
+vtkSmartPointer<vtkActor> unlit_actor(vtkPolyData* data);
 
 /// The surface through the raster's nodes (cells with a NaN corner left open) with a picture stretched over
 /// it from the first to the last node. Coordinates are relative to `origin`.

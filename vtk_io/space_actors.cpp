@@ -13,20 +13,13 @@
 #include <vtkProperty.h>
 #include <vtkUnsignedCharArray.h>
 
+#include "vtk_io/map_figure_block.h"
+
 namespace frana {
 namespace {
 
 vtkIdType insert(vtkPoints* points, const Vec3& p, const Vec2& origin) {
     return points->InsertNextPoint(p.x() - origin.x(), p.y() - origin.y(), p.z());
-}
-
-vtkSmartPointer<vtkActor> unlit(vtkPolyData* data) {
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(data);
-    auto actor = vtkSmartPointer<vtkActor>::New();
-    actor->SetMapper(mapper);
-    actor->GetProperty()->LightingOff();
-    return actor;
 }
 
 }  // namespace
@@ -81,7 +74,7 @@ vtkSmartPointer<vtkActor> facets_actor(const std::vector<SpaceObjects::Facet>& f
     data->SetPoints(points);
     data->SetPolys(cells);
     data->GetCellData()->SetScalars(colours);
-    return unlit(data);
+    return unlit_actor(data);
 }
 
 vtkSmartPointer<vtkActor> edges_actor(const std::vector<std::vector<Vec3>>& edges, const Vec2& origin,
@@ -95,7 +88,7 @@ vtkSmartPointer<vtkActor> edges_actor(const std::vector<std::vector<Vec3>>& edge
     vtkNew<vtkPolyData> data;
     data->SetPoints(points);
     data->SetLines(cells);
-    auto actor = unlit(data);
+    auto actor = unlit_actor(data);
     actor->GetProperty()->SetColor(0.0, 0.0, 0.0);
     actor->GetProperty()->SetLineWidth(static_cast<float>(width));
     return actor;

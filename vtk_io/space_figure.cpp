@@ -149,7 +149,7 @@ std::vector<ColourBar> SpaceColours::bars() const {
 
 bool render_space(const SpaceFigure& figure, const std::filesystem::path& png, std::string& why_not) {
     constexpr double kDegree = 0.017453292519943295;
-    const SpaceLook look = figure.look.value_or(best_look(figure));
+    const SpaceLook look = figure.look ? *figure.look : best_look(figure);
     PerspectiveFigure view;
     view.bed = figure.bed;
     view.field.assign(figure.bed.values.size(), 0.0);
