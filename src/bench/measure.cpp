@@ -61,7 +61,9 @@ public:
     Index bytes() const { return flow_.particle_bytes(); }
     std::uint64_t hash() const { return hash_of(flow_.body().points); }
     /// Nodes of the tiles that points touch.
-    double nodes() const { return static_cast<double>(kTileNodes * static_cast<Index>(flow_.body().active.work.size())); }
+    double nodes() const {
+        return static_cast<double>(kTileNodes * static_cast<Index>(flow_.body().active.work.size()));
+    }
 
 private:
     SolidFlow flow_;
@@ -112,8 +114,9 @@ private:
             const Traffic traffic = solver_.traffic(phase.name);
             // A phase of several clock readings a step (deposit, kick) still goes over its arrays once a step.
             const double calls = std::min<double>(static_cast<double>(phase.calls), plan_.window_steps);
+            const double bytes = traffic.particle + traffic.node * solver_.nodes() / particles;
             phases.push_back({phase.name, phase.cpu_seconds * scale, phase.seconds * scale,
-                              (traffic.particle + traffic.node * solver_.nodes() / particles) * calls / plan_.window_steps});
+                              bytes * calls / plan_.window_steps});
             phases.front().bytes += phases.back().bytes;
             other.cpu_ns = std::max(0.0, other.cpu_ns - phases.back().cpu_ns);
             other.wall_ns = std::max(0.0, other.wall_ns - phases.back().wall_ns);

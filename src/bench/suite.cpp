@@ -130,7 +130,8 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
         const auto points = static_cast<Index>(scene.points.mass.size());
         for (const int threads : options.threads) {
             say(fmt::format("{}: {} points, {} threads", name_of(law), points, threads));
-            report.timed.push_back({name_of(law), "double", measure(scene, plan_for(options, name_of(law), points, threads))});
+            const Plan timing = plan_for(options, name_of(law), points, threads);
+            report.timed.push_back({name_of(law), "double", measure(scene, timing)});
         }
     }
     if (!options.writers.empty()) {
