@@ -8,38 +8,53 @@ namespace frana {
 Sym3 exponential_of_large(const Sym3& a);
 Sym3 logarithm_of_large(const Sym3& a);
 
-constexpr double kSmallStrain =
-    0.02;  ///< largest entry that the series below take to round-off: principal values up to 0.06
+/// Largest entries that the series below take to round-off, with few and with many terms: principal values up to
+/// three times that.
+constexpr double kSmallStrain = 0.02, kMiddlingStrain = 0.1;
 
 template <class Real>
-[[gnu::always_inline]] inline auto small(const SymOf<Real>& a) {
-    const Real normal = max(max(abs(a.xx), abs(a.yy)), abs(a.zz));
-    const Real shear = max(max(abs(a.xy), abs(a.yz)), abs(a.xz));
-    return max(normal, shear) <= kSmallStrain;
+[[gnu::always_inline]] inline Real largest_entry(const SymOf<Real>& a) {
+    return max(max(max(abs(a.xx), abs(a.yy)), abs(a.zz)), max(max(abs(a.xy), abs(a.yz)), abs(a.xz)));
 }
 
 /// function(a) point by point: rare.
 inline Sym3 each(const Sym3& a, Sym3 (*function)(const Sym3&)) { return function(a); }
 SymOf<Double4> each(const SymOf<Double4>& a, Sym3 (*function)(const Sym3&));
 
-/// exp(a) - I: the first term left out is below 0.06^9 / 9! < 1e-16.
-template <class Real>
-[[gnu::always_inline]] inline SymOf<Real> exponential(const SymOf<Real>& a) {
-    if (__builtin_expect(any(!small(a)), 0)) return each(a, exponential_of_large);
-    SymOf<Real> sum = a * (Real{} + 1.0 / 8.0);
-    for (int n = 7; n >= 1; --n) sum = times(a, sum.plus_isotropic(Real{} + 1.0)) * (Real{} + 1.0 / n);
+/// exp(a) - I without powers beyond `last`.
+template <int last, class Real>
+[[gnu::always_inline]] inline SymOf<Real> exponential_series(const SymOf<Real>& a) {
+    SymOf<Real> sum = a * (Real{} + 1.0 / last);
+    for (int n = last - 1; n >= 1; --n) sum = times(a, sum.plus_isotropic(Real{} + 1.0)) * (Real{} + 1.0 / n);
     return sum;
 }
 
-/// ln(I + a) = 2 artanh(z), z = a (a + 2 I)^-1: the first term left out is below 0.03^11 / 11 < 1e-16 of the
-/// first.
+/// ln(I + a) = 2 artanh(z), z = a (a + 2 I)^-1, without powers of z beyond `last`, an odd number.
+template <int last, class Real>
+[[gnu::always_inline]] inline SymOf<Real> logarithm_series(const SymOf<Real>& a) {
+    const SymOf<Real> z = times(a, inverse(a.plus_isotropic(Real{} + 2.0))), z2 = times(z, z);
+    SymOf<Real> sum = z2 * (Real{} + 1.0 / last);
+    for (int n = last - 2; n >= 3; n -= 2) sum = times(z2, sum.plus_isotropic(Real{} + 1.0 / n));
+    return times(z, sum.plus_isotropic(Real{} + 1.0)) * (Real{} + 2.0);
+}
+
+/// exp(a) - I: the first terms left out are below 0.06^9 / 9! < 1e-16 and 0.3^13 / 13! < 1e-16.
+template <class Real>
+[[gnu::always_inline]] inline SymOf<Real> exponential(const SymOf<Real>& a) {
+    const Real size = largest_entry(a);
+    if (__builtin_expect(any(!(size <= kSmallStrain)), 0))
+        return any(!(size <= kMiddlingStrain)) ? each(a, exponential_of_large) : exponential_series<12>(a);
+    return exponential_series<8>(a);
+}
+
+/// ln(I + a): |z| is up to 0.031 and 0.18; the first terms left out are below 0.031^10 / 11 and 0.18^22 / 23 < 1e-16
+/// of the first.
 template <class Real>
 [[gnu::always_inline]] inline SymOf<Real> logarithm(const SymOf<Real>& a) {
-    if (__builtin_expect(any(!small(a)), 0)) return each(a, logarithm_of_large);
-    const SymOf<Real> z = times(a, inverse(a.plus_isotropic(Real{} + 2.0))), z2 = times(z, z);
-    SymOf<Real> sum = z2 * (Real{} + 1.0 / 9.0);
-    for (int n = 7; n >= 3; n -= 2) sum = times(z2, sum.plus_isotropic(Real{} + 1.0 / n));
-    return times(z, sum.plus_isotropic(Real{} + 1.0)) * (Real{} + 2.0);
+    const Real size = largest_entry(a);
+    if (__builtin_expect(any(!(size <= kSmallStrain)), 0))
+        return any(!(size <= kMiddlingStrain)) ? each(a, logarithm_of_large) : logarithm_series<21>(a);
+    return logarithm_series<9>(a);
 }
 
 /// What becomes of the logarithmic strain e by an elastic deformation F = I + g: ln(F exp(2 e) F^T) / 2, to

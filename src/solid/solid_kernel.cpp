@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "solid/batch_sums.h"
+#include "solid/image_batch.h"
 #include "solid/point_batch.h"
 #include "solid/solid_flow.h"
 
@@ -39,25 +40,6 @@ struct SpaceStencil {
 struct Gift {
     Double4 base, affine[3], force[3];
 };
-
-template <Affine affine>
-[[gnu::always_inline]] inline void give(SolidBody& body, const SpaceStencil<affine>& s, const Gift& gift) {
-    SolidBody::Node* const nodes = body.nodes.data();
-    for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j) {
-            const double w = s.w[1][j] * s.w[2][k];
-            const Double4 row = w * (gift.base + gift.affine[1] * s.d[1][j] + gift.affine[2] * s.d[2][k]) +
-                                (s.slope[1][j] * s.w[2][k]) * gift.force[1] +
-                                (s.w[1][j] * s.slope[2][k]) * gift.force[2];
-            const Double4 along = w * gift.affine[0], push = w * gift.force[0];
-            const Index at = s.place[1][j] + s.place[2][k];
-            for (int i = 0; i < 3; ++i) {
-                SolidBody::Node* const node = nodes + at + s.place[0][i];
-                store(node,
-                      load(node) + s.w[0][i] * row + (s.w[0][i] * s.d[0][i]) * along + s.slope[0][i] * push);
-            }
-        }
-}
 
 template <class Law, Affine affine>
 class Kernel final : public SolidKernel {
@@ -104,26 +86,24 @@ public:
         const double h = body.grid.cell();
         const Vec3& origin = body.grid.geometry().origin;
         for_each_listed(body.image_colour, body.active.count() >= kTilesForThreads, [&](Index n) {
+            ImageBatch batch;
             for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
-                Point point(*this, body, p);
+                const Vec3 x = position(body, p);
                 const Images images(body.surfaces, body.near_points[static_cast<std::size_t>(n)],
-                                    origin + h * point.x, h);
+                                    origin + h * x, h);
                 for (const Image& image : images) {
                     const Vec3 place = (image.place - origin) / h;
-                    std::array<Index, 3> first;
-                    for (int axis = 0; axis < 3; ++axis)
-                        first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5));
-                    const bool far = (place - point.x).cwiseAbs().maxCoeff() > kFarthestImage;
-                    if (far || !body.grid.holds(first) || !worked(body, first)) continue;
+                    const bool far = (place - x).cwiseAbs().maxCoeff() > kFarthestImage;
+                    if (far || !seen(body, place)) continue;
                     if (image.cuts > 0) {
                         show_before_cuts(body, p, image, place, dt);
                         continue;
                     }
-                    const Gift gift =
-                        gift_of(mirrored(point, image), image.motion * (point.v + dt * body.gravity), dt);
-                    give<affine>(body, SpaceStencil<affine>(body.grid, place), gift);
+                    batch.add(p, place, image);
+                    if (batch.count == 4) show(body, batch, dt);
                 }
             }
+            if (batch.count > 0) show(body, batch, dt);
         });
     }
 
@@ -224,8 +204,27 @@ private:
         }
     }
 
-    /// Whether any tile that a stencil touches is on the work list.
-    static bool worked(const SolidBody& body, const std::array<Index, 3>& first) {
+    /// Images give to their nodes, and the batch is empty again.
+    [[gnu::noinline]] void show(SolidBody& body, ImageBatch& batch, double dt) const {
+        batch.fill();
+        const BatchGift gift = mirrored_gift(law_, body.points, batch, body.gravity, dt);
+        const double ahead = static_cast<double>(kSpaceTile);  // places count from here: images may lie below zero
+        const Double4 from_there[3] = {batch.place[0] + ahead, batch.place[1] + ahead, batch.place[2] + ahead};
+        const BatchPlace at(from_there);
+        const BatchShares<affine> shares(at, gift, body.grid.cell());
+        double* const nodes = &body.nodes.data()->m;
+        for (int lane = 0; lane < batch.count; ++lane)
+            give(body.grid, nodes,
+                 {at.first[0][lane] - kSpaceTile, at.first[1][lane] - kSpaceTile, at.first[2][lane] - kSpaceTile},
+                 shares, lane);
+        batch.count = 0;
+    }
+
+    /// Whether any tile that an image's stencil touches is on the work list.
+    static bool seen(const SolidBody& body, const Vec3& place) {
+        std::array<Index, 3> first;
+        for (int axis = 0; axis < 3; ++axis) first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5));
+        if (!body.grid.holds(first)) return false;
         bool listed = false;
         for (int corner = 0; corner < 8; ++corner)
             listed |=
