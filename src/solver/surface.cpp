@@ -88,6 +88,9 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
         return (f & kWet) && (!(f & kMargin) || (found > 0 && found < sweep));
     };
     const Index up = flow.grid.stride();
+    // The flank of what rests ends on the ground: bent on under it, it would be steeper than it is anywhere and pull the
+    // pile apart. A front in motion has a tip that bends so.
+    const bool rests = nodes.before[k].x == 0.0 && nodes.before[k].y == 0.0;
     double sum = 0.0, weights = 0.0;
     for (int dj = -1; dj <= 1; ++dj)
         for (int di = -1; di <= 1; ++di) {
@@ -96,8 +99,10 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
             if (!known(p) || !known(q)) continue;
             double e = 2.0 * nodes.surface[p] - nodes.surface[q];
             const double limit = flow.scheme.margin_limit * nodes.depth[p];
-            if (known(r))
-                e += std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r], -limit, limit);
+            if (known(r)) {
+                const double bend = std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r], -limit, limit);
+                e += rests ? std::max(bend, std::min(0.0, flow.bed.z[k] - e)) : bend;
+            }
             const double weight = di == 0 || dj == 0 ? nodes.depth[p] : 0.25 * nodes.depth[p];
             sum += weight * e;
             weights += weight;
