@@ -186,3 +186,34 @@ TEST_CASE("Splitting keeps mass, momentum and centre: two parts along the longer
         CHECK(std::abs(after.y - before.y) <= 1e-14 * before.y);
     }
 }
+
+TEST_CASE("A point that splits is not drawn in first, one that may not is", "[points]") {
+    for (const double least_mass : {0.0, 10.0}) {
+        Pool pool;
+        pool.add(6.0, 6.0, 2.0, 1.6);
+        pool.sort();
+        Splitter splitter(least_mass);
+        splitter.set_next_id(1);
+        const Columns& c = pool.flow.columns;
+        if (least_mass == 0.0) {
+            REQUIRE(splitter.split(pool.flow) == 3);
+            for (Index p = 0; p < 4; ++p) {  // quarters of the square, where its quarters were
+                CHECK(std::abs(std::abs(c.x[p] - 6.0) - 0.4) <= 1e-15);
+                CHECK(std::abs(std::abs(c.y[p] - 6.0) - 0.4) <= 1e-15);
+                CHECK(c.r1x[p] == 0.8);
+                CHECK(c.r2y[p] == 0.8);
+            }
+        } else {
+            REQUIRE(splitter.split(pool.flow) == 0);
+            CHECK(std::abs(c.r1x[0] - 1.0) <= 1e-15);
+            CHECK(std::abs(c.r2y[0] - 1.0) <= 1e-15);
+        }
+    }
+    Pool pool;  // what is still too long when it is halved is drawn in then
+    pool.add(6.0, 6.0, 2.0, 3.0);
+    pool.sort();
+    Splitter splitter(0.0);
+    splitter.set_next_id(1);
+    REQUIRE(splitter.split(pool.flow) == 3);
+    for (const double edge : pool.flow.columns.r1x) CHECK(std::abs(edge - 1.0) <= 1e-15);
+}

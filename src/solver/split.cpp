@@ -17,6 +17,14 @@ bool clamp_edge(Real& x, Real& y, double longest) {
     return true;
 }
 
+/// Both edges. A point that splits may have edges twice as long as one that does not: drawn in before it is halved, a high
+/// column that falls apart in a few steps would have its mass back in the middle, and energy that it had turned to motion.
+template <class Real>
+bool clamp_edges(Carried<Real>& held, Index p, double longest) {
+    const bool first = clamp_edge(held.r1x[p], held.r1y[p], longest);
+    return clamp_edge(held.r2x[p], held.r2y[p], longest) || first;
+}
+
 /// A strongly sheared domain, all edge and no area, gives way to the rectangle with the same second moments.
 template <class Real>
 bool straighten(Carried<Real>& held, Index p) {
@@ -105,10 +113,11 @@ Index Splitter::split_as(Flow& flow) {
         const Index tile = flow.active.tile[n];
         if (flow.active.quiet[tile] >= kAsleep) return;
         for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-            changed |= clamp_edge(held.r1x[p], held.r1y[p], longest);
-            changed |= clamp_edge(held.r2x[p], held.r2y[p], longest);
+            changed |= clamp_edges(held, p, 2.0 * longest);
             if (flow.scheme.reset_domains) changed |= straighten(held, p);
-            if (may_split) found += parts_of<Real>(c, p, length, least_mass_) - 1;
+            const int parts = may_split ? parts_of<Real>(c, p, length, least_mass_) : 1;
+            if (parts == 1) changed |= clamp_edges(held, p, longest);
+            found += parts - 1;
         }
         tile_first_[n + 1] = found;
         if (changed || found > 0) flow.active.quiet[tile] = 0;
@@ -136,8 +145,11 @@ Index Splitter::split_as(Flow& flow) {
                 halve<Real>(flow, p, q + 1, other);
                 halve<Real>(flow, q, q + 2, other);
             }
-            hold_inside(flow, p);
-            for (int part = 1; part < parts; ++part) hold_inside(flow, q + part - 1);
+            for (int part = 0; part < parts; ++part) {
+                const Index one = part == 0 ? p : q + part - 1;
+                clamp_edges(held, one, longest);
+                hold_inside(flow, one);
+            }
         }
     });
     next_id_ += added;
