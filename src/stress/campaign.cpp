@@ -64,6 +64,7 @@ Campaign run(const Plan& plan, const std::function<void(const Failure&)>& see, c
         campaign.seconds += seconds_since(start);
         campaign.scenes += 1;
         campaign.refused += verdict.refused;
+        campaign.parted += verdict.parted;
         note(verdict, n, campaign);
         if (!verdict.broken) continue;
         Failure failure{n, *verdict.broken, {draft, verdict, 0}};
@@ -82,6 +83,7 @@ std::string table_of(const Campaign& c) {
                                    "particle-steps, {:.1f} s\n",
                                    c.plan.seed, c.plan.first, end, c.scenes, c.refused, c.failures.size(), c.steps,
                                    c.particle_steps, c.seconds);
+    if (c.parted > 0) text += fmt::format("{} whose mirror images parted by round-off that the flow made grow\n", c.parted);
     text += fmt::format("{:<10} {:>8} {:>16} {:>8}\n", "invariant", "failed", "worst / allowed", "scene");
     for (const std::string& name : invariant_names()) {
         const auto worst = c.worst.find(name);
@@ -100,9 +102,9 @@ std::string json_of(const Campaign& c) {
         worst += fmt::format("{}{{\"invariant\": {}, \"value\": {}, \"scene\": {}}}", worst.empty() ? "\n  " : ",\n  ",
                              json_text(name), json_number(value.value), value.n);
     for (const Failure& failure : c.failures) failures += (failures.empty() ? "\n  " : ",\n  ") + json_of(failure);
-    return fmt::format("{{\"seed\": {}, \"first\": {}, \"scenes\": {}, \"refused\": {}, \"steps\": {}, "
+    return fmt::format("{{\"seed\": {}, \"first\": {}, \"scenes\": {}, \"refused\": {}, \"parted\": {}, \"steps\": {}, "
                        "\"particle_steps\": {}, \"seconds\": {},\n\"worst\": [{}],\n\"failures\": [{}]}}\n",
-                       c.plan.seed, c.plan.first, c.scenes, c.refused, c.steps, json_number(c.particle_steps),
+                       c.plan.seed, c.plan.first, c.scenes, c.refused, c.parted, c.steps, json_number(c.particle_steps),
                        json_number(c.seconds), worst, failures);
 }
 

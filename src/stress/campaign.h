@@ -26,6 +26,7 @@ struct Worst { double value = 0.0; std::uint64_t n = 0; };
 struct Campaign {
     Plan plan;
     Index scenes = 0, refused = 0, steps = 0;
+    Index parted = 0;  ///< whose mirror images parted by round-off that grew
     double particle_steps = 0.0, seconds = 0.0;
     std::vector<Failure> failures;
     std::map<std::string, Worst> worst;  ///< by invariant, in units of what is allowed, over cases that passed
@@ -37,7 +38,7 @@ Campaign run(const Plan& plan, const std::function<void(const Failure&)>& see, c
 
 /// For people: counts, worst values, failures.
 std::string table_of(const Campaign& campaign);
-/// For programs: {seed, first, scenes, refused, steps, particle_steps, seconds, worst: [{invariant, value, scene}],
+/// For programs: {seed, first, scenes, refused, parted, steps, particle_steps, seconds, worst: [{invariant, value, scene}],
 /// failures: [{scene, invariant, value, step, time, text, shrunk_...}]}.
 std::string json_of(const Campaign& campaign);
 

@@ -188,6 +188,8 @@ std::optional<Violation> Watch::momentum(const Snapshot& state) {
     return first;
 }
 
+double Watch::slope_uphill() const { return std::min(facts_.steepest, deepest_ / facts_.cell); }
+
 std::optional<Violation> Watch::energy(const Snapshot& state) {
     if (!facts_.energy_law) return std::nullopt;
     const Status &first = start_.now, &now = state.now;
@@ -197,15 +199,17 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double booked = now.mass_left * facts_.gravity * (facts_.one_cell_drop + deepest_);
     const double round_off = kEps * static_cast<double>(points_) * std::abs(first.potential);
     const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
-    const double slope = std::min(facts_.steepest, deepest_ / facts_.cell);
-    const double uphill = slope * slope / (1.0 + slope * slope) * now.kinetic;
+    const double slope = slope_uphill();
+    const double gone = now.energy_left - first.energy_left - now.mass_left * facts_.gravity * lowest_;
+    const double uphill = slope * slope / (1.0 + slope * slope) * (now.kinetic + std::max(0.0, gone));
     const double share = kEnergyShare * (at_hand_ + turned_over_);
     return judged("energy", growth, share + uphill + booked + bends + round_off, state,
                   "mechanical energy gained beyond the work of gravity [J]");
 }
 
 std::optional<Violation> Watch::speed(const Snapshot& state) {
-    const double wave = start_.max_speed + 2.0 * std::sqrt(facts_.gravity * deepest_);
+    const double uphill = facts_.energy_law ? std::hypot(1.0, slope_uphill()) : 1.0;  // otherwise in `stretch`
+    const double wave = start_.max_speed + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
     const double drop = std::max(0.0, highest_ - lowest_);
     const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
     return judged("speed", state.max_speed, (1.0 + kConvergence) * bound, state, "speed beyond the energy line [m/s]");
@@ -231,19 +235,18 @@ std::optional<Violation> Watch::rest(const Snapshot& state) {
     return judged("rest", moved ? std::max(fastest, 1e-300) : fastest, 0.0, state, "speed of what should rest [m/s]");
 }
 
-std::optional<Violation> Watch::symmetry(const Snapshot& state) {
-    if (facts_.claims.mirror == Mirror::none) return std::nullopt;
-    const Index width = std::max(facts_.nodes_x, facts_.nodes_y);
+double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const Scale& scale) {
+    const Index width = std::max(facts.nodes_x, facts.nodes_y);
     std::map<Index, const NodeState*> at;
-    for (const NodeState& node : state.nodes) at[node.j * width + node.i] = &node;
+    for (const NodeState& node : nodes) at[node.j * width + node.i] = &node;
+    const auto [depth, speed] = scale;
     double worst = 0.0;
-    const double depth = std::max(deepest_, 1e-300), speed = std::max(fastest_, 1e-300);
-    for (const NodeState& node : state.nodes) {
+    for (const NodeState& node : nodes) {
         Index i = node.i, j = node.j;
         double vx = node.vx, vy = node.vy;
-        if (facts_.claims.mirror == Mirror::x) i = facts_.nodes_x - 1 - i, vx = -vx;
-        if (facts_.claims.mirror == Mirror::y) j = facts_.nodes_y - 1 - j, vy = -vy;
-        if (facts_.claims.mirror == Mirror::diagonal) std::swap(i, j), std::swap(vx, vy);
+        if (facts.claims.mirror == Mirror::x) i = facts.nodes_x - 1 - i, vx = -vx;
+        if (facts.claims.mirror == Mirror::y) j = facts.nodes_y - 1 - j, vy = -vy;
+        if (facts.claims.mirror == Mirror::diagonal) std::swap(i, j), std::swap(vx, vy);
         const auto found = at.find(j * width + i);
         const NodeState image = found == at.end() ? NodeState{} : *found->second;
         // Momentum, not velocity: that of a node with next to no mass is the quotient of two round-offs.
@@ -251,7 +254,24 @@ std::optional<Violation> Watch::symmetry(const Snapshot& state) {
                           std::abs(image.depth * image.vx - node.depth * vx) / (depth * speed),
                           std::abs(image.depth * image.vy - node.depth * vy) / (depth * speed)});
     }
-    return judged("symmetry", worst, kMirrorError, state, "difference of mirrored nodes over the largest [1]");
+    return worst;
+}
+
+Scale Watch::scale(Index step) const {
+    const double depth = std::max(deepest_, 1e-300), roundings = 16.0 * static_cast<double>(step + 10);
+    const double cancels = kEps * roundings * std::sqrt(facts_.gravity * depth);
+    return {depth, std::max(fastest_ + cancels / kMirrorError, 1e-300)};
+}
+
+std::optional<Violation> Watch::symmetry(const Snapshot& state) {
+    if (facts_.claims.mirror == Mirror::none) return std::nullopt;
+    return judged("symmetry", asymmetry(facts_, state.nodes, scale(state.between.step)), kMirrorError, state,
+                  "difference of mirrored nodes over the largest [1]");
+}
+
+void Watch::part() {
+    facts_.claims.mirror = Mirror::none;
+    worst_["symmetry"] = 1.0;
 }
 
 }  // namespace frana::stress

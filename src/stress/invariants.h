@@ -45,6 +45,11 @@ struct Facts {
 };
 Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
 
+/// What differences between mirrored nodes are measured by.
+struct Scale { double depth = 0.0, speed = 0.0; };  ///< [m], [m/s]
+/// Largest difference of mirrored nodes, of depth over the scale's, of momentum over the product of both [1].
+double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const Scale& scale);
+
 /// Watches one run. Bounds (all from the start of the run):
 /// finite: every number of points, nodes and status.
 /// mass: sum of points and what left is the start's, to eps (points + steps) / 2, each sum and merger rounding once.
@@ -58,21 +63,25 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
 ///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
 ///   second differences of the bed. Where the surface slopes against the bed (the flank of a heap that runs uphill) the
 ///   drive is the plain gradient (kick_bed.h), and keeps the energy of the horizontal velocity: what the vertical one
-///   adds, B^2 / (1 + B^2) of K, is the model's own. That takes a depth that changes by more than the bed, so B there is
-///   at most the largest depth over a cell. Not for the paper preset, whose explicit forces act on nodes of vanishing
-///   mass.
-/// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
+///   adds, B^2 / (1 + B^2) of K, is the model's own, of what is there and of what left with it. That takes a depth that
+///   changes by more than the bed, so B there is at most the largest depth over a cell. Not for the paper preset, whose
+///   explicit forces act on nodes of vanishing mass.
+/// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
 ///   start, h the largest depth and drop to the lowest bed so far. stretch is 1 where the model has an energy law;
 ///   elsewhere a bend may turn a speed along the map into `stretch` times that along the bed, which carries it up by
 ///   stretch^2 of the height, to fall again. The energy line's v0^2 + 2 g drop alone is no bound of a fluid: the tip of
-///   a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what stays behind. kConvergence: that in turn is a bound
-///   along one direction; streams that converge from two may pass it a little (1 % has been seen), while what is
-///   unstable passes it by factors.
+///   a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what stays behind. One that runs uphill is driven by the
+///   plain gradient, so it is the horizontal velocity that has this bound, and s = sqrt(1 + B^2) with the B of `energy`
+///   (1 where stretch has it). kConvergence: that in turn is a bound along one direction; streams that converge from two
+///   may pass it a little (1 % has been seen), while what is unstable passes it by factors.
 /// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
 ///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
 ///   as high as round-off, 2 sqrt(g e) (Ritter 1892), where the fit met the level; otherwise than one as high as its
 ///   surface is off the level, on that bed: with the factors (1 + kConvergence) stretch^2 of `speed`.
-/// symmetry: depth and momentum of mirrored nodes agree within `kMirrorError` of the largest (claimed scenes).
+/// symmetry: depth and momentum of mirrored nodes agree within `kMirrorError` of the largest (claimed scenes). Momentum
+///   besides to the round-off of what cancels: a step's pressure pulls each way by up to sqrt(g h), which rounds some
+///   sixteen times; where nothing else moves, all that moves is that. Round-off that the flow makes grow is no defect of
+///   the images: see has_grown() in trial.h, and part().
 class Watch {
 public:
     static constexpr double kEnergyShare = 0.1;
@@ -82,6 +91,10 @@ public:
     Watch(const Facts& facts, const Snapshot& start);
     /// The first invariant that the state breaks.
     std::optional<Violation> see(const Snapshot& state);
+    /// Largest depth and speed so far, the latter with the round-off of what cancels.
+    Scale scale(Index step) const;
+    /// Mirror images have parted for a good reason: symmetry is not looked at any more.
+    void part();
     /// Largest value so far of each invariant that has a number, in units of what is allowed.
     const std::map<std::string, double>& worst() const { return worst_; }
 
@@ -95,6 +108,8 @@ private:
     std::optional<Violation> rest(const Snapshot& state);
     std::optional<Violation> symmetry(const Snapshot& state);
     void note_extremes(const Snapshot& state);
+    /// Largest slope of the bed that a surface may climb [1]; see `energy`.
+    double slope_uphill() const;
     std::optional<Violation> judged(const char* invariant, double value, double allowed, const Snapshot& state,
                                     const std::string& what);
 
