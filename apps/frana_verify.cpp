@@ -116,7 +116,7 @@ int verify_command(const VerifyOptions& options) {
     std::vector<std::string> complaints;
     fmt::print("{}\n", head);
     for (const Problem* problem : problems) {
-        if (problem->in_space && options.names.empty() && options.preset != "default") continue;
+        if ((problem->in_space || !problem->has_presets) && options.names.empty() && options.preset != "default") continue;
         const auto measured = run_problem(*problem, setup, grids, table, complaints);
         all.insert(all.end(), measured.begin(), measured.end());
     }

@@ -89,7 +89,8 @@ TEST_CASE("V2: strain along one axis is Hooke's with the weight given", "[struct
     CHECK(loaded.xx == Approx(-700.0 * nu / (1 - nu)).epsilon(1e-14));
 }
 
-TEST_CASE("V3: elastic simple shear: G sin(gamma), G (1 - cos(gamma)), of second order in the step", "[structured]") {
+TEST_CASE("V3: elastic simple shear: G sin(gamma), G (1 - cos(gamma)), of second order in the step",
+          "[structured]") {
     const ColumnLaw law(clay(28.0));
     const double gamma = 2.0, g = law.shear();
     double before = 0.0;
@@ -98,13 +99,16 @@ TEST_CASE("V3: elastic simple shear: G sin(gamma), G (1 - cos(gamma)), of second
         const ColumnStress s = strained(law, steps, ColumnStep::of(0.0, d, 0.0, 0.0, 1.0), 0.0, 1e12).stress;
         const double error = std::hypot(s.xy / g - std::sin(gamma), s.xx / g - (1 - std::cos(gamma)));
         CHECK(s.xx == Approx(-s.yy).epsilon(1e-10));
-        if (before > 0.0) CHECK(before / error == Approx(100.0).epsilon(0.02));
-        else CHECK(error < 1e-4);  // the prototype's first order gave 1.4e-2 here
+        if (before > 0.0)
+            CHECK(before / error == Approx(100.0).epsilon(0.02));
+        else
+            CHECK(error < 1e-4);  // the prototype's first order gave 1.4e-2 here
         before = error;
     }
 }
 
-TEST_CASE("V4: simple shear under a pressure goes to k + 3 alpha p and keeps its mean stress", "[structured]") {
+TEST_CASE("V4: simple shear under a pressure goes to k + 3 alpha p and keeps its mean stress",
+          "[structured]") {
     const double p = 1e4, c = 2e4;
     const auto plateau = [&](ColumnYield yield) {
         const ColumnLaw law(clay(28.0, yield));
@@ -172,11 +176,14 @@ TEST_CASE("V7: unconfined tension holds what cone and pyramid say", "[structured
     const auto strength = [&](ColumnYield yield) {
         return squeezed_alone(ColumnLaw(clay(30.0, yield)), 0.05, 0.0, c).stress.xx;
     };
-    CHECK(strength(ColumnYield::compression) == Approx(6 * c * std::cos(phi) / (3 + std::sin(phi))).epsilon(1e-4));
-    CHECK(strength(ColumnYield::hexagon) == Approx(2 * c * std::cos(phi) / (1 + std::sin(phi))).epsilon(1e-4));
+    CHECK(strength(ColumnYield::compression) ==
+          Approx(6 * c * std::cos(phi) / (3 + std::sin(phi))).epsilon(1e-4));
+    CHECK(strength(ColumnYield::hexagon) ==
+          Approx(2 * c * std::cos(phi) / (1 + std::sin(phi))).epsilon(1e-4));
 }
 
-TEST_CASE("V8: at constant dilation all bonds are broken when the plastic part is the critical strain", "[structured]") {
+TEST_CASE("V8: at constant dilation all bonds are broken when the plastic part is the critical strain",
+          "[structured]") {
     ColumnMaterial m = clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::hexagon));
     m.critical_strain = 0.05;
     const ColumnLaw law(m);
@@ -187,12 +194,14 @@ TEST_CASE("V8: at constant dilation all bonds are broken when the plastic part i
         const ColumnState before = state;
         law.update({d, d, 0.0, 0.0}, 0.0, c0, state);
         if (before.damage > 0.0 && state.damage < 1.0) {
-            plastic += 2.0 * d - (state.stress.xx + state.stress.yy - before.stress.xx - before.stress.yy) / lame;
+            plastic +=
+                2.0 * d - (state.stress.xx + state.stress.yy - before.stress.xx - before.stress.yy) / lame;
             worst = std::max(worst, std::abs(state.damage - plastic / m.critical_strain));
         } else if (state.damage > 0.0 && before.damage == 0.0) {
             plastic = state.damage * m.critical_strain;
         }
-        // What is left of the cohesion, at the step's start, bears the tension: both cones go through c cot(phi).
+        // What is left of the cohesion, at the step's start, bears the tension: both cones go through c
+        // cot(phi).
         if (before.damage > 0.0) CHECK(law.excess(state.stress, c0 * (1 - before.damage)) < 1e-6 * c0);
     }
     CHECK(state.damage == 1.0);
@@ -236,7 +245,8 @@ TEST_CASE("Bell: extended both ways, the lateral stress is -(Ka p - 2 c sqrt(Ka)
     CHECK(s.yy == Approx(bell).margin(1e-6 * c));
 }
 
-TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no negative work", "[structured]") {
+TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no negative work",
+          "[structured]") {
     const double psi = GENERATE(0.0, 28.0), weight = GENERATE(0.0, -2e4);
     const ColumnLaw law(clay(28.0, ColumnYield::hexagon, psi));
     int yielded = 0;
@@ -253,7 +263,8 @@ TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no ne
         const double xx = trial.xx - s.xx, yy = trial.yy - s.yy, xy = (1 + nu) * (trial.xy - s.xy);
         CHECK(plastic.dilation == Approx((1 - nu) * (xx + yy) / young).margin(1e-10));
         CHECK(plastic.extension ==
-              Approx(((1 - nu) * (xx + yy) / 2 + std::hypot((1 + nu) * (xx - yy) / 2, xy)) / young).margin(1e-10));
+              Approx(((1 - nu) * (xx + yy) / 2 + std::hypot((1 + nu) * (xx - yy) / 2, xy)) / young)
+                  .margin(1e-10));
         const double work = s.xx * (xx - nu * yy) + s.yy * (yy - nu * xx) + 2 * s.xy * xy;
         if (weight == 0.0) CHECK(work >= 0.0);
         ++yielded;
@@ -262,7 +273,8 @@ TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no ne
 }
 
 TEST_CASE("Four columns at once have the bits of one after the other", "[structured]") {
-    ColumnMaterial m = clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::plane_strain, ColumnYield::hexagon));
+    ColumnMaterial m =
+        clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::plane_strain, ColumnYield::hexagon));
     m.critical_strain = 0.05;
     const ColumnLaw law(m);
     ColumnState one[4];
@@ -314,7 +326,8 @@ TEST_CASE("What a call costs", "[.cost]") {
             law.update({all(d), all(0.3 * d), all(0.5 * d), all(1e-4)}, all(-1e3), all(2e4), state);
         }
         const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-        fmt::print("{}: {:.1f} ns a column, xx {:.3g} Pa\n", what, 1e9 * time.count() / kCalls, state.stress.xx[0]);
+        fmt::print("{}: {:.1f} ns a column, xx {:.3g} Pa\n", what, 1e9 * time.count() / kCalls,
+                   state.stress.xx[0]);
         CHECK(time.count() > 0.0);
     };
     measure(ColumnLaw(clay(28.0)), 1e-6, "elastic");

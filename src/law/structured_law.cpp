@@ -17,7 +17,7 @@ double cone_slope(ColumnYield yield, double sine) {
 
 void large_turn(double a, double& cosine, double& sine) { cosine = std::cos(a), sine = std::sin(a); }
 
-void large_turn(Double4 a, Double4& cosine, Double4& sine) {
+void large_turn(const Double4& a, Double4& cosine, Double4& sine) {
     for (int n = 0; n < 4; ++n) cosine[n] = std::cos(a[n]), sine[n] = std::sin(a[n]);
 }
 
@@ -31,7 +31,8 @@ ColumnLaw::ColumnLaw(const ColumnMaterial& m)
       cosine_(std::cos(m.friction)),
       active_((1.0 - sine_) / (1.0 + sine_)) {
     expect(m.young > 0.0 && m.poisson >= 0.0 && m.poisson < 0.5, "a solid needs 0 < E and 0 <= nu < 1/2");
-    expect(m.friction > 0.0 && m.dilatancy >= 0.0 && m.dilatancy <= m.friction, "a solid needs 0 <= psi <= phi, 0 < phi");
+    expect(m.friction > 0.0 && m.dilatancy >= 0.0 && m.dilatancy <= m.friction,
+           "a solid needs 0 <= psi <= phi, 0 < phi");
     expect(m.critical_strain > 0.0 && m.onset >= 0.0, "a solid breaks at a strain above zero");
     alpha_ = cone_slope(m.yield, sine_);
     k_ = m.yield == ColumnYield::plane_strain ? cosine_ : 6.0 * cosine_ / (std::sqrt(3.0) * (3.0 - sine_));
@@ -54,8 +55,8 @@ PlasticStep ColumnLaw::yield(double cohesion, ColumnStress& s) const {
 
 namespace {
 
-/// The search for t below: Newton's step within a bracket that grows by doubling until it holds the root, halved
-/// where Newton leaves it.
+/// The search for t below: Newton's step within a bracket that grows by doubling until it holds the root,
+/// halved where Newton leaves it.
 class Bracket {
 public:
     explicit Bracket(double reach) : reach_(reach) {}
@@ -69,16 +70,18 @@ public:
     }
 
 private:
-    double low_ = -std::numeric_limits<double>::infinity(), high_ = std::numeric_limits<double>::infinity(), reach_;
+    double low_ = -std::numeric_limits<double>::infinity(), high_ = std::numeric_limits<double>::infinity(),
+           reach_;
 };
 
-constexpr int kMostPasses = 100;         // of the search; two to four are usual
-constexpr double kStressError = 1e-7;    // of zz, over the strength and the weight: far below what damage resolves
+constexpr int kMostPasses = 100;  // of the search; two to four are usual
+constexpr double kStressError =
+    1e-7;  // of zz, over the strength and the weight: far below what damage resolves
 
 }  // namespace
 
-/// Looks for the strain t across the bed, beyond that of the elastic step, at which the return in space leaves zz
-/// where it was prescribed.
+/// Looks for the strain t across the bed, beyond that of the elastic step, at which the return in space
+/// leaves zz where it was prescribed.
 PlasticStep ColumnLaw::yield_to_cone(double k, ColumnStress& s) const {
     const double first = s.xx + s.yy + s.zz, mean = first / 3.0, g = shear_, bulk = bulk_;
     const double x = s.xx - mean, y = s.yy - mean, z = s.zz - mean, xy = s.xy;
@@ -95,7 +98,8 @@ PlasticStep ColumnLaw::yield_to_cone(double k, ColumnStress& s) const {
         const double miss = back.scale * sz + back.first / 3.0 - s.zz;
         if (std::abs(miss) <= tolerance) break;
         double slope = 4.0 / 3.0 * g + bulk;
-        if (back.scale == 0.0) slope = 0.0;
+        if (back.scale == 0.0)
+            slope = 0.0;
         else if (back.multiplier > 0.0) {
             const double dq = g * sz / q;
             const double flow = (dq + 3.0 * bulk * alpha_) / (g + 9.0 * bulk * alpha_ * dilates_);
@@ -115,7 +119,8 @@ PlasticStep ColumnLaw::yield_to_cone(double k, ColumnStress& s) const {
 
 namespace {
 
-/// One face of the hexagon, n . s <= bound, and the direction of flow on it, in principal values of the plane.
+/// One face of the hexagon, n . s <= bound, and the direction of flow on it, in principal values of the
+/// plane.
 struct Face {
     double n[2], bound, m[2];
     double excess(const double* s) const { return n[0] * s[0] + n[1] * s[1] - bound; }
@@ -130,9 +135,10 @@ double rate(const Face& of, const Face& flow, double poisson) {
 
 }  // namespace
 
-/// In principal values s_1 >= s_2 of the plane the pyramid with zz as prescribed is bounded by s_1 <= high, s_2 >=
-/// low, (s_1 - s_2) + (s_1 + s_2) sin(phi) <= 2 c cos(phi). Elastic and plastic strain across the bed are free, so that
-/// stress is taken away by the stiffness of plane stress. Faces first, then the corners between them (Koiter).
+/// In principal values s_1 >= s_2 of the plane the pyramid with zz as prescribed is bounded by s_1 <= high,
+/// s_2 >= low, (s_1 - s_2) + (s_1 + s_2) sin(phi) <= 2 c cos(phi). Elastic and plastic strain across the bed
+/// are free, so that stress is taken away by the stiffness of plane stress. Faces first, then the corners
+/// between them (Koiter).
 PlasticStep ColumnLaw::yield_to_hexagon(double cohesion, ColumnStress& s) const {
     const double centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy), radius = std::hypot(half, s.xy);
     const double cosine = radius > 0.0 ? half / radius : 1.0, sine = radius > 0.0 ? s.xy / radius : 0.0;
@@ -147,8 +153,10 @@ PlasticStep ColumnLaw::yield_to_hexagon(double cohesion, ColumnStress& s) const 
                            {{-1, 0}, -low, {-down, 0}}};
     const double trial[2] = {centre + radius, centre - radius}, nu = material_.poisson;
     const double near = 1e-12 * (std::abs(high) + std::abs(low) + std::abs(trial[0]) + std::abs(trial[1]));
-    double kept[2] = {trial[0], trial[1]}, strain[2] = {0.0, 0.0}, least = std::numeric_limits<double>::infinity();
-    // The admissible return that leaves the least outside; by round-off more than one may qualify, and then they agree.
+    double kept[2] = {trial[0], trial[1]}, strain[2] = {0.0, 0.0},
+           least = std::numeric_limits<double>::infinity();
+    // The admissible return that leaves the least outside; by round-off more than one may qualify, and then
+    // they agree.
     const auto consider = [&](const Face& a, double la, const Face& b, double lb) {
         if (!(la >= 0.0 && lb >= 0.0)) return;
         double at[2], worst = 0.0;
@@ -174,20 +182,22 @@ PlasticStep ColumnLaw::yield_to_hexagon(double cohesion, ColumnStress& s) const 
     return {strain[0] + strain[1], std::max(strain[0], strain[1])};
 }
 
-void ColumnLaw::give_way(bool, const ColumnStep& step, double left, ColumnStress& s, ColumnState& state) const {
+void ColumnLaw::give_way(bool, const ColumnStep& step, double left, ColumnStress& s,
+                         ColumnState& state) const {
     const PlasticStep plastic = yield(left, s);
     const double critical = material_.critical_strain;
     if (material_.damage_by == DamageBy::strain) {
         const double now = std::abs(step.xx) + std::abs(step.yy) + 2.0 * std::abs(step.xy);
-        if (state.strain > material_.onset) state.damage = 1.0 - (1.0 - state.damage) * std::exp(-now / critical);
+        if (state.strain > material_.onset)
+            state.damage = 1.0 - (1.0 - state.damage) * std::exp(-now / critical);
         return;
     }
     const double opened = material_.damage_by == DamageBy::dilation ? plastic.dilation : plastic.extension;
     state.damage = std::min(1.0, state.damage + std::max(0.0, opened) / critical);
 }
 
-void ColumnLaw::give_way(Mask4 yields, const ColumnStepOf<Double4>& step, Double4 left, ColumnStressOf<Double4>& s,
-                         ColumnStateOf<Double4>& state) const {
+void ColumnLaw::give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
+                         ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const {
     for (int n = 0; n < 4; ++n) {
         if (!yields[n]) continue;
         ColumnStress one{s.xx[n], s.yy[n], s.zz[n], s.xy[n]};

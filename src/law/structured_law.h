@@ -1,8 +1,8 @@
 #pragma once
 // Structured solids: how the stress of a depth-averaged column goes on with its deformation in the plane,
-// elastic until it yields, and how yielding breaks it (van den Bout et al. 2021, doi:10.5194/gmd-14-1841-2021,
-// sec. 2.2, with the stress across the bed prescribed by the weight). Tension is positive. Functions are for one
-// column (Real is double) or for four at once (Double4).
+// elastic until it yields, and how yielding breaks it (van den Bout et al. 2021,
+// doi:10.5194/gmd-14-1841-2021, sec. 2.2, with the stress across the bed prescribed by the weight). Tension
+// is positive. Functions are for one column (Real is double) or for four at once (Double4).
 #include <cmath>
 
 #include "base/simd.h"
@@ -16,7 +16,8 @@ struct ColumnStressOf {
 };
 using ColumnStress = ColumnStressOf<double>;
 
-/// What a step does to a column in the plane: strain [1], xy as the tensor has it, and turn, counter-clockwise [rad].
+/// What a step does to a column in the plane: strain [1], xy as the tensor has it, and turn,
+/// counter-clockwise [rad].
 template <class Real>
 struct ColumnStepOf {
     Real xx{}, yy{}, xy{}, turn{};
@@ -37,21 +38,22 @@ struct ColumnStateOf {
 };
 using ColumnState = ColumnStateOf<double>;
 
-/// Where the column yields. Cones of Drucker and Prager that meet Mohr and Coulomb's pyramid in triaxial compression,
-/// or in plane strain without dilatancy; or the pyramid itself, which the prescribed zz cuts in a hexagon.
+/// Where the column yields. Cones of Drucker and Prager that meet Mohr and Coulomb's pyramid in triaxial
+/// compression, or in plane strain without dilatancy; or the pyramid itself, which the prescribed zz cuts in
+/// a hexagon.
 enum class ColumnYield { compression, plane_strain, hexagon };
 
-/// What breaks bonds while the column yields, in parts of the critical strain: the plastic dilation in the plane, as
-/// in the paper; the largest principal plastic strain; or any strain at all, behind an onset, with what is left
-/// decaying exponentially, as in the paper's source code.
+/// What breaks bonds while the column yields, in parts of the critical strain: the plastic dilation in the
+/// plane, as in the paper; the largest principal plastic strain; or any strain at all, behind an onset, with
+/// what is left decaying exponentially, as in the paper's source code.
 enum class DamageBy { dilation, extension, strain };
 
 /// What a user says of a structured solid.
 struct ColumnMaterial {
-    double young = 1e6;     ///< E [Pa]
-    double poisson = 0.3;   ///< nu [1]
-    double friction = 0.5;  ///< phi, internal angle [rad], 0 to pi / 2
-    double dilatancy = 0.0; ///< psi [rad], 0 to phi
+    double young = 1e6;      ///< E [Pa]
+    double poisson = 0.3;    ///< nu [1]
+    double friction = 0.5;   ///< phi, internal angle [rad], 0 to pi / 2
+    double dilatancy = 0.0;  ///< psi [rad], 0 to phi
     ColumnYield yield = ColumnYield::compression;
     DamageBy damage_by = DamageBy::dilation;
     double critical_strain = 0.07;  ///< eps_c at which no bond is left [1]
@@ -83,15 +85,15 @@ public:
     const ColumnMaterial& material() const { return material_; }
     double bulk() const { return bulk_; }
     double shear() const { return shear_; }
-    double alpha() const { return alpha_; }                          ///< of the cone: sqrt(J2) + alpha I1 = k
-    double strength(double cohesion) const { return k_ * cohesion; } ///< k [Pa]
-    double active() const { return active_; }                        ///< Ka, Rankine's
-    double passive() const { return 1.0 / active_; }                 ///< Kp
+    double alpha() const { return alpha_; }  ///< of the cone: sqrt(J2) + alpha I1 = k
+    double strength(double cohesion) const { return k_ * cohesion; }  ///< k [Pa]
+    double active() const { return active_; }                         ///< Ka, Rankine's
+    double passive() const { return 1.0 / active_; }                  ///< Kp
     /// Of waves in the plane, zz given: sqrt(E / (rho (1 - nu^2))) [m/s]
     double sound_speed(double density) const { return std::sqrt(plane_ / density); }
 
-    /// The step with zz = `weight` [Pa, negative] at its end and the undamaged `cohesion` [Pa]: half the turn, the
-    /// strain, half the turn. Damage of this step weakens the next.
+    /// The step with zz = `weight` [Pa, negative] at its end and the undamaged `cohesion` [Pa]: half the
+    /// turn, the strain, half the turn. Damage of this step weakens the next.
     template <class Real>
     [[gnu::always_inline]] void update(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
                                        ColumnStateOf<Real>& state) const {
@@ -103,7 +105,8 @@ public:
         state.stress = turned<Real>(s, 0.5 * step.turn);
     }
 
-    /// How far a stress lies outside the yield surface [Pa]: sqrt(J2) + alpha I1 - k, or the largest of the hexagon's.
+    /// How far a stress lies outside the yield surface [Pa]: sqrt(J2) + alpha I1 - k, or the largest of the
+    /// hexagon's.
     template <class Real>
     [[gnu::always_inline]] Real excess(const ColumnStressOf<Real>& s, Real cohesion) const {
         if (material_.yield == ColumnYield::hexagon) return hexagon_excess<Real>(s, cohesion);
@@ -112,8 +115,8 @@ public:
         return sqrt(0.5 * (x * x + y * y + z * z) + s.xy * s.xy) + alpha_ * first - k_ * cohesion;
     }
 
-    /// Closed-form return of a trial stress in space with invariants sqrt(J2) = q and I1 to the cone of strength k,
-    /// its apex included; any dilatancy.
+    /// Closed-form return of a trial stress in space with invariants sqrt(J2) = q and I1 to the cone of
+    /// strength k, its apex included; any dilatancy.
     ConeReturn to_cone(double q, double first, double k) const;
     /// Elastic stress `s`, zz as prescribed, to the yield surface with zz as it is.
     PlasticStep yield(double cohesion, ColumnStress& s) const;
@@ -137,16 +140,18 @@ private:
         const Real most = max(centre + radius, s.zz), least = min(centre - radius, s.zz);
         return (most - least) + (most + least) * sine_ - 2.0 * cosine_ * cohesion;
     }
-    void give_way(bool yields, const ColumnStep& step, double left, ColumnStress& s, ColumnState& state) const;
-    void give_way(Mask4 yields, const ColumnStepOf<Double4>& step, Double4 left, ColumnStressOf<Double4>& s,
-                  ColumnStateOf<Double4>& state) const;
+    // Four by reference: by value they travel differently between files built for different instruction sets.
+    void give_way(bool yields, const ColumnStep& step, double left, ColumnStress& s,
+                  ColumnState& state) const;
+    void give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
+                  ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const;
     PlasticStep yield_to_cone(double k, ColumnStress& s) const;
     PlasticStep yield_to_hexagon(double cohesion, ColumnStress& s) const;
 
     ColumnMaterial material_;
-    double shear_, bulk_, plane_, weight_share_;       ///< G, K, E / (1 - nu^2) [Pa]; nu / (1 - nu)
-    double sine_, cosine_, active_;                    ///< of phi; Ka
-    double alpha_ = 0.0, k_ = 0.0, dilates_ = 0.0;     ///< of the cone; k over cohesion; alpha at psi
+    double shear_, bulk_, plane_, weight_share_;    ///< G, K, E / (1 - nu^2) [Pa]; nu / (1 - nu)
+    double sine_, cosine_, active_;                 ///< of phi; Ka
+    double alpha_ = 0.0, k_ = 0.0, dilates_ = 0.0;  ///< of the cone; k over cohesion; alpha at psi
 };
 
 /// cos and sin of a small angle to round-off: the terms left out are below 0.05^12 / 12! < 1e-24.
@@ -158,14 +163,17 @@ template <class Real>
     sine = a * (1.0 - b / 6.0 * (1.0 - b / 20.0 * (1.0 - b / 42.0 * (1.0 - b / 72.0 * (1.0 - b / 110.0)))));
 }
 void large_turn(double a, double& cosine, double& sine);
-void large_turn(Double4 a, Double4& cosine, Double4& sine);
+void large_turn(const Double4& a, Double4& cosine, Double4& sine);
 
 template <class Real>
-[[gnu::always_inline]] inline ColumnStressOf<Real> ColumnLaw::turned(const ColumnStressOf<Real>& s, Real angle) {
+[[gnu::always_inline]] inline ColumnStressOf<Real> ColumnLaw::turned(const ColumnStressOf<Real>& s,
+                                                                     Real angle) {
     const Real twice = 2.0 * angle;
     Real cosine, sine;
-    if (__builtin_expect(any(abs(twice) > kSmallTurn), 0)) large_turn(twice, cosine, sine);
-    else small_turn<Real>(twice, cosine, sine);
+    if (__builtin_expect(any(abs(twice) > kSmallTurn), 0))
+        large_turn(twice, cosine, sine);
+    else
+        small_turn<Real>(twice, cosine, sine);
     const Real centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
     const Real across = half * cosine - s.xy * sine;
     return {centre + across, centre - across, s.zz, half * sine + s.xy * cosine};
