@@ -102,6 +102,10 @@ int verify_command(const VerifyOptions& options) {
         return 0;
     }
     const std::vector<const Problem*> problems = chosen(options.names);
+    if (!options.figure.empty() && !options.names.empty() && draws_blocks(problems)) {
+        draw_blocks(problems, options.figure);
+        return 0;
+    }
     if (!options.figure.empty()) {
         draw_work_precision(options.names.empty() ? std::vector<const Problem*>{} : problems, options.figure);
         return 0;

@@ -1,9 +1,11 @@
 // Structured solids: mass, momentum, symmetry, the same bits on any number of threads; warm steps need no
 // memory.
+#include <fmt/core.h>
 #include <omp.h>
 
 #include "catch.h"
 #include "structured/breakage.h"
+#include "verify/library.h"
 #include "verify/structured_cases.h"
 
 using namespace frana;
@@ -145,4 +147,25 @@ TEST_CASE("Grains push by Ka where they spread and towards Kp where they are squ
     // Pure shear: spread along the diagonal, squeezed across it.
     CHECK(shear.xx == Approx(0.5 * (k.active + k.passive)).epsilon(1e-9));
     CHECK(shear.xy == Approx(0.5 * (k.active - k.passive)).epsilon(1e-9));
+}
+
+TEST_CASE("What a step costs beside the depth-averaged flow's", "[.cost]") {
+    omp_set_num_threads(1);
+    const auto cost = [](const char* what, double per, const verify::Measurement& m) {
+        const double ns = 1e9 * m.wall_seconds / static_cast<double>(m.particles * m.steps);
+        fmt::print("{}: {:.0f} ns a column and step, {:.2f} of the flow's\n", what, ns,
+                   per > 0.0 ? ns / per : 1.0);
+        return ns;
+    };
+    verify::Setup setup;
+    setup.cells = 160;
+    const verify::Measurement flow = verify::find_problem("radial_dam")->run(setup);
+    const double per = cost("depth-averaged flow, S2 (radial_dam)", 0.0, flow);
+    const auto run = [&](const char* what, const StructuredScene& scene, double end) {
+        StructuredFlow body(scene);
+        CHECK(cost(what, per, verify::run_structured(body, end)) > 0.0);
+    };
+    run("structured, elastic (2A)", verify::convex_block(200e3, 1.25), 3.0);
+    run("structured, breaking (2B)", verify::convex_block(60e3, 1.25), 9.0);
+    run("structured, grains (3C)", verify::valley_block(15e3, 0.1, 1.25), 8.0);
 }

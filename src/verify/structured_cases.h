@@ -27,4 +27,20 @@ double crack_coverage(const StructuredFlow& flow, const StructuredSeeds& seeds);
 StructuredScene convex_block(double cohesion, double cell, int per_side = 2);
 StructuredScene valley_block(double cohesion, double fan, double cell, int per_side = 2);
 
+/// A scene that a picture shows at its end.
+struct ShownBlock {
+    std::string name, title;
+    StructuredScene scene;
+    double end = 0.0;  ///< [s]
+    Function bed;      ///< [m]
+};
+/// Both clays of the flume, or the scenarios 2A, 2B, 3A to 3C.
+std::vector<ShownBlock> shown_blocks(const std::string& problem);
+
+/// On the nodes of the grid: depth [m], and mean damage [1], NaN where nothing lies.
+struct NodeMaps {
+    std::vector<double> depth, damage;
+};
+NodeMaps node_maps(const StructuredFlow& flow);
+
 }  // namespace frana::verify
