@@ -81,6 +81,33 @@ TEST_CASE("Structured solids have the same bits for any number of threads", "[st
     CHECK(damage > 0.0);
 }
 
+TEST_CASE("A column that spreads becomes thinner as its area grows, and stands on its own weight",
+          "[structured]") {
+    StructuredScene s;
+    s.grid = verify::grid_over({-3, -2}, {3, 2}, 0.1);
+    s.ground = [](double, double) { return GroundPull{0, 0, 2.0}; };
+    s.material.young = 1e-3;  // holds nothing together
+    verify::StructuredBlock block;
+    block.low = {-1, -1}, block.cohesion = 1e9;
+    verify::add_block(s, block);
+    const double rate_x = 0.5, rate_y = -0.2, end = 0.5;
+    for (std::size_t p = 0; p < s.points.x.size(); ++p)
+        s.points.vx[p] = rate_x * s.points.x[p], s.points.vy[p] = rate_y * s.points.y[p];
+    StructuredFlow flow(s);
+    while (flow.status().time < end) flow.advance(end);
+    const double depth = 1.0 / ((1.0 + rate_x * end) * (1.0 + rate_y * end));
+    const StructuredPoints& q = flow.body().points;
+    int inside = 0;
+    for (Index p = 0; p < q.count(); ++p) {
+        if (flow.position(p).cwiseAbs().maxCoeff() > 0.5) continue;
+        CHECK(q.depth[p] ==
+              Approx(depth).epsilon(0.01));  // the step is a fiftieth of the time, of first order
+        CHECK(q.zz[p] == Approx(-0.5 * 1700.0 * 2.0 * q.depth[p]).epsilon(1e-12));
+        ++inside;
+    }
+    CHECK(inside > 100);
+}
+
 TEST_CASE("Neighbours that part unbroken are numerical fracture, and pieces are counted by mass",
           "[structured]") {
     StructuredScene s;

@@ -128,7 +128,7 @@ std::vector<Problem> structured_case_problems() {
                    closed,
                    mass};
     Problem convex{
-        "blocks_2", "a block over a convex slope: whole or in two, by its cohesion", {40}, {}, run_blocks_2};
+        "blocks_2", "a block over a convex slope: whole or in two, by its cohesion", {30, 40}, {}, run_blocks_2};
     convex.order_of = "damage_2b";
     convex.gates = {
         {0, "damage_2a", 0.0, "a quarter above what bends it: 144 kPa of tension, 97 kPa of cohesion"},
@@ -140,7 +140,7 @@ std::vector<Problem> structured_case_problems() {
         mass};
     Problem valley{"blocks_3",
                    "a block into a valley: whole, broken on the fan, or grains at once",
-                   {40},
+                   {30, 40},
                    {},
                    run_blocks_3};
     valley.order_of = "damage_3b";
