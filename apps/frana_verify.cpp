@@ -102,6 +102,10 @@ int verify_command(const VerifyOptions& options) {
         return 0;
     }
     const std::vector<const Problem*> problems = chosen(options.names);
+    if (!options.figure.empty() && !options.names.empty() && draws_blocks(problems)) {
+        draw_blocks(problems, options.figure);
+        return 0;
+    }
     if (!options.figure.empty()) {
         draw_work_precision(options.names.empty() ? std::vector<const Problem*>{} : problems, options.figure);
         return 0;
@@ -116,7 +120,7 @@ int verify_command(const VerifyOptions& options) {
     std::vector<std::string> complaints;
     fmt::print("{}\n", head);
     for (const Problem* problem : problems) {
-        if (problem->in_space && options.names.empty() && options.preset != "default") continue;
+        if ((problem->in_space || !problem->has_presets) && options.names.empty() && options.preset != "default") continue;
         const auto measured = run_problem(*problem, setup, grids, table, complaints);
         all.insert(all.end(), measured.begin(), measured.end());
     }

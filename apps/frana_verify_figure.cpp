@@ -10,9 +10,11 @@
 #include "base/version.h"
 #include "verify/library.h"
 #include "verify/peers.h"
+#include "verify/structured_cases.h"
 #include "verify/study.h"
 #include "verify/table.h"
 #include "vtk_io/chart_figure.h"
+#include "vtk_io/map_figure.h"
 
 namespace frana {
 namespace {
@@ -112,6 +114,63 @@ void print_study(const std::filesystem::path& table) {
     line(verify::study_head());
     for (const verify::Component& component : verify::components()) line(verify::study_row(component));
     if (!table.empty()) write_text(table, text);
+}
+
+bool draws_blocks(const std::vector<const Problem*>& problems) {
+    for (const Problem* problem : problems)
+        if (verify::shown_blocks(problem->name).empty()) return false;
+    return !problems.empty();
+}
+
+namespace {
+
+/// Bed under a block; obstacles have none.
+Raster bed_of(const verify::ShownBlock& shown) {
+    const GridGeometry& g = shown.scene.grid;
+    Raster bed = Raster::filled(g, 0.0);
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const Vec2 at(g.x(i), g.y(j));
+            bed.at(i, j) = shown.bed(at.x(), at.y());
+            for (const Obstacle& o : shown.scene.obstacles)
+                if ((at.array() > o.low.array()).all() && (at.array() < o.high.array()).all())
+                    bed.at(i, j) = Raster::nodata;
+        }
+    return bed;
+}
+
+/// Where a block lies at its end, by the damage of its columns.
+MapFigure block_figure(const verify::ShownBlock& shown) {
+    constexpr double kShownShare = 0.05;  // of the depth at the start
+    StructuredFlow flow(shown.scene);
+    verify::run_structured(flow, shown.end);
+    const verify::NodeMaps maps = verify::node_maps(flow);
+    MapFigure figure;
+    figure.bed = bed_of(shown);
+    figure.field = maps.damage;
+    figure.outline_field = maps.depth;
+    figure.shown_above = kShownShare * shown.scene.points.depth.front();
+    figure.outline_label = "depth [m]";
+    figure.title = shown.title;
+    figure.field_label = "damage [1]";
+    figure.range = {0.0, 1.0};
+    figure.footer = fmt::format("frana {}: structured columns, cells of {:g} m, {} columns, mean damage {:.3f}", FRANA_VERSION,
+                                shown.scene.grid.cell, flow.status().points, flow.status().damage);
+    return figure;
+}
+
+}  // namespace
+
+void draw_blocks(const std::vector<const Problem*>& problems, const std::filesystem::path& png) {
+    for (const Problem* problem : problems)
+        for (const verify::ShownBlock& shown : verify::shown_blocks(problem->name)) {
+            const MapFigure figure = block_figure(shown);
+            const std::filesystem::path file =
+                png.parent_path() / (png.stem().string() + "_" + shown.name + png.extension().string());
+            std::string why_not;
+            if (!render_map(figure, file, why_not)) throw UserError("no picture: " + why_not);
+            fmt::print("{}\n", file.string());
+        }
 }
 
 }  // namespace frana

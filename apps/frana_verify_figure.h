@@ -15,4 +15,9 @@ void draw_work_precision(std::vector<const verify::Problem*> problems, const std
 /// Prints the table of the component study; also into `table` unless that is empty.
 void print_study(const std::filesystem::path& table);
 
+/// Whether all of these have blocks to show instead.
+bool draws_blocks(const std::vector<const verify::Problem*>& problems);
+/// The blocks of structured problems as they end, one picture each: PNG's name with theirs behind it.
+void draw_blocks(const std::vector<const verify::Problem*>& problems, const std::filesystem::path& png);
+
 }  // namespace frana

@@ -6,6 +6,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "solid_maker.h"
+#include "verify/structured_cases.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -76,4 +77,15 @@ TEST_CASE("Warm steps against a barrier allocate nothing", "[speed][solid][barri
     const long before = allocations;
     for (int step = 0; step < 10; ++step) flow.advance(1e9);
     CHECK(allocations == before);
+}
+
+TEST_CASE("Warm steps of a structured solid that breaks allocate nothing", "[speed][structured]") {
+    StructuredFlow flow(verify::clay_flume(verify::kSoftClay, 0.0125));
+    while (flow.status().damage == 0.0) flow.advance(1e9);
+    for (int step = 0; step < 10; ++step) flow.advance(1e9);
+    const long before = allocations;
+    const double damage = flow.status().damage;
+    for (int step = 0; step < 20; ++step) flow.advance(1e9);
+    CHECK(allocations == before);
+    CHECK(flow.status().damage > damage);
 }

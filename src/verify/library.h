@@ -30,5 +30,7 @@ std::vector<Problem> bore_problems();        // problems_bore.cpp
 std::vector<Problem> rest_problems();        // problems_rest.cpp
 std::vector<Problem> body_problems();        // problems_body.cpp
 std::vector<Problem> column_problems();      // problems_column.cpp
+std::vector<Problem> structured_problems();  // problems_structured.cpp
+std::vector<Problem> structured_case_problems();  // problems_structured_cases.cpp
 
 }  // namespace frana::verify

@@ -73,6 +73,7 @@ struct Problem {
     std::string order_of = "l1_depth";    ///< quantity whose order is observed
     bool needs_level = false;             ///< the paper preset is given the still level
     bool in_space = false;                ///< of the 3D model: knows no presets
+    bool has_presets = true;              ///< false: of a model on the plane that knows none
 };
 
 /// Runs the problem on each grid and fills observed_order in.

@@ -1,0 +1,182 @@
+#pragma once
+// Structured solids: how the stress of a depth-averaged column goes on with its deformation in the plane,
+// elastic until it yields, and how yielding breaks it (van den Bout et al. 2021,
+// doi:10.5194/gmd-14-1841-2021, sec. 2.2, with the stress across the bed prescribed by the weight). Tension
+// is positive. Functions are for one column (Real is double) or for four at once (Double4).
+#include <cmath>
+
+#include "base/simd.h"
+
+namespace frana {
+
+/// Stress of a column, the mean over its depth [Pa]; zz across the bed.
+template <class Real>
+struct ColumnStressOf {
+    Real xx{}, yy{}, zz{}, xy{};
+};
+using ColumnStress = ColumnStressOf<double>;
+
+/// What a step does to a column in the plane: strain [1], xy as the tensor has it, and turn,
+/// counter-clockwise [rad].
+template <class Real>
+struct ColumnStepOf {
+    Real xx{}, yy{}, xy{}, turn{};
+
+    /// Of the velocity gradient L_kl = dv_k/dx_l [1/s] over dt [s].
+    [[gnu::always_inline]] static ColumnStepOf of(Real lxx, Real lxy, Real lyx, Real lyy, double dt) {
+        return {dt * lxx, dt * lyy, 0.5 * dt * (lxy + lyx), 0.5 * dt * (lyx - lxy)};
+    }
+};
+using ColumnStep = ColumnStepOf<double>;
+
+/// What a column of this law keeps.
+template <class Real>
+struct ColumnStateOf {
+    ColumnStressOf<Real> stress;
+    Real damage{};  ///< 0 whole, 1 grains
+    Real strain{};  ///< sum of |strain| so far, which DamageBy::strain counts its onset by [1]
+};
+using ColumnState = ColumnStateOf<double>;
+
+/// Where the column yields. Cones of Drucker and Prager that meet Mohr and Coulomb's pyramid in triaxial
+/// compression, or in plane strain without dilatancy; or the pyramid itself, which the prescribed zz cuts in
+/// a hexagon.
+enum class ColumnYield { compression, plane_strain, hexagon };
+
+/// What breaks bonds while the column yields, in parts of the critical strain: the plastic dilation in the
+/// plane, as in the paper; the largest principal plastic strain; or any strain at all, behind an onset, with
+/// what is left decaying exponentially, as in the paper's source code.
+enum class DamageBy { dilation, extension, strain };
+
+/// What a user says of a structured solid.
+struct ColumnMaterial {
+    double young = 1e6;      ///< E [Pa]
+    double poisson = 0.3;    ///< nu [1]
+    double friction = 0.5;   ///< phi, internal angle [rad], 0 to pi / 2
+    double dilatancy = 0.0;  ///< psi [rad], 0 to phi
+    ColumnYield yield = ColumnYield::compression;
+    DamageBy damage_by = DamageBy::dilation;
+    double critical_strain = 0.07;  ///< eps_c at which no bond is left [1]
+    double onset = 0.0;             ///< strain before which DamageBy::strain breaks nothing [1]
+};
+
+/// eps_c on cells of `cell` [m], of a material that has `reference` on cells of `reference_cell` [m]. Strain
+/// localises in a crack of one cell, so that a crack opens by the same way on any grid.
+inline double critical_strain(double reference, double reference_cell, double cell) {
+    return reference * reference_cell / cell;
+}
+
+/// A stress brought back to a cone, and the multiplier of the flow.
+struct ConeReturn {
+    double scale;       ///< of the trial's deviator
+    double first;       ///< first invariant afterwards [Pa]
+    double multiplier;  ///< d lambda [1]; 0 when the trial does not yield
+};
+
+/// In-plane plastic strain of a step.
+struct PlasticStep {
+    double dilation = 0.0;   ///< trace in the plane [1]
+    double extension = 0.0;  ///< largest principal value in the plane [1]
+};
+
+class ColumnLaw {
+public:
+    explicit ColumnLaw(const ColumnMaterial& material);
+    const ColumnMaterial& material() const { return material_; }
+    double bulk() const { return bulk_; }
+    double shear() const { return shear_; }
+    double alpha() const { return alpha_; }  ///< of the cone: sqrt(J2) + alpha I1 = k
+    double strength(double cohesion) const { return k_ * cohesion; }  ///< k [Pa]
+    double active() const { return active_; }                         ///< Ka, Rankine's
+    double passive() const { return 1.0 / active_; }                  ///< Kp
+    /// Of waves in the plane, zz given: sqrt(E / (rho (1 - nu^2))) [m/s]
+    double sound_speed(double density) const { return std::sqrt(plane_ / density); }
+
+    /// The step with zz = `weight` [Pa, negative] at its end and the undamaged `cohesion` [Pa]: half the
+    /// turn, the strain, half the turn. Damage of this step weakens the next.
+    template <class Real>
+    [[gnu::always_inline]] void update(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
+                                       ColumnStateOf<Real>& state) const {
+        const Real left = cohesion * (1.0 - state.damage);
+        ColumnStressOf<Real> s = predicted<Real>(turned<Real>(state.stress, 0.5 * step.turn), step, weight);
+        state.strain += abs(step.xx) + abs(step.yy) + 2.0 * abs(step.xy);
+        const auto yields = excess<Real>(s, left) > 0.0;
+        if (__builtin_expect(any(yields), 0)) give_way(yields, step, left, s, state);
+        state.stress = turned<Real>(s, 0.5 * step.turn);
+    }
+
+    /// How far a stress lies outside the yield surface [Pa]: sqrt(J2) + alpha I1 - k, or the largest of the
+    /// hexagon's.
+    template <class Real>
+    [[gnu::always_inline]] Real excess(const ColumnStressOf<Real>& s, Real cohesion) const {
+        if (material_.yield == ColumnYield::hexagon) return hexagon_excess<Real>(s, cohesion);
+        const Real first = s.xx + s.yy + s.zz, mean = first / 3.0;
+        const Real x = s.xx - mean, y = s.yy - mean, z = s.zz - mean;
+        return sqrt(0.5 * (x * x + y * y + z * z) + s.xy * s.xy) + alpha_ * first - k_ * cohesion;
+    }
+
+    /// Closed-form return of a trial stress in space with invariants sqrt(J2) = q and I1 to the cone of
+    /// strength k, its apex included; any dilatancy.
+    ConeReturn to_cone(double q, double first, double k) const;
+    /// Elastic stress `s`, zz as prescribed, to the yield surface with zz as it is.
+    PlasticStep yield(double cohesion, ColumnStress& s) const;
+
+private:
+    /// R s R^T for the turn by `angle`; zz stays.
+    template <class Real>
+    [[gnu::always_inline]] static ColumnStressOf<Real> turned(const ColumnStressOf<Real>& s, Real angle);
+    template <class Real>
+    [[gnu::always_inline]] ColumnStressOf<Real> predicted(const ColumnStressOf<Real>& s,
+                                                          const ColumnStepOf<Real>& step, Real weight) const {
+        const Real lift = weight_share_ * (weight - s.zz);
+        return {s.xx + plane_ * (step.xx + material_.poisson * step.yy) + lift,
+                s.yy + plane_ * (step.yy + material_.poisson * step.xx) + lift, weight,
+                s.xy + 2.0 * shear_ * step.xy};
+    }
+    template <class Real>
+    [[gnu::always_inline]] Real hexagon_excess(const ColumnStressOf<Real>& s, Real cohesion) const {
+        const Real centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
+        const Real radius = sqrt(half * half + s.xy * s.xy);
+        const Real most = max(centre + radius, s.zz), least = min(centre - radius, s.zz);
+        return (most - least) + (most + least) * sine_ - 2.0 * cosine_ * cohesion;
+    }
+    // Four by reference: by value they travel differently between files built for different instruction sets.
+    void give_way(bool yields, const ColumnStep& step, double left, ColumnStress& s,
+                  ColumnState& state) const;
+    void give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
+                  ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const;
+    PlasticStep yield_to_cone(double k, ColumnStress& s) const;
+    PlasticStep yield_to_hexagon(double cohesion, ColumnStress& s) const;
+
+    ColumnMaterial material_;
+    double shear_, bulk_, plane_, weight_share_;    ///< G, K, E / (1 - nu^2) [Pa]; nu / (1 - nu)
+    double sine_, cosine_, active_;                 ///< of phi; Ka
+    double alpha_ = 0.0, k_ = 0.0, dilates_ = 0.0;  ///< of the cone; k over cohesion; alpha at psi
+};
+
+/// cos and sin of a small angle to round-off: the terms left out are below 0.05^12 / 12! < 1e-24.
+constexpr double kSmallTurn = 0.05;  // [rad]
+template <class Real>
+[[gnu::always_inline]] inline void small_turn(Real a, Real& cosine, Real& sine) {
+    const Real b = a * a;
+    cosine = 1.0 - b / 2.0 * (1.0 - b / 12.0 * (1.0 - b / 30.0 * (1.0 - b / 56.0 * (1.0 - b / 90.0))));
+    sine = a * (1.0 - b / 6.0 * (1.0 - b / 20.0 * (1.0 - b / 42.0 * (1.0 - b / 72.0 * (1.0 - b / 110.0)))));
+}
+void large_turn(double a, double& cosine, double& sine);
+void large_turn(const Double4& a, Double4& cosine, Double4& sine);
+
+template <class Real>
+[[gnu::always_inline]] inline ColumnStressOf<Real> ColumnLaw::turned(const ColumnStressOf<Real>& s,
+                                                                     Real angle) {
+    const Real twice = 2.0 * angle;
+    Real cosine, sine;
+    if (__builtin_expect(any(abs(twice) > kSmallTurn), 0))
+        large_turn(twice, cosine, sine);
+    else
+        small_turn<Real>(twice, cosine, sine);
+    const Real centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
+    const Real across = half * cosine - s.xy * sine;
+    return {centre + across, centre - across, s.zz, half * sine + s.xy * cosine};
+}
+
+}  // namespace frana

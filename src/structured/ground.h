@@ -1,0 +1,35 @@
+#pragma once
+// What the ground makes of gravity, in the coordinates in which columns move.
+#include <cmath>
+#include <functional>
+
+#include "base/types.h"
+
+namespace frana {
+
+/// Gravity at a place: along the plane of the columns, and across the ground [m/s^2].
+struct GroundPull {
+    double x = 0.0, y = 0.0, across = 9.81;
+};
+using Ground = std::function<GroundPull(double x, double y)>;
+
+/// Over terrain in map coordinates, given its slope (db/dx, db/dy): what slides without friction has the
+/// horizontal acceleration -g_z grad b, g_z = g / (1 + |grad b|^2). A solid keeps its length on the map over
+/// a break of slope.
+inline Ground terrain_ground(std::function<Vec2(double x, double y)> slope, double g = 9.81) {
+    return [slope = std::move(slope), g](double x, double y) {
+        const Vec2 s = slope(x, y);
+        const double across = g / (1.0 + s.squaredNorm());
+        return GroundPull{-across * s.x(), -across * s.y(), across};
+    };
+}
+
+/// Down a flume, x being the length along its floor, which falls by angle(x) [rad] there.
+inline Ground flume_ground(std::function<double(double x)> angle, double g = 9.81) {
+    return [angle = std::move(angle), g](double x, double) {
+        const double a = angle(x);
+        return GroundPull{g * std::sin(a), 0.0, g * std::cos(a)};
+    };
+}
+
+}  // namespace frana

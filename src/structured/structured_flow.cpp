@@ -1,0 +1,183 @@
+#include "structured/structured_flow.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/flush_denormals.h"
+
+namespace frana {
+namespace {
+
+/// Cells a point may have moved since the last sort: tiles of one colour stand 16 nodes apart and reach 2
+/// nodes and twice the drift.
+constexpr double kDriftLimit = 2.0;
+
+/// Of a node at the corner between two walls. Behind walls, where less is open and little lies, depths would
+/// be noise.
+constexpr double kLeastOpen = 0.25;
+
+void require_inside(const StructuredSeeds& seeds, const GridGeometry& g) {
+    for (std::size_t p = 0; p < seeds.x.size(); ++p) {
+        const double x = (seeds.x[p] - g.x0) / g.cell, y = (seeds.y[p] - g.y0) / g.cell;
+        expect(x >= 1.0 && y >= 1.0 && x <= static_cast<double>(g.nx) - 2.0 &&
+                   y <= static_cast<double>(g.ny) - 2.0,
+               "structured columns start in the grid");
+        expect(seeds.mass[p] > 0.0 && seeds.depth[p] > 0.0 && seeds.cohesion[p] >= 0.0 &&
+                   seeds.damage[p] >= 0.0 && seeds.damage[p] <= 1.0,
+               "structured columns have mass, depth, cohesion and damage");
+    }
+}
+
+}  // namespace
+
+StructuredBody::StructuredBody(const StructuredScene& scene)
+    : grid(scene.grid),
+      law(scene.material),
+      nodes(grid.size()),
+      push(grid.size()),
+      moved(grid.size()),
+      pull(grid.size()),
+      obstacles(scene.obstacles),
+      rankine{law.active(), law.passive()},
+      density(scene.density),
+      share(scene.share),
+      bed_friction(scene.bed_friction) {}
+
+StructuredFlow::StructuredFlow(const StructuredScene& scene)
+    : body_(scene), ground_(scene.ground), cfl_(scene.cfl), sound_(body_.law.sound_speed(scene.density)) {
+    flush_denormals_on_all_threads();
+    place(scene.points);
+    sort();
+}
+
+void StructuredFlow::place(const StructuredSeeds& seeds) {
+    const GridGeometry& g = body_.grid.geometry();
+    require_inside(seeds, g);
+    StructuredPoints& q = body_.points;
+    const Index count = static_cast<Index>(seeds.x.size());
+    q.resize(count);
+    for (Index p = 0; p < count; ++p) {
+        const std::size_t n = static_cast<std::size_t>(p);
+        q.x[p] = (seeds.x[n] - g.x0) / g.cell, q.y[p] = (seeds.y[n] - g.y0) / g.cell;
+        q.vx[p] = seeds.vx[n], q.vy[p] = seeds.vy[n];
+        for (Column* column : {&q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.xx, &q.yy, &q.xy, &q.strain})
+            (*column)[p] = 0.0;
+        q.mass[p] = seeds.mass[n], q.volume[p] = seeds.mass[n] / body_.density;
+        q.depth[p] = q.layer[p] = seeds.depth[n];
+        q.damage[p] = seeds.damage[n], q.cohesion[p] = seeds.cohesion[n];
+        q.pull[p] = ground_(seeds.x[n], seeds.y[n]).across;
+        q.zz[p] = -0.5 * body_.density * q.pull[p] * q.depth[p];
+        q.id[p] = p;
+        const Vec2 v(q.vx[p], q.vy[p]);
+        status_.mass += q.mass[p];
+        status_.momentum += q.mass[p] * v;
+        status_.kinetic += 0.5 * q.mass[p] * v.squaredNorm();
+        status_.damage += q.mass[p] * q.damage[p];
+        status_.max_speed = std::max(status_.max_speed, v.norm());
+        wave_ = std::max(wave_, v.norm() + std::sqrt(2.0 * q.pull[p] * q.depth[p]));
+        if (q.damage[p] > 0.0 || body_.share < 1.0) body_.grains = true;
+    }
+    status_.damage /= status_.mass;
+    status_.momentum_given = status_.momentum;
+    status_.points = count;
+}
+
+void StructuredFlow::sort() {
+    StructuredPoints& q = body_.points;
+    order_.find_tiles(q.count(), body_.grid.tiles(), [&](Index p) {
+        if (!body_.gone.empty() && body_.gone[static_cast<std::size_t>(p)]) return Index{-1};
+        return body_.grid.tile_of(q.x[p], q.y[p]);
+    });
+    order_.lay_out(body_.active);
+    lists_.list_tiles(body_.grid, body_.active);
+    fields_.clear();
+    q.each([&](Column& column) { fields_.push_back(&column); });
+    fields_.push_back(&q.id);
+    order_.permute(fields_);
+    body_.gone.assign(static_cast<std::size_t>(q.count()), 0);
+    body_.sums.resize(body_.active.tile.size());
+    body_.impulses.resize(body_.active.work.size());
+    drift_ = 0.0;
+    learn_ground();
+}
+
+/// Asks for the ground and for obstacles at the nodes of tiles that are new to the list.
+void StructuredFlow::learn_ground() {
+    const GridGeometry& g = body_.grid.geometry();
+    for (const Index tile : body_.active.work) {
+        const Index i0 = body_.grid.tile_i(tile), j0 = body_.grid.tile_j(tile);
+        if (body_.pull[body_.grid.at(i0, j0)].open > 0.0) continue;
+        for (Index j = j0; j < j0 + kTile; ++j)
+            for (Index i = i0; i < i0 + kTile; ++i) {
+                const GroundPull pull = ground_(g.x(i), g.y(j));
+                const double open = open_share(body_.obstacles, {g.x(i), g.y(j)}, g.cell, kLeastOpen);
+                body_.pull[body_.grid.at(i, j)] = {pull.x, pull.y, pull.across, open};
+            }
+    }
+}
+
+/// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone: their earth pressure
+/// grows so fast with the rate of squeezing (earth_pressure.h) that it needs steps below cell^2 / (5 (Kp -
+/// Ka) sqrt(g_z h^3)), or is noisy; the elastic step is mostly near that.
+double StructuredFlow::step_length(double until) const {
+    const double dt = cfl_ * body_.grid.cell() / (sound_ + wave_), left = until - status_.time;
+    return dt < left ? std::min(dt, 0.5 * left + 0.5 * dt) : left;
+}
+
+void StructuredFlow::advance(double until) {
+    expect(until > status_.time, "a step goes forward");
+    const double dt = step_length(until);
+    timed_("clear", [&] { clear_nodes(body_); });
+    timed_("scatter", [&] { scatter(body_, dt); });
+    timed_("nodes", [&] { move_nodes(body_, dt); });
+    timed_("gather", [&] { gather(body_, dt); });
+    book(dt);
+    if (status_.time + dt >= until)
+        status_.time = until;
+    else
+        status_.time += dt;
+}
+
+/// Sums of the tiles, in their order; points that left are dropped, and points that moved far are sorted.
+void StructuredFlow::book(double dt) {
+    StructuredSums all;
+    for (const StructuredSums& tile : body_.sums) {
+        all.mass += tile.mass, all.kinetic += tile.kinetic, all.damaged += tile.damaged;
+        all.max_speed2 = std::max(all.max_speed2, tile.max_speed2),
+        all.max_wave = std::max(all.max_wave, tile.max_wave);
+        all.momentum += tile.momentum, all.left_mass += tile.left_mass,
+            all.left_momentum += tile.left_momentum;
+        if (tile.bad >= 0) all.bad = tile.bad;
+    }
+    for (const StructuredImpulses& tile : body_.impulses) status_.impulse.add(tile);
+    if (all.bad >= 0)
+        throw NumericsError(
+            fmt::format("structured columns, step {}, t = {:.6g} s, dt = {:.3g} s: column {} has numbers "
+                        "that are not finite; a smaller cfl may help",
+                        status_.step, status_.time, dt, body_.points.id[all.bad]));
+    ++status_.step;
+    status_.dt = dt;
+    status_.mass = all.mass, status_.momentum = all.momentum, status_.kinetic = all.kinetic;
+    status_.damage = all.mass > 0.0 ? all.damaged / all.mass : 0.0;
+    status_.max_speed = std::sqrt(all.max_speed2);
+    wave_ = all.max_wave;
+    if (all.damaged > 0.0) body_.grains = true;
+    status_.mass_left += all.left_mass, status_.momentum_left += all.left_momentum;
+    drift_ += dt * status_.max_speed / body_.grid.cell();
+    if (all.left_mass > 0.0 || drift_ > kDriftLimit - 1.0) sort();
+    status_.points = body_.points.count();
+}
+
+Vec2 StructuredFlow::position(Index p) const {
+    const GridGeometry& g = body_.grid.geometry();
+    return {g.x0 + g.cell * body_.points.x[p], g.y0 + g.cell * body_.points.y[p]};
+}
+
+Vec2 StructuredFlow::momentum_residual() const {
+    return status_.momentum + status_.momentum_left - status_.momentum_given - status_.impulse.sum();
+}
+
+}  // namespace frana

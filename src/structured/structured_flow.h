@@ -1,0 +1,157 @@
+#pragma once
+// Structured solids on the ground: depth-averaged columns that are elastic, yield and break into grains, by
+// an explicit material point method with quadratic B-splines (TPIC). Dry, one material.
+#include <memory>
+#include <vector>
+
+#include "law/structured_law.h"
+#include "observe/frame.h"
+#include "solver/columns.h"
+#include "solver/step_clock.h"
+#include "structured/earth_pressure.h"
+#include "structured/ground.h"
+#include "structured/obstacle.h"
+#include "structured/structured_points.h"
+
+namespace frana {
+
+/// Columns at the start, equal lengths. They begin without stress but for their weight: a whole block on
+/// level ground then rests exactly.
+struct StructuredSeeds {
+    std::vector<double> x, y;      ///< [m]
+    std::vector<double> vx, vy;    ///< [m/s]
+    std::vector<double> mass;      ///< [kg]
+    std::vector<double> depth;     ///< [m]
+    std::vector<double> cohesion;  ///< undamaged [Pa]
+    std::vector<double> damage;    ///< [1]
+
+    struct Seed {
+        double x, y, vx, vy, mass, depth, cohesion, damage = 0.0;
+    };
+    void add(const Seed& s) {
+        x.push_back(s.x), y.push_back(s.y), vx.push_back(s.vx), vy.push_back(s.vy), mass.push_back(s.mass);
+        depth.push_back(s.depth), cohesion.push_back(s.cohesion), damage.push_back(s.damage);
+    }
+};
+
+struct StructuredScene {
+    GridGeometry grid;
+    Ground ground = terrain_ground([](double, double) { return Vec2(0.0, 0.0); });
+    double density = 1700.0;  ///< [kg/m^3]
+    ColumnMaterial material;
+    double share = 1.0;         ///< of the solids that have structure, undamaged [1]
+    double bed_friction = 0.0;  ///< tangent of the angle at the bed [1]
+    double cfl = 0.4;           ///< fraction of a cell that sound and flow may pass in a step [1]
+    std::vector<Obstacle> obstacles;
+    StructuredSeeds points;
+};
+
+/// Impulses on the material since the start [kg m/s].
+struct StructuredImpulses {
+    Vec2 weight{0, 0};    ///< gravity along the plane, with the ground's push
+    Vec2 pressure{0, 0};  ///< of grains, against the ground and by the form that is not quite in balance
+    Vec2 friction{0, 0};  ///< at the bed
+    Vec2 obstacles{0, 0};
+    void add(const StructuredImpulses& o) {
+        weight += o.weight, pressure += o.pressure, friction += o.friction, obstacles += o.obstacles;
+    }
+    Vec2 sum() const { return weight + pressure + friction + obstacles; }
+};
+
+/// Sums over the points after a step.
+struct StructuredStatus {
+    Index step = 0;
+    double time = 0.0, dt = 0.0;  ///< [s]
+    Index points = 0;
+    double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
+    Vec2 momentum{0, 0}, momentum_left{0, 0},
+        momentum_given{0, 0};  ///< present, carried out, at the start [kg m/s]
+    StructuredImpulses impulse;
+    double kinetic = 0.0;    ///< sum of m v^2 / 2 [J]
+    double damage = 0.0;     ///< mean over the mass [1]
+    double max_speed = 0.0;  ///< [m/s]
+};
+
+/// Sums of the loops over points, tile by tile.
+struct StructuredSums {
+    double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0;
+    Vec2 momentum{0, 0};
+    double left_mass = 0.0;
+    Vec2 left_momentum{0, 0};
+    Index bad = -1;  ///< a point whose numbers are not finite
+};
+
+/// All that the kernels share.
+struct StructuredBody {
+    explicit StructuredBody(const StructuredScene& scene);
+    TileGrid grid;
+    ColumnLaw law;
+    StructuredPoints points;
+    ActiveTiles active;
+    struct Node {
+        double m, x, y, spare;  ///< mass and momentum
+    };
+    struct Push {
+        double xx, yy, xy, spare;  ///< sum of w m (1 - f) K, of grains
+    };
+    struct Moved {
+        double vx, vy, pull, depth;  ///< after the step
+    };
+    struct Pull {
+        double x, y, across,
+            open;  ///< of the ground; share of the node that is open, 0 where nobody asked yet
+    };
+    LazyArray<Node> nodes;
+    LazyArray<Push> push;
+    LazyArray<Moved> moved;
+    LazyArray<Pull> pull;
+    std::vector<std::uint8_t> gone;            ///< per point: left the grid in this step
+    std::vector<StructuredSums> sums;          ///< of the step, per particle tile
+    std::vector<StructuredImpulses> impulses;  ///< of the step, per tile of the work list
+    std::vector<Obstacle> obstacles;
+    Rankine rankine;
+    double density, share, bed_friction;
+    bool grains = false;  ///< some column is broken or has grains beside its structure
+};
+
+// The loops of a step (structured_kernel.cpp).
+void clear_nodes(StructuredBody& body);
+void scatter(StructuredBody& body, double dt);
+void move_nodes(StructuredBody& body, double dt);
+void gather(StructuredBody& body, double dt);
+
+/// A body of columns, and its time loop.
+class StructuredFlow {
+public:
+    explicit StructuredFlow(const StructuredScene& scene);
+
+    /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
+    void advance(double until);
+    const StructuredStatus& status() const { return status_; }
+    const StructuredBody& body() const { return body_; }
+    std::vector<PhaseTime> timings() const { return timed_.times(); }
+    /// Position of a point [m].
+    Vec2 position(Index p) const;
+    /// Momentum + carried out - given - impulses: round-off [kg m/s]
+    Vec2 momentum_residual() const;
+
+private:
+    void place(const StructuredSeeds& seeds);
+    void sort();
+    void learn_ground();
+    double step_length(double until) const;
+    void book(double dt);
+
+    StructuredBody body_;
+    Ground ground_;
+    PointOrder order_;
+    TileSorter lists_;  ///< of tiles, by colour
+    std::vector<PointField> fields_;
+    StepClock timed_;
+    StructuredStatus status_;
+    double cfl_, sound_;
+    double wave_ = 0.0;   ///< largest speed with which surfaces and columns run [m/s]
+    double drift_ = 0.0;  ///< since the last sort [cells]
+};
+
+}  // namespace frana

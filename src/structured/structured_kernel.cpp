@@ -1,0 +1,264 @@
+// The loops of a step of structured solids. Four columns go side by side; sums over nodes have one order.
+#include <algorithm>
+#include <cmath>
+
+#include "grid/stencils.h"
+#include "structured/structured_flow.h"
+
+namespace frana {
+namespace {
+
+using Node = StructuredBody::Node;
+using Push = StructuredBody::Push;
+using Moved = StructuredBody::Moved;
+
+/// What a column gives its nodes: w (base + affine d) + force grad w, d in cells; lanes are mass and
+/// momentum.
+struct Gift {
+    Double4 base, along_x, along_y, force_x, force_y;
+};
+
+[[gnu::always_inline]] inline void give(Node* nodes, Index stride, const Reach& r, double f, double g,
+                                        const Gift& gift) {
+    for (int j = 0; j < 3; ++j) {
+        const Double4 row = r.wy[j] * (gift.base + (j - g) * gift.along_y) + r.sy[j] * gift.force_y;
+        const Double4 along = r.wy[j] * gift.along_x, force = r.wy[j] * gift.force_x;
+        Node* const first = nodes + r.node + j * stride;
+        for (int i = 0; i < 3; ++i)
+            store(first + i, load(first + i) + r.wx[i] * row + (r.wx[i] * (i - f)) * along + r.sx[i] * force);
+    }
+}
+
+/// The same of grains: m (1 - f) K.
+[[gnu::always_inline]] inline void give(Push* nodes, Index stride, const Reach& r, Double4 k) {
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) {
+            Push* const node = nodes + r.node + j * stride + i;
+            store(node, load(node) + (r.wx[i] * r.wy[j]) * k);
+        }
+}
+
+Gift gift_of(const StructuredPoints& q, Index p, double share, double dt, double cell) {
+    const double m = q.mass[p], pulls = -dt * q.volume[p] * share * (1.0 - q.damage[p]) / cell;
+    return {Double4{m, m * q.vx[p], m * q.vy[p], 0.0},
+            Double4{0.0, m * cell * q.cxx[p], m * cell * q.cyx[p], 0.0},
+            Double4{0.0, m * cell * q.cxy[p], m * cell * q.cyy[p], 0.0},
+            Double4{0.0, pulls * q.xx[p], pulls * q.xy[p], 0.0},
+            Double4{0.0, pulls * q.xy[p], pulls * q.yy[p], 0.0}};
+}
+
+Double4 grain_push(const StructuredBody& body, Index p) {
+    const StructuredPoints& q = body.points;
+    const double grains = q.mass[p] * (1.0 - body.share * (1.0 - q.damage[p]));
+    if (grains == 0.0) return Double4{};
+    const Sym2 k = earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, q.layer[p], q.pull[p],
+                                  body.rankine);
+    return Double4{grains * k.xx, grains * k.yy, grains * k.xy, 0.0};
+}
+
+/// A node with its neighbours, for centred differences.
+struct Around {
+    const StructuredBody& body;
+    Index k, stride;
+
+    double depth(Index at) const { return body.nodes[at].m / body.pull[at].open; }
+    Double4 share(Index at) const {  // K (1 - f); beside dry nodes it goes on as it is here
+        const double m = body.nodes[at].m;
+        return m > 0.0 ? load(&body.push[at]) / m : load(&body.push[k]) / body.nodes[k].m;
+    }
+    /// Acceleration -g_z (K . grad h + h / 2 div K) of grains.
+    Vec2 acceleration(double pull, double cell, double depth_of_mass) const {
+        const double slope = 0.5 * depth_of_mass / cell;
+        const double hx = slope * (depth(k + 1) - depth(k - 1)),
+                     hy = slope * (depth(k + stride) - depth(k - stride));
+        const Double4 kk = load(&body.push[k]) / body.nodes[k].m;
+        const Double4 kx = share(k + 1) - share(k - 1), ky = share(k + stride) - share(k - stride);
+        const double half = 0.25 * depth_of_mass * depth(k) / cell;
+        return -pull * Vec2(kk[0] * hx + kk[2] * hy + half * (kx[0] + ky[2]),
+                            kk[2] * hx + kk[1] * hy + half * (kx[2] + ky[1]));
+    }
+};
+
+/// Of a cell: nodes on a face are in the obstacle, whatever round-off makes of their places.
+constexpr double kOnFace = 1e-6;
+
+/// Coulomb's friction over a step: it stops what it would turn around.
+Vec2 braked(const Vec2& v, double brake) {
+    const double speed = v.norm();
+    return speed > brake ? Vec2(v * (1.0 - brake / speed)) : Vec2(0.0, 0.0);
+}
+
+Moved move(const StructuredBody& body, Index k, const Vec2& place, double dt, StructuredImpulses& given) {
+    const Node& node = body.nodes[k];
+    const StructuredBody::Pull& pull = body.pull[k];
+    const double cell = body.grid.cell(), depth_of_mass = 1.0 / (body.density * cell * cell);
+    const Vec2 weight = dt * Vec2(pull.x, pull.y);
+    Vec2 v = Vec2(node.x, node.y) / node.m + weight;
+    given.weight += node.m * weight;
+    if (body.grains) {
+        const Vec2 push =
+            dt * Around{body, k, body.grid.stride()}.acceleration(pull.across, cell, depth_of_mass);
+        v += push;
+        given.pressure += node.m * push;
+    }
+    const Vec2 slowed = braked(v, dt * pull.across * body.bed_friction);
+    given.friction += node.m * (slowed - v);
+    Vec2 met = slowed;
+    for (const Obstacle& obstacle : body.obstacles) met = obstacle.met(place, met, kOnFace * cell);
+    given.obstacles += node.m * (met - slowed);
+    return {met.x(), met.y(), pull.across, node.m / pull.open * depth_of_mass};
+}
+
+/// What a column takes from its nodes, and how it changes there [1/cell].
+struct Taken {
+    Double4 mean, slope_x, slope_y;
+};
+
+[[gnu::always_inline]] inline Taken take(const Moved* nodes, Index stride, const Reach& r) {
+    Taken taken{};
+    for (int j = 0; j < 3; ++j) {
+        const Moved* const first = nodes + r.node + j * stride;
+        const Double4 a = load(first), b = load(first + 1), c = load(first + 2);
+        const Double4 row = r.wx[0] * a + r.wx[1] * b + r.wx[2] * c;
+        taken.mean += r.wy[j] * row;
+        taken.slope_x += r.wy[j] * (r.sx[0] * a + r.sx[1] * b + r.sx[2] * c);
+        taken.slope_y += r.sy[j] * row;
+    }
+    return taken;
+}
+
+/// Four columns after a step, number by number.
+struct Batch {
+    Double4 vx, vy, pull, layer, cxx, cyx, cxy, cyy;
+};
+
+[[gnu::always_inline]] inline Batch take_four(const StructuredBody& body, Index p, int lanes) {
+    const Stencils sx(load(&body.points.x[p], lanes)), sy(load(&body.points.y[p], lanes));
+    const double per_cell = 1.0 / body.grid.cell();
+    Taken taken[4] = {};
+    for (int n = 0; n < lanes; ++n)
+        taken[n] = take(body.moved.data(), body.grid.stride(), Reach(sx, sy, body.grid.stride(), n));
+    Double4 mean[4], x[4], y[4];
+    transpose(taken[0].mean, taken[1].mean, taken[2].mean, taken[3].mean, mean);
+    transpose(taken[0].slope_x, taken[1].slope_x, taken[2].slope_x, taken[3].slope_x, x);
+    transpose(taken[0].slope_y, taken[1].slope_y, taken[2].slope_y, taken[3].slope_y, y);
+    return {mean[0],         mean[1],         mean[2],         mean[3],
+            per_cell * x[0], per_cell * x[1], per_cell * y[0], per_cell * y[1]};
+}
+
+/// Stress, damage and the column's own depth, which changes with its area: exp(-div dt) to second order.
+[[gnu::always_inline]] inline void strain_four(StructuredBody& body, const Batch& b, Index p, int lanes,
+                                               double dt) {
+    StructuredPoints& q = body.points;
+    const Double4 half = (0.5 * dt) * (b.cxx + b.cyy), damage = load(&q.damage[p], lanes);
+    const Double4 depth = load(&q.depth[p], lanes) * ((1.0 - half) / (1.0 + half));
+    store(&q.depth[p], depth, lanes);
+    const Mask4 whole = damage < 1.0;
+    if (!any(whole)) return;
+    const Double4 none = {};
+    const auto if_whole = [&](Double4 a) { return select(whole, a, none); };
+    ColumnStateOf<Double4> state{{if_whole(load(&q.xx[p], lanes)), if_whole(load(&q.yy[p], lanes)),
+                                  if_whole(load(&q.zz[p], lanes)), if_whole(load(&q.xy[p], lanes))},
+                                 damage,
+                                 load(&q.strain[p], lanes)};
+    const auto step =
+        ColumnStepOf<Double4>::of(if_whole(b.cxx), if_whole(b.cxy), if_whole(b.cyx), if_whole(b.cyy), dt);
+    const Double4 weight = if_whole(-0.5 * body.density * b.pull * depth);
+    body.law.update(step, weight, load(&q.cohesion[p], lanes), state);
+    store(&q.xx[p], state.stress.xx, lanes), store(&q.yy[p], state.stress.yy, lanes);
+    store(&q.zz[p], state.stress.zz, lanes), store(&q.xy[p], state.stress.xy, lanes);
+    store(&q.damage[p], state.damage, lanes), store(&q.strain[p], state.strain, lanes);
+}
+
+/// Sums of a column, and what bounds the next step. Columns at the outer nodes leave.
+void count(StructuredBody& body, Index p, StructuredSums& sums) {
+    const StructuredPoints& q = body.points;
+    const double m = q.mass[p], speed2 = q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p];
+    const double finite = q.x[p] + q.y[p] + speed2 + q.xx[p] + q.yy[p] + q.xy[p] + q.damage[p] + q.depth[p];
+    if (!std::isfinite(finite)) {
+        sums.bad = p;
+        return;
+    }
+    const Vec2 momentum = m * Vec2(q.vx[p], q.vy[p]);
+    const bool inside = q.x[p] >= 1.0 && q.y[p] >= 1.0 &&
+                        q.x[p] <= static_cast<double>(body.grid.nx()) - 2.0 &&
+                        q.y[p] <= static_cast<double>(body.grid.ny()) - 2.0;
+    if (!inside) {
+        body.gone[static_cast<std::size_t>(p)] = 1;
+        sums.left_mass += m, sums.left_momentum += momentum;
+        return;
+    }
+    sums.mass += m, sums.kinetic += 0.5 * m * speed2, sums.damaged += m * q.damage[p],
+        sums.momentum += momentum;
+    sums.max_speed2 = std::max(sums.max_speed2, speed2);
+    const double depth = q.damage[p] < 1.0 ? std::max(q.layer[p], q.depth[p]) : q.layer[p];
+    sums.max_wave = std::max(sums.max_wave, std::sqrt(speed2) + std::sqrt(2.0 * q.pull[p] * depth));
+}
+
+}  // namespace
+
+void clear_nodes(StructuredBody& body) {
+    for_each_work_tile(body.active, [&](Index, Index tile) {
+        const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
+        for (Index j = 0; j < kTile; ++j) {
+            std::fill_n(&body.nodes[first + j * body.grid.stride()], kTile, Node{});
+            if (body.grains) std::fill_n(&body.push[first + j * body.grid.stride()], kTile, Push{});
+        }
+    });
+}
+
+void scatter(StructuredBody& body, double dt) {
+    const StructuredPoints& q = body.points;
+    const Index stride = body.grid.stride();
+    for_each_tile_coloured(body.active, [&](Index n) {
+        const Index end = body.active.begin[n + 1];
+        for (Index p = body.active.begin[n]; p < end; p += 4) {
+            const int lanes = static_cast<int>(std::min<Index>(4, end - p));
+            const Stencils sx(load(&q.x[p], lanes)), sy(load(&q.y[p], lanes));
+            for (int lane = 0; lane < lanes; ++lane) {
+                const Reach reach(sx, sy, stride, lane);
+                give(body.nodes.data(), stride, reach, sx.offset[lane], sy.offset[lane],
+                     gift_of(q, p + lane, body.share, dt, body.grid.cell()));
+                if (body.grains) give(body.push.data(), stride, reach, grain_push(body, p + lane));
+            }
+        }
+    });
+}
+
+void move_nodes(StructuredBody& body, double dt) {
+    const GridGeometry& g = body.grid.geometry();
+    for_each_work_tile(body.active, [&](Index n, Index tile) {
+        StructuredImpulses given;
+        const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
+        for (Index j = j0; j < j0 + kTile; ++j)
+            for (Index i = i0; i < i0 + kTile; ++i) {
+                const Index k = body.grid.at(i, j);
+                body.moved[k] = body.nodes[k].m > 0.0 ? move(body, k, {g.x(i), g.y(j)}, dt, given) : Moved{};
+            }
+        body.impulses[static_cast<std::size_t>(n)] = given;
+    });
+}
+
+void gather(StructuredBody& body, double dt) {
+    StructuredPoints& q = body.points;
+    const double cells = dt / body.grid.cell();
+    for_each_tile(body.active, [&](Index n) {
+        const Index end = body.active.begin[n + 1];
+        StructuredSums sums;
+        for (Index p = body.active.begin[n]; p < end; p += 4) {
+            const int lanes = static_cast<int>(std::min<Index>(4, end - p));
+            const Batch b = take_four(body, p, lanes);
+            store(&q.vx[p], b.vx, lanes), store(&q.vy[p], b.vy, lanes);
+            store(&q.cxx[p], b.cxx, lanes), store(&q.cxy[p], b.cxy, lanes);
+            store(&q.cyx[p], b.cyx, lanes), store(&q.cyy[p], b.cyy, lanes);
+            store(&q.pull[p], b.pull, lanes), store(&q.layer[p], b.layer, lanes);
+            store(&q.x[p], load(&q.x[p], lanes) + cells * b.vx, lanes);
+            store(&q.y[p], load(&q.y[p], lanes) + cells * b.vy, lanes);
+            strain_four(body, b, p, lanes, dt);
+            for (int lane = 0; lane < lanes; ++lane) count(body, p + lane, sums);
+        }
+        body.sums[static_cast<std::size_t>(n)] = sums;
+    });
+}
+
+}  // namespace frana

@@ -1,0 +1,41 @@
+#pragma once
+// The material points of structured solids: columns of one solid each, one array per quantity, sorted by
+// tile.
+#include <array>
+
+#include "grid/point_order.h"
+
+namespace frana {
+
+/// Columns on the plane. Positions are in cells from node (0, 0); all else is SI.
+struct StructuredPoints {
+    Column x, y;                   ///< position [cells]
+    Column vx, vy;                 ///< velocity [m/s]
+    Column cxx, cxy, cyx, cyy;     ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
+    Column mass;                   ///< [kg]
+    Column volume;                 ///< constant [m^3]
+    Column depth;                  ///< of the column by itself, by the area that it was deformed to [m]
+    Column xx, yy, zz, xy;         ///< stress of the solid, tension positive [Pa]
+    Column damage;                 ///< 0 whole, 1 grains
+    Column strain;                 ///< sum of |strain| so far [1]
+    Column cohesion;               ///< undamaged [Pa]
+    Column pull;                   ///< gravity across the ground where it stands [m/s^2]
+    Column layer;                  ///< depth of all that lies at the nodes around [m]
+    std::vector<std::int64_t> id;  ///< constant through sorting
+
+    Index count() const { return static_cast<Index>(x.size()); }
+
+    /// The one list of floating-point columns: sorting and growing walk it.
+    template <class Visit>
+    void each(Visit&& visit) {
+        for (Column* column : {&x,     &y,  &vx, &vy, &cxx, &cxy,    &cyx,    &cyy,      &mass, &volume,
+                               &depth, &xx, &yy, &zz, &xy,  &damage, &strain, &cohesion, &pull, &layer})
+            visit(*column);
+    }
+    void resize(Index count) {
+        each([&](Column& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
+        resize_sparingly(id, static_cast<std::size_t>(count));
+    }
+};
+
+}  // namespace frana
