@@ -30,5 +30,6 @@ std::vector<Problem> bore_problems();        // problems_bore.cpp
 std::vector<Problem> rest_problems();        // problems_rest.cpp
 std::vector<Problem> body_problems();        // problems_body.cpp
 std::vector<Problem> column_problems();      // problems_column.cpp
+std::vector<Problem> mud_problems();         // problems_mud.cpp
 
 }  // namespace frana::verify
