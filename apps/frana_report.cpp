@@ -70,12 +70,19 @@ std::string budgets(const RunRecord& r) {
                             axis == 0 ? "x" : "y", s.first.momentum[axis], s.last.momentum[axis],
                             s.last.impulse[axis], s.last.momentum_left[axis], b.momentum_residual[axis]);
     text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {:.4g} | {:.2e} |\n",
-                        s.first.kinetic + s.first.potential, s.last.kinetic + s.last.potential,
+                        s.first.kinetic + s.first.potential, s.last.kinetic + s.last.potential + s.last.stored,
                         s.last.energy_left, b.energy_residual);
     text += fmt::format(
         "\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated. Particles to grid, "
         "worst step: mass {:.1e}, momentum {:.1e} (relative).\n\n",
         s.last.kinetic, s.last.dissipated, s.extremes.p2g_mass_error, s.extremes.p2g_momentum_error);
+    const Status::InSpace& points = s.last.in_space;
+    if (points.friction != 0.0 || points.walls != 0.0 || points.material != 0.0 || points.numerical != 0.0)
+        text += fmt::format(
+            "Points in space hold {:.4g} J by their deformation. Of what was dissipated they lost {:.4g} J by friction "
+            "along the bed and barriers, {:.4g} J to their pushes, {:.4g} J inside the material, and {:.4g} J to the "
+            "scheme, which is what is left.\n\n",
+            s.last.stored, points.friction, points.walls, points.material, points.numerical);
     return text;
 }
 

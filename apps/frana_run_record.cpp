@@ -85,6 +85,12 @@ Json energy_json(const RunSummary& s) {
             {"potential", s.last.potential},
             {"dissipated", s.last.dissipated},
             {"left_domain", s.last.energy_left},
+            {"stored", s.last.stored},
+            {"points",
+             {{"friction", s.last.in_space.friction},
+              {"walls", s.last.in_space.walls},
+              {"material", s.last.in_space.material},
+              {"numerical", s.last.in_space.numerical}}},
             {"potential_initial", s.first.potential},
             {"kinetic_initial", s.first.kinetic},
             {"residual", budget(s.first, s.last).energy_residual}};

@@ -19,10 +19,18 @@ inline SolidScene lump(const SolidLaw& law) {
     return s;
 }
 
+/// The same with points that keep their velocities.
+inline SolidScene kept(SolidScene s) {
+    s.affine = Affine::tpic;
+    s.keeps = true;
+    s.blending = 0.1;
+    return s;
+}
+
 inline std::vector<SolidLaw> all_solid_laws() {
     const solid::Elastic elastic = solid::Elastic::of(4e5, 0.3);
     return {solid::Fluid{4e5, 1.0}, solid::Bingham{4e5, 1e5, 10.0, 500.0}, elastic,
-            solid::DruckerPrager::of(elastic, 0.5, 100.0)};
+            solid::DruckerPrager::of(elastic, 0.5, 100.0), solid::HerschelBulkley{4e5, 1e5, 20.0, 0.5, 500.0}};
 }
 
 }  // namespace frana

@@ -101,6 +101,50 @@ TEST_CASE("Bingham's stress below the yield stress is elastic; sheared on, it go
     CHECK(size == Approx(1000.0 + 50.0 * 4.0).epsilon(1e-3));
 }
 
+TEST_CASE("Herschel and Bulkley's stress solves its equation, and with n = 1 is Bingham's", "[solid]") {
+    const double n = GENERATE(0.2, 0.5, 1.0, 1.7);
+    const solid::HerschelBulkley law{1e6, 1e5, 80.0, n, 1000.0};
+    CAPTURE(n);
+    for (const double over : {1e-6, 1e-2, 3.0, 500.0, 1e6}) {
+        const double dt = 1e-4, s = law.left_of(over, dt);
+        CAPTURE(over);
+        CHECK(s > 0.0);
+        CHECK(s <= over);
+        CHECK(s + 1e5 * dt * std::pow(s / 80.0, 1.0 / n) == Approx(over).epsilon(1e-12));
+    }
+    CHECK(law.left_of(0.0, 1e-4) == 0.0);
+    // Sheared on, tau_Y + K rate^n; the spin's second-order term is (tau / G)^2.
+    double state[7] = {}, j = 1.0, other[7] = {}, other_j = 1.0;
+    Deformation d{Mat3::Zero(), 1e-4};
+    d.gradient(0, 2) = 4.0;
+    const solid::Bingham bingham{1e6, 1e5, 80.0, 1000.0};
+    for (int step = 0; step < 4000; ++step) law.update(d, j, state), bingham.update(d, other_j, other);
+    CHECK(Sym3::read(state).norm() / std::sqrt(2.0) == Approx(1000.0 + 80.0 * std::pow(4.0, n)).epsilon(1e-3));
+    if (n == 1.0)
+        for (int k = 0; k < 6; ++k) CHECK(state[k] == Approx(other[k]).epsilon(1e-11).margin(1e-9));
+}
+
+TEST_CASE("What a law stores is the work done on it, as long as nothing flows", "[solid]") {
+    Deformation d{Mat3::Zero(), 1e-3};
+    d.gradient << -0.02, 0.03, 0.01, -0.01, -0.03, 0.02, 0.04, 0.0, -0.01;
+    const auto check = [&](const auto& law) {
+        double state[7] = {}, j = 1.0, work = 0.0;
+        for (int step = 0; step < 200; ++step) {
+            const Sym3 before = law.stress(j, state, d.gradient);
+            law.update(d, j, state);
+            const Sym3 mean = (before + law.stress(j, state, d.gradient)) * 0.5;
+            work += d.dt * contracted(mean, Sym3::of(d.gradient));
+        }
+        CHECK(law.stored(j, state) > 0.0);
+        CHECK(law.stored(j, state) == Approx(work).epsilon(1e-2));  // strains of 1 %
+    };
+    check(solid::Fluid{1e6, 0.0});
+    check(solid::Bingham{1e6, 1e5, 50.0, 1e9});
+    check(solid::HerschelBulkley{1e6, 1e5, 50.0, 0.5, 1e9});
+    check(solid::Elastic::of(1e6, 0.3));
+    check(solid::DruckerPrager::of(solid::Elastic::of(1e6, 0.3), 0.5, 1e9));
+}
+
 TEST_CASE("A fluid's pressure follows its volume and is never a tension", "[solid]") {
     const solid::Fluid law{2e6, 3.0};
     double j = 1.0;

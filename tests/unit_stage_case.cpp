@@ -119,6 +119,32 @@ TEST_CASE("Sand is as strong as its angle says in triaxial compression, or where
     CHECK(has(problem_of(two + west + "cone = \"plane_strain\"\n"), "stage.1.cone: found, but"));
 }
 
+TEST_CASE("Sand keeps its velocities unless it is told not to, fluids do not", "[case]") {
+    const std::string sand = two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\nfriction_angle_deg = 30\n";
+    const SolidStage stage = scene_of(sand).solid.value();
+    CHECK(stage.transfer == Transfer::flip);
+    CHECK(stage.blending == Approx(std::sqrt(2.5 / 9.81)).epsilon(1e-3));
+    CHECK(scene_of(two + west).solid->transfer == Transfer::tpic);
+    CHECK(scene_of(sand + "transfer = \"tpic\"\n").solid->transfer == Transfer::tpic);
+    CHECK(scene_of(two + west + "transfer = \"flip\"\nblending = 0.3\n").solid->blending == 0.3);
+    CHECK(has(problem_of(two + west + "blending = 0.3\n"),
+              "stage.1.blending: found with stage.transfer = \"tpic\"; expected it with \"flip\" only"));
+}
+
+TEST_CASE("Herschel and Bulkley's mud has its own numbers, and the rheology's yield stress", "[case]") {
+    const std::string mud = two + west + "law = \"herschel_bulkley\"\nconsistency = 40\nexponent = 0.4\n";
+    const auto law = std::get<solid::HerschelBulkley>(scene_of(mud + "yield_stress = 200\n").solid->law);
+    CHECK(law.consistency == 40.0);
+    CHECK(law.exponent == 0.4);
+    CHECK(law.yield_stress == 200.0);
+    CHECK(law.shear == 2e4);
+    CHECK(has(problem_of(mud), "stage.1.law: found \"herschel_bulkley\" without a yield stress"));
+    CHECK(has(problem_of(mud + "yield_stress = 200\nviscosity = 3\n"), "stage.1.viscosity: found, but the law"));
+    CHECK(has(problem_of(two + west + "law = \"herschel_bulkley\"\nyield_stress = 200\nexponent = 0.4\n"),
+              "stage.1.consistency: not given, but"));
+    CHECK(has(problem_of(two + west + "exponent = 0.4\n"), "stage.1.exponent: found, but"));
+}
+
 TEST_CASE("Barriers come with their places and heights", "[barrier]") {
     const Scene scene = scene_of(
         "[[barrier]]\noutline = \"wall.geojson\"\nheight = 4\n[[barrier]]\nname = \"dam\"\nline = "

@@ -40,6 +40,8 @@ SolidScene body_scene(BodyLaw law, Index particles) {
     SolidScene scene;
     scene.law = law_of(law);
     scene.density = kDensity;
+    scene.keeps = law == BodyLaw::drucker_prager;  // as stages have sand
+    scene.blending = std::sqrt(kCell / 9.81);
     scene.grid.cell = kCell;
     const double room = kCell * static_cast<double>(kRoom);
     scene.grid.origin = {-room, -room, -0.5 * room};

@@ -76,11 +76,12 @@ Traffic traffic_of(const std::string& phase, const SolidBody& body) {
     const double mean = body.mass_j ? 1.0 : 0.0, state = static_cast<double>(body.points.states);
     const double deposited = 3.0 + 3.0 + 9.0 + 3.0 + state;  // x, v, its gradient, m, V0, J
     const double gathered = 3.0 + 3.0 + 9.0 + 1.0 + state;
-    if (phase == "clear") return {0.0, kNode4 + mean * kRead};
-    if (phase == "scatter") return {deposited * kRead, 2.0 * kNode4 + mean * kWrite};
+    const double kept = body.kept ? kNode4 : 0.0;  // what nodes had, in the place of the mean
+    if (phase == "clear") return {0.0, kNode4 + kept + mean * kRead};
+    if (phase == "scatter") return {deposited * kRead, 2.0 * (kNode4 + kept) + mean * kWrite};
     if (phase == "images") return {2.0, 2.0};  // most points are far from surfaces: they are not read again
-    if (phase == "nodes") return {0.0, 2.0 * kNode4 + mean * kWrite};
-    if (phase == "gather") return {gathered * kWrite, kNode4 + mean * kRead};
+    if (phase == "nodes") return {0.0, 2.0 * (kNode4 + kept) + mean * kWrite};
+    if (phase == "gather") return {gathered * kWrite, kNode4 + kept + mean * kRead};
     if (phase == "sort") return {(18.0 + state) * (1.5 * kRead + kWrite), 0.0};
     return {};
 }

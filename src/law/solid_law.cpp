@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+
 #include "base/error.h"
 
 namespace frana {
@@ -49,6 +51,28 @@ DruckerPrager DruckerPrager::of(const Elastic& elastic, double friction_angle, d
     const double alpha =
         cone == Cone::compression ? std::sqrt(2.0 / 3.0) * 6.0 * sine / (3.0 - sine) : std::sqrt(2.0) * sine;
     return {elastic, alpha, cohesion > 0.0 ? cohesion / std::tan(friction_angle) : 0.0};
+}
+
+/// Newton's steps for the unknown in which the equation is convex, s for n <= 1, else the rate: from a start beyond
+/// the root they come down to it and never pass it.
+double HerschelBulkley::left_of(double over, double dt) const {
+    if (!(over > 0.0) || !(consistency > 0.0)) return 0.0;
+    const double g = shear * dt, power = exponent <= 1.0 ? 1.0 / exponent : exponent;
+    // x + a x^power = whole, with x = s, or x = G dt rate.
+    const double a = exponent <= 1.0 ? g * std::pow(consistency, -power) : consistency * std::pow(g, -power);
+    double x = std::min(over, std::pow(over / a, 1.0 / power));
+    constexpr int kMostSteps = 60;          // quadratic from the second on: six at most were seen
+    constexpr double kRoundOff = 1e-14;
+    for (int step = 0; step < kMostSteps; ++step) {
+        const double y = a * std::pow(x, power), down = (x + y - over) / (1.0 + power * y / x);
+        x -= down;
+        if (!(down > kRoundOff * x)) break;
+    }
+    return exponent <= 1.0 ? x : over - x;
+}
+
+Double4 HerschelBulkley::left_of(const Double4& over, double dt) const {
+    return Double4{left_of(over[0], dt), left_of(over[1], dt), left_of(over[2], dt), left_of(over[3], dt)};
 }
 
 }  // namespace solid

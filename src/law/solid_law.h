@@ -10,9 +10,11 @@
 //
 //   update()     the same numbers after a step
 //
+//   stored()     energy that unloading gives back, per volume without stress [J/m^3]
+//
 //   sound_speed(), explicit_viscosity()   what bounds the step [m/s], [Pa s]
 //
-// stress() and update() are for one point (Real is double) or for four at once (Double4).
+// stress(), update() and stored() are for one point (Real is double) or for four at once (Double4).
 #include <cmath>
 #include <variant>
 
@@ -72,9 +74,21 @@ struct Fluid {
     [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>*) const {
         j = min(j * (1.0 + d.dt * trace<Real>(d.gradient)), Real{} + 1.0);
     }
+    template <class Real>
+    [[gnu::always_inline]] Real stored(Real j, const Given<Real>*) const {
+        const Real pressed = max(1.0 - j, Real{});
+        return 0.5 * bulk * pressed * pressed;
+    }
     double sound_speed(double density) const { return std::sqrt(bulk / density); }
     double explicit_viscosity() const { return viscosity; }
 };
+
+/// Of a yield-stress fluid: what it is pressed, and its deviatoric stress, s : s / (4 G).
+template <class Real>
+[[gnu::always_inline]] inline Real stored_in(Real j, const SymOf<Real>& s, double bulk, double shear) {
+    const Real pressed = max(1.0 - j, Real{});
+    return 0.5 * bulk * pressed * pressed + 0.25 / shear * j * contracted(s, s);
+}
 
 /// The same with a yield stress: an elastic solid of shear modulus G below it, Bingham's fluid above. The
 /// viscous flow is solved in the step, so that any viscosity is stable and material at rest really rests.
@@ -102,6 +116,47 @@ struct Bingham {
         const Real left = (size * relaxation + yield_stress) / ((1.0 + relaxation) * divisor);
         (trial * select(size > yield_stress, left, Real{} + 1.0)).deviator().write(state);
     }
+    template <class Real>
+    [[gnu::always_inline]] Real stored(Real j, const Given<Real>* state) const {
+        return stored_in(j, SymOf<Real>::read(state), bulk, shear);
+    }
+    double sound_speed(double density) const { return std::sqrt((bulk + 4.0 / 3.0 * shear) / density); }
+    double explicit_viscosity() const { return 0.0; }
+};
+
+/// Herschel and Bulkley's fluid, as Bingham's above, but beyond the yield stress tau = tau_Y + K rate^n: mud thins
+/// with shear, n < 1. In pure shear of rate gamma: tau = tau_Y + K gamma^n.
+struct HerschelBulkley {
+    static constexpr int kStates = 6;  ///< deviatoric stress [Pa]
+    static constexpr bool kAverages = true;
+    double bulk = 1.0;          ///< [Pa]
+    double shear = 1.0;         ///< G [Pa]; a hundred yield stresses are stiff enough
+    double consistency = 1.0;   ///< K [Pa s^n]
+    double exponent = 1.0;      ///< n [1]
+    double yield_stress = 0.0;  ///< tau_Y [Pa], of sqrt(s:s / 2)
+
+    template <class Real>
+    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>* state, const Square<Real>&) const {
+        return SymOf<Real>::read(state).plus_isotropic(-bulk * max(1.0 - j, Real{})) * j;
+    }
+    template <class Real>
+    [[gnu::always_inline]] void update(const DeformationOf<Real>& d, Real& j, Given<Real>* state) const {
+        j = min(j * (1.0 + d.dt * trace<Real>(d.gradient)), Real{} + 1.0);
+        const SymOf<Real> trial = spun<Real>(SymOf<Real>::read(state), d) +
+                                  SymOf<Real>::of(d.gradient).deviator() * (Real{} + 2.0 * shear * d.dt);
+        const Real size = trial.norm() * std::sqrt(0.5), over = max(size - yield_stress, Real{});
+        if (!any(over > 0.0)) return trial.deviator().write(state);
+        const Real left = (yield_stress + left_of(over, d.dt)) / select(size > 0.0, size, Real{} + 1.0);
+        (trial * select(size > yield_stress, left, Real{} + 1.0)).deviator().write(state);
+    }
+    /// What flow leaves after dt of a stress beyond the yield stress, s + G dt (s / K)^(1/n) = over: the trial's
+    /// stress less what relaxes at the end's rate [Pa].
+    double left_of(double over, double dt) const;
+    Double4 left_of(const Double4& over, double dt) const;
+    template <class Real>
+    [[gnu::always_inline]] Real stored(Real j, const Given<Real>* state) const {
+        return stored_in(j, SymOf<Real>::read(state), bulk, shear);
+    }
     double sound_speed(double density) const { return std::sqrt((bulk + 4.0 / 3.0 * shear) / density); }
     double explicit_viscosity() const { return 0.0; }
 };
@@ -127,9 +182,10 @@ struct Elastic {
         carried<Real>(SymOf<Real>::read(state), grown).write(state);
         j *= volume_ratio<Real>(grown);
     }
-    double energy(const double* state) const {
-        const Sym3 e = Sym3::read(state);
-        return shear * e.norm() * e.norm() + 0.5 * lambda * e.trace() * e.trace();
+    template <class Real>
+    [[gnu::always_inline]] Real stored(Real, const Given<Real>* state) const {
+        const SymOf<Real> e = SymOf<Real>::read(state);
+        return shear * contracted(e, e) + 0.5 * lambda * e.trace() * e.trace();
     }
     double sound_speed(double density) const { return std::sqrt((lambda + 2.0 * shear) / density); }
     double explicit_viscosity() const { return 0.0; }
@@ -175,12 +231,17 @@ struct DruckerPrager {
         (shear_strain * kept).plus_isotropic(select(parted, Real{} + apex, volume) / 3.0).write(state);
         state[6] = select(parted, volume - apex, Real{});
     }
+    template <class Real>
+    [[gnu::always_inline]] Real stored(Real j, const Given<Real>* state) const {
+        return elastic.stored(j, state);
+    }
     double sound_speed(double density) const { return elastic.sound_speed(density); }
     double explicit_viscosity() const { return 0.0; }
 };
 
 }  // namespace solid
 
-using SolidLaw = std::variant<solid::Fluid, solid::Bingham, solid::Elastic, solid::DruckerPrager>;
+using SolidLaw =
+    std::variant<solid::Fluid, solid::Bingham, solid::Elastic, solid::DruckerPrager, solid::HerschelBulkley>;
 
 }  // namespace frana

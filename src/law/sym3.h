@@ -67,6 +67,12 @@ struct SymOf {
 };
 using Sym3 = SymOf<double>;
 
+/// a : b
+template <class Real>
+[[gnu::always_inline]] inline Real contracted(const SymOf<Real>& a, const SymOf<Real>& b) {
+    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.yz * b.yz + a.xz * b.xz);
+}
+
 template <class Real>
 [[gnu::always_inline]] inline Real trace(const Square<Real>& m) {
     return m(0, 0) + m(1, 1) + m(2, 2);

@@ -11,7 +11,7 @@ namespace frana {
 struct Budget {
     double mass_error = 0.0;                    ///< (m + m_left - m_0) / m_0 [1]
     std::array<double, 2> momentum_residual{};  ///< P + P_left - P_0 - impulse [kg m/s]
-    double energy_residual = 0.0;               ///< (K + E_p + D + E_left) - (K_0 + E_p0) [J]
+    double energy_residual = 0.0;               ///< (K + E_p + E_s + D + E_left) - (K_0 + E_p0) [J]
 };
 
 inline Budget budget(const Status& first, const Status& now) {
@@ -23,7 +23,7 @@ inline Budget budget(const Status& first, const Status& now) {
                                          (now.momentum_left[axis] - first.momentum_left[axis]) -
                                          (now.impulse[axis] - first.impulse[axis]);
     // Differences first: the potential energy of a mountain is far larger than what a flow turns over.
-    result.energy_residual = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
+    result.energy_residual = (now.kinetic - first.kinetic) + (now.potential - first.potential) + (now.stored - first.stored) +
                              (now.dissipated - first.dissipated) + (now.energy_left - first.energy_left);
     return result;
 }

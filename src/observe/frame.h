@@ -35,6 +35,14 @@ struct Status {
     double potential = 0.0;          ///< sum of rho g A h (Z + h/2) [J]
     double dissipated = 0.0;         ///< by bed friction, rheology and bores since the start [J]
     double energy_left = 0.0;        ///< carried out by what left [J]
+    double stored = 0.0;             ///< of points in space: of deformation, that unloading gives back [J]
+    /// Of points in space since the start, parts of `dissipated` [J].
+    struct InSpace {
+        double friction = 0.0;   ///< along the bed and barriers
+        double walls = 0.0;      ///< lost to their pushes
+        double material = 0.0;   ///< yielding and viscosity
+        double numerical = 0.0;  ///< what is left: of the scheme
+    } in_space;
     double p2g_mass_error = 0.0;     ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
     double p2g_momentum_error = 0.0; ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]
     double max_depth = 0.0;          ///< [m]

@@ -35,7 +35,12 @@ const std::vector<std::string>& columns() {
                                                    "covered_area",
                                                    "front",
                                                    "p2g_mass_error",
-                                                   "p2g_momentum_error"};
+                                                   "p2g_momentum_error",
+                                                   "stored",
+                                                   "points_friction",
+                                                   "points_walls",
+                                                   "points_material",
+                                                   "points_numerical"};
     return names;
 }
 
@@ -87,7 +92,12 @@ void History::add(const Status& now) {
                                      now.covered_area,
                                      now.front,
                                      now.p2g_mass_error,
-                                     now.p2g_momentum_error};
+                                     now.p2g_momentum_error,
+                                     now.stored,
+                                     now.in_space.friction,
+                                     now.in_space.walls,
+                                     now.in_space.material,
+                                     now.in_space.numerical};
     for (std::size_t i = 0; i < row.size(); ++i)
         if (!std::isfinite(row[i]))
             throw NumericsError(

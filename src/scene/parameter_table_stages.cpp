@@ -18,21 +18,29 @@ Parameter of_space(Parameter parameter, const char* otherwise) {
 void add_laws(Table& table) {
     const char* const law = "stage.law";
     Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in space");
-    choice_of_law.choices = {"fluid", "bingham", "drucker_prager", "elastic"};
+    choice_of_law.choices = {"fluid", "bingham", "herschel_bulkley", "drucker_prager", "elastic"};
     table.push_back(of_space(choice_of_law, "fluid, or bingham where the rheology is"));
     table.push_back(
         of_space(number("stage.viscosity", "Pa s", not_negative, "viscosity of a fluid, or of bingham"),
                  "the rheology's"));
-    table.push_back(of_space(number("stage.yield_stress", "Pa", positive, "yield stress of bingham in shear"),
+    table.push_back(of_space(number("stage.yield_stress", "Pa", positive,
+                                    "yield stress of bingham or herschel_bulkley in shear"),
                              "the rheology's"));
     table.push_back(
-        of_space(number("stage.shear_modulus", "Pa", positive, "stiffness of bingham below its yield stress"),
+        of_space(number("stage.shear_modulus", "Pa", positive, "stiffness of both below their yield stress"),
                  "a hundred yield stresses"));
     table.push_back(
         of_space(number("stage.sound_speed", "m/s", positive,
-                        "artificial speed of sound of a fluid, or of bingham: the density changes by about "
+                        "artificial speed of sound of fluids, with a yield stress or without: the density changes by about "
                         "(speed / sound_speed)^2"),
                  "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
+    const std::vector<std::string> mud = {"herschel_bulkley"};
+    table.push_back(with(number("stage.consistency", "Pa s^n", positive,
+                                "K of herschel_bulkley: tau = yield_stress + K rate^exponent"),
+                         law, mud, mud));
+    table.push_back(with(number("stage.exponent", "1", above_to(0.0, 2.0),
+                                "n of herschel_bulkley, below one for what thins with shear"),
+                         law, mud, mud));
     table.push_back(with(number("stage.friction_angle_deg", "degree", {0.0, 90.0, false, true},
                                 "internal friction angle of drucker_prager"),
                          law, {"drucker_prager"}, {"drucker_prager"}));
@@ -44,8 +52,8 @@ void add_laws(Table& table) {
                          law, {"drucker_prager"}));
     table.push_back(
         with(number("stage.young_modulus", "Pa", positive,
-                    "stiffness of drucker_prager or elastic; the stiffer, the more steps, each of which damps: about "
-                    "100 density gravity depth is enough"),
+                    "stiffness of drucker_prager or elastic; the stiffer, the more steps: about 100 density "
+                    "gravity depth is enough"),
              law, {"drucker_prager", "elastic"}, {"drucker_prager", "elastic"}));
     table.push_back(with(number("stage.poisson_ratio", "1", {0.0, 0.5, false, true}, 0.3,
                                 "share of a strain that shows across it, of drucker_prager or elastic"),
@@ -129,11 +137,15 @@ void add_stages(Table& table) {
     table.push_back(with(number("stage.cfl", "1", above_to(0.0, 1.0), 0.4,
                                 "largest way of sound and flow in one time step, in cells"),
                          model, in_space));
-    table.push_back(
-        with(choice("stage.transfer", {"tpic", "apic"}, "tpic",
-                    "how velocity passes between points and grid: tpic has the quieter pressure, apic keeps "
-                    "angular momentum"),
-             model, in_space));
+    Parameter transfer =
+        make("stage.transfer", Kind::choice, "",
+             "how velocity passes between points and grid: tpic has the quieter pressure, apic keeps angular momentum, "
+             "flip lets points keep their velocity, so that what few cells hold is damped by time and not by step");
+    transfer.choices = {"tpic", "apic", "flip"};
+    table.push_back(of_space(transfer, "flip for drucker_prager, else tpic"));
+    table.push_back(of_space(number("stage.blending", "s", positive,
+                                    "time in which points with flip take over the grid's velocity"),
+                             "sqrt(cell / gravity), in which material falls half a cell"));
     table.push_back(with(choice("stage.profile", {"plug", "linear", "parabolic", "bagnold"}, "plug",
                                 "velocity over the depth that columns become points with"),
                          model, in_space));

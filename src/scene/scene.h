@@ -100,7 +100,8 @@ struct SolidStage {
     bool stuck = false;                ///< the lowest material does not slide on the bed
     double bed_friction = 0.0;         ///< Coulomb's coefficient [1]
     double cfl = 0.4;                  ///< fraction of a cell that sound and flow may pass in a step [1]
-    bool apic = false;                 ///< otherwise tpic
+    Transfer transfer = Transfer::tpic;  ///< tpic, apic or flip
+    double blending = 0.0;             ///< of flip: time in which points take over the nodes' velocity [s]
     VelocityProfile profile = VelocityProfile::plug;
     bool along_bed = true;             ///< points start along the bed; otherwise without vertical velocity
 };

@@ -91,10 +91,25 @@ private:
         stage.stuck = case_.flag(prefix_ + "stuck");
         stage.bed_friction = number_or("bed_friction", friction_of(scene_.bed_law));
         stage.cfl = number("cfl");
-        stage.apic = case_.word(prefix_ + "transfer") == "apic";
+        read_transfer(stage);
         stage.profile = profile_of(case_.word(prefix_ + "profile"));
         stage.along_bed = case_.word(prefix_ + "vertical") == "along-bed";
         return stage;
+    }
+
+    /// Sand flips: where layers of few cells flow, a step's damping holds them back. The pressure of fluids is
+    /// quieter without.
+    void read_transfer(SolidStage& stage) {
+        const bool sand = std::holds_alternative<solid::DruckerPrager>(stage.law);
+        const std::string word = given("transfer") ? case_.word(prefix_ + "transfer") : sand ? "flip" : "tpic";
+        stage.transfer = word == "apic"   ? Transfer::apic
+                         : word == "flip" ? Transfer::flip
+                                          : Transfer::tpic;
+        stage.blending = number_or("blending", std::sqrt(stage.cell / scene_.gravity));
+        if (given("blending") && word != "flip")
+            problems_.add(case_.place(prefix_ + "blending"),
+                          fmt::format("found with stage.transfer = \"{}\"", word), "expected it with \"flip\" only",
+                          "remove it, or choose \"flip\"");
     }
 
     /// The cells whose nodes lie in the window.
@@ -184,12 +199,14 @@ private:
         }
         yield_stress = number_or("yield_stress", yield_stress);
         if (!(yield_stress > 0.0))
-            problems_.add(case_.place(prefix_ + "law"), "found \"bingham\" without a yield stress",
+            problems_.add(case_.place(prefix_ + "law"), fmt::format("found \"{}\" without a yield stress", law),
                           "expected stage.yield_stress, or that of material.rheology",
                           "give one, or choose \"fluid\"");
         constexpr double kStiff = 100.0;  // yield stresses: stiffer costs steps and changes nothing
-        return solid::Bingham{0.0, number_or("shear_modulus", kStiff * yield_stress), viscosity,
-                              yield_stress};
+        const double shear = number_or("shear_modulus", kStiff * yield_stress);
+        if (law == "bingham") return solid::Bingham{0.0, shear, viscosity, yield_stress};
+        if (given("viscosity")) unused("viscosity", law);
+        return solid::HerschelBulkley{0.0, shear, number("consistency"), number("exponent"), yield_stress};
     }
 
     void unused(const char* name, const std::string& law) {

@@ -8,11 +8,12 @@ namespace frana {
 /// Points of a batch after a step: places [cells], velocities [m/s].
 struct BatchPoints {
     Double4 x[3], v[3];
-    Double4 mass, volume;  ///< [kg], [m^3]
+    Double4 mass, volume;      ///< [kg], [m^3]
+    Double4 stored, material;  ///< energy of deformation; lost to the law in the step [J]
 };
 
 struct BatchSums {
-    Double4 mass{}, kinetic{}, speeds{}, volume{}, momentum[3]{}, moment[3]{};
+    Double4 mass{}, kinetic{}, speeds{}, volume{}, momentum[3]{}, moment[3]{}, stored{}, material{};
     Double4 max_speed2{}, max_shift{};  ///< per step [m^2/s^2], [cells]
 
     /// Adds the points in the lanes of `counted`, which came from `from` [cells].
@@ -23,6 +24,8 @@ struct BatchSums {
         kinetic += 0.5 * m * speed2;
         speeds += m * sqrt(speed2);
         volume += select(counted, q.volume, Double4{});
+        stored += select(counted, q.stored, Double4{});
+        material += q.material;  // of those that leave too; none beyond the last point
         max_speed2 = max(max_speed2, select(counted, speed2, Double4{}));
         for (int k = 0; k < 3; ++k) {
             momentum[k] += m * q.v[k];
@@ -33,6 +36,7 @@ struct BatchSums {
     template <class Sums>
     void add_to(Sums& sums) const {
         sums.mass += sum(mass), sums.kinetic += sum(kinetic), sums.speeds += sum(speeds), sums.volume += sum(volume);
+        sums.stored += sum(stored), sums.material += sum(material);
         for (int k = 0; k < 3; ++k) sums.momentum[k] += sum(momentum[k]), sums.moment[k] += sum(moment[k]);
         sums.max_speed2 = std::fmax(sums.max_speed2, largest(max_speed2));
         sums.max_shift = std::fmax(sums.max_shift, largest(max_shift));

@@ -74,7 +74,7 @@ template <class Law>
 /// Adds what one image gives to its 27 nodes; first: of these, along each axis.
 template <Affine affine>
 [[gnu::always_inline]] inline void give(const SpaceGrid& grid, double* nodes, const std::array<Index, 3>& first,
-                                        const BatchShares<affine>& from, int lane) {
+                                        const BatchShares<affine, false>& from, int lane) {
     const Index* const across = grid.place(0, first[0]);
     const Index at[3] = {4 * across[0], 4 * across[1], 4 * across[2]};
     const Double4 w[3] = {all(from.w[0][0][lane]), all(from.w[0][1][lane]), all(from.w[0][2][lane])};

@@ -50,15 +50,21 @@ SolidBody::SolidBody(const SolidScene& scene)
 
 SolidFlow::SolidFlow(const SolidScene& scene)
     : body_(scene),
-      kernel_(make_solid_kernel(scene.law, scene.affine)),
+      kernel_(make_solid_kernel(scene.law, scene.affine, scene.keeps)),
       law_(scene.law),
       density_(scene.density),
       cfl_(scene.cfl),
       sound_(kernel_->sound_speed(scene.density)),
+      blending_(scene.blending),
       apic_(scene.affine == Affine::apic) {
+    expect(!scene.keeps || (scene.affine == Affine::tpic && scene.blending > 0.0),
+           "points that keep their velocities have tpic's gradients and a time in which they give them up");
     expect(scene.surfaces.size() <= kMostSurfaces, "more surfaces than a set of them can hold");
     flush_denormals_on_all_threads();
-    body_.mass_j = LazyArray<double>(body_.grid.size());
+    if (scene.keeps)
+        body_.kept = LazyArray<SolidBody::Node>(body_.grid.size());
+    else
+        body_.mass_j = LazyArray<double>(body_.grid.size());
     body_.points.states = kernel_->states();
     place(scene.points);
     sort();
@@ -71,6 +77,7 @@ void SolidFlow::place(const SolidSeeds& seeds) {
     const SpaceGeometry& g = body_.grid.geometry();
     const Index before = q.count(), count = static_cast<Index>(seeds.mass.size());
     q.resize(before + count);
+    double given = 0.0;
     Vec3 moment = status_.mass * status_.centre;
     for (Index p = before; p < before + count; ++p) {
         const std::size_t n = static_cast<std::size_t>(p - before);
@@ -87,12 +94,16 @@ void SolidFlow::place(const SolidSeeds& seeds) {
         status_.momentum += mass * seeds.velocity[n];
         moment += mass * seeds.position[n];
         status_.mass += mass;
-        status_.kinetic += 0.5 * mass * speed * speed;
-        status_.potential -= mass * body_.gravity.dot(seeds.position[n]);
+        const double kinetic = 0.5 * mass * speed * speed,
+                     potential = -mass * body_.gravity.dot(seeds.position[n]),
+                     stored = q.rest_volume[p] * kernel_->stored(q.j[p]);
+        status_.kinetic += kinetic, status_.potential += potential, status_.stored += stored;
+        given += kinetic + potential + stored;
         status_.speeds += mass * speed;
         status_.volume += q.j[p] * q.rest_volume[p];
         status_.max_speed = std::max(status_.max_speed, speed);
     }
+    status_.energy_given += given;
     if (status_.mass > 0.0) status_.centre = moment / status_.mass;
     status_.points = q.count();
 }
@@ -124,6 +135,7 @@ void SolidFlow::mark_near() {
     body_.near_nodes.assign(body_.active.work.size(), 0);
     body_.sums.resize(body_.active.tile.size());
     body_.boxes.resize(body_.active.tile.size());
+    body_.tile_work.assign(body_.active.work.size(), {});
     body_.tile_impulse.resize(body_.active.work.size() * surfaces);
     body_.point_impulse.resize(body_.active.tile.size() * surfaces);
     for (auto& colour : body_.image_colour) colour.clear();
@@ -216,6 +228,7 @@ double SolidFlow::step_length(double until) const {
 void SolidFlow::advance(double until) {
     expect(until > status_.time, "a step goes forward in time");
     const double dt = step_length(until);
+    body_.kept_share = blending_ > 0.0 ? std::exp(-dt / blending_) : 0.0;
     timed_("clear", [&] { kernel_->clear(body_); });
     timed_("scatter", [&] { kernel_->scatter(body_, dt); });
     timed_("images", [&] { kernel_->scatter_images(body_, dt); });
@@ -236,10 +249,13 @@ void SolidFlow::book(double dt) {
         all.kinetic += sums.kinetic, all.speeds += sums.speeds, all.volume += sums.volume;
         all.left_mass += sums.left_mass, all.left_momentum += sums.left_momentum;
         all.left_energy += sums.left_energy;
+        all.stored += sums.stored, all.material += sums.material, all.pushed += sums.pushed;
         all.max_speed2 = std::max(all.max_speed2, sums.max_speed2);
         all.max_shift = std::max(all.max_shift, sums.max_shift);
         if (sums.bad >= 0) all.bad = sums.bad;
     }
+    for (const SurfaceWork& work : body_.tile_work)
+        all.pushed += work.pushed, all.friction += work.friction;
     for (const auto gone : body_.gone) left += gone;
     for (const std::vector<Vec3>* list : {&body_.tile_impulse, &body_.point_impulse})
         for (std::size_t n = 0; n < list->size(); ++n) body_.impulse[n % body_.surfaces.size()] += (*list)[n];
@@ -252,6 +268,8 @@ void SolidFlow::book(double dt) {
     status_.mass = all.mass;
     status_.momentum = all.momentum;
     status_.kinetic = all.kinetic;
+    status_.stored = all.stored;
+    status_.material += all.material, status_.pushed += all.pushed, status_.friction += all.friction;
     status_.speeds = all.speeds;
     status_.volume = all.volume;
     status_.max_speed = std::sqrt(all.max_speed2);

@@ -32,6 +32,10 @@ struct SolidScene {
     double density = 1000.0;    ///< without stress [kg/m^3]
     SolidLaw law = solid::Fluid{};
     Affine affine = Affine::tpic;
+    /// Points keep their velocities and learn how those of the nodes change (affine FLIP), but for a share of
+    /// 1 - exp(-dt / blending) that they take from the nodes (PIC), so that damping is by time, not by step.
+    bool keeps = false;
+    double blending = 0.0;  ///< [s]
     double averaging = 0.005;       ///< share of J's mean taken over in a step, of laws that average [1]
     double cfl = 0.4;               ///< fraction of a cell that sound and flow may pass in a step [1]
     std::vector<Surface> surfaces;  ///< at most kMostSurfaces
@@ -47,14 +51,29 @@ struct SolidStatus {
     Vec3 momentum{0, 0, 0};              ///< [kg m/s]
     Vec3 momentum_left{0, 0, 0};         ///< carried out [kg m/s]
     Vec3 momentum_given{0, 0, 0};        ///< at the start and with what was added since [kg m/s]
-    double energy_left = 0.0;            ///< kinetic and potential, carried out [J]
+    double energy_left = 0.0;            ///< kinetic, potential and stored, carried out [J]
+    double energy_given = 0.0;           ///< the same at the start and with what was added since [J]
     Vec3 weight_impulse{0, 0, 0};        ///< of gravity since the start [kg m/s]
     Vec3 centre{0, 0, 0};                ///< of mass [m]
     double kinetic = 0.0;                ///< sum of m v^2 / 2 [J]
     double potential = 0.0;              ///< sum of -m gravity . x [J]
+    double stored = 0.0;                 ///< of deformation, that unloading gives back [J]
+    double friction = 0.0;               ///< lost along surfaces since the start [J]
+    double pushed = 0.0;                 ///< given by surfaces' pushes since the start; impacts lose [J]
+    double material = 0.0;               ///< lost to the law since the start: yielding, viscosity [J]
     double speeds = 0.0;                 ///< sum of m |v| [kg m/s]
     double volume = 0.0;                 ///< sum of J V_0 [m^3]
     double max_speed = 0.0;              ///< [m/s]
+
+    /// What the scheme lost since the start: the transfers between points and nodes, finite steps [J].
+    double numerical() const {
+        return (energy_given - kinetic - potential - stored) - energy_left + pushed - friction - material;
+    }
+};
+
+/// Of surfaces on the nodes of a tile in a step [J].
+struct SurfaceWork {
+    double pushed = 0.0, friction = 0.0;  ///< given by pushes; lost to friction
 };
 
 /// Sums of the loops over points, tile by tile.
@@ -62,6 +81,7 @@ struct SolidSums {
     double mass = 0.0, kinetic = 0.0, speeds = 0.0, volume = 0.0, max_speed2 = 0.0, max_shift = 0.0;
     Vec3 momentum{0, 0, 0}, moment{0, 0, 0};  ///< moment: sum of m x
     double left_mass = 0.0, left_energy = 0.0;
+    double stored = 0.0, material = 0.0, pushed = 0.0, friction = 0.0;  ///< energies, as in the status
     Vec3 left_momentum{0, 0, 0};
     Index bad = -1;  ///< a point whose numbers are not finite, or that ran away
 };
@@ -85,10 +105,15 @@ struct SolidBody {
         double m, x, y, z;
     };
     LazyArray<Node> nodes, real;  ///< real: without images, near surfaces
+    /// Of transfers that keep velocities. First m J and the momentum that points brought, without images; then
+    /// what v_p / kept_share grows by: the new velocity less kept_share times that brought.
+    LazyArray<Node> kept;
+    double kept_share = 0.0;  ///< of the step: exp(-dt / blending)
     LazyArray<double> mass_j;     ///< sum of w m J, of laws that average
     std::vector<Surface> surfaces;
     std::vector<Vec3> impulse;        ///< of each surface on the material since the start [kg m/s]
     std::vector<Vec3> tile_impulse;   ///< of the step, per tile of the work list and surface
+    std::vector<SurfaceWork> tile_work;  ///< of the step, per tile of the work list
     std::vector<Vec3> point_impulse;  ///< the same, per particle tile: of points put back
     SurfaceSet barriers = 0;          ///< which of the surfaces are
     FaceLedger ledger;                ///< of barriers' faces since the start
@@ -114,9 +139,11 @@ public:
     virtual int states() const = 0;
     /// J of a point at rest under the pressure p.
     virtual double compressed(double p) const = 0;
+    /// Energy of a point with that J and no other state, per volume without stress [J/m^3].
+    virtual double stored(double j) const = 0;
 };
 
-std::unique_ptr<SolidKernel> make_solid_kernel(const SolidLaw& law, Affine affine);
+std::unique_ptr<SolidKernel> make_solid_kernel(const SolidLaw& law, Affine affine, bool keeps);
 
 /// A body of points in space, and its time loop.
 class SolidFlow {
@@ -168,7 +195,7 @@ private:
     SpaceSorter sorter_;
     StepClock timed_;
     SolidStatus status_;
-    double density_, cfl_, sound_, drift_ = 0.0;
+    double density_, cfl_, sound_, blending_, drift_ = 0.0;
     Index next_id_ = 0;
     bool apic_;
 };

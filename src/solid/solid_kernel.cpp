@@ -41,7 +41,8 @@ struct Gift {
     Double4 base, affine[3], force[3];
 };
 
-template <class Law, Affine affine>
+/// keeps: points keep their velocities and learn how those of the nodes change (solid_flow.h).
+template <class Law, Affine affine, bool keeps>
 class Kernel final : public SolidKernel {
 public:
     explicit Kernel(const Law& law) : law_(law) {}
@@ -55,11 +56,18 @@ public:
         else
             return 1.0;
     }
+    double stored(double j) const override {
+        const double none[7] = {};
+        return law_.stored(j, none);
+    }
 
     void clear(SolidBody& body) const override {
         for_each_work_tile(body.active, [&](Index, Index tile) {
             std::fill_n(&body.nodes[tile * kTileNodes], kTileNodes, SolidBody::Node{});
-            if constexpr (Law::kAverages) std::fill_n(&body.mass_j[tile * kTileNodes], kTileNodes, 0.0);
+            if constexpr (keeps)
+                std::fill_n(&body.kept[tile * kTileNodes], kTileNodes, SolidBody::Node{});
+            else if constexpr (Law::kAverages)
+                std::fill_n(&body.mass_j[tile * kTileNodes], kTileNodes, 0.0);
         });
     }
 
@@ -70,9 +78,10 @@ public:
             const NodeBox box = box_of(body.points, begin, end);
             body.boxes[static_cast<std::size_t>(n)] = box;
             NodeBlock block;
-            block.clear<Law::kAverages>(box);
+            block.clear<Law::kAverages, keeps>(box);
             scatter_points(body, begin, end, dt, box, block);
-            block.add_to<Law::kAverages>(body.grid, box, body.nodes.data(), body.mass_j.data());
+            block.add_to<Law::kAverages, keeps>(body.grid, box, body.nodes.data(), body.kept.data(),
+                                                body.mass_j.data());
         });
     }
 
@@ -114,20 +123,28 @@ public:
             Vec3* const impulse = body.tile_impulse.data() + n * static_cast<Index>(body.surfaces.size());
             std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
             const Given given{
-                impulse, near & body.barriers ? &body.node_pushes[static_cast<std::size_t>(n)] : nullptr};
+                impulse, near & body.barriers ? &body.node_pushes[static_cast<std::size_t>(n)] : nullptr,
+                &body.tile_work[static_cast<std::size_t>(n)]};
+            *given.work = {};
             if (given.faces) given.faces->clear();
             for (Index k = first; k < first + kTileNodes; ++k) {
                 auto& node = body.nodes[k];
                 const double real = near ? body.real[k].m : node.m;
                 if (!(real > 0.0)) {
                     node = {};
+                    if constexpr (keeps) body.kept[k] = {};
                     continue;
                 }
                 Vec3 v = Vec3(node.x, node.y, node.z) / node.m;
                 if (near) v = meet(body, near, place_of(body.grid, tile, k - first), body.real[k], v, given);
                 double mean_j = 0.0;
-                if constexpr (Law::kAverages) mean_j = body.mass_j[k] / real;
+                if constexpr (Law::kAverages) mean_j = (keeps ? body.kept[k].m : body.mass_j[k]) / real;
                 node = {mean_j, v[0], v[1], v[2]};
+                if constexpr (keeps) {
+                    SolidBody::Node& had = body.kept[k];
+                    const double share = body.kept_share / real;
+                    had = {0.0, v[0] - share * had.x, v[1] - share * had.y, v[2] - share * had.z};
+                }
             }
         });
     }
@@ -140,7 +157,7 @@ public:
                 body.point_pushes[static_cast<std::size_t>(n)].clear();
             const NodeBox& box = body.boxes[static_cast<std::size_t>(n)];
             NodeBlock block;
-            block.take(body.grid, box, body.nodes.data());
+            block.take<keeps>(body.grid, box, body.nodes.data(), body.kept.data());
             body.sums[static_cast<std::size_t>(n)] = gather_points(body, n, dt, block);
         });
     }
@@ -211,7 +228,7 @@ private:
         const double ahead = static_cast<double>(kSpaceTile);  // places count from here: images may lie below zero
         const Double4 from_there[3] = {batch.place[0] + ahead, batch.place[1] + ahead, batch.place[2] + ahead};
         const BatchPlace at(from_there);
-        const BatchShares<affine> shares(at, gift, body.grid.cell());
+        const BatchShares<affine, false> shares(at, gift, body.grid.cell());
         double* const nodes = &body.nodes.data()->m;
         for (int lane = 0; lane < batch.count; ++lane)
             give(body.grid, nodes,
@@ -305,6 +322,7 @@ private:
     struct Given {
         Vec3* impulse;                 ///< per surface
         std::vector<FacePush>* faces;  ///< of barriers, where some are near
+        SurfaceWork* work;             ///< of all surfaces
     };
 
     /// The velocity of a node near surfaces. `mixed` is what points and images gave it: free surfaces take
@@ -316,7 +334,9 @@ private:
         Touch list[kMostTouched];
         const int count = touched(body, near, x, mixed, list);
         Vec3 v = Vec3(real.x, real.y, real.z) / real.m;
+        const Vec3 came = v;
         push_away(list, count, v);
+        const Vec3 pushed = v;
         for (Touch* t = list; t < list + count; ++t) {
             const Surface& surface = body.surfaces[static_cast<std::size_t>(t->surface)];
             const Vec3& normal = t->contact.normal;
@@ -334,6 +354,10 @@ private:
             else
                 given.impulse[t->surface] += real.m * (t->push * normal + t->brake);
         }
+        // At the speed after the step, as the work of stress and weight: with that before them a surface would lose
+        // what it undoes of both at once.
+        given.work->pushed += real.m * (pushed - came).dot(v);
+        given.work->friction -= real.m * (v - pushed).dot(v);
         return v;
     }
 
@@ -430,12 +454,13 @@ private:
         BatchGift gift;
         gift.mass = mass, gift.mass_j = mass * j;
         for (int k = 0; k < 3; ++k) {
-            gift.momentum[k] = mass * (v[k] + dt * body.gravity[k]);
+            gift.momentum[k] = mass * (keeps ? v[k] : v[k] + dt * body.gravity[k]);
+            if constexpr (keeps) gift.weight[k] = mass * (dt * body.gravity[k]);
             for (int l = 0; l < 3; ++l)
                 gift.affine[l][k] = mass * gradient(k, l), gift.force[l][k] = stress(k, l);
         }
         const BatchPlace place(x);
-        const BatchShares<affine> shares(place, gift, body.grid.cell());
+        const BatchShares<affine, keeps> shares(place, gift, body.grid.cell());
         const Int4 at = place.in_block(box);
         for (int point = 0; point < lanes; ++point) give<Law::kAverages>(block, at[point], shares, point);
     }
@@ -455,20 +480,51 @@ private:
         Double4 j = load(q.j.data() + p, lanes);
         load_all(q.state.data(), Law::kStates, p, lanes, state);
         if constexpr (Law::kAverages) j += body.averaging * (taken.mean[0] - j);
-        law_.update(d, j, state);
         BatchPoints now;
+        deform(d, load(q.rest_volume.data() + p, lanes), j, state, now);
         for (int k = 0; k < 3; ++k) {
+            now.x[k] = from[k] + dt / body.grid.cell() * taken.mean[k + 1];
             now.v[k] = taken.mean[k + 1];
-            now.x[k] = from[k] + dt / body.grid.cell() * now.v[k];
+            if constexpr (keeps)
+                now.v[k] = body.kept_share * load(q.v[static_cast<std::size_t>(k)].data() + p, lanes) + taken.kept[k + 1];
         }
         now.mass = load(q.mass.data() + p, lanes);
-        now.volume = j * load(q.rest_volume.data() + p, lanes);
         store_all(now.x, 3, p, lanes, q.x.data());
         store_all(now.v, 3, p, lanes, q.v.data());
         store_all(d.gradient.entry, 9, p, lanes, q.gradient.data());
         store_all(state, Law::kStates, p, lanes, q.state.data());
         store(q.j.data() + p, j, lanes);
         finish(body, p, lanes, now, from, tile, lane_sums, sums);
+    }
+
+    /// Strain of the step: of laws in rates dt D; of those that carry a logarithmic one, of F = I + dt L, to second
+    /// order, ln(F F^T) / 2 = dt D + dt^2 (L L^T / 2 - D^2).
+    [[gnu::always_inline]] static SymOf<Double4> strain_of(const DeformationOf<Double4>& d) {
+        const SymOf<Double4> rate = SymOf<Double4>::of(d.gradient);
+        if constexpr (Law::kAverages) {
+            return rate * all(d.dt);
+        } else {
+            const Mat3x4& l = d.gradient;
+            const auto row = [&](int i, int j) {
+                return l(i, 0) * l(j, 0) + l(i, 1) * l(j, 1) + l(i, 2) * l(j, 2);
+            };
+            const SymOf<Double4> turned{row(0, 0), row(1, 1), row(2, 2), row(0, 1), row(1, 2), row(0, 2)};
+            return (rate + (turned * all(0.5) + times(rate, rate) * all(-1.0)) * all(d.dt)) * all(d.dt);
+        }
+    }
+
+    /// The law's step. Of the work of the mean stress what is not stored is lost to the law: by flow, friction inside
+    /// and viscosity.
+    [[gnu::always_inline]] void deform(const DeformationOf<Double4>& d, const Double4& rest_volume, Double4& j,
+                                       Double4* state, BatchPoints& now) const {
+        const SymOf<Double4> before = law_.stress(j, state, d.gradient);
+        const Double4 had = law_.stored(j, state);
+        law_.update(d, j, state);
+        const SymOf<Double4> mean = (before + law_.stress(j, state, d.gradient)) * all(0.5);
+        const Double4 has = law_.stored(j, state);
+        now.volume = j * rest_volume;
+        now.stored = has * rest_volume;
+        now.material = (contracted(mean, strain_of(d)) - (has - had)) * rest_volume;
     }
 
     /// Looks whether points are sound, puts them back before surfaces, and books them.
@@ -489,8 +545,16 @@ private:
                 push_out(body, near & ~body.barriers, p + n, impulse);
                 if (near & body.barriers) keep_out(body, tile, p + n, {from[0][n], from[1][n], from[2][n]});
             }
-            load_all(body.points.x.data(), 3, p, lanes, now.x);
-            load_all(body.points.v.data(), 3, p, lanes, now.v);
+            Double4 gained{};
+            for (int k = 0; k < 3; ++k) {
+                const auto axis = static_cast<std::size_t>(k);
+                const Double4 x = load(body.points.x[axis].data() + p, lanes),
+                              v = load(body.points.v[axis].data() + p, lanes);
+                gained += 0.5 * (v * v - now.v[k] * now.v[k]) -
+                          body.gravity[k] * body.grid.cell() * (x - now.x[k]);
+                now.x[k] = x, now.v[k] = v;
+            }
+            sums.pushed += sum(gained * now.mass);
         }
         const Mask4 inside = inside_of(body.grid, now.x), left = there & ~inside;
         if (any(left))
@@ -506,10 +570,11 @@ private:
         const Int4 at = place.in_block(box);
         PointTaken one[4];
         for (int point = 0; point < 4; ++point)  // beyond `lanes`: any finite numbers
-            one[point] = weights.take(block, at[point < lanes ? point : 0], point);
+            one[point] = weights.template take<keeps>(block, at[point < lanes ? point : 0], point);
         transpose(one[0].mean, one[1].mean, one[2].mean, one[3].mean, taken.mean);
         for (int l = 0; l < 3; ++l)
             transpose(one[0].slope[l], one[1].slope[l], one[2].slope[l], one[3].slope[l], taken.slope[l]);
+        if constexpr (keeps) transpose(one[0].kept, one[1].kept, one[2].kept, one[3].kept, taken.kept);
     }
 
     /// Points that came to lie behind a surface are put back on it, without their speed into it: it rarely
@@ -600,7 +665,7 @@ private:
         const Vec3 v(now.v[0][lane], now.v[1][lane], now.v[2][lane]);
         const Vec3 place = body.grid.geometry().origin + body.grid.cell() * position(body, p);
         sums.left_momentum += mass * v;
-        sums.left_energy += mass * (0.5 * v.squaredNorm() - body.gravity.dot(place));
+        sums.left_energy += mass * (0.5 * v.squaredNorm() - body.gravity.dot(place)) + now.stored[lane];
     }
 
     Law law_;
@@ -608,12 +673,13 @@ private:
 
 }  // namespace
 
-std::unique_ptr<SolidKernel> make_solid_kernel(const SolidLaw& law, Affine affine) {
+std::unique_ptr<SolidKernel> make_solid_kernel(const SolidLaw& law, Affine affine, bool keeps) {
     return std::visit(
         [&](const auto& chosen) -> std::unique_ptr<SolidKernel> {
             using Law = std::decay_t<decltype(chosen)>;
-            if (affine == Affine::apic) return std::make_unique<Kernel<Law, Affine::apic>>(chosen);
-            return std::make_unique<Kernel<Law, Affine::tpic>>(chosen);
+            if (affine == Affine::apic) return std::make_unique<Kernel<Law, Affine::apic, false>>(chosen);
+            if (keeps) return std::make_unique<Kernel<Law, Affine::tpic, true>>(chosen);
+            return std::make_unique<Kernel<Law, Affine::tpic, false>>(chosen);
         },
         law);
 }

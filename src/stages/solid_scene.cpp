@@ -43,8 +43,7 @@ Raster without_gaps(Raster bed) {
 SolidLaw with_sound(SolidLaw law, double density, double sound_speed) {
     std::visit(
         [&](auto& chosen) {
-            using Law = std::decay_t<decltype(chosen)>;
-            if constexpr (std::is_same_v<Law, solid::Fluid> || std::is_same_v<Law, solid::Bingham>)
+            if constexpr (std::decay_t<decltype(chosen)>::kAverages)  // fluids
                 chosen.bulk = density * sound_speed * sound_speed;
         },
         law);
@@ -143,7 +142,9 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
     result.gravity = {0.0, 0.0, -scene.gravity};
     result.density = scene.density;
     result.law = with_sound(stage.law, scene.density, start.sound_speed);
-    result.affine = stage.apic ? Affine::apic : Affine::tpic;
+    result.affine = stage.transfer == Transfer::apic ? Affine::apic : Affine::tpic;
+    result.keeps = stage.transfer == Transfer::flip;
+    result.blending = stage.blending;
     result.cfl = stage.cfl;
     return result;
 }

@@ -75,7 +75,6 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
     handed_.energy = now.energy_left - before.energy_left;
     for (std::size_t axis = 0; axis < 2; ++axis)
         handed_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
-    handed_.energy_taken = points_->status().kinetic + points_->status().potential;
     look(points_->status().time);
     book(columns_->status());
 }
@@ -135,10 +134,7 @@ void StagedRun::hand_over() {
         }
         pending_.clear();
         const FlowColumns columns = columns_of(seeds, scene_, nodes_in_window(scene_));
-        const SolidStatus before = points_->status();
         points_->add(seeds_of_window(columns));
-        handed_.energy_taken +=
-            points_->status().kinetic + points_->status().potential - before.kinetic - before.potential;
     });
 }
 
@@ -156,8 +152,8 @@ void StagedRun::look(double until) {
     moved_ = 0.0;
 }
 
-/// Sums of both models. Energy of the points that is neither motion nor height (pressed together, or gone
-/// into friction, yielding and the scheme) counts as dissipated.
+/// Sums of both models. All energy that the points lost counts as dissipated; what columns do not have, that of
+/// their compression, is in the residual.
 void StagedRun::book(const Status& columns) {
     const SolidStatus& s = points_->status();
     const Index step = status_.step;
@@ -184,7 +180,9 @@ void StagedRun::book(const Status& columns) {
     }
     status_.kinetic += s.kinetic;
     status_.potential += s.potential + energy;
-    status_.dissipated += handed_.energy_taken - s.kinetic - s.potential - s.energy_left;
+    status_.stored = s.stored;
+    status_.in_space = {s.friction, -s.pushed, s.material, s.numerical()};
+    status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left;
     status_.energy_left += s.energy_left - handed_.energy;
     status_.max_depth = std::max(columns.max_depth, map_.max_depth());
     status_.max_speed = std::max(columns.max_speed, s.max_speed);
@@ -221,7 +219,7 @@ std::vector<std::string> StagedRun::remarks() const {
         "{:.6g} m3 left "
         "through its sides; top of the space {:.6g} m",
         scene_.solid->from, s.points, handed_.mass_later / density, s.mass_left / density, start_.top));
-    const bool fluid = scene_.solid->law.index() < 2;
+    const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
     if (fluid)
         remarks.push_back(fmt::format(
             "speed of sound {:.4g} m/s (artificial): the fastest point had {:.2g} of it, so that densities "
@@ -259,7 +257,7 @@ void StagedRun::keep(Archive& archive) {
     }
     frana::keep(archive, "status", status_);
     archive.numbers("sums",
-                    {&handed_.mass, &handed_.energy, &handed_.energy_taken, &handed_.mass_later,
+                    {&handed_.mass, &handed_.energy, &handed_.mass_later,
                      &handed_.momentum[0], &handed_.momentum[1], &moved_, &peak_mean_speed_, &largest_mach_});
     timed_.keep(archive);
     std::vector<std::int64_t> ids;

@@ -36,9 +36,9 @@ public:
     const DepthAveraged& columns() const { return *columns_; }
 
 private:
-    /// What the columns gave away, as they booked it, and what the points took.
+    /// What the columns gave away, as they booked it.
     struct Handed {
-        double mass = 0.0, energy = 0.0, energy_taken = 0.0, mass_later = 0.0;
+        double mass = 0.0, energy = 0.0, mass_later = 0.0;
         std::array<double, 2> momentum{};
     };
 

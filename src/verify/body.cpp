@@ -70,6 +70,12 @@ Measurement run_body(SolidFlow& flow, double end, const std::function<void(const
     return m;
 }
 
+void add_energies(Measurement& m, const SolidFlow& flow, double turned_over) {
+    const SolidStatus& now = flow.status();
+    m.add("numerical_loss", now.numerical() / turned_over);
+    m.add("material_loss", now.material / turned_over);
+}
+
 Measurement joined(const Measurement& before, const Measurement& now) {
     Measurement m = now;
     m.steps += before.steps;

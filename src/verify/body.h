@@ -31,6 +31,9 @@ void add_slice(SolidScene& scene, double width);
 /// and gravity leaves open, over all momentum that went round.
 Measurement run_body(SolidFlow& flow, double end, const std::function<void(const SolidFlow&)>& each = {});
 
+/// Shares of an energy [J] that a run turned over, as extras: what the scheme lost of it, and what the law did.
+void add_energies(Measurement& m, const SolidFlow& flow, double turned_over);
+
 /// Runs of one problem as one: steps and times add up, and the larger residual counts; the rest is the later
 /// run's.
 Measurement joined(const Measurement& before, const Measurement& now);

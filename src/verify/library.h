@@ -32,5 +32,6 @@ std::vector<Problem> body_problems();        // problems_body.cpp
 std::vector<Problem> column_problems();      // problems_column.cpp
 std::vector<Problem> structured_problems();  // problems_structured.cpp
 std::vector<Problem> structured_case_problems();  // problems_structured_cases.cpp
+std::vector<Problem> mud_problems();         // problems_mud.cpp
 
 }  // namespace frana::verify

@@ -117,6 +117,9 @@ Measurement run_dam_front(const Setup& setup) {
     m.front_error = front - 3.22;
     const double fallen = now.mass * kGravity * (1.0 - now.centre.z());
     m.add("energy_lost", 1.0 - now.kinetic / fallen);
+    add_energies(m, flow, fallen);
+    m.add("wall_loss", -now.pushed / fallen);
+    m.add("stored_share", now.stored / fallen);
     return m;
 }
 
@@ -150,6 +153,7 @@ std::vector<Problem> tank_problems() {
                 run_dam_front};
     dam.order_of = "front_error";
     dam.gates = {{16, "energy_lost", 0.01, "a slice of the same scheme kept 99 %"},
+                 {16, "numerical_loss", 0.015, "that, and what stays stored and the walls take"},
                  {0, "momentum_residual", 1e-12, "round-off"}};
     for (Problem* problem : {&tank, &dam}) problem->in_space = true;
     return {tank, dam};
