@@ -85,7 +85,8 @@ TEST_CASE("The ledger of energy in space has each loss under its name", "[solid]
     const SolidStatus rough = run(lump(sand), 0.4), elastic = run(lump(solid::Elastic::of(4e5, 0.3)), 0.4);
     CHECK(rough.friction > 0.0);
     CHECK(rough.material > 0.0);
-    CHECK(std::abs(elastic.material) < 1e-3 * elastic.friction);
+    // Of the fall: third order in the step, and the impact on so soft a body strains by per cents in one.
+    CHECK(std::abs(elastic.material) < 0.01 * (elastic.energy_given - elastic.potential));
     CHECK(elastic.stored > 0.0);
     SolidScene smooth = lump(sand);
     smooth.surfaces[0].friction = 0.0;

@@ -186,6 +186,8 @@ private:
         }
         for (const char* name : {"friction_angle_deg", "cohesion", "cone", "young_modulus", "poisson_ratio"})
             if (given(name)) unused(name, law);
+        for (const char* name : {"consistency", "exponent"})
+            if (law != "herschel_bulkley" && given(name)) unused(name, law);
         double viscosity = 0.0, yield_stress = 0.0;
         if (const auto* newtonian = std::get_if<rheology::Newtonian>(&scene_.rheology))
             viscosity = newtonian->viscosity;
