@@ -71,9 +71,5 @@ double HerschelBulkley::left_of(double over, double dt) const {
     return exponent <= 1.0 ? x : over - x;
 }
 
-Double4 HerschelBulkley::left_of(const Double4& over, double dt) const {
-    return Double4{left_of(over[0], dt), left_of(over[1], dt), left_of(over[2], dt), left_of(over[3], dt)};
-}
-
 }  // namespace solid
 }  // namespace frana

@@ -152,7 +152,9 @@ struct HerschelBulkley {
     /// What flow leaves after dt of a stress beyond the yield stress, s + G dt (s / K)^(1/n) = over: the trial's
     /// stress less what relaxes at the end's rate [Pa].
     double left_of(double over, double dt) const;
-    Double4 left_of(const Double4& over, double dt) const;
+    [[gnu::always_inline]] Double4 left_of(const Double4& over, double dt) const {
+        return Double4{left_of(over[0], dt), left_of(over[1], dt), left_of(over[2], dt), left_of(over[3], dt)};
+    }
     template <class Real>
     [[gnu::always_inline]] Real stored(Real j, const Given<Real>* state) const {
         return stored_in(j, SymOf<Real>::read(state), bulk, shear);
