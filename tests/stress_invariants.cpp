@@ -127,6 +127,8 @@ TEST_CASE("Scenes that once broke an invariant break none", "[stress]") {
         {31415, 2289, "material.bed.mu", "0.4520774548054708"},
         {8080, 2901, "material.bed.mu", "0.8507146687312253"},
         {8080, 3362, "material.bed.mu", "1.1607901464157264"},
+        // Where that flank ended on the bed itself, round-off chose whether a dry neighbour was a shore.
+        {60601, 1522, "terrain.curvature", "\"none\""},
         // A column that fell apart in three steps was drawn in again before it was split.
         {31415, 1037, "scheme.cfl", "0.2512512270738828"},
         // The flank of a heap a hundred cells high runs up a plane of 80 degrees.

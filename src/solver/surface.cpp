@@ -88,9 +88,11 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
         return (f & kWet) && (!(f & kMargin) || (found > 0 && found < sweep));
     };
     const Index up = flow.grid.stride();
-    // The flank of what rests ends on the ground: bent on under it, it would be steeper than it is anywhere and pull the
-    // pile apart. A front in motion has a tip that bends so.
-    const bool rests = nodes.before[k].x == 0.0 && nodes.before[k].y == 0.0;
+    // The flank of what rests bends down to the level at most: bent on under the ground, it would be steeper than it is
+    // anywhere and pull the pile apart. (Not to the bed itself, or a dry neighbour as high would be a shore by round-off.) A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
+    constexpr double kCreeps = 1e-6;  // of the speed of a wave one cell deep, where it is a front
+    const double creeps = kCreeps * std::sqrt(flow.gravity * flow.cell);
+    const double rests = std::max(0.0, 1.0 - std::hypot(nodes.before[k].x, nodes.before[k].y) / creeps);
     double sum = 0.0, weights = 0.0;
     for (int dj = -1; dj <= 1; ++dj)
         for (int di = -1; di <= 1; ++di) {
@@ -101,7 +103,7 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
             const double limit = flow.scheme.margin_limit * nodes.depth[p];
             if (known(r)) {
                 const double bend = std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r], -limit, limit);
-                e += rests ? std::max(bend, std::min(0.0, flow.bed.z[k] - e)) : bend;
+                e += bend + rests * (std::max(bend, std::min(0.0, nodes.level[k] - e)) - bend);
             }
             const double weight = di == 0 || dj == 0 ? nodes.depth[p] : 0.25 * nodes.depth[p];
             sum += weight * e;
