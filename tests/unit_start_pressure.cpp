@@ -81,3 +81,20 @@ TEST_CASE("The pressure at the start lies between a lake's and a sheet's, whatev
     take_start_pressure(one, scene);
     CHECK(share(one, scene).first == Approx(cos2).epsilon(1e-12));  // nothing is known of its surface
 }
+
+TEST_CASE("A column alone has a pressure wherever it stands, and one of two in a row has", "[stages]") {
+    const Scene scene = slope();
+    for (int n = 1; n < 400; ++n) {
+        const double x = 1.0 + 0.0071 * n, y = 1.0 + 0.0053 * n;
+        FlowColumns c = columns(
+            scene, [](double at) { return at < 1.3 ? 1.0 : 0.0; }, 0.5);
+        const std::size_t count = n % 2 ? 1 : 2;
+        for (auto* list : {&c.x, &c.y, &c.bed, &c.depth, &c.vx, &c.vy, &c.mass, &c.volume, &c.bed_pressure, &c.id,
+                           &c.slope_x, &c.slope_y})
+            list->resize(count);
+        for (std::size_t k = 0; k < count; ++k) c.x[k] = x + 0.1 * static_cast<double>(k), c.y[k] = y;
+        take_start_pressure(c, scene);
+        CAPTURE(x, y);
+        for (std::size_t k = 0; k < count; ++k) CHECK(std::isfinite(c.bed_pressure[k]));
+    }
+}

@@ -22,7 +22,7 @@ struct PlaneSums {
         if (!(w > 0.0)) return false;
         const double a = xx / w - x * x / (w * w), b = xy / w - x * y / (w * w), d = yy / w - y * y / (w * w);
         const double det = a * d - b * b;
-        if (!(det > kLeast * (a + d))) return false;
+        if (!(a + d > kLeast && det > kLeast * (a + d))) return false;  // of one column a and d are round-off
         const double p = xs / w - x * s / (w * w), q = ys / w - y * s / (w * w);
         result = {(d * p - b * q) / det, (a * q - b * p) / det};
         return true;
