@@ -89,7 +89,8 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
     };
     const Index up = flow.grid.stride();
     // The flank of what rests bends down to the level at most: bent on under the ground, it would be steeper than it is
-    // anywhere and pull the pile apart. (Not to the bed itself, or a dry neighbour as high would be a shore by round-off.) A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
+    // anywhere and pull the pile apart. (Not to the bed itself, or a dry neighbour as high would be a shore by round-off.)
+    // A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
     constexpr double kCreeps = 1e-6;  // of the speed of a wave one cell deep, where it is a front
     const double creeps = kCreeps * std::sqrt(flow.gravity * flow.cell);
     const double rests = std::max(0.0, 1.0 - std::hypot(nodes.before[k].x, nodes.before[k].y) / creeps);
