@@ -71,10 +71,6 @@ void deposit(benchmark::State& state) {
 void gather(benchmark::State& state) {
     sweep(state, [](Bed& b) { benchmark::DoNotOptimize(b.transfer->gather(b.flow, 0.0)); });
 }
-/// Both in one sweep, as most steps have it.
-void gather_and_deposit(benchmark::State& state) {
-    sweep(state, [](Bed& b) { benchmark::DoNotOptimize(b.transfer->carry(b.flow, 0.0, b.step)); });
-}
 void kick_nodes(benchmark::State& state) {
     sweep(state, [](Bed& b) { benchmark::DoNotOptimize(b.kick->kick(b.flow, b.step, b.step)); });
 }
@@ -86,7 +82,6 @@ void sort_by_tile(benchmark::State& state) {
 
 BENCHMARK(deposit)->Arg(70000)->Arg(500000)->Unit(benchmark::kMillisecond);
 BENCHMARK(gather)->Arg(70000)->Arg(500000)->Unit(benchmark::kMillisecond);
-BENCHMARK(gather_and_deposit)->Arg(70000)->Arg(500000)->Unit(benchmark::kMillisecond);
 BENCHMARK(kick_nodes)->Arg(70000)->Arg(500000)->Unit(benchmark::kMillisecond);
 BENCHMARK(depth_to_shoreline)->Arg(70000)->Arg(500000)->Unit(benchmark::kMillisecond);
 BENCHMARK(shock)->Arg(70000)->Arg(500000)->Unit(benchmark::kMillisecond);

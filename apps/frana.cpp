@@ -154,7 +154,9 @@ void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     command->add_option("--table", options.table, "write the table as text, without times");
     command->add_option("--against", options.against, "compare with a table written before: fails where one differs")
         ->check(CLI::ExistingFile);
-    command->add_option("--figure", options.figure, "draw error over run time beside other codes; of clay_flume, blocks_2, blocks_3: how their blocks end (PNG)");
+    command->add_option("--figure", options.figure,
+                        "draw error over run time beside other codes; of clay_flume, blocks_2, blocks_3: how their blocks "
+                        "end (PNG)");
     command->add_flag("--study", options.study, "change one component of the scheme at a time");
     command->callback([&] { action = [&] { return verify_command(options); }; });
 }
