@@ -120,9 +120,10 @@ Forecast forecast(const Scene& scene) {
         if (!std::isnan(bed.at(i, j))) top = std::max(top, bed.at(i, j) + seeds.depth[p]);
     }
     Forecast result;
-    const double wave = std::sqrt(scene.gravity * depth);
+    double wave = std::sqrt(scene.gravity * depth);
+    if (scene.structure) wave += ColumnLaw(scene.structure->material).sound_speed(scene.density);
     result.fall_speed = std::sqrt(speed * speed + 2.0 * scene.gravity * (top - lowest));
-    const double reach = scene.scheme.cfl * bed.geometry.cell;
+    const double reach = (scene.structure ? scene.structure->cfl : scene.scheme.cfl) * bed.geometry.cell;
     result.fewest_steps = std::ceil(scene.end * (speed + wave) / reach);
     result.most_steps = std::ceil(scene.end * (result.fall_speed + wave) / reach);
     result.bytes = memory_of(scene);

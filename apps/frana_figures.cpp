@@ -133,7 +133,7 @@ void read_bed(FigureSource& source, std::vector<std::string>& warnings) {
                         source.run_dir.string()));
 }
 
-/// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png, map_speed_t12.5s.png, and with stresses
+/// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png, map_speed_t12.5s.png, damage, and with stresses
 /// map_effective_stress_xx_t12.5s.png and so on.
 void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigure>& figures,
                  std::vector<std::string>& warnings) {
@@ -142,8 +142,9 @@ void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigur
     std::optional<ProductRaster> depth;
     if (frame.has("depth")) depth = from_frame(frame, "depth", "depth");
     const ProductRaster* extent = depth ? &*depth : nullptr;
-    for (const char* field : {"depth", "speed"}) {
+    for (const char* field : {"depth", "speed", "damage"}) {
         if (!frame.has(field)) {
+            if (field == std::string("damage")) continue;  // of structured solids only
             warnings.push_back(fmt::format("no {} in the frames of this run, so no map of it", field));
             continue;
         }

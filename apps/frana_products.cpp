@@ -30,6 +30,7 @@ constexpr ProductRule rules[] = {
     {"final_depth", "depth", 0, "m", "depth at the end of the run, along gravity"},
     {"final_velocity_x", "velocity", 0, "m/s", "velocity to the east at the end of the run"},
     {"final_velocity_y", "velocity", 1, "m/s", "velocity to the north at the end of the run"},
+    {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies"},
 };
 
 Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string& crs_wkt) {
@@ -40,10 +41,11 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
     Raster raster = Raster::filled(frame.grid, Raster::nodata);
     raster.crs_wkt = crs_wkt;
     raster.source = rule.name;
-    const bool time = std::string(rule.field) == "arrival_time";
+    const bool time = std::string(rule.field) == "arrival_time", inner = std::string(rule.field) == "damage";
+    const Field* depth = frame.node("depth");
     for (Index node = 0; node < frame.grid.size(); ++node) {
         const double value = field->data[node * field->components + rule.component];
-        const bool never = time && !(value >= 0.0);
+        const bool never = (time && !(value >= 0.0)) || (inner && depth && !(depth->data[node] > 0.0));
         if (!std::isnan(elevation->data[node]) && !never)
             raster.values[static_cast<std::size_t>(node)] = value;
     }
@@ -51,7 +53,7 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
 }
 
 /// Not every solver knows it; all others must be there.
-bool needed(const std::string& name) { return name != "peak_dynamic_pressure"; }
+bool needed(const std::string& name) { return name != "peak_dynamic_pressure" && name != "final_damage"; }
 
 fs::path raster_file(const fs::path& run_dir, const std::string& name) {
     return run_dir / "rasters" / (name + ".tif");

@@ -53,6 +53,14 @@ std::string results(const RunRecord& r) {
                 fmt::format("{:.5g} m2", r.footprint_area));
     text += row("deepest at the end", fmt::format("{:.4g} m", r.final_depth));
     text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
+    if (r.breakage) {
+        const Breakage& b = *r.breakage;
+        std::string shares;
+        for (const double share : b.pieces) shares += fmt::format("{}{:.3g}", shares.empty() ? "" : ", ", share);
+        text += row("unbroken pieces, shares of the mass", shares.empty() ? "none" : shares);
+        text += row("mean damage", fmt::format("{:.3g}; of {} pairs of neighbours {} parted, {} of them without damage",
+                                               b.damage, b.pairs, b.torn, b.numerical));
+    }
     text += row("left the domain", fmt::format("{:.6g} m3", s.last.mass_left / r.density));
     return text + "\n";
 }

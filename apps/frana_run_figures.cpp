@@ -30,6 +30,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
         map.outline_label = extent->name == "peak_depth" ? "peak depth [m]" : "depth [m]";
     }
     if (product.name.find("stress") != std::string::npos) map.colormap = Colormap::diverging;
+    if (product.name.find("damage") != std::string::npos) map.range = {0.0, 1.0};
     map.title = fmt::format("{}: {}", source.title, what);
     map.field_label =
         fmt::format("{} [{}]", what.substr(0, what.find(" at ")), product.unit);  // the title has the moment
@@ -81,6 +82,8 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
                                 MapRule{"arrival_time", "arrival time"}, MapRule{"final_depth", "depth at the end"}})
         if (const ProductRaster* product = find_product(source.rasters, rule.name))
             draw_map(source, *product, rule.what, figures, warnings, find_product(source.rasters, "peak_depth"));
+    if (const ProductRaster* damage = find_product(source.rasters, "final_damage"))
+        draw_map(source, *damage, "damage at the end", figures, warnings, find_product(source.rasters, "final_depth"));
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
         draw_view(source, *peak, figures, warnings);
     draw_overlay(source, figures, warnings);

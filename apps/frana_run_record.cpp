@@ -165,12 +165,20 @@ Json barriers_json(const std::vector<BarrierSummary>& barriers) {
     return list;
 }
 
+Json breakage_json(const Breakage& b) {
+    return {{"mean_damage", b.damage},
+            {"pieces", b.pieces},
+            {"neighbour_pairs", b.pairs},
+            {"torn_pairs", b.torn},
+            {"torn_without_damage", b.numerical}};
+}
+
 std::string run_json(const RunRecord& record) {
     const RunSummary& s = record.summary;
     const double per_second = s.wall_seconds > 0.0 ? s.particle_steps / s.wall_seconds : 0.0;
     Json figures = Json::array();
     for (const DrawnFigure& figure : record.figures) figures.push_back(figure.path);
-    const Json json = {
+    Json json = {
         {"version", FRANA_VERSION},
         {"build", {{"type", FRANA_BUILD_TYPE}, {"compiler", FRANA_COMPILER}, {"arch", FRANA_ARCH}}},
         {"case", record.name},
@@ -204,6 +212,7 @@ std::string run_json(const RunRecord& record) {
           {"failed", record.checkpoints.failed},
           {"resumed_at", record.checkpoints.resumed_at}}},
         {"warnings", record.warnings}};
+    if (record.breakage) json["structure"] = breakage_json(*record.breakage);
     return json.dump(2) + "\n";
 }
 

@@ -51,6 +51,7 @@ struct RunRecord {
     std::vector<InsituTally> insitu;
     std::vector<BarrierSummary> barriers;
     CheckpointKeeper::Progress checkpoints;
+    std::optional<Breakage> breakage;  ///< of material that holds together
     std::vector<std::string> warnings;
 };
 

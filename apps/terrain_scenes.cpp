@@ -69,6 +69,54 @@ MadeScene column_collapse() {
              {"slab.geojson", rectangle(middle - 0.05, 0.36, middle + 0.05, 0.44)}}};
 }
 
+MadeScene clay_flume() {
+    const double cell = 0.0125, steep = std::sin(42.0 * kDegree), gentle = std::sin(5.0 * kDegree);
+    const double obstacle = 0.125 + 0.4 * 0.25 - 0.5 * cell;  // nodes along its side are free
+    Raster floor = on_nodes(2.2, 0.5, cell, [=](double s, double) {
+        const double x = s - 0.4;
+        return -(x < 0.0 ? steep : gentle) * x;
+    });
+    floor.geometry.x0 = -0.4;
+    return {{{"dem.tif", std::move(floor)}},
+            {{"block.geojson", rectangle(-0.30, 0.125, 0.0, 0.375)},
+             {"obstacle.geojson", rectangle(0.0, -0.1, 0.15, obstacle)}}};
+}
+
+namespace {
+
+/// Integral of (1 + tanh(x / w)) / 2 from far below.
+double risen(double x, double w) { return 0.5 * (x + w * std::log(2.0 * std::cosh(x / w))); }
+
+/// Ground of 700 x 360 m from x = -20, y = -150 on.
+template <class Formula>
+Raster ground_of_blocks(const Formula& z) {
+    const double x0 = -20.0, y0 = -150.0;
+    Raster ground = on_nodes(700.0, 360.0, 2.5, [&](double x, double y) { return z(x + x0, y + y0); });
+    ground.geometry.x0 = x0, ground.geometry.y0 = y0;
+    return ground;
+}
+
+}  // namespace
+
+MadeScene blocks() {
+    const double turn = 10.0;  // length of the bends [m]
+    const auto convex = [=](double x, double) {
+        const double first = std::tan(10.0 * kDegree), second = std::tan(30.0 * kDegree);
+        return 200.0 - first * x - (second - first) * risen(x - 50.0, turn) + second * risen(x - 250.0, turn);
+    };
+    const auto valley = [=](double fan) {
+        return [=](double x, double y) {
+            const double foot = 220.0, share = 0.5 * (1.0 + std::tanh((x - foot) / turn)), across = (y - 30.0) / 20.0;
+            const double slope = std::tan(25.0 * kDegree);
+            return 150.0 - slope * x + slope * risen(x - foot, turn) + share * fan * 20.0 * std::log(std::cosh(across));
+        };
+    };
+    return {{{"convex.tif", ground_of_blocks(convex)},
+             {"fan.tif", ground_of_blocks(valley(-0.2))},
+             {"channel.tif", ground_of_blocks(valley(0.1))}},
+            {{"block.geojson", rectangle(0.0, 0.0, 100.0, 60.0)}}};
+}
+
 MadeScene tiff_particles() {
     // The ground reaches 5 m beyond the picture, so that the picture's outer half pixels lie on it as well.
     Raster ground = on_nodes(109.0, 109.0, 1.0, [](double, double) { return 0.0; });
@@ -112,6 +160,8 @@ const std::vector<NamedScene>& made_scenes() {
         {"barrier_hill", "hill with cliffs and a terrace, after Fois et al. 2025, 4.4.2", barrier_hill},
         {"conversion", "waves of 1 m on 10 m of water (Fois et al. 2025, 4.3)", conversion},
         {"column_collapse", "flat plate with a column of sand", column_collapse},
+        {"clay_flume", "flume with an obstacle, unrolled (van den Bout et al. 2021, 3)", clay_flume},
+        {"blocks", "slopes and valleys for a block (van den Bout et al. 2021, 4)", blocks},
         {"tiff_particles", "picture of 100 x 100 pixels (Fois et al. 2025, 4.1)", tiff_particles},
         {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track}};
     return scenes;

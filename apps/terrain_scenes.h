@@ -48,6 +48,12 @@ MadeScene barrier_hill();
 MadeScene conversion();
 /// A flat plate of 0.8 x 0.8 m, and the foot of a column of sand of 0.1 m radius in its middle.
 MadeScene column_collapse();
+/// Flume of van den Bout et al. (2021), section 3, as it is assumed here, unrolled: x along its floor, 42 degrees up to
+/// x = 0 and 5 behind, 0.5 m wide, with a block of 0.30 x 0.25 m above the break and an obstacle below it.
+MadeScene clay_flume();
+/// Blocks of 100 x 60 m after section 4 there: over a convex slope of 10, then 30 degrees (scenarios 2A, 2B), and down
+/// 25 degrees into a valley whose floor falls off to both sides (3A, 3B), or rises a little (3C).
+MadeScene blocks();
 /// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on
 /// flat ground.
 MadeScene tiff_particles();

@@ -17,7 +17,7 @@ StructuredScene breaking(double cohesion = 2e3) {
     StructuredScene s;
     s.material.young = 2e6;
     s.material.critical_strain = 0.05;
-    s.bed_friction = 0.3;
+    s.bed_law = bed::Coulomb{0.3};
     s.ground = terrain_ground([](double x, double y) { return Vec2(x < 3.0 ? -0.5 : 0.1, 0.05 * y); });
     s.grid = verify::grid_over({-2, -3}, {8, 7}, 0.1);
     Obstacle wall;

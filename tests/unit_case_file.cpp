@@ -88,7 +88,7 @@ end = 1
         "case.toml:2: terrain.dem: found 5; expected the name of a file in quotes; put the file's name in "
         "quotes",
         "case.toml:3: terrain.modle: found an unknown key; expected a key of [terrain]: dem, window, model, "
-        "curvature, "
+        "curvature, unrolled, "
         "gravity; did you mean terrain.model?",
         "case.toml:5: grid.cell: found the text \"5 m\"; expected a number above 0 [m]; write cell = 5.0, "
         "without quotes "

@@ -163,9 +163,8 @@ TEST_CASE("A bad entry is refused with its place, what was found, what is expect
           "\"depth\", \"thickness\", \"speed\", \"velocity_x\", \"velocity_y\", \"velocity_z\", \"pressure\", "
           "\"surface\", \"elevation\", \"peak_depth\", \"peak_speed\", \"peak_pressure\", \"arrival_time\", "
           "\"peak_dynamic_pressure\", \"stress_xx\", \"stress_yy\", \"stress_xy\", \"effective_stress_xx\", \"mass\", "
-          "\"effective_stress_yy\", \"volume\", \"effective_stress_xy\", \"id\", quantity that is looked at, one "
-          "number "
-          "a place; add field = ... under [[insitu]]");
+          "\"effective_stress_yy\", \"volume\", \"effective_stress_xy\", \"damage\", \"cohesion\", \"id\", "
+          "quantity that is looked at, one number a place; add field = ... under [[insitu]]");
     CHECK(problem_of(figure("field = \"depth\"\nlevels = [1]\n")) ==
           "slide/case.toml:12: insitu.0.levels: found, but insitu.kind = \"figure\" does not use it; expected with "
           "contour only; remove it, or choose insitu.kind");

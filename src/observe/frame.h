@@ -60,6 +60,15 @@ struct PhaseTime {
     Index calls = 0;
 };
 
+/// What solids that hold together have come apart into.
+struct Breakage {
+    double damage = 0.0;         ///< mean over the mass, 0 whole, 1 grains [1]
+    std::vector<double> pieces;  ///< shares of the mass in unbroken pieces, the largest first [1]
+    Index pairs = 0;             ///< of columns that were neighbours at the start
+    Index torn = 0;              ///< of these, now apart
+    Index numerical = 0;         ///< of these, without damage to either: torn by the scheme
+};
+
 /// A face of a barrier in patches, and what material gave to each since the start.
 struct PatchedFace {
     Index barrier = 0, face = 0;

@@ -14,6 +14,9 @@ using Table = std::vector<Parameter>;
 /// The keys of [[insitu]] and [[camera]] (parameter_table_insitu.cpp).
 void add_insitu(Table& table);
 
+/// The keys of [material.structure] (parameter_table_structure.cpp).
+void add_structure(Table& table);
+
 /// The keys of [[barrier]] and of [[stage]] (parameter_table_stages.cpp).
 void add_barriers(Table& table);
 void add_stages(Table& table);

@@ -26,7 +26,12 @@ void add_terrain(Table& table) {
         choice("terrain.curvature", {"full", "inertia", "none"}, "full",
                "bed curvature: full; inertia: in the acceleration, not in the friction; none");
     curvature.otherwise.push_back({"terrain.model", "shallow", text("none")});
+    for (const char* law : {"drucker_prager", "mohr_coulomb"})
+        curvature.otherwise.push_back({"material.structure.law", law, text("none")});
     table.push_back(curvature);
+    table.push_back(flag("terrain.unrolled", false,
+                         "coordinates are measured along the ground, as along the floor of a flume, not on the map; with "
+                         "material.structure only"));
     table.push_back(
         number("terrain.gravity", "m/s^2", above_to(0.0, 300.0), 9.81, "acceleration of gravity"));
     table.push_back(absent(number("grid.cell", "m", positive, "node distance of the grid"),
@@ -119,6 +124,7 @@ void add_material(Table& table) {
     table.push_back(with(number("material.rheology.yield_stress", "Pa", not_negative,
                                 "stress below which the mass does not flow"),
                          rheology, {"bingham"}, {"bingham"}));
+    add_structure(table);
 }
 
 void add_scheme(Table& table) {
@@ -195,7 +201,7 @@ void add_run(Table& table) {
                       "stress",      "effective_stress", "surface",       "elevation",
                       "mass",        "volume",           "pressure",      "id",
                       "peak_depth",  "peak_speed",       "peak_pressure", "peak_dynamic_pressure",
-                      "arrival_time"};
+                      "arrival_time", "damage",           "cohesion"};
     fields.fallback = std::vector<std::string>{};
     table.push_back(fields);
     table.push_back(choice("output.film", {"none", "mp4", "gif"}, "none",

@@ -21,6 +21,7 @@ std::vector<std::string> scalar_names() {
             "stress_xy",     "effective_stress_xx",
             "mass",          "effective_stress_yy",
             "volume",        "effective_stress_xy",
+            "damage",        "cohesion",
             "id"};
 }
 

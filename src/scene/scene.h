@@ -11,6 +11,7 @@
 
 #include "convert/profile.h"
 #include "law/solid_law.h"
+#include "law/structured_law.h"
 #include "particles/seeds.h"
 #include "scene/insitu.h"
 #include "terrain/raster.h"
@@ -122,6 +123,15 @@ struct Barrier {
     double friction = 0.0;              ///< Coulomb's coefficient [1]
 };
 
+/// Solids that hold together: columns are elastic, yield and break (structured/structured_flow.h).
+struct Structure {
+    ColumnMaterial material;
+    double cohesion = 0.0;  ///< undamaged [Pa]
+    double share = 1.0;     ///< of the solids that have structure, undamaged [1]
+    double cfl = 0.4;       ///< fraction of a cell that sound and flow may pass in a step [1]
+    bool unrolled = false;  ///< coordinates are measured along the ground, not on the map
+};
+
 /// What is written, and when.
 struct Output {
     double every = 1.0;                ///< [s]; frames are hit exactly
@@ -162,6 +172,7 @@ struct Scene {
     std::vector<Insitu> insitu;        ///< looked at while the case runs
     std::optional<Polygons> survey;    ///< surveyed footprint, to compare with
     std::vector<Barrier> barriers;
+    std::optional<Structure> structure;  ///< when the material holds together
     std::optional<SolidStage> solid;   ///< where and when the run goes into space
 
     std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)

@@ -109,7 +109,12 @@ private:
         const bool nodes_only = starts_with(field, "peak_") || field == "arrival_time";
         const bool particles_only = field == "mass" || field == "volume" || field == "id";
         const std::string found = fmt::format("found \"{}\"", field);
-        if (stress && std::holds_alternative<rheology::None>(scene_.rheology))
+        const bool structured = field == "damage" || field == "cohesion";
+        if (structured && !scene_.structure)
+            problems_.add(case_.place(key), found + " in a case without structure",
+                          "expected a field of this case, since material.structure.law = \"none\"",
+                          "choose another field, or give the mass a structure");
+        else if (stress && !scene_.structure && std::holds_alternative<rheology::None>(scene_.rheology))
             problems_.add(case_.place(key), found + " in a case without stress",
                           "expected a field of this case, since material.rheology.law = \"none\" has no stress",
                           "choose another field, or give the mass a rheology");

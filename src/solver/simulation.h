@@ -1,6 +1,7 @@
 #pragma once
 // The one abstract face of every solver: step, look, sample.
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "observe/archive.h"
@@ -22,6 +23,8 @@ public:
     virtual Frame frame() = 0;
     /// What the user should know of how the run was set up.
     virtual std::vector<std::string> remarks() const { return {}; }
+    /// What the material has come apart into; nothing of material that has no structure.
+    virtual std::optional<Breakage> breakage() const { return {}; }
     /// Wall time by phase since the start.
     virtual std::vector<PhaseTime> timings() const = 0;
     /// Saves the state between two steps, or takes it up again with all its bits, in a simulation of the same scene

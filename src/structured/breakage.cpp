@@ -45,6 +45,15 @@ Neighbours::Neighbours(const StructuredFlow& flow, double reach) {
     std::sort(pairs_.begin(), pairs_.end());
 }
 
+void Neighbours::keep(Archive& archive) {
+    std::vector<std::int64_t> ids;
+    for (const auto& [first, second] : pairs_) ids.insert(ids.end(), {first, second});
+    archive.array("neighbours", ids);
+    if (!archive.loading()) return;
+    pairs_.clear();
+    for (std::size_t n = 0; n + 1 < ids.size(); n += 2) pairs_.emplace_back(ids[n], ids[n + 1]);
+}
+
 Neighbours::Torn Neighbours::torn(const StructuredFlow& flow, double distance) const {
     constexpr double kHalfBroken = 0.5;
     const StructuredPoints& q = flow.body().points;

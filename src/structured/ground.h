@@ -7,9 +7,13 @@
 
 namespace frana {
 
-/// Gravity at a place: along the plane of the columns, and across the ground [m/s^2].
+/// Gravity at a place: along the plane of the columns, and across the ground [m/s^2]; and how the ground
+/// slopes against that plane [1]. Columns leave where there is no ground.
 struct GroundPull {
     double x = 0.0, y = 0.0, across = 9.81;
+    double slope_x = 0.0, slope_y = 0.0;
+    double elevation = 0.0;  ///< [m]
+    bool exit = false;
 };
 using Ground = std::function<GroundPull(double x, double y)>;
 
@@ -20,7 +24,7 @@ inline Ground terrain_ground(std::function<Vec2(double x, double y)> slope, doub
     return [slope = std::move(slope), g](double x, double y) {
         const Vec2 s = slope(x, y);
         const double across = g / (1.0 + s.squaredNorm());
-        return GroundPull{-across * s.x(), -across * s.y(), across};
+        return GroundPull{-across * s.x(), -across * s.y(), across, s.x(), s.y(), 0.0, false};
     };
 }
 

@@ -22,8 +22,8 @@ constexpr double kLeastOpen = 0.25;
 void require_inside(const StructuredSeeds& seeds, const GridGeometry& g) {
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
         const double x = (seeds.x[p] - g.x0) / g.cell, y = (seeds.y[p] - g.y0) / g.cell;
-        expect(x >= 1.0 && y >= 1.0 && x <= static_cast<double>(g.nx) - 2.0 &&
-                   y <= static_cast<double>(g.ny) - 2.0,
+        expect(x >= 0.0 && y >= 0.0 && x <= static_cast<double>(g.nx) - 1.0 &&
+                   y <= static_cast<double>(g.ny) - 1.0,
                "structured columns start in the grid");
         expect(seeds.mass[p] > 0.0 && seeds.depth[p] > 0.0 && seeds.cohesion[p] >= 0.0 &&
                    seeds.damage[p] >= 0.0 && seeds.damage[p] <= 1.0,
@@ -42,15 +42,17 @@ StructuredBody::StructuredBody(const StructuredScene& scene)
       pull(grid.size()),
       obstacles(scene.obstacles),
       rankine{law.active(), law.passive()},
+      bed_law(scene.bed_law),
       density(scene.density),
       share(scene.share),
-      bed_friction(scene.bed_friction) {}
+      gravity(scene.gravity) {}
 
 StructuredFlow::StructuredFlow(const StructuredScene& scene)
     : body_(scene), ground_(scene.ground), cfl_(scene.cfl), sound_(body_.law.sound_speed(scene.density)) {
     flush_denormals_on_all_threads();
     place(scene.points);
     sort();
+    look();
 }
 
 void StructuredFlow::place(const StructuredSeeds& seeds) {
@@ -80,7 +82,7 @@ void StructuredFlow::place(const StructuredSeeds& seeds) {
         wave_ = std::max(wave_, v.norm() + std::sqrt(2.0 * q.pull[p] * q.depth[p]));
         if (q.damage[p] > 0.0 || body_.share < 1.0) body_.grains = true;
     }
-    status_.damage /= status_.mass;
+    if (status_.mass > 0.0) status_.damage /= status_.mass;
     status_.momentum_given = status_.momentum;
     status_.points = count;
 }
@@ -92,15 +94,21 @@ void StructuredFlow::sort() {
         return body_.grid.tile_of(q.x[p], q.y[p]);
     });
     order_.lay_out(body_.active);
-    lists_.list_tiles(body_.grid, body_.active);
     fields_.clear();
     q.each([&](Column& column) { fields_.push_back(&column); });
     fields_.push_back(&q.id);
     order_.permute(fields_);
+    drift_ = 0.0;
+    take_tiles();
+}
+
+/// What follows from the tiles that hold columns.
+void StructuredFlow::take_tiles() {
+    StructuredPoints& q = body_.points;
+    lists_.list_tiles(body_.grid, body_.active);
     body_.gone.assign(static_cast<std::size_t>(q.count()), 0);
     body_.sums.resize(body_.active.tile.size());
-    body_.impulses.resize(body_.active.work.size());
-    drift_ = 0.0;
+    body_.tallies.resize(body_.active.work.size());
     learn_ground();
 }
 
@@ -114,7 +122,8 @@ void StructuredFlow::learn_ground() {
             for (Index i = i0; i < i0 + kTile; ++i) {
                 const GroundPull pull = ground_(g.x(i), g.y(j));
                 const double open = open_share(body_.obstacles, {g.x(i), g.y(j)}, g.cell, kLeastOpen);
-                body_.pull[body_.grid.at(i, j)] = {pull.x, pull.y, pull.across, open};
+                body_.pull[body_.grid.at(i, j)] = {pull.x,       pull.y,         pull.across, pull.slope_x,
+                                                   pull.slope_y, pull.elevation, open,        pull.exit ? 1.0 : 0.0};
             }
     }
 }
@@ -141,6 +150,20 @@ void StructuredFlow::advance(double until) {
         status_.time += dt;
 }
 
+void StructuredFlow::look() {
+    clear_nodes(body_);
+    scatter(body_, 0.0);
+    look_nodes(body_);
+    weigh();
+}
+
+/// Energies along the bed, of the tallies.
+void StructuredFlow::weigh() {
+    status_.bed_kinetic = status_.potential = 0.0;
+    for (const StructuredTally& tile : body_.tallies)
+        status_.bed_kinetic += tile.kinetic, status_.potential += tile.potential;
+}
+
 /// Sums of the tiles, in their order; points that left are dropped, and points that moved far are sorted.
 void StructuredFlow::book(double dt) {
     StructuredSums all;
@@ -148,11 +171,17 @@ void StructuredFlow::book(double dt) {
         all.mass += tile.mass, all.kinetic += tile.kinetic, all.damaged += tile.damaged;
         all.max_speed2 = std::max(all.max_speed2, tile.max_speed2),
         all.max_wave = std::max(all.max_wave, tile.max_wave);
+        all.speeds += tile.speeds, all.stored += tile.stored, all.worked += tile.worked;
         all.momentum += tile.momentum, all.left_mass += tile.left_mass,
             all.left_momentum += tile.left_momentum;
+        all.left_energy += tile.left_energy;
         if (tile.bad >= 0) all.bad = tile.bad;
     }
-    for (const StructuredImpulses& tile : body_.impulses) status_.impulse.add(tile);
+    for (const StructuredTally& tile : body_.tallies) {
+        status_.impulse.add(tile.impulse);
+        status_.friction += tile.friction, status_.pushed += tile.obstacles;
+    }
+    weigh();
     if (all.bad >= 0)
         throw NumericsError(
             fmt::format("structured columns, step {}, t = {:.6g} s, dt = {:.3g} s: column {} has numbers "
@@ -161,6 +190,8 @@ void StructuredFlow::book(double dt) {
     ++status_.step;
     status_.dt = dt;
     status_.mass = all.mass, status_.momentum = all.momentum, status_.kinetic = all.kinetic;
+    status_.speeds = all.speeds, status_.stored = all.stored, status_.worked += all.worked;
+    status_.energy_left += all.left_energy;
     status_.damage = all.mass > 0.0 ? all.damaged / all.mass : 0.0;
     status_.max_speed = std::sqrt(all.max_speed2);
     wave_ = all.max_wave;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "law/bed_law.h"
 #include "law/structured_law.h"
 #include "observe/frame.h"
 #include "solver/columns.h"
@@ -40,7 +41,8 @@ struct StructuredScene {
     double density = 1700.0;  ///< [kg/m^3]
     ColumnMaterial material;
     double share = 1.0;         ///< of the solids that have structure, undamaged [1]
-    double bed_friction = 0.0;  ///< tangent of the angle at the bed [1]
+    double gravity = 9.81;      ///< [m/s^2]
+    BedLaw bed_law;
     double cfl = 0.4;           ///< fraction of a cell that sound and flow may pass in a step [1]
     std::vector<Obstacle> obstacles;
     StructuredSeeds points;
@@ -58,6 +60,13 @@ struct StructuredImpulses {
     Vec2 sum() const { return weight + pressure + friction + obstacles; }
 };
 
+/// What the nodes of a tile have in a step: impulses, and energies along the bed [J].
+struct StructuredTally {
+    StructuredImpulses impulse;
+    double friction = 0.0, obstacles = 0.0;  ///< lost to them
+    double kinetic = 0.0, potential = 0.0;   ///< after the step; of the places before it
+};
+
 /// Sums over the points after a step.
 struct StructuredStatus {
     Index step = 0;
@@ -67,16 +76,23 @@ struct StructuredStatus {
     Vec2 momentum{0, 0}, momentum_left{0, 0},
         momentum_given{0, 0};  ///< present, carried out, at the start [kg m/s]
     StructuredImpulses impulse;
-    double kinetic = 0.0;    ///< sum of m v^2 / 2 [J]
+    double kinetic = 0.0;    ///< sum of m v^2 / 2, in the plane of the columns [J]
     double damage = 0.0;     ///< mean over the mass [1]
     double max_speed = 0.0;  ///< [m/s]
+    double speeds = 0.0;     ///< sum of m |v| [kg m/s]
+    double bed_kinetic = 0.0, potential = 0.0;  ///< of the nodes, along the bed and above z = 0 [J]
+    double stored = 0.0;                        ///< elastic, of the structure in the plane [J]
+    double friction = 0.0, pushed = 0.0;        ///< lost at the bed and to obstacles since the start [J]
+    double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
+    double energy_left = 0.0;  ///< carried out, motion in the plane and height of the ground [J]
 };
 
 /// Sums of the loops over points, tile by tile.
 struct StructuredSums {
     double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0;
+    double speeds = 0.0, stored = 0.0, worked = 0.0;
     Vec2 momentum{0, 0};
-    double left_mass = 0.0;
+    double left_mass = 0.0, left_energy = 0.0;
     Vec2 left_momentum{0, 0};
     Index bad = -1;  ///< a point whose numbers are not finite
 };
@@ -98,8 +114,9 @@ struct StructuredBody {
         double vx, vy, pull, depth;  ///< after the step
     };
     struct Pull {
-        double x, y, across,
-            open;  ///< of the ground; share of the node that is open, 0 where nobody asked yet
+        double x, y, across, slope_x, slope_y, elevation;  ///< of the ground
+        double open;  ///< share of the node that is open, 0 where nobody asked yet
+        double exit;  ///< 1 where there is no ground
     };
     LazyArray<Node> nodes;
     LazyArray<Push> push;
@@ -107,10 +124,11 @@ struct StructuredBody {
     LazyArray<Pull> pull;
     std::vector<std::uint8_t> gone;            ///< per point: left the grid in this step
     std::vector<StructuredSums> sums;          ///< of the step, per particle tile
-    std::vector<StructuredImpulses> impulses;  ///< of the step, per tile of the work list
+    std::vector<StructuredTally> tallies;      ///< of the step, per tile of the work list
     std::vector<Obstacle> obstacles;
     Rankine rankine;
-    double density, share, bed_friction;
+    BedLaw bed_law;
+    double density, share, gravity;
     bool grains = false;  ///< some column is broken or has grains beside its structure
 };
 
@@ -119,6 +137,8 @@ void clear_nodes(StructuredBody& body);
 void scatter(StructuredBody& body, double dt);
 void move_nodes(StructuredBody& body, double dt);
 void gather(StructuredBody& body, double dt);
+/// The nodes as the columns are now, without a step: `moved`, and the energies of `tallies`.
+void look_nodes(StructuredBody& body);
 
 /// A body of columns, and its time loop.
 class StructuredFlow {
@@ -127,6 +147,8 @@ public:
 
     /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
     void advance(double until);
+    /// Brings nodes, and energies of the status, to the columns' present places; changes no column.
+    void look();
     const StructuredStatus& status() const { return status_; }
     const StructuredBody& body() const { return body_; }
     std::vector<PhaseTime> timings() const { return timed_.times(); }
@@ -134,13 +156,17 @@ public:
     Vec2 position(Index p) const;
     /// Momentum + carried out - given - impulses: round-off [kg m/s]
     Vec2 momentum_residual() const;
+    /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
+    void keep(Archive& archive);
 
 private:
     void place(const StructuredSeeds& seeds);
     void sort();
+    void take_tiles();
     void learn_ground();
     double step_length(double until) const;
     void book(double dt);
+    void weigh();
 
     StructuredBody body_;
     Ground ground_;

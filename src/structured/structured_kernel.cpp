@@ -82,31 +82,52 @@ struct Around {
 /// Of a cell: nodes on a face are in the obstacle, whatever round-off makes of their places.
 constexpr double kOnFace = 1e-6;
 
-/// Coulomb's friction over a step: it stops what it would turn around.
-Vec2 braked(const Vec2& v, double brake) {
-    const double speed = v.norm();
-    return speed > brake ? Vec2(v * (1.0 - brake / speed)) : Vec2(0.0, 0.0);
+/// A bed law's friction over a step that would change `before` to `driven` (law/bed_law.h).
+template <class Law>
+Vec2 braked(const Law& law, const StructuredBody& body, const StructuredBody::Pull& ground, double depth,
+            const Vec2& before, const Vec2& driven, double dt) {
+    const double speed = driven.norm();
+    if (speed == 0.0) return driven;
+    const Vec2 unit = driven / speed, slope(ground.slope_x, ground.slope_y);
+    const double along = slope.dot(unit), steep = std::sqrt(1.0 + slope.squaredNorm()),
+                 kappa = std::sqrt(1.0 + along * along);
+    const BedState state{ground.across * steep / kappa, std::max(depth / steep, 1e-9), kappa, 1.0 / steep,
+                         body.gravity, body.density};
+    return speed_after(law, state, std::max(0.0, before.dot(unit)), speed, dt) * unit;
 }
 
-Moved move(const StructuredBody& body, Index k, const Vec2& place, double dt, StructuredImpulses& given) {
+/// Product of two velocities along the ground [m^2/s^2].
+double along_ground(const StructuredBody::Pull& ground, const Vec2& a, const Vec2& b) {
+    const Vec2 slope(ground.slope_x, ground.slope_y);
+    return a.dot(b) + slope.dot(a) * slope.dot(b);
+}
+
+template <class Law>
+Moved move(const Law& law, const StructuredBody& body, Index k, const Vec2& place, double dt, StructuredTally& tally) {
     const Node& node = body.nodes[k];
     const StructuredBody::Pull& pull = body.pull[k];
     const double cell = body.grid.cell(), depth_of_mass = 1.0 / (body.density * cell * cell);
-    const Vec2 weight = dt * Vec2(pull.x, pull.y);
-    Vec2 v = Vec2(node.x, node.y) / node.m + weight;
-    given.weight += node.m * weight;
+    const double depth = node.m / pull.open * depth_of_mass;
+    const Vec2 weight = dt * Vec2(pull.x, pull.y), before = Vec2(node.x, node.y) / node.m;
+    Vec2 v = before + weight;
+    tally.impulse.weight += node.m * weight;
     if (body.grains) {
         const Vec2 push =
             dt * Around{body, k, body.grid.stride()}.acceleration(pull.across, cell, depth_of_mass);
         v += push;
-        given.pressure += node.m * push;
+        tally.impulse.pressure += node.m * push;
     }
-    const Vec2 slowed = braked(v, dt * pull.across * body.bed_friction);
-    given.friction += node.m * (slowed - v);
+    const Vec2 slowed = braked(law, body, pull, depth, before, v, dt);
+    tally.impulse.friction += node.m * (slowed - v);
     Vec2 met = slowed;
     for (const Obstacle& obstacle : body.obstacles) met = obstacle.met(place, met, kOnFace * cell);
-    given.obstacles += node.m * (met - slowed);
-    return {met.x(), met.y(), pull.across, node.m / pull.open * depth_of_mass};
+    tally.impulse.obstacles += node.m * (met - slowed);
+    // By the velocity that is left: what rests under stress and friction loses nothing.
+    tally.friction += node.m * along_ground(pull, v - slowed, met);
+    tally.obstacles += node.m * along_ground(pull, slowed - met, met);
+    tally.kinetic += 0.5 * node.m * along_ground(pull, met, met);
+    tally.potential += node.m * body.gravity * (pull.elevation + 0.5 * depth);
+    return {met.x(), met.y(), pull.across, depth};
 }
 
 /// What a column takes from its nodes, and how it changes there [1/cell].
@@ -147,15 +168,16 @@ struct Batch {
 }
 
 /// Stress, damage and the column's own depth, which changes with its area: exp(-div dt) to second order.
-[[gnu::always_inline]] inline void strain_four(StructuredBody& body, const Batch& b, Index p, int lanes,
+/// Returns the work of the strains on the structure [J].
+[[gnu::always_inline]] inline Double4 strain_four(StructuredBody& body, const Batch& b, Index p, int lanes,
                                                double dt) {
     StructuredPoints& q = body.points;
     const Double4 half = (0.5 * dt) * (b.cxx + b.cyy), damage = load(&q.damage[p], lanes);
     const Double4 depth = load(&q.depth[p], lanes) * ((1.0 - half) / (1.0 + half));
     store(&q.depth[p], depth, lanes);
     const Mask4 whole = damage < 1.0;
-    if (!any(whole)) return;
     const Double4 none = {};
+    if (!any(whole)) return none;
     const auto if_whole = [&](Double4 a) { return select(whole, a, none); };
     ColumnStateOf<Double4> state{{if_whole(load(&q.xx[p], lanes)), if_whole(load(&q.yy[p], lanes)),
                                   if_whole(load(&q.zz[p], lanes)), if_whole(load(&q.xy[p], lanes))},
@@ -164,13 +186,33 @@ struct Batch {
     const auto step =
         ColumnStepOf<Double4>::of(if_whole(b.cxx), if_whole(b.cxy), if_whole(b.cyx), if_whole(b.cyy), dt);
     const Double4 weight = if_whole(-0.5 * body.density * b.pull * depth);
+    const ColumnStressOf<Double4> old = state.stress;
     body.law.update(step, weight, load(&q.cohesion[p], lanes), state);
     store(&q.xx[p], state.stress.xx, lanes), store(&q.yy[p], state.stress.yy, lanes);
     store(&q.zz[p], state.stress.zz, lanes), store(&q.xy[p], state.stress.xy, lanes);
     store(&q.damage[p], state.damage, lanes), store(&q.strain[p], state.strain, lanes);
+    const ColumnStressOf<Double4>& now = state.stress;
+    const Double4 work = (old.xx + now.xx) * step.xx + (old.yy + now.yy) * step.yy + 2.0 * (old.xy + now.xy) * step.xy;
+    return (0.5 * body.share) * load(&q.volume[p], lanes) * (1.0 - damage) * work;
 }
 
-/// Sums of a column, and what bounds the next step. Columns at the outer nodes leave.
+/// Elastic energy of a column's structure in the plane [J].
+double stored(const StructuredBody& body, Index p) {
+    const StructuredPoints& q = body.points;
+    const ColumnMaterial& of = body.law.material();
+    const double xx = q.xx[p], yy = q.yy[p], xy = q.xy[p];
+    const double twice = (xx * xx + yy * yy - 2.0 * of.poisson * xx * yy + 2.0 * (1.0 + of.poisson) * xy * xy) / of.young;
+    return 0.5 * q.volume[p] * body.share * (1.0 - q.damage[p]) * twice;
+}
+
+/// The ground at the node nearest to a column.
+const StructuredBody::Pull& ground_below(const StructuredBody& body, Index p) {
+    const StructuredPoints& q = body.points;
+    return body.pull[body.grid.at(static_cast<Index>(std::floor(q.x[p] + 0.5)), static_cast<Index>(std::floor(q.y[p] + 0.5)))];
+}
+
+/// Sums of a column, and what bounds the next step. Columns leave beyond the outer nodes, and where there is
+/// no ground.
 void count(StructuredBody& body, Index p, StructuredSums& sums) {
     const StructuredPoints& q = body.points;
     const double m = q.mass[p], speed2 = q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p];
@@ -180,19 +222,37 @@ void count(StructuredBody& body, Index p, StructuredSums& sums) {
         return;
     }
     const Vec2 momentum = m * Vec2(q.vx[p], q.vy[p]);
-    const bool inside = q.x[p] >= 1.0 && q.y[p] >= 1.0 &&
-                        q.x[p] <= static_cast<double>(body.grid.nx()) - 2.0 &&
-                        q.y[p] <= static_cast<double>(body.grid.ny()) - 2.0;
-    if (!inside) {
+    const bool inside = q.x[p] >= 0.0 && q.y[p] >= 0.0 &&
+                        q.x[p] <= static_cast<double>(body.grid.nx()) - 1.0 &&
+                        q.y[p] <= static_cast<double>(body.grid.ny()) - 1.0;
+    if (!inside || ground_below(body, p).exit > 0.0) {
         body.gone[static_cast<std::size_t>(p)] = 1;
         sums.left_mass += m, sums.left_momentum += momentum;
+        sums.left_energy += m * (0.5 * speed2 + body.gravity * (inside ? ground_below(body, p).elevation : 0.0));
         return;
     }
     sums.mass += m, sums.kinetic += 0.5 * m * speed2, sums.damaged += m * q.damage[p],
-        sums.momentum += momentum;
+        sums.momentum += momentum, sums.speeds += m * std::sqrt(speed2);
+    sums.stored += stored(body, p);
     sums.max_speed2 = std::max(sums.max_speed2, speed2);
     const double depth = q.damage[p] < 1.0 ? std::max(q.layer[p], q.depth[p]) : q.layer[p];
     sums.max_wave = std::max(sums.max_wave, std::sqrt(speed2) + std::sqrt(2.0 * q.pull[p] * depth));
+}
+
+template <class Law>
+void move_nodes_by(const Law& law, StructuredBody& body, double dt) {
+    const GridGeometry& g = body.grid.geometry();
+    for_each_work_tile(body.active, [&](Index n, Index tile) {
+        StructuredTally tally;
+        const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
+        for (Index j = j0; j < j0 + kTile; ++j)
+            for (Index i = i0; i < i0 + kTile; ++i) {
+                const Index k = body.grid.at(i, j);
+                body.moved[k] =
+                    body.nodes[k].m > 0.0 ? move(law, body, k, {g.x(i), g.y(j)}, dt, tally) : Moved{};
+            }
+        body.tallies[static_cast<std::size_t>(n)] = tally;
+    });
 }
 
 }  // namespace
@@ -226,16 +286,27 @@ void scatter(StructuredBody& body, double dt) {
 }
 
 void move_nodes(StructuredBody& body, double dt) {
-    const GridGeometry& g = body.grid.geometry();
+    std::visit([&](const auto& law) { move_nodes_by(law, body, dt); }, body.bed_law);
+}
+
+void look_nodes(StructuredBody& body) {
+    const double cell = body.grid.cell(), depth_of_mass = 1.0 / (body.density * cell * cell);
     for_each_work_tile(body.active, [&](Index n, Index tile) {
-        StructuredImpulses given;
-        const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
-        for (Index j = j0; j < j0 + kTile; ++j)
-            for (Index i = i0; i < i0 + kTile; ++i) {
-                const Index k = body.grid.at(i, j);
-                body.moved[k] = body.nodes[k].m > 0.0 ? move(body, k, {g.x(i), g.y(j)}, dt, given) : Moved{};
+        StructuredTally tally;
+        const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
+        for (Index j = 0; j < kTile; ++j)
+            for (Index k = first + j * body.grid.stride(); k < first + j * body.grid.stride() + kTile; ++k) {
+                const Node& node = body.nodes[k];
+                body.moved[k] = {};
+                if (!(node.m > 0.0)) continue;
+                const StructuredBody::Pull& pull = body.pull[k];
+                const double depth = node.m / pull.open * depth_of_mass;
+                const Vec2 v = Vec2(node.x, node.y) / node.m;
+                body.moved[k] = {v.x(), v.y(), pull.across, depth};
+                tally.kinetic += 0.5 * node.m * along_ground(pull, v, v);
+                tally.potential += node.m * body.gravity * (pull.elevation + 0.5 * depth);
             }
-        body.impulses[static_cast<std::size_t>(n)] = given;
+        body.tallies[static_cast<std::size_t>(n)] = tally;
     });
 }
 
@@ -245,6 +316,7 @@ void gather(StructuredBody& body, double dt) {
     for_each_tile(body.active, [&](Index n) {
         const Index end = body.active.begin[n + 1];
         StructuredSums sums;
+        Double4 worked = {};
         for (Index p = body.active.begin[n]; p < end; p += 4) {
             const int lanes = static_cast<int>(std::min<Index>(4, end - p));
             const Batch b = take_four(body, p, lanes);
@@ -254,9 +326,10 @@ void gather(StructuredBody& body, double dt) {
             store(&q.pull[p], b.pull, lanes), store(&q.layer[p], b.layer, lanes);
             store(&q.x[p], load(&q.x[p], lanes) + cells * b.vx, lanes);
             store(&q.y[p], load(&q.y[p], lanes) + cells * b.vy, lanes);
-            strain_four(body, b, p, lanes, dt);
+            worked += strain_four(body, b, p, lanes, dt);
             for (int lane = 0; lane < lanes; ++lane) count(body, p + lane, sums);
         }
+        sums.worked = sum(worked);
         body.sums[static_cast<std::size_t>(n)] = sums;
     });
 }

@@ -103,7 +103,7 @@ struct StructuredSlide {
             side(-fall.y(), fall.x());
         StructuredScene s;
         s.ground = terrain_ground([=](double, double) { return Vec2(-t * fall); });
-        s.bed_friction = std::tan(bed_deg * kDegree);
+        s.bed_law = bed::Coulomb{std::tan(bed_deg * kDegree)};
         s.grid = grid_over({-0.2, -0.2}, {2.0, 2.0}, cell);
         add_block(s, {{0, 0}, {1, 1}, 0.2, kUnbreakable, speed * fall, 0.0, setup.per_side});
         const StructuredSeeds seeds = s.points;
@@ -155,7 +155,7 @@ Measurement run_structured_stand(const Setup& setup) {
         s.material.young = 5e6;
         s.material.friction = 28.0 * kDegree;
         s.material.critical_strain = critical_strain(0.07, 0.0125, 0.3 / static_cast<double>(setup.cells));
-        s.bed_friction = std::tan(bed_deg * kDegree);
+        s.bed_law = bed::Coulomb{std::tan(bed_deg * kDegree)};
         s.grid = grid_over({-0.6, -0.6}, {0.9, 0.9}, 0.3 / static_cast<double>(setup.cells));
         add_block(s, {{0, 0}, {0.3, 0.25}, 0.1, cohesion, {0, 0}, 0.0, setup.per_side});
         return s;

@@ -22,7 +22,7 @@ StructuredScene field_block(double depth, double cohesion, double length, double
     s.material.young = 100e6;
     s.material.friction = 30.0 * kDegree;
     s.material.critical_strain = 0.1;  // on any cell: on a fan all of a block breaks, not one crack
-    s.bed_friction = std::tan(12.0 * kDegree);
+    s.bed_law = bed::Coulomb{std::tan(12.0 * kDegree)};
     s.grid = grid_over({-20.0, -150.0}, {length, 210.0}, cell);
     StructuredBlock block;
     block.high = {100.0, 60.0};
@@ -42,7 +42,7 @@ StructuredScene clay_flume(const Clay& clay, double cell, int per_side) {
     s.material.young = 1.5e6;
     s.material.friction = clay.friction_deg * kDegree;
     s.material.critical_strain = critical_strain(0.07, 0.0125, cell);
-    s.bed_friction = std::tan(27.0 * kDegree);
+    s.bed_law = bed::Coulomb{std::tan(27.0 * kDegree)};
     s.ground = flume_ground([](double x) { return (x < 0.0 ? 42.0 : 5.0) * kDegree; });
     s.cfl = 0.3;
     s.grid = grid_over({-0.4, 0.0}, {1.8, 0.5}, cell);

@@ -1,0 +1,133 @@
+// [material.structure] of a case: solids that hold together.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+class StructureReader {
+public:
+    StructureReader(const CaseFile& file, const Scene& scene, Problems& problems)
+        : case_(file), scene_(scene), problems_(problems) {}
+
+    std::optional<Structure> read() {
+        if (case_.word(key("law")) == "none") {
+            if (case_.flag("terrain.unrolled"))
+                problems_.add(case_.place("terrain.unrolled"), "found true with material.structure.law = \"none\"",
+                              "expected it with structured columns only", "remove it, or give the mass a structure");
+            return {};
+        }
+        Structure structure;
+        structure.cohesion = number("cohesion");
+        structure.share = number("fraction");
+        structure.cfl = number("cfl");
+        structure.unrolled = case_.flag("terrain.unrolled");
+        ColumnMaterial& m = structure.material;
+        m.young = number("young_modulus");
+        m.poisson = poisson(m.young);
+        m.friction = number("friction_angle_deg") * kDegree;
+        m.dilatancy = number("dilatancy_angle_deg") * kDegree;
+        m.yield = yield();
+        m.damage_by = damage_by();
+        m.critical_strain = number("critical_strain");
+        if (given("critical_length"))
+            m.critical_strain =
+                critical_strain(m.critical_strain, number("critical_length"), scene_.bed.geometry.cell);
+        if (m.damage_by == DamageBy::strain) m.onset = number("onset");
+        if (m.dilatancy > m.friction)
+            problems_.add(case_.place(key("dilatancy_angle_deg")),
+                          fmt::format("found {:.6g}", number("dilatancy_angle_deg")),
+                          fmt::format("expected at most friction_angle_deg = {:.6g}", number("friction_angle_deg")),
+                          "give a smaller angle");
+        refuse_others();
+        for (std::size_t n = 0; n < scene_.barriers.size(); ++n) require_box(n);
+        return structure;
+    }
+
+private:
+    static std::string key(const char* name) { return std::string("material.structure.") + name; }
+    bool given(const char* name) const { return case_.given(key(name)); }
+    double number(const char* name) const { return case_.number(key(name)); }
+
+    double poisson(double young) {
+        if (!given("bulk_modulus")) return number("poisson_ratio");
+        const double bulk = number("bulk_modulus");
+        if (young < 3.0 * bulk) return (3.0 * bulk - young) / (6.0 * bulk);
+        problems_.add(case_.place(key("bulk_modulus")),
+                      fmt::format("found {:.6g} Pa with young_modulus = {:.6g} Pa{}", bulk, young,
+                                  young >= 9.0 * bulk ? ", which no solid can have" : ": a negative Poisson ratio"),
+                      "expected more than a third of young_modulus", "give a larger bulk_modulus, or poisson_ratio");
+        return 0.3;
+    }
+
+    ColumnYield yield() const {
+        if (case_.word(key("law")) == "mohr_coulomb") return ColumnYield::hexagon;
+        return case_.word(key("cone")) == "plane_strain" ? ColumnYield::plane_strain : ColumnYield::compression;
+    }
+    DamageBy damage_by() const {
+        const std::string& word = case_.word(key("damage"));
+        return word == "extension" ? DamageBy::extension : word == "strain" ? DamageBy::strain : DamageBy::dilation;
+    }
+
+    /// What structured columns do not know of.
+    void refuse_others() {
+        const auto refuse = [&](const std::string& place, const std::string& found, const char* expected,
+                                const char* way_out) { problems_.add(case_.place(place), found, expected, way_out); };
+        const std::string with = fmt::format(" with material.structure.law = \"{}\"", case_.word(key("law")));
+        const auto word = [&](const char* name) { return "found \"" + case_.word(name) + "\"" + with; };
+        if (case_.word("material.rheology.law") != "none")
+            refuse("material.rheology.law", word("material.rheology.law"),
+                   "expected \"none\": the structure is what resists inside the mass", "remove one of them");
+        if (case_.given("terrain.curvature") && case_.word("terrain.curvature") != "none")
+            refuse("terrain.curvature", word("terrain.curvature"),
+                   "expected \"none\": a solid keeps its length on the map over a bend", "remove it");
+        if (scene_.terrain != TerrainModel::steep)
+            refuse("terrain.model", word("terrain.model"), "expected \"steep\"", "remove it");
+        if (case_.word("scheme.preset") != "default")
+            refuse("scheme.preset", word("scheme.preset"), "expected \"default\"", "remove it");
+        if (case_.count("stage") > 0)
+            problems_.add(case_.table_place("stage.0"), "found a stage" + with,
+                          "expected none: structured columns go from the start to the end", "remove it");
+    }
+
+    /// Obstacles are boxes along the axes; their height does not count.
+    void require_box(std::size_t n) {
+        const Barrier& barrier = scene_.barriers[n];
+        const std::string table = fmt::format("barrier.{}", n);
+        bool box = barrier.outline.parts.size() == 1 && barrier.outline.parts.front().rings.size() == 1;
+        if (box) {
+            const std::vector<Vec2>& ring = barrier.outline.parts.front().rings.front();
+            Vec2 low = ring.front(), high = ring.front();
+            for (const Vec2& corner : ring) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+            const double slack = 1e-6 * (high - low).maxCoeff();
+            const auto on = [&](double at, double a, double b) {
+                return std::abs(at - a) <= slack || std::abs(at - b) <= slack;
+            };
+            box = ring.size() == 4 && std::all_of(ring.begin(), ring.end(), [&](const Vec2& corner) {
+                      return on(corner.x(), low.x(), high.x()) && on(corner.y(), low.y(), high.y());
+                  });
+        }
+        if (!box)
+            problems_.add(case_.table_place(table), fmt::format("found barrier \"{}\" beside material.structure", barrier.name),
+                          "expected an outline that is one rectangle along x and y, the only barrier that structured columns know",
+                          "give such an outline, or raise the elevation model there");
+    }
+
+    const CaseFile& case_;
+    const Scene& scene_;
+    Problems& problems_;
+};
+
+}  // namespace
+
+std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems) {
+    return StructureReader(file, scene, problems).read();
+}
+
+}  // namespace frana

@@ -1,0 +1,178 @@
+// What a run of structured columns shows: fields of the columns, and of the nodes.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "grid/stencil.h"
+#include "stages/structured_run.h"
+
+namespace frana {
+namespace {
+
+/// The bed between the nodes, bilinear; beyond the outer nodes as it is there.
+double bed_at(const Raster& bed, double x, double y) {
+    const GridGeometry& g = bed.geometry;
+    const double u = std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1)),
+                 v = std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
+    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
+    const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
+    double z = 0.0;
+    for (Index dj = 0; dj < 2; ++dj)
+        for (Index di = 0; di < 2; ++di) {
+            const double here = bed.at(i + di, j + dj);
+            z += (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv) * (std::isfinite(here) ? here : 0.0);
+        }
+    return z;
+}
+
+/// What a column's nodes say of something, by its shape functions.
+template <class At>
+double from_nodes(const StructuredBody& body, Index p, At&& at) {
+    const Quadratic sx(body.points.x[p]), sy(body.points.y[p]);
+    double value = 0.0;
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) value += sx.w[i] * sy.w[j] * at(body.grid.at(sx.base + i, sy.base + j));
+    return value;
+}
+
+}  // namespace
+
+double* StructuredRun::add_field(std::vector<Field>& fields, const char* name, const char* unit, int components,
+                                 Index count) {
+    if (frame_used_ == frame_storage_.size()) frame_storage_.emplace_back();
+    std::vector<double>& storage = frame_storage_[frame_used_++];
+    storage.assign(static_cast<std::size_t>(count * components), 0.0);
+    fields.push_back({name, unit, components, storage.data(), count});
+    return storage.data();
+}
+
+Frame StructuredRun::frame() {
+    Frame frame;
+    frame_used_ = 0;
+    timed_("frame", [&] {
+        flow_.look();
+        book();
+        frame.grid = flow_.body().grid.geometry();
+        frame.status = status_;
+        particle_fields(frame);
+        node_fields(frame);
+        inner_fields(frame);
+    });
+    return frame;
+}
+
+void StructuredRun::particle_fields(Frame& frame) {
+    const StructuredBody& body = flow_.body();
+    const StructuredPoints& q = body.points;
+    const Index count = q.count();
+    const auto column = [&](const char* name, const char* unit, int components) {
+        return add_field(frame.particles, name, unit, components, count);
+    };
+    double *position = column("position", "m", 3), *depth = column("depth", "m", 1),
+           *thickness = column("thickness", "m", 1), *velocity = column("velocity", "m/s", 3),
+           *speed = column("speed", "m/s", 1), *elevation = column("elevation", "m", 1),
+           *surface = column("surface", "m", 1), *pressure = column("pressure", "Pa", 1),
+           *mass = column("mass", "kg", 1), *volume = column("volume", "m3", 1), *id = column("id", "1", 1),
+           *stress = column("stress", "Pa", 3), *effective = column("effective_stress", "Pa", 3), *damage = column("damage", "1", 1),
+           *cohesion = column("cohesion", "Pa", 1);
+#pragma omp parallel for schedule(static)
+    for (Index p = 0; p < count; ++p) {
+        const Vec2 x = flow_.position(p);
+        const double z = bed_at(bed_, x.x(), x.y()), h = q.layer[p];
+        const double bx = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_x; }),
+                     by = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_y; });
+        const double up = q.vx[p] * bx + q.vy[p] * by, steep = std::sqrt(1.0 + bx * bx + by * by);
+        const double holds = body.share * (1.0 - q.damage[p]);
+        position[3 * p] = x.x(), position[3 * p + 1] = x.y(), position[3 * p + 2] = z + h;
+        depth[p] = h, thickness[p] = h / steep;
+        velocity[3 * p] = q.vx[p], velocity[3 * p + 1] = q.vy[p], velocity[3 * p + 2] = up;
+        speed[p] = std::sqrt(q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p] + up * up);
+        elevation[p] = z, surface[p] = z + h;
+        pressure[p] = body.density * q.pull[p] * h;
+        mass[p] = q.mass[p], volume[p] = q.volume[p], id[p] = static_cast<double>(q.id[p]);
+        stress[3 * p] = holds * q.xx[p], stress[3 * p + 1] = holds * q.yy[p], stress[3 * p + 2] = holds * q.xy[p];
+        const Sym2 k = earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, h, q.pull[p], body.rankine);
+        const double push = 0.5 * (1.0 - holds) * pressure[p];
+        effective[3 * p] = stress[3 * p] - push * k.xx, effective[3 * p + 1] = stress[3 * p + 1] - push * k.yy,
+                      effective[3 * p + 2] = stress[3 * p + 2] - push * k.xy;
+        damage[p] = q.damage[p];
+        cohesion[p] = (1.0 - q.damage[p]) * q.cohesion[p];
+    }
+}
+
+void StructuredRun::node_fields(Frame& frame) {
+    const StructuredBody& body = flow_.body();
+    const GridGeometry& g = bed_.geometry;
+    const auto column = [&](const char* name, const char* unit, int components) {
+        return add_field(frame.nodes, name, unit, components, g.size());
+    };
+    double *elevation = column("elevation", "m", 1), *depth = column("depth", "m", 1),
+           *thickness = column("thickness", "m", 1), *surface = column("surface", "m", 1),
+           *velocity = column("velocity", "m/s", 3), *speed = column("speed", "m/s", 1),
+           *pressure = column("pressure", "Pa", 1), *peak_depth = column("peak_depth", "m", 1),
+           *peak_speed = column("peak_speed", "m/s", 1), *peak_pressure = column("peak_pressure", "Pa", 1),
+           *peak_dynamic = column("peak_dynamic_pressure", "Pa", 1), *arrival = column("arrival_time", "s", 1);
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const Index k = body.grid.at(i, j), n = j * g.nx + i;
+            elevation[n] = surface[n] = bed_.at(i, j);
+            const StructuredMap::Peak& peak = map_.peak(k);
+            peak_depth[n] = peak.depth, peak_speed[n] = peak.speed, peak_pressure[n] = peak.pressure;
+            peak_dynamic[n] = peak.dynamic_pressure;
+            arrival[n] = peak.depth > map_.footprint_depth() ? peak.arrival : -1.0;
+            if (!StructuredMap::touches(body, i, j)) continue;
+            const StructuredBody::Moved& node = body.moved[k];
+            const StructuredBody::Pull& ground = body.pull[k];
+            const double h = node.depth, up = node.vx * ground.slope_x + node.vy * ground.slope_y;
+            if (!(h > 0.0)) continue;
+            depth[n] = h, surface[n] += h;
+            thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
+            velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;
+            speed[n] = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
+            pressure[n] = body.density * node.pull * h;
+        }
+}
+
+/// Stresses, damage and cohesion on the nodes: means over the mass of what the columns show.
+void StructuredRun::inner_fields(Frame& frame) {
+    const StructuredBody& body = flow_.body();
+    const StructuredPoints& q = body.points;
+    const double *stress = frame.particle("stress")->data, *effective = frame.particle("effective_stress")->data,
+                 *damage = frame.particle("damage")->data, *cohesion = frame.particle("cohesion")->data;
+    if (!inner_) inner_ = LazyArray<Inner>(body.grid.size());
+    for_each_work_tile(body.active, [&](Index, Index tile) {
+        const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
+        for (Index j = 0; j < kTile; ++j) std::fill_n(&inner_[first + j * body.grid.stride()], kTile, Inner{});
+    });
+    for_each_tile_coloured(body.active, [&](Index n) {
+        for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
+            const Quadratic sx(q.x[p]), sy(q.y[p]);
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i) {
+                    Inner& node = inner_[body.grid.at(sx.base + i, sy.base + j)];
+                    const double m = sx.w[i] * sy.w[j] * q.mass[p];
+                    for (int c = 0; c < 3; ++c)
+                        node.stress[c] += m * stress[3 * p + c], node.effective[c] += m * effective[3 * p + c];
+                    node.damage += m * damage[p], node.cohesion += m * cohesion[p];
+                    node.mass += m;
+                }
+        }
+    });
+    const GridGeometry& g = bed_.geometry;
+    const auto column = [&](const char* name, const char* unit, int components) {
+        return add_field(frame.nodes, name, unit, components, g.size());
+    };
+    double *stress_to = column("stress", "Pa", 3), *effective_to = column("effective_stress", "Pa", 3),
+           *damage_to = column("damage", "1", 1), *cohesion_to = column("cohesion", "Pa", 1);
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const Inner& node = inner_[body.grid.at(i, j)];
+            const Index n = j * g.nx + i;
+            if (!StructuredMap::touches(body, i, j) || !(node.mass > 0.0)) continue;
+            for (int c = 0; c < 3; ++c)
+                stress_to[3 * n + c] = node.stress[c] / node.mass, effective_to[3 * n + c] = node.effective[c] / node.mass;
+            damage_to[n] = node.damage / node.mass, cohesion_to[n] = node.cohesion / node.mass;
+        }
+}
+
+}  // namespace frana

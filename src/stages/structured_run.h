@@ -1,0 +1,59 @@
+#pragma once
+// A run of solids that hold together (van den Bout et al. 2021): one model from the start to the end.
+#include <array>
+#include <optional>
+
+#include "scene/scene.h"
+#include "solver/simulation.h"
+#include "structured/breakage.h"
+#include "structured/structured_map.h"
+
+namespace frana {
+
+/// The scene of the columns: the bed's slope by central differences of its nodes, as far as there is ground;
+/// walls and barriers as obstacles.
+StructuredScene structured_scene(const Scene& scene);
+
+class StructuredRun final : public Simulation {
+public:
+    /// `scene` has a structure.
+    explicit StructuredRun(const Scene& scene, Start start = Start::placed);
+
+    void advance(double until) override;
+    const Status& status() const override { return status_; }
+    bool at_rest() const override;
+    /// "stress" is what the structure passes on, its undamaged share, "effective_stress" that and the earth pressure
+    /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it.
+    Frame frame() override;
+    Sample at(const Vec2& point) const override;
+    std::vector<std::string> remarks() const override;
+    std::optional<Breakage> breakage() const override;
+    std::vector<PhaseTime> timings() const override;
+    void keep(Archive& archive) override;
+
+    const StructuredFlow& flow() const { return flow_; }
+
+private:
+    void book();
+    void particle_fields(Frame& frame);
+    void node_fields(Frame& frame);
+    void inner_fields(Frame& frame);
+    double* add_field(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
+
+    Raster bed_;
+    StructuredFlow flow_;
+    StructuredMap map_;
+    Neighbours neighbours_;  ///< of the start
+    StepClock timed_;
+    Status status_;
+    double rest_fraction_, peak_mean_speed_ = 0.0;
+    /// Per node, sums of what columns show times their mass, and of mass.
+    struct Inner {
+        double stress[3], effective[3], damage, cohesion, mass;
+    };
+    LazyArray<Inner> inner_;
+    std::vector<std::vector<double>> frame_storage_;
+    std::size_t frame_used_ = 0;
+};
+
+}  // namespace frana

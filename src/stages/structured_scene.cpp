@@ -1,0 +1,109 @@
+// The scene of structured columns that a case describes.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "particles/bed_points.h"
+#include "stages/structured_run.h"
+
+namespace frana {
+namespace {
+
+/// The bed as columns feel it. Beyond the outer nodes it goes on as it is there.
+class Terrain {
+public:
+    Terrain(const Raster& bed, double gravity, bool unrolled) : bed_(bed), gravity_(gravity), unrolled_(unrolled) {}
+
+    GroundPull operator()(double x, double y) const {
+        const GridGeometry& g = bed_.geometry;
+        const auto place = [&](double at, double start, Index count) {
+            return std::clamp((at - start) / g.cell, 0.0, static_cast<double>(count - 1));
+        };
+        const double u = place(x, g.x0, g.nx), v = place(y, g.y0, g.ny);
+        const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
+        const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
+        Vec2 slope(0, 0);
+        GroundPull pull;
+        for (Index dj = 0; dj < 2; ++dj)
+            for (Index di = 0; di < 2; ++di) {
+                const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
+                if (w == 0.0) continue;
+                const double z = bed_.at(i + di, j + dj);
+                pull.exit = pull.exit || !std::isfinite(z);
+                pull.elevation += w * z, slope += w * slope_at(i + di, j + dj);
+            }
+        if (pull.exit) pull.elevation = 0.0, slope = Vec2(0, 0);
+        // Along the ground the slope is a sine, on the map a tangent.
+        const double drive = unrolled_ ? gravity_ : gravity_ / (1.0 + slope.squaredNorm());
+        pull.across = unrolled_ ? gravity_ * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) : drive;
+        pull.x = -drive * slope.x(), pull.y = -drive * slope.y();
+        if (!unrolled_) pull.slope_x = slope.x(), pull.slope_y = slope.y();
+        return pull;
+    }
+
+private:
+    /// Central differences; one-sided at the edge and beside what has no ground.
+    Vec2 slope_at(Index i, Index j) const {
+        const auto along = [&](Index di, Index dj) {
+            const auto known = [&](Index a, Index b) {
+                return a >= 0 && b >= 0 && a < bed_.geometry.nx && b < bed_.geometry.ny && std::isfinite(bed_.at(a, b));
+            };
+            const Index up = known(i + di, j + dj) ? 1 : 0, down = known(i - di, j - dj) ? 1 : 0;
+            if (up + down == 0) return 0.0;
+            return (bed_.at(i + up * di, j + up * dj) - bed_.at(i - down * di, j - down * dj)) /
+                   (static_cast<double>(up + down) * bed_.geometry.cell);
+        };
+        return {along(1, 0), along(0, 1)};
+    }
+
+    Raster bed_;
+    double gravity_;
+    bool unrolled_;
+};
+
+/// Walls along the outer nodes.
+void add_walls(const GridGeometry& g, std::vector<Obstacle>& obstacles) {
+    for (int side = 0; side < 4; ++side) {
+        Obstacle wall;
+        if (side == 0) wall.high.x() = g.x0;
+        if (side == 1) wall.low.x() = g.x_max();
+        if (side == 2) wall.high.y() = g.y0;
+        if (side == 3) wall.low.y() = g.y_max();
+        obstacles.push_back(wall);
+    }
+}
+
+/// The box of a barrier's outline, which the case's reader has found to be one.
+Obstacle box_of(const Barrier& barrier) {
+    Obstacle box;
+    const std::vector<Vec2>& ring = barrier.outline.parts.front().rings.front();
+    box.low = box.high = ring.front();
+    for (const Vec2& corner : ring) box.low = box.low.cwiseMin(corner), box.high = box.high.cwiseMax(corner);
+    box.friction = barrier.stuck ? Obstacle::kFar : barrier.friction;
+    return box;
+}
+
+}  // namespace
+
+StructuredScene structured_scene(const Scene& scene) {
+    expect(scene.structure.has_value(), "a structured run has a structure");
+    const Structure& of = *scene.structure;
+    StructuredScene s;
+    s.grid = scene.bed.geometry;
+    s.ground = Terrain(scene.bed, scene.gravity, scene.structure->unrolled);
+    s.density = scene.density;
+    s.material = of.material;
+    s.share = of.share;
+    s.gravity = scene.gravity;
+    s.bed_law = scene.bed_law;
+    s.cfl = of.cfl;
+    if (scene.sides == Sides::wall) add_walls(s.grid, s.obstacles);
+    for (const Barrier& barrier : scene.barriers) s.obstacles.push_back(box_of(barrier));
+    const Seeds& seeds = scene.particles;
+    for (std::size_t p = 0; p < seeds.x.size(); ++p)
+        s.points.add({seeds.x[p], seeds.y[p], seeds.vx[p], seeds.vy[p], seeds.volume[p] * scene.density,
+                      seeds.depth[p], of.cohesion});
+    return s;
+}
+
+}  // namespace frana

@@ -1,0 +1,62 @@
+// The state of structured columns between two steps, as it is kept and taken up again: the columns in their order
+// with the tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
+#include "base/error.h"
+#include "structured/structured_flow.h"
+
+namespace frana {
+namespace {
+
+UserError misfit(const char* what) {
+    return UserError(std::string("the kept state does not fit this case: ") + what + "; run without --resume");
+}
+
+void keep_points(Archive& archive, StructuredPoints& points) {
+    const Archive::Part part(archive, "points");
+    int n = 0;
+    points.each([&](Column& column) { archive.array("column_" + std::to_string(n++), column); });
+    archive.array("id", points.id);
+    points.each([&](Column& column) {
+        if (column.size() != points.id.size()) throw misfit("its columns differ in length");
+    });
+}
+
+void keep_status(Archive& archive, StructuredStatus& s) {
+    const Archive::Part part(archive, "status");
+    archive.number("step", s.step);
+    archive.number("points", s.points);
+    std::vector<double*> numbers = {&s.time,     &s.dt,        &s.mass,      &s.mass_left, &s.kinetic,
+                                    &s.damage,   &s.max_speed, &s.speeds,    &s.potential, &s.bed_kinetic,
+                                    &s.stored,   &s.friction,  &s.pushed,    &s.worked,    &s.energy_left};
+    StructuredImpulses& i = s.impulse;
+    for (Vec2* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &i.weight, &i.pressure, &i.friction, &i.obstacles})
+        for (int k = 0; k < 2; ++k) numbers.push_back(&(*v)[k]);
+    archive.numbers("sums", numbers);
+}
+
+}  // namespace
+
+void StructuredFlow::keep(Archive& archive) {
+    keep_points(archive, body_.points);
+    keep_status(archive, status_);
+    archive.numbers("bounds", {&wave_, &drift_});
+    Index grains = body_.grains ? 1 : 0;
+    archive.number("grains", grains);
+    archive.array("tile", body_.active.tile);
+    archive.array("begin", body_.active.begin);
+    timed_.keep(archive);
+    if (!archive.loading()) return;
+    body_.grains = grains != 0;
+    const ActiveTiles& active = body_.active;
+    bool sound = active.begin.size() == active.tile.size() + 1 && active.begin.front() == 0 &&
+                 active.begin.back() == body_.points.count();
+    for (std::size_t n = 0; sound && n < active.tile.size(); ++n)
+        sound = active.tile[n] >= 0 && active.tile[n] < body_.grid.tiles() && active.begin[n] <= active.begin[n + 1] &&
+                (n == 0 || active.tile[n - 1] < active.tile[n]);
+    if (!sound) throw misfit("its tiles are not those of the columns");
+    take_tiles();
+    const StructuredStatus kept = status_;
+    look();
+    status_ = kept;
+}
+
+}  // namespace frana

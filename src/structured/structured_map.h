@@ -1,0 +1,45 @@
+#pragma once
+// Structured solids seen from above: depth and velocity on the nodes, and what each node ever saw.
+#include "observe/archive.h"
+#include "structured/structured_flow.h"
+
+namespace frana {
+
+class StructuredMap {
+public:
+    /// What a node ever saw; the same quantities as of the depth-averaged model (solver/peaks.h).
+    struct Peak {
+        double depth, speed, pressure, dynamic_pressure;  ///< [m], [m/s], [Pa], [Pa]
+        double arrival;  ///< first time deeper than the footprint depth; valid where depth is [s]
+    };
+    struct Sums {
+        double max_depth = 0.0;     ///< [m]
+        double covered_area = 0.0;  ///< deeper than the footprint depth [m2]
+        double front = 0.0;         ///< farthest of these nodes from `centre` [m]
+    };
+
+    /// `centre` of the release [m], from which the front is measured.
+    StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth);
+
+    /// Takes what the nodes are now into the peaks; visits tiles near material only. Same bits for any number of
+    /// threads.
+    void note(const StructuredBody& body, double time);
+    const Sums& sums() const { return sums_; }
+    double footprint_depth() const { return footprint_depth_; }
+    const Peak& peak(Index node) const { return peaks_[node]; }
+    /// Whether the node is near material: elsewhere the body's nodes are of another time.
+    static bool touches(const StructuredBody& body, Index i, Index j);
+    /// Depth and velocity between the nodes, bilinear; beyond them the nearest. No elevation.
+    static void sample(const StructuredBody& body, const Vec2& point, double& depth, Vec2& velocity);
+    void keep(Archive& archive);
+
+private:
+    LazyArray<Peak> peaks_;
+    std::vector<Sums> of_tile_;
+    Sums sums_;
+    Index nx_, ny_, stride_;
+    Vec2 centre_;
+    double footprint_depth_;
+};
+
+}  // namespace frana

@@ -1,0 +1,91 @@
+// [material.structure]: from the case file to the scene, and what is refused before the first step.
+#include "base/error.h"
+#include "catch.h"
+#include "scene/build_scene.h"
+#include "slope_case.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+FakeGis gis() {
+    FakeGis files = slope_gis();
+    files.polygons["wall.geojson"] = rectangle(1030, 2040, 1035, 2090);
+    Polygons turned = files.polygons["wall.geojson"];
+    turned.parts.front().rings.front().front().x() -= 2.0;
+    files.polygons["askew.geojson"] = turned;
+    return files;
+}
+
+const std::string structure =
+    "[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 2e4\nfriction_angle_deg = 30\nyoung_modulus = 1e8\n";
+
+Scene scene_of(const std::string& rest, const std::string& terrain = "") {
+    return build_scene(CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n" + terrain +
+                                           "[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\n"
+                                           "end = 20\n" +
+                                           rest,
+                                       "slide/case.toml"),
+                       gis());
+}
+
+std::string problem_of(const std::string& rest, const std::string& terrain = "") {
+    return only_problem([&] { scene_of(rest, terrain); });
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("A structure's keys reach the scene", "[structured]") {
+    CHECK_FALSE(scene_of("").structure.has_value());
+    const Structure plain = scene_of(structure).structure.value();
+    CHECK(plain.cohesion == 2e4);
+    CHECK(plain.share == 1.0);
+    CHECK(plain.material.friction == Approx(std::acos(-1.0) / 6.0).epsilon(1e-15));
+    CHECK(plain.material.poisson == 0.3);
+    CHECK(plain.material.critical_strain == 0.1);
+    CHECK(plain.material.yield == ColumnYield::compression);
+    CHECK(plain.material.damage_by == DamageBy::dilation);
+    CHECK_FALSE(plain.unrolled);
+    // Cells of 5 m: half the strain of cells of 2.5 m opens a crack by the same way.
+    const Structure other = scene_of(structure +
+                                         "cone = \"plane_strain\"\nbulk_modulus = 1e8\nfraction = 0.8\n"
+                                         "dilatancy_angle_deg = 10\ndamage = \"strain\"\nonset = 0.02\n"
+                                         "critical_strain = 0.08\ncritical_length = 2.5\ncfl = 0.3\n",
+                                     "unrolled = true\n")
+                                .structure.value();
+    CHECK(other.material.critical_strain == Approx(0.04).epsilon(1e-15));
+    CHECK(other.material.poisson == Approx((3e8 - 1e8) / 6e8).epsilon(1e-15));
+    CHECK(other.material.yield == ColumnYield::plane_strain);
+    CHECK(other.material.damage_by == DamageBy::strain);
+    CHECK(other.material.onset == 0.02);
+    CHECK(other.share == 0.8);
+    CHECK(other.cfl == 0.3);
+    CHECK(other.unrolled);
+    std::string hexagon = structure;
+    hexagon.replace(hexagon.find("drucker_prager"), 14, "mohr_coulomb");
+    CHECK(scene_of(hexagon).structure->material.yield == ColumnYield::hexagon);
+}
+
+TEST_CASE("What does not fit a structure is refused in one sentence", "[structured]") {
+    CHECK(has(problem_of("[material.structure]\ncohesion = 2e4\n"),
+              "material.structure.cohesion: found, but material.structure.law = \"none\" does not use it"));
+    CHECK(has(problem_of(structure + "fraction = 1.2\n"), "material.structure.fraction: found 1.2"));
+    CHECK(has(problem_of(structure + "poisson_ratio = 0.5\n"), "material.structure.poisson_ratio: found 0.5"));
+    CHECK(has(problem_of(structure + "bulk_modulus = 1e7\n"), "which no solid can have"));
+    CHECK(has(problem_of(structure + "bulk_modulus = 3e7\n"), "a negative Poisson ratio"));
+    CHECK(has(problem_of(structure + "dilatancy_angle_deg = 31\n"), "expected at most friction_angle_deg = 30"));
+    CHECK(has(problem_of(structure + "onset = 0.1\n"), "material.structure.onset: found, but"));
+    CHECK(has(problem_of(structure + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = 1\n"),
+              "material.rheology.law: found \"newtonian\" with material.structure.law"));
+    CHECK(has(problem_of(structure, "curvature = \"full\"\n"), "terrain.curvature: found \"full\" with"));
+    CHECK(has(problem_of("", "unrolled = true\n"), "terrain.unrolled: found true"));
+    CHECK(has(problem_of(structure + "[[stage]]\nmodel = \"solid_flow\"\n"), "found a stage with"));
+    CHECK(has(problem_of(structure + "[[barrier]]\noutline = \"askew.geojson\"\nheight = 3\n"),
+              "expected an outline that is one rectangle along x and y"));
+    CHECK(scene_of(structure + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n").barriers.size() == 1);
+    CHECK(has(problem_of("[[insitu]]\nname = \"a\"\nkind = \"figure\"\nfield = \"damage\"\n"),
+              "in a case without structure"));
+}
