@@ -137,7 +137,7 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
 void add_states(CLI::App& app, StatesOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("states", "write the ParaView states of a run again, after it was moved");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
-    command->add_option("NAME", options.names, "states that must be there: overview, stress, profiles, survey, budgets");
+    command->add_option("NAME", options.names, "states that must be there: overview, stress, profiles, survey, impact, structure, budgets");
     command->callback([&] { action = [&] { return states_command(options); }; });
 }
 

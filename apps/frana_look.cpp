@@ -57,7 +57,7 @@ struct Seen {
     GridGeometry grid;
     double deepest = 0.0, thin = 0.0, last_time = 0.0, busy_time = 0.0, busiest = -1.0;
     Index busy_nodes = 0;  ///< with flow at busy_time
-    std::map<std::string, double> largest;  ///< of depth, speed, stress, effective_stress (size of any component)
+    std::map<std::string, double> largest;  ///< of depth, speed, cohesion, stress, effective_stress (size of any component)
     Extent extent;
 };
 
@@ -83,7 +83,7 @@ void see_extent(const LoadedFrame& frame, Seen& seen, bool first) {
 
 void see_values(const LoadedFrame& frame, Seen& seen) {
     const auto& depth = frame.nodes.at("depth");
-    for (const char* name : {"depth", "speed", "stress", "effective_stress"}) {
+    for (const char* name : {"depth", "speed", "stress", "effective_stress", "cohesion"}) {
         if (!frame.has(name)) continue;
         const auto& values = frame.nodes.at(name);
         const auto components = static_cast<std::size_t>(frame.components.at(name));
@@ -205,6 +205,9 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     if (state == "stress" && lacks.empty())
         lacks = lacks_arrays(seen, {"stress", "effective_stress"},
                              "give a [material.rheology], leave output.fields at \"all\", and run again");
+    if (state == "structure" && lacks.empty())
+        lacks = lacks_arrays(seen, {"damage", "cohesion", "stress"},
+                             "give a [material.structure], leave output.fields at \"all\", and run again");
     if (state == "profiles" && lacks.empty() && !fs::exists(run_dir / "profiles.pvd"))
         return "there is no profiles.pvd; give a [[profile]] and run again";
     if (state == "survey" && lacks.empty() && !fs::exists(run_dir / "survey_areas.vtp"))
@@ -284,7 +287,7 @@ int free_corner(const fs::path& run_dir) {
 }  // namespace
 
 const std::vector<std::string>& state_names() {
-    static const std::vector<std::string> names = {"overview", "stress", "profiles", "survey", "impact", "budgets"};
+    static const std::vector<std::string> names = {"overview", "stress", "profiles", "survey", "impact", "structure", "budgets"};
     return names;
 }
 
@@ -310,6 +313,7 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     for (const char* name : {"depth", "speed"}) look["range"][name] = {0.0, round_up(seen.largest[name])};
     const double stress = round_up(seen.largest["stress"]);
     look["range"]["stress"] = {-stress, stress};
+    if (look["states"]["structure"] == "") look["range"]["cohesion"] = {0.0, round_up(seen.largest["cohesion"])};
     look["range"]["effective_stress"] = {-round_up(seen.largest["effective_stress"]), 0.0};
     // Some 400 crosses on the flow, since a narrow one has no room for wide distances; but they must be large enough to
     // see when all that was ever covered is in view.

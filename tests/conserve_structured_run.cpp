@@ -119,7 +119,14 @@ TEST_CASE("Frames of structured columns have finite fields, of stress, damage an
     const Field *damage = frame.particle("damage"), *cohesion = frame.particle("cohesion"),
                 *on_nodes = frame.node("damage"), *depth = frame.node("depth");
     REQUIRE((damage && cohesion && on_nodes && depth));
-    double most = 0.0, volume = 0.0;
+    const Field *stress = frame.particle("stress"), *effective = frame.particle("effective_stress"),
+                *peak = frame.node("peak_depth");
+    double most = 0.0, volume = 0.0, highest = 0.0;
+    for (Index p = 0; p < damage->count; ++p)
+        if (damage->data[p] == 1.0) {  // grains push and hold nothing
+            CHECK(stress->data[3 * p] == 0.0);
+            CHECK(effective->data[3 * p] < 0.0);
+        }
     for (Index p = 0; p < damage->count; ++p) {
         CHECK(cohesion->data[p] == Approx(600.0 * (1.0 - damage->data[p])).margin(1e-9));
         most = std::max(most, damage->data[p]);
@@ -127,6 +134,8 @@ TEST_CASE("Frames of structured columns have finite fields, of stress, damage an
     CHECK(most > 0.5);
     CHECK(*std::max_element(on_nodes->data, on_nodes->data + on_nodes->count) > 0.3);
     for (Index n = 0; n < depth->count; ++n) volume += depth->data[n] * 0.25;
+    for (Index n = 0; n < peak->count; ++n) highest = std::max(highest, peak->data[n]);
+    CHECK(highest > 0.75);  // 0.8 m at the start, less now that it has spread
     CHECK(volume * scene.density == Approx(run.status().mass).epsilon(1e-12));
     const Sample middle = run.at({frame.particle("position")->data[0], frame.particle("position")->data[1]});
     CHECK(middle.depth > 0.0);

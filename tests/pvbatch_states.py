@@ -1,8 +1,8 @@
 """Loads the states of a run in ParaView, and holds each against the readable Python state that it was made from.
 
-Usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [impact]
+Usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [STATE]
 
-Checks for every state of RUN_DIR/states but impact, or for that one alone, that every reader reads a file of this run,
+Checks for every state of RUN_DIR/states but those of special runs (impact, structure), or for one alone, that every reader reads a file of this run,
 and every array of the state is there: loaded as it is (plain), or with RUN_DIR as data directory (searched); so are the
 files of the templates in PVSTATES_DIR.
 full: both, and the picture equals that of the Python state, and is not blank (flow and areas are in colour, on grey
@@ -16,14 +16,16 @@ from paraview import servermanager, simple
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 SIZE = [900, 600]
+ALONE = {"impact", "structure"}  # states of runs of their own
 COLOURED = {  # least share of coloured pixels, of those in the middle; a tenth of what the test's run shows
-    "overview": 0.02, "stress": 0.02, "profiles": 0.01, "survey": 0.02, "impact": 0.02,
+    "overview": 0.02, "stress": 0.02, "profiles": 0.01, "survey": 0.02, "impact": 0.02, "structure": 0.01,
     "budgets": 0.0005}
 ARRAYS = {  # what the state's own sources must have made, besides what its readers read
     "overview": ["depth", "surface", "speed"],
     "stress": ["sigma_xx", "sigma_yy", "sigma_xy", "effective_xx", "effective_yy", "principal_1", "principal_2"],
     "profiles": ["distance", "elevation", "initial_surface", "surface", "depth"],
     "impact": ["model", "speed", "pressure", "barrier", "hillshade"],
+    "structure": ["damage", "cohesion", "tension", "hillshade"],
     "survey": ["agreement", "extent", "hillshade"],
     "budgets": ["t", "kinetic", "dissipated", "potential_from_start", "max_speed", "front", "mass_error"]}
 
@@ -132,10 +134,10 @@ def check_picture(state, run_dir, pictures):
     check(coloured(found) > COLOURED[state], "%s: the picture is blank" % state)
 
 
-def main(states_dir, run_dir, pictures, mode, impact):
+def main(states_dir, run_dir, pictures, mode, alone):
     sys.path.insert(0, states_dir)
     os.makedirs(pictures, exist_ok=True)
-    for state in ["impact"] if impact else [name for name in ARRAYS if name != "impact"]:
+    for state in alone or [name for name in ARRAYS if name not in ALONE]:
         file = os.path.join(run_dir, "states", state + ".pvsm")
         check(os.path.exists(file), "%s: not there" % file)
         if os.path.exists(file):
@@ -149,11 +151,11 @@ def main(states_dir, run_dir, pictures, mode, impact):
 
 
 if __name__ == "__main__":
-    impact = sys.argv[5:] == ["impact"]
-    if len(sys.argv) != 5 + impact or sys.argv[4] not in ("full", "plain", "searched"):
-        print("usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [impact]",
+    alone = sys.argv[5:]
+    if len(sys.argv) < 5 or len(alone) > 1 or not set(alone) <= ALONE or sys.argv[4] not in ("full", "plain", "searched"):
+        print("usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [STATE]",
               file=sys.stderr)
         sys.exit(2)
-    status = main(*[os.path.abspath(argument) for argument in sys.argv[1:4]], sys.argv[4], impact)
+    status = main(*[os.path.abspath(argument) for argument in sys.argv[1:4]], sys.argv[4], alone)
     sys.stdout.flush()
     os._exit(status)  # pvbatch's own way out loses the status

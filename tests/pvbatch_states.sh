@@ -21,7 +21,7 @@ if [ -z "${DISPLAY:-}" ]; then
     export DISPLAY=":$(cat "$work/display")"
 fi
 
-look() {  # RUN_DIR mode what [impact]
+look() {  # RUN_DIR mode what [STATE]
     for _ in 1 2 3; do  # a loaded machine may refuse the connection to its X server
         look_once "$1" "$2" ${4:-}
         grep -q "bad X server connection" "$work/states.log" || break
@@ -37,7 +37,7 @@ look_once() {
     status=$?
 }
 
-rm -rf "$work/run" "$work/impact" "$work/elsewhere"
+rm -rf "$work/run" "$work/impact" "$work/structure" "$work/elsewhere"
 "$frana" run "$source/tests/states_case/case.toml" --out "$work/run" --threads 1 --quiet || exit 1
 look "$work/run" full "as the run left them"
 
@@ -45,6 +45,10 @@ look "$work/run" full "as the run left them"
 "$frana" run "$source/tests/states_case/impact.toml" --out "$work/impact" --threads 1 --quiet || exit 1
 look "$work/impact" full "the impact" impact
 look "$work/impact" searched "the impact, with the folder given to ParaView" impact
+
+# Solids that hold together: another one.
+"$frana" run "$source/tests/states_case/structure.toml" --out "$work/structure" --threads 1 --quiet || exit 1
+look "$work/structure" full "the structure" structure
 
 moved="$work/elsewhere/a run & more"
 mkdir -p "$work/elsewhere" && mv "$work/run" "$moved" || exit 1
