@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "solid_maker.h"
 #include "verify/structured_cases.h"
+#include "verify/water.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -88,4 +89,19 @@ TEST_CASE("Warm steps of a structured solid that breaks allocate nothing", "[spe
     for (int step = 0; step < 20; ++step) flow.advance(1e9);
     CHECK(allocations == before);
     CHECK(flow.status().damage > damage);
+}
+
+TEST_CASE("Warm steps of free water allocate nothing, wherever it spreads", "[speed][water]") {
+    WaterScene scene;
+    scene.grid = verify::cells_over(120, 100, 1.0);
+    scene.bed = [](double x, double y) { return -0.1 * x + 0.2 * std::sin(y); };
+    scene.start = [](double x, double y) { return WaterState{x < 30.0 && y < 40.0 ? 1.0 : 0.0}; };
+    scene.friction = {WaterFriction::Law::manning, 0.03};
+    WaterFlow flow(scene);
+    for (int step = 0; step < 5; ++step) flow.advance(1e9);
+    const long before = allocations;
+    const std::size_t tiles = flow.body().work.size();
+    for (int step = 0; step < 60; ++step) flow.advance(1e9);
+    CHECK(allocations == before);
+    CHECK(flow.body().work.size() > tiles);
 }

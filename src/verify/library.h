@@ -33,5 +33,6 @@ std::vector<Problem> column_problems();      // problems_column.cpp
 std::vector<Problem> structured_problems();  // problems_structured.cpp
 std::vector<Problem> structured_case_problems();  // problems_structured_cases.cpp
 std::vector<Problem> mud_problems();         // problems_mud.cpp
+std::vector<Problem> water_problems();       // problems_water.cpp
 
 }  // namespace frana::verify

@@ -1,0 +1,64 @@
+#pragma once
+// Shallow water at a face between two cells: limited slopes, hydrostatic reconstruction (Audusse et al. 2004,
+// doi:10.1137/S1064827503431090), and the flux of Harten, Lax and van Leer with the contact wave (HLLC, Toro
+// 2001). Functions are for one face (Real is double) or for four side by side (Double4).
+#include "base/simd.h"
+
+namespace frana {
+
+/// The change of a quantity over a cell, from its changes to the cell before (a) and the cell behind (b):
+/// min(theta |a|, |a + b| / 2, theta |b|), or 0 at an extremum. theta = 1 is minmod, 2 is van Leer's MC;
+/// values at faces stay between those of the neighbours for theta <= 2. MC it is by default: against minmod it takes
+/// a third off the depth's error in Stoker's dam break and in the round one, and two thirds off in the bowls (100
+/// cells: radial 3.8e-2 to 1.2e-2), and the total variation of Stoker's dam break stays within 1 % of the exact one.
+template <class Real>
+[[gnu::always_inline]] inline Real limited(Real a, Real b, double theta) {
+    const Real none = {}, mean = 0.5 * (a + b);
+    const Real bound = min(min(theta * abs(a), theta * abs(b)), abs(mean));
+    return select(a * b > 0.0, select(mean > 0.0, bound, -bound), none);
+}
+
+/// Water at one side of a face.
+template <class Real>
+struct FaceSide {
+    Real depth;          ///< >= 0 [m]
+    Real ground;         ///< [m]
+    Real along, across;  ///< velocity through the face and along it [m/s]
+};
+
+/// What goes through a face, per metre of it and over the density.
+template <class Real>
+struct FaceFlux {
+    Real mass;           ///< [m^2/s]
+    Real along, across;  ///< momentum that the mass carries [m^3/s^2]
+    Real low, high;      ///< all other momentum through the face, less the pressure g h^2 / 2 of the water that
+                         ///< stands there after reconstruction, on either side [m^3/s^2]
+};
+
+/// The flux between two sides under gravity g [m/s^2]. Water sees the higher ground of both sides: what stands
+/// level does not flow, to the last bit, and a dry side higher than the water is a wall. Speeds of the waves
+/// are Davis's, beside dry ground those of a dam break.
+template <class Real>
+[[gnu::always_inline]] inline FaceFlux<Real> face_flux(const FaceSide<Real>& l, const FaceSide<Real>& r, Real g) {
+    const Real none = {};
+    const Real hl = max(none, l.depth - max(none, r.ground - l.ground)),
+               hr = max(none, r.depth - max(none, l.ground - r.ground));
+    const Real cl = sqrt(g * hl), cr = sqrt(g * hr), ul = l.along, ur = r.along;
+    const auto dry_l = hl <= 0.0, dry_r = hr <= 0.0;
+    const Real slow = min(none, select(dry_l, ur - 2.0 * cr, select(dry_r, ul - cl, min(ul - cl, ur - cr))));
+    const Real fast = max(none, select(dry_r, ul + 2.0 * cl, select(dry_l, ur + cr, max(ul + cl, ur + cr))));
+    const Real per = select((fast > slow) & ((hl > 0.0) | (hr > 0.0)), 1.0 / (fast - slow), none);
+    const Real ml = hl * ul, mr = hr * ur;
+    FaceFlux<Real> f;
+    f.mass = per * (fast * ml - slow * mr + slow * fast * (hr - hl));
+    const auto forward = f.mass > 0.0;
+    f.along = f.mass * select(forward, ul, ur);
+    f.across = f.mass * select(forward, l.across, r.across);
+    const Real spread = per * (fast * ml * ul - slow * mr * ur + slow * fast * (mr - ml)) - f.along;
+    const Real jump = 0.5 * g * per * (hr - hl) * (hr + hl);
+    f.low = spread - slow * jump;
+    f.high = spread - fast * jump;
+    return f;
+}
+
+}  // namespace frana

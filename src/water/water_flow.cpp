@@ -1,0 +1,222 @@
+#include "water/water_flow.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/flush_denormals.h"
+
+namespace frana {
+namespace {
+
+constexpr Index kBeyond = 2;  ///< nodes beyond the grid whose bed is known, for slopes at its sides
+
+/// The bed at nodes and a little beyond, where it goes on as it ends; the lowest elevation in whole metres is
+/// the datum, so that what is taken off costs no digits.
+double learn_bed(const WaterScene& scene, const TileGrid& grid, LazyArray<double>& bed) {
+    const GridGeometry& g = grid.geometry();
+    double lowest = scene.bed(g.x0, g.y0);
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) lowest = std::min(lowest, bed[grid.at(i, j)] = scene.bed(g.x(i), g.y(j)));
+    expect(std::isfinite(lowest), "water has a bed at every node");
+    const double datum = std::floor(lowest);
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) bed[grid.at(i, j)] -= datum;
+    const auto go_on = [&](Index last, Index step) {
+        for (Index n = 1; n <= kBeyond; ++n)
+            bed[last + n * step] = bed[last] + static_cast<double>(n) * (bed[last] - bed[last - step]);
+    };
+    for (Index j = 0; j < g.ny; ++j) go_on(grid.at(0, j), -1), go_on(grid.at(g.nx - 1, j), 1);
+    for (Index i = 0; i < g.nx; ++i) go_on(grid.at(i, 0), -grid.stride()), go_on(grid.at(i, g.ny - 1), grid.stride());
+    return datum;
+}
+
+/// A function at the nodes; nothing without one.
+LazyArray<double> at_nodes(const WaterScene::Function& f, const TileGrid& grid) {
+    if (!f) return {};
+    LazyArray<double> values(grid.size());
+    const GridGeometry& g = grid.geometry();
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const double value = f(g.x(i), g.y(j));
+            expect(value >= 0.0, "depths and rates of water are not negative");
+            values[grid.at(i, j)] = value;
+        }
+    return values;
+}
+
+}  // namespace
+
+void WaterLedger::add(const WaterLedger& o, double share) {
+    rained += share * o.rained, infiltrated += share * o.infiltrated, left += share * o.left;
+    momentum_left += share * o.momentum_left, momentum_infiltrated += share * o.momentum_infiltrated;
+    ground += share * o.ground, walls += share * o.walls, friction += share * o.friction;
+}
+
+WaterBody::WaterBody(const WaterScene& scene)
+    : grid(scene.grid),
+      now(grid.size()),
+      half(grid.size()),
+      driven_x(grid.size()),
+      driven_y(grid.size()),
+      bed(grid.size()),
+      confined(grid.size()),
+      pull(grid.size()),
+      rain(at_nodes(scene.rain, grid)),
+      infiltration(at_nodes(scene.infiltration, grid)),
+      sides(scene.sides),
+      friction(scene.friction),
+      gravity(scene.gravity),
+      theta(scene.theta),
+      film(scene.film),
+      datum(learn_bed(scene, grid, bed)),
+      steep(scene.steep) {
+    if (scene.confined) confined = at_nodes(scene.confined, grid);
+    const double per = 0.5 / grid.cell();
+    for (Index j = 0; j < grid.ny(); ++j)
+        for (Index i = 0; i < grid.nx(); ++i) {
+            const Index k = grid.at(i, j);
+            const Vec2 slope = per * Vec2(bed[k + 1] - bed[k - 1], bed[k + grid.stride()] - bed[k - grid.stride()]);
+            pull[k] = steep ? gravity / (1.0 + slope.squaredNorm()) : gravity;
+        }
+}
+
+WaterFlow::WaterFlow(const WaterScene& scene)
+    : body_(scene),
+      wanted_(static_cast<std::size_t>(body_.grid.tiles())),
+      rained_(static_cast<std::size_t>(body_.grid.tiles())),
+      cfl_(scene.cfl) {
+    expect(scene.grid.nx >= 3 && scene.grid.ny >= 3, "water needs three nodes each way");
+    expect(scene.theta >= 1.0 && scene.theta <= 2.0 && scene.cfl > 0.0 && scene.cfl < 0.5 && scene.film > 0.0,
+           "numbers of the water scheme are in range");
+    flush_denormals_on_all_threads();
+    body_.work.reserve(wanted_.size()), body_.sums.reserve(wanted_.size()), next_.reserve(wanted_.size());
+    place(scene);
+}
+
+/// Water at the start, and the first list of tiles: those of the grid, less the dry ones.
+void WaterFlow::place(const WaterScene& scene) {
+    const TileGrid& grid = body_.grid;
+    const GridGeometry& g = grid.geometry();
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const Index k = grid.at(i, j);
+            if (body_.rain && body_.rain[k] > 0.0)
+                rained_[static_cast<std::size_t>((j / kTile + 1) * grid.tiles_x() + i / kTile + 1)] = 1;
+            if (!scene.start) continue;
+            const WaterState s = scene.start(g.x(i), g.y(j));
+            expect(s.depth >= 0.0, "water at the start has no negative depth");
+            const double moves = s.depth > body_.film ? s.depth : 0.0;
+            body_.now.h[k] = s.depth, body_.now.qx[k] = moves * s.u, body_.now.qy[k] = moves * s.v;
+        }
+    for (Index tj = 0; tj * kTile < g.ny; ++tj)
+        for (Index ti = 0; ti * kTile < g.nx; ++ti) body_.work.push_back((tj + 1) * grid.tiles_x() + ti + 1);
+    body_.sums.resize(body_.work.size());
+    for (std::size_t n = 0; n < body_.work.size(); ++n) body_.sums[n] = tile_sums(body_, body_.work[n]);
+    book(0.0);
+    status_.step = 0;
+    status_.volume_given = status_.volume, status_.momentum_given = status_.momentum;
+}
+
+/// The next step's tiles: those that hold water or get rain, and their neighbours near which there is water.
+/// Tiles that are dropped are dry; what a stage left in them goes.
+void WaterFlow::list_tiles() {
+    const TileGrid& grid = body_.grid;
+    const auto inside = [&](Index tile) {
+        const Index i = grid.tile_i(tile), j = grid.tile_j(tile);
+        return i >= 0 && j >= 0 && i < grid.nx() && j < grid.ny();
+    };
+    next_.clear();
+    const auto want = [&](Index tile) {
+        std::uint8_t& wanted = wanted_[static_cast<std::size_t>(tile)];
+        if (wanted || !inside(tile)) return;
+        wanted = 1;
+        next_.push_back(tile);
+    };
+    for (std::size_t n = 0; n < body_.work.size(); ++n) {
+        if (rained_[static_cast<std::size_t>(body_.work[n])]) want(body_.work[n]);
+        for (Index bit = 0; bit < 9; ++bit)
+            if (body_.sums[n].near >> bit & 1) want(body_.work[n] + (bit / 3 - 1) * grid.tiles_x() + bit % 3 - 1);
+    }
+    for (const Index tile : body_.work) {
+        if (wanted_[static_cast<std::size_t>(tile)]) continue;
+        const Index first = grid.at(grid.tile_i(tile), grid.tile_j(tile));
+        for (Index j = 0; j < kTile; ++j)
+            for (LazyArray<double>* field : {&body_.half.h, &body_.half.qx, &body_.half.qy})
+                std::fill_n(&(*field)[first + j * grid.stride()], kTile, 0.0);
+    }
+    std::sort(next_.begin(), next_.end());
+    for (const Index tile : next_) wanted_[static_cast<std::size_t>(tile)] = 0;
+    body_.work.swap(next_);
+    body_.sums.resize(body_.work.size());
+}
+
+/// What runs at the signal's speed, and falls by half of g at most (g_z times the slope), passes part of a cell.
+double WaterFlow::step_length(double until) const {
+    const double left = until - status_.time;
+    if (body_.work.empty()) return left;
+    const double reach = cfl_ * body_.grid.cell();
+    const double dt = 2.0 * reach / (signal_ + std::sqrt(signal_ * signal_ + body_.gravity * reach));
+    return dt < left ? std::min(dt, 0.5 * left + 0.5 * dt) : left;
+}
+
+void WaterFlow::advance(double until) {
+    expect(until > status_.time, "a step goes forward");
+    const double dt = step_length(until);
+    timed_("first stage", [&] { first_stage(body_, dt); });
+    timed_("second stage", [&] { second_stage(body_, dt); });
+    timed_("book", [&] { book(dt); });
+    if (status_.time + dt >= until)
+        status_.time = until;
+    else
+        status_.time += dt;
+}
+
+/// Sums of the tiles, in their order, and the next step's tiles.
+void WaterFlow::book(double dt) {
+    WaterSums all;
+    for (const WaterSums& tile : body_.sums) {
+        all.volume += tile.volume, all.momentum += tile.momentum, all.kinetic += tile.kinetic;
+        all.max_speed2 = std::max(all.max_speed2, tile.max_speed2), all.signal = std::max(all.signal, tile.signal);
+        all.ledger.add(tile.ledger);
+        if (tile.bad >= 0) all.bad = tile.bad;
+    }
+    if (all.bad >= 0)
+        throw NumericsError(fmt::format("free water, step {}, t = {:.6g} s, dt = {:.3g} s: node ({}, {}) has numbers "
+                                        "that are not finite, or a negative depth; a smaller cfl may help",
+                                        status_.step, status_.time, dt,
+                                        all.bad % body_.grid.stride() - kTile, all.bad / body_.grid.stride() - kTile));
+    ++status_.step;
+    status_.dt = dt;
+    status_.volume = all.volume, status_.momentum = all.momentum, status_.kinetic = all.kinetic;
+    status_.max_speed = std::sqrt(all.max_speed2);
+    status_.ledger.add(all.ledger);
+    signal_ = all.signal;
+    list_tiles();
+}
+
+WaterState WaterFlow::at(Index i, Index j) const {
+    const Index k = body_.grid.at(i, j);
+    const double h = body_.now.h[k], per = h > body_.film ? 1.0 / h : 0.0;
+    return {h, per * body_.now.qx[k], per * body_.now.qy[k]};
+}
+
+double WaterFlow::surface(Index i, Index j) const {
+    const Index k = body_.grid.at(i, j);
+    return body_.datum + body_.bed[k] + body_.confined[k] + body_.now.h[k];
+}
+
+double WaterFlow::volume_residual() const {
+    const WaterLedger& l = status_.ledger;
+    return status_.volume + l.left + l.infiltrated - l.rained - status_.volume_given;
+}
+
+Vec2 WaterFlow::momentum_residual() const {
+    const WaterLedger& l = status_.ledger;
+    return status_.momentum + l.momentum_left + l.momentum_infiltrated - status_.momentum_given - l.ground - l.walls -
+           l.friction;
+}
+
+}  // namespace frana

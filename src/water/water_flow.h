@@ -1,0 +1,141 @@
+#pragma once
+// Free water on the grid of the columns: the shallow-water equations over bed and confined mass, by a finite
+// volume scheme of second order that keeps lakes at rest and depths positive. One cell around each node.
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "grid/tile_grid.h"
+#include "observe/frame.h"
+#include "solver/step_clock.h"
+#include "water/water_friction.h"
+
+namespace frana {
+
+/// What a side of the grid does: stops the water, or lets it go; none comes in.
+enum class WaterSide { wall, open };
+
+/// Depth [m] and velocity on the map [m/s] at the start, means over a cell.
+struct WaterState {
+    double depth = 0.0, u = 0.0, v = 0.0;
+};
+
+struct WaterScene {
+    using Function = std::function<double(double x, double y)>;
+    GridGeometry grid;                                             ///< at least 3 nodes each way
+    Function bed = [](double, double) { return 0.0; };             ///< elevation [m]
+    Function confined = {};                                        ///< depth of confined mass, none without [m]
+    std::function<WaterState(double x, double y)> start = {};      ///< dry without
+    Function rain = {};                                            ///< [m/s]; none without
+    Function infiltration = {};                                    ///< what the ground takes at most [m/s]
+    std::array<WaterSide, 4> sides{};                              ///< at low x, high x, low y, high y
+    WaterFriction friction;
+    double gravity = 9.81;  ///< [m/s^2]
+    /// Gravity across the ground is g / (1 + |grad b|^2), as for solids (structured/ground.h), so that thin
+    /// water slides down a steep plane as a block does; else g, which are the shallow-water equations as they
+    /// are printed. Both keep lakes at rest: each cell's slope of the surface is multiplied by its own value.
+    bool steep = true;
+    double theta = 2.0;    ///< of the limiter, 1 (minmod) to 2 (MC: of the smaller errors, face_flux.h)
+    double cfl = 0.45;    ///< part of a cell that waves may pass in a step, below 1/2 [1]
+    double film = 1e-6;   ///< water as shallow as this stays where it is [m]
+};
+
+/// Sums over density since the start, or of one step: volumes [m^3], momentum [m^4/s].
+struct WaterLedger {
+    double rained = 0.0, infiltrated = 0.0, left = 0.0;
+    Vec2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out
+    Vec2 ground{0, 0};    ///< push of bed and confined mass
+    Vec2 walls{0, 0};     ///< push of walls, and of the water beyond open sides
+    Vec2 friction{0, 0};  ///< at the bed, and what films lose that stop
+    void add(const WaterLedger& o, double share = 1.0);
+};
+
+/// After a step; all over the density.
+struct WaterStatus {
+    Index step = 0;
+    double time = 0.0, dt = 0.0;                 ///< [s]
+    double volume = 0.0, volume_given = 0.0;     ///< present, at the start [m^3]
+    Vec2 momentum{0, 0}, momentum_given{0, 0};   ///< present, at the start [m^4/s]
+    WaterLedger ledger;
+    double kinetic = 0.0;    ///< sum of h v^2 / 2 [m^5/s^2]
+    double max_speed = 0.0;  ///< [m/s]
+};
+
+/// Sums of a step's loops, tile by tile.
+struct WaterSums {
+    WaterLedger ledger;
+    double volume = 0.0, kinetic = 0.0, max_speed2 = 0.0, signal = 0.0;
+    Vec2 momentum{0, 0};
+    std::uint16_t near = 0;  ///< bit 3 (dj + 1) + di + 1: water is near that neighbour; bit 4: there is some here
+    Index bad = -1;         ///< a node whose numbers are not finite
+};
+
+/// Depth and discharge, one number a node.
+struct WaterFields {
+    explicit WaterFields(Index count) : h(count), qx(count), qy(count) {}
+    LazyArray<double> h;       ///< [m]
+    LazyArray<double> qx, qy;  ///< [m^2/s]
+};
+
+/// All that the kernels share.
+struct WaterBody {
+    explicit WaterBody(const WaterScene& scene);
+    TileGrid grid;
+    WaterFields now, half;      ///< the state; after the first stage of a step
+    LazyArray<double> driven_x, driven_y;  ///< discharge after the first stage, before friction [m^2/s]
+    LazyArray<double> bed;      ///< elevation above `datum` [m], two nodes beyond the grid as well
+    LazyArray<double> confined; ///< depth of confined mass [m]: may be changed between steps
+    LazyArray<double> pull;     ///< gravity across the ground [m/s^2]
+    LazyArray<double> rain, infiltration;  ///< [m/s]; empty without
+    std::vector<Index> work;               ///< tiles that hold water, be it a film, or are within its reach
+    std::vector<WaterSums> sums;           ///< of the step, per tile of the list
+    std::array<WaterSide, 4> sides;
+    WaterFriction friction;
+    double gravity, theta, film;
+    double datum;  ///< lets water high above the sea keep its digits [m]
+    bool steep;
+};
+
+// The loops of a step (water_kernel.cpp).
+void first_stage(WaterBody& body, double dt);
+/// The second stage, its mean with the start, rain, infiltration, friction, and sums.
+void second_stage(WaterBody& body, double dt);
+/// Sums of the state as it is.
+WaterSums tile_sums(const WaterBody& body, Index tile);
+
+/// Water and its time loop.
+class WaterFlow {
+public:
+    explicit WaterFlow(const WaterScene& scene);
+
+    /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
+    void advance(double until);
+    const WaterStatus& status() const { return status_; }
+    const WaterBody& body() const { return body_; }
+    /// Depth of confined mass at a node, from the next step on [m]
+    void confine(Index i, Index j, double depth) { body_.confined[body_.grid.at(i, j)] = depth; }
+    /// State of the cell around a node; elevation of its surface [m]
+    WaterState at(Index i, Index j) const;
+    double surface(Index i, Index j) const;
+    std::vector<PhaseTime> timings() const { return timed_.times(); }
+    /// Present + left + infiltrated - rained - given [m^3], and momentum the same way [m^4/s]: round-off
+    double volume_residual() const;
+    Vec2 momentum_residual() const;
+
+private:
+    void place(const WaterScene& scene);
+    void list_tiles();
+    double step_length(double until) const;
+    void book(double dt);
+
+    WaterBody body_;
+    StepClock timed_;
+    WaterStatus status_;
+    std::vector<std::uint8_t> wanted_;  ///< per tile: on the next list
+    std::vector<std::uint8_t> rained_;  ///< per tile: rain may fall on it
+    std::vector<Index> next_;
+    double cfl_;
+    double signal_ = 0.0;  ///< largest speed of water and waves [m/s]
+};
+
+}  // namespace frana

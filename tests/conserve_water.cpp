@@ -1,0 +1,256 @@
+// Free water: volume and momentum, the same bits on any number of threads and wherever tiles lie; dry ground
+// costs nothing.
+#include <fmt/core.h>
+#include <omp.h>
+
+#include <cmath>
+
+#include "catch.h"
+#include "verify/library.h"
+#include "verify/water.h"
+
+using namespace frana;
+
+namespace {
+
+double rough(double x, double y) { return 0.3 * std::sin(1.7 * x) * std::cos(2.3 * y) + 0.1 * std::sin(5.1 * x + 3.0 * y); }
+
+/// A wave runs down a rough slope of 70 x 45 cells, in the rain, into the ground and out of two sides.
+WaterScene down_a_slope() {
+    WaterScene s;
+    s.grid = verify::cells_over(70, 45, 0.25);
+    s.bed = [](double x, double y) { return 100.0 - 0.4 * x + rough(x, y); };
+    s.confined = [](double x, double y) { return x > 8.0 && y < 4.0 ? 0.3 : 0.0; };
+    s.start = [](double x, double y) { return WaterState{x < 5.0 ? 0.8 : 0.0, 1.0, y > 5.0 ? 0.5 : -0.5}; };
+    s.rain = [](double x, double) { return x > 5.0 ? 1e-3 : 0.0; };
+    s.infiltration = [](double, double y) { return y < 3.0 ? 4e-3 : 0.0; };
+    s.sides = {WaterSide::wall, WaterSide::open, WaterSide::wall, WaterSide::open};
+    s.friction = {WaterFriction::Law::manning, 0.03};
+    return s;
+}
+
+std::vector<double> bits_of(const WaterFlow& flow) {
+    std::vector<double> bits;
+    for (Index j = 0; j < flow.body().grid.ny(); ++j)
+        for (Index i = 0; i < flow.body().grid.nx(); ++i) {
+            const WaterState s = flow.at(i, j);
+            for (const double number : {s.depth, s.u, s.v}) bits.push_back(number);
+        }
+    return bits;
+}
+
+/// A heap of water 8 cells wide that is let go on flat ground.
+WaterScene heap_at(Index i0, Index j0) {
+    WaterScene s;
+    s.grid = verify::cells_over(160, 160, 1.0);
+    s.start = [i0, j0](double x, double y) {
+        const double i = x - 0.5 - static_cast<double>(i0), j = y - 0.5 - static_cast<double>(j0);
+        return WaterState{i >= 0 && i < 8 && j >= 0 && j < 8 ? 1.0 + 0.1 * i + 0.03 * j : 0.0};
+    };
+    return s;
+}
+
+}  // namespace
+
+TEST_CASE("Water keeps its volume, and its momentum is what it was given, to round-off", "[water][conserve]") {
+    WaterFlow flow(down_a_slope());
+    double speed = 0.0;
+    for (int step = 0; step < 500; ++step) {
+        flow.advance(100.0);
+        speed = std::max(speed, flow.status().max_speed);
+    }
+    const WaterStatus& now = flow.status();
+    const WaterLedger& l = now.ledger;
+    const double given = now.volume_given;
+    CHECK(l.left > 0.1 * given);
+    CHECK(l.infiltrated > 0.001 * given);
+    CHECK(l.rained > 0.001 * given);
+    CHECK(std::abs(flow.volume_residual()) < 1e-13 * given);
+    const double scale = l.ground.norm() + l.walls.norm() + l.friction.norm();
+    CHECK(l.friction.norm() > 0.1 * scale);
+    CHECK(l.momentum_left.x() > 0.1 * scale);
+    CHECK(l.momentum_infiltrated.norm() > 1e-4 * scale);
+    CHECK(flow.momentum_residual().norm() < 1e-12 * scale);
+    CHECK(speed < 15.0);  // 7 m of fall are 11.7 m/s
+}
+
+TEST_CASE("Level ground gives water no momentum, walls take what there is", "[water][conserve]") {
+    WaterScene s;
+    s.grid = verify::cells_over(40, 20, 0.5);
+    s.start = [](double x, double y) { return WaterState{x < 8.0 ? 1.5 : 0.2, 1.0, y < 5.0 ? -0.7 : 0.0}; };
+    WaterFlow flow(s);
+    while (flow.status().time < 4.0) flow.advance(4.0);
+    const double given = flow.status().momentum_given.norm();
+    CHECK(flow.status().ledger.ground.norm() < 1e-13 * given);
+    CHECK(flow.status().ledger.friction.norm() == 0.0);
+    CHECK((flow.status().momentum - flow.status().momentum_given - flow.status().ledger.walls).norm() < 1e-13 * given);
+    CHECK(flow.status().ledger.walls.norm() > 0.1 * given);
+    CHECK(flow.status().ledger.left == 0.0);
+    CHECK(std::abs(flow.volume_residual()) < 1e-14 * flow.status().volume_given);
+}
+
+TEST_CASE("What runs out faster than waves leaves undisturbed", "[water][conserve]") {
+    const double depth = 0.4, speed = 4.0, slope = 0.2;
+    for (const int axis : {0, 1})
+        for (const double sign : {1.0, -1.0}) {
+            CAPTURE(axis, sign);
+            WaterScene s;
+            s.grid = verify::cells_over(axis == 0 ? 160 : 3, axis == 0 ? 3 : 160, 0.5);  // the far wall's wave stays away
+            s.bed = [=](double x, double y) { return -sign * slope * (axis == 0 ? x : y); };
+            s.start = [=](double, double) {
+                return WaterState{depth, axis == 0 ? sign * speed : 0.0, axis == 1 ? sign * speed : 0.0};
+            };
+            s.sides[static_cast<std::size_t>(2 * axis + (sign > 0.0 ? 1 : 0))] = WaterSide::open;
+            WaterFlow flow(s);
+            const double end = 2.0, pull = 9.81 / (1.0 + slope * slope) * slope;
+            while (flow.status().time < end) flow.advance(end);
+            const double way = speed * end + 0.5 * pull * end * end;
+            CHECK(flow.status().ledger.left == Approx(depth * way * 1.5).epsilon(1e-12));
+            const Index last = sign > 0.0 ? 159 : 0;
+            const WaterState at_side = axis == 0 ? flow.at(last, 1) : flow.at(1, last);
+            CHECK(at_side.depth == Approx(depth).epsilon(1e-12));
+            CHECK(std::hypot(at_side.u, at_side.v) == Approx(speed + pull * end).epsilon(1e-12));
+        }
+}
+
+TEST_CASE("Water has the same bits for any number of threads", "[water][conserve]") {
+    const int threads = omp_get_max_threads();
+    std::vector<double> first;
+    for (const int count : {1, 2, 4}) {
+        omp_set_num_threads(count);
+        WaterFlow flow(down_a_slope());
+        for (int step = 0; step < 60; ++step) flow.advance(100.0);
+        CHECK(static_cast<Index>(flow.body().work.size()) >= kTilesForThreads);
+        std::vector<double> bits = bits_of(flow);
+        const WaterStatus& now = flow.status();
+        for (const double sum : {now.time, now.volume, now.momentum.x(), now.kinetic, now.ledger.left, now.ledger.ground.y()})
+            bits.push_back(sum);
+        if (count == 1) first = bits;
+        CHECK(bits == first);
+    }
+    omp_set_num_threads(threads);
+}
+
+TEST_CASE("It does not matter where the borders of tiles are, and only tiles near water are visited", "[water][conserve]") {
+    const Index places[][2] = {{80, 80}, {81, 87}, {75, 70}};
+    std::vector<double> first;
+    for (const auto& [i0, j0] : places) {
+        WaterFlow flow(heap_at(i0, j0));
+        CHECK(flow.body().work.size() <= 9);
+        for (int step = 0; step < 40; ++step) flow.advance(100.0);
+        std::vector<double> bits;
+        for (Index j = -30; j < 38; ++j)
+            for (Index i = -30; i < 38; ++i) {
+                const WaterState s = flow.at(i0 + i, j0 + j);
+                for (const double number : {s.depth, s.u, s.v}) bits.push_back(number);
+            }
+        if (first.empty()) first = bits;
+        CHECK(bits == first);
+        CHECK(flow.body().work.size() < 60);
+        CHECK(std::abs(flow.volume_residual()) < 1e-13 * flow.status().volume_given);
+    }
+}
+
+TEST_CASE("Tiles that dry up are dropped, and water comes back to them as to dry ground", "[water][conserve]") {
+    // It swings along a valley whose sides soak up what it leaves there.
+    WaterScene s;
+    s.grid = verify::cells_over(110, 3, 1.0);
+    s.bed = [](double x, double) { return 0.01 * (x - 55.0) * (x - 55.0); };
+    s.start = [](double x, double) { return WaterState{x < 14.0 ? 3.0 : 0.0}; };
+    s.infiltration = [](double x, double) { return std::abs(x - 55.0) > 20.0 ? 2e-3 : 0.0; };
+    WaterFlow flow(s);
+    s.rain = [](double, double) { return 3e-308; };  // all tiles are always visited; a step's rain rounds to none
+    WaterFlow everywhere(s);
+    const Index first = flow.body().grid.tiles_x() + 1;
+    int dropped = 0, back = 0;
+    while (flow.status().time < 40.0) {
+        const bool there = flow.body().work.front() == first;
+        flow.advance(40.0), everywhere.advance(40.0);
+        const bool still = flow.body().work.front() == first;
+        dropped += there && !still, back += still && !there;
+    }
+    CHECK(everywhere.body().work.size() == 7);
+    CHECK((dropped > 0 && back > 0));
+    CHECK(bits_of(flow) == bits_of(everywhere));
+    CHECK(std::abs(flow.volume_residual()) < 1e-13 * flow.status().volume_given);
+}
+
+TEST_CASE("Ground without water costs nothing", "[water][conserve]") {
+    WaterScene s;
+    s.grid = verify::cells_over(500, 400, 1.0);
+    WaterFlow flow(s);
+    CHECK(flow.body().work.empty());
+    flow.advance(50.0);
+    CHECK((flow.status().time == 50.0 && flow.status().step == 1));
+    CHECK((flow.status().volume == 0.0 && flow.volume_residual() == 0.0));
+}
+
+TEST_CASE("Thin water on rugged ground is never taken below nothing", "[water][conserve]") {
+    WaterScene s;
+    s.grid = verify::cells_over(48, 48, 0.5);
+    s.bed = [](double x, double y) { return 2.0 * std::sin(7.0 * x) * std::sin(5.0 * y) - 0.5 * x; };
+    s.start = [](double x, double y) { return WaterState{0.02 + 0.02 * std::sin(3.0 * x) * std::sin(11.0 * y)}; };
+    s.sides[1] = WaterSide::open;
+    s.cfl = 0.49;
+    WaterFlow flow(s);
+    while (flow.status().time < 3.0) flow.advance(3.0);  // a negative depth throws
+    CHECK(std::abs(flow.volume_residual()) < 1e-13 * flow.status().volume_given);
+    CHECK(flow.status().max_speed < 20.0);
+}
+
+TEST_CASE("A lake high in the mountains rests as one at the sea, and rests when what lies under it swells",
+          "[water][conserve]") {
+    WaterScene s;
+    s.grid = verify::cells_over(30, 20, 0.5);
+    s.bed = [](double x, double y) { return 3017.3 + rough(x, y); };
+    s.confined = [](double x, double) { return x > 7.0 ? 0.2 : 0.0; };
+    s.start = [&s](double x, double y) { return WaterState{std::max(0.0, 3018.0 - s.bed(x, y) - s.confined(x, y))}; };
+    WaterFlow flow(s);
+    for (int step = 0; step < 100; ++step) flow.advance(1e3);
+    CHECK(flow.status().max_speed < 1e-12);  // 3018 m have 5e-13 m of round-off, and sqrt(g/h) of that are 1e-12 m/s
+    const double before = flow.surface(10, 10);
+    for (Index j = 0; j < 20; ++j)
+        for (Index i = 0; i < 30; ++i) flow.confine(i, j, 0.25 + (flow.body().confined[flow.body().grid.at(i, j)]));
+    for (int step = 0; step < 100; ++step) flow.advance(1e3);
+    CHECK(flow.status().max_speed < 1e-12);
+    CHECK(flow.surface(10, 10) == Approx(before + 0.25).margin(1e-12));
+    flow.confine(10, 10, 0.5);  // at one place only: it runs off there
+    flow.advance(1e3);
+    CHECK(flow.status().max_speed > 0.1);
+}
+
+TEST_CASE("Water turns with its scene: x and y are alike", "[water][conserve]") {
+    WaterScene s = down_a_slope(), t = s;
+    s.rain = s.infiltration = t.rain = t.infiltration = {};
+    std::swap(t.grid.nx, t.grid.ny);
+    t.bed = [s](double x, double y) { return s.bed(y, x); };
+    t.confined = [s](double x, double y) { return s.confined(y, x); };
+    t.start = [s](double x, double y) {
+        const WaterState w = s.start(y, x);
+        return WaterState{w.depth, w.v, w.u};
+    };
+    t.sides = {s.sides[2], s.sides[3], s.sides[0], s.sides[1]};
+    WaterFlow a(s), b(t);
+    for (int step = 0; step < 40; ++step) a.advance(100.0), b.advance(100.0);
+    double worst = 0.0;
+    for (Index j = 0; j < 45; ++j)
+        for (Index i = 0; i < 70; ++i) {
+            const WaterState p = a.at(i, j), q = b.at(j, i);
+            worst = std::max({worst, std::abs(p.depth - q.depth), p.depth * std::abs(p.u - q.v), p.depth * std::abs(p.v - q.u)});
+        }
+    CHECK(worst < 1e-10);  // round-off, grown by 40 steps over a rough bed
+    CHECK(a.status().ledger.left == Approx(b.status().ledger.left).epsilon(1e-9));
+}
+
+TEST_CASE("What a step of water costs beside the depth-averaged flow's", "[.cost]") {
+    omp_set_num_threads(1);
+    verify::Setup setup;
+    setup.cells = 160;
+    const verify::Measurement flow = verify::find_problem("radial_dam")->run(setup);
+    const double column = 1e9 * flow.wall_seconds / static_cast<double>(flow.particles * flow.steps);
+    const verify::Measurement water = verify::find_problem("water_thacker_r")->run(setup);
+    const double cell = 1e9 * water.wall_seconds / static_cast<double>(water.particles * water.steps);
+    fmt::print("depth-averaged flow: {:.0f} ns a column and step; free water: {:.0f} ns a wet cell and step, {:.2f} of it\n",
+               column, cell, cell / column);
+    CHECK(cell > 0.0);
+}
