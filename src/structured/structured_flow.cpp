@@ -50,12 +50,13 @@ StructuredBody::StructuredBody(const StructuredScene& scene)
 StructuredFlow::StructuredFlow(const StructuredScene& scene)
     : body_(scene), ground_(scene.ground), cfl_(scene.cfl), sound_(body_.law.sound_speed(scene.density)) {
     flush_denormals_on_all_threads();
-    place(scene.points);
+    place(scene);
     sort();
     look();
 }
 
-void StructuredFlow::place(const StructuredSeeds& seeds) {
+void StructuredFlow::place(const StructuredScene& scene) {
+    const StructuredSeeds& seeds = scene.points;
     const GridGeometry& g = body_.grid.geometry();
     require_inside(seeds, g);
     StructuredPoints& q = body_.points;
@@ -72,6 +73,8 @@ void StructuredFlow::place(const StructuredSeeds& seeds) {
         q.damage[p] = seeds.damage[n], q.cohesion[p] = seeds.cohesion[n];
         q.pull[p] = ground_(seeds.x[n], seeds.y[n]).across;
         q.zz[p] = -0.5 * body_.density * q.pull[p] * q.depth[p];
+        q.confined[p] = scene.confined * q.volume[p], q.solids[p] = q.volume[p] - q.confined[p];
+        q.released[p] = 0.0;
         q.id[p] = p;
         const Vec2 v(q.vx[p], q.vy[p]);
         status_.mass += q.mass[p];
@@ -100,6 +103,13 @@ void StructuredFlow::sort() {
     order_.permute(fields_);
     drift_ = 0.0;
     take_tiles();
+}
+
+void StructuredFlow::meet(const FreeWater& water) {
+    body_.water = water;
+    if (!body_.bound) body_.bound = LazyArray<StructuredBody::Bound>(body_.grid.size());
+    look();
+    if (status_.step == 0) press(body_);
 }
 
 /// What follows from the tiles that hold columns.
@@ -174,7 +184,7 @@ void StructuredFlow::book(double dt) {
         all.speeds += tile.speeds, all.stored += tile.stored, all.worked += tile.worked;
         all.momentum += tile.momentum, all.left_mass += tile.left_mass,
             all.left_momentum += tile.left_momentum;
-        all.left_energy += tile.left_energy;
+        all.left_energy += tile.left_energy, all.released += tile.released;
         if (tile.bad >= 0) all.bad = tile.bad;
     }
     for (const StructuredTally& tile : body_.tallies) {
@@ -196,6 +206,7 @@ void StructuredFlow::book(double dt) {
     status_.max_speed = std::sqrt(all.max_speed2);
     wave_ = all.max_wave;
     if (all.damaged > 0.0) body_.grains = true;
+    status_.released += all.released;
     status_.mass_left += all.left_mass, status_.momentum_left += all.left_momentum;
     drift_ += dt * status_.max_speed / body_.grid.cell();
     if (all.left_mass > 0.0 || drift_ > kDriftLimit - 1.0) sort();

@@ -2,6 +2,7 @@
 // Structured solids on the ground: depth-averaged columns that are elastic, yield and break into grains, by
 // an explicit material point method with quadratic B-splines (TPIC). Dry, one material.
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "law/bed_law.h"
@@ -10,6 +11,7 @@
 #include "solver/columns.h"
 #include "solver/step_clock.h"
 #include "structured/earth_pressure.h"
+#include "water/free_water.h"
 #include "structured/ground.h"
 #include "structured/obstacle.h"
 #include "structured/structured_points.h"
@@ -43,6 +45,7 @@ struct StructuredScene {
     double share = 1.0;         ///< of the solids that have structure, undamaged [1]
     double gravity = 9.81;      ///< [m/s^2]
     BedLaw bed_law;
+    double confined = 0.0;      ///< share of the volume that is water within the structure [1]
     double cfl = 0.4;           ///< fraction of a cell that sound and flow may pass in a step [1]
     std::vector<Obstacle> obstacles;
     StructuredSeeds points;
@@ -50,14 +53,15 @@ struct StructuredScene {
 
 /// Impulses on the material since the start [kg m/s].
 struct StructuredImpulses {
-    Vec2 weight{0, 0};    ///< gravity along the plane, with the ground's push
+    Vec2 weight{0, 0};    ///< gravity along the plane, with the ground's push and that of free water's pressure
     Vec2 pressure{0, 0};  ///< of grains, against the ground and by the form that is not quite in balance
     Vec2 friction{0, 0};  ///< at the bed
     Vec2 obstacles{0, 0};
+    Vec2 water{0, 0};  ///< drag of free water, less what was released into it
     void add(const StructuredImpulses& o) {
-        weight += o.weight, pressure += o.pressure, friction += o.friction, obstacles += o.obstacles;
+        weight += o.weight, pressure += o.pressure, friction += o.friction, obstacles += o.obstacles, water += o.water;
     }
-    Vec2 sum() const { return weight + pressure + friction + obstacles; }
+    Vec2 sum() const { return weight + pressure + friction + obstacles + water; }
 };
 
 /// What the nodes of a tile have in a step: impulses, and energies along the bed [J].
@@ -73,6 +77,7 @@ struct StructuredStatus {
     double time = 0.0, dt = 0.0;  ///< [s]
     Index points = 0;
     double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
+    double released = 0.0;               ///< water given to the nodes since the start [m^3]
     Vec2 momentum{0, 0}, momentum_left{0, 0},
         momentum_given{0, 0};  ///< present, carried out, at the start [kg m/s]
     StructuredImpulses impulse;
@@ -92,7 +97,7 @@ struct StructuredSums {
     double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0;
     double speeds = 0.0, stored = 0.0, worked = 0.0;
     Vec2 momentum{0, 0};
-    double left_mass = 0.0, left_energy = 0.0;
+    double left_mass = 0.0, left_energy = 0.0, released = 0.0;
     Vec2 left_momentum{0, 0};
     Index bad = -1;  ///< a point whose numbers are not finite
 };
@@ -122,6 +127,12 @@ struct StructuredBody {
     LazyArray<Push> push;
     LazyArray<Moved> moved;
     LazyArray<Pull> pull;
+    /// What columns are made of, beside free water only [m^3].
+    struct Bound {
+        double volume, released, solids, structured;
+    };
+    LazyArray<Bound> bound;
+    std::optional<FreeWater> water;
     std::vector<std::uint8_t> gone;            ///< per point: left the grid in this step
     std::vector<StructuredSums> sums;          ///< of the step, per particle tile
     std::vector<StructuredTally> tallies;      ///< of the step, per tile of the work list
@@ -139,6 +150,8 @@ void move_nodes(StructuredBody& body, double dt);
 void gather(StructuredBody& body, double dt);
 /// The nodes as the columns are now, without a step: `moved`, and the energies of `tallies`.
 void look_nodes(StructuredBody& body);
+/// Columns without stress but for the weight that the nodes of look_nodes() leave them.
+void press(StructuredBody& body);
 
 /// A body of columns, and its time loop.
 class StructuredFlow {
@@ -147,6 +160,9 @@ public:
 
     /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
     void advance(double until);
+    /// From now on the columns exchange momentum with free water at their nodes, and what breaks releases its own.
+    /// Before the first step.
+    void meet(const FreeWater& water);
     /// Brings nodes, and energies of the status, to the columns' present places; changes no column.
     void look();
     const StructuredStatus& status() const { return status_; }
@@ -160,7 +176,7 @@ public:
     void keep(Archive& archive);
 
 private:
-    void place(const StructuredSeeds& seeds);
+    void place(const StructuredScene& scene);
     void sort();
     void take_tiles();
     void learn_ground();

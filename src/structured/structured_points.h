@@ -13,7 +13,7 @@ struct StructuredPoints {
     Column vx, vy;                 ///< velocity [m/s]
     Column cxx, cxy, cyx, cyy;     ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
     Column mass;                   ///< [kg]
-    Column volume;                 ///< constant [m^3]
+    Column volume;                 ///< of grains, confined and released water [m^3]
     Column depth;                  ///< of the column by itself, by the area that it was deformed to [m]
     Column xx, yy, zz, xy;         ///< stress of the solid, tension positive [Pa]
     Column damage;                 ///< 0 whole, 1 grains
@@ -21,6 +21,9 @@ struct StructuredPoints {
     Column cohesion;               ///< undamaged [Pa]
     Column pull;                   ///< gravity across the ground where it stands [m/s^2]
     Column layer;                  ///< depth of all that lies at the nodes around [m]
+    Column solids;                 ///< volume of grains, constant [m^3]
+    Column confined;               ///< volume of water in what is whole of the structure [m^3]
+    Column released;               ///< what the last step set free and the next gives to the nodes [m^3]
     std::vector<std::int64_t> id;  ///< constant through sorting
 
     Index count() const { return static_cast<Index>(x.size()); }
@@ -29,7 +32,8 @@ struct StructuredPoints {
     template <class Visit>
     void each(Visit&& visit) {
         for (Column* column : {&x,     &y,  &vx, &vy, &cxx, &cxy,    &cyx,    &cyy,      &mass, &volume,
-                               &depth, &xx, &yy, &zz, &xy,  &damage, &strain, &cohesion, &pull, &layer})
+                               &depth, &xx, &yy, &zz, &xy,  &damage, &strain, &cohesion, &pull, &layer,
+                               &solids, &confined, &released})
             visit(*column);
     }
     void resize(Index count) {

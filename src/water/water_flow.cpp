@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/error.h"
 #include "base/flush_denormals.h"
@@ -50,6 +51,7 @@ LazyArray<double> at_nodes(const WaterScene::Function& f, const TileGrid& grid) 
 }  // namespace
 
 void WaterLedger::add(const WaterLedger& o, double share) {
+    released += share * o.released, columns += share * o.columns;
     rained += share * o.rained, infiltrated += share * o.infiltrated, left += share * o.left;
     momentum_left += share * o.momentum_left, momentum_infiltrated += share * o.momentum_infiltrated;
     ground += share * o.ground, walls += share * o.walls, friction += share * o.friction;
@@ -174,8 +176,8 @@ void WaterFlow::advance(double until) {
         status_.time += dt;
 }
 
-/// Sums of the tiles, in their order, and the next step's tiles.
-void WaterFlow::book(double dt) {
+/// Sums of the tiles, in their order.
+WaterSums WaterFlow::summed(double dt) const {
     WaterSums all;
     for (const WaterSums& tile : body_.sums) {
         all.volume += tile.volume, all.momentum += tile.momentum, all.kinetic += tile.kinetic;
@@ -188,13 +190,43 @@ void WaterFlow::book(double dt) {
                                         "that are not finite, or a negative depth; a smaller cfl may help",
                                         status_.step, status_.time, dt,
                                         all.bad % body_.grid.stride() - kTile, all.bad / body_.grid.stride() - kTile));
+    return all;
+}
+
+/// The sums of a step.
+void WaterFlow::book(double dt) {
+    const WaterSums all = summed(dt);
     ++status_.step;
     status_.dt = dt;
+    status_.ledger.add(all.ledger);
+    take(all);
+}
+
+/// The state that the sums tell, and the next step's tiles.
+void WaterFlow::take(const WaterSums& all) {
     status_.volume = all.volume, status_.momentum = all.momentum, status_.kinetic = all.kinetic;
     status_.max_speed = std::sqrt(all.max_speed2);
-    status_.ledger.add(all.ledger);
     signal_ = all.signal;
     list_tiles();
+}
+
+void WaterFlow::take_changes(const std::vector<Index>& tiles) {
+    const TileGrid& grid = body_.grid;
+    next_.clear();
+    std::set_union(body_.work.begin(), body_.work.end(), tiles.begin(), tiles.end(), std::back_inserter(next_));
+    const auto outside = [&](Index tile) {
+        const Index i = grid.tile_i(tile), j = grid.tile_j(tile);
+        return i < 0 || j < 0 || i >= grid.nx() || j >= grid.ny();
+    };
+    next_.erase(std::remove_if(next_.begin(), next_.end(), outside), next_.end());
+    body_.work.swap(next_);
+    body_.sums.resize(body_.work.size());
+    const double volume = status_.volume;
+    const Vec2 momentum = status_.momentum;
+    for (std::size_t n = 0; n < body_.work.size(); ++n) body_.sums[n] = tile_sums(body_, body_.work[n]);
+    take(summed(0.0));
+    status_.ledger.released += status_.volume - volume;
+    status_.ledger.columns += status_.momentum - momentum;
 }
 
 WaterState WaterFlow::at(Index i, Index j) const {
@@ -210,13 +242,13 @@ double WaterFlow::surface(Index i, Index j) const {
 
 double WaterFlow::volume_residual() const {
     const WaterLedger& l = status_.ledger;
-    return status_.volume + l.left + l.infiltrated - l.rained - status_.volume_given;
+    return status_.volume + l.left + l.infiltrated - l.rained - l.released - status_.volume_given;
 }
 
 Vec2 WaterFlow::momentum_residual() const {
     const WaterLedger& l = status_.ledger;
     return status_.momentum + l.momentum_left + l.momentum_infiltrated - status_.momentum_given - l.ground - l.walls -
-           l.friction;
+           l.friction - l.columns;
 }
 
 }  // namespace frana

@@ -8,6 +8,7 @@
 #include "grid/tile_grid.h"
 #include "observe/frame.h"
 #include "solver/step_clock.h"
+#include "water/free_water.h"
 #include "water/water_friction.h"
 
 namespace frana {
@@ -44,6 +45,8 @@ struct WaterScene {
 struct WaterLedger {
     double rained = 0.0, infiltrated = 0.0, left = 0.0;
     Vec2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out
+    double released = 0.0;    ///< given by columns
+    Vec2 columns{0, 0};       ///< of what columns released, and their drag
     Vec2 ground{0, 0};    ///< push of bed and confined mass
     Vec2 walls{0, 0};     ///< push of walls, and of the water beyond open sides
     Vec2 friction{0, 0};  ///< at the bed, and what films lose that stop
@@ -114,6 +117,13 @@ public:
     const WaterBody& body() const { return body_; }
     /// Depth of confined mass at a node, from the next step on [m]
     void confine(Index i, Index j, double depth) { body_.confined[body_.grid.at(i, j)] = depth; }
+    /// Lets columns change depth and discharge between steps, and shows them the bed; take_changes() follows.
+    void lend(FreeWater& to) {
+        to.h = body_.now.h.data(), to.qx = body_.now.qx.data(), to.qy = body_.now.qy.data();
+        to.bed = body_.bed.data(), to.film = body_.film;
+    }
+    /// Takes up what columns on these tiles (ascending) changed: status and ledger know it from now on.
+    void take_changes(const std::vector<Index>& tiles);
     /// State of the cell around a node; elevation of its surface [m]
     WaterState at(Index i, Index j) const;
     double surface(Index i, Index j) const;
@@ -127,6 +137,8 @@ private:
     void list_tiles();
     double step_length(double until) const;
     void book(double dt);
+    WaterSums summed(double dt) const;
+    void take(const WaterSums& all);
 
     WaterBody body_;
     StepClock timed_;

@@ -1,0 +1,64 @@
+#include "mixture/two_phase_flow.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace frana {
+namespace {
+
+double confined_volume(const StructuredFlow& columns) {
+    const StructuredPoints& q = columns.body().points;
+    double sum = 0.0;
+    for (Index p = 0; p < q.count(); ++p) sum += q.confined[p] + q.released[p];
+    return sum;
+}
+
+}  // namespace
+
+TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene) : columns_(scene.columns), water_(scene.water) {
+    expect(scene.columns.grid == scene.water.grid, "columns and water share a grid");
+    FreeWater water{scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0};
+    water_.lend(water);
+    columns_.meet(water);
+    confine();
+    volume_given_ = confined_volume(columns_) + water_.status().volume;
+}
+
+/// The water lies on what is bound, as it stands now.
+void TwoPhaseFlow::confine() {
+    const StructuredBody& body = columns_.body();
+    const Index nx = body.grid.nx(), ny = body.grid.ny();
+    const auto set = [&](const std::vector<Index>& tiles, auto&& depth) {
+        for (const Index tile : tiles) {
+            const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
+            for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, ny); ++j)
+                for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, nx); ++i)
+                    water_.confine(i, j, depth(body.grid.at(i, j)));
+        }
+    };
+    set(confined_, [](Index) { return 0.0; });
+    set(body.active.work, [&](Index k) { return body.moved[k].depth; });
+    confined_ = body.active.work;
+}
+
+void TwoPhaseFlow::advance(double until) {
+    water_.advance(until);
+    const double end = water_.status().time;
+    while (columns_.status().time < end) columns_.advance(end);
+    columns_.look();
+    water_.take_changes(columns_.body().active.work);
+    confine();
+}
+
+double TwoPhaseFlow::sub_cycles() const {
+    const Index steps = water_.status().step;
+    return steps > 0 ? static_cast<double>(columns_.status().step) / static_cast<double>(steps) : 0.0;
+}
+
+double TwoPhaseFlow::volume_residual() const {
+    const WaterLedger& l = water_.status().ledger;
+    return confined_volume(columns_) + water_.status().volume + l.left + l.infiltrated - l.rained - volume_given_;
+}
+
+}  // namespace frana

@@ -1,0 +1,39 @@
+#pragma once
+// Structured columns and free water on one grid: what a mass of rock and water does as it breaks and drains.
+#include "structured/structured_flow.h"
+#include "water/water_flow.h"
+
+namespace frana {
+
+struct TwoPhaseScene {
+    StructuredScene columns;
+    WaterScene water;  ///< on the same grid; its depth at the start is free water, above the columns where both are
+    WaterExchange exchange;
+};
+
+/// Steps of the water, each followed by as many of the columns as elastic waves ask for. In those the water stands still
+/// but for what it exchanges with the columns at their nodes: momentum, exactly, and what they release.
+class TwoPhaseFlow {
+public:
+    explicit TwoPhaseFlow(const TwoPhaseScene& scene);
+
+    /// One step of the water and those of the columns, never past `until` [s].
+    void advance(double until);
+    const StructuredFlow& columns() const { return columns_; }
+    const WaterFlow& water() const { return water_; }
+    double time() const { return columns_.status().time; }
+    /// Steps of the columns for each of the water, so far.
+    double sub_cycles() const;
+    /// Water now, confined and free, and lost, less what was given [m^3]: round-off
+    double volume_residual() const;
+
+private:
+    void confine();
+
+    StructuredFlow columns_;
+    WaterFlow water_;
+    std::vector<Index> confined_;  ///< tiles where the water lies on columns
+    double volume_given_ = 0.0;
+};
+
+}  // namespace frana

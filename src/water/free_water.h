@@ -1,0 +1,35 @@
+#pragma once
+// Free water as structured columns meet it: cells around the nodes of the same grid.
+#include "law/two_phase.h"
+
+namespace frana {
+
+/// How columns and free water act on one another (van den Bout et al. 2021, sec. 2.3; what the paper leaves open is
+/// said here).
+struct WaterExchange {
+    TwoPhaseMaterial material;
+    VirtualMass virtual_mass = VirtualMass::bounded;
+    /// B, share of the pore pressure that bears the columns where their pores are full [1]
+    double pore_pressure = 1.0;
+    /// Free water over bound volume that fills the pores [1]; with less, B goes down in proportion: a column that
+    /// stands dry rests on the bed with all its weight. 2/3 is that of loose grains, four tenths of them pores.
+    double void_ratio = 2.0 / 3.0;
+};
+
+/// The water's own numbers, which columns change: depth [m] and discharge [m^2/s], by storage index.
+struct FreeWater {
+    WaterExchange by;
+    TwoPhaseDrag drag;
+    double *h, *qx, *qy;
+    const double* bed;  ///< elevation above any datum [m]
+    double film;        ///< water as shallow as this takes no part [m]
+
+    /// Share of its weight that water takes off a column's bed.
+    double support(double bound_density, double bound_depth, double depth) const {
+        const double full = by.void_ratio * bound_depth;
+        const double share = depth < full ? depth / full : 1.0;
+        return share * by.pore_pressure * by.material.fluid_density / bound_density;
+    }
+};
+
+}  // namespace frana

@@ -1,0 +1,202 @@
+// Structured columns and free water on one grid: momentum, volumes, rest, slopes, the limits of one phase.
+#include <omp.h>
+
+#include "catch.h"
+#include "mixture/two_phase_flow.h"
+#include "verify/structured.h"
+
+using namespace frana;
+
+namespace {
+
+constexpr double kGravity = 9.81;
+
+/// Columns of 0.8 m on level ground that hold together, and water up to `level` around and above them.
+struct Basin {
+    TwoPhaseScene scene;
+    double cell = 0.5;
+
+    Basin(double columns_depth, double density, double level) {
+        StructuredScene& s = scene.columns;
+        s.grid = verify::grid_over({-4, -4}, {14, 14}, cell);
+        s.density = density;
+        s.material.young = 2e6;
+        verify::StructuredBlock block;
+        block.low = {2, 2}, block.high = {7, 7}, block.depth = columns_depth, block.cohesion = 1e9;
+        verify::add_block(s, block);
+        scene.water.grid = s.grid;
+        scene.exchange.material.solid_density = 2650.0;
+        fill(level);
+    }
+    /// Free water up to a level, less what the columns take of it at the nodes.
+    void fill(double level) {
+        const StructuredFlow columns(scene.columns);
+        const StructuredBody& body = columns.body();
+        const GridGeometry g = scene.columns.grid;
+        std::vector<double> bound(static_cast<std::size_t>(g.size()));
+        for (Index j = 0; j < g.ny; ++j)
+            for (Index i = 0; i < g.nx; ++i)
+                if (body.active.in_work[static_cast<std::size_t>((j + kTile) / kTile * body.grid.tiles_x() + (i + kTile) / kTile)])
+                    bound[static_cast<std::size_t>(j * g.nx + i)] = body.moved[body.grid.at(i, j)].depth;
+        scene.water.start = [=, bed = scene.water.bed](double x, double y) {
+            const Index i = std::lround((x - g.x0) / g.cell), j = std::lround((y - g.y0) / g.cell);
+            return WaterState{std::max(0.0, level - bed(x, y) - bound[static_cast<std::size_t>(j * g.nx + i)])};
+        };
+    }
+};
+
+void run(TwoPhaseFlow& flow, double end) {
+    while (flow.time() < end) flow.advance(end);
+}
+
+}  // namespace
+
+TEST_CASE("V14: a lake stays at rest around and above a body as dense as water, without friction", "[mixture]") {
+    Basin basin(0.8, 1000.0, 2.0);
+    TwoPhaseFlow flow(basin.scene);
+    run(flow, 2.0);
+    // Round-off of a surface at 2 m over a cell of 0.5 m, driven for 2 s: 1e-16 * 2 / 0.5 * g * 2 s, some hundred times.
+    CHECK(flow.columns().status().max_speed < 1e-12);
+    CHECK(flow.water().status().max_speed < 1e-12);
+}
+
+TEST_CASE("V14: a body heavier than water lies on the ground below it, held by friction", "[mixture]") {
+    Basin basin(0.8, 1900.0, 2.0);
+    basin.scene.columns.bed_law = bed::Coulomb{0.3};
+    basin.scene.columns.ground = terrain_ground([](double, double) { return Vec2(0.2, 0.0); });
+    basin.scene.water.bed = [](double x, double) { return 0.2 * (x - 14.0); };
+    basin.fill(2.0);
+    TwoPhaseFlow flow(basin.scene);
+    run(flow, 1.0);
+    CHECK(flow.columns().status().max_speed == 0.0);
+    CHECK(flow.water().status().max_speed < 1e-12);
+}
+
+TEST_CASE("V13: a body below water slides down with its weight in it", "[mixture]") {
+    // Surface as steep as the bed, so that water's pressure drives the body too: with support s = rho_f / rho_c
+    // a = g_z (tan - (1 - s) mu), of which water's pressure has the part s tan.
+    const double slope = 0.4, mu = 0.3, density = 1900.0, gz = kGravity / (1.0 + slope * slope);
+    Basin basin(0.8, density, 0.0);
+    basin.scene.columns.bed_law = bed::Coulomb{mu};
+    basin.scene.columns.ground = terrain_ground([=](double, double) { return Vec2(-slope, 0.0); });
+    basin.scene.water.bed = [=](double x, double) { return -slope * x; };
+    basin.scene.water.start = [](double, double) { return WaterState{5.0}; };
+    basin.scene.exchange.virtual_mass = VirtualMass::none;
+    TwoPhaseFlow flow(basin.scene);
+    flow.advance(1e-3);
+    // Columns that stand out of the mean surface make it uneven: the middle of the body knows nothing of it yet.
+    const StructuredBody& body = flow.columns().body();
+    const StructuredPoints& q = body.points;
+    const double support = 1000.0 / density;
+    int inside = 0;
+    for (Index p = 0; p < q.count(); ++p) {
+        if ((flow.columns().position(p) - Vec2(4.5, 4.5)).cwiseAbs().maxCoeff() > 1.0) continue;
+        CHECK(q.vx[p] == Approx(1e-3 * gz * (slope - (1.0 - support) * mu)).epsilon(1e-3));
+        ++inside;
+    }
+    CHECK(inside >= 16);
+}
+
+TEST_CASE("Columns and water exchange momentum exactly, and what breaks gives its water to the nodes", "[mixture]") {
+    Basin basin(0.8, 1900.0, 0.3);
+    StructuredScene& s = basin.scene.columns;
+    s.confined = 0.3;
+    s.bed_law = bed::Coulomb{0.2};
+    s.material.critical_strain = 0.02;
+    for (double& c : s.points.cohesion) c = 500.0;
+    for (double& v : s.points.vx) v = 1.5;
+    TwoPhaseFlow flow(basin.scene);
+    const double mass = flow.columns().status().mass, given = flow.columns().status().momentum.norm();
+    run(flow, 1.0);
+    const StructuredStatus& c = flow.columns().status();
+    const WaterStatus& w = flow.water().status();
+    CHECK(c.damage > 0.3);
+    CHECK(c.released > 0.3 * 0.3 * 25 * 0.8 * 0.3);
+    CHECK(c.mass + 1000.0 * c.released == Approx(mass).epsilon(1e-12));
+    CHECK(w.ledger.released == Approx(c.released).epsilon(1e-9));  // what the columns gave is what the water got
+    CHECK(std::abs(flow.volume_residual()) < 1e-13 * w.volume);
+    CHECK(std::abs(flow.water().volume_residual()) < 1e-13 * w.volume);
+    CHECK(flow.columns().momentum_residual().norm() < 1e-12 * given);
+    // What one loses by drag and release the other gets.
+    CHECK(w.ledger.columns.x() > 0.01 * given / 1000.0);
+    CHECK((c.impulse.water + 1000.0 * w.ledger.columns).norm() < 1e-10 * given);
+    CHECK(flow.water().momentum_residual().norm() < 1e-12 * given / 1000.0);
+    CHECK(flow.sub_cycles() > 3.0);
+}
+
+TEST_CASE("V10: drag alone brings columns and water together with their momentum", "[mixture]") {
+    // Weightless columns of the bed's support: as dense as water, level, deep; the middle of a wide body.
+    Basin basin(0.8, 1000.0, 2.0);
+    basin.scene.columns.points = {};
+    verify::StructuredBlock block;
+    block.low = {-3.5, -3.5}, block.high = {13.5, 13.5}, block.depth = 0.8, block.cohesion = 1e9, block.velocity = {0.5, 0.0};
+    verify::add_block(basin.scene.columns, block);
+    basin.fill(2.0);
+    basin.scene.water.sides = {WaterSide::open, WaterSide::open, WaterSide::wall, WaterSide::wall};
+    basin.scene.exchange.virtual_mass = VirtualMass::none;
+    basin.scene.exchange.material.power = 1;
+    TwoPhaseFlow flow(basin.scene);
+    flow.advance(0.02);
+    const double t = flow.time();
+    // Spec section 8, one step of it: D' = -h C / mu D with the flux of the moment; C changes little in 0.02 s.
+    const Mixture mixture{0.8 / 2.0, 1.0, 0.0};
+    const TwoPhaseDrag law(basin.scene.exchange.material);
+    const double m_c = 800.0, m_u = 1200.0, mu = m_c * m_u / (m_c + m_u);
+    const double rate = 2.0 * law.coefficient(mixture, mixture.bound() * 0.5) / mu;
+    const WaterState middle = flow.water().at(static_cast<Index>(9.0 / basin.cell) + 2, static_cast<Index>(9.0 / basin.cell) + 2);
+    double slip = 0.0;
+    const StructuredPoints& q = flow.columns().body().points;
+    for (Index p = 0; p < q.count(); ++p)
+        if ((flow.columns().position(p) - Vec2(5.0, 5.0)).norm() < 0.3) slip = q.vx[p] - middle.u;
+    CHECK(middle.u > 0.0);
+    CHECK(slip / 0.5 == Approx(std::exp(-rate * t)).epsilon(0.02));
+    CHECK(m_c * (slip + middle.u) + m_u * middle.u == Approx(m_c * 0.5).epsilon(0.01));
+}
+
+TEST_CASE("Beside dry columns there is no water, beside water no columns: each moves as if alone", "[mixture]") {
+    Basin basin(0.8, 1900.0, 0.0);
+    for (double& v : basin.scene.columns.points.vx) v = 1.0;
+    basin.scene.columns.bed_law = bed::Coulomb{0.2};
+    basin.scene.water.start = [](double x, double y) { return WaterState{x < -2.0 && y < -2.0 ? 0.1 : 0.0}; };
+    StructuredFlow dry(basin.scene.columns);
+    WaterFlow alone(basin.scene.water);
+    TwoPhaseFlow both(basin.scene);
+    for (int step = 0; step < 5; ++step) {
+        both.advance(10.0);
+        alone.advance(both.time());
+        while (dry.status().time < both.time()) dry.advance(both.time());
+    }
+    CHECK(both.columns().body().points.x == dry.body().points.x);
+    CHECK(both.columns().body().points.vx == dry.body().points.vx);
+    CHECK(both.water().status().kinetic == Approx(alone.status().kinetic).epsilon(1e-14));
+}
+
+TEST_CASE("Two phases have the same bits for any number of threads", "[mixture]") {
+    const int threads = omp_get_max_threads();
+    std::vector<double> first;
+    for (const int count : {1, 2, 4}) {
+        omp_set_num_threads(count);
+        Basin basin(0.8, 1900.0, 0.3);
+        basin.scene.columns.confined = 0.3;
+        for (double& c : basin.scene.columns.points.cohesion) c = 500.0;
+        TwoPhaseFlow flow(basin.scene);
+        run(flow, 0.3);
+        const StructuredPoints& q = flow.columns().body().points;
+        std::vector<double> bits = {flow.water().status().kinetic, flow.water().status().volume,
+                                    flow.columns().status().released};
+        for (const Column* column : {&q.x, &q.vx, &q.damage, &q.volume}) bits.insert(bits.end(), column->begin(), column->end());
+        if (count == 1) first = bits;
+        CHECK(bits == first);
+    }
+    omp_set_num_threads(threads);
+}
+
+TEST_CASE("Water bears columns by the pressure in their pores, in proportion until they are full", "[mixture]") {
+    WaterExchange exchange;
+    exchange.void_ratio = 0.5, exchange.pore_pressure = 0.8;
+    const FreeWater water{exchange, TwoPhaseDrag(exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0};
+    CHECK(water.support(2000.0, 1.0, 0.25) == Approx(0.5 * 0.8 * 0.5).epsilon(1e-15));
+    CHECK(water.support(2000.0, 1.0, 0.5) == Approx(0.8 * 0.5).epsilon(1e-15));
+    CHECK(water.support(2000.0, 1.0, 50.0) == Approx(0.8 * 0.5).epsilon(1e-15));
+    CHECK(water.support(2000.0, 1.0, 0.0) == 0.0);
+}
