@@ -142,9 +142,9 @@ void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigur
     std::optional<ProductRaster> depth;
     if (frame.has("depth")) depth = from_frame(frame, "depth", "depth");
     const ProductRaster* extent = depth ? &*depth : nullptr;
-    for (const char* field : {"depth", "speed", "damage"}) {
+    for (const char* field : {"depth", "speed", "damage", "water_depth"}) {
         if (!frame.has(field)) {
-            if (field == std::string("damage")) continue;  // of structured solids only
+            if (field == std::string("damage") || field == std::string("water_depth")) continue;  // of few runs only
             warnings.push_back(fmt::format("no {} in the frames of this run, so no map of it", field));
             continue;
         }

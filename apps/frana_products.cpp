@@ -31,6 +31,7 @@ constexpr ProductRule rules[] = {
     {"final_velocity_x", "velocity", 0, "m/s", "velocity to the east at the end of the run"},
     {"final_velocity_y", "velocity", 1, "m/s", "velocity to the north at the end of the run"},
     {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies"},
+    {"final_water_depth", "water_depth", 0, "m", "depth of free water at the end of the run, along gravity"},
 };
 
 Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string& crs_wkt) {
@@ -53,7 +54,9 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
 }
 
 /// Not every solver knows it; all others must be there.
-bool needed(const std::string& name) { return name != "peak_dynamic_pressure" && name != "final_damage"; }
+bool needed(const std::string& name) {
+    return name != "peak_dynamic_pressure" && name != "final_damage" && name != "final_water_depth";
+}
 
 fs::path raster_file(const fs::path& run_dir, const std::string& name) {
     return run_dir / "rasters" / (name + ".tif");

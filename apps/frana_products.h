@@ -32,7 +32,7 @@ private:
 };
 
 /// The rasters of a run as its frame has them: peak_depth, peak_speed, peak_pressure, peak_dynamic_pressure
-/// (when the solver has it), arrival_time, final_depth, final_velocity_x, final_velocity_y, and final_damage of what can break. Negative arrival
+/// (when the solver has it), arrival_time, final_depth, final_velocity_x, final_velocity_y, final_damage of what can break, final_water_depth beside it. Negative arrival
 /// times and all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
 

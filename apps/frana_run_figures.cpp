@@ -84,6 +84,8 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
             draw_map(source, *product, rule.what, figures, warnings, find_product(source.rasters, "peak_depth"));
     if (const ProductRaster* damage = find_product(source.rasters, "final_damage"))
         draw_map(source, *damage, "damage at the end", figures, warnings, find_product(source.rasters, "final_depth"));
+    if (const ProductRaster* water = find_product(source.rasters, "final_water_depth"))
+        draw_map(source, *water, "free water at the end", figures, warnings, find_product(source.rasters, "peak_depth"));
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
         draw_view(source, *peak, figures, warnings);
     draw_overlay(source, figures, warnings);

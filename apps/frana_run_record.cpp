@@ -37,12 +37,13 @@ std::vector<GivenKey> given_keys(const CaseFile& file) {
 std::string caption_of(const Scene& scene, const std::vector<GivenKey>& given) {
     std::string text;
     for (const GivenKey& key : given) {
-        if (key.key.rfind("material.", 0) != 0) continue;
+        const bool material = key.key.rfind("material.", 0) == 0;
+        if (!material && key.key.rfind("water.", 0) != 0) continue;
         std::string value = key.value;
         value.erase(std::remove(value.begin(), value.end(), '"'), value.end());
         if (value.size() > 2 && value.compare(value.size() - 2, 2, ".0") == 0) value.resize(value.size() - 2);
         const bool has_unit = !key.unit.empty() && key.unit != "1";
-        text += fmt::format("{} {}{}{}, ", key.key.substr(9), value, has_unit ? " " : "",
+        text += fmt::format("{} {}{}{}, ", material ? key.key.substr(9) : key.key, value, has_unit ? " " : "",
                             has_unit ? key.unit : "");
     }
     const char* model = scene.terrain == TerrainModel::steep     ? "steep"

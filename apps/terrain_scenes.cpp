@@ -117,6 +117,25 @@ MadeScene blocks() {
             {{"block.geojson", rectangle(0.0, 0.0, 100.0, 60.0)}}};
 }
 
+MadeScene debris_flow() {
+    const double width = 1600.0, height = 500.0, middle = 250.0, cell = 5.0, mouth = 900.0;
+    const double head_slope = std::tan(28.0 * kDegree), mouth_slope = std::tan(5.0 * kDegree);
+    std::vector<double> drop{0.0};  // below x = 0, on the nodes
+    for (int k = 0; k * cell < width; ++k) {
+        const double x = (k + 0.5) * cell;
+        drop.push_back(drop.back() + cell * (head_slope + (mouth_slope - head_slope) * smooth_step(x / mouth)));
+    }
+    const auto z = [&](double x, double y) {
+        const double across = y - middle, bend = 25.0 * std::sin(x / 140.0) * smooth_step(x / 200.0) * smooth_step((1000.0 - x) / 200.0);
+        // Flanks of 27 degrees that round off at the bottom; they are gone 150 m below the mouth, where a cone begins.
+        const double flank = std::sqrt(squared(0.5 * (across - bend)) + 9.0) - 3.0;
+        const double share = smooth_step((mouth + 150.0 - x) / 300.0), cone = 0.04 * std::abs(across);
+        return 400.0 - drop[static_cast<std::size_t>(std::lround(x / cell))] + share * flank - (1.0 - share) * cone;
+    };
+    return {{{"dem.tif", on_nodes(width, height, cell, z)}},
+            {{"release.geojson", ellipse({150.0, middle + 10.0}, 80.0, 18.0)}}};
+}
+
 MadeScene tiff_particles() {
     // The ground reaches 5 m beyond the picture, so that the picture's outer half pixels lie on it as well.
     Raster ground = on_nodes(109.0, 109.0, 1.0, [](double, double) { return 0.0; });
@@ -162,6 +181,7 @@ const std::vector<NamedScene>& made_scenes() {
         {"column_collapse", "flat plate with a column of sand", column_collapse},
         {"clay_flume", "flume with an obstacle, unrolled (van den Bout et al. 2021, 3)", clay_flume},
         {"blocks", "slopes and valleys for a block (van den Bout et al. 2021, 4)", blocks},
+        {"debris_flow", "gully with a fan before it", debris_flow},
         {"tiff_particles", "picture of 100 x 100 pixels (Fois et al. 2025, 4.1)", tiff_particles},
         {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track}};
     return scenes;

@@ -54,6 +54,9 @@ MadeScene clay_flume();
 /// Blocks of 100 x 60 m after section 4 there: over a convex slope of 10, then 30 degrees (scenarios 2A, 2B), and down
 /// 25 degrees into a valley whose floor falls off to both sides (3A, 3B), or rises a little (3C).
 MadeScene blocks();
+/// A gully that falls by 28 degrees at its head and 5 at its mouth, V-shaped and 14 m deep, and the fan before it; 5 m
+/// cells, with a debris of 12 000 m2 in its bed.
+MadeScene debris_flow();
 /// Fois et al. (2025), section 4.1: h = 1 + 2 exp(-((x - 50)^2 + (y - 50)^2)/150) on 100 x 100 pixels, on
 /// flat ground.
 MadeScene tiff_particles();

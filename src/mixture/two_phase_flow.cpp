@@ -1,5 +1,6 @@
 #include "mixture/two_phase_flow.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -22,6 +23,7 @@ TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene) : columns_(scene.columns)
     water_.lend(water);
     columns_.meet(water);
     confine();
+    weigh();
     volume_given_ = confined_volume(columns_) + water_.status().volume;
 }
 
@@ -49,6 +51,37 @@ void TwoPhaseFlow::advance(double until) {
     columns_.look();
     water_.take_changes(columns_.body().active.work);
     confine();
+    weigh();
+}
+
+void TwoPhaseFlow::weigh() {
+    const WaterBody& w = water_.body();
+    potential_ = speeds_ = 0.0;
+    for (const Index tile : w.work) {
+        const Index i0 = w.grid.tile_i(tile), j0 = w.grid.tile_j(tile);
+        for (Index j = j0; j < std::min(j0 + kTile, w.grid.ny()); ++j)
+            for (Index i = i0; i < std::min(i0 + kTile, w.grid.nx()); ++i) {
+                const Index k = w.grid.at(i, j);
+                const double h = w.now.h[k];
+                potential_ += h * (w.datum + w.bed[k] + w.confined[k] + 0.5 * h);
+                if (h > w.film) speeds_ += std::hypot(w.now.qx[k], w.now.qy[k]);
+            }
+    }
+    const double area = w.grid.cell() * w.grid.cell();
+    potential_ *= area * w.gravity, speeds_ *= area;
+}
+
+void TwoPhaseFlow::keep(Archive& archive) {
+    {
+        const Archive::Part part(archive, "columns");
+        columns_.keep(archive);
+    }
+    {
+        const Archive::Part part(archive, "water");
+        water_.keep(archive);
+    }
+    archive.numbers("weights", {&volume_given_, &potential_, &speeds_});
+    if (archive.loading()) confine();
 }
 
 double TwoPhaseFlow::sub_cycles() const {

@@ -26,14 +26,20 @@ public:
     double sub_cycles() const;
     /// Water now, confined and free, and lost, less what was given [m^3]: round-off
     double volume_residual() const;
+    /// Of the water over its density: energy of height [m^5/s^2], and sum of volume times speed [m^4/s].
+    double water_potential() const { return potential_; }
+    double water_speeds() const { return speeds_; }
+    /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
+    void keep(Archive& archive);
 
 private:
     void confine();
+    void weigh();
 
     StructuredFlow columns_;
     WaterFlow water_;
     std::vector<Index> confined_;  ///< tiles where the water lies on columns
-    double volume_given_ = 0.0;
+    double volume_given_ = 0.0, potential_ = 0.0, speeds_ = 0.0;
 };
 
 }  // namespace frana

@@ -17,6 +17,9 @@ void add_insitu(Table& table);
 /// The keys of [material.structure] (parameter_table_structure.cpp).
 void add_structure(Table& table);
 
+/// The keys of [water] (parameter_table_water.cpp).
+void add_water(Table& table);
+
 /// The keys of [[barrier]] and of [[stage]] (parameter_table_stages.cpp).
 void add_barriers(Table& table);
 void add_stages(Table& table);

@@ -125,6 +125,7 @@ void add_material(Table& table) {
                                 "stress below which the mass does not flow"),
                          rheology, {"bingham"}, {"bingham"}));
     add_structure(table);
+    add_water(table);
 }
 
 void add_scheme(Table& table) {
@@ -201,7 +202,8 @@ void add_run(Table& table) {
                       "stress",      "effective_stress", "surface",       "elevation",
                       "mass",        "volume",           "pressure",      "id",
                       "peak_depth",  "peak_speed",       "peak_pressure", "peak_dynamic_pressure",
-                      "arrival_time", "damage",           "cohesion"};
+                      "arrival_time", "damage",           "cohesion",
+                      "water_depth",  "water_velocity"};
     fields.fallback = std::vector<std::string>{};
     table.push_back(fields);
     table.push_back(choice("output.film", {"none", "mp4", "gif"}, "none",

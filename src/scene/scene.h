@@ -15,6 +15,8 @@
 #include "particles/seeds.h"
 #include "scene/insitu.h"
 #include "terrain/raster.h"
+#include "water/free_water.h"
+#include "water/water_friction.h"
 
 namespace frana {
 
@@ -128,8 +130,18 @@ struct Structure {
     ColumnMaterial material;
     double cohesion = 0.0;  ///< undamaged [Pa]
     double share = 1.0;     ///< of the solids that have structure, undamaged [1]
+    double confined = 0.0;  ///< share of the volume that is water within the structure [1]
     double cfl = 0.4;       ///< fraction of a cell that sound and flow may pass in a step [1]
     bool unrolled = false;  ///< coordinates are measured along the ground, not on the map
+};
+
+/// Free water on the grid beside the columns of a structure (mixture/two_phase_flow.h).
+struct WaterPhase {
+    WaterExchange exchange;
+    WaterFriction friction;
+    double share = 0.0;           ///< of the releases' volume [1]
+    std::optional<double> level;  ///< of a lake at rest [m]
+    double rain = 0.0, infiltration = 0.0;  ///< [m/s]
 };
 
 /// What is written, and when.
@@ -173,6 +185,7 @@ struct Scene {
     std::optional<Polygons> survey;    ///< surveyed footprint, to compare with
     std::vector<Barrier> barriers;
     std::optional<Structure> structure;  ///< when the material holds together
+    std::optional<WaterPhase> water;        ///< beside a structure
     std::optional<SolidStage> solid;   ///< where and when the run goes into space
 
     std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)

@@ -50,19 +50,20 @@ Frame StructuredRun::frame() {
     Frame frame;
     frame_used_ = 0;
     timed_("frame", [&] {
-        flow_.look();
+        if (alone_) alone_->look();
         book();
-        frame.grid = flow_.body().grid.geometry();
+        frame.grid = flow().body().grid.geometry();
         frame.status = status_;
         particle_fields(frame);
         node_fields(frame);
         inner_fields(frame);
+        if (both_) water_fields(frame);
     });
     return frame;
 }
 
 void StructuredRun::particle_fields(Frame& frame) {
-    const StructuredBody& body = flow_.body();
+    const StructuredBody& body = flow().body();
     const StructuredPoints& q = body.points;
     const Index count = q.count();
     const auto column = [&](const char* name, const char* unit, int components) {
@@ -77,7 +78,7 @@ void StructuredRun::particle_fields(Frame& frame) {
            *cohesion = column("cohesion", "Pa", 1);
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < count; ++p) {
-        const Vec2 x = flow_.position(p);
+        const Vec2 x = flow().position(p);
         const double z = bed_at(bed_, x.x(), x.y()), h = q.layer[p];
         const double bx = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_x; }),
                      by = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_y; });
@@ -101,7 +102,7 @@ void StructuredRun::particle_fields(Frame& frame) {
 }
 
 void StructuredRun::node_fields(Frame& frame) {
-    const StructuredBody& body = flow_.body();
+    const StructuredBody& body = flow().body();
     const GridGeometry& g = bed_.geometry;
     const auto column = [&](const char* name, const char* unit, int components) {
         return add_field(frame.nodes, name, unit, components, g.size());
@@ -135,7 +136,7 @@ void StructuredRun::node_fields(Frame& frame) {
 
 /// Stresses, damage and cohesion on the nodes: means over the mass of what the columns show.
 void StructuredRun::inner_fields(Frame& frame) {
-    const StructuredBody& body = flow_.body();
+    const StructuredBody& body = flow().body();
     const StructuredPoints& q = body.points;
     const double *stress = frame.particle("stress")->data, *effective = frame.particle("effective_stress")->data,
                  *damage = frame.particle("damage")->data, *cohesion = frame.particle("cohesion")->data;
@@ -172,6 +173,38 @@ void StructuredRun::inner_fields(Frame& frame) {
             for (int c = 0; c < 3; ++c)
                 stress_to[3 * n + c] = node.stress[c] / node.mass, effective_to[3 * n + c] = node.effective[c] / node.mass;
             damage_to[n] = node.damage / node.mass, cohesion_to[n] = node.cohesion / node.mass;
+        }
+}
+
+/// Depth, surface, velocity and pressure of nodes are those of both; the water's own are apart.
+void StructuredRun::water_fields(Frame& frame) {
+    const WaterBody& water = both_->water().body();
+    const GridGeometry& g = bed_.geometry;
+    const auto find = [&](const char* name) {
+        return const_cast<double*>(frame.node(name)->data);  // made just now, by node_fields()
+    };
+    double *depth = find("depth"), *thickness = find("thickness"), *surface = find("surface"),
+           *velocity = find("velocity"), *speed = find("speed"), *pressure = find("pressure");
+    double *water_depth = add_field(frame.nodes, "water_depth", "m", 1, g.size()),
+           *water_velocity = add_field(frame.nodes, "water_velocity", "m/s", 3, g.size());
+    const double per = 0.5 / g.cell;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const Index k = water.grid.at(i, j), n = j * g.nx + i;
+            const double h = water.now.h[k];
+            if (!(h > 0.0) || !std::isfinite(bed_.at(i, j))) continue;
+            const double bx = per * (water.bed[k + 1] - water.bed[k - 1]),
+                         by = per * (water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
+            const double u = h > water.film ? water.now.qx[k] / h : 0.0, v = h > water.film ? water.now.qy[k] / h : 0.0;
+            const double own[3] = {u, v, u * bx + v * by}, before = depth[n], all = before + h;
+            for (int c = 0; c < 3; ++c) {
+                water_velocity[3 * n + c] = own[c];
+                velocity[3 * n + c] = (before * velocity[3 * n + c] + h * own[c]) / all;
+            }
+            speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
+            water_depth[n] = h, depth[n] = all, surface[n] += h;
+            thickness[n] = all / std::sqrt(1.0 + bx * bx + by * by);
+            pressure[n] += water_density_ * water.pull[k] * h;
         }
 }
 

@@ -24,6 +24,12 @@ StructuredScene started(const Scene& scene, Start start) {
     return s;
 }
 
+TwoPhaseScene wet(const Scene& scene, Start start) {
+    TwoPhaseScene s = two_phase_scene(scene);
+    if (start == Start::kept) s.columns.points = {}, s.water.start = {};
+    return s;
+}
+
 /// Distance at which columns of the start are neighbours: 1.1 times as far as they stand apart [m].
 double reach_of_neighbours(const Seeds& seeds) {
     double widest = 0.0;
@@ -39,23 +45,28 @@ constexpr PieceRule kPieces{kLink, 0.9, 0.02};  // of the damage; of the mass
 
 StructuredRun::StructuredRun(const Scene& scene, Start start)
     : bed_(scene.bed),
-      flow_(started(scene, start)),
-      map_(flow_.body().grid, centre_of(scene.particles), scene.output.footprint_depth),
-      neighbours_(flow_, reach_of_neighbours(scene.particles)),
+      water_density_(scene.water ? scene.water->exchange.material.fluid_density : 0.0),
+      alone_(scene.water ? nullptr : std::make_unique<StructuredFlow>(started(scene, start))),
+      both_(scene.water ? std::make_unique<TwoPhaseFlow>(wet(scene, start)) : nullptr),
+      map_(flow().body().grid, centre_of(scene.particles), scene.output.footprint_depth),
+      neighbours_(flow(), reach_of_neighbours(scene.particles)),
       rest_fraction_(scene.rest_fraction) {
     if (start == Start::kept) return;
-    map_.note(flow_.body(), 0.0);
+    map_.note(flow().body(), water(), 0.0);
     book();
 }
 
 void StructuredRun::advance(double until) {
-    flow_.advance(until);
-    timed_("peaks", [&] { map_.note(flow_.body(), flow_.status().time); });
+    if (both_)
+        both_->advance(until);
+    else
+        alone_->advance(until);
+    timed_("peaks", [&] { map_.note(flow().body(), water(), flow().status().time); });
     book();
 }
 
 void StructuredRun::book() {
-    const StructuredStatus& s = flow_.status();
+    const StructuredStatus& s = flow().status();
     status_.step = s.step, status_.time = s.time, status_.dt = s.dt;
     status_.particles = s.points;
     status_.mass = s.mass, status_.mass_left = s.mass_left;
@@ -75,7 +86,32 @@ void StructuredRun::book() {
     status_.max_depth = map_.sums().max_depth;
     status_.covered_area = map_.sums().covered_area;
     status_.front = map_.sums().front;
+    if (both_) book_water();
     peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
+}
+
+/// The water's part. Rain and what the ground takes count as gone through the sides; what friction and drag take of its
+/// energy is in the residual.
+void StructuredRun::book_water() {
+    const WaterStatus& w = both_->water().status();
+    const WaterLedger& l = w.ledger;
+    const double density = water_density_, solids = status_.mass, mass = solids + density * w.volume;
+    const Vec2 left = l.momentum_left + l.momentum_infiltrated,
+               push = w.momentum_given + l.ground + l.walls + l.friction + l.columns;
+    status_.dt = w.dt;
+    status_.mass = mass;
+    status_.mass_left += density * (l.left + l.infiltrated - l.rained);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const auto k = static_cast<Eigen::Index>(axis);
+        status_.momentum[axis] += density * w.momentum[k];
+        status_.momentum_left[axis] += density * left[k];
+        status_.impulse[axis] += density * push[k];
+    }
+    status_.kinetic += density * w.kinetic;
+    status_.potential += density * both_->water_potential();
+    status_.max_speed = std::max(status_.max_speed, w.max_speed);
+    const double speeds = density * both_->water_speeds();
+    status_.mean_speed = mass > 0.0 ? (status_.mean_speed * solids + speeds) / mass : 0.0;
 }
 
 bool StructuredRun::at_rest() const {
@@ -85,28 +121,39 @@ bool StructuredRun::at_rest() const {
 
 Sample StructuredRun::at(const Vec2& point) const {
     Sample sample;
-    StructuredMap::sample(flow_.body(), point, sample.depth, sample.velocity);
+    StructuredMap::sample(flow().body(), water(), point, sample.depth, sample.velocity);
     return sample;
 }
 
 std::optional<Breakage> StructuredRun::breakage() const {
-    const double cell = flow_.body().grid.cell();
+    const double cell = flow().body().grid.cell();
     PieceRule rule = kPieces;
     rule.link *= cell;
-    const Neighbours::Torn torn = neighbours_.torn(flow_, kTorn * cell);
-    return Breakage{flow_.status().damage, pieces(flow_, rule), neighbours_.pairs(), torn.all, torn.numerical};
+    const Neighbours::Torn torn = neighbours_.torn(flow(), kTorn * cell);
+    return Breakage{flow().status().damage, pieces(flow(), rule), neighbours_.pairs(), torn.all, torn.numerical};
 }
 
 std::vector<std::string> StructuredRun::remarks() const {
     const Breakage now = *breakage();
-    if (now.numerical == 0) return {};
-    return {fmt::format("structure: {} of {} pairs of neighbouring columns parted without damage to either, by the scheme "
+    std::vector<std::string> remarks;
+    if (both_)
+        remarks.push_back(fmt::format("water: {:.6g} m3 free at the end, {:.6g} m3 of it released by what broke; {:.3g} steps "
+                                      "of the columns for each of the water",
+                                      both_->water().status().volume, flow().status().released, both_->sub_cycles()));
+    if (now.numerical == 0) return remarks;
+    remarks.push_back(fmt::format("structure: {} of {} pairs of neighbouring columns parted without damage to either, by the scheme "
                         "and not by the material (numerical fracture); a smaller critical_strain or finer cells may help",
-                        now.numerical, now.pairs)};
+                        now.numerical, now.pairs));
+    return remarks;
 }
 
 std::vector<PhaseTime> StructuredRun::timings() const {
-    std::vector<PhaseTime> all = flow_.timings();
+    std::vector<PhaseTime> all = flow().timings();
+    if (both_)
+        for (PhaseTime phase : both_->water().timings()) {
+            phase.name = "water: " + phase.name;
+            all.push_back(phase);
+        }
     for (const PhaseTime& phase : timed_.times()) all.push_back(phase);
     return all;
 }
@@ -114,7 +161,10 @@ std::vector<PhaseTime> StructuredRun::timings() const {
 void StructuredRun::keep(Archive& archive) {
     {
         const Archive::Part part(archive, "columns");
-        flow_.keep(archive);
+        if (both_)
+            both_->keep(archive);
+        else
+            alone_->keep(archive);
     }
     neighbours_.keep(archive);
     map_.keep(archive);

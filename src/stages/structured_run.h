@@ -5,6 +5,7 @@
 
 #include "scene/scene.h"
 #include "solver/simulation.h"
+#include "mixture/two_phase_flow.h"
 #include "structured/breakage.h"
 #include "structured/structured_map.h"
 
@@ -13,6 +14,8 @@ namespace frana {
 /// The scene of the columns: the bed's slope by central differences of its nodes, as far as there is ground;
 /// walls and barriers as obstacles.
 StructuredScene structured_scene(const Scene& scene);
+/// The same with its water. Holds on to `scene` until a flow is made of it.
+TwoPhaseScene two_phase_scene(const Scene& scene);
 
 class StructuredRun final : public Simulation {
 public:
@@ -23,7 +26,7 @@ public:
     const Status& status() const override { return status_; }
     bool at_rest() const override;
     /// "stress" is what the structure passes on, its undamaged share, "effective_stress" that and the earth pressure
-    /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it.
+    /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it; with water "depth" of nodes is that of both, "water_depth" its part.
     Frame frame() override;
     Sample at(const Vec2& point) const override;
     std::vector<std::string> remarks() const override;
@@ -31,17 +34,23 @@ public:
     std::vector<PhaseTime> timings() const override;
     void keep(Archive& archive) override;
 
-    const StructuredFlow& flow() const { return flow_; }
+    const StructuredFlow& flow() const { return both_ ? both_->columns() : *alone_; }
+    /// nullptr in a dry run.
+    const WaterFlow* water() const { return both_ ? &both_->water() : nullptr; }
 
 private:
     void book();
+    void book_water();
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
     void inner_fields(Frame& frame);
+    void water_fields(Frame& frame);
     double* add_field(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
 
     Raster bed_;
-    StructuredFlow flow_;
+    double water_density_ = 0.0;
+    std::unique_ptr<StructuredFlow> alone_;  ///< of a dry run
+    std::unique_ptr<TwoPhaseFlow> both_;     ///< of one with water
     StructuredMap map_;
     Neighbours neighbours_;  ///< of the start
     StepClock timed_;

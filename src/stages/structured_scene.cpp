@@ -1,8 +1,11 @@
 // The scene of structured columns that a case describes.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 
 #include "base/error.h"
+#include "grid/stencil.h"
 #include "particles/bed_points.h"
 #include "stages/structured_run.h"
 
@@ -100,9 +103,89 @@ StructuredScene structured_scene(const Scene& scene) {
     if (scene.sides == Sides::wall) add_walls(s.grid, s.obstacles);
     for (const Barrier& barrier : scene.barriers) s.obstacles.push_back(box_of(barrier));
     const Seeds& seeds = scene.particles;
+    s.confined = of.confined;
+    const double solid = 1.0 - (scene.water ? scene.water->share : 0.0);
     for (std::size_t p = 0; p < seeds.x.size(); ++p)
-        s.points.add({seeds.x[p], seeds.y[p], seeds.vx[p], seeds.vy[p], seeds.volume[p] * scene.density,
-                      seeds.depth[p], of.cohesion});
+        s.points.add({seeds.x[p], seeds.y[p], seeds.vx[p], seeds.vy[p], solid * seeds.volume[p] * scene.density,
+                      solid * seeds.depth[p], of.cohesion, of.share > 0.0 ? 0.0 : 1.0});
+    return s;
+}
+
+namespace {
+
+/// Depth and discharge of the water in the pores of the releases, spread as the columns are.
+class PoreWater {
+public:
+    PoreWater(const Scene& scene) : g_(scene.bed.geometry), depth_(size()), qx_(size()), qy_(size()) {
+        const Seeds& seeds = scene.particles;
+        for (std::size_t p = 0; p < seeds.x.size(); ++p) {
+            const Quadratic sx((seeds.x[p] - g_.x0) / g_.cell), sy((seeds.y[p] - g_.y0) / g_.cell);
+            const double h = scene.water->share * seeds.volume[p] / (g_.cell * g_.cell);
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i) {
+                    const Index a = std::clamp<Index>(sx.base + i, 0, g_.nx - 1), b = std::clamp<Index>(sy.base + j, 0, g_.ny - 1);
+                    const std::size_t k = static_cast<std::size_t>(b * g_.nx + a);
+                    const double w = sx.w[i] * sy.w[j] * h;
+                    depth_[k] += w, qx_[k] += w * seeds.vx[p], qy_[k] += w * seeds.vy[p];
+                }
+        }
+    }
+    WaterState at(std::size_t k) const {
+        const double h = depth_[k];
+        return h > 0.0 ? WaterState{h, qx_[k] / h, qy_[k] / h} : WaterState{};
+    }
+
+private:
+    std::size_t size() const { return static_cast<std::size_t>(g_.size()); }
+    GridGeometry g_;
+    std::vector<double> depth_, qx_, qy_;
+};
+
+/// Depth of the columns on the nodes of the terrain [m].
+std::vector<double> depths_of(const StructuredScene& columns) {
+    const StructuredFlow flow(columns);
+    const StructuredBody& body = flow.body();
+    const GridGeometry& g = columns.grid;
+    std::vector<double> depths(static_cast<std::size_t>(g.size()), 0.0);
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i)
+            if (StructuredMap::touches(body, i, j))
+                depths[static_cast<std::size_t>(j * g.nx + i)] = body.moved[body.grid.at(i, j)].depth;
+    return depths;
+}
+
+}  // namespace
+
+TwoPhaseScene two_phase_scene(const Scene& scene) {
+    const WaterPhase& of = *scene.water;
+    TwoPhaseScene s;
+    s.columns = structured_scene(scene);
+    s.exchange = of.exchange;
+    WaterScene& w = s.water;
+    const GridGeometry g = w.grid = scene.bed.geometry;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const double z : scene.bed.values)
+        if (std::isfinite(z)) highest = std::max(highest, z);
+    const auto node = [g](double x, double y) {
+        return static_cast<std::size_t>(std::lround((y - g.y0) / g.cell) * g.nx + std::lround((x - g.x0) / g.cell));
+    };
+    w.bed = [&scene, node, highest](double x, double y) {  // only called while the flow is made
+        const double z = scene.bed.values[node(x, y)];
+        return std::isfinite(z) ? z : highest;
+    };
+    const auto bound = std::make_shared<std::vector<double>>(of.level ? depths_of(s.columns) : std::vector<double>{});
+    const auto pores = std::make_shared<PoreWater>(scene);
+    w.start = [bound, pores, node, bed = w.bed, level = of.level](double x, double y) {
+        const std::size_t k = node(x, y);
+        WaterState state = pores->at(k);
+        if (level && *level > bed(x, y) + (*bound)[k] + state.depth) state = {*level - bed(x, y) - (*bound)[k], 0.0, 0.0};
+        return state;
+    };
+    if (of.rain > 0.0) w.rain = [rain = of.rain](double, double) { return rain; };
+    if (of.infiltration > 0.0) w.infiltration = [most = of.infiltration](double, double) { return most; };
+    w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
+    w.friction = of.friction;
+    w.gravity = scene.gravity;
     return s;
 }
 

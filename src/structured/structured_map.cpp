@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace frana {
 
@@ -13,35 +14,77 @@ StructuredMap::StructuredMap(const TileGrid& grid, const Vec2& centre, double fo
       centre_(centre),
       footprint_depth_(footprint_depth) {}
 
-void StructuredMap::note(const StructuredBody& body, double time) {
+namespace {
+
+/// What stands on a node.
+struct Standing {
+    double depth = 0.0, pressure = 0.0, inertia = 0.0;  ///< [m], [Pa], density * depth [kg/m^2]
+    Vec2 velocity{0, 0}, slope{0, 0};
+};
+
+Standing columns_on(const StructuredBody& body, Index k) {
+    const StructuredBody::Moved& node = body.moved[k];
+    if (!(node.depth > 0.0)) return {};
+    return {node.depth, body.density * node.pull * node.depth, body.density * node.depth, Vec2(node.vx, node.vy),
+            Vec2(body.pull[k].slope_x, body.pull[k].slope_y)};
+}
+
+/// With the water: velocities are those of both masses together.
+Standing with_water(const Standing& columns, const WaterBody& water, double density, Index k) {
+    const double h = water.now.h[k];
+    if (!(h > 0.0)) return columns;
+    const double per = 0.5 / water.grid.cell(), inertia = density * h;
+    const Vec2 v = h > water.film ? Vec2(Vec2(water.now.qx[k], water.now.qy[k]) / h) : Vec2(0, 0);
+    const Vec2 slope = per * Vec2(water.bed[k + 1] - water.bed[k - 1],
+                                  water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
+    return {columns.depth + h, columns.pressure + density * water.pull[k] * h, columns.inertia + inertia,
+            (columns.inertia * columns.velocity + inertia * v) / (columns.inertia + inertia), slope};
+}
+
+Standing on_node(const StructuredBody& body, const WaterFlow* water, Index i, Index j) {
+    const Index k = body.grid.at(i, j);
+    const Standing columns = StructuredMap::touches(body, i, j) ? columns_on(body, k) : Standing{};
+    return water ? with_water(columns, water->body(), body.water->by.material.fluid_density, k) : columns;
+}
+
+}  // namespace
+
+void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, double time) {
     const GridGeometry& g = body.grid.geometry();
-    of_tile_.resize(body.active.work.size());
-    for_each_work_tile(body.active, [&](Index n, Index tile) {
+    tiles_ = body.active.work;
+    if (water) {
+        tiles_.clear();
+        std::set_union(body.active.work.begin(), body.active.work.end(), water->body().work.begin(),
+                       water->body().work.end(), std::back_inserter(tiles_));
+    }
+    of_tile_.resize(tiles_.size());
+    const Index count = static_cast<Index>(tiles_.size());
+#pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
+    for (Index n = 0; n < count; ++n) {
         Sums sums;
+        const Index tile = tiles_[static_cast<std::size_t>(n)];
         const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
         for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, ny_); ++j)
             for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, nx_); ++i) {
-                const Index k = body.grid.at(i, j);
-                const StructuredBody::Moved& node = body.moved[k];
+                const Standing node = on_node(body, water, i, j);
                 if (!(node.depth > 0.0)) continue;
-                Peak& peak = peaks_[k];
+                Peak& peak = peaks_[body.grid.at(i, j)];
                 if (node.depth > footprint_depth_ && !(peak.depth > footprint_depth_)) peak.arrival = time;
                 peak.depth = std::max(peak.depth, node.depth);
-                peak.pressure = std::max(peak.pressure, body.density * node.pull * node.depth);
+                peak.pressure = std::max(peak.pressure, node.pressure);
                 if (node.depth >= 0.1 * footprint_depth_) {
-                    const StructuredBody::Pull& ground = body.pull[k];
-                    const double up = ground.slope_x * node.vx + ground.slope_y * node.vy;
-                    const double speed = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
+                    const double up = node.slope.dot(node.velocity);
+                    const double speed = std::sqrt(node.velocity.squaredNorm() + up * up);
                     peak.speed = std::max(peak.speed, speed);
-                    peak.dynamic_pressure = std::max(peak.dynamic_pressure, body.density * speed * speed);
+                    peak.dynamic_pressure = std::max(peak.dynamic_pressure, node.inertia / node.depth * speed * speed);
                 }
                 sums.max_depth = std::max(sums.max_depth, node.depth);
                 if (!(node.depth > footprint_depth_)) continue;
-                sums.covered_area += g.cell * g.cell * body.pull[k].open;
+                sums.covered_area += g.cell * g.cell;
                 sums.front = std::max(sums.front, (Vec2(g.x(i), g.y(j)) - centre_).norm());
             }
         of_tile_[static_cast<std::size_t>(n)] = sums;
-    });
+    }
     sums_ = {};
     for (const Sums& tile : of_tile_) {
         sums_.max_depth = std::max(sums_.max_depth, tile.max_depth);
@@ -55,7 +98,8 @@ bool StructuredMap::touches(const StructuredBody& body, Index i, Index j) {
     return body.active.in_work[static_cast<std::size_t>(tile)] != 0;
 }
 
-void StructuredMap::sample(const StructuredBody& body, const Vec2& point, double& depth, Vec2& velocity) {
+void StructuredMap::sample(const StructuredBody& body, const WaterFlow* water, const Vec2& point, double& depth,
+                           Vec2& velocity) {
     const GridGeometry& g = body.grid.geometry();
     const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
     const double v = std::clamp((point.y() - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
@@ -65,10 +109,9 @@ void StructuredMap::sample(const StructuredBody& body, const Vec2& point, double
     Vec2 flux(0, 0);
     for (Index dj = 0; dj < 2; ++dj)
         for (Index di = 0; di < 2; ++di) {
-            if (!touches(body, i + di, j + dj)) continue;
-            const StructuredBody::Moved& node = body.moved[body.grid.at(i + di, j + dj)];
+            const Standing node = on_node(body, water, i + di, j + dj);
             const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv) * node.depth;
-            depth += w, flux += w * Vec2(node.vx, node.vy);
+            depth += w, flux += w * node.velocity;
         }
     velocity = depth > 0.0 ? Vec2(flux / depth) : Vec2(0, 0);
 }

@@ -1,7 +1,8 @@
 #pragma once
-// Structured solids seen from above: depth and velocity on the nodes, and what each node ever saw.
+// Structured solids and their free water seen from above: depth and velocity on the nodes, and what each node ever saw.
 #include "observe/archive.h"
 #include "structured/structured_flow.h"
+#include "water/water_flow.h"
 
 namespace frana {
 
@@ -23,18 +24,20 @@ public:
 
     /// Takes what the nodes are now into the peaks; visits tiles near material only. Same bits for any number of
     /// threads.
-    void note(const StructuredBody& body, double time);
+    void note(const StructuredBody& body, const WaterFlow* water, double time);
     const Sums& sums() const { return sums_; }
     double footprint_depth() const { return footprint_depth_; }
     const Peak& peak(Index node) const { return peaks_[node]; }
     /// Whether the node is near material: elsewhere the body's nodes are of another time.
     static bool touches(const StructuredBody& body, Index i, Index j);
     /// Depth and velocity between the nodes, bilinear; beyond them the nearest. No elevation.
-    static void sample(const StructuredBody& body, const Vec2& point, double& depth, Vec2& velocity);
+    static void sample(const StructuredBody& body, const WaterFlow* water, const Vec2& point, double& depth,
+                       Vec2& velocity);
     void keep(Archive& archive);
 
 private:
     LazyArray<Peak> peaks_;
+    std::vector<Index> tiles_;  ///< with columns or water near
     std::vector<Sums> of_tile_;
     Sums sums_;
     Index nx_, ny_, stride_;

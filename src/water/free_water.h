@@ -1,5 +1,7 @@
 #pragma once
 // Free water as structured columns meet it: cells around the nodes of the same grid.
+#include <algorithm>
+
 #include "law/two_phase.h"
 
 namespace frana {
@@ -24,11 +26,11 @@ struct FreeWater {
     const double* bed;  ///< elevation above any datum [m]
     double film;        ///< water as shallow as this takes no part [m]
 
-    /// Share of its weight that water takes off a column's bed.
+    /// Share of its weight that water takes off a column's bed, 1 at most: what floats does not pull.
     double support(double bound_density, double bound_depth, double depth) const {
         const double full = by.void_ratio * bound_depth;
         const double share = depth < full ? depth / full : 1.0;
-        return share * by.pore_pressure * by.material.fluid_density / bound_density;
+        return std::min(1.0, share * by.pore_pressure * by.material.fluid_density / bound_density);
     }
 };
 

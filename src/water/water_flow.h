@@ -124,6 +124,9 @@ public:
     }
     /// Takes up what columns on these tiles (ascending) changed: status and ledger know it from now on.
     void take_changes(const std::vector<Index>& tiles);
+    /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene. Confined
+    /// mass is not part of it.
+    void keep(Archive& archive);
     /// State of the cell around a node; elevation of its surface [m]
     WaterState at(Index i, Index j) const;
     double surface(Index i, Index j) const;
