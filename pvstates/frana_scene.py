@@ -209,6 +209,19 @@ def show_flow(flow, view, look, array, title, limits, preset, invert=False):
     return display
 
 
+def show_particles(run_dir, view, look, height, colours):
+    """Particles as discs, `height` [m] above where they are; `colours` goes to paint()."""
+    particles = PVDReader(registrationName="particles", FileName=os.path.join(run_dir, "particles.pvd"))
+    display = Show(particles, view)
+    display.SetRepresentationType("Point Gaussian")
+    display.GaussianRadius = look["particle_radius"]
+    display.ShaderPreset = "Plain circle"
+    display.ScaleByArray = display.OpacityByArray = 0
+    display.Position = [0.0, 0.0, height]
+    paint(display, view, *colours)
+    without_lamp(display)
+
+
 def show_curves(source, view, x, curves, association="POINTS"):
     """Curves of a table or data set: {array: (label, colour, width, style)}, style 1 solid, 2 dashed."""
     display = Show(source, view, "XYChartRepresentation")

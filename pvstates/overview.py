@@ -1,8 +1,4 @@
 """Flow depth on the terrain, and beside it the particles in the colours of their speed, through time."""
-import os
-
-from paraview.simple import ColorBy, PVDReader, Show
-
 import frana_scene as scene
 
 SIZE = [1600, 800]  # of a picture [pixels]
@@ -25,21 +21,10 @@ def build(run_dir):
     scene.heading(left_view, "Flow depth")
 
     scene.show_terrain(terrain, right_view)
-    show_particles(run_dir, right_view, look)
+    scene.show_particles(run_dir, right_view, look, look["lift"], ("speed", "speed [m/s]", look["range"]["speed"],
+                                                                   "Plasma (matplotlib)"))
     scene.clock(right_view, grid)
     scene.heading(right_view, "Particles and their speed")
     scene.link_cameras([left_view, right_view])
     scene.at_time([left_view, right_view], look["busy_time"])
     return layout
-
-
-def show_particles(run_dir, view, look):
-    particles = PVDReader(registrationName="particles", FileName=os.path.join(run_dir, "particles.pvd"))
-    display = Show(particles, view)
-    display.SetRepresentationType("Point Gaussian")
-    display.GaussianRadius = look["particle_radius"]
-    display.ShaderPreset = "Plain circle"
-    display.ScaleByArray = display.OpacityByArray = 0
-    display.Position = [0.0, 0.0, look["lift"]]
-    scene.paint(display, view, "speed", "speed [m/s]", look["range"]["speed"], "Plasma (matplotlib)")
-    scene.without_lamp(display)

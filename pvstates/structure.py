@@ -1,8 +1,6 @@
 """Solids that hold together, from above, through time: damage of the columns, depth, what is left of their cohesion, and
 the larger principal stress of the structure (tension positive)."""
-import os
-
-from paraview.simple import Calculator, PVDReader, Show
+from paraview.simple import Calculator
 
 import frana_scene as scene
 
@@ -25,7 +23,8 @@ def build(run_dir):
     for view in views:
         scene.show_terrain(terrain, view)
         scene.show_line(edge, view, look["lift"])
-    show_damage(run_dir, views[0], look)
+    scene.show_particles(run_dir, views[0], look, look["lift_areas"],  # 0 is whole, 1 is grains
+                         ("damage", "damage", [0.0, 1.0], "Inferno (matplotlib)", True))
     scene.show_flow(flow, views[1], look, "depth", "depth [m]", look["range"]["depth"], "Viridis (matplotlib)")
     scene.show_flow(flow, views[2], look, "cohesion", "cohesion [Pa]", look["range"]["cohesion"],
                     "Viridis (matplotlib)")
@@ -39,16 +38,3 @@ def build(run_dir):
     scene.link_cameras(views)
     scene.at_time(views, look["last_time"])
     return layout
-
-
-def show_damage(run_dir, view, look):
-    """Columns as discs; 0 is whole, 1 is grains."""
-    particles = PVDReader(registrationName="particles", FileName=os.path.join(run_dir, "particles.pvd"))
-    display = Show(particles, view)
-    display.SetRepresentationType("Point Gaussian")
-    display.GaussianRadius = look["particle_radius"]
-    display.ShaderPreset = "Plain circle"
-    display.ScaleByArray = display.OpacityByArray = 0
-    display.Position = [0.0, 0.0, look["lift_areas"]]
-    scene.paint(display, view, "damage", "damage", [0.0, 1.0], "Inferno (matplotlib)", True)
-    scene.without_lamp(display)

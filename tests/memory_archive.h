@@ -47,3 +47,14 @@ private:
     std::map<std::string, Entry> entries_;
     bool loading_ = false;
 };
+
+/// All that a simulation keeps, but for its clock.
+template <class Simulation>
+std::map<std::string, MemoryArchive::Entry> kept_bits(Simulation& run) {
+    MemoryArchive archive;
+    run.keep(archive);
+    std::map<std::string, MemoryArchive::Entry> entries = archive.entries();
+    for (auto entry = entries.begin(); entry != entries.end();)
+        entry = entry->first.find("clock/") != std::string::npos ? entries.erase(entry) : std::next(entry);
+    return entries;
+}

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "solver/depth_averaged.h"
+#include "solver/stored_points.h"
 
 namespace frana {
 namespace {
@@ -15,21 +16,6 @@ constexpr Index kNodes = kTile * kTile;  ///< of a tile
 
 constexpr const char* kColumnNames[] = {"x",   "y",   "mass", "vx",  "vy",  "cxx", "cxy",
                                         "cyx", "cyy", "r1x",  "r1y", "r2x", "r2y", "depth"};
-
-UserError misfit(const char* what) {
-    return UserError(fmt::format("the kept state does not fit this case: {}; run without --resume", what));
-}
-
-/// Tiles with points and their ranges are all that is kept of the tiles.
-void require_whole(const ActiveTiles& active, const TileGrid& grid, Index points) {
-    const Index count = active.count();
-    bool sound = static_cast<Index>(active.begin.size()) == count + 1 && active.begin.front() == 0 &&
-                 active.begin.back() == points;
-    for (Index n = 0; sound && n < count; ++n)
-        sound = active.tile[n] >= 0 && active.tile[n] < grid.tiles() && active.begin[n] <= active.begin[n + 1] &&
-                (n == 0 || active.tile[n - 1] < active.tile[n]);
-    if (!sound) throw misfit("its tiles are not those of the points");
-}
 
 void keep_column(Archive& archive, const char* name, Column& column) { archive.array(name, column); }
 
@@ -89,7 +75,7 @@ void DepthAveraged::keep_points(Archive& archive) {
     c.each([&](const auto& column) {
         if (column.size() != c.id.size()) throw misfit("its columns differ in length");
     });
-    require_whole(flow_.active, flow_.grid, c.count());
+    require_whole(flow_.active, flow_.grid.tiles(), c.count());
     sorter_.list_tiles(flow_.grid, flow_.active);
 }
 

@@ -1,24 +1,10 @@
 // The state of structured columns between two steps, as it is kept and taken up again: the columns in their order
 // with the tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
-#include "base/error.h"
+#include "solver/stored_points.h"
 #include "structured/structured_flow.h"
 
 namespace frana {
 namespace {
-
-UserError misfit(const char* what) {
-    return UserError(std::string("the kept state does not fit this case: ") + what + "; run without --resume");
-}
-
-void keep_points(Archive& archive, StructuredPoints& points) {
-    const Archive::Part part(archive, "points");
-    int n = 0;
-    points.each([&](Column& column) { archive.array("column_" + std::to_string(n++), column); });
-    archive.array("id", points.id);
-    points.each([&](Column& column) {
-        if (column.size() != points.id.size()) throw misfit("its columns differ in length");
-    });
-}
 
 void keep_status(Archive& archive, StructuredStatus& s) {
     const Archive::Part part(archive, "status");
@@ -46,13 +32,7 @@ void StructuredFlow::keep(Archive& archive) {
     timed_.keep(archive);
     if (!archive.loading()) return;
     body_.grains = grains != 0;
-    const ActiveTiles& active = body_.active;
-    bool sound = active.begin.size() == active.tile.size() + 1 && active.begin.front() == 0 &&
-                 active.begin.back() == body_.points.count();
-    for (std::size_t n = 0; sound && n < active.tile.size(); ++n)
-        sound = active.tile[n] >= 0 && active.tile[n] < body_.grid.tiles() && active.begin[n] <= active.begin[n + 1] &&
-                (n == 0 || active.tile[n - 1] < active.tile[n]);
-    if (!sound) throw misfit("its tiles are not those of the columns");
+    require_whole(body_.active, body_.grid.tiles(), body_.points.count());
     take_tiles();
     const StructuredStatus kept = status_;
     look();

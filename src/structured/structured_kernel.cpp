@@ -1,7 +1,6 @@
-// The loops of a step of structured solids. Four columns go side by side; sums over nodes have one order.
+// The loops over the columns in a step of structured solids: four go side by side, and sums over nodes have one order.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "grid/stencils.h"
 #include "structured/structured_flow.h"
@@ -63,157 +62,6 @@ Double4 grain_push(const StructuredBody& body, Index p) {
     const Sym2 k = earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, q.layer[p], q.pull[p],
                                   body.rankine);
     return Double4{grains * k.xx, grains * k.yy, grains * k.xy, 0.0};
-}
-
-/// A node with its neighbours, for centred differences.
-struct Around {
-    const StructuredBody& body;
-    Index k, stride;
-
-    double depth(Index at) const { return body.nodes[at].m / body.pull[at].open; }
-    Double4 share(Index at) const {  // K (1 - f); beside dry nodes it goes on as it is here
-        const double m = body.nodes[at].m;
-        return m > 0.0 ? load(&body.push[at]) / m : load(&body.push[k]) / body.nodes[k].m;
-    }
-    /// Acceleration -g_z (K . grad h + h / 2 div K) of grains.
-    Vec2 acceleration(double pull, double cell, double depth_of_mass) const {
-        const double slope = 0.5 * depth_of_mass / cell;
-        const double hx = slope * (depth(k + 1) - depth(k - 1)),
-                     hy = slope * (depth(k + stride) - depth(k - stride));
-        const Double4 kk = load(&body.push[k]) / body.nodes[k].m;
-        const Double4 kx = share(k + 1) - share(k - 1), ky = share(k + stride) - share(k - stride);
-        const double half = 0.25 * depth_of_mass * depth(k) / cell;
-        return -pull * Vec2(kk[0] * hx + kk[2] * hy + half * (kx[0] + ky[2]),
-                            kk[2] * hx + kk[1] * hy + half * (kx[2] + ky[1]));
-    }
-};
-
-/// Of a cell: nodes on a face are in the obstacle, whatever round-off makes of their places.
-constexpr double kOnFace = 1e-6;
-
-/// A bed law's friction over a step that would change `before` to `driven` (law/bed_law.h); `across`: gravity that
-/// presses on the ground [m/s^2].
-template <class Law>
-Vec2 braked(const Law& law, const StructuredBody& body, const StructuredBody::Pull& ground, double across, double depth,
-            const Vec2& before, const Vec2& driven, double dt) {
-    const double speed = driven.norm();
-    if (speed == 0.0) return driven;
-    const Vec2 unit = driven / speed, slope(ground.slope_x, ground.slope_y);
-    const double along = slope.dot(unit), steep = std::sqrt(1.0 + slope.squaredNorm()),
-                 kappa = std::sqrt(1.0 + along * along);
-    const BedState state{across * steep / kappa, std::max(depth / steep, 1e-9), kappa, 1.0 / steep,
-                         body.gravity, body.density};
-    return speed_after(law, state, std::max(0.0, before.dot(unit)), speed, dt) * unit;
-}
-
-/// Product of two velocities along the ground [m^2/s^2].
-double along_ground(const StructuredBody::Pull& ground, const Vec2& a, const Vec2& b) {
-    const Vec2 slope(ground.slope_x, ground.slope_y);
-    return a.dot(b) + slope.dot(a) * slope.dot(b);
-}
-
-/// A node's columns as they meet its water.
-struct Met {
-    double mass;         ///< without what was released [kg]
-    double depth;        ///< of grains and confined water [m]
-    double support = 0;  ///< share of the weight that water takes off the bed
-    Vec2 lift{0, 0};     ///< acceleration by the pressure of the water [m/s^2]
-};
-
-/// Elevation of the water's surface where there is water, else `otherwise`.
-double surface_at(const StructuredBody& body, Index k, double otherwise) {
-    const FreeWater& water = *body.water;
-    const StructuredBody::Bound& bound = body.bound[k];
-    const double open = body.pull[k].open;  // 0 beyond the tiles of columns
-    const double depth = open > 0.0 ? (bound.volume - bound.released) / (open * body.grid.cell() * body.grid.cell()) : 0.0;
-    return water.h[k] > water.film ? water.bed[k] + water.h[k] + depth : otherwise;
-}
-
-/// Slope of the surface over the cells on both sides that have water, or over one.
-Vec2 surface_slope(const StructuredBody& body, Index k) {
-    const double here = surface_at(body, k, 0.0), nan = std::numeric_limits<double>::quiet_NaN();
-    const auto along = [&](Index step) {
-        const double up = surface_at(body, k + step, nan), down = surface_at(body, k - step, nan);
-        const int sides = (up == up ? 1 : 0) + (down == down ? 1 : 0);
-        if (sides == 0) return 0.0;
-        return ((up == up ? up : here) - (down == down ? down : here)) / (sides * body.grid.cell());
-    };
-    return {along(1), along(body.grid.stride())};
-}
-
-/// A node's columns, without what they released in the last step, and what the water bears of them.
-Met meet_water(const StructuredBody& body, Index k) {
-    const FreeWater& water = *body.water;
-    const StructuredBody::Bound& bound = body.bound[k];
-    const StructuredBody::Pull& ground = body.pull[k];
-    const double area = ground.open * body.grid.cell() * body.grid.cell();
-    Met met{body.nodes[k].m - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
-    if (!(water.h[k] > water.film)) return met;
-    met.support = water.support(met.mass / (area * met.depth), met.depth, water.h[k]);
-    met.lift = -met.support * (ground.across * surface_slope(body, k) + Vec2(ground.x, ground.y));
-    return met;
-}
-
-/// Drag and virtual mass between a node's columns and its water over a step that brought the columns from `before`
-/// to `driven`; returns their velocity.
-Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt) {
-    FreeWater& water = *body.water;
-    const StructuredBody::Bound& bound = body.bound[k];
-    const double area = body.pull[k].open * body.grid.cell() * body.grid.cell();
-    const double h = water.h[k], whole = met.depth + h, solids = bound.solids / area;
-    const double confined = std::max(0.0, met.depth - solids), fluid = confined + h;
-    const Mixture mixture{solids / whole, bound.structured / bound.solids, confined / fluid};
-    Phase c{met.mass / area, before, (met.mass / area / dt) * (driven - before)};
-    Phase u{water.by.material.fluid_density * h, Vec2(water.qx[k], water.qy[k]) / h};
-    const double flux = (mixture.bound() * c.velocity + mixture.free() * u.velocity).norm();
-    const Exchange by{whole * water.drag.coefficient(mixture, flux), water.by.material.power,
-                      virtual_mass(water.by.virtual_mass, water.by.material, mixture, whole)};
-    exchange(by, dt, c, u);
-    water.qx[k] = h * u.velocity.x(), water.qy[k] = h * u.velocity.y();
-    return c.velocity;
-}
-
-template <bool kWater, class Law>
-Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, double dt, StructuredTally& tally) {
-    const Node& node = body.nodes[k];
-    const StructuredBody::Pull& pull = body.pull[k];
-    const double cell = body.grid.cell(), depth_of_mass = 1.0 / (body.density * cell * cell);
-    const Vec2 before = Vec2(node.x, node.y) / node.m;
-    Met met{node.m, node.m / pull.open * depth_of_mass};
-    if constexpr (kWater) {
-        met = meet_water(body, k);
-        tally.impulse.water -= (node.m - met.mass) * before;
-    }
-    const Vec2 weight = dt * Vec2(pull.x, pull.y);
-    Vec2 v = before + weight;
-    tally.impulse.weight += met.mass * weight;
-    const double across = (1.0 - met.support) * pull.across;
-    if (body.grains) {
-        const Vec2 push = dt * Around{body, k, body.grid.stride()}.acceleration(across, cell, depth_of_mass);
-        v += push;
-        tally.impulse.pressure += met.mass * push;
-    }
-    if constexpr (kWater) {
-        v += dt * met.lift;
-        tally.impulse.weight += met.mass * dt * met.lift;
-        const Vec2 alone = v;
-        if (body.water->h[k] > body.water->film) {  // drag knows what friction holds, and friction then what drag does
-            const Vec2 held = braked(law, body, pull, across, met.depth, before, v, dt);
-            v += drag(body, k, met, before, held, dt) - held;
-        }
-        tally.impulse.water += met.mass * (v - alone);
-    }
-    const Vec2 slowed = braked(law, body, pull, across, met.depth, before, v, dt);
-    tally.impulse.friction += met.mass * (slowed - v);
-    Vec2 stopped = slowed;
-    for (const Obstacle& obstacle : body.obstacles) stopped = obstacle.met(place, stopped, kOnFace * cell);
-    tally.impulse.obstacles += met.mass * (stopped - slowed);
-    // By the velocity that is left: what rests under stress and friction loses nothing.
-    tally.friction += met.mass * along_ground(pull, v - slowed, stopped);
-    tally.obstacles += met.mass * along_ground(pull, slowed - stopped, stopped);
-    tally.kinetic += 0.5 * met.mass * along_ground(pull, stopped, stopped);
-    tally.potential += met.mass * body.gravity * (pull.elevation + 0.5 * met.depth);
-    return {stopped.x(), stopped.y(), across, met.depth};
 }
 
 /// What a column takes from its nodes, and how it changes there [1/cell].
@@ -340,38 +188,6 @@ void count(StructuredBody& body, Index p, StructuredSums& sums) {
     sums.max_wave = std::max(sums.max_wave, std::sqrt(speed2) + std::sqrt(2.0 * q.pull[p] * depth));
 }
 
-/// What the columns released in the last step joins the water of their nodes, with the nodes' velocity.
-void release_to_nodes(StructuredBody& body) {
-    FreeWater& water = *body.water;
-    for_each_work_tile(body.active, [&](Index, Index tile) {
-        const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
-        for (Index j = 0; j < kTile; ++j)
-            for (Index k = first + j * body.grid.stride(); k < first + j * body.grid.stride() + kTile; ++k) {
-                if (!(body.bound[k].released > 0.0)) continue;
-                const double depth = body.bound[k].released / (body.pull[k].open * body.grid.cell() * body.grid.cell());
-                const Node& node = body.nodes[k];
-                water.h[k] += depth;
-                water.qx[k] += depth * (node.x / node.m), water.qy[k] += depth * (node.y / node.m);
-            }
-    });
-}
-
-template <bool kWater, class Law>
-void move_nodes_by(const Law& law, StructuredBody& body, double dt) {
-    const GridGeometry& g = body.grid.geometry();
-    for_each_work_tile(body.active, [&](Index n, Index tile) {
-        StructuredTally tally;
-        const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
-        for (Index j = j0; j < j0 + kTile; ++j)
-            for (Index i = i0; i < i0 + kTile; ++i) {
-                const Index k = body.grid.at(i, j);
-                body.moved[k] =
-                    body.nodes[k].m > 0.0 ? move<kWater>(law, body, k, {g.x(i), g.y(j)}, dt, tally) : Moved{};
-            }
-        body.tallies[static_cast<std::size_t>(n)] = tally;
-    });
-}
-
 }  // namespace
 
 void clear_nodes(StructuredBody& body) {
@@ -402,41 +218,6 @@ void scatter(StructuredBody& body, double dt) {
                 if (body.water) give(body.bound.data(), stride, reach, bound_of(body, p + lane));
             }
         }
-    });
-}
-
-void move_nodes(StructuredBody& body, double dt) {
-    if (body.water) release_to_nodes(body);
-    std::visit(
-        [&](const auto& law) {
-            if (body.water)
-                move_nodes_by<true>(law, body, dt);
-            else
-                move_nodes_by<false>(law, body, dt);
-        },
-        body.bed_law);
-}
-
-void look_nodes(StructuredBody& body) {
-    const double cell = body.grid.cell(), depth_of_mass = 1.0 / (body.density * cell * cell);
-    for_each_work_tile(body.active, [&](Index n, Index tile) {
-        StructuredTally tally;
-        const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
-        for (Index j = 0; j < kTile; ++j)
-            for (Index k = first + j * body.grid.stride(); k < first + j * body.grid.stride() + kTile; ++k) {
-                const Node& node = body.nodes[k];
-                body.moved[k] = {};
-                if (!(node.m > 0.0)) continue;
-                const StructuredBody::Pull& pull = body.pull[k];
-                const double depth = body.water ? body.bound[k].volume / (pull.open * cell * cell)
-                                                : node.m / pull.open * depth_of_mass;
-                const Vec2 v = Vec2(node.x, node.y) / node.m;
-                const double support = body.water ? meet_water(body, k).support : 0.0;
-                body.moved[k] = {v.x(), v.y(), (1.0 - support) * pull.across, depth};
-                tally.kinetic += 0.5 * node.m * along_ground(pull, v, v);
-                tally.potential += node.m * body.gravity * (pull.elevation + 0.5 * depth);
-            }
-        body.tallies[static_cast<std::size_t>(n)] = tally;
     });
 }
 
