@@ -70,9 +70,12 @@ std::string total_text(const BuiltScene& built) {
         volume += release.report.volume;
         particle_volume += release.report.particle_volume;
     }
+    const auto& water = built.scene.water;
+    const double density = water ? (1.0 - water->share) * built.scene.density +
+                                       water->share * water->exchange.material.fluid_density
+                                 : built.scene.density;
     return fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n",
-                       built.scene.particles.count(), particle_volume, volume,
-                       particle_volume * built.scene.density);
+                       built.scene.particles.count(), particle_volume, volume, particle_volume * density);
 }
 
 struct Forecast {
