@@ -137,6 +137,24 @@ TEST_CASE("Scenes that once broke an invariant break none", "[stress]") {
         {8080, 1473, "scheme.cfl", "0.03842298365322716"},
         {8080, 4496, "material.rheology.viscosity", "0.008512986065753394"},
         {20261, 622, "scheme.curvature_length", "0.625"},
+        // A first step as long as a film at rest asks for, on a cliff of many cells.
+        {4711, 5113, "material.bed.manning_n", "0.01029686055612272"},
+        {4711, 7846, "material.bed.mu_2", "1.2467439864863565"},
+        {4711, 10028, "scheme.cfl", "0.3481556009880239"},
+        // Friction's change, taken from a heavy stream, drove a light point of flip the other way.
+        {4711, 907, "scheme.cfl", "0.16744233626069174"},
+        // A margin's surface ended on the ground beside it, and round-off chose whether that was a shore.
+        {4711, 2417, "scheme.curvature_length", "40.0"},
+        // One pixel's energy, which nodes do not see at first.
+        {4711, 4763, "scheme.cfl", "0.27902058934855273"},
+        // Affine transfers where velocity changes from cell to cell.
+        {4711, 1475, "material.rheology.viscosity", "2.397281873451208"},
+        {31415, 1275, "material.rheology.yield_stress", "10096.483538082297"},
+        // Points of the paper preset that carry a depth of tens of metres where nodes have half a metre.
+        {4711, 6515, "material.rheology.yield_stress", "614.124606380038"},
+        {60601, 1062, "material.bed.xi", "569332.5874043602"},
+        // Linear shapes have no energy law.
+        {77003, 1805, "scheme.cfl", "0.2813935057952504"},
     };
     for (const auto& [seed, n, key, value] : past) {
         const Draft draft = draw(seed, n);
