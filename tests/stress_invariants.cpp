@@ -213,6 +213,27 @@ TEST_CASE("A falsified state is seen, by the invariant that it breaks", "[stress
     CHECK(broken_by([](Snapshot& s) { s.max_speed = 13.0; }) == "speed");
 }
 
+TEST_CASE("Energy is judged with linear shapes only where a scene is claimed to be resolved", "[stress]") {
+    Draft draft = mound();
+    draft.keys["scheme.shape"] = "\"linear\"";
+    const auto heat = [](Snapshot& s) { s.now.kinetic += 1e6; };
+    CHECK(broken_by(draft, heat) == "");
+    draft.claims.resolved = true;
+    CHECK(broken_by(draft, [](Snapshot&) {}) == "");
+    CHECK(broken_by(draft, heat) == "energy");
+}
+
+TEST_CASE("A speed beyond the line is allowed by what velocity changes across a cell, and no more", "[stress]") {
+    // The mound's line is 2 sqrt(g h) and a fall of h, 9.4 m/s at 1.5 m; its own gradients stay below a quarter of that.
+    const auto fast = [](double speed, double change) {
+        return broken_by([=](Snapshot& s) { s.max_speed = speed, s.points.cxy[3] = change; });
+    };
+    CHECK(fast(13.0, 0.0) == "speed");
+    CHECK(fast(13.0, 6.0) == "");
+    CHECK(fast(16.0, 6.0) == "speed");
+    CHECK(fast(20.0, 1e3) == "speed");
+}
+
 TEST_CASE("A point of a resting pile that moves by one bit is seen", "[stress]") {
     const auto nudge = [](Snapshot& s) { s.points.x[0] = std::nextafter(s.points.x[0], 1e9); };
     CHECK(broken_by(resting_mound(), nudge) == "rest");

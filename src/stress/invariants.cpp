@@ -223,7 +223,7 @@ std::optional<Violation> Watch::momentum(const Snapshot& state) {
 double Watch::slope_uphill() const { return std::min(facts_.steepest, deepest_ / facts_.cell); }
 
 std::optional<Violation> Watch::energy(const Snapshot& state) {
-    if (!facts_.energy_law || facts_.linear) return std::nullopt;
+    if (!facts_.energy_law || (facts_.linear && !facts_.claims.resolved)) return std::nullopt;
     const Status &first = start_.now, &now = state.now;
     const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
                           (now.energy_left - first.energy_left);

@@ -66,9 +66,10 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   turned over, where the model has an energy law. Truncation errs by a share of what is there, most at steps of the
 ///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. The start is that of
 ///   the release: a column of one pixel has on nodes, which average its depth, a fraction of its energy, and the nodes see
-///   more or less of it as its points move and split. Not for linear shapes: their gradients jump at nodes, so that work and
-///   potential differ by a share that no time step mends (seed 77003, scene 1805: 1.04, 1.02 and 1.03e6 J gained at a
-///   scheme.cfl of 0.28, 0.1 and 0.03, a fifth of that with quadratic and cubic ones). Over a bed bent
+///   more or less of it as its points move and split. Not for linear shapes, but in scenes claimed to be resolved: their
+///   gradients jump at nodes, so that work and potential differ by a share that no time step mends (seed 77003, scene
+///   1805: 1.04, 1.02 and 1.03e6 J gained at a scheme.cfl of 0.28, 0.1 and 0.03, a fifth of that with quadratic and cubic
+///   ones). Over a bed bent
 ///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
 ///   second differences of the bed. Where the surface slopes against the bed (the flank of a heap that runs uphill) the
 ///   drive is the plain gradient (kick_bed.h), and keeps the energy of the horizontal velocity: what the vertical one
