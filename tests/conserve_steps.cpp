@@ -89,3 +89,18 @@ TEST_CASE("Friction drives no point of flip: what it takes of the nodes' velocit
     }
     CHECK(std::abs(change - start) <= 1e-12 * size);  // sums of some hundred terms in twenty steps
 }
+
+TEST_CASE("Linear shapes take no more viscosity in a step than is stable for them", "[conserve][steps]") {
+    const auto run = [](double cap) {
+        Scene scene = scene_on(24, 24, 1.0, [](double, double) { return 0.0; });
+        scene.scheme.shape = Shape::linear;
+        scene.scheme.stress_cap = cap;
+        scene.rheology = rheology::Newtonian{1e7};
+        fill(scene, [](double x, double y) { return std::hypot(x - 12, y - 12) < 6 ? 0.3 : 0.0; });
+        DepthAveraged simulation(scene);
+        while (simulation.status().step < 20) simulation.advance(1e9);
+        return simulation.flow().columns.x;
+    };
+    CHECK(run(0.5) == run(0.25));
+    CHECK(run(0.25) != run(0.1));
+}
