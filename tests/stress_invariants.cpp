@@ -145,6 +145,8 @@ TEST_CASE("Scenes that once broke an invariant break none", "[stress]") {
         {4711, 907, "scheme.cfl", "0.16744233626069174"},
         // A margin's surface ended on the ground beside it, and round-off chose whether that was a shore.
         {4711, 2417, "scheme.curvature_length", "40.0"},
+        // Halves that linear shapes held on the first node, but just off the last.
+        {161803, 1071, "material.rheology.viscosity", "0.6866850603511693"},
         // One pixel's energy, which nodes do not see at first.
         {4711, 4763, "scheme.cfl", "0.27902058934855273"},
         // Affine transfers where velocity changes from cell to cell.
@@ -153,6 +155,11 @@ TEST_CASE("Scenes that once broke an invariant break none", "[stress]") {
         // Points of the paper preset that carry a depth of tens of metres where nodes have half a metre.
         {4711, 6515, "material.rheology.yield_stress", "614.124606380038"},
         {60601, 1062, "material.bed.xi", "569332.5874043602"},
+        // Viscosity that linear shapes could not take in one step.
+        {161803, 8811, "material.rheology.viscosity", "43759.95271282277"},
+        // Bends that turn a velocity by almost half within a cell.
+        {161803, 3519, "material.rheology.viscosity", "11331.807323507024"},
+        {161803, 8685, "material.rheology.viscosity", "0.6226696922744507"},
         // Linear shapes have no energy law.
         {77003, 1805, "scheme.cfl", "0.2813935057952504"},
     };

@@ -122,6 +122,7 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
                        scene.terrain != TerrainModel::linearised && !scene.scheme.paper_pressure;
     const Transfer transfer = scene.scheme.transfer;
     facts.affine = transfer == Transfer::tpic || transfer == Transfer::apic;
+    facts.turn = bends.sharpest * flow.cell;
     facts.linear = scene.scheme.shape == Shape::linear;
     facts.carried_depth = scene.scheme.paper_pressure;
     facts.hidden_energy = std::max(0.0, facts.release_energy - depth_energy(flow));
@@ -224,6 +225,7 @@ double Watch::slope_uphill() const { return std::min(facts_.steepest, deepest_ /
 
 std::optional<Violation> Watch::energy(const Snapshot& state) {
     if (!facts_.energy_law || (facts_.linear && !facts_.claims.resolved)) return std::nullopt;
+    if (facts_.turn * facts_.turn > kEnergyShare) return std::nullopt;
     const Status &first = start_.now, &now = state.now;
     const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
                           (now.energy_left - first.energy_left);

@@ -38,6 +38,7 @@ struct Facts {
     /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
     double hidden_energy = 0.0;
     bool linear = false;         ///< linear shape functions
+    double turn = 0.0;           ///< largest change of the slope across a cell that turns velocities [1]
     bool affine = false;         ///< points bring the nodes a velocity that changes along the gradient they carry
     bool carried_depth = false;  ///< pressure is that of the depth which points carry, not of the nodes' (paper preset)
     double one_cell_drop = 0.0;  ///< largest difference of the bed between neighbouring nodes [m]
@@ -69,7 +70,10 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   more or less of it as its points move and split. Not for linear shapes, but in scenes claimed to be resolved: their
 ///   gradients jump at nodes, so that work and potential differ by a share that no time step mends (seed 77003, scene
 ///   1805: 1.04, 1.02 and 1.03e6 J gained at a scheme.cfl of 0.28, 0.1 and 0.03, a fifth of that with quadratic and cubic
-///   ones). Over a bed bent
+///   ones). Nor where the bed turns velocities by so much across a cell that the square of it, which a scheme of second
+///   order errs by, is more than `kEnergyShare` (seed 161803, scenes 3519 and 8685 turn by 0.47 and
+///   0.40, with a curvature that is not smoothed: 1.42e6 and 778 J gained, 1.29e6 and 612 J with steps six and nine times
+///   shorter; no more than is allowed with the default smoothing). Over a bed bent
 ///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
 ///   second differences of the bed. Where the surface slopes against the bed (the flank of a heap that runs uphill) the
 ///   drive is the plain gradient (kick_bed.h), and keeps the energy of the horizontal velocity: what the vertical one
