@@ -37,11 +37,12 @@ struct Linear2 {
 };
 constexpr Linear2 kAfter{1.0, -2.0, 0.11, 0.07, -0.05, 0.03}, kBefore{0.4, 0.2, -0.02, 0.05, 0.08, 0.01};
 
+constexpr double kKept = 0.75;  // what friction left of the nodes' velocity
 void set_nodes(Flow& flow) {
     for_each_work_tile(flow.active, [&](Index, Index tile) {
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
             const double x = 2.0 * static_cast<double>(i), y = 2.0 * static_cast<double>(j);
-            flow.nodes.motions()[k] = {kAfter.vx(x, y), kAfter.vy(x, y), 1.0, 0.0};
+            flow.nodes.motions()[k] = {kAfter.vx(x, y), kAfter.vy(x, y), 1.0, kKept};
             flow.nodes.before[k] = {kBefore.vx(x, y), kBefore.vy(x, y)};
         });
     });
@@ -66,9 +67,10 @@ TEST_CASE("Every transfer gathers a linear velocity and its gradient exactly", "
     const Columns& c = flow.columns;
     for (std::size_t p = 0; p < seen.vx.size(); ++p) {
         const double x = 2.0 * c.x[p], y = 2.0 * c.y[p];
-        // FLIP adds the nodes' change to the point's own velocity, and takes the rest from the nodes.
-        CHECK(seen.vx[p] == Approx(kAfter.vx(x, y) + keep * (c.vx[p] - kBefore.vx(x, y))).epsilon(kRoundOff));
-        CHECK(seen.vy[p] == Approx(kAfter.vy(x, y) + keep * (c.vy[p] - kBefore.vy(x, y))).epsilon(kRoundOff));
+        // FLIP adds what forces changed on the nodes to the point's own velocity, leaves what friction left of the nodes',
+        // and takes the rest from the nodes.
+        CHECK(seen.vx[p] == Approx(kAfter.vx(x, y) + keep * kKept * (c.vx[p] - kBefore.vx(x, y))).epsilon(kRoundOff));
+        CHECK(seen.vy[p] == Approx(kAfter.vy(x, y) + keep * kKept * (c.vy[p] - kBefore.vy(x, y))).epsilon(kRoundOff));
         CHECK(seen.cxx[p] == Approx(kAfter.xx).margin(kRoundOff));
         CHECK(seen.cxy[p] == Approx(kAfter.xy).margin(kRoundOff));
         CHECK(seen.cyx[p] == Approx(kAfter.yx).margin(kRoundOff));

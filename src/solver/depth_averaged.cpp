@@ -16,6 +16,9 @@ constexpr Index kStepsBetweenSplits = 3;
 /// keeps 16 + d + 2 < 32 - d - 1 (sub-points reach from one node before the quadratic stencil to one behind it), d <= 6;
 /// cubic: d <= 5. A step that moves a point by more than 4 cells is refused.
 constexpr double kDriftLimit = 3.0;
+/// A step in which a signal would cross so many times what it was chosen for (scheme.cfl) is shortened. The default scheme
+/// holds to four times its scheme.cfl (tests/cfl_map.txt).
+constexpr double kFarther = 2.0;
 double drift_before_carry(const Scheme& scheme) { return scheme.shape == Shape::cubic ? 1.0 : 2.0; }
 
 double least_split_mass(const Scene& scene) {
@@ -97,9 +100,7 @@ void DepthAveraged::level_points(double level) {
 
 /// One step: the nodes are kicked and braked, the points are carried and deposit where they arrive.
 void DepthAveraged::advance(double until) {
-    const double dt = step_length(until);
-    const double kick = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
-    book_kick(timed_("kick and friction", [&] { return kick_->kick(flow_, kick, dt); }), kick);
+    const double dt = timed_("kick and friction", [&] { return kick_nodes(step_length(until)); });
     timed_("kick and friction", [&] { mirror_motion(flow_); });
     const double next_kick = 0.5 * (dt + longest_step());
     const bool adapts = (status_.step + 1) % kStepsBetweenSplits == 0 || drift_ > drift_before_carry(flow_.scheme);
@@ -113,6 +114,24 @@ void DepthAveraged::advance(double until) {
     if (adapts || points.left_count > 0) adapt_points(adapts, points.left_count > 0);
     if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_kick); });
     arrive(points);
+}
+
+/// Kicks the nodes for a step of `dt` or, where forces drive them much farther than the step was chosen for, a shorter
+/// one: the step follows the last one's signal, and a film on a cliff, say, has none before it falls. Returns the step.
+double DepthAveraged::kick_nodes(double dt) {
+    const double reach = flow_.scheme.cfl * flow_.cell;
+    const double before = signal_;
+    for (;;) {
+        const double kick = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
+        const KickSums sums = kick_->kick(flow_, kick, dt);
+        if (!(sums.max_signal * dt > kFarther * reach)) {
+            book_kick(sums, kick);
+            return dt;
+        }
+        const double pull = (sums.max_signal - before) / kick;  // of the node that is driven farthest [m/s^2]
+        const double start = before + 0.5 * pull * status_.dt;
+        dt = std::min(0.5 * dt, 2.0 * reach / (start + std::sqrt(start * start + 2.0 * pull * reach)));
+    }
 }
 
 /// What follows from a deposit: depth, surface, status, peaks.

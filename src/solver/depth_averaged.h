@@ -63,6 +63,7 @@ private:
     void adapt_points(bool deposit_follows, bool points_left);
     double longest_step() const;
     double step_length(double until) const;
+    double kick_nodes(double dt);
     void book_kick(const KickSums& sums, double kick);
     void book_points(const PointSums& sums);
     void require_sound(const PointSums& sums) const;

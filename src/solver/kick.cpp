@@ -13,15 +13,20 @@ namespace {
 
 constexpr double kRoundOff = 64.0 * std::numeric_limits<double>::epsilon();  ///< of a surface's height
 
+constexpr double kSlowest = 1e-30;  ///< below any speed, above the root of the smallest number [m/s]
+
 /// Slope of the free surface at a node with material, along one axis. Uniform depth gives the bed's own slope, a lake gives
 /// zero, whatever the bed. A dry neighbour that stands higher is a shore and takes no part; a dry neighbour that
-/// lies lower enters with its bed, and drives the front. One-sided, a film that follows a curved bed takes the bed's own
-/// slope at the node (the difference to a side has the slope of half a cell away); `slope`: that of the bed.
+/// lies lower enters with its bed, and drives the front. What is as high but for round-off lies lower: a margin's surface
+/// often ends on the ground beside it (z_min), and whether that takes part is a factor of two. One-sided, a film that
+/// follows a curved bed takes the bed's own slope at the node (the difference to a side has the slope of half a cell
+/// away); `slope`: that of the bed.
 double raw_gradient(const Flow& flow, Index k, Index step, bool wide, double slope) {
     const Nodes& nodes = flow.nodes;
     const double *e = nodes.surface.data() + k, *z = flow.bed.z.data() + k, cell = flow.cell;
     if (wide) return (8.0 * (e[step] - e[-step]) - (e[2 * step] - e[-2 * step])) / (12.0 * cell);
-    const auto shore = [&](Index n) { return !(nodes.flags[k + n] & kWet) && e[n] > e[0]; };
+    const double same = kRoundOff * std::abs(e[0]);
+    const auto shore = [&](Index n) { return !(nodes.flags[k + n] & kWet) && e[n] - e[0] > same; };
     const bool ahead = shore(step), behind = shore(-step);
     const auto to_side = [&](Index n) {
         const double rise = (e[n] - e[0]) / cell, ground = (z[n] - z[0]) / cell;
@@ -61,6 +66,7 @@ struct Node {
 template <class Real>
 struct Kicked {
     Real vx, vy, kinetic, dissipated, wave_gravity;
+    Real kept;  ///< share of the velocity that friction left [1]
 };
 
 /// At the rim of a stencil mass vanishes faster than force: a node that has depth counts half of it at least, or a
@@ -167,7 +173,7 @@ private:
             const auto after = kicked(flow, typename Terrain::template Bed<Double4>(flow, k), node, dt);
             add(flow, node, after, 1.0, work.four);
             Double4 out[4];
-            transpose(after.vx, after.vy, node.depth, Double4{}, out);
+            transpose(after.vx, after.vy, node.depth, after.kept, out);
             for (int n = 0; n < 4; ++n) store(motion + n, out[n]);
         } else {
             for (Index n = 0; n < 4; ++n) kick_node(flow, k + n, i + n, j, dt, work.single);
@@ -181,7 +187,7 @@ private:
     void kick_node(Flow& flow, Index k, Index i, Index j, double dt, Sums<double>& sums) {
         const Nodes& nodes = flow.nodes;
         Motion& motion = flow.nodes.motions()[k];
-        motion = {0.0, 0.0, nodes.depth[k], 0.0};
+        motion = {0.0, 0.0, nodes.depth[k], 1.0};
         if (!(nodes.flags[k] & kMoving)) return;
         const double share = flow.share(i, j);
         if (share == 0.0) return;
@@ -194,6 +200,7 @@ private:
         const Kicked<double> after = dt > 0.0 ? kicked(flow, bed, node, dt) : resting_clock(bed, node);
         motion.vx = after.vx;
         motion.vy = after.vy;
+        motion.kept = after.kept;
         add(flow, node, after, share, sums);
     }
 
@@ -213,7 +220,7 @@ private:
     static Kicked<double> resting_clock(const Bed& bed, const Node<double>& n) {
         double vz = 0.0;
         if constexpr (Terrain::kSteep) vz = n.vx * bed.bx + n.vy * bed.by;
-        return {n.vx, n.vy, 0.5 * (n.vx * n.vx + n.vy * n.vy + vz * vz), 0.0, 0.0};
+        return {n.vx, n.vy, 0.5 * (n.vx * n.vx + n.vy * n.vy + vz * vz), 0.0, 0.0, 1.0};
     }
 
     Node<double> prepared(const Flow& flow, Index k) const {
@@ -339,7 +346,8 @@ private:
     template <class Real>
     Kicked<Real> braked(const BedStateOf<Real>& state, const Node<Real>& n, Real dx, Real dy, Real bx, Real by,
                         Real wave_gravity, double dt) const {
-        const Real driven = sqrt(dx * dx + dy * dy), unit = select(driven > 0.0, 1.0 / driven, Real{});
+        // A node that forces stopped has the share kept of the slowest, or round-off would decide what flip's points keep.
+        const Real driven = max(sqrt(dx * dx + dy * dy), Real{} + kSlowest), unit = 1.0 / driven;
         const Real s0 = max(Real{}, (n.vx * dx + n.vy * dy) * unit);
         const Real speed = stopping(state, s0, driven, dt, speeds_after(law_, state, s0, driven, dt));
         const Real keep = speed * unit, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
@@ -349,7 +357,7 @@ private:
         const Real mx = 0.5 * (n.vx + vx), my = 0.5 * (n.vy + vy), mz = mx * bx + my * by;
         const Real bore = -dt * (n.loss_x * (mx + bx * mz) + n.loss_y * (my + by * mz));
         const Real work = state.kappa * state.kappa * (driven - speed) * 0.5 * (s0 + speed) + bore;
-        return {vx, vy, kinetic, select(driven > 0.0, work, Real{}), wave_gravity};
+        return {vx, vy, kinetic, select(driven > kSlowest, work, Real{}), wave_gravity, keep};
     }
 
     /// `speed`, or the mean speed over the coming drift if friction ends the motion in it, and holds: the speed in the

@@ -19,7 +19,7 @@ struct alignas(32) Deposit {
 struct alignas(32) Motion {
     double vx, vy;  ///< velocity after the kick [m/s]
     double depth;   ///< [m]
-    double unused;
+    double kept;    ///< share of the velocity that friction left [1]; read by flip
 };
 
 /// A pair of numbers per node.

@@ -81,14 +81,14 @@ void halve(Flow& flow, Index p, Index q, bool first) {
     held.vy[p] += dvy;
 }
 
-/// Only after all halving, or its order would tell. Slopes of linear shapes jump at nodes, and a point on the last
-/// node would take those of the cell beyond, while one on the first takes those of the cell inside: it stays below.
+/// Only after all halving, or its order would tell. Slopes of linear shapes jump at nodes: on the outermost one a point's
+/// gradient would be of a neighbour that it gives no mass, and on the last of the cell beyond. It stays off them by more
+/// than round-off.
 void hold_inside(Flow& flow, Index p) {
+    constexpr double kOff = 1e-9;  // [cells]
     Columns& c = flow.columns;
-    const auto hold = [&](double& u, Index nodes) {
-        const double last = static_cast<double>(nodes - 1);
-        u = std::clamp(u, 0.0, flow.scheme.shape == Shape::linear ? std::nextafter(last, 0.0) : last);
-    };
+    const double off = flow.scheme.shape == Shape::linear ? kOff : 0.0;
+    const auto hold = [&](double& u, Index nodes) { u = std::clamp(u, off, static_cast<double>(nodes - 1) - off); };
     hold(c.x[p], flow.grid.nx());
     hold(c.y[p], flow.grid.ny());
 }

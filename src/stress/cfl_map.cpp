@@ -121,10 +121,12 @@ std::vector<SuiteScene> cfl_suite(const Method& method) {
 
 CflRow cfl_row(const Method& method, Index steps) {
     CflRow row{method, 0.0, ""};
+    Claims claims;
+    claims.resolved = true;
     for (const double cfl : cfl_ladder()) {
         for (SuiteScene& entry : cfl_suite(method)) {
             entry.scene.scheme.cfl = cfl;
-            const Verdict verdict = examine(entry.scene, {}, steps);
+            const Verdict verdict = examine(entry.scene, claims, steps);
             if (!verdict.broken) continue;
             row.first_broken = fmt::format("{}: {}", entry.name, verdict.broken->invariant);
             return row;

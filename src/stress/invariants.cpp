@@ -54,6 +54,30 @@ Bends bends_of(const Flow& flow) {
     return worst;
 }
 
+/// What the depth on the nodes could set free [J].
+double depth_energy(const Flow& flow) {
+    CompensatedSum sum;
+    for (const Index tile : flow.active.work)
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+            const double h = flow.nodes.depth[k];
+            sum.add(0.5 * flow.share(i, j) * flow.density * flow.area * flow.gravity * h * h);
+        });
+    return sum.value();
+}
+
+/// Largest change of velocity across a cell at a point [m/s].
+double largest_change(const Columns& points, double cell) {
+    double largest2 = 0.0;
+    points.with_real([&](auto real) {
+        const auto& held = points.carried<decltype(real)>();
+        for (Index p = 0; p < points.count(); ++p) {
+            const double xx = held.cxx[p], xy = held.cxy[p], yx = held.cyx[p], yy = held.cyy[p];
+            largest2 = std::max(largest2, xx * xx + xy * xy + yx * yx + yy * yy);
+        }
+    });
+    return cell * std::sqrt(largest2);
+}
+
 }  // namespace
 
 const std::vector<std::string>& invariant_names() {
@@ -96,6 +120,12 @@ Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
     const Bends bends = bends_of(flow);
     facts.energy_law = bends.unresolved < kSmooth && bends.sharpest * facts.release_depth < kThin &&
                        scene.terrain != TerrainModel::linearised && !scene.scheme.paper_pressure;
+    const Transfer transfer = scene.scheme.transfer;
+    facts.affine = transfer == Transfer::tpic || transfer == Transfer::apic;
+    facts.turn = bends.sharpest * flow.cell;
+    facts.linear = scene.scheme.shape == Shape::linear;
+    facts.carried_depth = scene.scheme.paper_pressure;
+    facts.hidden_energy = std::max(0.0, facts.release_energy - depth_energy(flow));
     if (!facts.energy_law && facts.steep) facts.stretch = std::sqrt(1.0 + steepest2);
     if (facts.steep) facts.steepest = std::sqrt(steepest2);
     return facts;
@@ -119,6 +149,9 @@ void Watch::note_extremes(const Snapshot& state) {
         }
         fastest_ = std::max(fastest_, node.speed);
     }
+    if (facts_.carried_depth)
+        for (const double depth : state.points.depth) deepest_ = std::max(deepest_, depth);
+    if (facts_.affine) change_ = std::max(change_, largest_change(state.points, facts_.cell));
     fastest_ = std::max({fastest_, state.max_speed, state.between.max_speed});
     turned_over_ = std::max({turned_over_, state.now.kinetic, state.now.dissipated - start_.now.dissipated,
                              std::abs(state.now.potential - start_.now.potential)});
@@ -191,7 +224,8 @@ std::optional<Violation> Watch::momentum(const Snapshot& state) {
 double Watch::slope_uphill() const { return std::min(facts_.steepest, deepest_ / facts_.cell); }
 
 std::optional<Violation> Watch::energy(const Snapshot& state) {
-    if (!facts_.energy_law) return std::nullopt;
+    if (!facts_.energy_law || (facts_.linear && !facts_.claims.resolved)) return std::nullopt;
+    if (facts_.turn * facts_.turn > kEnergyShare) return std::nullopt;
     const Status &first = start_.now, &now = state.now;
     const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
                           (now.energy_left - first.energy_left);
@@ -203,8 +237,12 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double gone = now.energy_left - first.energy_left - now.mass_left * facts_.gravity * lowest_;
     const double uphill = slope * slope / (1.0 + slope * slope) * (now.kinetic + std::max(0.0, gone));
     const double share = kEnergyShare * (at_hand_ + turned_over_);
-    return judged("energy", growth, share + uphill + booked + bends + round_off, state,
+    return judged("energy", growth, facts_.hidden_energy + share + uphill + booked + bends + round_off, state,
                   "mechanical energy gained beyond the work of gravity [J]");
+}
+
+double Watch::beyond(double bound) const {
+    return bound > 0.0 ? std::clamp(change_ / bound, kConvergence, 1.0) : kConvergence;
 }
 
 std::optional<Violation> Watch::speed(const Snapshot& state) {
@@ -212,7 +250,7 @@ std::optional<Violation> Watch::speed(const Snapshot& state) {
     const double wave = start_.max_speed + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
     const double drop = std::max(0.0, highest_ - lowest_);
     const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
-    return judged("speed", state.max_speed, (1.0 + kConvergence) * bound, state, "speed beyond the energy line [m/s]");
+    return judged("speed", state.max_speed, (1.0 + beyond(bound)) * bound, state, "speed beyond the energy line [m/s]");
 }
 
 std::optional<Violation> Watch::rest(const Snapshot& state) {

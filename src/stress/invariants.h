@@ -35,6 +35,12 @@ struct Facts {
     double stretch = 1.0;
     double release_depth = 0.0;  ///< largest of the release; nodes see it averaged over a cell and more [m]
     double release_energy = 0.0; ///< that its depth alone could set free [J]
+    /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
+    double hidden_energy = 0.0;
+    bool linear = false;         ///< linear shape functions
+    double turn = 0.0;           ///< largest change of the slope across a cell that turns velocities [1]
+    bool affine = false;         ///< points bring the nodes a velocity that changes along the gradient they carry
+    bool carried_depth = false;  ///< pressure is that of the depth which points carry, not of the nodes' (paper preset)
     double one_cell_drop = 0.0;  ///< largest difference of the bed between neighbouring nodes [m]
     double cell = 1.0;           ///< [m]
     double steepest = 0.0;       ///< largest slope of the bed that a velocity follows; none on shallow terrain [1]
@@ -59,7 +65,15 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   (Status::impulse).
 /// energy: K + E_p + E_left <= start + `kEnergyShare` of the energy at hand (start's kinetic, that of its depth) and
 ///   turned over, where the model has an energy law. Truncation errs by a share of what is there, most at steps of the
-///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. Over a bed bent
+///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. The start is that of
+///   the release: a column of one pixel has on nodes, which average its depth, a fraction of its energy, and the nodes see
+///   more or less of it as its points move and split. Not for linear shapes, but in scenes claimed to be resolved: their
+///   gradients jump at nodes, so that work and potential differ by a share that no time step mends (seed 77003, scene
+///   1805: 1.04, 1.02 and 1.03e6 J gained at a scheme.cfl of 0.28, 0.1 and 0.03, a fifth of that with quadratic and cubic
+///   ones). Nor where the bed turns velocities by so much across a cell that the square of it, which a scheme of second
+///   order errs by, is more than `kEnergyShare` (seed 161803, scenes 3519 and 8685 turn by 0.47 and
+///   0.40, with a curvature that is not smoothed: 1.42e6 and 778 J gained, 1.29e6 and 612 J with steps six and nine times
+///   shorter; no more than is allowed with the default smoothing). Over a bed bent
 ///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
 ///   second differences of the bed. Where the surface slopes against the bed (the flank of a heap that runs uphill) the
 ///   drive is the plain gradient (kick_bed.h), and keeps the energy of the horizontal velocity: what the vertical one
@@ -67,13 +81,16 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   changes by more than the bed, so B there is at most the largest depth over a cell. Not for the paper preset, whose
 ///   explicit forces act on nodes of vanishing mass.
 /// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
-///   start, h the largest depth and drop to the lowest bed so far. stretch is 1 where the model has an energy law;
+///   start, h the largest depth (which pushes: of nodes, or what points carry) and drop to the lowest bed so far. stretch is 1 where the model has an energy law;
 ///   elsewhere a bend may turn a speed along the map into `stretch` times that along the bed, which carries it up by
 ///   stretch^2 of the height, to fall again. The energy line's v0^2 + 2 g drop alone is no bound of a fluid: the tip of
 ///   a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what stays behind. One that runs uphill is driven by the
 ///   plain gradient, so it is the horizontal velocity that has this bound, and s = sqrt(1 + B^2) with the B of `energy`
 ///   (1 where stretch has it). kConvergence: that in turn is a bound along one direction; streams that converge from two
-///   may pass it a little (1 % has been seen), while what is unstable passes it by factors.
+///   may pass it a little (1 % has been seen), while what is unstable passes it by factors. Nor does it bind the affine
+///   transfers where velocity changes from cell to cell: no linear transfer of second order keeps extremes (Godunov
+///   1959), and these bring nodes a cell away from a point its velocity and the change across a cell besides. Where the
+///   largest such change so far is more than kConvergence of the bound it takes its place, up to the bound itself.
 /// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
 ///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
 ///   as high as round-off, 2 sqrt(g e) (Ritter 1892), where the fit met the level; otherwise than one as high as its
@@ -110,6 +127,8 @@ private:
     void note_extremes(const Snapshot& state);
     /// Largest slope of the bed that a surface may climb [1]; see `energy`.
     double slope_uphill() const;
+    /// By what share of itself the bound on speed may be passed [1].
+    double beyond(double bound) const;
     std::optional<Violation> judged(const char* invariant, double value, double allowed, const Snapshot& state,
                                     const std::string& what);
 
@@ -119,6 +138,7 @@ private:
     double highest_ = 0.0, lowest_ = 0.0;  ///< surface of the start, bed so far [m]
     double deepest_ = 0.0;         ///< so far [m]
     double fastest_ = 0.0;         ///< point or node so far [m/s]
+    double change_ = 0.0;          ///< of the velocity across a cell at a point, largest so far, with affine transfers [m/s]
     double at_hand_ = 0.0;         ///< kinetic energy of the start, and what its depth alone could set free [J]
     double turned_over_ = 0.0;     ///< largest kinetic and dissipated energy and change of potential so far [J]
     Index points_ = 0;             ///< most so far

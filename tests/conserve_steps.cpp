@@ -1,0 +1,106 @@
+// How far a step goes, and what friction may do to a point's own velocity.
+#include <algorithm>
+#include <cmath>
+
+#include "analytic_scene.h"
+#include "catch.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+/// A film of 1 mm at rest on the edge of a cliff of 60 cells, whose drive is its slope (shallow terrain).
+Scene film_on_cliff() {
+    Scene scene = scene_on(24, 12, 1.0, [](double x, double) { return x < 6.5 ? 60.0 : 0.0; });
+    scene.terrain = TerrainModel::shallow;
+    fill(scene, [](double x, double y) { return x > 3 && x < 6 && y > 4 && y < 8 ? 1e-3 : 0.0; });
+    return scene;
+}
+
+/// Largest distance of a point from where it was [cells].
+double farthest(const Columns& before, const Columns& now) {
+    double most = 0.0;
+    for (Index p = 0; p < before.count(); ++p)
+        for (Index q = 0; q < now.count(); ++q)
+            if (now.id[q] == before.id[p])
+                most = std::max({most, std::abs(now.x[q] - before.x[p]), std::abs(now.y[q] - before.y[p])});
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("A film at rest on a cliff of many cells begins with a step that it can take", "[conserve][steps]") {
+    const Scene scene = film_on_cliff();
+    DepthAveraged simulation(scene);
+    double fastest = 0.0, most = 0.0;
+    while (simulation.status().step < 12) {
+        const Columns before = simulation.flow().columns;
+        REQUIRE_NOTHROW(simulation.advance(1e9));
+        fastest = std::max(fastest, simulation.status().max_speed);
+        if (simulation.status().step == 1) most = farthest(before, simulation.flow().columns);
+    }
+    CHECK(most > 0.1 * scene.scheme.cfl);  // it did begin to fall
+    CHECK(most <= 2.0 * scene.scheme.cfl);
+    CHECK(fastest > 10.0);
+    CHECK(fastest <= 1.25 * std::sqrt(2 * scene.gravity * 60.0));  // of the fall; a quarter as in stress/invariants.h
+}
+
+TEST_CASE("Where nothing is driven far, a step is what its signal asks for", "[conserve][steps]") {
+    Scene scene = scene_on(40, 12, 1.0, [](double, double) { return 0.0; });
+    fill(scene, [](double x, double) { return x < 20 ? 2.0 : 0.0; });
+    DepthAveraged simulation(scene);
+    const double reach = scene.scheme.cfl * 1.0, c = std::sqrt(scene.gravity * simulation.status().max_depth);
+    simulation.advance(1e9);
+    CHECK(simulation.status().dt == Approx(2 * reach / (c + std::sqrt(c * c + 2 * scene.gravity * reach))).epsilon(1e-14));
+}
+
+TEST_CASE("A step that is shortened ends at its time, and looking at the run changes nothing", "[conserve][steps]") {
+    DepthAveraged one(film_on_cliff()), other(film_on_cliff());
+    run_to(one, 0.5);
+    other.frame();
+    run_to(other, 0.5);
+    CHECK(one.status().time == 0.5);
+    CHECK(one.flow().columns.x == other.flow().columns.x);
+    CHECK(one.status().step == other.status().step);
+}
+
+TEST_CASE("Friction drives no point of flip: what it takes of the nodes' velocity it takes of the points'", "[conserve][flip]") {
+    // A light film runs against a heavy block that the bed stops in a few steps.
+    Scene scene = scene_on(24, 12, 1.0, [](double, double) { return 0.0; });
+    scene.scheme.transfer = Transfer::flip;
+    scene.scheme.flip_ratio = 1.0;
+    scene.bed_law = bed::Voellmy{0.4, 1.0};
+    fill(scene, [](double x, double y) { return y < 4 || y > 8 ? 0.0 : x > 6 && x < 9 ? 0.2 : x > 9 && x < 13 ? 2e-4 : 0.0; });
+    for (Index p = 0; p < scene.particles.count(); ++p) scene.particles.vx[p] = scene.particles.x[p] < 9 ? 30.0 : -30.0;
+    DepthAveraged simulation(scene);
+    double fastest = 0.0;
+    while (simulation.status().step < 20) {
+        simulation.advance(1e9);
+        for (const double v : simulation.flow().columns.vx) fastest = std::max(fastest, std::abs(v));
+    }
+    CHECK(fastest <= 31.5);  // 30, and a twentieth for the pressure of the block's 0.2 m
+    const Status now = simulation.frame().status;
+    const double change = now.momentum[0] + now.momentum_left[0] - now.impulse[0];
+    double start = 0.0, size = 0.0;
+    for (Index p = 0; p < scene.particles.count(); ++p) {
+        const double m = scene.density * scene.particles.volume[p];
+        start += m * scene.particles.vx[p], size += m * std::abs(scene.particles.vx[p]);
+    }
+    CHECK(std::abs(change - start) <= 1e-12 * size);  // sums of some hundred terms in twenty steps
+}
+
+TEST_CASE("Linear shapes take no more viscosity in a step than is stable for them", "[conserve][steps]") {
+    const auto run = [](double cap) {
+        Scene scene = scene_on(24, 24, 1.0, [](double, double) { return 0.0; });
+        scene.scheme.shape = Shape::linear;
+        scene.scheme.stress_cap = cap;
+        scene.rheology = rheology::Newtonian{1e7};
+        fill(scene, [](double x, double y) { return std::hypot(x - 12, y - 12) < 6 ? 0.3 : 0.0; });
+        DepthAveraged simulation(scene);
+        while (simulation.status().step < 20) simulation.advance(1e9);
+        return simulation.flow().columns.x;
+    };
+    CHECK(run(0.5) == run(0.25));
+    CHECK(run(0.25) != run(0.1));
+}
