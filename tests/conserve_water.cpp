@@ -13,7 +13,9 @@ using namespace frana;
 
 namespace {
 
-double rough(double x, double y) { return 0.3 * std::sin(1.7 * x) * std::cos(2.3 * y) + 0.1 * std::sin(5.1 * x + 3.0 * y); }
+double rough(double x, double y) {
+    return 0.3 * std::sin(1.7 * x) * std::cos(2.3 * y) + 0.1 * std::sin(5.1 * x + 3.0 * y);
+}
 
 /// A wave runs down a rough slope of 70 x 45 cells, in the rain, into the ground and out of two sides.
 WaterScene down_a_slope() {
@@ -52,7 +54,8 @@ WaterScene heap_at(Index i0, Index j0) {
 
 }  // namespace
 
-TEST_CASE("Water keeps its volume, and its momentum is what it was given, to round-off", "[water][conserve]") {
+TEST_CASE("Water keeps its volume, and its momentum is what it was given, to round-off",
+          "[water][conserve]") {
     WaterFlow flow(down_a_slope());
     double speed = 0.0;
     for (int step = 0; step < 500; ++step) {
@@ -83,7 +86,8 @@ TEST_CASE("Level ground gives water no momentum, walls take what there is", "[wa
     const double given = flow.status().momentum_given.norm();
     CHECK(flow.status().ledger.ground.norm() < 1e-13 * given);
     CHECK(flow.status().ledger.friction.norm() == 0.0);
-    CHECK((flow.status().momentum - flow.status().momentum_given - flow.status().ledger.walls).norm() < 1e-13 * given);
+    CHECK((flow.status().momentum - flow.status().momentum_given - flow.status().ledger.walls).norm() <
+          1e-13 * given);
     CHECK(flow.status().ledger.walls.norm() > 0.1 * given);
     CHECK(flow.status().ledger.left == 0.0);
     CHECK(std::abs(flow.volume_residual()) < 1e-14 * flow.status().volume_given);
@@ -95,7 +99,8 @@ TEST_CASE("What runs out faster than waves leaves undisturbed", "[water][conserv
         for (const double sign : {1.0, -1.0}) {
             CAPTURE(axis, sign);
             WaterScene s;
-            s.grid = verify::cells_over(axis == 0 ? 160 : 3, axis == 0 ? 3 : 160, 0.5);  // the far wall's wave stays away
+            s.grid = verify::cells_over(axis == 0 ? 160 : 3, axis == 0 ? 3 : 160,
+                                        0.5);  // the far wall's wave stays away
             s.bed = [=](double x, double y) { return -sign * slope * (axis == 0 ? x : y); };
             s.start = [=](double, double) {
                 return WaterState{depth, axis == 0 ? sign * speed : 0.0, axis == 1 ? sign * speed : 0.0};
@@ -123,7 +128,8 @@ TEST_CASE("Water has the same bits for any number of threads", "[water][conserve
         CHECK(static_cast<Index>(flow.body().work.size()) >= kTilesForThreads);
         std::vector<double> bits = bits_of(flow);
         const WaterStatus& now = flow.status();
-        for (const double sum : {now.time, now.volume, now.momentum.x(), now.kinetic, now.ledger.left, now.ledger.ground.y()})
+        for (const double sum :
+             {now.time, now.volume, now.momentum.x(), now.kinetic, now.ledger.left, now.ledger.ground.y()})
             bits.push_back(sum);
         if (count == 1) first = bits;
         CHECK(bits == first);
@@ -131,7 +137,8 @@ TEST_CASE("Water has the same bits for any number of threads", "[water][conserve
     omp_set_num_threads(threads);
 }
 
-TEST_CASE("It does not matter where the borders of tiles are, and only tiles near water are visited", "[water][conserve]") {
+TEST_CASE("It does not matter where the borders of tiles are, and only tiles near water are visited",
+          "[water][conserve]") {
     const Index places[][2] = {{80, 80}, {81, 87}, {75, 70}};
     std::vector<double> first;
     for (const auto& [i0, j0] : places) {
@@ -151,7 +158,8 @@ TEST_CASE("It does not matter where the borders of tiles are, and only tiles nea
     }
 }
 
-TEST_CASE("Tiles that dry up are dropped, and water comes back to them as to dry ground", "[water][conserve]") {
+TEST_CASE("Tiles that dry up are dropped, and water comes back to them as to dry ground",
+          "[water][conserve]") {
     // It swings along a valley whose sides soak up what it leaves there.
     WaterScene s;
     s.grid = verify::cells_over(110, 3, 1.0);
@@ -159,7 +167,9 @@ TEST_CASE("Tiles that dry up are dropped, and water comes back to them as to dry
     s.start = [](double x, double) { return WaterState{x < 14.0 ? 3.0 : 0.0}; };
     s.infiltration = [](double x, double) { return std::abs(x - 55.0) > 20.0 ? 2e-3 : 0.0; };
     WaterFlow flow(s);
-    s.rain = [](double, double) { return 3e-308; };  // all tiles are always visited; a step's rain rounds to none
+    s.rain = [](double, double) {
+        return 3e-308;
+    };  // all tiles are always visited; a step's rain rounds to none
     WaterFlow everywhere(s);
     const Index first = flow.body().grid.tiles_x() + 1;
     int dropped = 0, back = 0;
@@ -189,7 +199,9 @@ TEST_CASE("Thin water on rugged ground is never taken below nothing", "[water][c
     WaterScene s;
     s.grid = verify::cells_over(48, 48, 0.5);
     s.bed = [](double x, double y) { return 2.0 * std::sin(7.0 * x) * std::sin(5.0 * y) - 0.5 * x; };
-    s.start = [](double x, double y) { return WaterState{0.02 + 0.02 * std::sin(3.0 * x) * std::sin(11.0 * y)}; };
+    s.start = [](double x, double y) {
+        return WaterState{0.02 + 0.02 * std::sin(3.0 * x) * std::sin(11.0 * y)};
+    };
     s.sides[1] = WaterSide::open;
     s.cfl = 0.49;
     WaterFlow flow(s);
@@ -204,13 +216,17 @@ TEST_CASE("A lake high in the mountains rests as one at the sea, and rests when 
     s.grid = verify::cells_over(30, 20, 0.5);
     s.bed = [](double x, double y) { return 3017.3 + rough(x, y); };
     s.confined = [](double x, double) { return x > 7.0 ? 0.2 : 0.0; };
-    s.start = [&s](double x, double y) { return WaterState{std::max(0.0, 3018.0 - s.bed(x, y) - s.confined(x, y))}; };
+    s.start = [&s](double x, double y) {
+        return WaterState{std::max(0.0, 3018.0 - s.bed(x, y) - s.confined(x, y))};
+    };
     WaterFlow flow(s);
     for (int step = 0; step < 100; ++step) flow.advance(1e3);
-    CHECK(flow.status().max_speed < 1e-12);  // 3018 m have 5e-13 m of round-off, and sqrt(g/h) of that are 1e-12 m/s
+    CHECK(flow.status().max_speed <
+          1e-12);  // 3018 m have 5e-13 m of round-off, and sqrt(g/h) of that are 1e-12 m/s
     const double before = flow.surface(10, 10);
     for (Index j = 0; j < 20; ++j)
-        for (Index i = 0; i < 30; ++i) flow.confine(i, j, 0.25 + (flow.body().confined[flow.body().grid.at(i, j)]));
+        for (Index i = 0; i < 30; ++i)
+            flow.confine(i, j, 0.25 + (flow.body().confined[flow.body().grid.at(i, j)]));
     for (int step = 0; step < 100; ++step) flow.advance(1e3);
     CHECK(flow.status().max_speed < 1e-12);
     CHECK(flow.surface(10, 10) == Approx(before + 0.25).margin(1e-12));
@@ -236,7 +252,8 @@ TEST_CASE("Water turns with its scene: x and y are alike", "[water][conserve]") 
     for (Index j = 0; j < 45; ++j)
         for (Index i = 0; i < 70; ++i) {
             const WaterState p = a.at(i, j), q = b.at(j, i);
-            worst = std::max({worst, std::abs(p.depth - q.depth), p.depth * std::abs(p.u - q.v), p.depth * std::abs(p.v - q.u)});
+            worst = std::max({worst, std::abs(p.depth - q.depth), p.depth * std::abs(p.u - q.v),
+                              p.depth * std::abs(p.v - q.u)});
         }
     CHECK(worst < 1e-10);  // round-off, grown by 40 steps over a rough bed
     CHECK(a.status().ledger.left == Approx(b.status().ledger.left).epsilon(1e-9));
@@ -250,7 +267,9 @@ TEST_CASE("What a step of water costs beside the depth-averaged flow's", "[.cost
     const double column = 1e9 * flow.wall_seconds / static_cast<double>(flow.particles * flow.steps);
     const verify::Measurement water = verify::find_problem("water_thacker_r")->run(setup);
     const double cell = 1e9 * water.wall_seconds / static_cast<double>(water.particles * water.steps);
-    fmt::print("depth-averaged flow: {:.0f} ns a column and step; free water: {:.0f} ns a wet cell and step, {:.2f} of it\n",
-               column, cell, cell / column);
+    fmt::print(
+        "depth-averaged flow: {:.0f} ns a column and step; free water: {:.0f} ns a wet cell and step, {:.2f} "
+        "of it\n",
+        column, cell, cell / column);
     CHECK(cell > 0.0);
 }
