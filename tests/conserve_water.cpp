@@ -210,6 +210,66 @@ TEST_CASE("Thin water on rugged ground is never taken below nothing", "[water][c
     CHECK(flow.status().max_speed < 20.0);
 }
 
+TEST_CASE("A cell that runs off on all sides keeps none and is not overdrawn", "[water][conserve]") {
+    WaterScene s;
+    s.grid = verify::cells_over(40, 40, 1.0);
+    // Beside a border of tiles.
+    s.bed = [](double x, double y) { return x == 16.5 && y == 16.5 ? 20.0 : 0.0; };
+    s.start = [](double x, double y) { return WaterState{x == 16.5 && y == 16.5 ? 8.0 : 0.0}; };
+    s.steep = false;
+    WaterFlow flow(s);
+    flow.advance(10.0);  // four dam breaks at once take 1.17 of it in a step
+    CHECK(flow.at(16, 16).depth ==
+          Approx(4.0).epsilon(1e-6));  // the mean of a stage that emptied it and the start
+    for (const auto& [i, j] : {std::pair<Index, Index>{15, 16}, {17, 16}, {16, 15}, {16, 17}})
+        CHECK(flow.at(i, j).depth == Approx(flow.at(15, 16).depth).epsilon(1e-12));
+    for (int step = 0; step < 50; ++step) flow.advance(10.0);
+    CHECK(std::abs(flow.volume_residual()) < 1e-14 * flow.status().volume_given);
+}
+
+TEST_CASE("A wall is a mirror", "[water][conserve]") {
+    const auto bed = [](double x, double y) { return rough(std::abs(x - 10.0), std::abs(y - 6.0)); };
+    const auto start = [](double x, double y) {
+        const double r = std::hypot(x - 10.0, y - 6.0);
+        return WaterState{0.3 + (r < 4.0 ? 1.0 : 0.0), (x - 10.0) / 10.0, (y - 6.0) / 10.0};
+    };
+    WaterScene s;
+    s.grid = verify::cells_over(40, 24, 0.5);
+    s.bed = bed, s.start = start, s.steep = false;  // the bed's slope is one-sided at a side of the grid
+    WaterFlow whole(s);
+    s.grid.nx = 20, s.grid.ny = 12;
+    WaterFlow low(s);
+    s.bed = [&](double x, double y) { return bed(x + 10.0, y + 6.0); };
+    s.start = [&](double x, double y) { return start(x + 10.0, y + 6.0); };
+    WaterFlow high(s);
+    while (whole.status().time < 1.5) whole.advance(1.5), low.advance(1.5), high.advance(1.5);
+    double worst = 0.0;
+    for (Index j = 0; j < 12; ++j)
+        for (Index i = 0; i < 20; ++i) {
+            worst = std::max(worst, std::abs(whole.at(i, j).depth - low.at(i, j).depth));
+            worst = std::max(worst, std::abs(whole.at(i + 20, j + 12).depth - high.at(i, j).depth));
+        }
+    CHECK(worst < 1e-11);  // round-off, grown over a rough bed
+}
+
+TEST_CASE("A lake rests at open sides where the ground rises", "[water][conserve]") {
+    WaterScene s;
+    s.grid = verify::cells_over(30, 30, 0.5);
+    s.bed = [](double x, double y) {
+        return 0.05 * std::hypot(x - 7.3, y - 7.6) + 0.002 * std::sin(5.0 * x + 7.0 * y);
+    };
+    s.start = [&s](double x, double y) { return WaterState{std::max(0.0, 0.9 - s.bed(x, y))}; };
+    s.sides = {WaterSide::open, WaterSide::open, WaterSide::open, WaterSide::open};
+    s.start = [start = s.start](double x, double y) {  // round-off that runs outwards
+        const WaterState rest = start(x, y);
+        return WaterState{rest.depth, 1e-15 * (x - 7.3), 1e-15 * (y - 7.6)};
+    };
+    WaterFlow flow(s);
+    for (int step = 0; step < 200; ++step) flow.advance(1e3);
+    CHECK(flow.status().max_speed < 1e-12);
+    CHECK(std::abs(flow.status().ledger.left) < 1e-12 * flow.status().volume_given);
+}
+
 TEST_CASE("A lake high in the mountains rests as one at the sea, and rests when what lies under it swells",
           "[water][conserve]") {
     WaterScene s;
@@ -257,6 +317,26 @@ TEST_CASE("Water turns with its scene: x and y are alike", "[water][conserve]") 
         }
     CHECK(worst < 1e-10);  // round-off, grown by 40 steps over a rough bed
     CHECK(a.status().ledger.left == Approx(b.status().ledger.left).epsilon(1e-9));
+}
+
+TEST_CASE("On coarse cells free water is as close to the exact answers as it was", "[water][verify]") {
+    // Bounds are a fifth above the figures of tests/verification.txt.
+    const auto run = [](const char* name, Index cells) {
+        verify::Setup setup;
+        setup.cells = cells;
+        return verify::find_problem(name)->run(setup);
+    };
+    CHECK(run("water_lake", 24).value("max_speed") < 1e-12);
+    CHECK(run("water_ritter", 100).l1_depth < 7.6e-3);
+    CHECK(run("water_stoker", 100).l1_depth < 7.0e-3);
+    const verify::Measurement bowl = run("water_thacker_p", 50), normal = run("water_normal", 100);
+    CHECK(bowl.l1_depth < 5.2e-2);
+    CHECK(bowl.l1_momentum < 7.9e-2);
+    CHECK(run("water_thacker_r", 50).l1_depth < 6.4e-2);
+    CHECK(run("water_radial_dam", 80).l1_depth < 5.0e-2);
+    for (const char* error : {"speed_error", "steep_error", "darcy_error"})
+        CHECK(std::abs(normal.value(error)) < 1e-13);
+    CHECK(run("water_rain", 50).l1_depth < 3.7e-3);
 }
 
 TEST_CASE("What a step of water costs beside the depth-averaged flow's", "[.cost]") {

@@ -147,6 +147,11 @@ TEST_CASE(
             CHECK(drag.coefficient({0.4, 0.5, 0.25}, flux) > 0.0);
         }
     }
+    // S_p of a mixture with structure: P / alpha_c + (1 - P) / alpha_u
+    const TwoPhaseDrag drag(m);
+    const double p = 0.2 / 0.65;
+    CHECK(drag.grain_speed({0.4, 0.5, 0.25}, 0.3) - drag.grain_speed({0.4, 0.5, 0.25}, 0.0) ==
+          Approx((p / 0.55 + (1.0 - p) / 0.45) * 0.3).epsilon(1e-12));
     // F of (32), by its own numbers: gamma / 180 (alpha_u / grains)^3 Re
     m.power = 1, m.weighting = 1e-9;  // P = 1
     const TwoPhaseDrag solid_like(m);

@@ -6,14 +6,13 @@ namespace frana {
 namespace {
 
 /// What lies beyond a side, from the cells before it: `inside` is the last cell, `step` leads into the grid.
-/// A wall is a mirror. Beyond an open side the ground goes on as it falls, and water as deep and as fast as
-/// it leaves; where it does not leave, or the ground does not fall, there is a wall. `room`: cells the block
-/// has.
+/// A wall is a mirror, and so is an open side that water does not leave by. Where it does, the ground goes on
+/// as it falls, or level, with water as deep and as fast. `room`: cells the block has.
 void beyond(WaterBlock& block, Index inside, Index step, WaterSide side, double* normal, double outward,
             Index room) {
-    const double ground = block.surface[inside] - block.depth[inside];
-    const double fall = block.surface[inside + step] - block.depth[inside + step] - ground;
-    const bool leaves = side == WaterSide::open && outward * normal[inside] > 0.0 && fall >= 0.0;
+    const auto ground = [&](Index k) { return block.surface[k] - block.depth[k]; };
+    const double fall = std::max(0.0, ground(inside + step) - ground(inside));
+    const bool leaves = side == WaterSide::open && outward * normal[inside] > 0.0;
     for (Index n = 1; n <= std::min(kHalo, room); ++n) {
         const Index to = inside - n * step, from = leaves ? inside : inside + (n - 1) * step;
         block.depth[to] = block.depth[from], block.u[to] = block.u[from], block.v[to] = block.v[from];

@@ -237,17 +237,13 @@ void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedge
 /// Which tiles water in cell (i, j) of a tile is near: it reaches two cells in a step.
 std::uint16_t near_of(Index i, Index j) {
     constexpr Index kReach = 3;
-    const int di = i < kReach            ? -1
-                   : i >= kTile - kReach ? 1
-                                         : 0,
-              dj = j < kReach            ? -1
-                   : j >= kTile - kReach ? 1
-                                         : 0;
+    const auto towards = [](Index n) { return n < kReach ? -1 : n >= kTile - kReach ? 1 : 0; };
+    const int di = towards(i), dj = towards(j);
     const auto bit = [](int x, int y) { return static_cast<std::uint16_t>(1 << (3 * (y + 1) + x + 1)); };
     return static_cast<std::uint16_t>(bit(0, 0) | bit(di, 0) | bit(0, dj) | bit(di, dj));
 }
 
-/// Counts a cell; `place` within its tile.
+/// Counts the cell at node (i, j), stored at k.
 void count(const WaterBody& body, Index k, Index i, Index j, const Water& w, WaterSums& sums) {
     if (!(w.h > 0.0)) {
         if (w.h != 0.0) sums.bad = k;  // negative, or not a number
