@@ -14,7 +14,9 @@ constexpr double kMc = 900.0, kMu = 500.0, kReduced = kMc * kMu / (kMc + kMu);
 struct Pair {
     Phase c{kMc, {3.0, -1.0}}, u{kMu, {1.8, 0.6}};
     Vec2 momentum() const { return c.mass * c.velocity + u.mass * u.velocity; }
-    double kinetic() const { return 0.5 * (c.mass * c.velocity.squaredNorm() + u.mass * u.velocity.squaredNorm()); }
+    double kinetic() const {
+        return 0.5 * (c.mass * c.velocity.squaredNorm() + u.mass * u.velocity.squaredNorm());
+    }
     Vec2 slip() const { return c.velocity - u.velocity; }
     void run(const Exchange& by, double time, int steps) {
         for (int n = 0; n < steps; ++n) exchange(by, time / steps, c, u);
@@ -75,13 +77,15 @@ TEST_CASE("V10: where a force turns a quadratic slip the step is of first order"
         return pair.slip();
     };
     const Vec2 exact = 2.0 * after(1 << 15) - after(1 << 14);
-    const double coarse = (after(16) - exact).norm(), fine = (after(32) - exact).norm(), order = std::log2(coarse / fine);
+    const double coarse = (after(16) - exact).norm(), fine = (after(32) - exact).norm(),
+                 order = std::log2(coarse / fine);
     CHECK(fine < 0.05);
     CHECK(order > 0.9);
     CHECK(order < 2.2);
 }
 
-TEST_CASE("V11: bodies that forces drive apart reach the slip at which drag balances them", "[two_phase][solver]") {
+TEST_CASE("V11: bodies that forces drive apart reach the slip at which drag balances them",
+          "[two_phase][solver]") {
     const double depth = 1.5, flux = 0.0;
     for (const int power : {1, 2})
         for (const double solids : {0.05, 0.3, 0.55}) {
@@ -90,7 +94,8 @@ TEST_CASE("V11: bodies that forces drive apart reach the slip at which drag bala
             m.power = power;
             const TwoPhaseDrag drag(m);
             const Mixture mixture{solids};
-            const double mc = solids * m.solid_density * depth, mu = mixture.fluid() * m.fluid_density * depth;
+            const double mc = solids * m.solid_density * depth,
+                         mu = mixture.fluid() * m.fluid_density * depth;
             const double reduced = mc * mu / (mc + mu);
             // mu (b_c - b_u) = h alpha_c alpha_u (rho_s - rho_f) g, all of it on c
             const double pushed = depth * solids * mixture.fluid() * 1650.0 * m.gravity / reduced;
@@ -106,20 +111,24 @@ TEST_CASE("V11: bodies that forces drive apart reach the slip at which drag bala
         }
 }
 
-TEST_CASE("V11: without solid-like drag the slip in still mixture is Richardson and Zaki's", "[two_phase][solver]") {
+TEST_CASE("V11: without solid-like drag the slip in still mixture is Richardson and Zaki's",
+          "[two_phase][solver]") {
     TwoPhaseMaterial m;
     m.weighting = 1e6;  // P = 0
     const TwoPhaseDrag drag(m);
     for (const double solids : {0.01, 0.2, 0.4})
         CHECK(drag.grain_speed({solids}, 0.0) ==
-              Approx(zanke_velocity(m, 1e-3) * std::pow(1.0 - solids, richardson_zaki(117.6) - 1.0)).epsilon(1e-4));
+              Approx(zanke_velocity(m, 1e-3) * std::pow(1.0 - solids, richardson_zaki(117.6) - 1.0))
+                  .epsilon(1e-4));
     CHECK(drag.grain_speed({0.2}, 0.5) - drag.grain_speed({0.2}, 0.0) == Approx(0.5 / 0.8).epsilon(1e-12));
     m.weighting = 1.0;  // then the flux counts twice, whatever the shares
-    CHECK(TwoPhaseDrag(m).grain_speed({0.3}, 0.5) - TwoPhaseDrag(m).grain_speed({0.3}, 0.0) == Approx(1.0).epsilon(1e-12));
+    CHECK(TwoPhaseDrag(m).grain_speed({0.3}, 0.5) - TwoPhaseDrag(m).grain_speed({0.3}, 0.0) ==
+          Approx(1.0).epsilon(1e-12));
 }
 
-TEST_CASE("Drag split by structure is the unsplit one without structure, and blocks alone where all is structured",
-          "[two_phase][solver]") {
+TEST_CASE(
+    "Drag split by structure is the unsplit one without structure, and blocks alone where all is structured",
+    "[two_phase][solver]") {
     TwoPhaseMaterial m;
     for (const int power : {1, 2}) {
         m.power = power;
@@ -138,10 +147,16 @@ TEST_CASE("Drag split by structure is the unsplit one without structure, and blo
             CHECK(drag.coefficient({0.4, 0.5, 0.25}, flux) > 0.0);
         }
     }
+    // S_p of a mixture with structure: P / alpha_c + (1 - P) / alpha_u
+    const TwoPhaseDrag drag(m);
+    const double p = 0.2 / 0.65;
+    CHECK(drag.grain_speed({0.4, 0.5, 0.25}, 0.3) - drag.grain_speed({0.4, 0.5, 0.25}, 0.0) ==
+          Approx((p / 0.55 + (1.0 - p) / 0.45) * 0.3).epsilon(1e-12));
     // F of (32), by its own numbers: gamma / 180 (alpha_u / grains)^3 Re
     m.power = 1, m.weighting = 1e-9;  // P = 1
     const TwoPhaseDrag solid_like(m);
-    const double ut = terminal_velocity(m, m.grain), re = 1000.0 * 1e-3 * ut / 1e-3, ratio = 0.6 * 0.75 / (0.4 * 0.5);
+    const double ut = terminal_velocity(m, m.grain), re = 1000.0 * 1e-3 * ut / 1e-3,
+                 ratio = 0.6 * 0.75 / (0.4 * 0.5);
     CHECK(solid_like.grain_speed({0.4, 0.5, 0.25}, 0.0) ==
           Approx(ut * (1000.0 / 2650.0 / 180.0) * ratio * ratio * ratio * re).epsilon(1e-6));
 }
@@ -156,7 +171,8 @@ TEST_CASE("V12: a push on the solids moves the water at once by its virtual mass
     TwoPhaseMaterial m;
     const Mixture mixture{0.4, 0.0, 0.25};  // alpha_c 0.55, alpha_u 0.45
     CHECK(virtual_mass_number(VirtualMass::unbounded, m, mixture) == Approx(0.5 * 2.1 / 0.45).epsilon(1e-14));
-    CHECK(virtual_mass(VirtualMass::unbounded, m, mixture, 2.0) == Approx(0.55 * 1000.0 * 0.5 * 2.1 / 0.45 * 2.0).epsilon(1e-14));
+    CHECK(virtual_mass(VirtualMass::unbounded, m, mixture, 2.0) ==
+          Approx(0.55 * 1000.0 * 0.5 * 2.1 / 0.45 * 2.0).epsilon(1e-14));
     const double gamma = 0.55 / (0.4 * 2.65 + 0.15);
     CHECK(virtual_mass_number(VirtualMass::bounded, m, mixture) ==
           Approx((10.0 * 0.67 - 1.0) / (0.55 / 0.45 + gamma)).epsilon(1e-13));
@@ -198,7 +214,8 @@ TEST_CASE("Buoyancy, what rests on the bed, and the viscosity of mud", "[two_pha
     CHECK(basal_stress(m, {0.4}, pull, depth, 0.0) == Approx(0.4 * 1650.0 * 18.0).epsilon(1e-14));
     const Mixture blocks{0.4, 1.0, 0.5};
     CHECK(basal_stress(m, blocks, pull, depth, 1.0) == Approx(0.4 * 1650.0 * 18.0).epsilon(1e-13));
-    CHECK(basal_stress(m, blocks, pull, depth, 0.0) == Approx((0.4 * 2650.0 + 0.3 * 1000.0) * 18.0).epsilon(1e-13));
+    CHECK(basal_stress(m, blocks, pull, depth, 0.0) ==
+          Approx((0.4 * 2650.0 + 0.3 * 1000.0) * 18.0).epsilon(1e-13));
     CHECK(mud_viscosity(3.6e-3, 22.1, 0.4) == Approx(3.6e-3 * std::exp(8.84)).epsilon(1e-14));
     CHECK(mud_viscosity(1e-4, 6.0, 0.0) == 1e-3);
 }

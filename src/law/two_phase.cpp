@@ -19,7 +19,8 @@ double relative_weight(const TwoPhaseMaterial& m) {
 
 double bound_density(const TwoPhaseMaterial& material, const Mixture& mixture) {
     return (mixture.solids * material.solid_density +
-            mixture.confined * mixture.fluid() * material.fluid_density) / mixture.bound();
+            mixture.confined * mixture.fluid() * material.fluid_density) /
+           mixture.bound();
 }
 
 double stokes_velocity(const TwoPhaseMaterial& m, double d) {
@@ -65,7 +66,8 @@ double TwoPhaseDrag::grain_speed(const Mixture& x, double flux) const {
         material_.fluid_density / material_.solid_density / 180.0 * ratio * ratio * ratio * grain_.reynolds;
     const double fluid_like = std::pow(free, grain_.exponent - 1.0);
     const double p = std::pow(grains / (grains + free), material_.weighting);
-    return grain_.speed * (p * solid_like + (1.0 - p) * fluid_like) + (p / x.bound() + (1.0 - p) / free) * flux;
+    return grain_.speed * (p * solid_like + (1.0 - p) * fluid_like) +
+           (p / x.bound() + (1.0 - p) / free) * flux;
 }
 
 double TwoPhaseDrag::block_speed(const Mixture& x, double flux) const {
@@ -74,7 +76,8 @@ double TwoPhaseDrag::block_speed(const Mixture& x, double flux) const {
 
 double TwoPhaseDrag::unsplit(double solids, double flux) const {
     const Mixture all_free{solids};
-    const double weight = solids * (1.0 - solids) * (material_.solid_density - material_.fluid_density) * material_.gravity;
+    const double weight =
+        solids * (1.0 - solids) * (material_.solid_density - material_.fluid_density) * material_.gravity;
     return over(weight, grain_speed(all_free, flux));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// What solids with their confined water (c) and free water (u) do to one another where both are: drag, virtual
-// mass, buoyancy (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout et al. 2021,
+// What solids with their confined water (c) and free water (u) do to one another where both are: drag,
+// virtual mass, buoyancy (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout et al. 2021,
 // doi:10.5194/gmd-14-1841-2021, eqs. 31 to 39), and the step of their velocities, exact for constant
 // coefficients. The printed equations were reconstructed from the prose and from the literature they cite.
 #include "base/types.h"
@@ -14,8 +14,8 @@ struct Mixture {
     double confined = 0.0;    ///< f_fc: of the water, within blocks, below 1
 
     double fluid() const { return 1.0 - solids; }
-    double bound() const { return solids + confined * fluid(); }    ///< alpha_c
-    double free() const { return (1.0 - confined) * fluid(); }      ///< alpha_u
+    double bound() const { return solids + confined * fluid(); }  ///< alpha_c
+    double free() const { return (1.0 - confined) * fluid(); }    ///< alpha_u
     double grains() const { return (1.0 - structured) * solids; }
 };
 
@@ -32,8 +32,8 @@ struct TwoPhaseMaterial {
 /// rho_c of solids with their confined water [kg/m^3]
 double bound_density(const TwoPhaseMaterial& material, const Mixture& mixture);
 
-/// Speeds at which a grain of diameter d [m] settles in still fluid [m/s]: Stokes's, and Zanke's (1977), which
-/// tends to 0.9 of Stokes's for small grains and to sqrt((rho_s / rho_f - 1) g d) for large ones.
+/// Speeds at which a grain of diameter d [m] settles in still fluid [m/s]: Stokes's, and Zanke's (1977),
+/// which tends to 0.9 of Stokes's for small grains and to sqrt((rho_s / rho_f - 1) g d) for large ones.
 double stokes_velocity(const TwoPhaseMaterial& material, double d);
 double zanke_velocity(const TwoPhaseMaterial& material, double d);
 /// Stokes's below 0.1 mm, Zanke's from there on; in water it falls by an eighth there.
@@ -67,8 +67,9 @@ private:
     Settling grain_, block_;
 };
 
-/// Virtual mass that c carries when it speeds up against u, as a number C_VM: Pudasaini's (2012) grows without
-/// bound where there is little free water, Pudasaini and Mergili's (2019, doi:10.1029/2019JF005204) does not.
+/// Virtual mass that c carries when it speeds up against u, as a number C_VM: Pudasaini's (2012) grows
+/// without bound where there is little free water, Pudasaini and Mergili's (2019, doi:10.1029/2019JF005204)
+/// does not.
 enum class VirtualMass { none, unbounded, bounded };
 double virtual_mass_number(VirtualMass law, const TwoPhaseMaterial& material, const Mixture& mixture);
 /// Per area, of a mixture `depth` [m] deep: alpha_c rho_f C_VM h [kg/m^2]
@@ -76,19 +77,20 @@ double virtual_mass(VirtualMass law, const TwoPhaseMaterial& material, const Mix
 
 /// Force of the fluid's pressure on c per area, -rho_f g_z h_c grad(surface) [Pa]; `pull`: g_z [m/s^2]
 Vec2 buoyancy(double fluid_density, double pull, double bound_depth, const Vec2& surface_slope);
-/// Stress with which c rests on the bed (39) [Pa], >= 0; `support`: share B of the pore pressure below blocks.
+/// Stress with which c rests on the bed (39) [Pa], >= 0; `support`: share B of the pore pressure below
+/// blocks.
 double basal_stress(const TwoPhaseMaterial& material, const Mixture& mixture, double pull, double depth,
                     double support);
 
-/// eta = eta_0 exp(beta C) of water with fines (O'Brien and Julien 1988), not below clear water's [Pa s]; eta_0
-/// in Pa s: tables are often in poise, 0.1 Pa s. `concentration`: of the volume.
+/// eta = eta_0 exp(beta C) of water with fines (O'Brien and Julien 1988), not below clear water's [Pa s];
+/// eta_0 in Pa s: tables are often in poise, 0.1 Pa s. `concentration`: of the volume.
 double mud_viscosity(double eta_0, double beta, double concentration, double clear = 1e-3);
 
 /// One phase above a place, per area; nothing moves that has no mass.
 struct Phase {
-    double mass;            ///< [kg/m^2]
-    Vec2 velocity;          ///< [m/s]
-    Vec2 force = {0, 0};    ///< all but the exchange [Pa]
+    double mass;          ///< [kg/m^2]
+    Vec2 velocity;        ///< [m/s]
+    Vec2 force = {0, 0};  ///< all but the exchange [Pa]
 };
 
 /// How two phases hold on to one another.
@@ -98,10 +100,10 @@ struct Exchange {
     double virtual_mass = 0.0;  ///< [kg/m^2]
 };
 
-/// A step of dt [s] of both velocities under forces, drag and virtual mass, stable for any step. What one gets
-/// the other loses, to round-off. The slip follows its equation
-/// (mu + chi) dD/dt = mu (F_c / m_c - F_u / m_u) - h C |D|^(j - 1) D, mu = m_c m_u / (m_c + m_u),
-/// exactly for j = 1, and for j = 2 when force and slip are parallel (else to first order).
+/// A step of dt [s] of both velocities under forces, drag and virtual mass, stable for any step. What one
+/// gets the other loses, to round-off. The slip follows its equation (mu + chi) dD/dt = mu (F_c / m_c - F_u /
+/// m_u) - h C |D|^(j - 1) D, mu = m_c m_u / (m_c + m_u), exactly for j = 1, and for j = 2 when force and slip
+/// are parallel (else to first order).
 void exchange(const Exchange& by, double dt, Phase& c, Phase& u);
 
 }  // namespace frana

@@ -1,5 +1,6 @@
 #pragma once
-// Building scenes of free water for verification problems, running them, and holding them against exact fields.
+// Building scenes of free water for verification problems, running them, and holding them against exact
+// fields.
 #include "verify/problem.h"
 #include "water/water_flow.h"
 
@@ -11,8 +12,9 @@ GridGeometry cells_over(Index nx, Index ny, double cell);
 /// The mean of f >= 0 over a cell, by the midpoints of 8 * 8 parts.
 double cell_mean(const Function& f, double x, double y, double cell);
 
-/// A run to `end`, timed; calls each(flow) after every step. Fills steps, points (cells that hold water at the
-/// end), mass_error and momentum_residual: what the ledger leaves open, over all momentum that went round.
+/// A run to `end`, timed; calls each(flow) after every step. Fills steps, points (cells that hold water at
+/// the end), mass_error and momentum_residual: what the ledger leaves open, over all momentum that went
+/// round.
 Measurement run_water(WaterFlow& flow, double end, const std::function<void(const WaterFlow&)>& each = {});
 
 /// Exact fields; without velocities there is no norm of momentum.

@@ -22,7 +22,8 @@ struct WaterBed {
 /// The deceleration on the map over the speed on the map squared [1/m].
 inline double quadratic_drag(const WaterFriction& friction, const WaterBed& bed) {
     const double t = bed.thickness, c = friction.coefficient;
-    if (friction.law == WaterFriction::Law::manning) return bed.gravity * c * c * bed.kappa / (t * std::cbrt(t));
+    if (friction.law == WaterFriction::Law::manning)
+        return bed.gravity * c * c * bed.kappa / (t * std::cbrt(t));
     if (friction.law == WaterFriction::Law::darcy_weisbach) return c * bed.kappa / (8.0 * t);
     return 0.0;
 }

@@ -1,161 +1,76 @@
-// The loops of a step of free water: each tile is copied with three cells around it, and what goes through its
-// faces is computed there. Faces between two tiles are computed twice, from the same numbers to the same bits.
+// The loops of a step of free water: each tile is copied with three cells around it, and what goes through
+// its faces is computed there. WaterFaces between two tiles are computed twice, from the same numbers to the
+// same bits.
 #include <algorithm>
 #include <cmath>
 
 #include "law/bed_law.h"
 #include "water/face_flux.h"
-#include "water/water_flow.h"
+#include "water/water_block.h"
 
 namespace frana {
 namespace {
 
-constexpr Index kHalo = 3, kRow = 24, kRows = kTile + 2 * kHalo, kCells = kRow * kRows;
-constexpr Index kGroups = 5;  ///< of four that a row is computed in: 16 cells and one or two on either side
-
-using Cells = double[kCells];
-
-/// The part of a tile inside of the grid, in places of a block.
-struct Part {
-    Index i0, j0;          ///< node of the tile's first cell
-    Index first, columns;  ///< place of the first cell; places behind the last one inside
-    Index rows;
-};
-
-/// A tile with its surroundings; place a + kRow b.
-struct Block {
-    alignas(32) Cells depth;  ///< that moves: 0 for films [m]
-    alignas(32) Cells surface, u, v, pull;
-};
-
-/// Changes over a cell; of velocities, half of it over the depth.
-struct Slopes {
-    alignas(32) Cells depth, surface, along, across;
-};
-
-struct Faces {
-    alignas(32) Cells mass, along, across, low, high;
-};
-
-Part part_of(const TileGrid& grid, Index tile) {
-    const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
-    return {i0, j0, kHalo, kHalo + std::min(kTile, grid.nx() - i0), kHalo + std::min(kTile, grid.ny() - j0)};
-}
-
-/// What lies beyond a side, from the cells before it: `inside` is the last cell, `step` leads into the grid.
-/// A wall is a mirror. Beyond an open side the ground goes on as it falls, and water as deep and as fast as it
-/// leaves; where it does not leave, or the ground does not fall, there is a wall. `room`: cells the block has.
-void beyond(Block& block, Index inside, Index step, WaterSide side, double* normal, double outward, Index room) {
-    const double ground = block.surface[inside] - block.depth[inside];
-    const double fall = block.surface[inside + step] - block.depth[inside + step] - ground;
-    const bool leaves = side == WaterSide::open && outward * normal[inside] > 0.0 && fall >= 0.0;
-    for (Index n = 1; n <= std::min(kHalo, room); ++n) {
-        const Index to = inside - n * step, from = leaves ? inside : inside + (n - 1) * step;
-        block.depth[to] = block.depth[from], block.u[to] = block.u[from], block.v[to] = block.v[from];
-        block.surface[to] = block.surface[from], block.pull[to] = block.pull[from];
-        if (leaves)
-            block.surface[to] -= static_cast<double>(n) * fall;
-        else
-            normal[to] = -normal[to];
-    }
-}
-
-void load_row(const WaterBody& body, const WaterFields& from, const Part& part, Index b, Block& block) {
-    const Index a0 = std::max<Index>(0, kHalo - part.i0),
-                a1 = std::min(kRows, kHalo + body.grid.nx() - part.i0);
-    const Index first = body.grid.at(part.i0 - kHalo, part.j0 + b - kHalo), row = b * kRow;
-    if (a1 < kRows)
-        for (double* cells : {block.depth, block.surface, block.u, block.v, block.pull})
-            std::fill_n(cells + row, kRow, 0.0);
-    for (Index a = a0; a < a1; ++a) {
-        const double h = from.h[first + a];
-        const bool moves = h > body.film;
-        const double per = moves ? 1.0 / h : 0.0;
-        block.depth[row + a] = moves ? h : 0.0;
-        block.surface[row + a] = body.bed[first + a] + body.confined[first + a] + h;
-        block.u[row + a] = per * from.qx[first + a], block.v[row + a] = per * from.qy[first + a];
-        block.pull[row + a] = body.pull[first + a];
-    }
-    if (a0 > 0) beyond(block, row + a0, 1, body.sides[0], block.u, -1.0, a0);
-    if (a1 < kRows) beyond(block, row + a1 - 1, -1, body.sides[1], block.u, 1.0, kRows - a1);
-}
-
-/// Fills the block; false when no water in it moves.
-bool load(const WaterBody& body, const WaterFields& from, const Part& part, Block& block) {
-    const Index b0 = std::max<Index>(0, kHalo - part.j0),
-                b1 = std::min(kRows, kHalo + body.grid.ny() - part.j0);
-    bool wet = false;
-    for (Index b = b0; b < b1; ++b) {
-        load_row(body, from, part, b, block);
-        double deepest = 0.0;
-        for (Index a = 0; a < kRows; ++a) deepest = std::max(deepest, block.depth[b * kRow + a]);
-        wet |= deepest > 0.0;
-    }
-    for (Index a = 0; a < kRows; ++a) {
-        if (b0 > 0) beyond(block, b0 * kRow + a, kRow, body.sides[2], block.v, -1.0, b0);
-        if (b1 < kRows) beyond(block, (b1 - 1) * kRow + a, -kRow, body.sides[3], block.v, 1.0, kRows - b1);
-    }
-    return wet;
-}
-
 /// Changes along one axis, whose cells are `step` places apart, of the groups of four from `first` on.
-void find_slopes(const Block& block, const double* along, const double* across, Index first, Index step,
-                 double theta, Slopes& to) {
+void find_slopes(const WaterBlock& block, const double* along, const double* across, Index first, Index step,
+                 double theta, WaterSlopes& to) {
     const auto change = [&](const double* of, Index k) {
-        const Double4 here = frana::load(of + k);
-        return limited<Double4>(here - frana::load(of + k - step), frana::load(of + k + step) - here, theta);
+        const Double4 here = load(of + k);
+        return limited<Double4>(here - load(of + k - step), load(of + k + step) - here, theta);
     };
     for (Index n = 0; n < kGroups; ++n) {
         const Index k = first + 4 * n;
-        const Double4 h = frana::load(block.depth + k);
+        const Double4 h = load(block.depth + k);
         const Double4 per = select(h > 0.0, 0.5 / h, Double4{});
         store(to.depth + k, change(block.depth, k)), store(to.surface + k, change(block.surface, k));
         store(to.along + k, per * change(along, k)), store(to.across + k, per * change(across, k));
     }
 }
 
-/// A cell's water at its high face (sign 1) or at its low one (-1): linear in the cell, its momentum the cell's.
-[[gnu::always_inline]] inline FaceSide<Double4> at_face(const Block& block, const double* along, const double* across,
-                                                        const Slopes& slopes, Index k, double sign) {
-    const Double4 h = frana::load(block.depth + k), rise = (0.5 * sign) * frana::load(slopes.depth + k);
+/// A cell's water at its high face (sign 1) or at its low one (-1): linear in the cell, its momentum the
+/// cell's.
+[[gnu::always_inline]] inline FaceSide<Double4> at_face(const WaterBlock& block, const double* along,
+                                                        const double* across, const WaterSlopes& slopes,
+                                                        Index k, double sign) {
+    const Double4 h = load(block.depth + k), rise = (0.5 * sign) * load(slopes.depth + k);
     const Double4 here = h + rise, other = sign * (h - rise);
-    const Double4 surface = frana::load(block.surface + k) + (0.5 * sign) * frana::load(slopes.surface + k);
-    return {here, surface - here, frana::load(along + k) + other * frana::load(slopes.along + k),
-            frana::load(across + k) + other * frana::load(slopes.across + k)};
+    const Double4 surface = load(block.surface + k) + (0.5 * sign) * load(slopes.surface + k);
+    return {here, surface - here, load(along + k) + other * load(slopes.along + k),
+            load(across + k) + other * load(slopes.across + k)};
 }
 
 /// Fluxes through the faces between the places k - step and k of the groups of four from `first` on.
-void find_fluxes(const Block& block, const double* along, const double* across, const Slopes& slopes, Index first,
-                 Index step, Faces& to) {
+void find_fluxes(const WaterBlock& block, const double* along, const double* across,
+                 const WaterSlopes& slopes, Index first, Index step, WaterFaces& to) {
     for (Index n = 0; n < kGroups; ++n) {
         const Index k = first + 4 * n;
         FaceFlux<Double4> f{};
-        if (any((frana::load(block.depth + k) > 0.0) | (frana::load(block.depth + k - step) > 0.0)))
+        if (any((load(block.depth + k) > 0.0) | (load(block.depth + k - step) > 0.0)))
             f = face_flux<Double4>(at_face(block, along, across, slopes, k - step, 1.0),
                                    at_face(block, along, across, slopes, k, -1.0),
-                                   0.5 * (frana::load(block.pull + k) + frana::load(block.pull + k - step)));
+                                   0.5 * (load(block.pull + k) + load(block.pull + k - step)));
         store(to.mass + k, f.mass), store(to.along + k, f.along), store(to.across + k, f.across);
         store(to.low + k, f.low), store(to.high + k, f.high);
     }
 }
 
 /// A face at a side of the grid lets nothing in, and through a wall nothing out.
-void close(Faces& faces, Index k, WaterSide side, double outward) {
+void close(WaterFaces& faces, Index k, WaterSide side, double outward) {
     if (side == WaterSide::open && outward * faces.mass[k] > 0.0) return;
     faces.mass[k] = faces.along[k] = faces.across[k] = 0.0;
 }
 
 /// All that is known of a tile in a stage.
 struct Stage {
-    Block block;
-    Slopes across_x, across_y;
-    Faces x, y;                ///< the low faces of cells
-    alignas(32) Cells drain;   ///< share of what would flow out of a cell that there is
+    WaterBlock block;
+    WaterSlopes across_x, across_y;
+    WaterFaces x, y;               ///< the low faces of cells
+    alignas(32) BlockCells drain;  ///< share of what would flow out of a cell that there is
 };
 
-/// Faces of the part's cells and of those next to them.
-void find_faces(const WaterBody& body, const Part& part, Stage& s) {
-    const Block& block = s.block;
+/// WaterFaces of the part's cells and of those next to them.
+void find_faces(const WaterBody& body, const TilePart& part, Stage& s) {
+    const WaterBlock& block = s.block;
     const Index last = kHalo + body.grid.nx() - part.i0, top = kHalo + body.grid.ny() - part.j0;
     for (Index b = kHalo - 1; b <= part.rows; ++b) {
         find_slopes(block, block.u, block.v, b * kRow + 1, 1, body.theta, s.across_x);
@@ -178,7 +93,7 @@ void find_faces(const WaterBody& body, const Part& part, Stage& s) {
 
 /// No more leaves a cell than is in it: beyond that its outflow is cut short (Bollermann et al. 2011,
 /// doi:10.4208/cicp.220210.020710a), but for a part that keeps round-off from making it negative.
-void find_drains(const Part& part, double cells, Stage& s) {
+void find_drains(const TilePart& part, double cells, Stage& s) {
     constexpr double kKept = 1e-9;
     for (Index b = kHalo - 1; b <= part.rows; ++b)
         for (Index a = kHalo - 1; a <= kHalo + kTile; ++a) {
@@ -188,7 +103,7 @@ void find_drains(const Part& part, double cells, Stage& s) {
             const double there = (1.0 - kKept) * s.block.depth[k];
             s.drain[k] = out > there ? there / out : 1.0;
         }
-    const auto cut = [&](Faces& faces, Index k, Index step) {
+    const auto cut = [&](WaterFaces& faces, Index k, Index step) {
         const double share = faces.mass[k] > 0.0 ? s.drain[k - step] : s.drain[k];
         faces.mass[k] *= share, faces.along[k] *= share, faces.across[k] *= share;
     };
@@ -206,7 +121,7 @@ struct Change {
 };
 
 Change change_of(const Stage& s, Index k, double cells) {
-    const Faces &x = s.x, &y = s.y;
+    const WaterFaces &x = s.x, &y = s.y;
     const double weight = s.block.pull[k] * s.block.depth[k];
     const Vec2 push = -cells * Vec2(x.low[k + 1] - x.high[k] + weight * s.across_x.surface[k],
                                     y.low[k + kRow] - y.high[k] + weight * s.across_y.surface[k]);
@@ -216,8 +131,8 @@ Change change_of(const Stage& s, Index k, double cells) {
 }
 
 /// One side of the grid in a tile's ledger: `k` is the face, `inside` the cell at it.
-void book_side(const Stage& s, const Faces& faces, const Slopes& slopes, Index k, Index inside, int axis, double outward,
-               double cells, WaterLedger& ledger) {
+void book_side(const Stage& s, const WaterFaces& faces, const WaterSlopes& slopes, Index k, Index inside,
+               int axis, double outward, double cells, WaterLedger& ledger) {
     const double h = s.block.depth[inside] + 0.5 * outward * slopes.depth[inside];
     const double force = (outward > 0.0 ? faces.low[k] : faces.high[k]) + 0.5 * s.block.pull[inside] * h * h;
     ledger.walls[axis] -= outward * cells * force;
@@ -227,27 +142,31 @@ void book_side(const Stage& s, const Faces& faces, const Slopes& slopes, Index k
 }
 
 /// All sides of the grid that a tile touches; in cells of unit area.
-void book_sides(const TileGrid& grid, const Part& part, const Stage& s, double cells, WaterLedger& ledger) {
+void book_sides(const TileGrid& grid, const TilePart& part, const Stage& s, double cells,
+                WaterLedger& ledger) {
     for (Index b = kHalo; b < part.rows; ++b) {
         const Index low = b * kRow + kHalo, high = b * kRow + part.columns;
         if (part.i0 == 0) book_side(s, s.x, s.across_x, low, low, 0, -1.0, cells, ledger);
-        if (part.i0 + kTile >= grid.nx()) book_side(s, s.x, s.across_x, high, high - 1, 0, 1.0, cells, ledger);
+        if (part.i0 + kTile >= grid.nx())
+            book_side(s, s.x, s.across_x, high, high - 1, 0, 1.0, cells, ledger);
     }
     for (Index a = kHalo; a < part.columns; ++a) {
         const Index low = kHalo * kRow + a, high = part.rows * kRow + a;
         if (part.j0 == 0) book_side(s, s.y, s.across_y, low, low, 1, -1.0, cells, ledger);
-        if (part.j0 + kTile >= grid.ny()) book_side(s, s.y, s.across_y, high, high - kRow, 1, 1.0, cells, ledger);
+        if (part.j0 + kTile >= grid.ny())
+            book_side(s, s.y, s.across_y, high, high - kRow, 1, 1.0, cells, ledger);
     }
 }
 
-/// Runs a stage from fields on a tile: each(storage index, i, j, change) for its cells, and the half of what it
-/// books.
+/// Runs a stage from fields on a tile: each(storage index, i, j, change) for its cells, and the half of what
+/// it books.
 template <class Each>
-void run_stage(const WaterBody& body, const WaterFields& from, Index tile, double dt, WaterLedger& ledger, Each&& each) {
-    const Part part = part_of(body.grid, tile);
+void run_stage(const WaterBody& body, const WaterFields& from, Index tile, double dt, WaterLedger& ledger,
+               Each&& each) {
+    const TilePart part = part_of(body.grid, tile);
     const double cells = dt / body.grid.cell();
     Stage s;
-    const bool moves = load(body, from, part, s.block);
+    const bool moves = load_block(body, from, part, s.block);
     WaterLedger booked;
     if (moves) {
         find_faces(body, part, s);
@@ -257,7 +176,8 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
     for (Index b = kHalo; b < part.rows; ++b)
         for (Index a = kHalo; a < part.columns; ++a) {
             const Index i = part.i0 + a - kHalo, j = part.j0 + b - kHalo;
-            const Change change = moves ? change_of(s, b * kRow + a, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
+            const Change change =
+                moves ? change_of(s, b * kRow + a, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
             booked.ground += change.push;
             each(body.grid.at(i, j), i, j, change);
         }
@@ -273,7 +193,8 @@ struct Water {
 /// Slope of the bed at a node.
 Vec2 bed_slope(const WaterBody& body, Index k) {
     const double per = 0.5 / body.grid.cell();
-    return per * Vec2(body.bed[k + 1] - body.bed[k - 1], body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
+    return per * Vec2(body.bed[k + 1] - body.bed[k - 1],
+                      body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
 }
 
 /// Friction over a step, exact for a constant drive (law/bed_law.h), on water deeper than a film.
@@ -316,12 +237,13 @@ void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedge
 /// Which tiles water in cell (i, j) of a tile is near: it reaches two cells in a step.
 std::uint16_t near_of(Index i, Index j) {
     constexpr Index kReach = 3;
-    const int di = i < kReach ? -1 : i >= kTile - kReach ? 1 : 0, dj = j < kReach ? -1 : j >= kTile - kReach ? 1 : 0;
+    const auto towards = [](Index n) { return n < kReach ? -1 : n >= kTile - kReach ? 1 : 0; };
+    const int di = towards(i), dj = towards(j);
     const auto bit = [](int x, int y) { return static_cast<std::uint16_t>(1 << (3 * (y + 1) + x + 1)); };
     return static_cast<std::uint16_t>(bit(0, 0) | bit(di, 0) | bit(0, dj) | bit(di, dj));
 }
 
-/// Counts a cell; `place` within its tile.
+/// Counts the cell at node (i, j), stored at k.
 void count(const WaterBody& body, Index k, Index i, Index j, const Water& w, WaterSums& sums) {
     if (!(w.h > 0.0)) {
         if (w.h != 0.0) sums.bad = k;  // negative, or not a number
@@ -339,33 +261,33 @@ void count(const WaterBody& body, Index k, Index i, Index j, const Water& w, Wat
     sums.near |= near_of(i % kTile, j % kTile);
 }
 
-void scale(WaterSums& sums, double area) {
-    sums.volume *= area, sums.momentum *= area, sums.kinetic *= area;
-}
+void scale(WaterSums& sums, double area) { sums.volume *= area, sums.momentum *= area, sums.kinetic *= area; }
 
 template <class Body>
 void for_each_listed_tile(const WaterBody& body, Body&& each) {
     const Index count = static_cast<Index>(body.work.size());
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
-    for (Index n = 0; n < count; ++n) each(static_cast<std::size_t>(n), body.work[static_cast<std::size_t>(n)]);
+    for (Index n = 0; n < count; ++n)
+        each(static_cast<std::size_t>(n), body.work[static_cast<std::size_t>(n)]);
 }
 
 }  // namespace
 
-/// The second stage's fluxes are those of water that friction has slowed: on a slope it would otherwise run by
-/// half of what gravity gives it in a step too far.
+/// The second stage's fluxes are those of water that friction has slowed: on a slope it would otherwise run
+/// by half of what gravity gives it in a step too far.
 void first_stage(WaterBody& body, double dt) {
     const bool brakes = body.friction.law != WaterFriction::Law::none;
     for_each_listed_tile(body, [&](std::size_t n, Index tile) {
         body.sums[n] = WaterSums{};
-        run_stage(body, body.now, tile, dt, body.sums[n].ledger, [&](Index k, Index, Index, const Change& change) {
-            Water w{body.now.h[k] + change.h, body.now.qx[k] + change.qx, body.now.qy[k] + change.qy};
-            if (brakes) {
-                body.driven_x[k] = w.qx, body.driven_y[k] = w.qy;
-                if (w.h > body.film) brake(body, k, dt, w);
-            }
-            body.half.h[k] = w.h, body.half.qx[k] = w.qx, body.half.qy[k] = w.qy;
-        });
+        run_stage(
+            body, body.now, tile, dt, body.sums[n].ledger, [&](Index k, Index, Index, const Change& change) {
+                Water w{body.now.h[k] + change.h, body.now.qx[k] + change.qx, body.now.qy[k] + change.qy};
+                if (brakes) {
+                    body.driven_x[k] = w.qx, body.driven_y[k] = w.qy;
+                    if (w.h > body.film) brake(body, k, dt, w);
+                }
+                body.half.h[k] = w.h, body.half.qx[k] = w.qx, body.half.qy[k] = w.qy;
+            });
     });
 }
 
@@ -377,14 +299,18 @@ void second_stage(WaterBody& body, double dt) {
     for_each_listed_tile(body, [&](std::size_t n, Index tile) {
         WaterSums& sums = body.sums[n];
         WaterLedger ends;
-        run_stage(body, body.half, tile, dt, sums.ledger, [&](Index k, Index i, Index j, const Change& change) {
-            const auto mean = [&](double start, double half, double by) { return 0.5 * (start + (half + by)); };
-            Water w{mean(body.now.h[k], body.half.h[k], change.h), mean(body.now.qx[k], driven_x[k], change.qx),
-                    mean(body.now.qy[k], driven_y[k], change.qy)};
-            finish_cell(body, k, dt, w, ends);
-            count(body, k, i, j, w, sums);
-            body.now.h[k] = w.h, body.now.qx[k] = w.qx, body.now.qy[k] = w.qy;
-        });
+        run_stage(body, body.half, tile, dt, sums.ledger,
+                  [&](Index k, Index i, Index j, const Change& change) {
+                      const auto mean = [&](double start, double half, double by) {
+                          return 0.5 * (start + (half + by));
+                      };
+                      Water w{mean(body.now.h[k], body.half.h[k], change.h),
+                              mean(body.now.qx[k], driven_x[k], change.qx),
+                              mean(body.now.qy[k], driven_y[k], change.qy)};
+                      finish_cell(body, k, dt, w, ends);
+                      count(body, k, i, j, w, sums);
+                      body.now.h[k] = w.h, body.now.qx[k] = w.qx, body.now.qy[k] = w.qy;
+                  });
         sums.ledger.add(ends, area);
         scale(sums, area);
     });
