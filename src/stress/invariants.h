@@ -81,16 +81,17 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   changes by more than the bed, so B there is at most the largest depth over a cell. Not for the paper preset, whose
 ///   explicit forces act on nodes of vanishing mass.
 /// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
-///   start, h the largest depth (which pushes: of nodes, or what points carry) and drop to the lowest bed so far. stretch is 1 where the model has an energy law;
-///   elsewhere a bend may turn a speed along the map into `stretch` times that along the bed, which carries it up by
-///   stretch^2 of the height, to fall again. The energy line's v0^2 + 2 g drop alone is no bound of a fluid: the tip of
-///   a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what stays behind. One that runs uphill is driven by the
-///   plain gradient, so it is the horizontal velocity that has this bound, and s = sqrt(1 + B^2) with the B of `energy`
-///   (1 where stretch has it). kConvergence: that in turn is a bound along one direction; streams that converge from two
-///   may pass it a little (1 % has been seen), while what is unstable passes it by factors. Nor does it bind the affine
-///   transfers where velocity changes from cell to cell: no linear transfer of second order keeps extremes (Godunov
-///   1959), and these bring nodes a cell away from a point its velocity and the change across a cell besides. Where the
-///   largest such change so far is more than kConvergence of the bound it takes its place, up to the bound itself.
+///   start, h the largest depth (which pushes: of nodes, or what points carry) and drop to the lowest bed so far.
+///   stretch is 1 where the model has an energy law; elsewhere a bend may turn a speed along the map into `stretch`
+///   times that along the bed, which carries it up by stretch^2 of the height, to fall again. The energy line's v0^2 + 2
+///   g drop alone is no bound of a fluid: the tip of a dam break runs at 2 sqrt(g h) (Ritter 1892), driven by what stays
+///   behind. One that runs uphill is driven by the plain gradient, so it is the horizontal velocity that has this bound,
+///   and s = sqrt(1 + B^2) with the B of `energy` (1 where stretch has it). kConvergence: that in turn is a bound along
+///   one direction; streams that converge from two may pass it a little (1 % has been seen), while what is unstable
+///   passes it by factors. Nor does it bind the affine transfers where velocity changes from cell to cell: no linear
+///   transfer of second order keeps extremes (Godunov 1959), and these bring nodes a cell away from a point its velocity
+///   and the change across a cell besides. Where the largest such change so far is more than kConvergence of the bound
+///   it takes its place, up to the bound itself.
 /// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
 ///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
 ///   as high as round-off, 2 sqrt(g e) (Ritter 1892), where the fit met the level; otherwise than one as high as its
