@@ -43,10 +43,13 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
     raster.crs_wkt = crs_wkt;
     raster.source = rule.name;
     const bool time = std::string(rule.field) == "arrival_time", inner = std::string(rule.field) == "damage";
-    const Field* depth = frame.node("depth");
+    const Field *depth = frame.node("depth"), *water = frame.node("water_depth");
+    const auto lies = [&](Index node) {  // depth is that of both, a sum
+        return depth == nullptr || depth->data[node] - (water ? water->data[node] : 0.0) > 1e-9 * depth->data[node];
+    };
     for (Index node = 0; node < frame.grid.size(); ++node) {
         const double value = field->data[node * field->components + rule.component];
-        const bool never = (time && !(value >= 0.0)) || (inner && depth && !(depth->data[node] > 0.0));
+        const bool never = (time && !(value >= 0.0)) || (inner && !lies(node));
         if (!std::isnan(elevation->data[node]) && !never)
             raster.values[static_cast<std::size_t>(node)] = value;
     }

@@ -81,7 +81,6 @@ TEST_CASE("V13: a body below water slides down with its weight in it", "[mixture
     basin.scene.columns.ground = terrain_ground([=](double, double) { return Vec2(-slope, 0.0); });
     basin.scene.water.bed = [=](double x, double) { return -slope * x; };
     basin.scene.water.start = [](double, double) { return WaterState{5.0}; };
-    basin.scene.exchange.virtual_mass = VirtualMass::none;
     TwoPhaseFlow flow(basin.scene);
     flow.advance(1e-3);
     // Columns that stand out of the mean surface make it uneven: the middle of the body knows nothing of it yet.
@@ -133,7 +132,6 @@ TEST_CASE("V10: drag alone brings columns and water together with their momentum
     verify::add_block(basin.scene.columns, block);
     basin.fill(2.0);
     basin.scene.water.sides = {WaterSide::open, WaterSide::open, WaterSide::wall, WaterSide::wall};
-    basin.scene.exchange.virtual_mass = VirtualMass::none;
     basin.scene.exchange.material.power = 1;
     TwoPhaseFlow flow(basin.scene);
     flow.advance(0.02);
@@ -218,7 +216,6 @@ double dam_differs(double cell) {
         for (double y = g.y0 + 0.25 * cell; y < g.y_max(); y += 0.5 * cell)
             s.points.add({x, y, 0, 0, share * depth(x) * 0.25 * cell * cell * s.density, share * depth(x), 0.0, 1.0});
     verify::add_channel(s, g.y0, g.y_max());
-    scene.exchange.virtual_mass = VirtualMass::none;
     scene.water.grid = g;
     WaterScene alone = scene.water;
     alone.start = [=](double x, double) { return WaterState{depth(x)}; };
@@ -243,4 +240,52 @@ TEST_CASE("V14: a dam of water and of a body as dense and without strength break
     CAPTURE(coarse, fine);
     CHECK(fine < 0.01);           // of 1 m of water
     CHECK(fine < 0.7 * coarse);   // at least first order, but for the bore
+}
+
+TEST_CASE("Virtual mass holds back no solids that fall as fast as their water", "[mixture]") {
+    const double slope = 0.4;
+    Basin basin(0.8, 1900.0, 0.0);
+    basin.scene.columns.points = {};
+    verify::StructuredBlock block;
+    block.low = {-3.5, -3.5}, block.high = {13.5, 13.5}, block.depth = 0.8, block.cohesion = 1e9;
+    verify::add_block(basin.scene.columns, block);
+    basin.scene.columns.ground = terrain_ground([=](double, double) { return Vec2(-slope, 0.0); });
+    basin.scene.water.bed = [=](double x, double) { return -slope * x; };
+    basin.scene.water.start = [](double, double) { return WaterState{1.2}; };
+    basin.scene.water.sides = {WaterSide::open, WaterSide::open, WaterSide::wall, WaterSide::wall};
+    basin.scene.exchange.virtual_mass = VirtualMass::bounded;
+    TwoPhaseFlow flow(basin.scene);
+    while (flow.time() < 0.05) flow.advance(0.05);
+    const StructuredPoints& q = flow.columns().body().points;
+    const Index i = static_cast<Index>(9.0 / basin.cell) + 2;
+    const WaterState middle = flow.water().at(i, i);
+    const double fall = 0.05 * kGravity * slope / (1.0 + slope * slope);
+    CHECK(middle.u == Approx(fall).epsilon(0.02));
+    for (Index p = 0; p < q.count(); ++p)
+        if ((flow.columns().position(p) - Vec2(5.0, 5.0)).norm() < 0.3) CHECK(q.vx[p] == Approx(middle.u).epsilon(0.02));
+}
+
+TEST_CASE("What breaks at a wall and at an open side gives all its water, and no momentum is made", "[mixture]") {
+    Basin basin(0.8, 1900.0, 0.0);
+    StructuredScene& s = basin.scene.columns;
+    s.points = {};
+    verify::StructuredBlock block;
+    block.low = {s.grid.x0, s.grid.y0}, block.high = {s.grid.x0 + 5.0, s.grid.y0 + 5.0}, block.depth = 0.8, block.cohesion = 300.0;
+    verify::add_block(s, block);
+    s.confined = 0.3;
+    s.material.critical_strain = 0.02;
+    Obstacle wall;
+    wall.high.x() = s.grid.x0;
+    s.obstacles.push_back(wall);
+    basin.scene.water.sides = {WaterSide::wall, WaterSide::wall, WaterSide::open, WaterSide::wall};
+    basin.scene.water.start = {};
+    TwoPhaseFlow flow(basin.scene);
+    run(flow, 1.0);
+    const StructuredStatus& c = flow.columns().status();
+    const WaterStatus& w = flow.water().status();
+    CHECK(c.damage > 0.3);
+    CHECK(c.released > 0.5);
+    CHECK(w.ledger.left > 0.0);
+    CHECK(w.ledger.released == Approx(c.released).epsilon(1e-12));
+    CHECK((c.impulse.water + 1000.0 * w.ledger.columns).norm() < 1e-9 * 1000.0 * w.ledger.columns.norm());
 }

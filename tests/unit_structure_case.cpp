@@ -74,7 +74,7 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK_FALSE(scene_of(structure).water.has_value());
     const WaterPhase water = scene_of(density + structure + "confined_water = 0.25\n" + free +
                                       "share = 0.3\nlevel = 12\nrain = 1e-5\nfriction = \"manning\"\nmanning_n = 0.04\n"
-                                      "drag_power = 1\nvirtual_mass = \"none\"\n")
+                                      "drag_power = 1\nvirtual_mass = \"bounded\"\n")
                                  .water.value();
     CHECK(water.share == 0.3);
     CHECK(water.level.value() == 12.0);
@@ -82,7 +82,7 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK(water.friction.law == WaterFriction::Law::manning);
     CHECK(water.friction.coefficient == 0.04);
     CHECK(water.exchange.material.power == 1);
-    CHECK(water.exchange.virtual_mass == VirtualMass::none);
+    CHECK(water.exchange.virtual_mass == VirtualMass::bounded);
     CHECK(water.exchange.material.solid_density == Approx((1900.0 - 250.0) / 0.75).epsilon(1e-15));
     CHECK(has(problem_of(density + free), "found \"free\" without material.structure"));
     CHECK(has(problem_of(density + structure + "confined_water = 0.2\n"), "found 0.2 without free water"));
@@ -90,6 +90,9 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK(has(problem_of(density + structure + free + "share = 1.0\n"), "water.share: found 1"));
     CHECK(has(problem_of(density + structure + "confined_water = 1.5\n" + free), "confined_water: found 1.5"));
     CHECK(has(problem_of(density + structure + free, "unrolled = true\n"), "where water finds its level"));
+    CHECK(has(problem_of(density + structure + free + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"),
+              "found a barrier with water.model"));
+    CHECK(has(problem_of(density + structure + "fraction = 0.0\nconfined_water = 0.2\n" + free), "found 0.2 with fraction = 0"));
 }
 
 TEST_CASE("What does not fit a structure is refused in one sentence", "[structured]") {

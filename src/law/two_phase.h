@@ -98,6 +98,8 @@ struct Exchange {
     double drag;                ///< h C [Pa s^j / m^j]
     int power;                  ///< j
     double virtual_mass = 0.0;  ///< [kg/m^2]
+    /// Acceleration that u got from its forces elsewhere, without the share that virtual mass gives c [m/s^2].
+    Vec2 carried{0, 0};
 };
 
 /// A step of dt [s] of both velocities under forces, drag and virtual mass, stable for any step. What one

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/error.h"
 
@@ -19,7 +20,7 @@ double confined_volume(const StructuredFlow& columns) {
 
 TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene) : columns_(scene.columns), water_(scene.water) {
     expect(scene.columns.grid == scene.water.grid, "columns and water share a grid");
-    FreeWater water{scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0};
+    FreeWater water{scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}};
     water_.lend(water);
     columns_.meet(water);
     confine();
@@ -45,13 +46,27 @@ void TwoPhaseFlow::confine() {
 }
 
 void TwoPhaseFlow::advance(double until) {
-    water_.advance(until);
+    // Columns that outrun the water's waves, or that there is no water beside yet, bound its step as well.
+    constexpr double kPart = 0.45;
+    const double reach = kPart * columns_.body().grid.cell(), wave = columns_.wave();
+    water_.advance(wave > 0.0 ? std::min(until, time() + reach / wave) : until);
     const double end = water_.status().time;
-    while (columns_.status().time < end) columns_.advance(end);
+    touched_ = columns_.body().active.work;
+    while (columns_.status().time < end) {
+        columns_.advance(end);
+        touch(columns_.body().active.work);
+    }
     columns_.look();
-    water_.take_changes(columns_.body().active.work);
+    water_.take_changes(touched_);
     confine();
     weigh();
+}
+
+void TwoPhaseFlow::touch(const std::vector<Index>& tiles) {
+    if (std::includes(touched_.begin(), touched_.end(), tiles.begin(), tiles.end())) return;
+    std::vector<Index> both;
+    std::set_union(touched_.begin(), touched_.end(), tiles.begin(), tiles.end(), std::back_inserter(both));
+    touched_.swap(both);
 }
 
 void TwoPhaseFlow::weigh() {
@@ -81,7 +96,9 @@ void TwoPhaseFlow::keep(Archive& archive) {
         water_.keep(archive);
     }
     archive.numbers("weights", {&volume_given_, &potential_, &speeds_});
-    if (archive.loading()) confine();
+    if (!archive.loading()) return;
+    columns_.look();  // beside the water that has been loaded
+    confine();
 }
 
 double TwoPhaseFlow::sub_cycles() const {

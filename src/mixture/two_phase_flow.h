@@ -34,11 +34,13 @@ public:
 
 private:
     void confine();
+    void touch(const std::vector<Index>& tiles);
     void weigh();
 
     StructuredFlow columns_;
     WaterFlow water_;
     std::vector<Index> confined_;  ///< tiles where the water lies on columns
+    std::vector<Index> touched_;   ///< tiles where columns were since the last step of the water
     double volume_given_ = 0.0, potential_ = 0.0, speeds_ = 0.0;
 };
 

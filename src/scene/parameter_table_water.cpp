@@ -29,7 +29,7 @@ void add_water(Table& table) {
     power.range = between(1.0, 2.0);
     power.fallback = 2.0;
     table.push_back(used(power));
-    table.push_back(used(choice("water.virtual_mass", {"none", "bounded", "unbounded"}, "bounded",
+    table.push_back(used(choice("water.virtual_mass", {"none", "bounded", "unbounded"}, "none",
                                 "water that solids speed up with them: Pudasaini and Mergili (2019), or Pudasaini (2012), "
                                 "which grows without bound where there is little water")));
     table.push_back(used(number("water.pore_pressure", "1", fraction, 1.0,

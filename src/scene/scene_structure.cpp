@@ -43,6 +43,12 @@ public:
         if (given("critical_length"))
             m.critical_strain =
                 critical_strain(m.critical_strain, number("critical_length"), scene_.bed.geometry.cell);
+        if (structure.confined > 0.0 && structure.share == 0.0)
+            problems_.add(case_.place(key("confined_water")),
+                          fmt::format("found {:.6g} with fraction = 0", structure.confined),
+                          "expected 0, since what has no structure holds no water in it",
+                          "use water.share for water in the pores");
+        if (structure.unrolled) require_sines();
         if (m.damage_by == DamageBy::strain) m.onset = number("onset");
         if (m.dilatancy > m.friction)
             problems_.add(case_.place(key("dilatancy_angle_deg")),
@@ -77,6 +83,22 @@ private:
     DamageBy damage_by() const {
         const std::string& word = case_.word(key("damage"));
         return word == "extension" ? DamageBy::extension : word == "strain" ? DamageBy::strain : DamageBy::dilation;
+    }
+
+    /// Heights over the length along the ground do not differ by more than that length.
+    void require_sines() {
+        const Raster& bed = scene_.bed;
+        for (Index j = 0; j < bed.geometry.ny; ++j)
+            for (Index i = 0; i + 1 < bed.geometry.nx; ++i) {
+                if (!(std::abs(bed.at(i + 1, j) - bed.at(i, j)) > bed.geometry.cell)) continue;
+                problems_.add(case_.place("terrain.unrolled"),
+                              fmt::format("found true, and a rise of {:.6g} m over {:.6g} m at x {:.10g}, y {:.10g}",
+                                          std::abs(bed.at(i + 1, j) - bed.at(i, j)), bed.geometry.cell,
+                                          bed.geometry.x(i), bed.geometry.y(j)),
+                              "expected no rise longer than the way along the ground",
+                              "correct the elevation model, or remove unrolled");
+                return;
+            }
     }
 
     /// What structured columns do not know of.
@@ -163,6 +185,12 @@ std::optional<WaterPhase> read_water(const CaseFile& file, const Scene& scene, P
                      fmt::format("found {:.6g} kg/m3, so that grains have {:.6g}", scene.density, m.solid_density),
                      fmt::format("expected grains denser than water.density = {:.6g}", m.fluid_density),
                      "give the columns' density, of grains and confined water together");
+    if (!scene.barriers.empty())
+        problems.add(file.table_place("barrier.0"), "found a barrier with water.model = \"free\"",
+                     "expected none, since water does not know them", "raise the elevation model there");
+    if (std::any_of(scene.bed.values.begin(), scene.bed.values.end(), [](double z) { return !std::isfinite(z); }))
+        problems.add(file.place("terrain.dem"), "found nodes without elevation with water.model = \"free\"",
+                     "expected ground everywhere", "give a terrain.window without nodata, or fill the elevation model");
     if (scene.structure->unrolled)
         problems.add(file.place("terrain.unrolled"), "found true with water.model = \"free\"",
                      "expected coordinates on the map, where water finds its level", "remove one of them");

@@ -30,7 +30,7 @@ public:
         for (Index dj = 0; dj < 2; ++dj)
             for (Index di = 0; di < 2; ++di) {
                 const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
-                if (w == 0.0) continue;
+                if (w < 1e-9) continue;  // round-off of a place on a node
                 const double z = bed_.at(i + di, j + dj);
                 pull.exit = pull.exit || !std::isfinite(z);
                 pull.elevation += w * z, slope += w * slope_at(i + di, j + dj);

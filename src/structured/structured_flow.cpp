@@ -115,7 +115,14 @@ void StructuredFlow::meet(const FreeWater& water) {
 /// What follows from the tiles that hold columns.
 void StructuredFlow::take_tiles() {
     StructuredPoints& q = body_.points;
+    left_ = body_.active.work;
     lists_.list_tiles(body_.grid, body_.active);
+    for (const Index tile : left_) {  // what nobody clears any more must not be seen when columns come back
+        if (body_.active.in_work[static_cast<std::size_t>(tile)]) continue;
+        const Index first = body_.grid.at(body_.grid.tile_i(tile), body_.grid.tile_j(tile));
+        for (Index j = 0; j < kTile; ++j)
+            std::fill_n(&body_.moved[first + j * body_.grid.stride()], kTile, StructuredBody::Moved{});
+    }
     body_.gone.assign(static_cast<std::size_t>(q.count()), 0);
     body_.sums.resize(body_.active.tile.size());
     body_.tallies.resize(body_.active.work.size());

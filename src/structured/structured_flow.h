@@ -1,6 +1,6 @@
 #pragma once
 // Structured solids on the ground: depth-averaged columns that are elastic, yield and break into grains, by
-// an explicit material point method with quadratic B-splines (TPIC). Dry, one material.
+// an explicit material point method with quadratic B-splines (TPIC). One material, dry or beside free water.
 #include <memory>
 #include <optional>
 #include <vector>
@@ -168,6 +168,8 @@ public:
     const StructuredStatus& status() const { return status_; }
     const StructuredBody& body() const { return body_; }
     std::vector<PhaseTime> timings() const { return timed_.times(); }
+    /// Largest speed of columns and the waves on them [m/s].
+    double wave() const { return wave_; }
     /// Position of a point [m].
     Vec2 position(Index p) const;
     /// Momentum + carried out - given - impulses: round-off [kg m/s]
@@ -189,6 +191,7 @@ private:
     PointOrder order_;
     TileSorter lists_;  ///< of tiles, by colour
     std::vector<PointField> fields_;
+    std::vector<Index> left_;  ///< tiles of the list before
     StepClock timed_;
     StructuredStatus status_;
     double cfl_, sound_;

@@ -119,7 +119,8 @@ struct Batch {
                                  load(&q.strain[p], lanes)};
     const auto step =
         ColumnStepOf<Double4>::of(if_whole(b.cxx), if_whole(b.cxy), if_whole(b.cyx), if_whole(b.cyy), dt);
-    const Double4 weight = if_whole(-0.5 * body.density * b.pull * depth);
+    const Double4 density = body.water ? load(&q.mass[p], lanes) / max(load(&q.volume[p], lanes), all(1e-300)) : all(body.density);
+    const Double4 weight = if_whole(-0.5 * density * b.pull * depth);
     const ColumnStressOf<Double4> old = state.stress;
     body.law.update(step, weight, load(&q.cohesion[p], lanes), state);
     store(&q.xx[p], state.stress.xx, lanes), store(&q.yy[p], state.stress.yy, lanes);

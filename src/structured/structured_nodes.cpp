@@ -17,7 +17,11 @@ struct Around {
     const StructuredBody& body;
     Index k, stride;
 
-    double depth(Index at) const { return body.nodes[at].m / body.pull[at].open; }
+    /// As mass per share of the node that is open; what was released is not part of it.
+    double depth(Index at) const {
+        const double mass = body.water ? body.density * (body.bound[at].volume - body.bound[at].released) : body.nodes[at].m;
+        return mass / body.pull[at].open;
+    }
     Double4 share(Index at) const {  // K (1 - f); beside dry nodes it goes on as it is here
         const double m = body.nodes[at].m;
         return m > 0.0 ? load(&body.push[at]) / m : load(&body.push[k]) / body.nodes[k].m;
@@ -67,13 +71,19 @@ struct Met {
     Vec2 lift{0, 0};     ///< acceleration by the pressure of the water [m/s^2]
 };
 
+/// Water has cells around the nodes of the grid; columns at its sides reach nodes beyond them.
+bool has_water(const StructuredBody& body, Index k) {
+    const Index i = k % body.grid.stride() - kTile, j = k / body.grid.stride() - kTile;
+    return i >= 0 && j >= 0 && i < body.grid.nx() && j < body.grid.ny() && body.water->h[k] > body.water->film;
+}
+
 /// Elevation of the water's surface where there is water, else `otherwise`.
 double surface_at(const StructuredBody& body, Index k, double otherwise) {
     const FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
-    const double open = body.pull[k].open;  // 0 beyond the tiles of columns
+    const double open = body.pull[k].open;  // 0 where no column has been near
     const double depth = open > 0.0 ? (bound.volume - bound.released) / (open * body.grid.cell() * body.grid.cell()) : 0.0;
-    return water.h[k] > water.film ? water.bed[k] + water.h[k] + depth : otherwise;
+    return has_water(body, k) ? water.bed[k] + water.h[k] + depth : otherwise;
 }
 
 /// Slope of the surface over the cells on both sides that have water, or over one.
@@ -95,7 +105,7 @@ Met meet_water(const StructuredBody& body, Index k) {
     const StructuredBody::Pull& ground = body.pull[k];
     const double area = ground.open * body.grid.cell() * body.grid.cell();
     Met met{body.nodes[k].m - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
-    if (!(water.h[k] > water.film)) return met;
+    if (!has_water(body, k)) return met;
     met.support = water.support(met.mass / (area * met.depth), met.depth, water.h[k]);
     met.lift = -met.support * (ground.across * surface_slope(body, k) + Vec2(ground.x, ground.y));
     return met;
@@ -106,15 +116,20 @@ Met meet_water(const StructuredBody& body, Index k) {
 Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt) {
     FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
-    const double area = body.pull[k].open * body.grid.cell() * body.grid.cell();
+    const double area = body.grid.cell() * body.grid.cell();  // the water's: what one gives the other gets
     const double h = water.h[k], whole = met.depth + h, solids = bound.solids / area;
     const double confined = std::max(0.0, met.depth - solids), fluid = confined + h;
     const Mixture mixture{solids / whole, bound.structured / bound.solids, confined / fluid};
     Phase c{met.mass / area, before, (met.mass / area / dt) * (driven - before)};
     Phase u{water.by.material.fluid_density * h, Vec2(water.qx[k], water.qy[k]) / h};
+    // Of what drives the water friction takes a part, and all of it at most.
+    const Vec2 falls = -body.pull[k].across * surface_slope(body, k);
+    const double drive = falls.norm(),
+                 brake = quadratic_drag(water.friction, {body.gravity, h, 1.0}) * u.velocity.squaredNorm();
+    const Vec2 carried = drive > brake ? Vec2(falls * (1.0 - brake / drive)) : Vec2(0, 0);
     const double flux = (mixture.bound() * c.velocity + mixture.free() * u.velocity).norm();
     const Exchange by{whole * water.drag.coefficient(mixture, flux), water.by.material.power,
-                      virtual_mass(water.by.virtual_mass, water.by.material, mixture, whole)};
+                      virtual_mass(water.by.virtual_mass, water.by.material, mixture, whole), carried};
     exchange(by, dt, c, u);
     water.qx[k] = h * u.velocity.x(), water.qy[k] = h * u.velocity.y();
     return c.velocity;
@@ -144,7 +159,7 @@ Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, dou
         v += dt * met.lift;
         tally.impulse.weight += met.mass * dt * met.lift;
         const Vec2 alone = v;
-        if (body.water->h[k] > body.water->film) {  // drag knows what friction holds, and friction then what drag does
+        if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
             const Vec2 held = braked(law, body, pull, across, met.depth, before, v, dt);
             v += drag(body, k, met, before, held, dt) - held;
         }
@@ -163,20 +178,39 @@ Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, dou
     return {stopped.x(), stopped.y(), across, met.depth};
 }
 
-/// What the columns released in the last step joins the water of their nodes, with the nodes' velocity.
-void release_to_nodes(StructuredBody& body) {
+/// What the columns of a node released in the last step joins the water at `to`, with the node's velocity.
+void release_to(StructuredBody& body, Index k, Index to) {
     FreeWater& water = *body.water;
+    const double depth = body.bound[k].released / (body.grid.cell() * body.grid.cell());
+    const Node& node = body.nodes[k];
+    water.h[to] += depth;
+    water.qx[to] += depth * (node.x / node.m), water.qy[to] += depth * (node.y / node.m);
+}
+
+/// All nodes; those beyond the grid's sides, which have no water, in one order to the nearest that has.
+void release_to_nodes(StructuredBody& body) {
+    const TileGrid& grid = body.grid;
+    const auto each = [&](Index tile, auto&& visit) {
+        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+        for (Index j = j0; j < j0 + kTile; ++j)
+            for (Index i = i0; i < i0 + kTile; ++i)
+                if (body.bound[grid.at(i, j)].released > 0.0) visit(i, j);
+    };
+    const auto inside = [&](Index i, Index j) { return i >= 0 && j >= 0 && i < grid.nx() && j < grid.ny(); };
     for_each_work_tile(body.active, [&](Index, Index tile) {
-        const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
-        for (Index j = 0; j < kTile; ++j)
-            for (Index k = first + j * body.grid.stride(); k < first + j * body.grid.stride() + kTile; ++k) {
-                if (!(body.bound[k].released > 0.0)) continue;
-                const double depth = body.bound[k].released / (body.pull[k].open * body.grid.cell() * body.grid.cell());
-                const Node& node = body.nodes[k];
-                water.h[k] += depth;
-                water.qx[k] += depth * (node.x / node.m), water.qy[k] += depth * (node.y / node.m);
-            }
+        each(tile, [&](Index i, Index j) {
+            if (inside(i, j)) release_to(body, grid.at(i, j), grid.at(i, j));
+        });
     });
+    for (const Index tile : body.active.work) {
+        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+        if (inside(i0, j0) && inside(i0 + kTile - 1, j0 + kTile - 1)) continue;
+        each(tile, [&](Index i, Index j) {
+            if (inside(i, j)) return;
+            const Index a = std::clamp<Index>(i, 0, grid.nx() - 1), b = std::clamp<Index>(j, 0, grid.ny() - 1);
+            release_to(body, grid.at(i, j), grid.at(a, b));
+        });
+    }
 }
 
 template <bool kWater, class Law>

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "law/two_phase.h"
+#include "water/water_friction.h"
 
 namespace frana {
 
@@ -10,7 +11,7 @@ namespace frana {
 /// said here).
 struct WaterExchange {
     TwoPhaseMaterial material;
-    VirtualMass virtual_mass = VirtualMass::bounded;
+    VirtualMass virtual_mass = VirtualMass::none;
     /// B, share of the pore pressure that bears the columns where their pores are full [1]
     double pore_pressure = 1.0;
     /// Free water over bound volume that fills the pores [1]; with less, B goes down in proportion: a column that
@@ -25,6 +26,7 @@ struct FreeWater {
     double *h, *qx, *qy;
     const double* bed;  ///< elevation above any datum [m]
     double film;        ///< water as shallow as this takes no part [m]
+    WaterFriction friction;
 
     /// Share of its weight that water takes off a column's bed, 1 at most: what floats does not pull.
     double support(double bound_density, double bound_depth, double depth) const {

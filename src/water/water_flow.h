@@ -120,7 +120,7 @@ public:
     /// Lets columns change depth and discharge between steps, and shows them the bed; take_changes() follows.
     void lend(FreeWater& to) {
         to.h = body_.now.h.data(), to.qx = body_.now.qx.data(), to.qy = body_.now.qy.data();
-        to.bed = body_.bed.data(), to.film = body_.film;
+        to.bed = body_.bed.data(), to.film = body_.film, to.friction = body_.friction;
     }
     /// Takes up what columns on these tiles (ascending) changed: status and ledger know it from now on.
     void take_changes(const std::vector<Index>& tiles);
