@@ -29,6 +29,14 @@ Scene sliding(double cohesion = 1e9) {
     return scene;
 }
 
+void require_finite(const Frame& frame) {
+    for (const std::vector<Field>* fields : {&frame.particles, &frame.nodes})
+        for (const Field& field : *fields) {
+            INFO(field.name);
+            for (Index n = 0; n < field.count * field.components; ++n) REQUIRE(std::isfinite(field.data[n]));
+        }
+}
+
 void go_to(Simulation& run, double time) {
     while (run.status().time < time) run.advance(time);
 }
@@ -100,11 +108,7 @@ TEST_CASE("Frames of structured columns have finite fields, of stress, damage an
     StructuredRun run(scene);
     go_to(run, scene.end);
     const Frame frame = run.frame();
-    for (const std::vector<Field>* fields : {&frame.particles, &frame.nodes})
-        for (const Field& field : *fields) {
-            INFO(field.name);
-            for (Index n = 0; n < field.count * field.components; ++n) REQUIRE(std::isfinite(field.data[n]));
-        }
+    require_finite(frame);
     const Field *damage = frame.particle("damage"), *cohesion = frame.particle("cohesion"),
                 *on_nodes = frame.node("damage"), *depth = frame.node("depth");
     REQUIRE((damage && cohesion && on_nodes && depth));
@@ -239,8 +243,7 @@ TEST_CASE("A run with water keeps mass and momentum of both, and its water's vol
         volume += 0.25 * water->data[n];
     }
     CHECK(volume == Approx(run.water()->status().volume).epsilon(1e-12));
-    for (const Field& field : frame.nodes)
-        for (Index n = 0; n < field.count * field.components; ++n) REQUIRE(std::isfinite(field.data[n]));
+    require_finite(frame);
 }
 
 TEST_CASE("A kept run with water goes on with the same bits", "[structured][mixture]") {
