@@ -64,9 +64,9 @@ void TwoPhaseFlow::advance(double until) {
 
 void TwoPhaseFlow::touch(const std::vector<Index>& tiles) {
     if (std::includes(touched_.begin(), touched_.end(), tiles.begin(), tiles.end())) return;
-    std::vector<Index> both;
-    std::set_union(touched_.begin(), touched_.end(), tiles.begin(), tiles.end(), std::back_inserter(both));
-    touched_.swap(both);
+    scratch_.clear();
+    std::set_union(touched_.begin(), touched_.end(), tiles.begin(), tiles.end(), std::back_inserter(scratch_));
+    touched_.swap(scratch_);
 }
 
 void TwoPhaseFlow::weigh() {

@@ -3,9 +3,9 @@
 #include <array>
 #include <optional>
 
+#include "mixture/two_phase_flow.h"
 #include "scene/scene.h"
 #include "solver/simulation.h"
-#include "mixture/two_phase_flow.h"
 #include "structured/breakage.h"
 #include "structured/structured_map.h"
 
@@ -26,7 +26,8 @@ public:
     const Status& status() const override { return status_; }
     bool at_rest() const override;
     /// "stress" is what the structure passes on, its undamaged share, "effective_stress" that and the earth pressure
-    /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it; with water "depth" of nodes is that of both, "water_depth" its part.
+    /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it; with water "depth" of nodes
+    /// is that of both, "water_depth" its part.
     Frame frame() override;
     Sample at(const Vec2& point) const override;
     std::vector<std::string> remarks() const override;

@@ -68,6 +68,7 @@ struct Met {
     double mass;         ///< without what was released [kg]
     double depth;        ///< of grains and confined water [m]
     double support = 0;  ///< share of the weight that water takes off the bed
+    Vec2 slope{0, 0};    ///< of the water's surface
     Vec2 lift{0, 0};     ///< acceleration by the pressure of the water [m/s^2]
 };
 
@@ -107,7 +108,8 @@ Met meet_water(const StructuredBody& body, Index k) {
     Met met{body.nodes[k].m - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
     if (!has_water(body, k)) return met;
     met.support = water.support(met.mass / (area * met.depth), met.depth, water.h[k]);
-    met.lift = -met.support * (ground.across * surface_slope(body, k) + Vec2(ground.x, ground.y));
+    met.slope = surface_slope(body, k);
+    met.lift = -met.support * (ground.across * met.slope + Vec2(ground.x, ground.y));
     return met;
 }
 
@@ -123,7 +125,7 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     Phase c{met.mass / area, before, (met.mass / area / dt) * (driven - before)};
     Phase u{water.by.material.fluid_density * h, Vec2(water.qx[k], water.qy[k]) / h};
     // Of what drives the water friction takes a part, and all of it at most.
-    const Vec2 falls = -body.pull[k].across * surface_slope(body, k);
+    const Vec2 falls = -body.pull[k].across * met.slope;
     const double drive = falls.norm(),
                  brake = quadratic_drag(water.friction, {body.gravity, h, 1.0}) * u.velocity.squaredNorm();
     const Vec2 carried = drive > brake ? Vec2(falls * (1.0 - brake / drive)) : Vec2(0, 0);
