@@ -207,7 +207,7 @@ Scene wet_slide() {
     WaterPhase water;
     water.share = 0.2;
     water.level = 0.4;
-    water.rain = 1e-4;
+    water.rain = Raster::filled(scene.bed.geometry, 1e-4);
     water.exchange.material.solid_density = (1900.0 - 0.2 * 1000.0) / 0.8;
     scene.water = water;
     return scene;
@@ -264,7 +264,7 @@ TEST_CASE("A kept run with water goes on with the same bits", "[structured][mixt
 TEST_CASE("Wet grains flow farther than dry ones: water bears them", "[structured][mixture]") {
     Scene scene = wet_slide();
     scene.structure->share = 0.0, scene.structure->confined = 0.0;
-    scene.water->level.reset(), scene.water->rain = 0.0, scene.water->share = 0.4;
+    scene.water->level.reset(), scene.water->rain = {}, scene.water->share = 0.4;
     scene.water->exchange.material.solid_density = 1900.0;
     scene.bed_law = bed::Coulomb{0.25};
     const auto front = [&](double pressure) {
