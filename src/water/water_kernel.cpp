@@ -122,6 +122,13 @@ void find_drains(const TilePart& part, double cells, Stage& s) {
         }
 }
 
+/// A face through which viscosity acts.
+struct ViscousFace {
+    const double *along, *across;  ///< velocities of the block through it and along it [m/s]
+    Index step;                    ///< from the cell before it to the one behind it
+    bool at_side, counts;          ///< of the grid; among those whose energy the tile books
+};
+
 /// Products of the confined mass's gradient of share and the slip of the water over it, over a face's cell.
 struct GradientStress {
     double normal = 0.0, tangent = 0.0;  ///< [m/s]
@@ -129,43 +136,42 @@ struct GradientStress {
 
 /// (30) of van den Bout et al. (2021): grad alpha_c (u_u - u_c) + its transpose, mobility alpha_u. Where only one side has
 /// confined mass the slip is that side's.
-GradientStress gradient_stress(const WaterBody& body, const Stage& s, const double* along, const double* across, Index k,
-                               Index step) {
+GradientStress gradient_stress(const WaterBody& body, const Stage& s, const ViscousFace& of, Index k) {
     const Index stride = body.grid.stride(), at = s.first + k / kRow * stride + k % kRow;
-    const Index back = step == 1 ? 1 : stride, aside = step == 1 ? stride : 1;
-    const double *bound_along = (step == 1 ? body.bound_x : body.bound_y).data(),
-                 *bound_across = (step == 1 ? body.bound_y : body.bound_x).data();
+    const bool in_x = of.step == 1;
+    const Index back = in_x ? 1 : stride, aside = in_x ? stride : 1;
+    const double *bound_along = (in_x ? body.bound_x : body.bound_y).data(),
+                 *bound_across = (in_x ? body.bound_y : body.bound_x).data();
     double slip_along = 0.0, slip_across = 0.0, change = 0.0, sides = 0.0;
     const auto take = [&](Index cell, Index node) {
         change += 0.25 * (body.share[node + aside] - body.share[node - aside]);  // of both, half of a central difference
         if (!(body.share[node] > 0.0)) return;
-        slip_along += along[cell] - bound_along[node], slip_across += across[cell] - bound_across[node], ++sides;
+        slip_along += of.along[cell] - bound_along[node], slip_across += of.across[cell] - bound_across[node], ++sides;
     };
-    take(k - step, at - back), take(k, at);
+    take(k - of.step, at - back), take(k, at);
     if (sides == 0.0) return {};
     const double rise = body.share[at] - body.share[at - back];
     return {rise * slip_along / sides, (rise * slip_across + change * slip_along) / sides};
 }
 
-/// Viscous stress through the faces along one axis, `step` places apart, over density: h nu (grad u + grad u^T)
+/// Viscous stress through a face over density: h nu (grad u + grad u^T)
 /// (Pudasaini 2012, averaged over the depth), h the harmonic mean of both cells', which is none beside dry ground.
 /// Whoever stands at a wall slides along it. Returns the energy lost in a time of cell^2, of those faces that belong to
 /// the tile: the low ones of its cells, and at the side of the grid half of what its mirror would have.
-double add_viscous(const WaterBody& body, const Stage& s, const double* along, const double* across, Index k,
-                   Index step, bool at_side, bool counts, WaterFaces& faces) {
-    const double low = s.block.depth[k - step], high = s.block.depth[k];
+double add_viscous(const WaterBody& body, const Stage& s, const ViscousFace& of, Index k, WaterFaces& faces) {
+    const Index back = k - of.step, aside = of.step == 1 ? kRow : 1;
+    const double low = s.block.depth[back], high = s.block.depth[k];
     if (!(low > 0.0 && high > 0.0)) return 0.0;
-    const Index aside = step == 1 ? kRow : 1;
     const double conducts = body.viscosity.kinematic / body.grid.cell() * 2.0 * low * high / (low + high);
-    const double du = along[k] - along[k - step], dv = across[k] - across[k - step];
-    const double shear = 0.5 * (change_at(s.block, along, k, aside) + change_at(s.block, along, k - step, aside));
-    double normal = 2.0 * conducts * du, tangent = at_side ? 0.0 : conducts * (dv + shear);
-    if (body.share && !at_side) {
-        const GradientStress gradient = gradient_stress(body, s, along, across, k, step);
+    const double du = of.along[k] - of.along[back], dv = of.across[k] - of.across[back];
+    const double shear = 0.5 * (change_at(s.block, of.along, k, aside) + change_at(s.block, of.along, back, aside));
+    double normal = 2.0 * conducts * du, tangent = of.at_side ? 0.0 : conducts * (dv + shear);
+    if (body.share && !of.at_side) {
+        const GradientStress gradient = gradient_stress(body, s, of, k);
         normal -= 2.0 * conducts * gradient.normal, tangent -= conducts * gradient.tangent;
     }
     faces.low[k] -= normal, faces.high[k] -= normal, faces.across[k] -= tangent;
-    return counts ? (at_side ? 0.5 : 1.0) * (normal * du + tangent * dv) : 0.0;
+    return of.counts ? (of.at_side ? 0.5 : 1.0) * (normal * du + tangent * dv) : 0.0;
 }
 
 /// The same of all faces of a tile's cells; after drains, which are of what water carries.
@@ -178,9 +184,9 @@ double add_viscosity(const WaterBody& body, const TilePart& part, Stage& s) {
             const bool east = a == last, west = part.i0 == 0 && a == kHalo;
             const bool north = b == top, south = part.j0 == 0 && b == kHalo;
             if (b < part.rows)
-                lost += add_viscous(body, s, s.block.u, s.block.v, k, 1, east || west, a < part.columns || east, s.x);
+                lost += add_viscous(body, s, {s.block.u, s.block.v, 1, east || west, a < part.columns || east}, k, s.x);
             if (a < part.columns)
-                lost += add_viscous(body, s, s.block.v, s.block.u, k, kRow, north || south, b < part.rows || north, s.y);
+                lost += add_viscous(body, s, {s.block.v, s.block.u, kRow, north || south, b < part.rows || north}, k, s.y);
         }
     return lost;
 }
