@@ -149,7 +149,8 @@ void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigur
             continue;
         }
         const ProductRaster product = from_frame(frame, field, fmt::format("{}_t{}s", field, moment));
-        draw_map(source, product, fmt::format("{} at t = {} s", field, moment), figures, warnings, extent);
+        const std::string words = field == std::string("water_depth") ? "depth of free water" : field;
+        draw_map(source, product, fmt::format("{} at t = {} s", words, moment), figures, warnings, extent);
     }
     constexpr const char* kComponents[] = {"xx", "yy", "xy"};
     for (const char* field : {"effective_stress", "stress"}) {

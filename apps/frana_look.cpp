@@ -57,7 +57,8 @@ struct Seen {
     GridGeometry grid;
     double deepest = 0.0, thin = 0.0, last_time = 0.0, busy_time = 0.0, busiest = -1.0;
     Index busy_nodes = 0;  ///< with flow at busy_time
-    std::map<std::string, double> largest;  ///< of depth, speed, cohesion, stress, effective_stress (size of any component)
+    std::map<std::string, double> largest;  ///< of depth, speed, cohesion, stress, effective_stress (size of any component), of
+                                            ///< water_depth, and of bound_depth, which is the rest
     Extent extent;
 };
 
@@ -93,6 +94,15 @@ void see_values(const LoadedFrame& frame, Seen& seen) {
                 if (depth[node] > seen.thin) wet.push_back(std::abs(values[node * components + c]));
         seen.largest[name] = std::max(seen.largest[name], most(std::move(wet)));
     }
+    if (!frame.has("water_depth")) return;
+    const auto& water = frame.nodes.at("water_depth");
+    std::vector<double> free, bound;
+    for (std::size_t node = 0; node < depth.size(); ++node) {
+        if (water[node] > seen.thin) free.push_back(water[node]);
+        if (depth[node] - water[node] > seen.thin) bound.push_back(depth[node] - water[node]);
+    }
+    seen.largest["water_depth"] = std::max(seen.largest["water_depth"], most(std::move(free)));
+    seen.largest["bound_depth"] = std::max(seen.largest["bound_depth"], most(std::move(bound)));
 }
 
 /// The time at which most is in motion.
@@ -208,6 +218,9 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     if (state == "structure" && lacks.empty())
         lacks = lacks_arrays(seen, {"damage", "cohesion", "stress"},
                              "give a [material.structure], leave output.fields at \"all\", and run again");
+    if (state == "phases" && lacks.empty())
+        lacks = lacks_arrays(seen, {"water_depth"},
+                             "give a [water] with model = \"free\", leave output.fields at \"all\", and run again");
     if (state == "profiles" && lacks.empty() && !fs::exists(run_dir / "profiles.pvd"))
         return "there is no profiles.pvd; give a [[profile]] and run again";
     if (state == "survey" && lacks.empty() && !fs::exists(run_dir / "survey_areas.vtp"))
@@ -287,7 +300,8 @@ int free_corner(const fs::path& run_dir) {
 }  // namespace
 
 const std::vector<std::string>& state_names() {
-    static const std::vector<std::string> names = {"overview", "stress", "profiles", "survey", "impact", "structure", "budgets"};
+    static const std::vector<std::string> names = {"overview", "stress",    "profiles", "survey",
+                                                   "impact",   "structure", "phases",   "budgets"};
     return names;
 }
 
@@ -314,6 +328,8 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     const double stress = round_up(seen.largest["stress"]);
     look["range"]["stress"] = {-stress, stress};
     if (look["states"]["structure"] == "") look["range"]["cohesion"] = {0.0, round_up(seen.largest["cohesion"])};
+    if (look["states"]["phases"] == "")
+        for (const char* name : {"water_depth", "bound_depth"}) look["range"][name] = {0.0, round_up(seen.largest[name])};
     look["range"]["effective_stress"] = {-round_up(seen.largest["effective_stress"]), 0.0};
     // Some 400 crosses on the flow, since a narrow one has no room for wide distances; but they must be large enough to
     // see when all that was ever covered is in view.

@@ -17,7 +17,7 @@ void refuse_unknown(const std::vector<std::string>& names) {
     for (const std::string& name : names)
         if (std::find(state_names().begin(), state_names().end(), name) == state_names().end())
             throw UserError(fmt::format("states: found \"{}\"; expected overview, stress, profiles, survey, impact, "
-                                        "structure or budgets; leave the name away for all that the run has",
+                                        "structure, phases or budgets; leave the name away for all that the run has",
                                         name));
 }
 

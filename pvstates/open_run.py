@@ -29,7 +29,7 @@ from paraview.simple import (
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from frana_scene import NoState, at_time  # noqa: E402
 
-STATES = ("overview", "stress", "profiles", "survey", "impact", "structure", "budgets")
+STATES = ("overview", "stress", "profiles", "survey", "impact", "structure", "phases", "budgets")
 LIFT = 0.5  # [m] keeps the flow's surface clear of the terrain where it is thin
 THIN = 0.05  # [m] flow thinner than this is not drawn
 

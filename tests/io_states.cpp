@@ -72,9 +72,21 @@ const fs::path& structure_run() {
     return run;
 }
 
+/// A small run of grains and water.
+const fs::path& phases_run() {
+    static const FreshFolder folder;
+    static const fs::path run = folder.path() / "run";
+    static const bool done = ran("phases.toml", run);
+    REQUIRE(done);
+    return run;
+}
+
 /// A run that has the files of a state.
 const fs::path& run_for(const std::string& state) {
-    return state == "impact" ? impact_run() : state == "structure" ? structure_run() : full_run();
+    return state == "impact"      ? impact_run()
+           : state == "structure" ? structure_run()
+           : state == "phases"    ? phases_run()
+                                  : full_run();
 }
 
 std::set<std::string> all_matches(const std::string& text, const std::regex& pattern) {
@@ -131,6 +143,7 @@ std::set<std::string> arrays_written(const fs::path& run) {
     for (const auto& column : read_particles(run, -1).columns) names.insert(column.first);
     for (const auto& column : read_particles(impact_run(), -1).columns) names.insert(column.first);
     for (const auto& column : read_frame(structure_run(), -1).nodes) names.insert(column.first);
+    for (const auto& column : read_frame(phases_run(), -1).nodes) names.insert(column.first);
     add_arrays(polydata(impact_run() / "barriers/barriers_000020.vtp")->GetCellData(), names);
     for (const auto& column : read_terrain(run).nodes) names.insert(column.first);
     for (const char* file : {"survey_areas.vtp", "survey_outlines.vtp", "profiles/profiles_000000.vtp"}) {
@@ -216,6 +229,7 @@ TEST_CASE("a state that the run lacks files for is not written, and asking for i
     CHECK_THROWS_WITH(states_command({options.out, {"impact"}}), Contains("no points in space stood before a barrier"));
     CHECK_THROWS_WITH(states_command({options.out, {"structure"}}),
                       Contains("have no array damage; give a [material.structure]"));
+    CHECK_THROWS_WITH(states_command({options.out, {"phases"}}), Contains("have no array water_depth; give a [water]"));
     CHECK_THROWS_WITH(states_command({options.out, {"survey"}}), Contains("not held against a survey"));
     CHECK_THROWS_WITH(states_command({options.out, {"strss"}}), Contains("found \"strss\"; expected overview, stress"));
     CHECK_THROWS_AS(states_command({folder.path() / "nothing", {}}), UserError);
@@ -229,7 +243,7 @@ TEST_CASE("states written again after a move name the files where they lie now")
     REQUIRE(states_command({moved, {}}) == 0);
     CHECK(!fs::exists(moved / "states" / "impact.pvsm"));  // it has no points in space
     for (const std::string& name : state_names()) {
-        if (name == "impact" || name == "structure") continue;  // not of this run
+        if (name == "impact" || name == "structure" || name == "phases") continue;  // not of this run
         const std::string text = text_of(moved / "states" / (name + ".pvsm"));
         CHECK(text.find(folder.path().string() + "/a run &amp; more/") != std::string::npos);
         CHECK(text.find(full_run().string()) == std::string::npos);

@@ -37,7 +37,7 @@ look_once() {
     status=$?
 }
 
-rm -rf "$work/run" "$work/impact" "$work/structure" "$work/elsewhere"
+rm -rf "$work/run" "$work/impact" "$work/structure" "$work/phases" "$work/elsewhere"
 "$frana" run "$source/tests/states_case/case.toml" --out "$work/run" --threads 1 --quiet || exit 1
 look "$work/run" full "as the run left them"
 
@@ -49,6 +49,10 @@ look "$work/impact" searched "the impact, with the folder given to ParaView" imp
 # Solids that hold together: another one.
 "$frana" run "$source/tests/states_case/structure.toml" --out "$work/structure" --threads 1 --quiet || exit 1
 look "$work/structure" full "the structure" structure
+
+# Solids and free water: another one.
+"$frana" run "$source/tests/states_case/phases.toml" --out "$work/phases" --threads 1 --quiet || exit 1
+look "$work/phases" full "the phases" phases
 
 moved="$work/elsewhere/a run & more"
 mkdir -p "$work/elsewhere" && mv "$work/run" "$moved" || exit 1

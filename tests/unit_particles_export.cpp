@@ -20,6 +20,9 @@ TEST_CASE("The bed between nodes is bilinear, and unknown outside and beside nod
     bed.at(2, 2) = Raster::nodata;
     CHECK(std::isnan(bed_elevation(bed, 115.0, 215.0)));
     CHECK(std::isfinite(bed_elevation(bed, 110.0, 215.0)));  // on a line of nodes that does not touch the gap
+    CHECK(bed_below(bed, 105.0, 215.0) == bed_elevation(bed, 105.0, 215.0));
+    CHECK(bed_below(bed, 99.0, 215.0) == bed_elevation(bed, 100.0, 215.0));
+    CHECK(bed_below(bed, 115.0, 215.0) == Approx((12.0 + 14.0 + 23.0) / 3.0).epsilon(1e-15));  // of the three that have
 }
 
 TEST_CASE("CSV gives back every particle bit by bit", "[particles]") {

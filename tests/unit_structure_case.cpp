@@ -78,7 +78,8 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
                                  .water.value();
     CHECK(water.share == 0.3);
     CHECK(water.level.value() == 12.0);
-    CHECK(water.rain == 1e-5);
+    CHECK((water.rain.values.size() == 1200 && water.rain.values[7] == 1e-5));
+    CHECK(water.infiltration.values.empty());
     CHECK(water.friction.law == WaterFriction::Law::manning);
     CHECK(water.friction.coefficient == 0.04);
     CHECK(water.exchange.material.power == 1);

@@ -20,7 +20,7 @@ double confined_volume(const StructuredFlow& columns) {
 
 TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene) : columns_(scene.columns), water_(scene.water) {
     expect(scene.columns.grid == scene.water.grid, "columns and water share a grid");
-    FreeWater water{scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}};
+    FreeWater water{scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}};
     water_.lend(water);
     columns_.meet(water);
     confine();
@@ -42,7 +42,26 @@ void TwoPhaseFlow::confine() {
     };
     set(confined_, [](Index) { return 0.0; });
     set(body.active.work, [&](Index k) { return body.moved[k].depth; });
+    if (water_.body().share) mix();
     confined_ = body.active.work;
+}
+
+/// The same of the share of what is bound, and its velocity.
+void TwoPhaseFlow::mix() {
+    const StructuredBody& body = columns_.body();
+    const auto each = [&](const std::vector<Index>& tiles, auto&& set) {
+        for (const Index tile : tiles) {
+            const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
+            for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, body.grid.ny()); ++j)
+                for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, body.grid.nx()); ++i) set(i, j);
+        }
+    };
+    each(confined_, [&](Index i, Index j) { water_.mix(i, j, 0.0, {0, 0}); });
+    each(body.active.work, [&](Index i, Index j) {
+        const StructuredBody::Moved& node = body.moved[body.grid.at(i, j)];
+        const double h = water_.body().now.h[water_.body().grid.at(i, j)];
+        if (node.depth > 0.0) water_.mix(i, j, node.depth / (node.depth + h), {node.vx, node.vy});
+    });
 }
 
 void TwoPhaseFlow::advance(double until) {
@@ -71,7 +90,8 @@ void TwoPhaseFlow::touch(const std::vector<Index>& tiles) {
 
 void TwoPhaseFlow::weigh() {
     const WaterBody& w = water_.body();
-    potential_ = speeds_ = 0.0;
+    potential_ = speeds_ = kinetic_ = 0.0;
+    const double per = 0.5 / w.grid.cell();
     for (const Index tile : w.work) {
         const Index i0 = w.grid.tile_i(tile), j0 = w.grid.tile_j(tile);
         for (Index j = j0; j < std::min(j0 + kTile, w.grid.ny()); ++j)
@@ -79,11 +99,16 @@ void TwoPhaseFlow::weigh() {
                 const Index k = w.grid.at(i, j);
                 const double h = w.now.h[k];
                 potential_ += h * (w.datum + w.bed[k] + w.confined[k] + 0.5 * h);
-                if (h > w.film) speeds_ += std::hypot(w.now.qx[k], w.now.qy[k]);
+                if (h <= w.film) continue;
+                const double qx = w.now.qx[k], qy = w.now.qy[k];
+                speeds_ += std::hypot(qx, qy);
+                const double up = per * (qx * (w.bed[k + 1] - w.bed[k - 1]) +
+                                         qy * (w.bed[k + w.grid.stride()] - w.bed[k - w.grid.stride()]));
+                kinetic_ += 0.5 * (qx * qx + qy * qy + up * up) / h;
             }
     }
     const double area = w.grid.cell() * w.grid.cell();
-    potential_ *= area * w.gravity, speeds_ *= area;
+    potential_ *= area * w.gravity, speeds_ *= area, kinetic_ *= area;
 }
 
 void TwoPhaseFlow::keep(Archive& archive) {
@@ -95,7 +120,7 @@ void TwoPhaseFlow::keep(Archive& archive) {
         const Archive::Part part(archive, "water");
         water_.keep(archive);
     }
-    archive.numbers("weights", {&volume_given_, &potential_, &speeds_});
+    archive.numbers("weights", {&volume_given_, &potential_, &speeds_, &kinetic_});
     if (!archive.loading()) return;
     columns_.look();  // beside the water that has been loaded
     confine();
@@ -108,7 +133,8 @@ double TwoPhaseFlow::sub_cycles() const {
 
 double TwoPhaseFlow::volume_residual() const {
     const WaterLedger& l = water_.status().ledger;
-    return confined_volume(columns_) + water_.status().volume + l.left + l.infiltrated - l.rained - volume_given_;
+    return confined_volume(columns_) + columns_.status().confined_left + water_.status().volume + l.left + l.infiltrated -
+           l.rained - volume_given_;
 }
 
 }  // namespace frana

@@ -26,14 +26,17 @@ public:
     double sub_cycles() const;
     /// Water now, confined and free, and lost, less what was given [m^3]: round-off
     double volume_residual() const;
-    /// Of the water over its density: energy of height [m^5/s^2], and sum of volume times speed [m^4/s].
+    /// Of the water over its density: energies of height and of motion along the ground [m^5/s^2], and sum of volume times
+    /// speed [m^4/s].
     double water_potential() const { return potential_; }
+    double water_kinetic() const { return kinetic_; }
     double water_speeds() const { return speeds_; }
     /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
     void keep(Archive& archive);
 
 private:
     void confine();
+    void mix();
     void touch(const std::vector<Index>& tiles);
     void weigh();
 
@@ -42,7 +45,7 @@ private:
     std::vector<Index> confined_;  ///< tiles where the water lies on columns
     std::vector<Index> touched_;   ///< tiles where columns were since the last step of the water
     std::vector<Index> scratch_;
-    double volume_given_ = 0.0, potential_ = 0.0, speeds_ = 0.0;
+    double volume_given_ = 0.0, potential_ = 0.0, speeds_ = 0.0, kinetic_ = 0.0;
 };
 
 }  // namespace frana

@@ -5,6 +5,23 @@
 
 namespace frana {
 
+namespace {
+
+/// The four nodes around a point on the grid, and their weights.
+struct Corners {
+    Index i, j;
+    double weights[4];
+    Corners(const GridGeometry& g, double u, double v) {
+        i = std::clamp<Index>(static_cast<Index>(u), 0, std::max<Index>(g.nx - 2, 0));
+        j = std::clamp<Index>(static_cast<Index>(v), 0, std::max<Index>(g.ny - 2, 0));
+        const double s = std::clamp(u - static_cast<double>(i), 0.0, 1.0);
+        const double t = std::clamp(v - static_cast<double>(j), 0.0, 1.0);
+        weights[0] = (1 - s) * (1 - t), weights[1] = s * (1 - t), weights[2] = (1 - s) * t, weights[3] = s * t;
+    }
+};
+
+}  // namespace
+
 double bed_elevation(const Raster& bed, double x, double y) {
     const GridGeometry& g = bed.geometry;
     const double u = (x - g.x0) / g.cell, v = (y - g.y0) / g.cell;
@@ -13,15 +30,28 @@ double bed_elevation(const Raster& bed, double x, double y) {
     if (!(u >= -slack && v >= -slack && u <= static_cast<double>(g.nx - 1) + slack &&
           v <= static_cast<double>(g.ny - 1) + slack))
         return Raster::nodata;
-    const Index i = std::clamp<Index>(static_cast<Index>(u), 0, std::max<Index>(g.nx - 2, 0));
-    const Index j = std::clamp<Index>(static_cast<Index>(v), 0, std::max<Index>(g.ny - 2, 0));
-    const double s = std::clamp(u - static_cast<double>(i), 0.0, 1.0);
-    const double t = std::clamp(v - static_cast<double>(j), 0.0, 1.0);
-    const double weights[4] = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
+    const Corners at(g, u, v);
     double elevation = 0.0;
     for (Index k = 0; k < 4; ++k)
-        if (weights[k] > 0.0) elevation += weights[k] * bed.at(i + k % 2, j + k / 2);
+        if (at.weights[k] > 0.0) elevation += at.weights[k] * bed.at(at.i + k % 2, at.j + k / 2);
     return elevation;
+}
+
+double bed_below(const Raster& bed, double x, double y) {
+    const GridGeometry& g = bed.geometry;
+    const Corners at(g, (std::clamp(x, g.x0, g.x_max()) - g.x0) / g.cell, (std::clamp(y, g.y0, g.y_max()) - g.y0) / g.cell);
+    double elevation = 0.0, known = 0.0;
+    bool whole = true;
+    for (Index k = 0; k < 4; ++k) {
+        if (!(at.weights[k] > 0.0)) continue;
+        const double z = bed.at(at.i + k % 2, at.j + k / 2);
+        if (std::isfinite(z))
+            elevation += at.weights[k] * z, known += at.weights[k];
+        else
+            whole = false;
+    }
+    if (whole) return elevation;
+    return known > 0.0 ? elevation / known : Raster::nodata;
 }
 
 double bed_steepness(const Raster& bed, double x, double y) {

@@ -7,6 +7,10 @@ namespace frana {
 /// that takes part has no data.
 double bed_elevation(const Raster& bed, double x, double y);
 
+/// The same wherever a point is: beyond the outer nodes that of the nearest place on them, and where some nodes that take
+/// part have no data the mean of those that have, by their weights; NaN where none has [m].
+double bed_below(const Raster& bed, double x, double y);
+
 /// Steepness |grad Z| of the bed at the node nearest to a map point [1]; 0 where it is not known.
 double bed_steepness(const Raster& bed, double x, double y);
 

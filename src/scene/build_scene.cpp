@@ -34,7 +34,7 @@ public:
         scene_.solid = read_solid_stage(case_, scene_, problems_);
         read_barriers(case_, reader_, meshes_, scene_, problems_);
         scene_.structure = read_structure(case_, scene_, problems_);
-        scene_.water = read_water(case_, scene_, problems_);
+        scene_.water = read_water(case_, reader_, scene_, problems_);
         scene_.insitu = read_insitu(case_, scene_, problems_);
         if (problems_.empty()) make_particles();
         problems_.throw_if_any();

@@ -14,17 +14,47 @@ void add_water(Table& table) {
     table.push_back(absent(used(number("water.level", "m", any,
                                        "elevation of a lake at rest at the start, wherever the ground lies lower")),
                            "no lake"));
-    table.push_back(used(number("water.rain", "m/s", not_negative, 0.0, "rain on all of the terrain; 1 mm/h is 2.8e-7")));
-    table.push_back(used(number("water.infiltration", "m/s", not_negative, 0.0, "what the ground takes of free water at most")));
+    const auto rate = [&](const char* key, const char* meaning) {
+        Parameter parameter = make(key, Kind::number_or_path, "m/s", meaning);
+        parameter.range = not_negative;
+        parameter.fallback = 0.0;
+        table.push_back(used(parameter));
+    };
+    rate("water.rain", "rain, or a raster of it; 1 mm/h is 2.8e-7");
+    rate("water.infiltration", "what the ground takes of free water at most, or a raster of it");
     table.push_back(used(choice("water.friction", {"none", "manning", "darcy_weisbach"}, "none", "friction of water at the bed")));
     table.push_back(with(number("water.manning_n", "s/m^(1/3)", above_to(0.0, 1.0), "Manning's roughness"), "water.friction",
                          {"manning"}, {"manning"}));
     table.push_back(with(number("water.darcy_f", "1", positive, "Darcy and Weisbach's factor"), "water.friction",
                          {"darcy_weisbach"}, {"darcy_weisbach"}));
     table.push_back(used(number("water.density", "kg/m^3", positive, 1000.0, "of the water, confined or free")));
-    table.push_back(used(number("water.viscosity", "Pa s", positive, 1e-3, "of the water, for grains that settle in it")));
+    table.push_back(used(number("water.viscosity", "Pa s", positive, 1e-3, "of clear water; grains settle in it or in mud")));
+    table.push_back(used(choice("water.viscous", {"none", "clear", "mud"}, "none",
+                                "viscosity that the flow of the water feels at the bed and inside: none, that of clear water, "
+                                "or mud_alpha exp(mud_beta mud_concentration) (O'Brien and Julien 1988), in which grains then "
+                                "settle as well")));
+    const auto viscous = [](Parameter parameter, std::vector<std::string> by, std::vector<std::string> needed = {}) {
+        return with(std::move(parameter), "water.viscous", std::move(by), std::move(needed));
+    };
+    table.push_back(viscous(number("water.mud_alpha", "Pa s", positive, "of mud; tables often have poise, which is 0.1 Pa s"),
+                            {"mud"}, {"mud"}));
+    table.push_back(viscous(number("water.mud_beta", "1", between(0.0, 100.0), "of mud, 6 to 33"), {"mud"}, {"mud"}));
+    table.push_back(viscous(number("water.mud_concentration", "1", {0.0, 1.0, false, true},
+                                   "share of fines in the volume of the free water"),
+                            {"mud"}, {"mud"}));
+    table.push_back(viscous(number("water.bed_shear", "1", not_negative, 3.0,
+                                   "viscous stress at the bed over viscosity times speed over depth; 3: a parabola"),
+                            {"clear", "mud"}));
     table.push_back(used(number("water.grain_diameter", "m", positive, 1e-3, "of grains, for their drag")));
     table.push_back(used(number("water.block_diameter", "m", positive, 0.1, "of blocks of what has structure, for their drag")));
+    table.push_back(viscous(flag("water.solid_gradient", false,
+                                 "viscous stress of water that slips along a gradient of the columns' share (van den Bout et "
+                                 "al. 2021, eq. 30); it takes no energy by itself and may feed slip"),
+                            {"clear", "mud"}));
+    table.push_back(viscous(number("water.profile_factor", "1", not_negative, 0.0,
+                                   "xi of that term, of how grains are spread over the depth: 0 evenly, 3 as a parabola; left "
+                                   "out where drag does not dominate it"),
+                            {"clear", "mud"}));
     Parameter power = make("water.drag_power", Kind::integer, "1", "drag grows with the slip (1) or with its square (2)");
     power.range = between(1.0, 2.0);
     power.fallback = 2.0;

@@ -139,9 +139,10 @@ struct Structure {
 struct WaterPhase {
     WaterExchange exchange;
     WaterFriction friction;
+    WaterViscosity viscosity;
     double share = 0.0;           ///< of the releases' volume [1]
     std::optional<double> level;  ///< of a lake at rest [m]
-    double rain = 0.0, infiltration = 0.0;  ///< [m/s]
+    Raster rain, infiltration;    ///< on the nodes of the terrain, without values where there is none [m/s]
 };
 
 /// What is written, and when.

@@ -152,51 +152,6 @@ private:
 
 }  // namespace
 
-std::optional<WaterPhase> read_water(const CaseFile& file, const Scene& scene, Problems& problems) {
-    const auto number = [&](const char* name) { return file.number(std::string("water.") + name); };
-    if (file.word("water.model") == "none") return {};
-    if (!scene.structure) {
-        problems.add(file.place("water.model"), "found \"free\" without material.structure",
-                     "expected solids for the water to be beside",
-                     "add [material.structure] (law, cohesion, friction_angle_deg, young_modulus), or use material.bed and "
-                     "material.rheology for one phase");
-        return {};
-    }
-    WaterPhase water;
-    water.share = number("share");
-    if (file.given("water.level")) water.level = number("level");
-    water.rain = number("rain"), water.infiltration = number("infiltration");
-    const std::string& friction = file.word("water.friction");
-    if (friction == "manning") water.friction = {WaterFriction::Law::manning, number("manning_n")};
-    if (friction == "darcy_weisbach") water.friction = {WaterFriction::Law::darcy_weisbach, number("darcy_f")};
-    TwoPhaseMaterial& m = water.exchange.material;
-    m.fluid_density = number("density"), m.viscosity = number("viscosity"), m.gravity = scene.gravity;
-    m.grain = number("grain_diameter"), m.block = number("block_diameter");
-    m.power = static_cast<int>(number("drag_power"));
-    const double confined = scene.structure->confined;
-    m.solid_density = (scene.density - confined * m.fluid_density) / (1.0 - confined);
-    const std::string& inertia = file.word("water.virtual_mass");
-    water.exchange.virtual_mass = inertia == "none"        ? VirtualMass::none
-                                  : inertia == "unbounded" ? VirtualMass::unbounded
-                                                           : VirtualMass::bounded;
-    water.exchange.pore_pressure = number("pore_pressure"), water.exchange.void_ratio = number("void_ratio");
-    if (m.solid_density <= m.fluid_density)
-        problems.add(file.place("material.density"),
-                     fmt::format("found {:.6g} kg/m3, so that grains have {:.6g}", scene.density, m.solid_density),
-                     fmt::format("expected grains denser than water.density = {:.6g}", m.fluid_density),
-                     "give the columns' density, of grains and confined water together");
-    if (!scene.barriers.empty())
-        problems.add(file.table_place("barrier.0"), "found a barrier with water.model = \"free\"",
-                     "expected none, since water does not know them", "raise the elevation model there");
-    if (std::any_of(scene.bed.values.begin(), scene.bed.values.end(), [](double z) { return !std::isfinite(z); }))
-        problems.add(file.place("terrain.dem"), "found nodes without elevation with water.model = \"free\"",
-                     "expected ground everywhere", "give a terrain.window without nodata, or fill the elevation model");
-    if (scene.structure->unrolled)
-        problems.add(file.place("terrain.unrolled"), "found true with water.model = \"free\"",
-                     "expected coordinates on the map, where water finds its level", "remove one of them");
-    return water;
-}
-
 std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems) {
     return StructureReader(file, scene, problems).read();
 }

@@ -16,12 +16,6 @@ bool marked(const std::vector<std::uint8_t>& marks, const GridGeometry& g, doubl
     return marks[static_cast<std::size_t>(near(y, g.y0, g.ny) * g.nx + near(x, g.x0, g.nx))] != 0;
 }
 
-/// The bed below a place; beyond the outer nodes, where columns may still be as they leave, that of the nearest.
-double bed_below(const Raster& bed, double x, double y) {
-    const GridGeometry& g = bed.geometry;
-    return bed_elevation(bed, std::clamp(x, g.x0, g.x_max()), std::clamp(y, g.y0, g.y_max()));
-}
-
 const double* numbers(const Frame& frame, const char* name) {
     const Field* const field = frame.particle(name);
     expect(field != nullptr, "columns have the quantities that points in space need");

@@ -4,26 +4,11 @@
 #include <limits>
 
 #include "grid/stencil.h"
+#include "particles/bed_points.h"
 #include "stages/structured_run.h"
 
 namespace frana {
 namespace {
-
-/// The bed between the nodes, bilinear; beyond the outer nodes as it is there.
-double bed_at(const Raster& bed, double x, double y) {
-    const GridGeometry& g = bed.geometry;
-    const double u = std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1)),
-                 v = std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
-    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-    const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
-    double z = 0.0;
-    for (Index dj = 0; dj < 2; ++dj)
-        for (Index di = 0; di < 2; ++di) {
-            const double here = bed.at(i + di, j + dj);
-            z += (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv) * (std::isfinite(here) ? here : 0.0);
-        }
-    return z;
-}
 
 /// What a column's nodes say of something, by its shape functions.
 template <class At>
@@ -33,6 +18,19 @@ double from_nodes(const StructuredBody& body, Index p, At&& at) {
     for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i) value += sx.w[i] * sy.w[j] * at(body.grid.at(sx.base + i, sy.base + j));
     return value;
+}
+
+/// The nodes of the terrain on these tiles: each(storage index, index in a frame's fields).
+template <class Each>
+void for_each_node(const TileGrid& grid, const std::vector<Index>& tiles, Each&& each) {
+    const Index count = static_cast<Index>(tiles.size());
+#pragma omp parallel for schedule(static) if (count >= kTilesForThreads)
+    for (Index t = 0; t < count; ++t) {
+        const Index i0 = grid.tile_i(tiles[static_cast<std::size_t>(t)]), j0 = grid.tile_j(tiles[static_cast<std::size_t>(t)]);
+        for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, grid.ny()); ++j)
+            for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, grid.nx()); ++i)
+                each(grid.at(i, j), j * grid.nx() + i);
+    }
 }
 
 }  // namespace
@@ -79,7 +77,7 @@ void StructuredRun::particle_fields(Frame& frame) {
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < count; ++p) {
         const Vec2 x = flow().position(p);
-        const double z = bed_at(bed_, x.x(), x.y()), h = q.layer[p];
+        const double z = bed_below(bed_, x.x(), x.y()), h = q.layer[p];
         const double bx = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_x; }),
                      by = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_y; });
         const double up = q.vx[p] * bx + q.vy[p] * by, steep = std::sqrt(1.0 + bx * bx + by * by);
@@ -113,25 +111,27 @@ void StructuredRun::node_fields(Frame& frame) {
            *pressure = column("pressure", "Pa", 1), *peak_depth = column("peak_depth", "m", 1),
            *peak_speed = column("peak_speed", "m/s", 1), *peak_pressure = column("peak_pressure", "Pa", 1),
            *peak_dynamic = column("peak_dynamic_pressure", "Pa", 1), *arrival = column("arrival_time", "s", 1);
+#pragma omp parallel for schedule(static)
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
-            const Index k = body.grid.at(i, j), n = j * g.nx + i;
+            const Index n = j * g.nx + i;
             elevation[n] = surface[n] = bed_.at(i, j);
-            const StructuredMap::Peak& peak = map_.peak(k);
+            const StructuredMap::Peak& peak = map_.peak(body.grid.at(i, j));
             peak_depth[n] = peak.depth, peak_speed[n] = peak.speed, peak_pressure[n] = peak.pressure;
             peak_dynamic[n] = peak.dynamic_pressure;
             arrival[n] = peak.depth > map_.footprint_depth() ? peak.arrival : -1.0;
-            if (!StructuredMap::touches(body, i, j)) continue;
-            const StructuredBody::Moved& node = body.moved[k];
-            const StructuredBody::Pull& ground = body.pull[k];
-            const double h = node.depth, up = node.vx * ground.slope_x + node.vy * ground.slope_y;
-            if (!(h > 0.0)) continue;
-            depth[n] = h, surface[n] += h;
-            thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
-            velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;
-            speed[n] = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
-            pressure[n] = body.density * ground.across * h;
         }
+    for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
+        const StructuredBody::Moved& node = body.moved[k];
+        const StructuredBody::Pull& ground = body.pull[k];
+        const double h = node.depth, up = node.vx * ground.slope_x + node.vy * ground.slope_y;
+        if (!(h > 0.0)) return;
+        depth[n] = h, surface[n] += h;
+        thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);
+        velocity[3 * n] = node.vx, velocity[3 * n + 1] = node.vy, velocity[3 * n + 2] = up;
+        speed[n] = std::sqrt(node.vx * node.vx + node.vy * node.vy + up * up);
+        pressure[n] = body.density * ground.across * h;
+    });
 }
 
 /// Stresses, damage and cohesion on the nodes: means over the mass of what the columns show.
@@ -165,15 +165,13 @@ void StructuredRun::inner_fields(Frame& frame) {
     };
     double *stress_to = column("stress", "Pa", 3), *effective_to = column("effective_stress", "Pa", 3),
            *damage_to = column("damage", "1", 1), *cohesion_to = column("cohesion", "Pa", 1);
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i) {
-            const Inner& node = inner_[body.grid.at(i, j)];
-            const Index n = j * g.nx + i;
-            if (!StructuredMap::touches(body, i, j) || !(node.mass > 0.0)) continue;
-            for (int c = 0; c < 3; ++c)
-                stress_to[3 * n + c] = node.stress[c] / node.mass, effective_to[3 * n + c] = node.effective[c] / node.mass;
-            damage_to[n] = node.damage / node.mass, cohesion_to[n] = node.cohesion / node.mass;
-        }
+    for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
+        const Inner& node = inner_[k];
+        if (!(node.mass > 0.0)) return;
+        for (int c = 0; c < 3; ++c)
+            stress_to[3 * n + c] = node.stress[c] / node.mass, effective_to[3 * n + c] = node.effective[c] / node.mass;
+        damage_to[n] = node.damage / node.mass, cohesion_to[n] = node.cohesion / node.mass;
+    });
 }
 
 /// Depth, surface, velocity and pressure of nodes are those of both; the water's own are apart.
@@ -185,27 +183,26 @@ void StructuredRun::water_fields(Frame& frame) {
     };
     double *depth = find("depth"), *thickness = find("thickness"), *surface = find("surface"),
            *velocity = find("velocity"), *speed = find("speed"), *pressure = find("pressure");
+    const double* elevation = find("elevation");
     double *water_depth = add_field(frame.nodes, "water_depth", "m", 1, g.size()),
            *water_velocity = add_field(frame.nodes, "water_velocity", "m/s", 3, g.size());
     const double per = 0.5 / g.cell;
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i) {
-            const Index k = water.grid.at(i, j), n = j * g.nx + i;
-            const double h = water.now.h[k];
-            if (!(h > 0.0) || !std::isfinite(bed_.at(i, j))) continue;
-            const double bx = per * (water.bed[k + 1] - water.bed[k - 1]),
-                         by = per * (water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
-            const double u = h > water.film ? water.now.qx[k] / h : 0.0, v = h > water.film ? water.now.qy[k] / h : 0.0;
-            const double own[3] = {u, v, u * bx + v * by}, before = depth[n], all = before + h;
-            for (int c = 0; c < 3; ++c) {
-                water_velocity[3 * n + c] = own[c];
-                velocity[3 * n + c] = (before * velocity[3 * n + c] + h * own[c]) / all;
-            }
-            speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
-            water_depth[n] = h, depth[n] = all, surface[n] += h;
-            thickness[n] = all / std::sqrt(1.0 + bx * bx + by * by);
-            pressure[n] += water_density_ * water.pull[k] * h;
+    for_each_node(water.grid, water.work, [&](Index k, Index n) {
+        const double h = water.now.h[k];
+        if (!(h > 0.0) || !std::isfinite(elevation[n])) return;
+        const double bx = per * (water.bed[k + 1] - water.bed[k - 1]),
+                     by = per * (water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
+        const double u = h > water.film ? water.now.qx[k] / h : 0.0, v = h > water.film ? water.now.qy[k] / h : 0.0;
+        const double own[3] = {u, v, u * bx + v * by}, before = depth[n], all = before + h;
+        for (int c = 0; c < 3; ++c) {
+            water_velocity[3 * n + c] = own[c];
+            velocity[3 * n + c] = (before * velocity[3 * n + c] + h * own[c]) / all;
         }
+        speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
+        water_depth[n] = h, depth[n] = all, surface[n] += h;
+        thickness[n] = all / std::sqrt(1.0 + bx * bx + by * by);
+        pressure[n] += water_density_ * water.pull[k] * h;
+    });
 }
 
 }  // namespace frana

@@ -90,8 +90,8 @@ void StructuredRun::book() {
     peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
 }
 
-/// The water's part. Rain and what the ground takes count as gone through the sides; what friction and drag take of its
-/// energy is in the residual.
+/// The water's part. Rain and what the ground takes count as gone through the sides. Of its energy friction, viscosity and
+/// drag are booked; what shocks and the scheme take is what is left, the residual.
 void StructuredRun::book_water() {
     const WaterStatus& w = both_->water().status();
     const WaterLedger& l = w.ledger;
@@ -107,8 +107,12 @@ void StructuredRun::book_water() {
         status_.momentum_left[axis] += density * left[k];
         status_.impulse[axis] += density * push[k];
     }
-    status_.kinetic += density * w.kinetic;
+    status_.kinetic += density * both_->water_kinetic();
     status_.potential += density * both_->water_potential();
+    status_.dissipated += density * (l.braked + l.sheared) + flow().status().dragged;
+    const WaterBody& body = both_->water().body();
+    status_.energy_left +=
+        density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained));
     status_.max_speed = std::max(status_.max_speed, w.max_speed);
     const double speeds = density * both_->water_speeds();
     status_.mean_speed = mass > 0.0 ? (status_.mean_speed * solids + speeds) / mass : 0.0;
@@ -136,10 +140,20 @@ std::optional<Breakage> StructuredRun::breakage() const {
 std::vector<std::string> StructuredRun::remarks() const {
     const Breakage now = *breakage();
     std::vector<std::string> remarks;
-    if (both_)
+    if (both_) {
+        const WaterLedger& l = both_->water().status().ledger;
         remarks.push_back(fmt::format("water: {:.6g} m3 free at the end, {:.6g} m3 of it released by what broke; {:.3g} steps "
                                       "of the columns for each of the water",
                                       both_->water().status().volume, flow().status().released, both_->sub_cycles()));
+        remarks.push_back(fmt::format("water's energy: of what was dissipated {:.4g} J went at the bed, {:.4g} J into viscosity "
+                                      "inside, {:.4g} J into drag between water and columns; what shocks take is not booked, it "
+                                      "is part of the residual",
+                                      water_density_ * l.braked, water_density_ * l.sheared, flow().status().dragged));
+    }
+    if (flow().status().outrun > 0)
+        remarks.push_back(fmt::format("water.profile_factor: in {} nodes and steps drag was weaker than what it adds to the "
+                                      "slip, and it was left out there; a smaller one, or finer grains, may help",
+                                      flow().status().outrun));
     if (now.numerical == 0) return remarks;
     remarks.push_back(fmt::format("structure: {} of {} pairs of neighbouring columns parted without damage to either, by the scheme "
                         "and not by the material (numerical fracture); a smaller critical_strain or finer cells may help",

@@ -181,10 +181,13 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
         if (level && *level > bed(x, y) + (*bound)[k] + state.depth) state = {*level - bed(x, y) - (*bound)[k], 0.0, 0.0};
         return state;
     };
-    if (of.rain > 0.0) w.rain = [rain = of.rain](double, double) { return rain; };
-    if (of.infiltration > 0.0) w.infiltration = [most = of.infiltration](double, double) { return most; };
+    const auto on_nodes = [node](const Raster& rate) -> WaterScene::Function {
+        if (rate.values.empty()) return {};
+        return [&rate, node](double x, double y) { return rate.values[node(x, y)]; };
+    };
+    w.rain = on_nodes(of.rain), w.infiltration = on_nodes(of.infiltration);
     w.sides.fill(scene.sides == Sides::wall ? WaterSide::wall : WaterSide::open);
-    w.friction = of.friction;
+    w.friction = of.friction, w.viscosity = of.viscosity;
     w.gravity = scene.gravity;
     return s;
 }

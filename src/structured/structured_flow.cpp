@@ -192,11 +192,13 @@ void StructuredFlow::book(double dt) {
         all.momentum += tile.momentum, all.left_mass += tile.left_mass,
             all.left_momentum += tile.left_momentum;
         all.left_energy += tile.left_energy, all.released += tile.released;
+        all.left_confined += tile.left_confined;
         if (tile.bad >= 0) all.bad = tile.bad;
     }
     for (const StructuredTally& tile : body_.tallies) {
         status_.impulse.add(tile.impulse);
-        status_.friction += tile.friction, status_.pushed += tile.obstacles;
+        status_.friction += tile.friction, status_.pushed += tile.obstacles, status_.dragged += tile.drag;
+        status_.outrun += tile.outrun;
     }
     weigh();
     if (all.bad >= 0)
@@ -213,7 +215,7 @@ void StructuredFlow::book(double dt) {
     status_.max_speed = std::sqrt(all.max_speed2);
     wave_ = all.max_wave;
     if (all.damaged > 0.0) body_.grains = true;
-    status_.released += all.released;
+    status_.released += all.released, status_.confined_left += all.left_confined;
     status_.mass_left += all.left_mass, status_.momentum_left += all.left_momentum;
     drift_ += dt * status_.max_speed / body_.grid.cell();
     if (all.left_mass > 0.0 || drift_ > kDriftLimit - 1.0) sort();

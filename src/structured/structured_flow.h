@@ -68,6 +68,8 @@ struct StructuredImpulses {
 struct StructuredTally {
     StructuredImpulses impulse;
     double friction = 0.0, obstacles = 0.0;  ///< lost to them
+    double drag = 0.0;                       ///< lost by both to the drag of free water
+    Index outrun = 0;                        ///< nodes where drag is too weak for xi (WaterViscosity)
     double kinetic = 0.0, potential = 0.0;   ///< after the step; of the places before it
 };
 
@@ -78,6 +80,7 @@ struct StructuredStatus {
     Index points = 0;
     double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
     double released = 0.0;               ///< water given to the nodes since the start [m^3]
+    double confined_left = 0.0;          ///< water in columns that have left [m^3]
     Vec2 momentum{0, 0}, momentum_left{0, 0},
         momentum_given{0, 0};  ///< present, carried out, at the start [kg m/s]
     StructuredImpulses impulse;
@@ -88,6 +91,8 @@ struct StructuredStatus {
     double bed_kinetic = 0.0, potential = 0.0;  ///< of the nodes, along the bed and above z = 0 [J]
     double stored = 0.0;                        ///< elastic, of the structure in the plane [J]
     double friction = 0.0, pushed = 0.0;        ///< lost at the bed and to obstacles since the start [J]
+    double dragged = 0.0;      ///< lost by columns and water to the drag between them since the start [J]
+    Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
     double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
     double energy_left = 0.0;  ///< carried out, motion in the plane and height of the ground [J]
 };
@@ -97,7 +102,7 @@ struct StructuredSums {
     double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0;
     double speeds = 0.0, stored = 0.0, worked = 0.0;
     Vec2 momentum{0, 0};
-    double left_mass = 0.0, left_energy = 0.0, released = 0.0;
+    double left_mass = 0.0, left_energy = 0.0, left_confined = 0.0, released = 0.0;
     Vec2 left_momentum{0, 0};
     Index bad = -1;  ///< a point whose numbers are not finite
 };

@@ -178,6 +178,7 @@ void count(StructuredBody& body, Index p, StructuredSums& sums) {
     if (!inside || ground_below(body, p).exit > 0.0) {
         body.gone[static_cast<std::size_t>(p)] = 1;
         sums.left_mass += m, sums.left_momentum += momentum;
+        sums.left_confined += q.confined[p] + q.released[p];
         sums.left_energy += m * (0.5 * speed2 + body.gravity * (inside ? ground_below(body, p).elevation : 0.0));
         return;
     }

@@ -113,9 +113,16 @@ Met meet_water(const StructuredBody& body, Index k) {
     return met;
 }
 
+/// Rate at which water speeds up its slip where grains are not spread evenly over the depth (van den Bout et al. 2021, sec.
+/// 2.4; its share of mobile water, alpha_u, stands above and below): stable only where drag is stronger [1/s].
+double spread_rate(const WaterViscosity& viscosity, const Mixture& mixture, double whole) {
+    return viscosity.kinematic * viscosity.profile * mixture.grains() / (whole * whole);
+}
+
 /// Drag and virtual mass between a node's columns and its water over a step that brought the columns from `before`
-/// to `driven`; returns their velocity.
-Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt) {
+/// to `driven`; returns their velocity. What both lose is the impulse times the mean slip.
+Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,
+          StructuredTally& tally) {
     FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
     const double area = body.grid.cell() * body.grid.cell();  // the water's: what one gives the other gets
@@ -127,12 +134,23 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     // Of what drives the water friction takes a part, and all of it at most.
     const Vec2 falls = -body.pull[k].across * met.slope;
     const double drive = falls.norm(),
-                 brake = quadratic_drag(water.friction, {body.gravity, h, 1.0}) * u.velocity.squaredNorm();
+                 brake = quadratic_drag(water.friction, {body.gravity, h, 1.0}) * u.velocity.squaredNorm() +
+                         linear_drag(water.viscosity, whole) * u.velocity.norm();
     const Vec2 carried = drive > brake ? Vec2(falls * (1.0 - brake / drive)) : Vec2(0, 0);
     const double flux = (mixture.bound() * c.velocity + mixture.free() * u.velocity).norm();
     const Exchange by{whole * water.drag.coefficient(mixture, flux), water.by.material.power,
                       virtual_mass(water.by.virtual_mass, water.by.material, mixture, whole), carried};
+    const Vec2 slip = before - u.velocity;
+    if (water.viscosity.solid_gradient) {
+        const double rate = spread_rate(water.viscosity, mixture, whole), reduced = c.mass * u.mass / (c.mass + u.mass);
+        const double holds = by.drag * (by.power == 2 ? slip.norm() : 1.0) / reduced;
+        if (rate > holds)
+            ++tally.outrun;
+        else
+            u.force = -u.mass * rate * slip;
+    }
     exchange(by, dt, c, u);
+    tally.drag += met.mass * along_ground(body.pull[k], driven - c.velocity, 0.5 * (slip + c.velocity - u.velocity));
     water.qx[k] = h * u.velocity.x(), water.qy[k] = h * u.velocity.y();
     return c.velocity;
 }
@@ -163,7 +181,7 @@ Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, dou
         const Vec2 alone = v;
         if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
             const Vec2 held = braked(law, body, pull, across, met.depth, before, v, dt);
-            v += drag(body, k, met, before, held, dt) - held;
+            v += drag(body, k, met, before, held, dt, tally) - held;
         }
         tally.impulse.water += met.mass * (v - alone);
     }

@@ -10,7 +10,7 @@ const std::vector<Problem>& library() {
                                  track_problems, bank_problems, sheet_problems, deposit_problems, spreading_problems,
                                  conversion_problems, tank_problems, bore_problems, rest_problems, body_problems,
                                   column_problems, mud_problems, structured_problems, structured_case_problems, water_problems,
-                                 water_slope_problems})
+                                 water_slope_problems, water_viscous_problems})
             for (Problem& problem : room()) problems.push_back(std::move(problem));
         return problems;
     }();

@@ -35,5 +35,6 @@ std::vector<Problem> structured_case_problems();  // problems_structured_cases.c
 std::vector<Problem> mud_problems();         // problems_mud.cpp
 std::vector<Problem> water_problems();       // problems_water.cpp
 std::vector<Problem> water_slope_problems(); // problems_water_slopes.cpp
+std::vector<Problem> water_viscous_problems(); // problems_water_viscous.cpp
 
 }  // namespace frana::verify

@@ -27,6 +27,7 @@ struct FreeWater {
     const double* bed;  ///< elevation above any datum [m]
     double film;        ///< water as shallow as this takes no part [m]
     WaterFriction friction;
+    WaterViscosity viscosity;
 
     /// Share of its weight that water takes off a column's bed, 1 at most: what floats does not pull.
     double support(double bound_density, double bound_depth, double depth) const {

@@ -31,6 +31,7 @@ struct WaterScene {
     Function infiltration = {};                                    ///< what the ground takes at most [m/s]
     std::array<WaterSide, 4> sides{};                              ///< at low x, high x, low y, high y
     WaterFriction friction;
+    WaterViscosity viscosity;
     double gravity = 9.81;  ///< [m/s^2]
     /// Gravity across the ground is g / (1 + |grad b|^2), as for solids (structured/ground.h), so that thin
     /// water slides down a steep plane as a block does; else g, which are the shallow-water equations as they
@@ -50,6 +51,9 @@ struct WaterLedger {
     Vec2 ground{0, 0};    ///< push of bed and confined mass
     Vec2 walls{0, 0};     ///< push of walls, and of the water beyond open sides
     Vec2 friction{0, 0};  ///< at the bed, and what films lose that stop
+    /// Energy over density [m^5/s^2]: lost at the bed, by films that stop and in speeding up rain; lost to viscosity inside;
+    /// gone with the water through open sides and into the ground, less what rain brought, heights above the datum.
+    double braked = 0.0, sheared = 0.0, energy_out = 0.0;
     void add(const WaterLedger& o, double share = 1.0);
 };
 
@@ -89,11 +93,14 @@ struct WaterBody {
     LazyArray<double> bed;      ///< elevation above `datum` [m], two nodes beyond the grid as well
     LazyArray<double> confined; ///< depth of confined mass [m]: may be changed between steps
     LazyArray<double> pull;     ///< gravity across the ground [m/s^2]
+    /// With WaterViscosity::solid_gradient, as confined: confined mass's share of the volume [1], its velocity [m/s].
+    LazyArray<double> share, bound_x, bound_y;
     LazyArray<double> rain, infiltration;  ///< [m/s]; empty without
     std::vector<Index> work;               ///< tiles that hold water, be it a film, or are within its reach
     std::vector<WaterSums> sums;           ///< of the step, per tile of the list
     std::array<WaterSide, 4> sides;
     WaterFriction friction;
+    WaterViscosity viscosity;
     double gravity, theta, film;
     double datum;  ///< lets water high above the sea keep its digits [m]
     bool steep;
@@ -117,10 +124,16 @@ public:
     const WaterBody& body() const { return body_; }
     /// Depth of confined mass at a node, from the next step on [m]
     void confine(Index i, Index j, double depth) { body_.confined[body_.grid.at(i, j)] = depth; }
+    /// The same of its share in the volume and its velocity, for WaterViscosity::solid_gradient.
+    void mix(Index i, Index j, double share, const Vec2& velocity) {
+        const Index k = body_.grid.at(i, j);
+        body_.share[k] = share, body_.bound_x[k] = velocity.x(), body_.bound_y[k] = velocity.y();
+    }
     /// Lets columns change depth and discharge between steps, and shows them the bed; take_changes() follows.
     void lend(FreeWater& to) {
         to.h = body_.now.h.data(), to.qx = body_.now.qx.data(), to.qy = body_.now.qy.data();
         to.bed = body_.bed.data(), to.film = body_.film, to.friction = body_.friction;
+        to.viscosity = body_.viscosity;
     }
     /// Takes up what columns on these tiles (ascending) changed: status and ledger know it from now on.
     void take_changes(const std::vector<Index>& tiles);

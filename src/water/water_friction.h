@@ -12,6 +12,15 @@ struct WaterFriction {
     double coefficient = 0.0;  ///< n or f, >= 0
 };
 
+/// Viscosity of free water in its flow (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout et al. 2021,
+/// doi:10.5194/gmd-14-1841-2021, eqs. 29 and 30, averaged over the depth).
+struct WaterViscosity {
+    double kinematic = 0.0;  ///< nu = eta / density [m^2/s]; 0: the flow feels none
+    double shear = 3.0;      ///< chi of the bed's stress over density, chi nu V / T: 3 for a parabola over the depth [1]
+    bool solid_gradient = false;  ///< slip along a gradient of the solids' share is sheared as well (eq. 30's second term)
+    double profile = 0.0;  ///< xi of that term: how solids are spread over the depth, 0 evenly, 3 as a parabola [1]
+};
+
 /// Where friction acts.
 struct WaterBed {
     double gravity;    ///< g [m/s^2]
@@ -26,6 +35,12 @@ inline double quadratic_drag(const WaterFriction& friction, const WaterBed& bed)
         return bed.gravity * c * c * bed.kappa / (t * std::cbrt(t));
     if (friction.law == WaterFriction::Law::darcy_weisbach) return c * bed.kappa / (8.0 * t);
     return 0.0;
+}
+
+/// The deceleration by viscosity at the bed over the speed, on the map as along the bed, below a flow `thickness` across
+/// the bed [1/s].
+inline double linear_drag(const WaterViscosity& viscosity, double thickness) {
+    return viscosity.shear * viscosity.kinematic / (thickness * thickness);
 }
 
 }  // namespace frana

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "law/bed_law.h"
 #include "water/face_flux.h"
 #include "water/water_block.h"
+#include "water/water_brake.h"
 
 namespace frana {
 namespace {
@@ -60,12 +60,20 @@ void close(WaterFaces& faces, Index k, WaterSide side, double outward) {
     faces.mass[k] = faces.along[k] = faces.across[k] = 0.0;
 }
 
+/// Change of a quantity over a cell, from neighbours that have water.
+double change_at(const WaterBlock& block, const double* of, Index k, Index step) {
+    const bool up = block.depth[k + step] > 0.0, down = block.depth[k - step] > 0.0;
+    if (up && down) return 0.5 * (of[k + step] - of[k - step]);
+    return up ? of[k + step] - of[k] : down ? of[k] - of[k - step] : 0.0;
+}
+
 /// All that is known of a tile in a stage.
 struct Stage {
     WaterBlock block;
     WaterSlopes across_x, across_y;
     WaterFaces x, y;               ///< the low faces of cells
     alignas(32) BlockCells drain;  ///< share of what would flow out of a cell that there is
+    Index first;                   ///< storage index of the block's first place
 };
 
 /// WaterFaces of the part's cells and of those next to them.
@@ -114,6 +122,75 @@ void find_drains(const TilePart& part, double cells, Stage& s) {
         }
 }
 
+/// A face through which viscosity acts.
+struct ViscousFace {
+    const double *along, *across;  ///< velocities of the block through it and along it [m/s]
+    Index step;                    ///< from the cell before it to the one behind it
+    bool at_side, counts;          ///< of the grid; among those whose energy the tile books
+};
+
+/// Products of the confined mass's gradient of share and the slip of the water over it, over a face's cell.
+struct GradientStress {
+    double normal = 0.0, tangent = 0.0;  ///< [m/s]
+};
+
+/// (30) of van den Bout et al. (2021): grad alpha_c (u_u - u_c) + its transpose, mobility alpha_u. Where only one side has
+/// confined mass the slip is that side's.
+GradientStress gradient_stress(const WaterBody& body, const Stage& s, const ViscousFace& of, Index k) {
+    const Index stride = body.grid.stride(), at = s.first + k / kRow * stride + k % kRow;
+    const bool in_x = of.step == 1;
+    const Index back = in_x ? 1 : stride, aside = in_x ? stride : 1;
+    const double *bound_along = (in_x ? body.bound_x : body.bound_y).data(),
+                 *bound_across = (in_x ? body.bound_y : body.bound_x).data();
+    double slip_along = 0.0, slip_across = 0.0, change = 0.0, sides = 0.0;
+    const auto take = [&](Index cell, Index node) {
+        change += 0.25 * (body.share[node + aside] - body.share[node - aside]);  // of both, half of a central difference
+        if (!(body.share[node] > 0.0)) return;
+        slip_along += of.along[cell] - bound_along[node], slip_across += of.across[cell] - bound_across[node], ++sides;
+    };
+    take(k - of.step, at - back), take(k, at);
+    if (sides == 0.0) return {};
+    const double rise = body.share[at] - body.share[at - back];
+    return {rise * slip_along / sides, (rise * slip_across + change * slip_along) / sides};
+}
+
+/// Viscous stress through a face over density: h nu (grad u + grad u^T)
+/// (Pudasaini 2012, averaged over the depth), h the harmonic mean of both cells', which is none beside dry ground.
+/// Whoever stands at a wall slides along it. Returns the energy lost in a time of cell^2, of those faces that belong to
+/// the tile: the low ones of its cells, and at the side of the grid half of what its mirror would have.
+double add_viscous(const WaterBody& body, const Stage& s, const ViscousFace& of, Index k, WaterFaces& faces) {
+    const Index back = k - of.step, aside = of.step == 1 ? kRow : 1;
+    const double low = s.block.depth[back], high = s.block.depth[k];
+    if (!(low > 0.0 && high > 0.0)) return 0.0;
+    const double conducts = body.viscosity.kinematic / body.grid.cell() * 2.0 * low * high / (low + high);
+    const double du = of.along[k] - of.along[back], dv = of.across[k] - of.across[back];
+    const double shear = 0.5 * (change_at(s.block, of.along, k, aside) + change_at(s.block, of.along, back, aside));
+    double normal = 2.0 * conducts * du, tangent = of.at_side ? 0.0 : conducts * (dv + shear);
+    if (body.share && !of.at_side) {
+        const GradientStress gradient = gradient_stress(body, s, of, k);
+        normal -= 2.0 * conducts * gradient.normal, tangent -= conducts * gradient.tangent;
+    }
+    faces.low[k] -= normal, faces.high[k] -= normal, faces.across[k] -= tangent;
+    return of.counts ? (of.at_side ? 0.5 : 1.0) * (normal * du + tangent * dv) : 0.0;
+}
+
+/// The same of all faces of a tile's cells; after drains, which are of what water carries.
+double add_viscosity(const WaterBody& body, const TilePart& part, Stage& s) {
+    const Index last = kHalo + body.grid.nx() - part.i0, top = kHalo + body.grid.ny() - part.j0;
+    double lost = 0.0;
+    for (Index b = kHalo; b <= part.rows; ++b)
+        for (Index a = kHalo; a <= part.columns; ++a) {
+            const Index k = b * kRow + a;
+            const bool east = a == last, west = part.i0 == 0 && a == kHalo;
+            const bool north = b == top, south = part.j0 == 0 && b == kHalo;
+            if (b < part.rows)
+                lost += add_viscous(body, s, {s.block.u, s.block.v, 1, east || west, a < part.columns || east}, k, s.x);
+            if (a < part.columns)
+                lost += add_viscous(body, s, {s.block.v, s.block.u, kRow, north || south, b < part.rows || north}, k, s.y);
+        }
+    return lost;
+}
+
 /// What one stage changes in a cell.
 struct Change {
     double h, qx, qy;
@@ -130,31 +207,43 @@ Change change_of(const Stage& s, Index k, double cells) {
             push.y() - cells * (x.across[k + 1] - x.across[k] + y.along[k + kRow] - y.along[k]), push};
 }
 
+/// Energy over mass of water that leaves: of its surface's height, which is pressure below it, and of motion along the
+/// ground [m^2/s^2].
+double head_of(const WaterBody& body, const WaterBlock& block, Index k) {
+    const double u = block.u[k], v = block.v[k];
+    const auto ground = [&](Index at) { return block.surface[at] - block.depth[at]; };
+    const double up = body.steep ? 0.5 / body.grid.cell() * (u * (ground(k + 1) - ground(k - 1)) +
+                                                             v * (ground(k + kRow) - ground(k - kRow)))
+                                 : 0.0;
+    return body.gravity * block.surface[k] + 0.5 * (u * u + v * v + up * up);
+}
+
 /// One side of the grid in a tile's ledger: `k` is the face, `inside` the cell at it.
-void book_side(const Stage& s, const WaterFaces& faces, const WaterSlopes& slopes, Index k, Index inside,
-               int axis, double outward, double cells, WaterLedger& ledger) {
+void book_side(const WaterBody& body, const Stage& s, const WaterFaces& faces, const WaterSlopes& slopes, Index k,
+               Index inside, int axis, double outward, double cells, WaterLedger& ledger) {
     const double h = s.block.depth[inside] + 0.5 * outward * slopes.depth[inside];
     const double force = (outward > 0.0 ? faces.low[k] : faces.high[k]) + 0.5 * s.block.pull[inside] * h * h;
     ledger.walls[axis] -= outward * cells * force;
     ledger.left += outward * cells * faces.mass[k];
     ledger.momentum_left[axis] += outward * cells * faces.along[k];
     ledger.momentum_left[1 - axis] += outward * cells * faces.across[k];
+    ledger.energy_out += outward * cells * faces.mass[k] * head_of(body, s.block, inside);
 }
 
 /// All sides of the grid that a tile touches; in cells of unit area.
-void book_sides(const TileGrid& grid, const TilePart& part, const Stage& s, double cells,
-                WaterLedger& ledger) {
+void book_sides(const WaterBody& body, const TilePart& part, const Stage& s, double cells, WaterLedger& ledger) {
+    const TileGrid& grid = body.grid;
     for (Index b = kHalo; b < part.rows; ++b) {
         const Index low = b * kRow + kHalo, high = b * kRow + part.columns;
-        if (part.i0 == 0) book_side(s, s.x, s.across_x, low, low, 0, -1.0, cells, ledger);
+        if (part.i0 == 0) book_side(body, s, s.x, s.across_x, low, low, 0, -1.0, cells, ledger);
         if (part.i0 + kTile >= grid.nx())
-            book_side(s, s.x, s.across_x, high, high - 1, 0, 1.0, cells, ledger);
+            book_side(body, s, s.x, s.across_x, high, high - 1, 0, 1.0, cells, ledger);
     }
     for (Index a = kHalo; a < part.columns; ++a) {
         const Index low = kHalo * kRow + a, high = part.rows * kRow + a;
-        if (part.j0 == 0) book_side(s, s.y, s.across_y, low, low, 1, -1.0, cells, ledger);
+        if (part.j0 == 0) book_side(body, s, s.y, s.across_y, low, low, 1, -1.0, cells, ledger);
         if (part.j0 + kTile >= grid.ny())
-            book_side(s, s.y, s.across_y, high, high - kRow, 1, 1.0, cells, ledger);
+            book_side(body, s, s.y, s.across_y, high, high - kRow, 1, 1.0, cells, ledger);
     }
 }
 
@@ -166,12 +255,14 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
     const TilePart part = part_of(body.grid, tile);
     const double cells = dt / body.grid.cell();
     Stage s;
+    s.first = body.grid.at(part.i0 - kHalo, part.j0 - kHalo);
     const bool moves = load_block(body, from, part, s.block);
     WaterLedger booked;
     if (moves) {
         find_faces(body, part, s);
         find_drains(part, cells, s);
-        book_sides(body.grid, part, s, cells, booked);
+        if (body.viscosity.kinematic > 0.0) booked.sheared += cells * add_viscosity(body, part, s);
+        book_sides(body, part, s, cells, booked);
     }
     for (Index b = kHalo; b < part.rows; ++b)
         for (Index a = kHalo; a < part.columns; ++a) {
@@ -197,41 +288,80 @@ Vec2 bed_slope(const WaterBody& body, Index k) {
                       body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
 }
 
-/// Friction over a step, exact for a constant drive (law/bed_law.h), on water deeper than a film.
+/// Something slows water at the bed.
+bool brakes_of(const WaterBody& body) {
+    return body.friction.law != WaterFriction::Law::none || body.viscosity.kinematic > 0.0;
+}
+
+/// Velocity at the start of the step, none of a film.
+Vec2 velocity_before(const WaterBody& body, Index k) {
+    const double h = body.now.h[k];
+    return h > body.film ? Vec2(Vec2(body.now.qx[k], body.now.qy[k]) / h) : Vec2(0, 0);
+}
+
+/// Friction over a step, exact for a constant drive (law/bed_law.h), on water deeper than a film. Viscosity shears all
+/// that stands on the bed, confined mass as well.
 void brake(const WaterBody& body, Index k, double dt, Water& w) {
     const Vec2 q(w.qx, w.qy);
     const double discharge = q.norm();
-    if (body.friction.law == WaterFriction::Law::none || discharge == 0.0) return;
+    if (!brakes_of(body) || discharge == 0.0) return;
     const Vec2 direction = q / discharge;
     WaterBed bed{body.gravity, w.h, 1.0};
+    double whole = w.h + body.confined[k];
     if (body.steep) {
-        const double along = direction.dot(bed_slope(body, k));
-        bed.thickness *= std::sqrt(body.pull[k] / body.gravity), bed.kappa = std::sqrt(1.0 + along * along);
+        const double along = direction.dot(bed_slope(body, k)), cosine = std::sqrt(body.pull[k] / body.gravity);
+        bed.thickness *= cosine, whole *= cosine, bed.kappa = std::sqrt(1.0 + along * along);
     }
-    const double h = body.now.h[k];
-    const double start =
-        h > body.film ? std::max(0.0, Vec2(body.now.qx[k], body.now.qy[k]).dot(direction) / h) : 0.0;
-    const double speed = riccati_speed(start, discharge / w.h, 0.0, quadratic_drag(body.friction, bed), dt);
+    const double start = std::max(0.0, velocity_before(body, k).dot(direction));
+    const double speed = braked_speed(start, discharge / w.h, linear_drag(body.viscosity, whole),
+                                      quadratic_drag(body.friction, bed), dt);
     w.qx = speed * w.h * direction.x(), w.qy = speed * w.h * direction.y();
 }
 
-/// Rain, infiltration and friction at the end of a step, booked in cells of unit area.
-void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
+/// Product of two velocities along the ground [m^2/s^2].
+double along_ground(const WaterBody& body, Index k, const Vec2& a, const Vec2& b) {
+    if (!body.steep) return a.dot(b);
+    const Vec2 slope = bed_slope(body, k);
+    return a.dot(b) + slope.dot(a) * slope.dot(b);
+}
+
+/// Rain and infiltration, booked in cells of unit area. Rain falls onto the surface and takes up the speed of what it
+/// falls into.
+void rain_and_soak(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
+    const double ground = body.bed[k] + body.confined[k];
     if (body.rain) {
-        const double rained = dt * body.rain[k];
+        const double rained = dt * body.rain[k], before = w.h;
         w.h += rained, ledger.rained += rained;
+        ledger.energy_out -= body.gravity * rained * (ground + before + 0.5 * rained);
+        if (before > body.film) {
+            const Vec2 v = Vec2(w.qx, w.qy) / before;
+            ledger.braked += 0.5 * before * rained / w.h * along_ground(body, k, v, v);
+        }
     }
     if (body.infiltration && w.h > 0.0) {
         const double taken = std::min(w.h, dt * body.infiltration[k]), kept = 1.0 - taken / w.h;
+        const Vec2 v = w.h > body.film ? Vec2(Vec2(w.qx, w.qy) / w.h) : Vec2(0, 0);
         ledger.infiltrated += taken, ledger.momentum_infiltrated += (1.0 - kept) * Vec2(w.qx, w.qy);
+        ledger.energy_out += taken * (body.gravity * (ground + w.h - 0.5 * taken) + 0.5 * along_ground(body, k, v, v));
         w.h -= taken, w.qx *= kept, w.qy *= kept;
     }
+}
+
+/// Rain, infiltration and friction at the end of a step, booked in cells of unit area. Friction's work is its impulse
+/// times the mean of the velocities at the start and at the end: what it holds at rest or at one speed loses no more than
+/// it falls.
+void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
+    if (body.rain || body.infiltration) rain_and_soak(body, k, dt, w, ledger);
     const Vec2 driven(w.qx, w.qy);
     if (w.h > body.film)
         brake(body, k, dt, w);
     else
         w.qx = w.qy = 0.0;
-    ledger.friction += Vec2(w.qx, w.qy) - driven;
+    const Vec2 taken = driven - Vec2(w.qx, w.qy);
+    if (taken.x() == 0.0 && taken.y() == 0.0) return;
+    const Vec2 after = w.h > body.film ? Vec2(Vec2(w.qx, w.qy) / w.h) : Vec2(0, 0);
+    ledger.friction -= taken;
+    ledger.braked += 0.5 * along_ground(body, k, taken, velocity_before(body, k) + after);
 }
 
 /// Which tiles water in cell (i, j) of a tile is near: it reaches two cells in a step.
@@ -251,10 +381,10 @@ void count(const WaterBody& body, Index k, Index i, Index j, const Water& w, Wat
     }
     sums.volume += w.h;
     sums.near |= std::uint16_t{1} << 4;
+    sums.momentum += Vec2(w.qx, w.qy);  // of films too, which columns may have given some
     if (w.h <= body.film) return;
     const double u = w.qx / w.h, v = w.qy / w.h, c = std::sqrt(body.pull[k] * w.h);
     if (!std::isfinite(u + v + w.h)) sums.bad = k;
-    sums.momentum += Vec2(w.qx, w.qy);
     sums.kinetic += 0.5 * (w.qx * u + w.qy * v);
     sums.max_speed2 = std::max(sums.max_speed2, u * u + v * v);
     sums.signal = std::max(sums.signal, std::max(std::abs(u), std::abs(v)) + c);
@@ -276,7 +406,7 @@ void for_each_listed_tile(const WaterBody& body, Body&& each) {
 /// The second stage's fluxes are those of water that friction has slowed: on a slope it would otherwise run
 /// by half of what gravity gives it in a step too far.
 void first_stage(WaterBody& body, double dt) {
-    const bool brakes = body.friction.law != WaterFriction::Law::none;
+    const bool brakes = brakes_of(body);
     for_each_listed_tile(body, [&](std::size_t n, Index tile) {
         body.sums[n] = WaterSums{};
         run_stage(
@@ -292,7 +422,7 @@ void first_stage(WaterBody& body, double dt) {
 }
 
 void second_stage(WaterBody& body, double dt) {
-    const bool brakes = body.friction.law != WaterFriction::Law::none;
+    const bool brakes = brakes_of(body);
     const double *driven_x = (brakes ? body.driven_x : body.half.qx).data(),
                  *driven_y = (brakes ? body.driven_y : body.half.qy).data();
     const double area = body.grid.cell() * body.grid.cell();

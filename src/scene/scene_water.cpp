@@ -1,0 +1,140 @@
+// [water] of a case: free water beside solids that hold together.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+double number(const CaseFile& file, const char* name) { return file.number(std::string("water.") + name); }
+
+std::string at(const GridGeometry& g, std::size_t k) {
+    const auto n = static_cast<Index>(k);
+    return fmt::format("x {:.10g}, y {:.10g}", g.x(n % g.nx), g.y(n / g.nx));
+}
+
+/// Throws UserError when a value fails; `what`: "pixels", or "nodes of the terrain".
+template <class Good>
+void require(const Raster& raster, const std::string& file, const char* what, Good&& good, const char* expected) {
+    std::size_t bad = 0, first = 0;
+    for (std::size_t k = raster.values.size(); k-- > 0;)
+        if (!good(raster.values[k])) ++bad, first = k;
+    if (bad == 0) return;
+    const double value = raster.values[first];
+    throw UserError(fmt::format("{}: found {} of {} {} {}, the first at {}; {}", file, bad, raster.values.size(), what,
+                                std::isnan(value) ? std::string("without a number") : fmt::format("such as {:.6g}", value),
+                                at(raster.geometry, first), expected));
+}
+
+/// A rate on the nodes of the terrain [m/s]: a number, or a raster, whose own pixels have to be rates and to cover the
+/// terrain. Nothing where it is 0 everywhere.
+Raster rate_on_nodes(const CaseFile& file, const GisReader& reader, const std::string& key, Scene& scene) {
+    const GridGeometry& grid = scene.bed.geometry;
+    if (!file.is_text(key)) {
+        const double rate = file.number(key);
+        return rate > 0.0 ? Raster::filled(grid, rate) : Raster{};
+    }
+    const std::filesystem::path path = file.path(key);
+    std::vector<std::string> said;  // of the first reading, which the second says again
+    const Raster pixels = reader.read_raster(path, grid.pixel_extent(), scene.bed.crs_wkt, said);
+    require(
+        pixels, path.string(), "pixels", [](double rate) { return rate >= 0.0 && rate < INFINITY; },
+        "expected rates in m/s, 0 or more, in all of them; fill what is missing (0 where there is none) or correct it");
+    Raster nodes = reader.read_onto(path, grid, scene.bed.crs_wkt, scene.log);
+    require(
+        nodes, path.string(), "nodes of the terrain", [](double rate) { return std::isfinite(rate); },
+        "expected a raster that covers all of the terrain; extend it (0 where there is none), or give a terrain.window "
+        "within it");
+    for (double& rate : nodes.values) rate = std::max(rate, 0.0);  // cubic interpolation may undershoot
+    if (std::none_of(nodes.values.begin(), nodes.values.end(), [](double rate) { return rate > 0.0; })) return {};
+    return nodes;
+}
+
+WaterFriction friction_of(const CaseFile& file) {
+    const std::string& law = file.word("water.friction");
+    if (law == "manning") return {WaterFriction::Law::manning, number(file, "manning_n")};
+    if (law == "darcy_weisbach") return {WaterFriction::Law::darcy_weisbach, number(file, "darcy_f")};
+    return {};
+}
+
+/// Of the water with what is suspended in it [Pa s]: grains settle in that, and with water.viscous the flow feels it.
+double viscosity_of(const CaseFile& file, Scene& scene) {
+    const double clear = number(file, "viscosity");
+    if (file.word("water.viscous") != "mud") return clear;
+    const double alpha = number(file, "mud_alpha"), beta = number(file, "mud_beta"), part = number(file, "mud_concentration");
+    const double eta = mud_viscosity(alpha, beta, part, clear);
+    scene.log.push_back(fmt::format("water: with mud_alpha = {:.6g} Pa s, mud_beta = {:.6g} and mud_concentration = {:.6g} "
+                                    "its viscosity is {:.6g} Pa s (where tables have poise: 1 poise is 0.1 Pa s)",
+                                    alpha, beta, part, eta));
+    return eta;
+}
+
+WaterExchange exchange_of(const CaseFile& file, double viscosity, const Scene& scene) {
+    WaterExchange exchange;
+    TwoPhaseMaterial& m = exchange.material;
+    m.fluid_density = number(file, "density"), m.viscosity = viscosity, m.gravity = scene.gravity;
+    m.grain = number(file, "grain_diameter"), m.block = number(file, "block_diameter");
+    m.power = static_cast<int>(number(file, "drag_power"));
+    const double confined = scene.structure->confined;
+    m.solid_density = (scene.density - confined * m.fluid_density) / (1.0 - confined);
+    const std::string& inertia = file.word("water.virtual_mass");
+    exchange.virtual_mass = inertia == "none"        ? VirtualMass::none
+                            : inertia == "unbounded" ? VirtualMass::unbounded
+                                                     : VirtualMass::bounded;
+    exchange.pore_pressure = number(file, "pore_pressure"), exchange.void_ratio = number(file, "void_ratio");
+    return exchange;
+}
+
+/// What free water does not know of.
+void refuse_others(const CaseFile& file, const TwoPhaseMaterial& m, const Scene& scene, Problems& problems) {
+    if (m.solid_density <= m.fluid_density)
+        problems.add(file.place("material.density"),
+                     fmt::format("found {:.6g} kg/m3, so that grains have {:.6g}", scene.density, m.solid_density),
+                     fmt::format("expected grains denser than water.density = {:.6g}", m.fluid_density),
+                     "give the columns' density, of grains and confined water together");
+    if (!scene.barriers.empty())
+        problems.add(file.table_place("barrier.0"), "found a barrier with water.model = \"free\"",
+                     "expected none, since water does not know them", "raise the elevation model there");
+    if (std::any_of(scene.bed.values.begin(), scene.bed.values.end(), [](double z) { return !std::isfinite(z); }))
+        problems.add(file.place("terrain.dem"), "found nodes without elevation with water.model = \"free\"",
+                     "expected ground everywhere", "give a terrain.window without nodata, or fill the elevation model");
+    if (scene.structure->unrolled)
+        problems.add(file.place("terrain.unrolled"), "found true with water.model = \"free\"",
+                     "expected coordinates on the map, where water finds its level", "remove one of them");
+}
+
+}  // namespace
+
+std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
+    if (file.word("water.model") == "none") return {};
+    if (!scene.structure) {
+        problems.add(file.place("water.model"), "found \"free\" without material.structure",
+                     "expected solids for the water to be beside",
+                     "add [material.structure] (law, cohesion, friction_angle_deg, young_modulus), or use material.bed and "
+                     "material.rheology for one phase");
+        return {};
+    }
+    WaterPhase water;
+    water.share = number(file, "share");
+    if (file.given("water.level")) water.level = number(file, "level");
+    for (const auto& [key, to] : {std::pair<const char*, Raster*>{"water.rain", &water.rain},
+                                  std::pair<const char*, Raster*>{"water.infiltration", &water.infiltration}})
+        problems.attempt(file.place(key), [&, key = key, to = to] { *to = rate_on_nodes(file, reader, key, scene); });
+    water.friction = friction_of(file);
+    const double viscosity = viscosity_of(file, scene);
+    water.exchange = exchange_of(file, viscosity, scene);
+    if (file.word("water.viscous") != "none")
+        water.viscosity = {viscosity / water.exchange.material.fluid_density, number(file, "bed_shear"),
+                           file.flag("water.solid_gradient"), number(file, "profile_factor")};
+    if (water.viscosity.profile > 0.0 && !water.viscosity.solid_gradient)
+        problems.add(file.place("water.profile_factor"), fmt::format("found {:.6g} without water.solid_gradient", water.viscosity.profile),
+                     "expected 0, since it is a part of that term", "set water.solid_gradient = true, or remove it");
+    refuse_others(file, water.exchange.material, scene, problems);
+    return water;
+}
+
+}  // namespace frana
