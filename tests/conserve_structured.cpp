@@ -41,7 +41,7 @@ TEST_CASE("A block that breaks keeps its mass, and its momentum is what it was g
     CHECK(now.impulse.obstacles.x() < -0.01 * given);
     CHECK(now.impulse.friction.norm() > 0.01 * given);
     CHECK(now.impulse.pressure.norm() > 1e-4 * given);
-    CHECK(now.points == 40 * 30 * 4);
+    CHECK(now.points >= 40 * 30 * 4);  // what is broken may be split
     CHECK(now.mass_left == 0.0);
     CHECK(flow.momentum_residual().norm() < 1e-12 * given);
 }

@@ -39,6 +39,9 @@ std::vector<Gate> gates(const Report& report) {
         {"points in space, fluid, one thread [ns]", 90, 46},
         {"points in space, Drucker-Prager, one thread [ns]", 150, 100},
         {"points in space, fluid: two threads over one (wall)", 1.7, 1.9, true},
+        {"structured columns, elastic, over depth-averaged", 1.6, 1.2},
+        {"structured columns, breaking, over depth-averaged", 1.6, 1.2},
+        {"structured columns, grains, over depth-averaged", 1.6, 1.2},
     };
     const Timed* fluid = find(report, "solid_flow", 0, 1);
     if (fluid) list[10].measured = fluid->cost.ns(fluid->cost.full());
@@ -57,6 +60,10 @@ std::vector<Gate> gates(const Report& report) {
         list[7].measured = single->cost.ns(single->cost.full()) * report.calibration.triad_GBps.at(1);
         list[8].measured = single->cost.bytes_per_particle;
     }
+    const Timed* beside = find(report, "depth_averaged_in_turns", 0, 1);
+    list[13].measured = ratio(find(report, "structured/elastic", 0, 1), beside);
+    list[14].measured = ratio(find(report, "structured/breaking", 0, 1), beside);
+    list[15].measured = ratio(find(report, "structured/grains", 0, 1), beside);
     list[9].measured = steps_of(report.frames, kGatedWriter);
     return list;
 }

@@ -7,6 +7,7 @@
 #include "bench/team_clock.h"
 #include "bench/traffic.h"
 #include "solver/depth_averaged.h"
+#include "stages/structured_run.h"
 
 namespace frana::bench {
 namespace {
@@ -69,8 +70,50 @@ private:
     SolidFlow flow_;
 };
 
+/// The solver of structured columns, alone or beside free water.
+class Structured {
+public:
+    explicit Structured(const Scene& scene) {
+        if (scene.water)
+            both_ = std::make_unique<TwoPhaseFlow>(two_phase_scene(scene));
+        else
+            alone_ = std::make_unique<StructuredFlow>(structured_scene(scene));
+        if (alone_) alone_->count_cpu_time();
+    }
+
+    void advance() {
+        constexpr double kNever = std::numeric_limits<double>::max();
+        if (both_)
+            both_->advance(kNever);
+        else
+            alone_->advance(kNever);
+    }
+    Index particles() const { return flow().status().points; }
+    Index steps() const { return flow().status().step; }
+    Phases timings() const { return flow().timings(); }
+    Traffic traffic(const std::string& phase) const { return traffic_of(phase, flow().body()); }
+    Index bytes() const { return flow().particle_bytes(); }
+    std::uint64_t hash() const { return hash_of(flow().body().points); }
+    /// Nodes of the tiles that points touch.
+    double nodes() const { return static_cast<double>(kTile * kTile * static_cast<Index>(flow().body().active.work.size())); }
+
+private:
+    const StructuredFlow& flow() const { return both_ ? both_->columns() : *alone_; }
+    std::unique_ptr<StructuredFlow> alone_;
+    std::unique_ptr<TwoPhaseFlow> both_;
+};
+
+/// A scene that is timed, whatever its solver.
+class AnyMeter {
+public:
+    virtual ~AnyMeter() = default;
+    virtual void warm_up() = 0;
+    virtual void time_window() = 0;
+    virtual Cost cost() = 0;
+};
+
 template <class Solver>
-class Meter {
+class Meter final : public AnyMeter {
 public:
     template <class Subject>
     Meter(const Subject& scene, const Plan& plan) : plan_(plan), clock_(plan.threads), solver_(scene) {
@@ -79,8 +122,12 @@ public:
     }
 
     Cost run() {
-        advance(plan_.warm_steps);
+        warm_up();
         for (int window = 0; window < plan_.windows; ++window) time_window();
+        return cost();
+    }
+    void warm_up() override { advance(plan_.warm_steps); }
+    Cost cost() override {
         cost_.particles_end = solver_.particles();
         cost_.steps = solver_.steps();
         const double count = static_cast<double>(cost_.particles_end);
@@ -90,18 +137,7 @@ public:
         return cost_;
     }
 
-private:
-    /// Steps, and the particle-steps that they were.
-    double advance(int steps) {
-        double done = 0.0;
-        for (int step = 0; step < steps; ++step) {
-            done += static_cast<double>(solver_.particles());
-            solver_.advance();
-        }
-        return done;
-    }
-
-    void time_window() {
+    void time_window() override {
         const Phases before = solver_.timings();
         clock_.start();
         const double particle_steps = advance(plan_.window_steps);
@@ -123,6 +159,18 @@ private:
         }
         phases.push_back(other);
         if (cost_.phases.empty() || cost_.ns(full) < cost_.ns(cost_.full())) cost_.phases = std::move(phases);
+    }
+
+private:
+    /// Advances, and the particle-steps that they were: one may be many steps, of columns beside water.
+    double advance(int times) {
+        double done = 0.0;
+        for (int n = 0; n < times; ++n) {
+            const Index particles = solver_.particles(), steps = solver_.steps();
+            solver_.advance();
+            done += static_cast<double>(particles * (solver_.steps() - steps));
+        }
+        return done;
     }
 
     Plan plan_;
@@ -157,6 +205,22 @@ private:
 Cost measure(const Scene& scene, const Plan& plan) { return Meter<Plane>(scene, plan).run(); }
 Cost measure(const SolidScene& scene, const Plan& plan) { return Meter<Space>(scene, plan).run(); }
 
+std::vector<Cost> measure_in_turns(const std::vector<Scene>& scenes, const Plan& plan) {
+    std::vector<std::unique_ptr<AnyMeter>> meters;
+    for (const Scene& scene : scenes) {
+        if (scene.structure)
+            meters.push_back(std::make_unique<Meter<Structured>>(scene, plan));
+        else
+            meters.push_back(std::make_unique<Meter<Plane>>(scene, plan));
+        meters.back()->warm_up();
+    }
+    for (int window = 0; window < plan.windows; ++window)
+        for (const auto& meter : meters) meter->time_window();
+    std::vector<Cost> costs;
+    for (const auto& meter : meters) costs.push_back(meter->cost());
+    return costs;
+}
+
 std::uint64_t hash_of(const Columns& columns) {
     Hash hash;
     columns.each([&](const auto& column) { hash.mix_all(column); });
@@ -171,6 +235,13 @@ std::uint64_t hash_of(const MaterialPoints& points) {
     };
     mix(points.x), mix(points.v), mix(points.gradient), mix(points.state);
     hash.mix_all(points.j);
+    hash.mix_ids(points.id);
+    return hash.value();
+}
+
+std::uint64_t hash_of(const StructuredPoints& points) {
+    Hash hash;
+    points.each([&](const Column& column) { hash.mix_all(column); });
     hash.mix_ids(points.id);
     return hash.value();
 }

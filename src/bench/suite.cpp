@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "bench/blob.h"
 #include "bench/body.h"
+#include "bench/structured.h"
 
 namespace frana::bench {
 namespace {
@@ -86,6 +87,23 @@ void require_sensible(const Options& options) {
     expect(!options.particles.empty() && !options.threads.empty(), "a bench without particles or threads");
 }
 
+/// Structured columns and the depth-averaged flow in turns, with one thread.
+void time_structured(Report& report, const std::function<void(const std::string&)>& say) {
+    const Index particles = reference_particles(report.options);
+    Blob blob;
+    blob.particles = particles;
+    std::vector<std::string> names = {"depth_averaged_in_turns"};
+    std::vector<Scene> scenes = {blob_scene(blob)};
+    for (const ColumnsThat what :
+         {ColumnsThat::hold, ColumnsThat::break_up, ColumnsThat::are_grains, ColumnsThat::drain}) {
+        names.push_back(name_of(what));
+        scenes.push_back(structured_blob(what, particles));
+    }
+    say(fmt::format("structured columns and the depth-averaged flow in turns: {} particles, 1 thread", particles));
+    const std::vector<Cost> costs = measure_in_turns(scenes, plan_for(report.options, "structured", particles, 1));
+    for (std::size_t n = 0; n < costs.size(); ++n) report.timed.push_back({names[n], "double", costs[n]});
+}
+
 std::vector<int> with_one(std::vector<int> threads) {
     threads.push_back(1);
     std::sort(threads.begin(), threads.end());
@@ -134,6 +152,7 @@ Report run(const Options& wanted, const std::function<void(const std::string&)>&
             report.timed.push_back({name_of(law), "double", measure(scene, timing)});
         }
     }
+    time_structured(report, say);
     if (!options.writers.empty()) {
         say("frames: made and written");
         report.frames =

@@ -4,6 +4,7 @@
 
 #include "solid/solid_flow.h"
 #include "solver/flow.h"
+#include "structured/structured_flow.h"
 
 namespace frana::bench {
 
@@ -18,5 +19,7 @@ struct Traffic {
 Traffic traffic_of(const std::string& phase, const Flow& flow);
 /// The same for points in space.
 Traffic traffic_of(const std::string& phase, const SolidBody& body);
+/// The same for structured columns.
+Traffic traffic_of(const std::string& phase, const StructuredBody& body);
 
 }  // namespace frana::bench

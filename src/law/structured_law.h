@@ -83,6 +83,7 @@ class ColumnLaw {
 public:
     explicit ColumnLaw(const ColumnMaterial& material);
     const ColumnMaterial& material() const { return material_; }
+    bool is_hexagon() const { return material_.yield == ColumnYield::hexagon; }
     double bulk() const { return bulk_; }
     double shear() const { return shear_; }
     double alpha() const { return alpha_; }  ///< of the cone: sqrt(J2) + alpha I1 = k
@@ -97,10 +98,19 @@ public:
     template <class Real>
     [[gnu::always_inline]] void update(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
                                        ColumnStateOf<Real>& state) const {
+        if (is_hexagon())
+            update_as<true>(step, weight, cohesion, state);
+        else
+            update_as<false>(step, weight, cohesion, state);
+    }
+    /// The same where the yield surface is known before a loop.
+    template <bool kHexagon, class Real>
+    [[gnu::always_inline]] void update_as(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
+                                          ColumnStateOf<Real>& state) const {
         const Real left = cohesion * (1.0 - state.damage);
         ColumnStressOf<Real> s = predicted<Real>(turned<Real>(state.stress, 0.5 * step.turn), step, weight);
         state.strain += abs(step.xx) + abs(step.yy) + 2.0 * abs(step.xy);
-        const auto yields = excess<Real>(s, left) > 0.0;
+        const auto yields = excess_as<kHexagon, Real>(s, left) > 0.0;
         if (__builtin_expect(any(yields), 0)) give_way(yields, step, left, s, state);
         state.stress = turned<Real>(s, 0.5 * step.turn);
     }
@@ -109,7 +119,11 @@ public:
     /// hexagon's.
     template <class Real>
     [[gnu::always_inline]] Real excess(const ColumnStressOf<Real>& s, Real cohesion) const {
-        if (material_.yield == ColumnYield::hexagon) return hexagon_excess<Real>(s, cohesion);
+        return is_hexagon() ? excess_as<true, Real>(s, cohesion) : excess_as<false, Real>(s, cohesion);
+    }
+    template <bool kHexagon, class Real>
+    [[gnu::always_inline]] Real excess_as(const ColumnStressOf<Real>& s, Real cohesion) const {
+        if constexpr (kHexagon) return hexagon_excess<Real>(s, cohesion);
         const Real first = s.xx + s.yy + s.zz, mean = first / 3.0;
         const Real x = s.xx - mean, y = s.yy - mean, z = s.zz - mean;
         return sqrt(0.5 * (x * x + y * y + z * z) + s.xy * s.xy) + alpha_ * first - k_ * cohesion;

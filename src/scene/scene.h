@@ -133,6 +133,7 @@ struct Structure {
     double confined = 0.0;  ///< share of the volume that is water within the structure [1]
     double cfl = 0.4;       ///< fraction of a cell that sound and flow may pass in a step [1]
     bool unrolled = false;  ///< coordinates are measured along the ground, not on the map
+    bool hydrostatic = false;  ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
 };
 
 /// Free water on the grid beside the columns of a structure (mixture/two_phase_flow.h).

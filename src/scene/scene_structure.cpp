@@ -26,6 +26,7 @@ public:
         Structure structure;
         structure.cohesion = number("cohesion");
         structure.share = number("fraction");
+        structure.hydrostatic = case_.word(key("earth_pressure")) == "hydrostatic";
         structure.cfl = number("cfl");
         structure.confined = number("confined_water");
         if (structure.confined > 0.0 && case_.word("water.model") == "none")

@@ -190,4 +190,12 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     return bed;
 }
 
+BedGeometry level_bed(const TileGrid& grid) {
+    BedGeometry bed;
+    for (auto* field : {&bed.z, &bed.ground, &bed.z_min, &bed.slope_x, &bed.slope_y})
+        *field = LazyArray<double>(grid.size());
+    bed.exit = LazyArray<std::uint8_t>(grid.size());
+    return bed;
+}
+
 }  // namespace frana

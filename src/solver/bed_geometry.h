@@ -31,4 +31,7 @@ struct BedGeometry {
 /// Throws UserError when scene.bed holds no data at all.
 BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid);
 
+/// A level bed at zero, without curvature.
+BedGeometry level_bed(const TileGrid& grid);
+
 }  // namespace frana

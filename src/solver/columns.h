@@ -67,6 +67,8 @@ struct Columns : Carried<double> {
     void each(Visit&& visit) const {
         each_of(*this, visit);
     }
+    /// Point p loses half of all that is counted and not shared.
+    void halve(Index p) { mass[p] *= 0.5; }
     Index bytes() const {
         Index sum = allocated(id);
         each([&](const auto& column) { sum += allocated(column); });

@@ -14,14 +14,29 @@ namespace frana {
 /// Up to four sums of one tile.
 using TileSums = std::array<double, 4>;
 
+/// What the phases need to know of a scene, besides its bed.
+struct FlowSetup {
+    GridGeometry grid;
+    double density;   ///< [kg/m^3]
+    double gravity;   ///< [m/s^2]
+    bool walls;       ///< sides are mirrors; otherwise open
+    bool steep;       ///< velocities follow the bed; otherwise they are horizontal
+    bool with_force;  ///< points deposit forces besides mass and momentum
+    Scheme scheme;
+};
+
 /// The state of a depth-averaged run. Phases are free functions on it (transfer.h, surface.h, kick.h, split.h).
 struct Flow {
     explicit Flow(const Scene& scene)
-        : grid(scene.bed.geometry), bed(make_bed_geometry(scene, grid)),
-          nodes(grid, scene.rheology.index() != 0 || scene.scheme.paper_pressure), density(scene.density),
-          gravity(scene.gravity), cell(grid.cell()), area(cell * cell), walls(scene.sides == Sides::wall),
-          steep(scene.terrain != TerrainModel::shallow), scheme(scene.scheme), touched(grid.tiles()), near(grid.tiles()),
-          reach(grid.tiles()), deposit_sums(grid.tiles()), depth_sums(grid.tiles()), rest(grid) {}
+        : Flow({scene.bed.geometry, scene.density, scene.gravity, scene.sides == Sides::wall,
+                scene.terrain != TerrainModel::shallow, scene.rheology.index() != 0 || scene.scheme.paper_pressure,
+                scene.scheme},
+               make_bed_geometry(scene, TileGrid(scene.bed.geometry))) {}
+    Flow(const FlowSetup& setup, BedGeometry of)
+        : grid(setup.grid), bed(std::move(of)), nodes(grid, setup.with_force), density(setup.density),
+          gravity(setup.gravity), cell(grid.cell()), area(cell * cell), walls(setup.walls), steep(setup.steep),
+          scheme(setup.scheme), touched(grid.tiles()), near(grid.tiles()), reach(grid.tiles()),
+          deposit_sums(grid.tiles()), depth_sums(grid.tiles()), rest(grid) {}
 
     TileGrid grid;
     BedGeometry bed;

@@ -1,55 +1,23 @@
 #include "solver/kick.h"
 
 #include <algorithm>
-#include <limits>
 
-#include "law/bed_law.h"
+#include "law/bed_stop.h"
 #include "solver/kick_bed.h"
 #include "solver/shock.h"
-#include "solver/surface.h"
+#include "solver/surface_gradient.h"
 
 namespace frana {
 namespace {
 
-constexpr double kRoundOff = 64.0 * std::numeric_limits<double>::epsilon();  ///< of a surface's height
-
 constexpr double kSlowest = 1e-30;  ///< below any speed, above the root of the smallest number [m/s]
-
-/// Slope of the free surface at a node with material, along one axis. Uniform depth gives the bed's own slope, a lake gives
-/// zero, whatever the bed. A dry neighbour that stands higher is a shore and takes no part; a dry neighbour that
-/// lies lower enters with its bed, and drives the front. What is as high but for round-off lies lower: a margin's surface
-/// often ends on the ground beside it (z_min), and whether that takes part is a factor of two. One-sided, a film that
-/// follows a curved bed takes the bed's own slope at the node (the difference to a side has the slope of half a cell
-/// away); `slope`: that of the bed.
-double raw_gradient(const Flow& flow, Index k, Index step, bool wide, double slope) {
-    const Nodes& nodes = flow.nodes;
-    const double *e = nodes.surface.data() + k, *z = flow.bed.z.data() + k, cell = flow.cell;
-    if (wide) return (8.0 * (e[step] - e[-step]) - (e[2 * step] - e[-2 * step])) / (12.0 * cell);
-    const double same = kRoundOff * std::abs(e[0]);
-    const auto shore = [&](Index n) { return !(nodes.flags[k + n] & kWet) && e[n] - e[0] > same; };
-    const bool ahead = shore(step), behind = shore(-step);
-    const auto to_side = [&](Index n) {
-        const double rise = (e[n] - e[0]) / cell, ground = (z[n] - z[0]) / cell;
-        return rise + film_share(rise, ground) * ((n > 0 ? slope : -slope) - ground);
-    };
-    if (ahead && !behind) return -to_side(-step);
-    if (behind && !ahead) return to_side(step);
-    return ((ahead ? 0.0 : e[step] - e[0]) - (behind ? 0.0 : e[-step] - e[0])) / (2.0 * cell);
-}
-
-/// The same without the round-off of the surface's own height: a difference of some units in the last place over a
-/// cell is none, so that a lake rests to the last bit.
-double surface_gradient(const Flow& flow, Index k, Index step, bool wide, double bed_slope) {
-    const double slope = raw_gradient(flow, k, step, wide, bed_slope);
-    return std::abs(slope) * flow.cell <= kRoundOff * std::abs(flow.nodes.surface[k]) ? 0.0 : slope;
-}
 
 /// The same for four nodes in a row, all wide.
 Double4 wide_gradients(const Flow& flow, Index k, Index step) {
     const double* e = flow.nodes.surface.data() + k;
     const Double4 none = {}, slope = (8.0 * (load(e + step) - load(e - step)) - (load(e + 2 * step) - load(e - 2 * step))) /
                                      (12.0 * flow.cell);
-    return select(abs(slope) * flow.cell <= kRoundOff * abs(load(e)), none, slope);
+    return select(abs(slope) * flow.cell <= kSurfaceRoundOff * abs(load(e)), none, slope);
 }
 
 /// A node, or four in a row.
@@ -338,7 +306,7 @@ private:
         const Real along = mx * bed.bx + my * bed.by, speed2 = mx * mx + my * my;
         const Real normal = kCurvature == Curvature::full ? bed.gravity(g, n.vx, n.vy) : Real{} + g;
         // Speed lost to friction, over the speed: normal force over kappa is normal * cosine * speed / sqrt(...).
-        const Real lost = 0.5 * dt * coulomb(law_) * normal * cosine;
+        const Real lost = 0.5 * dt * sliding_friction(law_) * normal * cosine;
         const Real keep = select(speed2 > 0.0, max(Real{}, 1.0 - lost / sqrt(speed2 + along * along)), Real{});
         return {mx * keep, my * keep};
     }
@@ -349,7 +317,7 @@ private:
         // A node that forces stopped has the share kept of the slowest, or round-off would decide what flip's points keep.
         const Real driven = max(sqrt(dx * dx + dy * dy), Real{} + kSlowest), unit = 1.0 / driven;
         const Real s0 = max(Real{}, (n.vx * dx + n.vy * dy) * unit);
-        const Real speed = stopping(state, s0, driven, dt, speeds_after(law_, state, s0, driven, dt));
+        const Real speed = mean_if_stopping(law_, state, BrakedOf<Real>{s0, driven, speeds_after(law_, state, s0, driven, dt), dt, drift_});
         const Real keep = speed * unit, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
         const Real kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
         // Work of friction: its impulse times the mean speed of the step; none where nothing moves. And what bores
@@ -359,25 +327,6 @@ private:
         const Real work = state.kappa * state.kappa * (driven - speed) * 0.5 * (s0 + speed) + bore;
         return {vx, vy, kinetic, select(driven > kSlowest, work, Real{}), wave_gravity, keep};
     }
-
-    /// `speed`, or the mean speed over the coming drift if friction ends the motion in it, and holds: the speed in the
-    /// drift's middle, where the leapfrog stands, would leave the stop short by up to brake drift^2 / 8.
-    template <class Real>
-    Real stopping(const BedStateOf<Real>& state, Real s0, Real driven, double dt, Real speed) const {
-        if constexpr (std::is_same_v<Law, bed::None>) return speed;
-        if (drift_ <= 0.0) return speed;
-        const Real friction = coulomb(law_) * state.normal_gravity, pull = (driven - s0) / dt, brake = friction - pull;
-        const Real at_start = s0 + brake * (0.5 * drift_ - dt);  // of the drift, half of which the kick has covered
-        const auto stops = (s0 > 0.0) & (friction > abs(pull)) & (at_start < brake * drift_);  // a turning point is no stop
-        if (!any(stops)) return speed;
-        const Real mean = select(at_start > 0.0, 0.5 * at_start * at_start / (abs(brake) * drift_ + 1e-300), Real{});
-        return select(stops, mean, speed);
-    }
-
-    static double coulomb(const bed::None&) { return 0.0; }
-    static double coulomb(const bed::Pouliquen& law) { return law.mu_s; }
-    template <class Other>
-    static double coulomb(const Other& law) { return law.mu; }
 
     Law law_;
     bool pressure_on_points_;

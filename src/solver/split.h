@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/flow.h"
+#include "solver/halving.h"
 
 namespace frana {
 
@@ -18,21 +18,15 @@ public:
     /// New points are appended; returns how many. The caller sorts afterwards.
     Index split(Flow& flow);
     /// From now on split() tells whose parts the new points are.
-    void note_parents() { notes_ = true; }
+    void note_parents() { halves_.notes = true; }
     /// Numbers of the points that were split, for each new one since the last call; theirs end at next_id().
-    std::vector<Index> take_parents() { return std::exchange(parents_, {}); }
-    Index next_id() const { return next_id_; }
-    void set_next_id(Index id) { next_id_ = id; }
+    std::vector<Index> take_parents() { return std::exchange(halves_.parents, {}); }
+    Index next_id() const { return halves_.next_id; }
+    void set_next_id(Index id) { halves_.next_id = id; }
 
 private:
-    template <class Real>
-    Index split_as(Flow& flow);
-
     double least_mass_;
-    Index next_id_ = 0;
-    std::vector<Index> tile_first_;
-    bool notes_ = false;
-    std::vector<Index> parents_;
+    Halves halves_;
 };
 
 }  // namespace frana

@@ -88,6 +88,17 @@ Obstacle box_of(const Barrier& barrier) {
 
 }  // namespace
 
+namespace {
+
+/// What make_bed_geometry needs, kept: grains may come long after the scene is gone.
+std::function<BedGeometry(const TileGrid&)> bed_under(const Scene& scene) {
+    Scene of;
+    of.bed = scene.bed, of.scheme = scene.scheme, of.sides = scene.sides, of.curvature = Curvature::none;
+    return [of = std::make_shared<const Scene>(std::move(of))](const TileGrid& grid) { return make_bed_geometry(*of, grid); };
+}
+
+}  // namespace
+
 StructuredScene structured_scene(const Scene& scene) {
     expect(scene.structure.has_value(), "a structured run has a structure");
     const Structure& of = *scene.structure;
@@ -99,6 +110,9 @@ StructuredScene structured_scene(const Scene& scene) {
     s.share = of.share;
     s.gravity = scene.gravity;
     s.bed_law = scene.bed_law;
+    s.hydrostatic = of.hydrostatic;
+    s.scheme = scene.scheme;
+    if (!of.unrolled) s.bed = bed_under(scene);
     s.cfl = of.cfl;
     if (scene.sides == Sides::wall) add_walls(s.grid, s.obstacles);
     for (const Barrier& barrier : scene.barriers) s.obstacles.push_back(box_of(barrier));

@@ -50,6 +50,10 @@ inline double covered(const Vec2& low, const Vec2& high, const Vec2& node, doubl
     return share;
 }
 
+/// Of a node at the corner between two walls. Behind walls, where less is open and little lies, depths would
+/// be noise.
+constexpr double kLeastOpen = 0.25;
+
 /// Share of a node's shape function that material can fill: outside of all obstacles, of which no three
 /// overlap. Mass over this share is the depth beside a wall. Not below `least`.
 inline double open_share(const std::vector<Obstacle>& obstacles, const Vec2& node, double cell,

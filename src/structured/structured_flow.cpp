@@ -15,9 +15,7 @@ namespace {
 /// nodes and twice the drift.
 constexpr double kDriftLimit = 2.0;
 
-/// Of a node at the corner between two walls. Behind walls, where less is open and little lies, depths would
-/// be noise.
-constexpr double kLeastOpen = 0.25;
+constexpr Index kStepsBetweenSplits = 3;
 
 void require_inside(const StructuredSeeds& seeds, const GridGeometry& g) {
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
@@ -34,23 +32,30 @@ void require_inside(const StructuredSeeds& seeds, const GridGeometry& g) {
 }  // namespace
 
 StructuredBody::StructuredBody(const StructuredScene& scene)
-    : grid(scene.grid),
+    : flow({scene.grid, scene.density, scene.gravity, false, true, false, scene.scheme}, {}),
       law(scene.material),
-      nodes(grid.size()),
       push(grid.size()),
       moved(grid.size()),
       pull(grid.size()),
       obstacles(scene.obstacles),
-      rankine{law.active(), law.passive()},
+      rankine(scene.hydrostatic ? Rankine{} : Rankine{law.active(), law.passive()}),
       bed_law(scene.bed_law),
       density(scene.density),
       share(scene.share),
-      gravity(scene.gravity) {}
+      gravity(scene.gravity),
+      mapped(static_cast<bool>(scene.bed)) {}
 
 StructuredFlow::StructuredFlow(const StructuredScene& scene)
-    : body_(scene), ground_(scene.ground), cfl_(scene.cfl), sound_(body_.law.sound_speed(scene.density)) {
+    : body_(scene),
+      ground_(scene.ground),
+      bed_(scene.bed),
+      rules_{scene.scheme.split_length, 0.0, scene.scheme.split, scene.scheme.reset_domains, 0.0},
+      cfl_(scene.cfl),
+      sound_(scene.share > 0.0 || !scene.hydrostatic ? body_.law.sound_speed(scene.density) : 0.0) {
     flush_denormals_on_all_threads();
+    for (const double m : scene.points.mass) rules_.least_mass = std::max(rules_.least_mass, scene.scheme.split_min_mass * m);
     place(scene);
+    if (body_.grains) begin_grains();
     sort();
     look();
 }
@@ -75,6 +80,7 @@ void StructuredFlow::place(const StructuredScene& scene) {
         q.zz[p] = -0.5 * body_.density * q.pull[p] * q.depth[p];
         q.confined[p] = scene.confined * q.volume[p], q.solids[p] = q.volume[p] - q.confined[p];
         q.released[p] = 0.0;
+        q.r1x[p] = q.r2y[p] = std::sqrt(q.volume[p] / q.depth[p]) / g.cell, q.r1y[p] = q.r2x[p] = 0.0;
         q.id[p] = p;
         const Vec2 v(q.vx[p], q.vy[p]);
         status_.mass += q.mass[p];
@@ -88,6 +94,23 @@ void StructuredFlow::place(const StructuredScene& scene) {
     if (status_.mass > 0.0) status_.damage /= status_.mass;
     status_.momentum_given = status_.momentum;
     status_.points = count;
+    halves_.next_id = count;
+}
+
+/// There are grains from now on: they need a bed under their surface.
+void StructuredFlow::begin_grains() {
+    body_.grains = true;
+    body_.flow.bed = bed_ ? bed_(body_.grid) : level_bed(body_.grid);
+}
+
+/// Grains that spread are split, so that they do not fall apart by the scheme. What holds together is left as it is.
+void StructuredFlow::split() {
+    const StructuredPoints& q = body_.points;
+    const auto may = [&](Index p) { return body_.share * (1.0 - q.damage[p]) == 0.0; };
+    if (halve_points(body_.grid, body_.active, rules_, body_.points, body_.points, halves_, may) > 0) {
+        body_.gone.assign(static_cast<std::size_t>(q.count()), 0);
+        sort();
+    }
 }
 
 void StructuredFlow::sort() {
@@ -126,6 +149,7 @@ void StructuredFlow::take_tiles() {
     body_.gone.assign(static_cast<std::size_t>(q.count()), 0);
     body_.sums.resize(body_.active.tile.size());
     body_.tallies.resize(body_.active.work.size());
+    for (const Index tile : body_.active.work) body_.flow.rest.stirred[tile] = 1;
     learn_ground();
 }
 
@@ -149,16 +173,21 @@ void StructuredFlow::learn_ground() {
 /// grows so fast with the rate of squeezing (earth_pressure.h) that it needs steps below cell^2 / (5 (Kp -
 /// Ka) sqrt(g_z h^3)), or is noisy; the elastic step is mostly near that.
 double StructuredFlow::step_length(double until) const {
-    const double dt = cfl_ * body_.grid.cell() / (sound_ + wave_), left = until - status_.time;
+    const double reach = cfl_ * body_.grid.cell(), left = until - status_.time;
+    // Grains alone at rest have no speed to go by, but fall (DepthAveraged::longest_step).
+    const double fall = sound_ == 0.0 ? std::sqrt(wave_ * wave_ + 2.0 * body_.gravity * reach) : wave_;
+    const double dt = sound_ == 0.0 ? 2.0 * reach / (wave_ + fall) : reach / (sound_ + wave_);
     return dt < left ? std::min(dt, 0.5 * left + 0.5 * dt) : left;
 }
 
 void StructuredFlow::advance(double until) {
     expect(until > status_.time, "a step goes forward");
     const double dt = step_length(until);
+    const StepTimes times = body_.grains ? StepTimes{0.5 * (status_.dt + dt), dt} : StepTimes{dt, 0.0};
     timed_("clear", [&] { clear_nodes(body_); });
-    timed_("scatter", [&] { scatter(body_, dt); });
-    timed_("nodes", [&] { move_nodes(body_, dt); });
+    timed_("scatter", [&] { scatter(body_, times.kick); });
+    if (body_.grains) timed_("surface", [&] { raise_surface(body_); });
+    timed_("nodes", [&] { move_nodes(body_, times); });
     timed_("gather", [&] { gather(body_, dt); });
     book(dt);
     if (status_.time + dt >= until)
@@ -170,6 +199,7 @@ void StructuredFlow::advance(double until) {
 void StructuredFlow::look() {
     clear_nodes(body_);
     scatter(body_, 0.0);
+    if (body_.grains) raise_surface(body_);
     look_nodes(body_);
     weigh();
 }
@@ -214,17 +244,25 @@ void StructuredFlow::book(double dt) {
     status_.damage = all.mass > 0.0 ? all.damaged / all.mass : 0.0;
     status_.max_speed = std::sqrt(all.max_speed2);
     wave_ = all.max_wave;
-    if (all.damaged > 0.0) body_.grains = true;
+    if (all.damaged > 0.0 && !body_.grains) begin_grains();
     status_.released += all.released, status_.confined_left += all.left_confined;
     status_.mass_left += all.left_mass, status_.momentum_left += all.left_momentum;
     drift_ += dt * status_.max_speed / body_.grid.cell();
     if (all.left_mass > 0.0 || drift_ > kDriftLimit - 1.0) sort();
+    if (body_.grains && status_.step % kStepsBetweenSplits == 0) split();
     status_.points = body_.points.count();
 }
 
 Vec2 StructuredFlow::position(Index p) const {
     const GridGeometry& g = body_.grid.geometry();
     return {g.x0 + g.cell * body_.points.x[p], g.y0 + g.cell * body_.points.y[p]};
+}
+
+Index StructuredFlow::particle_bytes() const {
+    const StructuredPoints& q = body_.points;
+    Index sum = allocated(q.id) + order_.bytes();
+    q.each([&](const Column& column) { sum += allocated(column); });
+    return sum;
 }
 
 Vec2 StructuredFlow::momentum_residual() const {

@@ -9,6 +9,7 @@
 #include "law/structured_law.h"
 #include "observe/frame.h"
 #include "solver/columns.h"
+#include "solver/halving.h"
 #include "solver/step_clock.h"
 #include "structured/earth_pressure.h"
 #include "water/free_water.h"
@@ -44,6 +45,11 @@ struct StructuredScene {
     ColumnMaterial material;
     double share = 1.0;         ///< of the solids that have structure, undamaged [1]
     double gravity = 9.81;      ///< [m/s^2]
+    bool hydrostatic = false;   ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
+    /// The bed under the grains' surface, on the map, asked for when there are grains. None: a plane that the columns'
+    /// coordinates lie in, and gravity along it by the ground.
+    std::function<BedGeometry(const TileGrid&)> bed;
+    Scheme scheme;              ///< of the grains' surface and of splitting them
     BedLaw bed_law;
     double confined = 0.0;      ///< share of the volume that is water within the structure [1]
     double cfl = 0.4;           ///< fraction of a cell that sound and flow may pass in a step [1]
@@ -110,15 +116,15 @@ struct StructuredSums {
 /// All that the kernels share.
 struct StructuredBody {
     explicit StructuredBody(const StructuredScene& scene);
-    TileGrid grid;
+    StructuredBody(const StructuredBody&) = delete;
+    Flow flow;  ///< nodes, and the grains' surface on them; its own columns are not used
+    TileGrid& grid = flow.grid;
+    ActiveTiles& active = flow.active;
     ColumnLaw law;
     StructuredPoints points;
-    ActiveTiles active;
-    struct Node {
-        double m, x, y, spare;  ///< mass and momentum
-    };
+    Deposit* nodes = flow.nodes.deposits();  ///< mass and momentum
     struct Push {
-        double xx, yy, xy, spare;  ///< sum of w m (1 - f) K, of grains
+        double xx, yy, xy, share;  ///< sums of w m (1 - f) K and w m (1 - f), of grains
     };
     struct Moved {
         double vx, vy, pull, depth;  ///< after the step
@@ -128,7 +134,6 @@ struct StructuredBody {
         double open;  ///< share of the node that is open, 0 where nobody asked yet
         double exit;  ///< 1 where there is no ground
     };
-    LazyArray<Node> nodes;
     LazyArray<Push> push;
     LazyArray<Moved> moved;
     LazyArray<Pull> pull;
@@ -146,12 +151,21 @@ struct StructuredBody {
     BedLaw bed_law;
     double density, share, gravity;
     bool grains = false;  ///< some column is broken or has grains beside its structure
+    bool mapped = false;  ///< coordinates are on the map, and flow has the bed; otherwise they lie in its plane
+};
+
+/// How long forces act in a step, and how long columns then drift [s]. With grains velocities stand half a step behind the
+/// places (leapfrog), as those of the depth-averaged flow; what is whole begins with a whole step.
+struct StepTimes {
+    double kick, drift;
 };
 
 // The loops of a step (structured_kernel.cpp).
 void clear_nodes(StructuredBody& body);
-void scatter(StructuredBody& body, double dt);
-void move_nodes(StructuredBody& body, double dt);
+void scatter(StructuredBody& body, double kick);
+/// After scatter() where there are grains: depth from sub-points, and the free surface by scheme S2 (grain_surface.cpp).
+void raise_surface(StructuredBody& body);
+void move_nodes(StructuredBody& body, const StepTimes& times);
 void gather(StructuredBody& body, double dt);
 /// The nodes as the columns are now, without a step: `moved`, and the energies of `tallies`.
 void look_nodes(StructuredBody& body);
@@ -173,6 +187,10 @@ public:
     const StructuredStatus& status() const { return status_; }
     const StructuredBody& body() const { return body_; }
     std::vector<PhaseTime> timings() const { return timed_.times(); }
+    /// timings() tell CPU time too from now on.
+    void count_cpu_time() { timed_.count_cpu_time(); }
+    /// Memory that grows with the points, sort buffers included [bytes].
+    Index particle_bytes() const;
     /// Largest speed of columns and the waves on them [m/s].
     double wave() const { return wave_; }
     /// Position of a point [m].
@@ -187,6 +205,8 @@ private:
     void sort();
     void take_tiles();
     void learn_ground();
+    void begin_grains();
+    void split();
     double step_length(double until) const;
     void book(double dt);
     void weigh();
@@ -196,6 +216,9 @@ private:
     PointOrder order_;
     TileSorter lists_;  ///< of tiles, by colour
     std::vector<PointField> fields_;
+    std::function<BedGeometry(const TileGrid&)> bed_;
+    HalvingRules rules_;
+    Halves halves_;
     std::vector<Index> left_;  ///< tiles of the list before
     StepClock timed_;
     StructuredStatus status_;

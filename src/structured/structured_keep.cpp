@@ -29,11 +29,12 @@ void StructuredFlow::keep(Archive& archive) {
     archive.numbers("bounds", {&wave_, &drift_});
     Index grains = body_.grains ? 1 : 0;
     archive.number("grains", grains);
+    archive.number("next_id", halves_.next_id);
     archive.array("tile", body_.active.tile);
     archive.array("begin", body_.active.begin);
     timed_.keep(archive);
     if (!archive.loading()) return;
-    body_.grains = grains != 0;
+    if (grains != 0) begin_grains();
     require_whole(body_.active, body_.grid.tiles(), body_.points.count());
     take_tiles();
     const StructuredStatus kept = status_;

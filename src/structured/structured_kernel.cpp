@@ -3,14 +3,29 @@
 #include <cmath>
 
 #include "grid/stencils.h"
+#include "solver/sub_points_of_four.h"
 #include "structured/structured_flow.h"
 
 namespace frana {
 namespace {
 
-using Node = StructuredBody::Node;
 using Push = StructuredBody::Push;
 using Moved = StructuredBody::Moved;
+
+/// Calls work(grains, water), types that say what there is in a run: asked once a loop, and not of every column.
+template <class Work>
+void with_kinds(const StructuredBody& body, Work&& work) {
+    const auto with_water = [&](auto grains) {
+        if (body.water)
+            work(grains, std::true_type{});
+        else
+            work(grains, std::false_type{});
+    };
+    if (body.grains)
+        with_water(std::true_type{});
+    else
+        with_water(std::false_type{});
+}
 
 /// What a column gives its nodes: w (base + affine d) + force grad w, d in cells; lanes are mass and
 /// momentum.
@@ -18,12 +33,12 @@ struct Gift {
     Double4 base, along_x, along_y, force_x, force_y;
 };
 
-[[gnu::always_inline]] inline void give(Node* nodes, Index stride, const Reach& r, double f, double g,
+[[gnu::always_inline]] inline void give(Deposit* nodes, Index stride, const Reach& r, double f, double g,
                                         const Gift& gift) {
     for (int j = 0; j < 3; ++j) {
         const Double4 row = r.wy[j] * (gift.base + (j - g) * gift.along_y) + r.sy[j] * gift.force_y;
         const Double4 along = r.wy[j] * gift.along_x, force = r.wy[j] * gift.force_x;
-        Node* const first = nodes + r.node + j * stride;
+        Deposit* const first = nodes + r.node + j * stride;
         for (int i = 0; i < 3; ++i)
             store(first + i, load(first + i) + r.wx[i] * row + (r.wx[i] * (i - f)) * along + r.sx[i] * force);
     }
@@ -39,11 +54,11 @@ template <class Four>
         }
 }
 
-Gift gift_of(const StructuredPoints& q, Index p, double share, double dt, double cell) {
+Gift gift_of(const StructuredPoints& q, Index p, const Gradient& c, double share, double dt, double cell) {
     const double m = q.mass[p], pulls = -dt * q.volume[p] * share * (1.0 - q.damage[p]) / cell;
     return {Double4{m, m * q.vx[p], m * q.vy[p], 0.0},
-            Double4{0.0, m * cell * q.cxx[p], m * cell * q.cyx[p], 0.0},
-            Double4{0.0, m * cell * q.cxy[p], m * cell * q.cyy[p], 0.0},
+            Double4{0.0, m * cell * c.xx, m * cell * c.yx, 0.0},
+            Double4{0.0, m * cell * c.xy, m * cell * c.yy, 0.0},
             Double4{0.0, pulls * q.xx[p], pulls * q.xy[p], 0.0},
             Double4{0.0, pulls * q.xy[p], pulls * q.yy[p], 0.0}};
 }
@@ -61,7 +76,26 @@ Double4 grain_push(const StructuredBody& body, Index p) {
     if (grains == 0.0) return Double4{};
     const Sym2 k = earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, q.layer[p], q.pull[p],
                                   body.rankine);
-    return Double4{grains * k.xx, grains * k.yy, grains * k.xy, 0.0};
+    return Double4{grains * k.xx, grains * k.yy, grains * k.xy, grains};
+}
+
+/// The columns of four points on the nodes, from their sub-points. What was released is water already.
+template <bool kWater>
+void spread(StructuredBody& body, Index p, int lanes, bool at_side) {
+    const StructuredPoints& q = body.points;
+    const Double4 x = load(&q.x[p], lanes), y = load(&q.y[p], lanes);
+    Double4 mass = load(&q.mass[p], lanes);
+    if constexpr (kWater) mass = body.density * (load(&q.volume[p], lanes) - load(&q.released[p], lanes));
+    const Domains r{load(&q.r1x[p], lanes), load(&q.r1y[p], lanes), load(&q.r2x[p], lanes), load(&q.r2y[p], lanes)};
+    if (!at_side && spread_four(body.flow, lanes, x, y, 0.25 * mass, r)) return;
+    for (int n = 0; n < lanes; ++n)
+        spread_column<Quadratic>(body.flow, {x[n], y[n], mass[n]}, edges_of(q, p + n));
+}
+
+/// Whether sub-points of a tile's columns may lie beyond the grid's sides.
+bool near_side(const TileGrid& grid, Index tile) {
+    const Index i = grid.tile_i(tile), j = grid.tile_j(tile);
+    return i <= 0 || j <= 0 || i + 2 * kTile > grid.nx() || j + 2 * kTile > grid.ny();
 }
 
 /// What a column takes from its nodes, and how it changes there [1/cell].
@@ -101,8 +135,16 @@ struct Batch {
             per_cell * x[0], per_cell * x[1], per_cell * y[0], per_cell * y[1]};
 }
 
+/// An edge of four domains goes with the material.
+void stretch(double* rx, double* ry, const Batch& b, double dt, int lanes) {
+    const Double4 x = load(rx, lanes), y = load(ry, lanes);
+    store(rx, x + dt * (b.cxx * x + b.cxy * y), lanes);
+    store(ry, y + dt * (b.cyx * x + b.cyy * y), lanes);
+}
+
 /// Stress, damage and the column's own depth, which changes with its area: exp(-div dt) to second order.
 /// Returns the work of the strains on the structure [J].
+template <bool kWater, bool kHexagon>
 [[gnu::always_inline]] inline Double4 strain_four(StructuredBody& body, const Batch& b, Index p, int lanes,
                                                double dt) {
     StructuredPoints& q = body.points;
@@ -119,10 +161,11 @@ struct Batch {
                                  load(&q.strain[p], lanes)};
     const auto step =
         ColumnStepOf<Double4>::of(if_whole(b.cxx), if_whole(b.cxy), if_whole(b.cyx), if_whole(b.cyy), dt);
-    const Double4 density = body.water ? load(&q.mass[p], lanes) / max(load(&q.volume[p], lanes), all(1e-300)) : all(body.density);
+    Double4 density = all(body.density);
+    if constexpr (kWater) density = load(&q.mass[p], lanes) / max(load(&q.volume[p], lanes), all(1e-300));
     const Double4 weight = if_whole(-0.5 * density * b.pull * depth);
     const ColumnStressOf<Double4> old = state.stress;
-    body.law.update(step, weight, load(&q.cohesion[p], lanes), state);
+    body.law.update_as<kHexagon>(step, weight, load(&q.cohesion[p], lanes), state);
     store(&q.xx[p], state.stress.xx, lanes), store(&q.yy[p], state.stress.yy, lanes);
     store(&q.zz[p], state.stress.zz, lanes), store(&q.xy[p], state.stress.xy, lanes);
     store(&q.damage[p], state.damage, lanes), store(&q.strain[p], state.strain, lanes);
@@ -196,30 +239,50 @@ void clear_nodes(StructuredBody& body) {
     for_each_work_tile(body.active, [&](Index, Index tile) {
         const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
         for (Index j = 0; j < kTile; ++j) {
-            std::fill_n(&body.nodes[first + j * body.grid.stride()], kTile, Node{});
-            if (body.grains) std::fill_n(&body.push[first + j * body.grid.stride()], kTile, Push{});
+            std::fill_n(&body.nodes[first + j * body.grid.stride()], kTile, Deposit{});
+            if (body.grains) {
+                std::fill_n(&body.push[first + j * body.grid.stride()], kTile, Push{});
+                std::fill_n(&body.flow.nodes.column_mass[first + j * body.grid.stride()], kTile, 0.0);
+            }
             if (body.water)
                 std::fill_n(&body.bound[first + j * body.grid.stride()], kTile, StructuredBody::Bound{});
         }
     });
 }
 
-void scatter(StructuredBody& body, double dt) {
+namespace {
+
+template <bool kGrains, bool kWater>
+void scatter_tile(StructuredBody& body, Index n, double kick) {
     const StructuredPoints& q = body.points;
-    const Index stride = body.grid.stride();
-    for_each_tile_coloured(body.active, [&](Index n) {
-        const Index end = body.active.begin[n + 1];
-        for (Index p = body.active.begin[n]; p < end; p += 4) {
-            const int lanes = static_cast<int>(std::min<Index>(4, end - p));
-            const Stencils sx(load(&q.x[p], lanes)), sy(load(&q.y[p], lanes));
-            for (int lane = 0; lane < lanes; ++lane) {
-                const Reach reach(sx, sy, stride, lane);
-                give(body.nodes.data(), stride, reach, sx.offset[lane], sy.offset[lane],
-                     gift_of(q, p + lane, body.share, dt, body.grid.cell()));
-                if (body.grains) give(body.push.data(), stride, reach, grain_push(body, p + lane));
-                if (body.water) give(body.bound.data(), stride, reach, bound_of(body, p + lane));
-            }
+    const Index stride = body.grid.stride(), end = body.active.begin[n + 1], tile = body.active.tile[n];
+    const double cell = body.grid.cell();
+    const bool at_side = near_side(body.grid, tile);
+    StencilMarks marks = body.flow.marks_of(tile);
+    for (Index p = body.active.begin[n]; p < end; p += 4) {
+        const int lanes = static_cast<int>(std::min<Index>(4, end - p));
+        const Stencils sx(load(&q.x[p], lanes)), sy(load(&q.y[p], lanes));
+        for (int lane = 0; lane < lanes; ++lane) {
+            const Index one = p + lane;
+            const Reach reach(sx, sy, stride, lane);
+            Gradient c{q.cxx[one], q.cxy[one], q.cyx[one], q.cyy[one]};
+            if constexpr (kGrains) c = spanned(c, q.r1x[one], q.r1y[one], q.r2x[one], q.r2y[one]);
+            give(body.nodes, stride, reach, sx.offset[lane], sy.offset[lane], gift_of(q, one, c, body.share, kick, cell));
+            if constexpr (kGrains) give(body.push.data(), stride, reach, grain_push(body, one));
+            if constexpr (kWater) give(body.bound.data(), stride, reach, bound_of(body, one));
+            if constexpr (kGrains) marks.mark(sx.first[lane], sy.first[lane]);
         }
+        if constexpr (kGrains) spread<kWater>(body, p, lanes, at_side);
+    }
+    constexpr int kBefore = 1, kAfter = 3;  // nodes that sub-points touch around the first of a stencil
+    if constexpr (kGrains) body.flow.reach[tile] = marks.reach(kBefore, kAfter);
+}
+
+}  // namespace
+
+void scatter(StructuredBody& body, double kick) {
+    with_kinds(body, [&](auto grains, auto water) {
+        for_each_tile_coloured(body.active, [&](Index n) { scatter_tile<grains.value, water.value>(body, n, kick); });
     });
 }
 
@@ -233,30 +296,52 @@ void press(StructuredBody& body) {
     });
 }
 
-void gather(StructuredBody& body, double dt) {
+namespace {
+
+template <bool kGrains, bool kWater, bool kHexagon>
+StructuredSums gather_tile(StructuredBody& body, Index n, double dt) {
     StructuredPoints& q = body.points;
     const double cells = dt / body.grid.cell();
-    for_each_tile(body.active, [&](Index n) {
-        const Index end = body.active.begin[n + 1];
-        StructuredSums sums;
-        Double4 worked = {};
-        for (Index p = body.active.begin[n]; p < end; p += 4) {
-            const int lanes = static_cast<int>(std::min<Index>(4, end - p));
-            const Batch b = take_four(body, p, lanes);
-            store(&q.vx[p], b.vx, lanes), store(&q.vy[p], b.vy, lanes);
-            store(&q.cxx[p], b.cxx, lanes), store(&q.cxy[p], b.cxy, lanes);
-            store(&q.cyx[p], b.cyx, lanes), store(&q.cyy[p], b.cyy, lanes);
-            store(&q.pull[p], b.pull, lanes), store(&q.layer[p], b.layer, lanes);
-            store(&q.x[p], load(&q.x[p], lanes) + cells * b.vx, lanes);
-            store(&q.y[p], load(&q.y[p], lanes) + cells * b.vy, lanes);
-            const Double4 damage = load(&q.damage[p], lanes);
-            worked += strain_four(body, b, p, lanes, dt);
-            if (body.water)
-                for (int lane = 0; lane < lanes; ++lane) release(body, p + lane, damage[lane], sums);
-            for (int lane = 0; lane < lanes; ++lane) count(body, p + lane, sums);
+    const Index end = body.active.begin[n + 1];
+    StructuredSums sums;
+    Double4 worked = {};
+    for (Index p = body.active.begin[n]; p < end; p += 4) {
+        const int lanes = static_cast<int>(std::min<Index>(4, end - p));
+        const Batch b = take_four(body, p, lanes);
+        store(&q.vx[p], b.vx, lanes), store(&q.vy[p], b.vy, lanes);
+        store(&q.cxx[p], b.cxx, lanes), store(&q.cxy[p], b.cxy, lanes);
+        store(&q.cyx[p], b.cyx, lanes), store(&q.cyy[p], b.cyy, lanes);
+        store(&q.pull[p], b.pull, lanes), store(&q.layer[p], b.layer, lanes);
+        store(&q.x[p], load(&q.x[p], lanes) + cells * b.vx, lanes);
+        store(&q.y[p], load(&q.y[p], lanes) + cells * b.vy, lanes);
+        if constexpr (kGrains) {
+            stretch(&q.r1x[p], &q.r1y[p], b, dt, lanes);
+            stretch(&q.r2x[p], &q.r2y[p], b, dt, lanes);
         }
-        sums.worked = sum(worked);
-        body.sums[static_cast<std::size_t>(n)] = sums;
+        const Double4 damage = load(&q.damage[p], lanes);
+        worked += strain_four<kWater, kHexagon>(body, b, p, lanes, dt);
+        if constexpr (kWater)
+            for (int lane = 0; lane < lanes; ++lane) release(body, p + lane, damage[lane], sums);
+        for (int lane = 0; lane < lanes; ++lane) count(body, p + lane, sums);
+    }
+    sums.worked = sum(worked);
+    return sums;
+}
+
+}  // namespace
+
+void gather(StructuredBody& body, double dt) {
+    with_kinds(body, [&](auto grains, auto water) {
+        const auto as = [&](auto hexagon) {
+            for_each_tile(body.active, [&](Index n) {
+                body.sums[static_cast<std::size_t>(n)] =
+                    gather_tile<grains.value, water.value, hexagon.value>(body, n, dt);
+            });
+        };
+        if (body.law.is_hexagon())
+            as(std::true_type{});
+        else
+            as(std::false_type{});
     });
 }
 

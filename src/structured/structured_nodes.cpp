@@ -4,49 +4,84 @@
 #include <cmath>
 #include <limits>
 
+#include "law/bed_stop.h"
+#include "solver/kick_bed.h"
+#include "solver/surface_gradient.h"
 #include "structured/structured_flow.h"
 
 namespace frana {
 namespace {
 
-using Node = StructuredBody::Node;
 using Moved = StructuredBody::Moved;
 
-/// A node with its neighbours, for centred differences.
-struct Around {
-    const StructuredBody& body;
-    Index k, stride;
+/// What drives the grains of a node, besides the share of their weight that the whole node is given.
+class Grains {
+public:
+    Grains(const StructuredBody& body, Index k) : body_(body), k_(k), stride_(body.grid.stride()) {}
 
-    /// As mass per share of the node that is open; what was released is not part of it.
-    double depth(Index at) const {
-        const double mass = body.water ? body.density * (body.bound[at].volume - body.bound[at].released) : body.nodes[at].m;
-        return mass / body.pull[at].open;
+    /// Of a node of mass m, by scheme S2: the slope of the free surface instead of the ground's, for their share s of the
+    /// mass; the rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes,
+    /// -g_z h / 2 div(s K); and the artificial viscosity at bores. `bears`: share of the weight on the bed.
+    Vec2 acceleration(const StructuredBody::Pull& ground, double bears) const {
+        const Flow& flow = body_.flow;
+        const double cell = flow.cell;
+        const Double4 here = share(k_);
+        const Double4 kx = share(k_ + 1) - share(k_ - 1), ky = share(k_ + stride_) - share(k_ - stride_);
+        const double s = here[3], half = 0.25 * flow.nodes.depth[k_] / cell;
+        const auto [drive, push] = slopes(ground);
+        const double xx = here[0] - s, yy = here[1] - s, xy = here[2];
+        const Vec2 beyond(xx * push.x() + xy * push.y() + ground.across * half * (kx[0] + ky[2]),
+                          xy * push.x() + yy * push.y() + ground.across * half * (kx[2] + ky[1]));
+        return bears * (-s * drive - beyond) + s * viscosity();
     }
-    Double4 share(Index at) const {  // K (1 - f); beside dry nodes it goes on as it is here
-        const double m = body.nodes[at].m;
-        return m > 0.0 ? load(&body.push[at]) / m : load(&body.push[k]) / body.nodes[k].m;
+
+private:
+    /// K (1 - f), 1 - f; beside dry nodes it goes on as it is here. Of grains alone it is 1, whatever round-off says.
+    Double4 share(Index at) const {
+        const double m = body_.nodes[at].mass;
+        const Double4 all_of = m > 0.0 ? load(&body_.push[at]) / m : load(&body_.push[k_]) / body_.nodes[k_].mass;
+        constexpr double kNearly = 1.0 - 1e-12;
+        return all_of[3] > kNearly ? all_of / all_of[3] : all_of;
     }
-    /// Acceleration -g_z (K . grad h + h / 2 div K) of grains.
-    Vec2 acceleration(double pull, double cell, double depth_of_mass) const {
-        const double slope = 0.5 * depth_of_mass / cell;
-        const double hx = slope * (depth(k + 1) - depth(k - 1)),
-                     hy = slope * (depth(k + stride) - depth(k - stride));
-        const Double4 kk = load(&body.push[k]) / body.nodes[k].m;
-        const Double4 kx = share(k + 1) - share(k - 1), ky = share(k + stride) - share(k - stride);
-        const double half = 0.25 * depth_of_mass * depth(k) / cell;
-        return -pull * Vec2(kk[0] * hx + kk[2] * hy + half * (kx[0] + ky[2]),
-                            kk[2] * hx + kk[1] * hy + half * (kx[2] + ky[1]));
+    struct Slopes {
+        Vec2 drive;  ///< of the free surface less the weight that the node was given [m/s^2]
+        Vec2 push;   ///< of the surface less that of a uniform depth [m/s^2]
+    };
+    Slopes slopes(const StructuredBody::Pull& ground) const {
+        const Flow& flow = body_.flow;
+        const std::uint8_t flags = flow.nodes.flags[k_];
+        const double ex = surface_gradient(flow, k_, 1, flags & kWideX, flow.bed.slope_x[k_]),
+                     ey = surface_gradient(flow, k_, stride_, flags & kWideY, flow.bed.slope_y[k_]);
+        if (!body_.mapped) {
+            const Vec2 push = ground.across * Vec2(ex, ey);
+            return {push, push};
+        }
+        const SteepBed<double, Curvature::none, false> bed(flow, k_);
+        const Drive<double> all = bed.drive(ex, ey, 1.0), even = bed.drive(bed.bx, bed.by, 1.0);
+        const double g = flow.gravity;
+        return {Vec2(g * all.x + ground.x, g * all.y + ground.y), Vec2(g * (all.x - even.x), g * (all.y - even.y))};
     }
+    /// Of bores (solver/shock.h), as in the depth-averaged flow's kick.
+    Vec2 viscosity() const {
+        const Flow& flow = body_.flow;
+        const double depth = flow.nodes.depth[k_];
+        if (!(depth > 1e-12 * flow.cell)) return {0, 0};
+        const Pair* flux = &flow.nodes.viscous_flux[k_];
+        return Vec2(flux[-1].x - flux[0].x, flux[-stride_].y - flux[0].y) / (flow.cell * depth);
+    }
+
+    const StructuredBody& body_;
+    Index k_, stride_;
 };
 
 /// Of a cell: nodes on a face are in the obstacle, whatever round-off makes of their places.
 constexpr double kOnFace = 1e-6;
 
-/// A bed law's friction over a step that would change `before` to `driven` (law/bed_law.h); `across`: gravity that
-/// presses on the ground [m/s^2].
+/// A bed law's friction over a step that would change `before` to `driven` (law/bed_law.h, bed_stop.h); `across`: gravity
+/// that presses on the ground [m/s^2].
 template <class Law>
 Vec2 braked(const Law& law, const StructuredBody& body, const StructuredBody::Pull& ground, double across, double depth,
-            const Vec2& before, const Vec2& driven, double dt) {
+            const Vec2& before, const Vec2& driven, const StepTimes& times) {
     const double speed = driven.norm();
     if (speed == 0.0) return driven;
     const Vec2 unit = driven / speed, slope(ground.slope_x, ground.slope_y);
@@ -54,7 +89,8 @@ Vec2 braked(const Law& law, const StructuredBody& body, const StructuredBody::Pu
                  kappa = std::sqrt(1.0 + along * along);
     const BedState state{across * steep / kappa, std::max(depth / steep, 1e-9), kappa, 1.0 / steep,
                          body.gravity, body.density};
-    return speed_after(law, state, std::max(0.0, before.dot(unit)), speed, dt) * unit;
+    const double start = std::max(0.0, before.dot(unit)), left = speed_after(law, state, start, speed, times.kick);
+    return mean_if_stopping(law, state, BrakedOf<double>{start, speed, left, times.kick, times.drift}) * unit;
 }
 
 /// Product of two velocities along the ground [m^2/s^2].
@@ -105,7 +141,7 @@ Met meet_water(const StructuredBody& body, Index k) {
     const StructuredBody::Bound& bound = body.bound[k];
     const StructuredBody::Pull& ground = body.pull[k];
     const double area = ground.open * body.grid.cell() * body.grid.cell();
-    Met met{body.nodes[k].m - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
+    Met met{body.nodes[k].mass - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
     if (!has_water(body, k)) return met;
     met.support = water.support(met.mass / (area * met.depth), met.depth, water.h[k]);
     met.slope = surface_slope(body, k);
@@ -155,23 +191,27 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     return c.velocity;
 }
 
+/// A node's columns as they are, in the dry.
+Met met_dry(const StructuredBody& body, Index k) {
+    const double m = body.nodes[k].mass, cell = body.grid.cell();
+    if (body.grains) return {m, body.flow.nodes.depth[k]};
+    return {m, m / body.pull[k].open * (1.0 / (body.density * cell * cell))};
+}
+
 template <bool kWater, class Law>
-Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, double dt, StructuredTally& tally) {
-    const Node& node = body.nodes[k];
+Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, const StepTimes& times, StructuredTally& tally) {
+    const Deposit& node = body.nodes[k];
     const StructuredBody::Pull& pull = body.pull[k];
-    const double cell = body.grid.cell(), depth_of_mass = 1.0 / (body.density * cell * cell);
-    const Vec2 before = Vec2(node.x, node.y) / node.m;
-    Met met{node.m, node.m / pull.open * depth_of_mass};
-    if constexpr (kWater) {
-        met = meet_water(body, k);
-        tally.impulse.water -= (node.m - met.mass) * before;
-    }
+    const double dt = times.kick;
+    const Vec2 before = Vec2(node.px, node.py) / node.mass;
+    const Met met = kWater ? meet_water(body, k) : met_dry(body, k);
+    if constexpr (kWater) tally.impulse.water -= (node.mass - met.mass) * before;
     const Vec2 weight = dt * Vec2(pull.x, pull.y);
     Vec2 v = before + weight;
     tally.impulse.weight += met.mass * weight;
     const double across = (1.0 - met.support) * pull.across;
     if (body.grains) {
-        const Vec2 push = dt * Around{body, k, body.grid.stride()}.acceleration(across, cell, depth_of_mass);
+        const Vec2 push = dt * Grains(body, k).acceleration(pull, 1.0 - met.support);
         v += push;
         tally.impulse.pressure += met.mass * push;
     }
@@ -180,15 +220,15 @@ Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, dou
         tally.impulse.weight += met.mass * dt * met.lift;
         const Vec2 alone = v;
         if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
-            const Vec2 held = braked(law, body, pull, across, met.depth, before, v, dt);
+            const Vec2 held = braked(law, body, pull, across, met.depth, before, v, {dt, 0.0});
             v += drag(body, k, met, before, held, dt, tally) - held;
         }
         tally.impulse.water += met.mass * (v - alone);
     }
-    const Vec2 slowed = braked(law, body, pull, across, met.depth, before, v, dt);
+    const Vec2 slowed = braked(law, body, pull, across, met.depth, before, v, times);
     tally.impulse.friction += met.mass * (slowed - v);
     Vec2 stopped = slowed;
-    for (const Obstacle& obstacle : body.obstacles) stopped = obstacle.met(place, stopped, kOnFace * cell);
+    for (const Obstacle& obstacle : body.obstacles) stopped = obstacle.met(place, stopped, kOnFace * body.grid.cell());
     tally.impulse.obstacles += met.mass * (stopped - slowed);
     // By the velocity that is left: what rests under stress and friction loses nothing.
     tally.friction += met.mass * along_ground(pull, v - slowed, stopped);
@@ -202,9 +242,9 @@ Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, dou
 void release_to(StructuredBody& body, Index k, Index to) {
     FreeWater& water = *body.water;
     const double depth = body.bound[k].released / (body.grid.cell() * body.grid.cell());
-    const Node& node = body.nodes[k];
+    const Deposit& node = body.nodes[k];
     water.h[to] += depth;
-    water.qx[to] += depth * (node.x / node.m), water.qy[to] += depth * (node.y / node.m);
+    water.qx[to] += depth * (node.px / node.mass), water.qy[to] += depth * (node.py / node.mass);
 }
 
 /// All nodes; those beyond the grid's sides, which have no water, in one order to the nearest that has.
@@ -234,7 +274,7 @@ void release_to_nodes(StructuredBody& body) {
 }
 
 template <bool kWater, class Law>
-void move_nodes_by(const Law& law, StructuredBody& body, double dt) {
+void move_nodes_by(const Law& law, StructuredBody& body, const StepTimes& times) {
     const GridGeometry& g = body.grid.geometry();
     for_each_work_tile(body.active, [&](Index n, Index tile) {
         StructuredTally tally;
@@ -242,8 +282,8 @@ void move_nodes_by(const Law& law, StructuredBody& body, double dt) {
         for (Index j = j0; j < j0 + kTile; ++j)
             for (Index i = i0; i < i0 + kTile; ++i) {
                 const Index k = body.grid.at(i, j);
-                body.moved[k] =
-                    body.nodes[k].m > 0.0 ? move<kWater>(law, body, k, {g.x(i), g.y(j)}, dt, tally) : Moved{};
+                body.moved[k] = body.nodes[k].mass > 0.0 ? move<kWater>(law, body, k, {g.x(i), g.y(j)}, times, tally)
+                                                         : Moved{};
             }
         body.tallies[static_cast<std::size_t>(n)] = tally;
     });
@@ -251,36 +291,35 @@ void move_nodes_by(const Law& law, StructuredBody& body, double dt) {
 
 }  // namespace
 
-void move_nodes(StructuredBody& body, double dt) {
+void move_nodes(StructuredBody& body, const StepTimes& times) {
     if (body.water) release_to_nodes(body);
     std::visit(
         [&](const auto& law) {
             if (body.water)
-                move_nodes_by<true>(law, body, dt);
+                move_nodes_by<true>(law, body, times);
             else
-                move_nodes_by<false>(law, body, dt);
+                move_nodes_by<false>(law, body, times);
         },
         body.bed_law);
 }
 
 void look_nodes(StructuredBody& body) {
-    const double cell = body.grid.cell(), depth_of_mass = 1.0 / (body.density * cell * cell);
+    const double area = body.grid.cell() * body.grid.cell();
     for_each_work_tile(body.active, [&](Index n, Index tile) {
         StructuredTally tally;
         const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
         for (Index j = 0; j < kTile; ++j)
             for (Index k = first + j * body.grid.stride(); k < first + j * body.grid.stride() + kTile; ++k) {
-                const Node& node = body.nodes[k];
+                const Deposit& node = body.nodes[k];
                 body.moved[k] = {};
-                if (!(node.m > 0.0)) continue;
+                if (!(node.mass > 0.0)) continue;
                 const StructuredBody::Pull& pull = body.pull[k];
-                const double depth = body.water ? body.bound[k].volume / (pull.open * cell * cell)
-                                                : node.m / pull.open * depth_of_mass;
-                const Vec2 v = Vec2(node.x, node.y) / node.m;
+                const double depth = body.water ? body.bound[k].volume / (pull.open * area) : met_dry(body, k).depth;
+                const Vec2 v = Vec2(node.px, node.py) / node.mass;
                 const double support = body.water ? meet_water(body, k).support : 0.0;
                 body.moved[k] = {v.x(), v.y(), (1.0 - support) * pull.across, depth};
-                tally.kinetic += 0.5 * node.m * along_ground(pull, v, v);
-                tally.potential += node.m * body.gravity * (pull.elevation + 0.5 * depth);
+                tally.kinetic += 0.5 * node.mass * along_ground(pull, v, v);
+                tally.potential += node.mass * body.gravity * (pull.elevation + 0.5 * depth);
             }
         body.tallies[static_cast<std::size_t>(n)] = tally;
     });

@@ -24,6 +24,7 @@ struct StructuredPoints {
     Column solids;                 ///< volume of grains, constant [m^3]
     Column confined;               ///< volume of water in what is whole of the structure [m^3]
     Column released;               ///< what the last step set free and the next gives to the nodes [m^3]
+    Column r1x, r1y, r2x, r2y;     ///< edges of the domain, which go with it once there are grains [cells]
     std::vector<std::int64_t> id;  ///< constant through sorting
 
     Index count() const { return static_cast<Index>(x.size()); }
@@ -31,14 +32,29 @@ struct StructuredPoints {
     /// The one list of floating-point columns: sorting and growing walk it.
     template <class Visit>
     void each(Visit&& visit) {
-        for (Column* column : {&x,     &y,  &vx, &vy, &cxx, &cxy,    &cyx,    &cyy,      &mass, &volume,
-                               &depth, &xx, &yy, &zz, &xy,  &damage, &strain, &cohesion, &pull, &layer,
-                               &solids, &confined, &released})
-            visit(*column);
+        each_of(*this, visit);
+    }
+    template <class Visit>
+    void each(Visit&& visit) const {
+        each_of(*this, visit);
+    }
+    /// Point p loses half of all that is counted and not shared.
+    void halve(Index p) {
+        for (Column* column : {&mass, &volume, &solids, &confined, &released}) (*column)[p] *= 0.5;
     }
     void resize(Index count) {
         each([&](Column& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
         resize_sparingly(id, static_cast<std::size_t>(count));
+    }
+
+private:
+    template <class Self, class Visit>
+    static void each_of(Self& s, Visit& visit) {
+        for (auto* column : {&s.x,      &s.y,        &s.vx,       &s.vy,   &s.cxx,    &s.cxy,      &s.cyx,
+                             &s.cyy,    &s.mass,     &s.volume,   &s.depth, &s.xx,    &s.yy,       &s.zz,
+                             &s.xy,     &s.damage,   &s.strain,   &s.cohesion, &s.pull, &s.layer,  &s.solids,
+                             &s.confined, &s.released, &s.r1x,    &s.r1y,  &s.r2x,    &s.r2y})
+            visit(*column);
     }
 };
 

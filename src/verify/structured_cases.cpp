@@ -66,6 +66,7 @@ double crack_coverage(const StructuredFlow& flow, const StructuredSeeds& seeds) 
     const StructuredPoints& q = flow.body().points;
     for (Index p = 0; p < q.count(); ++p) {
         const std::size_t seed = static_cast<std::size_t>(q.id[p]);
+        if (seed >= seeds.y.size()) continue;  // a part of another that was split: that one is counted
         const double across = (seeds.y[seed] - kSide) / kWidth;
         const Index slice = static_cast<Index>(std::floor(-seeds.x[seed] / cell));
         all.insert(slice);

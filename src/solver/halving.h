@@ -1,0 +1,176 @@
+#pragma once
+// Halving points whose domains have grown, of any model that has columns with the names of columns.h (Points; Held: where
+// what they carry lies).
+#include <algorithm>
+#include <vector>
+
+#include "solver/domain.h"
+#include "solver/flow.h"
+
+namespace frana {
+
+/// What decides on halving.
+struct HalvingRules {
+    double length;      ///< of an edge, from which a point is halved [cells]
+    double least_mass;  ///< of a point that is halved [kg]
+    bool split;         ///< otherwise domains are cut and straightened only
+    bool straighten;    ///< strongly sheared domains become rectangles
+    double off_side;    ///< that points stay off the outer nodes [cells]
+};
+
+/// New points' numbers, and whose parts they are.
+struct Halves {
+    Index next_id = 0;
+    bool notes = false;
+    std::vector<Index> parents;     ///< id for each new point, if `notes`
+    std::vector<Index> tile_first;  ///< scratch
+};
+
+/// Long thin domains of points that may not split would throw their sub-points far ahead of the mass.
+template <class Real>
+bool clamp_edge(Real& x, Real& y, double longest) {
+    const double length = std::sqrt(static_cast<double>(x) * x + static_cast<double>(y) * y);
+    if (length <= longest) return false;
+    x = static_cast<Real>(x * (longest / length));
+    y = static_cast<Real>(y * (longest / length));
+    return true;
+}
+
+/// Both edges. A point that splits may have edges twice as long as one that does not: drawn in before it is halved, a high
+/// column that falls apart in a few steps would have its mass back in the middle, and energy that it had turned to motion.
+template <class Held>
+bool clamp_edges(Held& held, Index p, double longest) {
+    const bool first = clamp_edge(held.r1x[p], held.r1y[p], longest);
+    return clamp_edge(held.r2x[p], held.r2y[p], longest) || first;
+}
+
+/// A strongly sheared domain, all edge and no area, gives way to the rectangle with the same second moments.
+template <class Held>
+bool straighten(Held& held, Index p) {
+    const Edges e = edges_of(held, p);
+    const double area = e.area();
+    if (e.length1_2() * e.length2_2() <= 16.0 * area * area) return false;
+    set_edges(held, p, rectangle_of(Moments::of(e)));
+    return true;
+}
+
+/// Edges whose squared lengths differ by no more than this share are equally long: round-off.
+template <class Held>
+constexpr double kSameLength = std::is_same_v<typename decltype(Held::r1x)::value_type, float> ? 1e-5 : 1e-9;
+
+/// How many points a domain becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one, or
+/// mirror images part.
+template <class Held>
+int parts_of(const Held& held, Index p, double mass, const HalvingRules& rules) {
+    constexpr double same = kSameLength<Held>;
+    const Edges e = edges_of(held, p);
+    const double l1 = e.length1_2(), l2 = e.length2_2();
+    // Edges are cut to the splitting length where that is a cell or more: it must not take more than round-off to reach it.
+    const bool is_long = std::max(l1, l2) >= (1.0 - same) * rules.length * rules.length;
+    if (!is_long || std::abs(e.area()) < 0.1 || mass <= rules.least_mass) return 1;
+    return std::abs(l1 - l2) <= same * std::max(l1, l2) ? 4 : 2;
+}
+
+template <class Held>
+bool first_is_longer(const Held& held, Index p) {
+    const Edges e = edges_of(held, p);
+    return e.length1_2() >= e.length2_2();
+}
+
+/// Halves point p along one of its edges; the second half becomes point q.
+template <class Points, class Held>
+void halve(Points& c, Held& held, Index p, Index q, bool first, double cell) {
+    using Real = typename decltype(held.r1x)::value_type;
+    Real& rx = first ? held.r1x[p] : held.r2x[p];
+    Real& ry = first ? held.r1y[p] : held.r2y[p];
+    const double dx = 0.25 * rx, dy = 0.25 * ry;
+    rx *= Real{0.5};
+    ry *= Real{0.5};
+    c.halve(p);
+    c.each([&](auto& column) { column[q] = column[p]; });
+    const Real dvx = static_cast<Real>(cell * (held.cxx[p] * dx + held.cxy[p] * dy));
+    const Real dvy = static_cast<Real>(cell * (held.cyx[p] * dx + held.cyy[p] * dy));
+    c.x[q] = c.x[p] - dx;
+    c.y[q] = c.y[p] - dy;
+    held.vx[q] -= dvx;
+    held.vy[q] -= dvy;
+    c.x[p] += dx;
+    c.y[p] += dy;
+    held.vx[p] += dvx;
+    held.vy[p] += dvy;
+}
+
+/// Only after all halving, or its order would tell. Slopes of linear shapes jump at nodes: on the outermost one a point's
+/// gradient would be of a neighbour that it gives no mass, and on the last of the cell beyond. It stays off them by more
+/// than round-off.
+template <class Points>
+void hold_inside(Points& c, Index p, const TileGrid& grid, double off) {
+    const auto hold = [&](double& u, Index nodes) { u = std::clamp(u, off, static_cast<double>(nodes - 1) - off); };
+    hold(c.x[p], grid.nx());
+    hold(c.y[p], grid.ny());
+}
+
+/// One point's part in halve_points: it, and those at q, q + 1, q + 2.
+template <class Points, class Held>
+void halve_into(Points& c, Held& held, Index p, Index q, int parts, double cell) {
+    halve(c, held, p, q, first_is_longer(held, p), cell);
+    if (parts != 4) return;
+    const bool other = first_is_longer(held, p);  // the edge that is still whole
+    halve(c, held, p, q + 1, other, cell);
+    halve(c, held, q, q + 2, other, cell);
+}
+
+/// Cuts and straightens the domains of all points of tiles awake, and halves those that `may(p)` and are long. New points
+/// are appended; returns how many. The same bits for any number of threads.
+template <class Points, class Held, class May>
+Index halve_points(const TileGrid& grid, ActiveTiles& active, const HalvingRules& rules, Points& c, Held& held,
+                   Halves& halves, May&& may) {
+    const Index count = c.count();
+    const double longest = std::max(1.0, rules.length);
+    const auto parts = [&](Index p) { return rules.split && may(p) ? parts_of(held, p, c.mass[p], rules) : 1; };
+    halves.tile_first.assign(static_cast<std::size_t>(active.count()) + 1, 0);
+    for_each_tile(active, [&](Index n) {
+        Index found = 0;
+        bool changed = false;
+        const Index tile = active.tile[n];
+        if (active.quiet[tile] >= kAsleep) return;
+        for (Index p = active.begin[n]; p < active.begin[n + 1]; ++p) {
+            changed |= clamp_edges(held, p, 2.0 * longest);
+            if (rules.straighten) changed |= straighten(held, p);
+            const int into = parts(p);
+            if (into == 1) changed |= clamp_edges(held, p, longest);
+            found += into - 1;
+        }
+        halves.tile_first[n + 1] = found;
+        if (changed || found > 0) active.quiet[tile] = 0;
+    });
+    for (Index n = 0; n < active.count(); ++n) halves.tile_first[n + 1] += halves.tile_first[n];
+    const Index added = halves.tile_first.back();
+    if (added == 0) return 0;
+    c.resize(count + added);
+    const std::size_t noted = halves.parents.size();
+    if (halves.notes) halves.parents.resize(noted + static_cast<std::size_t>(added));
+    for_each_tile(active, [&](Index n) {
+        Index next = halves.tile_first[n];
+        if (next == halves.tile_first[n + 1]) return;
+        for (Index p = active.begin[n]; p < active.begin[n + 1]; ++p) {
+            const int into = parts(p);
+            if (into == 1) continue;
+            const Index q = count + next;
+            for (int part = 1; part < into; ++part, ++next) {
+                c.id[count + next] = halves.next_id + next;
+                if (halves.notes) halves.parents[noted + static_cast<std::size_t>(next)] = c.id[p];
+            }
+            halve_into(c, held, p, q, into, grid.cell());
+            for (int part = 0; part < into; ++part) {
+                const Index one = part == 0 ? p : q + part - 1;
+                clamp_edges(held, one, longest);
+                hold_inside(c, one, grid, rules.off_side);
+            }
+        }
+    });
+    halves.next_id += added;
+    return added;
+}
+
+}  // namespace frana

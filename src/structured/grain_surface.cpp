@@ -1,0 +1,53 @@
+// The free surface of grains, by the phases of scheme S2 (solver/surface.h, shock.h).
+#include "solver/shock.h"
+#include "solver/surface.h"
+#include "structured/structured_flow.h"
+
+namespace frana {
+namespace {
+
+template <class Body>
+void for_each_touched(StructuredBody& body, Body&& visit) {
+    for_each_work_tile(body.active, [&](Index, Index tile) {
+        for_each_node_of(body.grid, tile, body.flow.touched[tile], [&](Index k, Index, Index) { visit(k); });
+    });
+}
+
+/// Behind an obstacle's face, where next to nothing is open.
+bool blocked(const StructuredBody& body, Index k) { return body.pull[k].open <= kLeastOpen; }
+
+/// Beside obstacles depth is what lies on the open share of a node.
+void widen_beside_obstacles(StructuredBody& body) {
+    for_each_touched(body, [&](Index k) { body.flow.nodes.column_mass[k] /= body.pull[k].open; });
+}
+
+/// Behind obstacles the surface goes on as high as it is beside them: a face is no shore, and nothing pulls there.
+void level_behind_obstacles(StructuredBody& body) {
+    Nodes& nodes = body.flow.nodes;
+    const Index up = body.grid.stride();
+    for_each_touched(body, [&](Index k) {
+        if (!blocked(body, k) || !(nodes.depth[k] > 0.0)) return;
+        double sum = 0.0;
+        int open = 0;
+        for (const Index row : {k - up, k, k + up})
+            for (Index n = row - 1; n <= row + 1; ++n)
+                if (!blocked(body, n) && nodes.depth[n] > 0.0) sum += nodes.level[n], ++open;
+        if (open > 0) nodes.level[k] = nodes.surface[k] = sum / open;
+    });
+}
+
+}  // namespace
+
+void raise_surface(StructuredBody& body) {
+    Flow& flow = body.flow;
+    finish_deposit(flow);
+    if (!body.obstacles.empty()) widen_beside_obstacles(body);
+    depth_pass(flow, {0.0, Vec2(0, 0)});
+    if (!body.obstacles.empty()) level_behind_obstacles(body);
+    mark_margin(flow);
+    shock_pass(flow);
+    filter(flow);
+    shoreline(flow);
+}
+
+}  // namespace frana
