@@ -6,6 +6,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "solid_maker.h"
+#include "stages/structured_run.h"
 #include "verify/structured_cases.h"
 #include "verify/water.h"
 
@@ -89,6 +90,25 @@ TEST_CASE("Warm steps of a structured solid that breaks allocate nothing", "[spe
     for (int step = 0; step < 20; ++step) flow.advance(1e9);
     CHECK(allocations == before);
     CHECK(flow.status().damage > damage);
+}
+
+TEST_CASE("Warm steps of grains by scheme S2 allocate nothing", "[speed][structured][grains]") {
+    Scene scene = verify::scene_on(80, 60, 2.0, [](double x, double) { return -0.5 * x; });
+    scene.bed_law = bed::Coulomb{0.3};
+    scene.curvature = Curvature::none;
+    scene.scheme.split = false;  // arrays grow with the number of points
+    scene.structure.emplace();
+    scene.structure->share = 0.0;
+    scene.structure->hydrostatic = GENERATE(true, false);
+    verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
+    StructuredFlow flow(structured_scene(scene));
+    for (int step = 0; step < 20; ++step) flow.advance(1e9);
+    const std::size_t tiles = flow.body().active.work.size();
+    const long before = allocations;
+    for (int step = 0; step < 20; ++step) flow.advance(1e9);
+    CHECK(allocations == before);
+    CHECK(flow.body().active.work.size() == tiles);
+    CHECK(flow.status().max_speed > 0.0);
 }
 
 TEST_CASE("Warm steps of free water allocate nothing, wherever it spreads", "[speed][water]") {

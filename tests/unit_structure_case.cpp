@@ -49,13 +49,16 @@ TEST_CASE("A structure's keys reach the scene", "[structured]") {
     CHECK(plain.material.yield == ColumnYield::compression);
     CHECK(plain.material.damage_by == DamageBy::dilation);
     CHECK_FALSE(plain.unrolled);
+    CHECK_FALSE(plain.hydrostatic);
     // Cells of 5 m: half the strain of cells of 2.5 m opens a crack by the same way.
     const Structure other = scene_of(structure +
                                          "cone = \"plane_strain\"\nbulk_modulus = 1e8\nfraction = 0.8\n"
+                                         "earth_pressure = \"hydrostatic\"\n"
                                          "dilatancy_angle_deg = 10\ndamage = \"strain\"\nonset = 0.02\n"
                                          "critical_strain = 0.08\ncritical_length = 2.5\ncfl = 0.3\n",
                                      "unrolled = true\n")
                                 .structure.value();
+    CHECK(other.hydrostatic);
     CHECK(other.material.critical_strain == Approx(0.04).epsilon(1e-15));
     CHECK(other.material.poisson == Approx((3e8 - 1e8) / 6e8).epsilon(1e-15));
     CHECK(other.material.yield == ColumnYield::plane_strain);
