@@ -196,14 +196,82 @@ void ColumnLaw::give_way(bool, const ColumnStep& step, double left, ColumnStress
     state.damage = std::min(1.0, state.damage + std::max(0.0, opened) / critical);
 }
 
+namespace {
+
+struct ConeReturns {
+    Double4 scale, first, multiplier;
+};
+
+}  // namespace
+
+/// yield_to_cone for four columns at once, number by number the same, as long as Newton's steps stay in the bracket; returns
+/// which columns got there in a few of them. `dilation`: of those.
+Mask4 ColumnLaw::yield_four_to_cone(const Mask4& yields, const Double4& k, ColumnStressOf<Double4>& s,
+                                    Double4& dilation) const {
+    constexpr int kPasses = 6;
+    const Double4 none = {}, one = all(1.0);
+    const double g = shear_, bulk = bulk_, far = std::numeric_limits<double>::infinity();
+    const double per_multiplier = shear_ + 9.0 * bulk_ * alpha_ * dilates_;
+    const Double4 first = s.xx + s.yy + s.zz, mean = first / 3.0;
+    const Double4 x = s.xx - mean, y = s.yy - mean, z = s.zz - mean, xy = s.xy;
+    const Double4 tolerance = kStressError * (k + abs(s.zz)) + std::numeric_limits<double>::min();
+    Double4 t = none, q = none, sz = none, low = all(-far), high = all(far);
+    ConeReturns back{one, first, none};
+    Mask4 found = ~yields, open = yields;  // found: no need to look any more
+    for (int pass = 0; pass < kPasses && any(open); ++pass) {
+        const Double4 sx = x - 2.0 / 3.0 * g * t, sy = y - 2.0 / 3.0 * g * t, first_t = first + 3.0 * bulk * t;
+        const Double4 sz_t = z + 4.0 / 3.0 * g * t;
+        const Double4 q_t = sqrt(0.5 * (sx * sx + sy * sy + sz_t * sz_t) + xy * xy);
+        const Double4 beyond = q_t + alpha_ * first_t - k, multiplier = beyond / per_multiplier;
+        const Double4 left = q_t - shear_ * multiplier;
+        const Mask4 inside = beyond <= 0.0, apex = left < 0.0;
+        const ConeReturns now{select(inside, one, select(apex, none, left / q_t)),
+                              select(inside, first_t, select(apex, k / alpha_, first_t - 9.0 * bulk_ * dilates_ * multiplier)),
+                              select(inside, none, multiplier)};
+        sz = select(open, sz_t, sz), q = select(open, q_t, q);
+        back = {select(open, now.scale, back.scale), select(open, now.first, back.first),
+                select(open, now.multiplier, back.multiplier)};
+        const Double4 miss = now.scale * sz_t + now.first / 3.0 - s.zz;
+        const Mask4 there = open & (abs(miss) <= tolerance);
+        found |= there, open &= ~there;
+        const Double4 dq = g * sz_t / q_t;
+        const Double4 flow = (dq + 3.0 * bulk * alpha_) / (g + 9.0 * bulk * alpha_ * dilates_);
+        const Double4 bent = 4.0 / 3.0 * g * now.scale + sz_t * (dq - g * flow - now.scale * dq) / q_t +
+                             bulk * (1.0 - 3.0 * dilates_ * flow);
+        const Double4 slope = select(now.scale == 0.0, none,
+                                     select(now.multiplier > 0.0, bent, all(4.0 / 3.0 * g + bulk)));
+        high = select(miss > 0.0, t, high), low = select(miss > 0.0, low, t);
+        const Double4 newton = t - miss / slope;
+        open &= (slope > 0.0) & (newton > low) & (newton < high);
+        t = select(open, newton, t);
+    }
+    found &= yields;
+    const Double4 flow = select(q > 0.0, 0.5 * back.multiplier / q, none), swell = back.multiplier * dilates_;
+    const Double4 sx = x - 2.0 / 3.0 * g * t, sy = y - 2.0 / 3.0 * g * t;
+    s.xx = select(found, back.scale * sx + back.first / 3.0, s.xx);
+    s.yy = select(found, back.scale * sy + back.first / 3.0, s.yy);
+    s.xy = select(found, back.scale * xy, s.xy);
+    dilation = 2.0 * (-0.5 * flow * sz + swell);
+    return found;
+}
+
 void ColumnLaw::give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
                          ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const {
+    Mask4 alone = yields;
+    if (!is_hexagon() && material_.damage_by == DamageBy::dilation) {
+        Double4 dilation = {};
+        const Mask4 found = yield_four_to_cone(yields, k_ * left, s, dilation);
+        const Double4 more = max(dilation, Double4{}) / material_.critical_strain;
+        state.damage = select(found, min(all(1.0), state.damage + more), state.damage);
+        alone &= ~found;
+    }
+    if (!any(alone)) return;
     for (int n = 0; n < 4; ++n) {
-        if (!yields[n]) continue;
-        ColumnStress one{s.xx[n], s.yy[n], s.zz[n], s.xy[n]};
+        if (!alone[n]) continue;
+        ColumnStress lone{s.xx[n], s.yy[n], s.zz[n], s.xy[n]};
         ColumnState kept{{}, state.damage[n], state.strain[n]};
-        give_way(true, ColumnStep{step.xx[n], step.yy[n], step.xy[n], 0.0}, left[n], one, kept);
-        s.xx[n] = one.xx, s.yy[n] = one.yy, s.xy[n] = one.xy;
+        give_way(true, ColumnStep{step.xx[n], step.yy[n], step.xy[n], 0.0}, left[n], lone, kept);
+        s.xx[n] = lone.xx, s.yy[n] = lone.yy, s.xy[n] = lone.xy;
         state.damage[n] = kept.damage;
     }
 }

@@ -160,6 +160,7 @@ private:
     void give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
                   ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const;
     PlasticStep yield_to_cone(double k, ColumnStress& s) const;
+    Mask4 yield_four_to_cone(const Mask4& yields, const Double4& k, ColumnStressOf<Double4>& s, Double4& dilation) const;
     PlasticStep yield_to_hexagon(double cohesion, ColumnStress& s) const;
 
     ColumnMaterial material_;

@@ -1,5 +1,5 @@
 #pragma once
-// The columns of four points at once on the nodes, from their sub-points (sub_points.h).
+// Four points at once: their columns on the nodes, from their sub-points (sub_points.h), and gradients as they feel them.
 #include "grid/stencils.h"
 #include "solver/sub_points.h"
 
@@ -7,6 +7,18 @@ namespace frana {
 
 /// Edges of the domains of four points [cells].
 struct Domains { Double4 r1x, r1y, r2x, r2y; };
+
+/// Gradients as domains feel them (domain.h): few points are so narrow that it matters.
+[[gnu::always_inline]] inline void limit_gradients(const Domains& r, Double4& cxx, Double4& cxy, Double4& cyx, Double4& cyy) {
+    constexpr double least = 1.01 / 256.0;  // of 12 times the smaller moment; a little early
+    const Double4 xx = r.r1x * r.r1x + r.r2x * r.r2x, yy = r.r1y * r.r1y + r.r2y * r.r2y, xy = r.r1x * r.r1y + r.r2x * r.r2y;
+    const Mask4 wide = (xx >= least) & ((xx - least) * (yy - least) >= xy * xy);
+    if (!any(~wide)) return;
+    for (int n = 0; n < 4; ++n) {
+        const Gradient g = spanned({cxx[n], cxy[n], cyx[n], cyy[n]}, r.r1x[n], r.r1y[n], r.r2x[n], r.r2y[n]);
+        cxx[n] = g.xx, cxy[n] = g.xy, cyx[n] = g.yx, cyy[n] = g.yy;
+    }
+}
 
 /// The sub-points of four points, `quarter` of their masses each. All of a point's lie within four nodes each way if none is
 /// farther than half a cell; their weights are summed there first. Otherwise nothing is done, and returns false.

@@ -174,7 +174,7 @@ private:
         Double4 cyx = load(&held.cyx[p], lanes), cyy = load(&held.cyy[p], lanes);
         const Double4 speed = sqrt(vx * vx + vy * vy);
         const Stencils sx(x), sy(y);
-        limit_gradient(r1x, r1y, r2x, r2y, cxx, cxy, cyx, cyy);
+        limit_gradients({r1x, r1y, r2x, r2y}, cxx, cxy, cyx, cyy);
 
         const Double4 mc = flow.cell * m, qx = mc * cxx, qy = mc * cxy, sx_ = mc * cyx, sy_ = mc * cyy;
         const Double4 zero = {};
@@ -204,19 +204,6 @@ private:
         sums.px += m * vx;
         sums.py += m * vy;
         sums.p_abs += m * speed;
-    }
-
-    /// Gradients as domains feel them (domain.h): few points are so narrow that it matters.
-    static void limit_gradient(Double4 r1x, Double4 r1y, Double4 r2x, Double4 r2y, Double4& cxx, Double4& cxy,
-                               Double4& cyx, Double4& cyy) {
-        constexpr double least = 1.01 / 256.0;  // of 12 times the smaller moment; a little early
-        const Double4 xx = r1x * r1x + r2x * r2x, yy = r1y * r1y + r2y * r2y, xy = r1x * r1y + r2x * r2y;
-        const Mask4 wide = (xx >= least) & ((xx - least) * (yy - least) >= xy * xy);
-        if (!any(~wide)) return;
-        for (int n = 0; n < 4; ++n) {
-            const Gradient g = spanned({cxx[n], cxy[n], cyx[n], cyy[n]}, r1x[n], r1y[n], r2x[n], r2y[n]);
-            cxx[n] = g.xx, cxy[n] = g.xy, cyx[n] = g.yx, cyy[n] = g.yy;
-        }
     }
 
     /// Those that lie farther from their points than half a cell, or beside the grid's sides, one by one.

@@ -70,13 +70,23 @@ Double4 bound_of(const StructuredBody& body, Index p) {
     return Double4{q.volume[p], q.released[p], solids, solids * body.share * (1.0 - q.damage[p])};
 }
 
-Double4 grain_push(const StructuredBody& body, Index p) {
+[[gnu::always_inline]] inline Domains domains(const StructuredPoints& q, Index p, int lanes) {
+    return {load(&q.r1x[p], lanes), load(&q.r1y[p], lanes), load(&q.r2x[p], lanes), load(&q.r2y[p], lanes)};
+}
+
+/// What the grains of four columns give their nodes, column by column: m (1 - f) K, m (1 - f). False if none has any.
+[[gnu::always_inline]] inline bool grain_pushes(const StructuredBody& body, Index p, int lanes, Double4 push[4]) {
     const StructuredPoints& q = body.points;
-    const double grains = q.mass[p] * (1.0 - body.share * (1.0 - q.damage[p]));
-    if (grains == 0.0) return Double4{};
-    const Sym2 k = earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, q.layer[p], q.pull[p],
-                                  body.rankine);
-    return Double4{grains * k.xx, grains * k.yy, grains * k.xy, grains};
+    const Double4 grains = load(&q.mass[p], lanes) * (1.0 - body.share * (1.0 - load(&q.damage[p], lanes)));
+    if (!any(grains != 0.0)) return false;
+    const Sym2Of<Double4> rate{load(&q.cxx[p], lanes), load(&q.cyy[p], lanes),
+                               0.5 * (load(&q.cxy[p], lanes) + load(&q.cyx[p], lanes))};
+    const Double4 pull = load(&q.pull[p], lanes), none = {};
+    // Nothing presses on the bed where water bears all: then nothing pushes either.
+    const Double4 layer = select(pull > 0.0, load(&q.layer[p], lanes), none), across = select(pull > 0.0, pull, all(1.0));
+    const Sym2Of<Double4> k = earth_pressure_of<Double4>(rate, layer, across, body.rankine);
+    transpose(grains * k.xx, grains * k.yy, grains * k.xy, grains, push);
+    return true;
 }
 
 /// The columns of four points on the nodes, from their sub-points. What was released is water already.
@@ -86,8 +96,7 @@ void spread(StructuredBody& body, Index p, int lanes, bool at_side) {
     const Double4 x = load(&q.x[p], lanes), y = load(&q.y[p], lanes);
     Double4 mass = load(&q.mass[p], lanes);
     if constexpr (kWater) mass = body.density * (load(&q.volume[p], lanes) - load(&q.released[p], lanes));
-    const Domains r{load(&q.r1x[p], lanes), load(&q.r1y[p], lanes), load(&q.r2x[p], lanes), load(&q.r2y[p], lanes)};
-    if (!at_side && spread_four(body.flow, lanes, x, y, 0.25 * mass, r)) return;
+    if (!at_side && spread_four(body.flow, lanes, x, y, 0.25 * mass, domains(q, p, lanes))) return;
     for (int n = 0; n < lanes; ++n)
         spread_column<Quadratic>(body.flow, {x[n], y[n], mass[n]}, edges_of(q, p + n));
 }
@@ -262,13 +271,20 @@ void scatter_tile(StructuredBody& body, Index n, double kick) {
     for (Index p = body.active.begin[n]; p < end; p += 4) {
         const int lanes = static_cast<int>(std::min<Index>(4, end - p));
         const Stencils sx(load(&q.x[p], lanes)), sy(load(&q.y[p], lanes));
+        Double4 cxx = load(&q.cxx[p], lanes), cxy = load(&q.cxy[p], lanes), cyx = load(&q.cyx[p], lanes),
+                cyy = load(&q.cyy[p], lanes), push[4];
+        bool pushes = false;
+        if constexpr (kGrains) {
+            limit_gradients(domains(q, p, lanes), cxx, cxy, cyx, cyy);
+            pushes = grain_pushes(body, p, lanes, push);
+        }
         for (int lane = 0; lane < lanes; ++lane) {
             const Index one = p + lane;
             const Reach reach(sx, sy, stride, lane);
-            Gradient c{q.cxx[one], q.cxy[one], q.cyx[one], q.cyy[one]};
-            if constexpr (kGrains) c = spanned(c, q.r1x[one], q.r1y[one], q.r2x[one], q.r2y[one]);
+            const Gradient c{cxx[lane], cxy[lane], cyx[lane], cyy[lane]};
             give(body.nodes, stride, reach, sx.offset[lane], sy.offset[lane], gift_of(q, one, c, body.share, kick, cell));
-            if constexpr (kGrains) give(body.push.data(), stride, reach, grain_push(body, one));
+            if constexpr (kGrains)
+                if (pushes) give(body.push.data(), stride, reach, push[lane]);
             if constexpr (kWater) give(body.bound.data(), stride, reach, bound_of(body, one));
             if constexpr (kGrains) marks.mark(sx.first[lane], sy.first[lane]);
         }

@@ -267,7 +267,8 @@ std::vector<Problem> structured_problems() {
     Problem dam{
         "structured_dam", "grains behind a dam: Ritter with Ka g", {100, 200}, {}, run_structured_dam};
     dam.gates = {
-        {0, "l1_depth", 0.06, "prototype 3.8e-2 and 3.6e-2: its own form, not the scheme of the flows"},
+        {100, "l1_depth", 2.4e-2, "a fifth above S2's 1.98e-2; the form without it had 4.4e-2"},
+        {200, "l1_depth", 1.45e-2, "a fifth above S2's 1.21e-2; the form without it had 4.3e-2"},
         closed,
         mass};
     std::vector<Problem> all = {spin, bar, slide, stand, dam};
