@@ -308,6 +308,7 @@ void mark_margin(Flow& flow) {
         flow.marked[n] = any & kMargin;
     });
     flow.shore.clear();
+    flow.shore.reserve(flow.active.work.capacity());  // grows with the list of tiles, not some steps later
     for (std::size_t n = 0; n < flow.marked.size(); ++n)
         if (flow.marked[n]) flow.shore.push_back(flow.active.work[n]);
     mirror_surface(flow);
