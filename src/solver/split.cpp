@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/simd.h"
 #include "solver/domain.h"
 
 namespace frana {
@@ -25,12 +26,15 @@ bool clamp_edges(Carried<Real>& held, Index p, double longest) {
     return clamp_edge(held.r2x[p], held.r2y[p], longest) || first;
 }
 
+/// Squared lengths of a domain's edges over its squared area, from which on it is strongly sheared.
+double most_sheared() { return 16.0; }
+
 /// A strongly sheared domain, all edge and no area, gives way to the rectangle with the same second moments.
 template <class Real>
 bool straighten(Carried<Real>& held, Index p) {
     const Edges e = edges_of(held, p);
     const double area = e.area();
-    if (e.length1_2() * e.length2_2() <= 16.0 * area * area) return false;
+    if (e.length1_2() * e.length2_2() <= most_sheared() * area * area) return false;
     set_edges(held, p, rectangle_of(Moments::of(e)));
     return true;
 }
@@ -49,6 +53,17 @@ int parts_of(const Columns& c, Index p, double split_length, double least_mass) 
     const bool is_long = std::max(l1, l2) >= (1.0 - kSame<Real>) * split_length * split_length;
     if (!is_long || std::abs(e.area()) < 0.1 || c.mass[p] <= least_mass) return 1;
     return std::abs(l1 - l2) <= kSame<Real> * std::max(l1, l2) ? 4 : 2;
+}
+
+/// Whether four points in a row have short, sound domains, so that nothing below changes them: as most do.
+template <class Real>
+bool four_stay(const Carried<Real>& held, Index p, double split_length, bool straightens) {
+    const Double4 r1x = load(&held.r1x[p], 4), r1y = load(&held.r1y[p], 4);
+    const Double4 r2x = load(&held.r2x[p], 4), r2y = load(&held.r2y[p], 4);
+    const Double4 l1 = r1x * r1x + r1y * r1y, l2 = r2x * r2x + r2y * r2y, area = r1x * r2y - r1y * r2x;
+    Mask4 stay = max(l1, l2) < (1.0 - kSame<Real>) * split_length * split_length;
+    if (straightens) stay &= l1 * l2 <= most_sheared() * area * area;
+    return !any(~stay);
 }
 
 template <class Real>
@@ -112,7 +127,12 @@ Index Splitter::split_as(Flow& flow) {
         bool changed = false;
         const Index tile = flow.active.tile[n];
         if (flow.active.quiet[tile] >= kAsleep) return;
-        for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+        const Index end = flow.active.begin[n + 1];
+        for (Index p = flow.active.begin[n]; p < end; ++p) {
+            if (p + 4 <= end && four_stay(held, p, length, flow.scheme.reset_domains)) {
+                p += 3;
+                continue;
+            }
             changed |= clamp_edges(held, p, 2.0 * longest);
             if (flow.scheme.reset_domains) changed |= straighten(held, p);
             const int parts = may_split ? parts_of<Real>(c, p, length, least_mass_) : 1;
