@@ -81,7 +81,7 @@ TEST_CASE("Nodes that no point touches hold nothing, and nodes near them are dry
             const Flow& flow = simulation.flow();
             for (const Index tile : flow.active.work) {
                 for_each_node_of(flow.grid, tile, ~flow.touched[tile], [&](Index k, Index, Index) {
-                    loaded += flow.nodes.deposits()[k].mass != 0.0 || flow.nodes.column_mass[k] != 0.0;
+                    loaded += flow.nodes.mass[k] != 0.0 || flow.nodes.column_mass[k] != 0.0;
                     ++passed_over;
                 });
                 for_each_node_of(flow.grid, tile, flow.near[tile] & ~flow.touched[tile], [&](Index k, Index, Index) {

@@ -218,3 +218,35 @@ TEST_CASE("A point that splits is not drawn in first, one that may not is", "[po
     REQUIRE(splitter.split(pool.flow) == 3);
     for (const double edge : pool.flow.columns.r1x) CHECK(std::abs(edge - 1.0) <= 1e-15);
 }
+
+TEST_CASE("Points in a row split and are straightened as each alone", "[points]") {
+    struct Edge { double r1x, r1y, r2x, r2y; };
+    const std::vector<Edge> odd{{0.9, 0.1, 0.0, 0.4},  {0.4, 0.0, 0.1, 0.9},   {0.0, 0.85, -0.85, 0.0}, {0.7, 0.1, 0.7, 0.2},
+                                {0.1, 0.7, -0.2, 0.7}, {1.3, 0.0, 0.0, 0.05}, {0.05, 0.0, 0.0, 1.3},   {0.5, 0.0, 0.0, 0.5}};
+    const auto put = [](Pool& pool, const Edge& e) {
+        pool.add(6.2, 6.3, 2.0, 0.5);
+        set_edges(pool.flow.columns, pool.flow.columns.count() - 1, Edges{e.r1x, e.r1y, e.r2x, e.r2y});
+    };
+    const auto split = [](Pool& pool) {
+        pool.sort();
+        Splitter splitter(0.0);
+        splitter.set_next_id(pool.flow.columns.count());
+        return splitter.split(pool.flow);
+    };
+    for (const Edge& e : odd)
+        for (Index place = 0; place < 6; ++place) {  // four in a row, and two more
+            Pool alone, row;
+            put(alone, e);
+            for (Index p = 0; p < 6; ++p) put(row, p == place ? e : Edge{0.5, 0.0, 0.0, 0.5});
+            CAPTURE(e.r1x, e.r1y, e.r2x, e.r2y, place);
+            const Index born = split(alone);
+            REQUIRE(split(row) == born);
+            for (Index part = 0; part <= born; ++part) {
+                const Edges a = edges_of(alone.flow.columns, part);
+                const Edges b = edges_of(row.flow.columns, part == 0 ? place : 5 + part);
+                CHECK((a.r1x == b.r1x && a.r1y == b.r1y && a.r2x == b.r2x && a.r2y == b.r2y));
+            }
+            for (Index p = 0; p < 6; ++p)
+                if (p != place) CHECK(row.flow.columns.r1x[p] == 0.5);
+        }
+}

@@ -90,9 +90,9 @@ TEST_CASE("The paper's pressure pushes with g m h / 2 and weighs with g m grad Z
     double fx = 0.0, fy = 0.0, fx_x = 0.0, fy_y = 0.0;  // sums of the nodes' forces, and of their moments about (0, 0)
     for (const Index tile : flow.active.work)
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
-            const Pair force = flow.nodes.force[k];
-            fx += force.x, fy += force.y;
-            fx_x += force.x * 2.0 * static_cast<double>(i), fy_y += force.y * 2.0 * static_cast<double>(j);
+            const Deposit& node = flow.nodes.deposits()[k];
+            fx += node.fx, fy += node.fy;
+            fx_x += node.fx * 2.0 * static_cast<double>(i), fy_y += node.fy * 2.0 * static_cast<double>(j);
         });
     // The sum of grad N is 0, that of x_i grad N is 1: eq. 13 of Fois et al. 2024 summed over the nodes.
     double weight = 0.0, push = 0.0, weight_x = 0.0, weight_y = 0.0;

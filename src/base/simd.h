@@ -79,13 +79,26 @@ template <class Real>
     return value;
 }
 
-[[gnu::always_inline]] inline bool any(Mask4 m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
+[[gnu::always_inline]] inline bool any(Mask4 m) {
+    m |= __builtin_shufflevector(m, m, 2, 3, 0, 1);
+    return (m[0] | m[1]) != 0;
+}
 [[gnu::always_inline]] inline double sum(Double4 a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 [[gnu::always_inline]] inline double largest(Double4 a) { return std::fmax(std::fmax(a[0], a[1]), std::fmax(a[2], a[3])); }
 
-/// Largest integer not above a, for a > 0: conversion truncates.
+/// Largest integer not above a.
+[[gnu::always_inline]] inline Double4 floor(Double4 a) {
+    Double4 whole;
+    for (int n = 0; n < 4; ++n) whole[n] = std::floor(a[n]);
+    return whole;
+}
+/// The same for a > 0, as an integer: conversion truncates.
 [[gnu::always_inline]] inline Int4 floor_positive(Double4 a) { return __builtin_convertvector(a, Int4); }
 [[gnu::always_inline]] inline Double4 to_double(Int4 a) { return __builtin_convertvector(a, Double4); }
+
+/// {a0, a0, a2, a2} and {a1, a1, a3, a3}: of two numbers each for two pairs, the first and the second.
+[[gnu::always_inline]] inline Double4 first_of_pairs(Double4 a) { return __builtin_shufflevector(a, a, 0, 0, 2, 2); }
+[[gnu::always_inline]] inline Double4 second_of_pairs(Double4 a) { return __builtin_shufflevector(a, a, 1, 1, 3, 3); }
 
 /// Four pairs side by side: the first and the second numbers.
 [[gnu::always_inline]] inline void unzip(const void* pairs, Double4& first, Double4& second) {

@@ -14,9 +14,8 @@ double hessian(const Flow& flow) { return flow.bed.hxx ? 3.0 * kRead : 0.0; }
 double slopes(const Flow& flow) { return flow.steep ? 2.0 * kRead : 0.0; }
 
 Traffic deposit(const Flow& flow) {
-    const double force = flow.nodes.force ? 2.0 : 0.0;  // numbers a node
     // Clearing, scattering, and the sums that are held against the points'.
-    return {(kPlaced + kHeld * held(flow)) * kRead, 2.0 * (2.0 * kNode4 + (force + 1.0) * kWrite) + kNode4};
+    return {(kPlaced + kHeld * held(flow)) * kRead, 2.0 * (2.0 * kNode4 + 2.0 * kWrite) + kNode4 + kRead};
 }
 
 Traffic gather(const Flow& flow) {
@@ -31,9 +30,9 @@ Traffic carry(const Flow& flow) {
 }
 
 Traffic kick(const Flow& flow) {
-    const double force = flow.nodes.force ? 2.0 * kRead : 0.0;
-    const double state = kNode4 + 3.0 * kRead + 2.0 * kRead + 2.0 * kRead + 1.0;  // deposit; h, eta, z; v; flux; flags
-    return {0.0, 2.0 * kNode4 + state + force + slopes(flow) + hessian(flow)};
+    const double force = flow.nodes.forced ? kNode4 : 0.0;
+    const double state = 4.0 * kRead + 2.0 * kRead + 2.0 * kRead + 1.0;  // mass, h, eta, z; v; flux; flags
+    return {0.0, kNode4 + kNode4 + state + force + slopes(flow) + hessian(flow)};
 }
 
 Traffic depth(const Flow&) { return {0.0, kNode4 + kRead + 2.0 * kWrite + 2.0 * kWrite + 2.0}; }

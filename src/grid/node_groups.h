@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "base/simd.h"
 #include "grid/tile_grid.h"
 
 namespace frana {
@@ -24,6 +25,12 @@ public:
     StencilMarks(Index i, Index j) : i_(static_cast<unsigned>(i - kSpare)), j_(static_cast<unsigned>(j - kSpare)) {}
     void mark(std::int32_t i, std::int32_t j) {
         row_[(static_cast<unsigned>(j) - j_) & 31u] |= 1u << ((static_cast<unsigned>(i) - i_) & 31u);
+    }
+    /// The first `lanes` of four.
+    void mark(Int4 i, Int4 j, int lanes) {
+        const Int4 row = (j - static_cast<std::int32_t>(j_)) & 31;
+        const Int4 bit = Int4{1, 1, 1, 1} << ((i - static_cast<std::int32_t>(i_)) & 31);
+        for (int n = 0; n < lanes; ++n) row_[row[n]] |= static_cast<std::uint32_t>(bit[n]);
     }
     /// All groups with a node from `before` nodes before a mark to `after` nodes behind it, in x and in y (both < 8).
     TileReach reach(int before, int after) const {

@@ -32,6 +32,17 @@ void permute_field(Field& field, const std::int32_t* order, Index kept, Column& 
     }
 }
 
+/// Calls body(key, first point, one behind the last) for points in a row that have the same key: most do, and a count
+/// in memory that each of them raises would wait for the one before.
+template <class Body>
+void for_each_row(const std::int32_t* keys, Index count, Body&& body) {
+    for (Index first = 0, p = 0; first < count; first = p) {
+        const std::int32_t key = keys[first];
+        for (p = first + 1; p < count && keys[p] == key;) ++p;
+        if (key >= 0) body(key, first, p);
+    }
+}
+
 }  // namespace
 
 void PointOrder::make_room(Index count, Index tiles) {
@@ -44,8 +55,10 @@ void PointOrder::make_room(Index count, Index tiles) {
 
 void PointOrder::tally(Index count) {
     used_.clear();
-    for (Index p = 0; p < count; ++p)
-        if (key_[p] >= 0 && tile_count_[key_[p]]++ == 0) used_.push_back(key_[p]);
+    for_each_row(key_.data(), count, [&](std::int32_t key, Index first, Index end) {
+        if (tile_count_[key] == 0) used_.push_back(key);
+        tile_count_[key] += end - first;
+    });
     std::sort(used_.begin(), used_.end());
 }
 
@@ -61,9 +74,11 @@ void PointOrder::lay_out(ActiveTiles& active) {
     active.begin.push_back(kept);
 
     resize_sparingly(order_, static_cast<std::size_t>(kept));
-    const Index count = static_cast<Index>(key_.size());
-    for (Index p = 0; p < count; ++p)
-        if (key_[p] >= 0) order_[tile_count_[key_[p]]++] = static_cast<std::int32_t>(p);
+    for_each_row(key_.data(), static_cast<Index>(key_.size()), [&](std::int32_t key, Index first, Index end) {
+        std::int32_t* place = order_.data() + tile_count_[key];
+        for (Index p = first; p < end; ++p) *place++ = static_cast<std::int32_t>(p);
+        tile_count_[key] += end - first;
+    });
     for (const Index tile : used_) tile_count_[tile] = 0;
 }
 

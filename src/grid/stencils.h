@@ -9,13 +9,17 @@ namespace frana {
 struct Stencils {
     Int4 first;      ///< node of the first weight, counted from the storage's first
     Double4 offset;  ///< position minus first node, 1/2 to 3/2
-    Double4 w[3];
-    [[gnu::always_inline]] explicit Stencils(Double4 u) : first(floor_positive(u + (kTile - 0.5))) {
-        const Double4 f = u - (to_double(first) - kTile);
+    Double4 w[3];    ///< weights
+    Double4 s[3];    ///< and their slopes per cell
+    [[gnu::always_inline]] explicit Stencils(Double4 u) {
+        const Double4 node = floor(u + (kTile - 0.5)), f = u - (node - kTile);
+        first = floor_positive(node);
         offset = f;
-        w[0] = 0.5 * (1.5 - f) * (1.5 - f);
+        const Double4 a = 1.5 - f, b = f - 0.5;
+        w[0] = 0.5 * a * a;
         w[1] = 0.75 - (f - 1.0) * (f - 1.0);
-        w[2] = 0.5 * (f - 0.5) * (f - 0.5);
+        w[2] = 0.5 * b * b;
+        s[0] = f - 1.5, s[1] = 2.0 - 2.0 * f, s[2] = b;
     }
 };
 
@@ -25,24 +29,19 @@ struct Reach {
     double wx[3], wy[3], sx[3], sy[3];
     [[gnu::always_inline]] Reach(const Stencils& x, const Stencils& y, Index stride, int lane)
         : node(y.first[lane] * stride + x.first[lane]) {
-        const double f = x.offset[lane], g = y.offset[lane];
         for (int n = 0; n < 3; ++n) wx[n] = x.w[n][lane], wy[n] = y.w[n][lane];
-        sx[0] = f - 1.5, sx[1] = 2.0 - 2.0 * f, sx[2] = f - 0.5;
-        sy[0] = g - 1.5, sy[1] = 2.0 - 2.0 * g, sy[2] = g - 0.5;
+        for (int n = 0; n < 3; ++n) sx[n] = x.s[n][lane], sy[n] = y.s[n][lane];
     }
 };
 
-/// Weights, times `scale`, of a sub-point at t in [1/2, 5/2) from the first of four nodes.
-[[gnu::always_inline]] inline void window_weights(Double4 t, Double4 scale, Double4 w[4]) {
-    const Mask4 second = t >= 1.5;
-    const Double4 f = second ? t - 1.0 : t, half = 0.5 * scale;
-    const Double4 w0 = half * (1.5 - f) * (1.5 - f), w1 = scale * (0.75 - (f - 1.0) * (f - 1.0)),
-                  w2 = half * (f - 0.5) * (f - 0.5);
-    const Double4 zero = {};
-    w[0] = second ? zero : w0;
-    w[1] = second ? w0 : w1;
-    w[2] = second ? w1 : w2;
-    w[3] = second ? w2 : zero;
+/// Weights, times 8, of a sub-point that lies d, -1 to 1, behind the middle of four nodes. No choice of three among them:
+/// `before` and `behind` are zero where d has the other sign, and take from a parabola what it has too much there.
+[[gnu::always_inline]] inline void window_weights(Double4 d, Double4 w[4]) {
+    const Double4 before = d - abs(d), behind = d + abs(d), from_first = 2.0 - 2.0 * d, from_last = 2.0 + 2.0 * d;
+    w[0] = before * before;
+    w[1] = from_first * from_first - 3.0 * w[0];
+    w[3] = behind * behind;
+    w[2] = from_last * from_last - 3.0 * w[3];
 }
 
 }  // namespace frana

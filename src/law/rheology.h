@@ -35,12 +35,16 @@ template <class Real>
 }
 
 /// Plug share of a Bingham sheet whose bed is braked by nothing else (bingham_sheet with b = 0), to absolute round-off:
-/// y = 1 - plug solves 3 y^2 - y^3 + d (y - 1) = 0. Convex and rising for y < 1, where Newton's method cannot fail; three
-/// steps from a start that is right to 7 %.
+/// y = 1 - plug solves 3 y^2 - y^3 + d (y - 1) = 0. Convex and rising for y < 1; two steps of Halley's method from a start
+/// that is right to 5 % leave 2e-17.
 template <class Real>
 [[gnu::always_inline]] inline Real plug_share(Real d) {
+    d = min(d, Real{} + 1e100);  // squares must not overflow
     Real y = 2.0 * d / (d + sqrt(d * d + 11.0 * d) + 1e-300);
-    for (int step = 0; step < 3; ++step) y -= (((3.0 - y) * y + d) * y - d) / ((6.0 - 3.0 * y) * y + d + 1e-300);
+    for (int step = 0; step < 2; ++step) {
+        const Real f = ((3.0 - y) * y + d) * y - d, slope = (6.0 - 3.0 * y) * y + d;
+        y -= f * slope / (slope * slope - f * (3.0 - 3.0 * y) + 1e-300);
+    }
     return 1.0 - y;
 }
 
@@ -50,11 +54,13 @@ template <class Real>
 [[gnu::always_inline]] inline PlaneOf<Real> stress(const rheology::Bingham& law, const StrainState<Real>& s) {
     if (law.yield_stress <= 0.0) return scaled(s.rate, Real{} + std::fmin(2.0 * law.viscosity, s.cap));
     const Real rate = s.speed / s.depth;
-    const Real shear = 3.0 / (2.0 + plug_share(6.0 * law.viscosity / law.yield_stress * rate)) * rate;
+    // I2 + floor^2 times (2 + zeta)^2: a division less.
+    const Real two_zeta = 2.0 + plug_share(6.0 * law.viscosity / law.yield_stress * rate), shear = 3.0 * rate;
     const Real zz = s.rate.xx + s.rate.yy;
-    const Real i2 = 0.5 * (s.rate.xx * s.rate.xx + s.rate.yy * s.rate.yy + zz * zz) + s.rate.xy * s.rate.xy +
-                    0.25 * shear * shear;
-    const Real viscous = 2.0 * law.viscosity + law.yield_stress / sqrt(i2 + s.floor * s.floor);
+    const Real plane = 0.5 * (s.rate.xx * s.rate.xx + s.rate.yy * s.rate.yy + zz * zz) + s.rate.xy * s.rate.xy +
+                       s.floor * s.floor;
+    const Real i2 = two_zeta * two_zeta * plane + 0.25 * shear * shear;
+    const Real viscous = 2.0 * law.viscosity + law.yield_stress * two_zeta / sqrt(i2);
     return scaled(s.rate, min(viscous, Real{} + s.cap));
 }
 

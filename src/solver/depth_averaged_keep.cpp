@@ -109,9 +109,10 @@ void DepthAveraged::keep_nodes(Archive& archive) {
     archive.array("touched", touched);
     if (touched.size() != tiles.size()) throw misfit("its nodes are not those of the tiles");
     for (std::size_t n = 0; n < tiles.size(); ++n) flow_.touched[tiles[n]] = touched[n];
-    keep_tiles(archive, "deposit", flow_, tiles, 3, [&](Index k) { return &nodes.deposits()[k].mass; });
+    keep_tiles(archive, "mass", flow_, tiles, 1, [&](Index k) { return &nodes.mass[k]; });
+    keep_tiles(archive, "momentum", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].px; });
     keep_tiles(archive, "column_mass", flow_, tiles, 1, [&](Index k) { return &nodes.column_mass[k]; });
-    if (nodes.force) keep_tiles(archive, "force", flow_, tiles, 2, [&](Index k) { return &nodes.force[k].x; });
+    if (nodes.forced) keep_tiles(archive, "force", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].fx; });
 }
 
 /// Where nothing ever was, peaks are zero and are not kept.

@@ -196,7 +196,7 @@ private:
         const Index up = flow.grid.stride();
         Node<double> node{};
         node.vx = nodes.before[k].x, node.vy = nodes.before[k].y;
-        node.depth = nodes.depth[k], node.mass = nodes.deposits()[k].mass;
+        node.depth = nodes.depth[k], node.mass = nodes.mass[k];
         // Whoever is wide both ways may also be one of four, where rim is 0.
         node.rim = (nodes.flags[k] & kMargin) && (nodes.flags[k] & (kWideX | kWideY)) != (kWideX | kWideY) ? 1.0 : 0.0;
         if (!pressure_on_points_) {
@@ -209,10 +209,10 @@ private:
             node.push_x = node.loss_x = scale * (nodes.viscous_flux[k - 1].x - nodes.viscous_flux[k].x);
             node.push_y = node.loss_y = scale * (nodes.viscous_flux[k - up].y - nodes.viscous_flux[k].y);
         }
-        if (nodes.force) {
+        if (nodes.forced) {
             const double inertia = inertia_of(flow, node.mass, resisting_depth<double>(flow, k));
-            node.push_x += nodes.force[k].x / inertia;
-            node.push_y += nodes.force[k].y / inertia;
+            node.push_x += nodes.deposits()[k].fx / inertia;
+            node.push_y += nodes.deposits()[k].fy / inertia;
         }
         return node;
     }
@@ -224,8 +224,7 @@ private:
         Node<Double4> node;  // set one by one: to clear it first would be a loop of its own
         unzip(&nodes.before[k], node.vx, node.vy);
         node.push_x = node.push_y = node.loss_x = node.loss_y = node.rim = Double4{};
-        const Deposit* d = nodes.deposits() + k;
-        node.depth = load(&nodes.depth[k]), node.mass = Double4{d[0].mass, d[1].mass, d[2].mass, d[3].mass};
+        node.depth = load(&nodes.depth[k]), node.mass = load(&nodes.mass[k]);
         node.ex = wide_gradients(flow, k, 1);
         node.ey = wide_gradients(flow, k, up);
         if (has_viscosity(flow.scheme)) {
@@ -237,9 +236,9 @@ private:
             node.push_x = node.loss_x = scale * (left - right);
             node.push_y = node.loss_y = scale * (below - above);
         }
-        if (nodes.force) {
-            Double4 fx, fy;
-            unzip(&nodes.force[k], fx, fy);
+        if (nodes.forced) {
+            const Deposit* d = nodes.deposits() + k;
+            const Double4 fx = {d[0].fx, d[1].fx, d[2].fx, d[3].fx}, fy = {d[0].fy, d[1].fy, d[2].fy, d[3].fy};
             const Double4 share = 1.0 / inertia_of(flow, node.mass, resisting_depth<Double4>(flow, k));
             node.push_x += fx * share;
             node.push_y += fy * share;

@@ -41,20 +41,20 @@ struct Square {
 /// The points of one tile in the order of its half-cell squares.
 class Squares {
 public:
-    /// `sorted`: the point at each place; `order` has room for the tile's points.
-    Squares(const Flow& flow, Index n, const std::int32_t* sorted, std::int32_t* order)
+    /// `sorted`: the point at each place; `order` and `square` have room for the tile's points.
+    Squares(const Flow& flow, Index n, const std::int32_t* sorted, std::int32_t* order, std::int16_t* square)
         : i0_(2 * flow.grid.tile_i(flow.active.tile[n]) + 1), j0_(2 * flow.grid.tile_j(flow.active.tile[n]) + 1),
           c_(flow.columns), order_(order) {
         const Index begin = flow.active.begin[n], end = flow.active.begin[n + 1];
         Index held = 0;
         for (Index place = begin; place < end; ++place) {
-            const Index p = sorted[place];
-            if (!on_edge(p)) ++end_of_[square(p)], ++held;
+            const std::int16_t s = square[place - begin] = square_of(sorted[place]);
+            if (s != kNone) ++end_of_[s], ++held;
         }
         for (Index s = 1; s < kSide * kSide; ++s) end_of_[s] += end_of_[s - 1];
         for (Index place = end; place-- > begin;) {
-            const std::int32_t p = sorted[place];
-            if (!on_edge(p)) order[--end_of_[square(p)]] = p;
+            const std::int16_t s = square[place - begin];
+            if (s != kNone) order[--end_of_[s]] = sorted[place];
         }
         for (Index s = 0; s + 1 < kSide * kSide; ++s) end_of_[s] = end_of_[s + 1];
         end_of_[kSide * kSide - 1] = held;
@@ -66,15 +66,13 @@ public:
     }
 
 private:
-    bool on_edge(Index p) const {
-        const double u = 2.0 * c_.x[p], v = 2.0 * c_.y[p];
-        return near_edge(u, std::round(u)) || near_edge(v, std::round(v));
-    }
+    static constexpr std::int16_t kNone = -1;  ///< on an edge
     /// A point that the rounding of 2 x puts outside belongs to the nearest square.
-    Index square(Index p) const {
-        const Index i = static_cast<Index>(std::floor(2.0 * c_.x[p])) - i0_;
-        const Index j = static_cast<Index>(std::floor(2.0 * c_.y[p])) - j0_;
-        return std::clamp<Index>(j, 0, kSide - 1) * kSide + std::clamp<Index>(i, 0, kSide - 1);
+    std::int16_t square_of(Index p) const {
+        const double u = 2.0 * c_.x[p], v = 2.0 * c_.y[p], left = std::floor(u), below = std::floor(v);
+        if (near_edge(u, left) || near_edge(u, left + 1.0) || near_edge(v, below) || near_edge(v, below + 1.0)) return kNone;
+        const Index i = static_cast<Index>(left) - i0_, j = static_cast<Index>(below) - j0_;
+        return static_cast<std::int16_t>(std::clamp<Index>(j, 0, kSide - 1) * kSide + std::clamp<Index>(i, 0, kSide - 1));
     }
     Index i0_, j0_;
     const Columns& c_;
@@ -130,10 +128,12 @@ Index in_parts(const Columns& c, const Square& square, std::int32_t* points, Ind
 
 Merger::Merger(const Flow& flow) {
     resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
+    resize_sparingly(square_, order_.size());
     std::vector<std::int32_t> sorted(order_.size());  // points lie as they are sorted
     std::iota(sorted.begin(), sorted.end(), 0);
     for (Index n = 0; n < flow.active.count(); ++n) {
-        const Squares squares(flow, n, sorted.data(), order_.data() + flow.active.begin[n]);
+        const Index begin = flow.active.begin[n];
+        const Squares squares(flow, n, sorted.data(), order_.data() + begin, square_.data() + begin);
         for (Index s = 0; s < kSide * kSide; ++s) most_ = std::max(most_, squares.held(s));
     }
 }
@@ -141,6 +141,7 @@ Merger::Merger(const Flow& flow) {
 Index Merger::merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone) {
     assign_sparingly(gone, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
     resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
+    resize_sparingly(square_, order_.size());
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
     for_each_tile(flow.active, [&](Index n) {
         std::uint8_t& quiet = flow.active.quiet[flow.active.tile[n]];
@@ -154,7 +155,8 @@ Index Merger::merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::ve
 }
 
 Index Merger::merge_tile(Flow& flow, Index n, const std::int32_t* sorted, std::vector<std::uint8_t>& gone) {
-    const Squares squares(flow, n, sorted, order_.data() + flow.active.begin[n]);
+    const Index begin = flow.active.begin[n];
+    const Squares squares(flow, n, sorted, order_.data() + begin, square_.data() + begin);
     const double longest = kNoResplit * flow.scheme.split_length;
     const auto unite_cheapest = [&](const std::int32_t* points, Index count) -> Index {
         const Pick pick = cheapest(flow.columns, points, std::min(count, kMostCompared));

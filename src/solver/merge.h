@@ -20,7 +20,7 @@ public:
     /// points in `gone` (resized); returns how many. The caller drops them.
     Index merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone);
     /// Memory that grows with the points [bytes].
-    Index bytes() const { return allocated(order_); }
+    Index bytes() const { return allocated(order_) + allocated(square_); }
 
 private:
     Index merge_tile(Flow& flow, Index n, const std::int32_t* sorted, std::vector<std::uint8_t>& gone);
@@ -29,6 +29,7 @@ private:
 
     Index most_ = 2;  ///< points that a half-cell square may hold
     std::vector<std::int32_t> order_;  ///< points by tile and square
+    std::vector<std::int16_t> square_;  ///< of the point at each place, as it was found
     std::vector<Index> merged_;  ///< per tile
 };
 

@@ -10,9 +10,8 @@ namespace frana {
 
 /// What points deposit on a node; four numbers side by side, so that one vector add serves a node.
 struct alignas(32) Deposit {
-    double mass;    ///< sum of m_p N_i [kg]
-    double px, py;  ///< sum of m_p N_i (v_p + C_p d) [kg m/s]
-    double unused;
+    double px, py;  ///< momentum, sum of m_p N_i (v_p + C_p d) [kg m/s]
+    double fx, fy;  ///< stress (and paper pressure) force [N]; zero without rheology
 };
 
 /// What points gather from a node.
@@ -51,7 +50,7 @@ inline bool eight_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t uns
 
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
-        : deposit(grid.size() + 1), column_mass(grid.size()), force(with_force ? grid.size() : 0), depth(grid.size()),
+        : deposit(grid.size() + 1), mass(grid.size()), column_mass(grid.size()), forced(with_force), depth(grid.size()),
           level(grid.size()), surface(grid.size()), wave_x(grid.size()),
           row_known(grid.size(), around(grid)), before(grid.size()), motion(grid.size() + 1),
           viscous_flux(grid.size()), shock(grid.size()), sensed(grid.size(), around(grid)),
@@ -63,10 +62,11 @@ struct Nodes {
     const Motion* motions() const { return aligned(motion.data()); }
 
     LazyArray<Deposit> deposit;      ///< use deposits(): the start is moved to a 32-byte boundary
+    LazyArray<double> mass;          ///< sum of m_p N_i; apart, since it goes row by row [kg]
     /// Mass deposited from the points' sub-points: what the depth is made of [kg]. Apart from Deposit, since a vector
     /// read of a node waits for a narrower write to it.
     LazyArray<double> column_mass;
-    LazyArray<Pair> force;           ///< stress (and paper pressure) force [N]; empty without rheology
+    bool forced;                     ///< points deposit forces
     LazyArray<double> depth;         ///< column_mass / (rho A) [m]
     LazyArray<double> level;         ///< bed + depth [m]
     LazyArray<double> surface;       ///< free surface: the level, filtered and mended at margins; bed where dry [m]

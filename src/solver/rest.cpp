@@ -87,8 +87,8 @@ void put_aside(Flow& flow) {
         for_each_four_of(flow.grid, tile, flow.rest.kept[tile], [&](Index k, Index, Index) {
             SavedGroup& group = flow.rest.saved.emplace_back();
             std::memcpy(group.deposit, flow.nodes.deposits() + k, sizeof group.deposit);
+            std::memcpy(group.mass, &flow.nodes.mass[k], sizeof group.mass);
             std::memcpy(group.column_mass, &flow.nodes.column_mass[k], sizeof group.column_mass);
-            if (flow.nodes.force) std::memcpy(group.force, &flow.nodes.force[k], sizeof group.force);
         });
 }
 
@@ -97,8 +97,8 @@ void put_back(Flow& flow) {
     for (const Index tile : flow.active.work)
         for_each_four_of(flow.grid, tile, flow.rest.kept[tile], [&](Index k, Index, Index) {
             std::memcpy(flow.nodes.deposits() + k, group->deposit, sizeof group->deposit);
+            std::memcpy(&flow.nodes.mass[k], group->mass, sizeof group->mass);
             std::memcpy(&flow.nodes.column_mass[k], group->column_mass, sizeof group->column_mass);
-            if (flow.nodes.force) std::memcpy(&flow.nodes.force[k], group->force, sizeof group->force);
             ++group;
         });
 }
@@ -109,8 +109,8 @@ void clear(Flow& flow, const LazyArray<NodeGroups>& groups) {
         const auto groups_of = [&](Index tile) { return groups[tile]; };
         for_each_four_of_run(flow.grid, run, groups_of, [&](Index, Index k, Index, Index) {
             std::memset(deposits + k, 0, 4 * sizeof(Deposit));
+            std::memset(&flow.nodes.mass[k], 0, 4 * sizeof(double));
             std::memset(&flow.nodes.column_mass[k], 0, 4 * sizeof(double));
-            if (flow.nodes.force) std::memset(&flow.nodes.force[k], 0, 4 * sizeof(Pair));
         });
     });
 }

@@ -22,8 +22,7 @@ constexpr std::uint8_t kAsleep = 6;
 /// A group's deposits, put aside.
 struct SavedGroup {
     Deposit deposit[4];
-    double column_mass[4];
-    Pair force[4];
+    double mass[4], column_mass[4];
 };
 
 /// What a step may skip. Arrays hold one entry per tile of the domain, good for tiles of the work list.

@@ -225,16 +225,16 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
     const Deposit* d = nodes.deposits() + k;
     const double column = flow.density * flow.area;
     const Double4 none = {}, z = load(&flow.bed.z[k]), raw = load(&nodes.column_mass[k]) / column;
-    Double4 of[4];  // mass, px, py
-    transpose(load(d), load(d + 1), load(d + 2), load(d + 3), of);
-    const Mask4 wet = raw > flow.dry_depth(), moving = of[0] > kLeastMass;
+    const Double4 px = {d[0].px, d[1].px, d[2].px, d[3].px}, py = {d[0].py, d[1].py, d[2].py, d[3].py};
+    const Double4 deposited = load(&nodes.mass[k]);
+    const Mask4 wet = raw > flow.dry_depth(), moving = deposited > kLeastMass;
     for (int n = 0; n < 4; ++n)
         nodes.flags[k + n] = static_cast<std::uint8_t>((wet[n] ? kWet : 0) | (moving[n] ? kMoving : 0));
-    const Double4 h = select(wet, raw, none), mass = select(moving, of[0], all(1.0));
+    const Double4 h = select(wet, raw, none), mass = select(moving, deposited, all(1.0));
     store(&nodes.depth[k], h);
     store(&nodes.level[k], z + h);
     store(&nodes.surface[k], z + h);
-    zip(select(moving, of[1] / mass, none), select(moving, of[2] / mass, none), &nodes.before[k]);
+    zip(select(moving, px / mass, none), select(moving, py / mass, none), &nodes.before[k]);
     if (!any(wet)) return;
     const Double4 share = {flow.share(i, j), flow.share(i + 1, j), flow.share(i + 2, j), flow.share(i + 3, j)};
     sums.potential += share * column * flow.gravity * h * (z + 0.5 * h);

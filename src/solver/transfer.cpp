@@ -19,11 +19,11 @@ template <class S>
 void deposit_stress(Flow& flow, const S& sx, const S& sy, double volume, const Plane& sigma) {
     const double scale = volume / flow.cell;
     for (int j = 0; j < S::kNodes; ++j) {
-        Pair* row = &flow.nodes.force[flow.grid.at(sx.base, sy.base + j)];
+        Deposit* row = flow.nodes.deposits() + flow.grid.at(sx.base, sy.base + j);
         for (int i = 0; i < S::kNodes; ++i) {
             const double dx = sx.slope(i) * sy.w[j], dy = sx.w[i] * sy.slope(j);
-            row[i].x -= scale * (sigma.xx * dx + sigma.xy * dy);
-            row[i].y -= scale * (sigma.xy * dx + sigma.yy * dy);
+            row[i].fx -= scale * (sigma.xx * dx + sigma.xy * dy);
+            row[i].fy -= scale * (sigma.xy * dx + sigma.yy * dy);
         }
     }
 }
@@ -43,11 +43,11 @@ void deposit_paper_pressure(Flow& flow, const S& sx, const S& sy, double mass, d
     const double push = 0.5 * flow.gravity * mass * (depth * depth - still * still) / (depth * flow.cell);
     const double weight = flow.gravity * mass * (depth - still) / depth;
     for (int j = 0; j < S::kNodes; ++j) {
-        Pair* row = &flow.nodes.force[flow.grid.at(sx.base, sy.base + j)];
+        Deposit* row = flow.nodes.deposits() + flow.grid.at(sx.base, sy.base + j);
         for (int i = 0; i < S::kNodes; ++i) {
             const double w = sx.w[i] * sy.w[j];
-            row[i].x += push * sx.slope(i) * sy.w[j] - weight * zx * w;
-            row[i].y += push * sx.w[i] * sy.slope(j) - weight * zy * w;
+            row[i].fx += push * sx.slope(i) * sy.w[j] - weight * zx * w;
+            row[i].fy += push * sx.w[i] * sy.slope(j) - weight * zy * w;
         }
     }
 }
@@ -133,19 +133,22 @@ private:
         const S sx(c.x[p]), sy(c.y[p]);
         const double m = c.mass[p], vx = c.vx[p], vy = c.vy[p];
         Deposit* deposits = flow.nodes.deposits();
-        Double4 base = {m, m * vx, m * vy, 0.0}, along_x = {}, along_y = {};
+        Double4 base = {m * vx, m * vy, 0.0, 0.0}, along_x = {}, along_y = {};
         if constexpr (kAffine) {
             const double mc = m * flow.cell;
             const Gradient g = spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
-            along_x = Double4{0.0, mc * g.xx, mc * g.yx, 0.0};
-            along_y = Double4{0.0, mc * g.xy, mc * g.yy, 0.0};
+            along_x = mc * Double4{g.xx, g.yx, 0.0, 0.0};
+            along_y = mc * Double4{g.xy, g.yy, 0.0, 0.0};
             base -= sx.offset * along_x + sy.offset * along_y;
         }
         for (int j = 0; j < S::kNodes; ++j) {
-            Deposit* row = deposits + flow.grid.at(sx.base, sy.base + j);
+            const Index first = flow.grid.at(sx.base, sy.base + j);
+            Deposit* row = deposits + first;
             const Double4 value = base + static_cast<double>(j) * along_y;
-            for (int i = 0; i < S::kNodes; ++i)
+            for (int i = 0; i < S::kNodes; ++i) {
                 store(row + i, load(row + i) + (sx.w[i] * sy.w[j]) * (value + static_cast<double>(i) * along_x));
+                flow.nodes.mass[first + i] += sx.w[i] * sy.w[j] * m;
+            }
         }
         if constexpr (kPaper) deposit_column(flow, sx, sy, m);
         if constexpr (!kPaper) deposit_sub_points<S, double>(flow, p);

@@ -1,8 +1,6 @@
 // The nodes' side of the transfers: sums, walls.
 #include "solver/transfer.h"
 
-#include <cstring>
-
 #include "base/simd.h"
 
 namespace frana {
@@ -34,12 +32,14 @@ PointSums total(const ActiveTiles& active, const LazyArray<PointSums>& parts) {
 PointSums node_sums(Flow& flow) {
     const Deposit* deposits = flow.nodes.deposits();
     for_each_work_run(flow.active, [&](const TileRun& run) {
-        Double4 sums[kRunTiles] = {};
+        Double4 sums[kRunTiles] = {}, masses[kRunTiles] = {};
         for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index n, Index k, Index, Index) {
             for (Index m = k; m < k + 4; ++m) sums[n] += load(deposits + m);
+            masses[n] += load(&flow.nodes.mass[k]);
         });
         for (Index n = 0; n < run.count; ++n)
-            if (flow.rest.stirred[run.tile[n]]) std::memcpy(&flow.deposit_sums[run.tile[n]], &sums[n], sizeof sums[n]);
+            if (flow.rest.stirred[run.tile[n]])
+                flow.deposit_sums[run.tile[n]] = {sum(masses[n]), sums[n][0], sums[n][1], 0.0};
     });
     PointSums all;
     for (const Index tile : flow.active.work) {
@@ -58,14 +58,12 @@ void fold_walls(Flow& flow) {
         for_each_wall_pair(flow, axis, 0, [&](Index ghost, Index mirror) {
             const Deposit image = deposits[ghost];
             Deposit& node = deposits[mirror];
-            node.mass += image.mass;
+            flow.nodes.mass[mirror] += flow.nodes.mass[ghost];
             flow.nodes.column_mass[mirror] += flow.nodes.column_mass[ghost];
             node.px += axis == 0 ? -image.px : image.px;
             node.py += axis == 1 ? -image.py : image.py;
-            if (!flow.nodes.force) return;
-            const Pair pull = flow.nodes.force[ghost];
-            flow.nodes.force[mirror].x += axis == 0 ? -pull.x : pull.x;
-            flow.nodes.force[mirror].y += axis == 1 ? -pull.y : pull.y;
+            node.fx += axis == 0 ? -image.fx : image.fx;
+            node.fy += axis == 1 ? -image.fy : image.fy;
         });
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/simd.h"
+#include "base/touch.h"
 #include "grid/stencils.h"
 #include "law/rheology.h"
 #include "solver/domain.h"
@@ -18,7 +19,8 @@ template <class Law, class Real>
 class PackedKernel final : public TransferKernel {
     static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
     static constexpr int kBefore = 1, kAfter = 3;  ///< nodes that sub-points touch around the first of a stencil
-    static constexpr Index kBatch = 128;  ///< points whose stresses wait on the stack
+    static constexpr Index kBatch = 128;  ///< points whose stresses wait on the stack, and that are read ahead
+    static constexpr Index kFull = 256;   ///< a tile with fewer points may not need all its nodes
 
 public:
     explicit PackedKernel(const Law& law) : law_(law) {}
@@ -28,6 +30,7 @@ public:
         for_each_tile_coloured(flow.active, [&](Index n) {
             if (!flow.rest.deposits[n]) return;
             const Index tile = flow.active.tile[n];
+            touch_deposits(flow, n);
             Sums sums;
             StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
@@ -46,8 +49,10 @@ public:
         for_each_tile(flow.active, [&](Index n) {
             if (!flow.rest.gathers[n]) return;
             Sums sums;
-            for_each_four(flow.active.begin[n], flow.active.begin[n + 1],
-                          [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
+            touch_motions(flow, n);
+            for_each_batch(flow, n, [&](Index first, Index end, bool) {
+                for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
+            });
             keep_gathered(flow, n, sums);
         });
         note_changed(flow);
@@ -61,6 +66,8 @@ public:
         const double cap = prepare_deposit(flow, kick);
         for_each_tile_coloured(flow.active, [&](Index n) {
             const Index tile = flow.active.tile[n];
+            touch_motions(flow, n);
+            touch_deposits(flow, n);
             Sums moved, deposited;
             StencilMarks marks = flow.marks_of(tile);
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
@@ -135,8 +142,44 @@ private:
     static void for_each_batch(const Flow& flow, Index n, Body&& body) {
         const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
         const Index last = flow.active.begin[n + 1];
-        for (Index first = flow.active.begin[n]; first < last; first += kBatch)
-            body(first, std::min(first + kBatch, last), at_side);
+        for (Index first = flow.active.begin[n]; first < last; first += kBatch) {
+            const Index end = std::min(first + kBatch, last);
+            touch_points(flow.columns, first, end);
+            body(first, end, at_side);
+        }
+    }
+
+    /// All columns side by side (base/touch.h).
+    static void touch_points(const Columns& c, Index first, Index end) {
+        const Carried<Real>& h = c.carried<Real>();
+        const double* const placed[] = {c.x.data(), c.y.data(), c.mass.data()};
+        const Real* const carried[] = {h.r1x.data(), h.r1y.data(), h.r2x.data(), h.r2y.data(), h.vx.data(), h.vy.data(),
+                                       h.cxx.data(), h.cxy.data(), h.cyx.data(), h.cyy.data(), h.depth.data()};
+        for (Index p = first; p < end; p += kCacheLine / sizeof(double)) {
+            for (const double* column : placed) touch(column + p);
+            for (const Real* column : carried) touch(column + p);
+        }
+    }
+
+    /// Calls body(storage index, count) for the rows of nodes that the points of a full tile reach when they have not
+    /// drifted: no point of another tile of its colour reaches these.
+    template <class Body>
+    static void for_each_row_of_full(const Flow& flow, Index n, Body&& body) {
+        const Index tile = flow.active.tile[n];
+        if (flow.active.begin[n + 1] - flow.active.begin[n] < kFull || near_side(flow.grid, tile)) return;
+        const Index i = flow.grid.tile_i(tile) - kBefore, j = flow.grid.tile_j(tile) - kBefore;
+        constexpr Index kReached = kTile + kBefore + kAfter;
+        for (Index row = 0; row < kReached; ++row) body(flow.grid.at(i, j + row), kReached);
+    }
+    static void touch_motions(const Flow& flow, Index n) {
+        for_each_row_of_full(flow, n, [&](Index k, Index count) { touch(flow.nodes.motions() + k, count); });
+    }
+    static void touch_deposits(const Flow& flow, Index n) {
+        for_each_row_of_full(flow, n, [&](Index k, Index count) {
+            touch(flow.nodes.deposits() + k, count);
+            touch(flow.nodes.mass.data() + k, count);
+            touch(flow.nodes.column_mass.data() + k, count);
+        });
     }
 
     /// Stresses first: a chain of divisions and roots that points wait for side by side.
@@ -172,44 +215,77 @@ private:
         const Double4 r2x = load(&held.r2x[p], lanes), r2y = load(&held.r2y[p], lanes);
         Double4 cxx = load(&held.cxx[p], lanes), cxy = load(&held.cxy[p], lanes);
         Double4 cyx = load(&held.cyx[p], lanes), cyy = load(&held.cyy[p], lanes);
-        const Double4 speed = sqrt(vx * vx + vy * vy);
         const Stencils sx(x), sy(y);
         limit_gradients({r1x, r1y, r2x, r2y}, cxx, cxy, cyx, cyy);
+        const Double4 mc = flow.cell * m, px = m * vx, py = m * vy;
+        scatter(flow, lanes, sx, sy, m, px, py, {mc * cxx, mc * cxy, mc * cyx, mc * cyy}, pull);
+        marks.mark(sx.first, sy.first, lanes);
+        deposit_columns(flow, p, lanes, x, y, m, {r1x, r1y, r2x, r2y}, at_side);
+        sums.mass += m;
+        sums.px += px;
+        sums.py += py;
+        sums.p_abs += m * sqrt(vx * vx + vy * vy);
+    }
 
-        const Double4 mc = flow.cell * m, qx = mc * cxx, qy = mc * cxy, sx_ = mc * cyx, sy_ = mc * cyy;
+    struct Gradients { Double4 xx, xy, yx, yy; };
+
+    /// What a point brings to its three by three nodes. A node's momentum is wx wy (b + i qx + j qy), its force
+    /// sx wy fx + wx sy fy: both are one product of wx with a vector of the row, and one of {i wx, sx} with another.
+    struct Brought {
+        Double4 base, along_x, along_y;  ///< {b, fy}, {qx, fx}, {qy, 0}
+        Double4 mass;                    ///< of a row, times wx
+        Double4 of_row, of_column;       ///< {wy0, wy1, sy0, sy1}, {0, wx1, sx0, sx1}
+        Double4 of_third;                ///< {2 wx2, wy2, sx2, sy2}
+        Double4 unused;                  ///< 256 bytes: a lane's address is a shift
+    };
+
+    /// Mass, momentum and the force -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21), of four
+    /// points. `q`: their mass times cell times velocity gradient.
+    static void scatter(Flow& flow, int lanes, const Stencils& sx, const Stencils& sy, Double4 m, Double4 px, Double4 py,
+                        const Gradients& q, const PlaneOf<Double4>& pull) {
         const Double4 zero = {};
-        Double4 base[4], along_x[4], along_y[4];
-        transpose(m, m * vx - (sx.offset * qx + sy.offset * qy), m * vy - (sx.offset * sx_ + sy.offset * sy_), zero, base);
-        transpose(zero, qx, sx_, zero, along_x);
-        transpose(zero, qy, sy_, zero, along_y);
+        Brought brought[4];
+        const auto fill = [&](Double4 Brought::*what, Double4 a, Double4 b, Double4 c, Double4 d) {
+            Double4 of[4];
+            transpose(a, b, c, d, of);
+            for (int lane = 0; lane < 4; ++lane) brought[lane].*what = of[lane];
+        };
+        fill(&Brought::base, px - (sx.offset * q.xx + sy.offset * q.xy), py - (sx.offset * q.yx + sy.offset * q.yy),
+             -pull.xy, -pull.yy);
+        fill(&Brought::along_x, q.xx, q.yx, -pull.xx, -pull.xy);
+        fill(&Brought::along_y, q.xy, q.yy, zero, zero);
+        fill(&Brought::mass, m * sx.w[0], m * sx.w[1], m * sx.w[2], zero);
+        fill(&Brought::of_row, sy.w[0], sy.w[1], sy.s[0], sy.s[1]);
+        fill(&Brought::of_column, zero, sx.w[1], sx.s[0], sx.s[1]);
+        fill(&Brought::of_third, sx.w[2] + sx.w[2], sy.w[2], sx.s[2], sy.s[2]);
         const Index stride = flow.grid.stride();
         Deposit* const deposits = flow.nodes.deposits();
-        Pair* const forces = flow.nodes.force.data();
+        double* const masses = flow.nodes.mass.data();
+        Index node[4];
+        for (int lane = 0; lane < 4; ++lane) node[lane] = sy.first[lane] * stride + sx.first[lane];
         for (int lane = 0; lane < lanes; ++lane) {
-            const Reach reach(sx, sy, stride, lane);
-            marks.mark(sx.first[lane], sy.first[lane]);
-            Deposit* row = deposits + reach.node;
-            Double4 value = base[lane];
-            for (int j = 0; j < 3; ++j, row += stride, value += along_y[lane]) {
-                Double4 weighted = reach.wy[j] * value;
-                const Double4 step = reach.wy[j] * along_x[lane];
-                for (int i = 0; i < 3; ++i, weighted += step)
-                    store(row + i, load(row + i) + reach.wx[i] * weighted);
+            const Brought& b = brought[lane];
+            const Double4 of_row[3] = {first_of_pairs(b.of_row), second_of_pairs(b.of_row), second_of_pairs(b.of_third)};
+            const Double4 of_column[3] = {first_of_pairs(b.of_column), second_of_pairs(b.of_column),
+                                          first_of_pairs(b.of_third)};
+            const double wx[3] = {sx.w[0][lane], sx.w[1][lane], sx.w[2][lane]};
+            const double wy[3] = {sy.w[0][lane], sy.w[1][lane], sy.w[2][lane]};
+            Deposit* row = deposits + node[lane];
+            double* mass = masses + node[lane];
+            Double4 value = b.base;
+            for (int j = 0; j < 3; ++j, row += stride, mass += stride, value += b.along_y) {
+                const Double4 middle = of_row[j] * value, side = wy[j] * b.along_x;
+                for (int i = 0; i < 3; ++i)
+                    store(row + i, load(row + i) + (wx[i] * middle + of_column[i] * side));
+                store(mass, load(mass) + wy[j] * b.mass);
             }
-            if constexpr (kStress)
-                deposit_stress(forces + reach.node, stride, reach, {pull.xx[lane], pull.yy[lane], pull.xy[lane]});
         }
-        deposit_columns(flow, p, lanes, x, y, 0.25 * m, {r1x, r1y, r2x, r2y}, at_side);
-        sums.mass += m;
-        sums.px += m * vx;
-        sums.py += m * vy;
-        sums.p_abs += m * speed;
     }
 
     /// Those that lie farther from their points than half a cell, or beside the grid's sides, one by one.
-    static void deposit_columns(Flow& flow, Index p, int lanes, Double4 x, Double4 y, Double4 quarter,
-                                const Domains& r, bool at_side) {
-        if (!at_side && spread_four(flow, lanes, x, y, quarter, r)) return;
+    static void deposit_columns(Flow& flow, Index p, int lanes, Double4 x, Double4 y, Double4 m, const Domains& r,
+                                bool at_side) {
+        if (!at_side && spread_four(flow, lanes, x, y, m, r)) return;
         for (int lane = 0; lane < lanes; ++lane) deposit_quadratic_sub_points<Real>(flow, p + lane);
     }
 
@@ -229,26 +305,10 @@ private:
         return scaled(sigma, per_cell * volume);
     }
 
-    /// -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21).
-    [[gnu::always_inline]] static void deposit_stress(Pair* row, Index stride, const Reach& reach, const Plane& pull) {
-        const Double2 along_x = {pull.xx, pull.xy}, along_y = {pull.xy, pull.yy};
-        for (int j = 0; j < 3; ++j, row += stride) {
-            const Double2 a = reach.wy[j] * along_x, b = reach.sy[j] * along_y;
-            for (int i = 0; i < 3; ++i) subtract(row[i], a * reach.sx[i] + b * reach.wx[i]);
-        }
-    }
-
-    static void subtract(Pair& pair, Double2 value) {
-        Double2 old;
-        std::memcpy(&old, &pair, sizeof old);
-        old -= value;
-        std::memcpy(&pair, &old, sizeof old);
-    }
-
     /// Velocity, its gradient (TPIC: sum v (x) grad N) and depth at four points.
     struct Gathered {
         Double4 vx, vy, depth, cxx, cxy, cyx, cyy;
-        Gathered(const Flow& flow, Index p, int lanes) {
+        [[gnu::always_inline]] Gathered(const Flow& flow, Index p, int lanes) {
             const Columns& c = flow.columns;
             const Stencils sx(load(&c.x[p], lanes)), sy(load(&c.y[p], lanes));
             const Index stride = flow.grid.stride();
@@ -279,7 +339,7 @@ private:
         }
     };
 
-    void gather_four(Flow& flow, Index p, int lanes, double dt, Sums& sums) {
+    [[gnu::always_inline]] void gather_four(Flow& flow, Index p, int lanes, double dt, Sums& sums) {
         Columns& c = flow.columns;
         Carried<Real>& held = c.carried<Real>();
         const Gathered g(flow, p, lanes);
@@ -321,7 +381,7 @@ private:
         sums.p_abs += m * speed;
     }
 
-    static void stretch(Real* rx, Real* ry, const Gathered& g, double dt, int lanes) {
+    [[gnu::always_inline]] static void stretch(Real* rx, Real* ry, const Gathered& g, double dt, int lanes) {
         const Double4 x = load(rx, lanes), y = load(ry, lanes);
         store(rx, x + dt * (g.cxx * x + g.cxy * y), lanes);
         store(ry, y + dt * (g.cyx * x + g.cyy * y), lanes);

@@ -122,7 +122,8 @@ struct StructuredBody {
     ActiveTiles& active = flow.active;
     ColumnLaw law;
     StructuredPoints points;
-    Deposit* nodes = flow.nodes.deposits();  ///< mass and momentum
+    Deposit* nodes = flow.nodes.deposits();   ///< momentum; stress is in it
+    double* node_mass = flow.nodes.mass.data();  ///< [kg]
     struct Push {
         double xx, yy, xy, share;  ///< sums of w m (1 - f) K and w m (1 - f), of grains
     };

@@ -27,15 +27,18 @@ void with_kinds(const StructuredBody& body, Work&& work) {
         with_water(std::false_type{});
 }
 
-/// What a column gives its nodes: w (base + affine d) + force grad w, d in cells; lanes are mass and
-/// momentum.
+/// What a column gives its nodes: of momentum w (base + affine d) + force grad w, d in cells.
 struct Gift {
+    double mass;
     Double4 base, along_x, along_y, force_x, force_y;
 };
 
-[[gnu::always_inline]] inline void give(Deposit* nodes, Index stride, const Reach& r, double f, double g,
+[[gnu::always_inline]] inline void give(Deposit* nodes, double* masses, Index stride, const Reach& r, double f, double g,
                                         const Gift& gift) {
+    const Double4 mass = gift.mass * Double4{r.wx[0], r.wx[1], r.wx[2], 0.0};
     for (int j = 0; j < 3; ++j) {
+        double* const row_mass = masses + r.node + j * stride;
+        store(row_mass, load(row_mass) + r.wy[j] * mass);
         const Double4 row = r.wy[j] * (gift.base + (j - g) * gift.along_y) + r.sy[j] * gift.force_y;
         const Double4 along = r.wy[j] * gift.along_x, force = r.wy[j] * gift.force_x;
         Deposit* const first = nodes + r.node + j * stride;
@@ -56,11 +59,12 @@ template <class Four>
 
 Gift gift_of(const StructuredPoints& q, Index p, const Gradient& c, double share, double dt, double cell) {
     const double m = q.mass[p], pulls = -dt * q.volume[p] * share * (1.0 - q.damage[p]) / cell;
-    return {Double4{m, m * q.vx[p], m * q.vy[p], 0.0},
-            Double4{0.0, m * cell * c.xx, m * cell * c.yx, 0.0},
-            Double4{0.0, m * cell * c.xy, m * cell * c.yy, 0.0},
-            Double4{0.0, pulls * q.xx[p], pulls * q.xy[p], 0.0},
-            Double4{0.0, pulls * q.xy[p], pulls * q.yy[p], 0.0}};
+    return {m,
+            Double4{m * q.vx[p], m * q.vy[p], 0.0, 0.0},
+            Double4{m * cell * c.xx, m * cell * c.yx, 0.0, 0.0},
+            Double4{m * cell * c.xy, m * cell * c.yy, 0.0, 0.0},
+            Double4{pulls * q.xx[p], pulls * q.xy[p], 0.0, 0.0},
+            Double4{pulls * q.xy[p], pulls * q.yy[p], 0.0, 0.0}};
 }
 
 /// The same of what a column is made of.
@@ -96,7 +100,7 @@ void spread(StructuredBody& body, Index p, int lanes, bool at_side) {
     const Double4 x = load(&q.x[p], lanes), y = load(&q.y[p], lanes);
     Double4 mass = load(&q.mass[p], lanes);
     if constexpr (kWater) mass = body.density * (load(&q.volume[p], lanes) - load(&q.released[p], lanes));
-    if (!at_side && spread_four(body.flow, lanes, x, y, 0.25 * mass, domains(q, p, lanes))) return;
+    if (!at_side && spread_four(body.flow, lanes, x, y, mass, domains(q, p, lanes))) return;
     for (int n = 0; n < lanes; ++n)
         spread_column<Quadratic>(body.flow, {x[n], y[n], mass[n]}, edges_of(q, p + n));
 }
@@ -249,6 +253,7 @@ void clear_nodes(StructuredBody& body) {
         const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
         for (Index j = 0; j < kTile; ++j) {
             std::fill_n(&body.nodes[first + j * body.grid.stride()], kTile, Deposit{});
+            std::fill_n(&body.node_mass[first + j * body.grid.stride()], kTile, 0.0);
             if (body.grains) {
                 std::fill_n(&body.push[first + j * body.grid.stride()], kTile, Push{});
                 std::fill_n(&body.flow.nodes.column_mass[first + j * body.grid.stride()], kTile, 0.0);
@@ -282,7 +287,8 @@ void scatter_tile(StructuredBody& body, Index n, double kick) {
             const Index one = p + lane;
             const Reach reach(sx, sy, stride, lane);
             const Gradient c{cxx[lane], cxy[lane], cyx[lane], cyy[lane]};
-            give(body.nodes, stride, reach, sx.offset[lane], sy.offset[lane], gift_of(q, one, c, body.share, kick, cell));
+            give(body.nodes, body.node_mass, stride, reach, sx.offset[lane], sy.offset[lane],
+                 gift_of(q, one, c, body.share, kick, cell));
             if constexpr (kGrains)
                 if (pushes) give(body.push.data(), stride, reach, push[lane]);
             if constexpr (kWater) give(body.bound.data(), stride, reach, bound_of(body, one));

@@ -38,8 +38,8 @@ public:
 private:
     /// K (1 - f), 1 - f; beside dry nodes it goes on as it is here. Of grains alone it is 1, whatever round-off says.
     Double4 share(Index at) const {
-        const double m = body_.nodes[at].mass;
-        const Double4 all_of = m > 0.0 ? load(&body_.push[at]) / m : load(&body_.push[k_]) / body_.nodes[k_].mass;
+        const double m = body_.node_mass[at];
+        const Double4 all_of = m > 0.0 ? load(&body_.push[at]) / m : load(&body_.push[k_]) / body_.node_mass[k_];
         constexpr double kNearly = 1.0 - 1e-12;
         return all_of[3] > kNearly ? all_of / all_of[3] : all_of;
     }
@@ -141,7 +141,7 @@ Met meet_water(const StructuredBody& body, Index k) {
     const StructuredBody::Bound& bound = body.bound[k];
     const StructuredBody::Pull& ground = body.pull[k];
     const double area = ground.open * body.grid.cell() * body.grid.cell();
-    Met met{body.nodes[k].mass - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
+    Met met{body.node_mass[k] - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
     if (!has_water(body, k)) return met;
     met.support = water.support(met.mass / (area * met.depth), met.depth, water.h[k]);
     met.slope = surface_slope(body, k);
@@ -193,7 +193,7 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
 
 /// A node's columns as they are, in the dry.
 Met met_dry(const StructuredBody& body, Index k) {
-    const double m = body.nodes[k].mass, cell = body.grid.cell();
+    const double m = body.node_mass[k], cell = body.grid.cell();
     if (body.grains) return {m, body.flow.nodes.depth[k]};
     return {m, m / body.pull[k].open * (1.0 / (body.density * cell * cell))};
 }
@@ -203,9 +203,10 @@ Moved move(const Law& law, StructuredBody& body, Index k, const Vec2& place, con
     const Deposit& node = body.nodes[k];
     const StructuredBody::Pull& pull = body.pull[k];
     const double dt = times.kick;
-    const Vec2 before = Vec2(node.px, node.py) / node.mass;
+    const double mass = body.node_mass[k];
+    const Vec2 before = Vec2(node.px, node.py) / mass;
     const Met met = kWater ? meet_water(body, k) : met_dry(body, k);
-    if constexpr (kWater) tally.impulse.water -= (node.mass - met.mass) * before;
+    if constexpr (kWater) tally.impulse.water -= (mass - met.mass) * before;
     const Vec2 weight = dt * Vec2(pull.x, pull.y);
     Vec2 v = before + weight;
     tally.impulse.weight += met.mass * weight;
@@ -244,7 +245,7 @@ void release_to(StructuredBody& body, Index k, Index to) {
     const double depth = body.bound[k].released / (body.grid.cell() * body.grid.cell());
     const Deposit& node = body.nodes[k];
     water.h[to] += depth;
-    water.qx[to] += depth * (node.px / node.mass), water.qy[to] += depth * (node.py / node.mass);
+    water.qx[to] += depth * (node.px / body.node_mass[k]), water.qy[to] += depth * (node.py / body.node_mass[k]);
 }
 
 /// All nodes; those beyond the grid's sides, which have no water, in one order to the nearest that has.
@@ -282,7 +283,7 @@ void move_nodes_by(const Law& law, StructuredBody& body, const StepTimes& times)
         for (Index j = j0; j < j0 + kTile; ++j)
             for (Index i = i0; i < i0 + kTile; ++i) {
                 const Index k = body.grid.at(i, j);
-                body.moved[k] = body.nodes[k].mass > 0.0 ? move<kWater>(law, body, k, {g.x(i), g.y(j)}, times, tally)
+                body.moved[k] = body.node_mass[k] > 0.0 ? move<kWater>(law, body, k, {g.x(i), g.y(j)}, times, tally)
                                                          : Moved{};
             }
         body.tallies[static_cast<std::size_t>(n)] = tally;
@@ -312,14 +313,15 @@ void look_nodes(StructuredBody& body) {
             for (Index k = first + j * body.grid.stride(); k < first + j * body.grid.stride() + kTile; ++k) {
                 const Deposit& node = body.nodes[k];
                 body.moved[k] = {};
-                if (!(node.mass > 0.0)) continue;
+                const double mass = body.node_mass[k];
+                if (!(mass > 0.0)) continue;
                 const StructuredBody::Pull& pull = body.pull[k];
                 const double depth = body.water ? body.bound[k].volume / (pull.open * area) : met_dry(body, k).depth;
-                const Vec2 v = Vec2(node.px, node.py) / node.mass;
+                const Vec2 v = Vec2(node.px, node.py) / mass;
                 const double support = body.water ? meet_water(body, k).support : 0.0;
                 body.moved[k] = {v.x(), v.y(), (1.0 - support) * pull.across, depth};
-                tally.kinetic += 0.5 * node.mass * along_ground(pull, v, v);
-                tally.potential += node.mass * body.gravity * (pull.elevation + 0.5 * depth);
+                tally.kinetic += 0.5 * mass * along_ground(pull, v, v);
+                tally.potential += mass * body.gravity * (pull.elevation + 0.5 * depth);
             }
         body.tallies[static_cast<std::size_t>(n)] = tally;
     });
