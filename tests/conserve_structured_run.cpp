@@ -246,6 +246,23 @@ TEST_CASE("A run with water keeps mass and momentum of both, and its water's vol
     require_finite(frame);
 }
 
+TEST_CASE("A lake over a heap of grains is level from the start", "[structured][mixture]") {
+    Scene scene = wet_slide();
+    scene.bed = scene_on(81, 31, 0.5, [](double, double) { return 0.0; }).bed;
+    scene.structure->share = 0.0, scene.structure->confined = 0.0;
+    scene.water->level = 2.0;
+    const TwoPhaseFlow flow(two_phase_scene(scene));
+    const WaterBody& w = flow.water().body();
+    double most = 0.0;
+    for (Index j = 0; j < w.grid.ny(); ++j)
+        for (Index i = 0; i < w.grid.nx(); ++i) {
+            const Index k = w.grid.at(i, j);
+            most = std::max(most, w.confined[k]);
+            REQUIRE(w.datum + w.bed[k] + w.confined[k] + w.now.h[k] == Approx(2.0).epsilon(1e-14));  // sums' round-off
+        }
+    CHECK(most > 0.6);  // the heap's 0.8 m, but for a fifth of free water in it
+}
+
 TEST_CASE("A kept run with water goes on with the same bits", "[structured][mixture]") {
     Scene scene = wet_slide();
     const bool viscous = GENERATE(false, true);

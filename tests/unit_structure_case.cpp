@@ -111,6 +111,7 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(has(problem_of(structure + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = 1\n"),
               "material.rheology.law: found \"newtonian\" with material.structure.law"));
     CHECK(has(problem_of(structure, "curvature = \"full\"\n"), "terrain.curvature: found \"full\" with"));
+    CHECK(has(problem_of(structure + "[scheme]\nshape = \"cubic\"\n"), "scheme.shape: found \"cubic\" with"));
     CHECK(has(problem_of("", "unrolled = true\n"), "terrain.unrolled: found true"));
     CHECK(has(problem_of(structure + "[[stage]]\nmodel = \"solid_flow\"\n"), "found a stage with"));
     CHECK(has(problem_of(structure + "[[barrier]]\noutline = \"askew.geojson\"\nheight = 3\n"),

@@ -70,7 +70,7 @@ double relaxed_speed(double s0, double euler, double dt, const Slope& slope) {
     const double change = euler - s0;
     if (euler <= 0.0 || change == 0.0) return euler;
     const double x = dt * slope((s0 + 2.0 * euler) / 3.0);
-    if (!(x > 0.0)) return euler;
+    if (!(x > 0.0 && x < 1e300)) return euler;
     return std::max(s0 + change * (1.0 + x) * -std::expm1(-x) / x, 0.5 * euler);
 }
 

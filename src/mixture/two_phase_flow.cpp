@@ -91,7 +91,7 @@ void TwoPhaseFlow::touch(const std::vector<Index>& tiles) {
 void TwoPhaseFlow::weigh() {
     const WaterBody& w = water_.body();
     potential_ = speeds_ = kinetic_ = 0.0;
-    const double per = 0.5 / w.grid.cell();
+    const double per = w.steep ? 0.5 / w.grid.cell() : 0.0;
     for (const Index tile : w.work) {
         const Index i0 = w.grid.tile_i(tile), j0 = w.grid.tile_j(tile);
         for (Index j = j0; j < std::min(j0 + kTile, w.grid.ny()); ++j)

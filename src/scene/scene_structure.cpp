@@ -118,6 +118,8 @@ private:
             refuse("terrain.model", word("terrain.model"), "expected \"steep\"", "remove it");
         if (case_.word("scheme.preset") != "default")
             refuse("scheme.preset", word("scheme.preset"), "expected \"default\"", "remove it");
+        if (case_.word("scheme.shape") != "quadratic")
+            refuse("scheme.shape", word("scheme.shape"), "expected \"quadratic\"", "remove it");
         if (case_.count("stage") > 0)
             problems_.add(case_.table_place("stage.0"), "found a stage" + with,
                           "expected none: structured columns go from the start to the end", "remove it");

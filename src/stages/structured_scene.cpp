@@ -160,11 +160,16 @@ std::vector<double> depths_of(const StructuredScene& columns) {
     const StructuredFlow flow(columns);
     const StructuredBody& body = flow.body();
     const GridGeometry& g = columns.grid;
+    // As beside water: of the mass on the node (two_phase_flow.cpp, confine), not of the grains' sub-points.
+    const double per_mass = 1.0 / (body.density * g.cell * g.cell);
     std::vector<double> depths(static_cast<std::size_t>(g.size()), 0.0);
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i)
-            if (StructuredMap::touches(body, i, j))
-                depths[static_cast<std::size_t>(j * g.nx + i)] = body.moved[body.grid.at(i, j)].depth;
+            if (StructuredMap::touches(body, i, j)) {
+                const Index k = body.grid.at(i, j);
+                if (body.node_mass[k] > 0.0)
+                    depths[static_cast<std::size_t>(j * g.nx + i)] = per_mass * body.node_mass[k] / body.pull[k].open;
+            }
     return depths;
 }
 

@@ -37,7 +37,7 @@ template <class Real>
     const auto along = [&](Real r) { return k.active + (k.passive - k.active) * tanh_above_zero(-r * fall); };
     const Real first = along(centre + radius), second = along(centre - radius);
     const Real mean = 0.5 * (first + second), none = {};
-    const Real spread = select(radius > 0.0, 0.5 * (first - second) / radius, none);
+    const Real spread = 0.5 * (first - second) / select(radius > 0.0, radius, none + 1.0);
     return {mean + spread * half, mean - spread * half, spread * rate.xy};
 }
 inline Sym2 earth_pressure(const Sym2& rate, double depth, double pull, const Rankine& k) {
