@@ -78,7 +78,10 @@ public:
             both_ = std::make_unique<TwoPhaseFlow>(two_phase_scene(scene));
         else
             alone_ = std::make_unique<StructuredFlow>(structured_scene(scene));
-        if (alone_) alone_->count_cpu_time();
+        if (alone_)
+            alone_->count_cpu_time();
+        else
+            both_->count_cpu_time();
     }
 
     void advance() {
@@ -147,6 +150,7 @@ public:
         other.name = "other";
         std::vector<PhaseCost> phases{full};
         for (const PhaseTime& phase : between(before, solver_.timings())) {
+            if (phase.calls == 0) continue;  // not every window sorts
             const Traffic traffic = solver_.traffic(phase.name);
             // A phase of several clock readings a step (deposit, kick) still goes over its arrays once a step.
             const double calls = std::min<double>(static_cast<double>(phase.calls), plan_.window_steps);

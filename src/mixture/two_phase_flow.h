@@ -20,6 +20,8 @@ public:
     /// One step of the water and those of the columns, never past `until` [s].
     void advance(double until);
     const StructuredFlow& columns() const { return columns_; }
+    /// The columns' timings() tell CPU time too from now on.
+    void count_cpu_time() { columns_.count_cpu_time(); }
     const WaterFlow& water() const { return water_; }
     double time() const { return columns_.status().time; }
     /// Steps of the columns for each of the water, so far.
