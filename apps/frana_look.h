@@ -12,7 +12,8 @@ namespace frana {
 ///   title, last_time and busy_time (when most is in motion) [s], thin [m] below which flow is not drawn,
 ///   lift, lift_areas, lift_outlines [m] of what lies on the terrain, particle_radius [m],
 ///   potential_from_start (a formula for history.csv's rows) [J],
-///   range: {depth, speed, stress, effective_stress: [low, high]}, of two phases water_depth and bound_depth, round numbers that hold 99.5 % of the wet nodes,
+///   range: {depth, speed, stress, effective_stress: [low, high]}, of two phases water_depth and
+///   bound_depth, round numbers that hold 99.5 % of the wet nodes,
 ///   cross: {stride, scale [m/Pa], extent} of the principal stresses, legend: corner of the profile's chart,
 ///   camera: {view: seen up the slope, map: from above, survey: from above, with what was surveyed}: {position, focal,
 ///   up, angle [degree], scale, scale_wide, scale_tall [m]}, all over everything ever covered; scale is half the height

@@ -316,7 +316,8 @@ private:
         // A node that forces stopped has the share kept of the slowest, or round-off would decide what flip's points keep.
         const Real driven = max(sqrt(dx * dx + dy * dy), Real{} + kSlowest), unit = 1.0 / driven;
         const Real s0 = max(Real{}, (n.vx * dx + n.vy * dy) * unit);
-        const Real speed = mean_if_stopping(law_, state, BrakedOf<Real>{s0, driven, speeds_after(law_, state, s0, driven, dt), dt, drift_});
+        const BrakedOf<Real> kick{s0, driven, speeds_after(law_, state, s0, driven, dt), dt, drift_};
+        const Real speed = mean_if_stopping(law_, state, kick);
         const Real keep = speed * unit, vx = dx * keep, vy = dy * keep, vz = vx * bx + vy * by;
         const Real kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
         // Work of friction: its impulse times the mean speed of the step; none where nothing moves. And what bores

@@ -200,6 +200,7 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
         if (level && *level > bed(x, y) + (*bound)[k] + state.depth) state = {*level - bed(x, y) - (*bound)[k], 0.0, 0.0};
         return state;
     };
+    // Only called while the flow is made, so that the scene's rasters need not be copied.
     const auto on_nodes = [node](const Raster& rate) -> WaterScene::Function {
         if (rate.values.empty()) return {};
         return [&rate, node](double x, double y) { return rate.values[node(x, y)]; };
