@@ -1,5 +1,7 @@
 #include "solver/merge.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -127,21 +129,25 @@ Index in_parts(const Columns& c, const Square& square, std::int32_t* points, Ind
 }  // namespace
 
 Merger::Merger(const Flow& flow) {
-    resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
-    resize_sparingly(square_, order_.size());
-    std::vector<std::int32_t> sorted(order_.size());  // points lie as they are sorted
+    make_room(flow.active);
+    std::vector<std::int32_t> sorted(static_cast<std::size_t>(flow.columns.count()));  // points lie as they are sorted
     std::iota(sorted.begin(), sorted.end(), 0);
     for (Index n = 0; n < flow.active.count(); ++n) {
-        const Index begin = flow.active.begin[n];
-        const Squares squares(flow, n, sorted.data(), order_.data() + begin, square_.data() + begin);
+        const Squares squares(flow, n, sorted.data(), order_.data(), square_.data());
         for (Index s = 0; s < kSide * kSide; ++s) most_ = std::max(most_, squares.held(s));
     }
 }
 
+void Merger::make_room(const ActiveTiles& active) {
+    largest_ = 0;
+    for (Index n = 0; n < active.count(); ++n) largest_ = std::max(largest_, active.begin[n + 1] - active.begin[n]);
+    resize_sparingly(order_, static_cast<std::size_t>(largest_ * omp_get_max_threads()));
+    resize_sparingly(square_, order_.size());
+}
+
 Index Merger::merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone) {
     assign_sparingly(gone, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
-    resize_sparingly(order_, static_cast<std::size_t>(flow.columns.count()));
-    resize_sparingly(square_, order_.size());
+    make_room(flow.active);
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
     for_each_tile(flow.active, [&](Index n) {
         std::uint8_t& quiet = flow.active.quiet[flow.active.tile[n]];
@@ -155,8 +161,8 @@ Index Merger::merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::ve
 }
 
 Index Merger::merge_tile(Flow& flow, Index n, const std::int32_t* sorted, std::vector<std::uint8_t>& gone) {
-    const Index begin = flow.active.begin[n];
-    const Squares squares(flow, n, sorted, order_.data() + begin, square_.data() + begin);
+    const Index own = largest_ * omp_get_thread_num();
+    const Squares squares(flow, n, sorted, order_.data() + own, square_.data() + own);
     const double longest = kNoResplit * flow.scheme.split_length;
     const auto unite_cheapest = [&](const std::int32_t* points, Index count) -> Index {
         const Pick pick = cheapest(flow.columns, points, std::min(count, kMostCompared));
