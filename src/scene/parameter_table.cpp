@@ -177,7 +177,7 @@ void add_scheme(Table& table) {
     table.push_back(number("scheme.strain_rate_floor", "1/s", positive, 1e-3,
                            "strain rate below which the yield stress is regularised"));
     table.push_back(number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
-                           "largest diffusion number of the rheology in one step; with linear shapes 0.25 at most"));
+                           "largest diffusion number of the rheology in one step; with linear shapes, pic or flip 0.25 at most"));
     table.push_back(
         absent(with(number("scheme.still_level", "m", any, "known level of a lake at rest (eq. 33)"),
                     "scheme.preset", {"paper"}),

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/touch.h"
 #include "solid/batch_sums.h"
 #include "solid/image_batch.h"
 #include "solid/point_batch.h"
@@ -419,21 +420,40 @@ private:
         for (int n = 0; n < count; ++n) store(columns[n].data() + p, from[n], lanes);
     }
 
+    /// Now and then reads the columns of the next points ahead (base/touch.h).
+    static void read_ahead(const MaterialPoints& q, Index begin, Index p, Index end) {
+        constexpr Index kAhead = 128;
+        if ((p - begin) % kAhead == 0) touch_points(q, p, std::min(p + kAhead, end));
+    }
+    [[gnu::noinline]] static void touch_points(const MaterialPoints& q, Index first, Index last) {
+        const auto ahead = [&](const Column* columns, int count) {
+            for (int n = 0; n < count; ++n) touch(columns[n].data() + first, last - first);
+        };
+        ahead(q.x.data(), 3), ahead(q.v.data(), 3), ahead(q.gradient.data(), 9), ahead(q.state.data(), Law::kStates);
+        ahead(&q.mass, 1), ahead(&q.rest_volume, 1), ahead(&q.j, 1);
+    }
+
     /// Not inlined: into the function that holds the block the compiler would find each node's address
     /// anew, two more instructions a node.
     [[gnu::noinline]] void scatter_points(const SolidBody& body, Index begin, Index end, double dt,
                                           const NodeBox& box, NodeBlock& block) const {
         Index p = begin;
-        for (; p + 4 <= end; p += 4) scatter_batch(body, p, 4, dt, box, block);
+        for (; p + 4 <= end; p += 4) {
+            read_ahead(body.points, begin, p, end);
+            scatter_batch(body, p, 4, dt, box, block);
+        }
         if (p < end) scatter_batch(body, p, static_cast<int>(end - p), dt, box, block);
     }
     [[gnu::noinline]] SolidSums gather_points(SolidBody& body, Index tile, double dt,
                                               const NodeBlock& block) const {
         SolidSums sums;
         BatchSums lane_sums;
-        const Index end = body.active.begin[tile + 1];
-        Index p = body.active.begin[tile];
-        for (; p + 4 <= end; p += 4) gather_batch(body, p, 4, dt, tile, block, lane_sums, sums);
+        const Index begin = body.active.begin[tile], end = body.active.begin[tile + 1];
+        Index p = begin;
+        for (; p + 4 <= end; p += 4) {
+            read_ahead(body.points, begin, p, end);
+            gather_batch(body, p, 4, dt, tile, block, lane_sums, sums);
+        }
         if (p < end) gather_batch(body, p, static_cast<int>(end - p), dt, tile, block, lane_sums, sums);
         lane_sums.add_to(sums);
         return sums;

@@ -208,7 +208,7 @@ void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
     if constexpr (!std::is_same_v<Law, rheology::None>) {
         const Index count = flow_.columns.count();
         const double kick = status_.dt > 0.0 ? status_.dt : longest_step();
-        const double cap = flow_.scheme.stress_cap * flow_.density * flow_.area / kick;
+        const double cap = most_viscosity(flow_, kick);
 #pragma omp parallel for schedule(static)
         for (Index p = 0; p < count; p += 4) {
             const int lanes = static_cast<int>(std::min<Index>(4, count - p));

@@ -66,10 +66,7 @@ public:
     PointSums deposit(Flow& flow, double kick) override {
         make_room(flow);
         start_deposit(flow, kBefore, kAfter);
-        // What alternates from node to node decays by 4 nu over a node's inertia, which is half its depth's at least (kick.cpp):
-        // explicit up to nu = 1/4. Smoother shapes see a third of it.
-        const double nu = std::is_same_v<S, Linear> ? std::min(0.25, flow.scheme.stress_cap) : flow.scheme.stress_cap;
-        const double cap = nu * flow.density * flow.area / kick;
+        const double cap = most_viscosity(flow, kick);
         for_each_tile_coloured(flow.active, [&](Index n) {
             if (!flow.rest.deposits[n]) return;
             const Index tile = flow.active.tile[n];

@@ -23,6 +23,15 @@ void PointSums::add(const PointSums& o) {
     if (bad < 0) bad = o.bad;
 }
 
+double most_viscosity(const Flow& flow, double kick) {
+    constexpr double kPlain = 0.25;
+    const Scheme& scheme = flow.scheme;
+    const bool affine = scheme.transfer == Transfer::tpic || scheme.transfer == Transfer::apic;
+    const bool plain = !affine || scheme.shape == Shape::linear;
+    const double nu = plain ? std::min(kPlain, scheme.stress_cap) : scheme.stress_cap;
+    return nu * flow.density * flow.area / kick;
+}
+
 PointSums total(const ActiveTiles& active, const LazyArray<PointSums>& parts) {
     PointSums sum;
     for (const Index tile : active.tile) sum.add(parts[tile]);

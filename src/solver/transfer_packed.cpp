@@ -135,7 +135,7 @@ private:
     double prepare_deposit(Flow& flow, double kick) {
         make_room(flow);
         start_deposit(flow, kBefore, kAfter);
-        return flow.scheme.stress_cap * flow.density * flow.area / kick;
+        return most_viscosity(flow, kick);
     }
 
     template <class Body>

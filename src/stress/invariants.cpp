@@ -242,6 +242,7 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
 }
 
 double Watch::beyond(double bound) const {
+    if (facts_.carried_depth) return 1.0;
     return bound > 0.0 ? std::clamp(change_ / bound, kConvergence, 1.0) : kConvergence;
 }
 
