@@ -78,6 +78,19 @@ double largest_change(const Columns& points, double cell) {
     return cell * std::sqrt(largest2);
 }
 
+/// Mass of points whose sub-points an open side may hold back [kg]: they lie within 3/4 of a cell (solver/sub_points.h).
+double beside_open_sides(const Facts& facts, const Columns& points) {
+    if (facts.walls) return 0.0;
+    constexpr double kReach = 0.75;
+    const double x_max = static_cast<double>(facts.nodes_x - 1), y_max = static_cast<double>(facts.nodes_y - 1);
+    CompensatedSum sum;
+    for (Index p = 0; p < points.count(); ++p) {
+        const double x = points.x[p], y = points.y[p];
+        if (std::min({x, y, x_max - x, y_max - y}) < kReach) sum.add(points.mass[p]);
+    }
+    return sum.value();
+}
+
 }  // namespace
 
 const std::vector<std::string>& invariant_names() {
@@ -230,7 +243,9 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
                           (now.energy_left - first.energy_left);
     // What leaves is booked with the bed of the nearest node, half a cell away at most.
-    const double booked = now.mass_left * facts_.gravity * (facts_.one_cell_drop + deepest_);
+    const double held_back = beside_open_sides(facts_, start_.points) + beside_open_sides(facts_, state.points);
+    const double booked = facts_.gravity * (now.mass_left * (facts_.one_cell_drop + deepest_) +
+                                            held_back * facts_.one_cell_drop);
     const double round_off = kEps * static_cast<double>(points_) * std::abs(first.potential);
     const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
     const double slope = slope_uphill();

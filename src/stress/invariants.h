@@ -75,11 +75,12 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   0.40, with a curvature that is not smoothed: 1.42e6 and 778 J gained, 1.29e6 and 612 J with steps six and nine times
 ///   shorter; no more than is allowed with the default smoothing). Over a bed bent
 ///   within a cell a point's potential (of the nodes around it) and its slope (which reaches a node further) differ by
-///   second differences of the bed. Where the surface slopes against the bed (the flank of a heap that runs uphill) the
-///   drive is the plain gradient (kick_bed.h), and keeps the energy of the horizontal velocity: what the vertical one
-///   adds, B^2 / (1 + B^2) of K, is the model's own, of what is there and of what left with it. That takes a depth that
-///   changes by more than the bed, so B there is at most the largest depth over a cell. Not for the paper preset, whose
-///   explicit forces act on nodes of vanishing mass.
+///   second differences of the bed. Beside open sides sub-points are held inside by up to 3/4 of a cell, and a point's
+///   potential with them (seed 577215, scene 8982: a point on a plane of 35 degrees that slides up to the side). Where the
+///   surface slopes against the bed (the flank of a heap that runs uphill) the drive is the plain gradient (kick_bed.h),
+///   and keeps the energy of the horizontal velocity: what the vertical one adds, B^2 / (1 + B^2) of K, is the model's own,
+///   of what is there and of what left with it. That takes a depth that changes by more than the bed, so B there is at most
+///   the largest depth over a cell. Not for the paper preset, whose explicit forces act on nodes of vanishing mass.
 /// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
 ///   start, h the largest depth (which pushes: of nodes, or what points carry) and drop to the lowest bed so far.
 ///   stretch is 1 where the model has an energy law; elsewhere a bend may turn a speed along the map into `stretch`
