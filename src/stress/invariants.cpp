@@ -65,7 +65,7 @@ double depth_energy(const Flow& flow) {
     return sum.value();
 }
 
-/// Largest change of velocity at a point as far as its farthest node, a cell and a half [m/s].
+/// Largest change of velocity across a cell at a point [m/s].
 double largest_change(const Columns& points, double cell) {
     double largest2 = 0.0;
     points.with_real([&](auto real) {
@@ -75,7 +75,7 @@ double largest_change(const Columns& points, double cell) {
             largest2 = std::max(largest2, xx * xx + xy * xy + yx * yx + yy * yy);
         }
     });
-    return 1.5 * cell * std::sqrt(largest2);
+    return cell * std::sqrt(largest2);
 }
 
 /// Mass of points whose sub-points an open side may hold back [kg]: they lie within 3/4 of a cell (solver/sub_points.h).

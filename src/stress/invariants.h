@@ -90,8 +90,8 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   and s = sqrt(1 + B^2) with the B of `energy` (1 where stretch has it). kConvergence: that in turn is a bound along
 ///   one direction; streams that converge from two may pass it a little (1 % has been seen), while what is unstable
 ///   passes it by factors. Nor does it bind the affine transfers where velocity changes from cell to cell: no linear
-///   transfer of second order keeps extremes (Godunov 1959), and these bring nodes as far as a cell and a half from a
-///   point its velocity and the change on the way besides. Where the largest such change so far is more than kConvergence of the bound
+///   transfer of second order keeps extremes (Godunov 1959), and these bring nodes a cell away from a point its velocity
+///   and the change across a cell besides. Where the largest such change so far is more than kConvergence of the bound
 ///   it takes its place, up to the bound itself; so it does in the paper preset, which no energy line binds (see `energy`;
 ///   seed 888, scene 8148: a column of 138 m whose outer points run 1.48 times as fast as the bound in four steps).
 /// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
@@ -141,7 +141,7 @@ private:
     double highest_ = 0.0, lowest_ = 0.0;  ///< surface of the start, bed so far [m]
     double deepest_ = 0.0;         ///< so far [m]
     double fastest_ = 0.0;         ///< point or node so far [m/s]
-    double change_ = 0.0;          ///< of the velocity on the way to a point's farthest node, largest so far, with affine transfers [m/s]
+    double change_ = 0.0;          ///< of the velocity across a cell at a point, largest so far, with affine transfers [m/s]
     double at_hand_ = 0.0;         ///< kinetic energy of the start, and what its depth alone could set free [J]
     double turned_over_ = 0.0;     ///< largest kinetic and dissipated energy and change of potential so far [J]
     Index points_ = 0;             ///< most so far
