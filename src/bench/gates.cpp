@@ -52,7 +52,8 @@ std::vector<Gate> gates(const Report& report) {
     list[1].measured = speed_up(full, find(report, "depth_averaged", reference, 2));
     if (small != large) list[2].measured = ratio(large, small);
     list[3].measured = ratio(find(report, "depth_averaged_wide", 0, 1), find(report, "depth_averaged_tight", 0, 1));
-    list[4].measured = ratio(find(report, "depth_averaged_bare", reference, 1), full);
+    const Timed* beside = find(report, "depth_averaged_in_turns", 0, 1);
+    list[4].measured = ratio(find(report, "depth_averaged_bare", 0, 1), beside);
     list[5].measured = ratio(find(report, "depth_averaged_resting", reference, 1),
                              find(report, "depth_averaged_resting_awake", reference, 1));
     if (full) list[6].measured = full->cost.bytes_per_particle;
@@ -60,7 +61,6 @@ std::vector<Gate> gates(const Report& report) {
         list[7].measured = single->cost.ns(single->cost.full()) * report.calibration.triad_GBps.at(1);
         list[8].measured = single->cost.bytes_per_particle;
     }
-    const Timed* beside = find(report, "depth_averaged_in_turns", 0, 1);
     list[13].measured = ratio(find(report, "structured/elastic", 0, 1), beside);
     list[14].measured = ratio(find(report, "structured/breaking", 0, 1), beside);
     list[15].measured = ratio(find(report, "structured/grains", 0, 1), beside);
