@@ -1,13 +1,14 @@
-// fault_runs FRANA FOLDER: what a machine can do to a run. Each fault must end in exit code 2 with one sentence on stderr
-// that names the file or the limit (or in a whole run, where the fault hits nothing), never in a crash or in 1 (Ctrl-C and
-// SIGTERM: in 130), and the run that follows without the fault (resumed where a state was left) must leave the files of an
-// undisturbed run, byte for byte. Prints a table. Where the system does not let it mount a small disk, that fault is said to
-// be skipped.
+// fault_runs FRANA FOLDER CLOCK_JUMP: what a machine can do to a run. Each fault must end in exit code 2 with one
+// sentence on stderr that names the file or the limit (or in a whole run, where the fault hits nothing), never in a
+// crash or in 1 (Ctrl-C and SIGTERM: in 130), and the run that follows without the fault (resumed where a state was
+// left) must leave the files of an undisturbed run, byte for byte. Prints a table. Where the system does not let it
+// mount a small disk, that fault is said to be skipped.
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <ctime>
 #include <map>
 #include <set>
 
@@ -193,10 +194,26 @@ void signals(Faults& faults) {
         }
 }
 
+/// The wall clock is set while the program runs: nothing but the times of day in its report may differ.
+void clock_jumps(Faults& faults, const std::string& preloaded) {
+    Disturbance jumps;
+    jumps.in_program = [&] { ::setenv("LD_PRELOAD", preloaded.c_str(), 1); };
+    const auto look = [&] {
+        const std::string started = nlohmann::json::parse(text_of(faults.out() / "run.json")).at("started");
+        const std::time_t now = std::time(nullptr);
+        char today[16];
+        std::strftime(today, sizeof today, "%Y-%m-%d", std::gmtime(&now));
+        if (started.rfind(today, 0) == 0) throw std::runtime_error("the clock's jumps do not reach the program");
+        if (compare(faults.undisturbed(), faults.out()) < 0)
+            throw std::runtime_error("a run whose wall clock jumps leaves other files");
+    };
+    faults.attempt("the wall clock jumps", jumps, look, {0});
+}
+
 }  // namespace
 
 int main(int count, char** words) try {
-    if (count < 3) throw std::runtime_error("usage: fault_runs FRANA FOLDER");
+    if (count < 4) throw std::runtime_error("usage: fault_runs FRANA FOLDER CLOCK_JUMP");
     const fs::path frana = fs::absolute(words[1]);
     // A name with blanks and letters beyond ASCII, as people have them.
     Faults faults(frana, fs::absolute(words[2]) / "frana più 滑り", cases[0]);
@@ -206,6 +223,7 @@ int main(int count, char** words) try {
     little_memory(faults);
     closed_streams(faults);
     signals(faults);
+    clock_jumps(faults, fs::absolute(words[3]).string());
     return faults.print() == 0 ? 0 : 1;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "fault_runs: %s\n", error.what());
