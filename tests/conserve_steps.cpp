@@ -130,3 +130,32 @@ TEST_CASE("Viscosity gives lone columns of any transfer no energy", "[conserve][
         REQUIRE(simulation.status().kinetic <= 1.1 * start);  // a tenth as in stress/invariants.h; what is unstable grows by the step
     }
 }
+
+TEST_CASE("Points of flip that lie on opposite walls stay mirror images", "[conserve][flip]") {
+    const double cell = 1.0 / 3.0, top = 28 * cell;  // top + 1e-19 is top, and 1e-19 is not zero
+    Scene scene = scene_on(24, 29, cell, [](double, double) { return 0.0; });
+    scene.sides = Sides::wall;
+    scene.scheme.transfer = Transfer::flip;
+    scene.scheme.flip_ratio = 1.0;
+    fill(scene, [&](double x, double y) { return x < 3.0 && std::min(y, top - y) < 2.0 ? 1.0 : 0.0; });
+    const Index last = scene.particles.count() - 1;
+    for (const Index p : {Index{0}, last}) {
+        scene.particles.y[p] = p == 0 ? 1e-19 : top;
+        scene.particles.vy[p] = p == 0 ? -1.0 : 1.0;
+    }
+    scene.particles.x[last] = scene.particles.x[0];
+    DepthAveraged simulation(scene);
+    while (simulation.status().step < 7) {
+        simulation.advance(1e9);
+        const Columns& c = simulation.flow().columns;
+        int on_walls = 0;
+        for (Index p = 0; p < c.count(); ++p)
+            if (c.id[p] == 0 || c.id[p] == last) {
+                CAPTURE(simulation.status().step, c.id[p], c.y[p]);
+                CHECK(c.vy[p] == 0.0);
+                CHECK((c.y[p] == 0.0 || c.y[p] == 28.0));
+                ++on_walls;
+            }
+        REQUIRE(on_walls == 2);
+    }
+}

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/domain.h"
+
 namespace frana {
 
 template <class Real>
@@ -22,6 +24,32 @@ double leave(const Flow& flow, Index p, Index k, PointSums& sums) {
     return energy;
 }
 
+namespace {
+
+/// A point on a wall is its own mirror image: it has no speed across, and its domain does not lean. With FLIP it may have come
+/// there with a speed of its own, which would change its sign each step, at one of two opposite walls only: 29 - 1e-19 is 29.
+template <class Real>
+void settle_on_walls(Flow& flow, Index p, double x_max, double y_max) {
+    Columns& c = flow.columns;
+    Carried<Real>& held = c.carried<Real>();
+    const auto on = [](double& u, double end) {
+        if (std::abs(u) > kOnWall && std::abs(u - end) > kOnWall) return false;
+        u = u < 0.5 * end ? 0.0 : end;
+        return true;
+    };
+    const bool on_x = on(c.x[p], x_max), on_y = on(c.y[p], y_max);
+    if (!on_x && !on_y) return;
+    if (on_x) held.vx[p] = Real{0};
+    if (on_y) held.vy[p] = Real{0};
+    held.cxy[p] = held.cyx[p] = Real{0};
+    Moments moments = Moments::of(edges_of(held, p));
+    if (moments.xy == 0.0) return;
+    moments.xy = 0.0;
+    set_edges(held, p, rectangle_of(moments));
+}
+
+}  // namespace
+
 template <class Real>
 void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums) {
     Columns& c = flow.columns;
@@ -37,6 +65,7 @@ void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& 
             c.y[p] = c.y[p] < 0.0 ? -c.y[p] : 2.0 * y_max - c.y[p];
             for (auto* odd : {&held.vy[p], &held.cxy[p], &held.cyx[p], &held.r1y[p], &held.r2y[p]}) *odd = -*odd;
         }
+        settle_on_walls<Real>(flow, p, x_max, y_max);
     }
     const Index k = flow.grid.at(static_cast<Index>(std::floor(c.x[p] + 0.5)),
                                  static_cast<Index>(std::floor(c.y[p] + 0.5)));

@@ -4,6 +4,9 @@
 
 namespace frana {
 
+/// A point so near to a wall lies on it [cells]: the round-off of places on grids of thousands of cells.
+constexpr double kOnWall = 1e-12;
+
 /// Books in `sums` that point p leaves at node k. Returns its kinetic and potential energy [J].
 template <class Real>
 double leave(const Flow& flow, Index p, Index k, PointSums& sums);

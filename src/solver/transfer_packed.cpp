@@ -368,7 +368,8 @@ private:
         sums.signal = max(sums.signal, speed + sqrt(flow.gravity * max(g.depth, zero)));
         Double4 m = load(&c.mass[p], lanes), vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes);
         const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-        if (flow.bed.has_exits || any((x < 0.0) | (x > x_max) | (y < 0.0) | (y > y_max))) {
+        const double on = flow.walls ? kOnWall : 0.0;
+        if (flow.bed.has_exits || any((x < on) | (x > x_max - on) | (y < on) | (y > y_max - on))) {
             for (int lane = 0; lane < lanes; ++lane) {
                 meet_side<Real>(flow, p + lane, gone_, sums.rare);
                 vx[lane] = held.vx[p + lane], vy[lane] = held.vy[p + lane];
