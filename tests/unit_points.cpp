@@ -117,6 +117,25 @@ TEST_CASE("Merging thins a crowd and keeps mass, momentum, centre and second mom
     CHECK(pool.flow.columns.count() == 3);
 }
 
+TEST_CASE("Of two points that merge the heavier one keeps its number", "[points]") {
+    const bool heavy_first = GENERATE(true, false);
+    Pool pool;
+    pool.sort();
+    Merger merger(pool.flow);
+    pool.add(5.10, 5.1, heavy_first ? 3.0 : 1.0, 0.2);
+    pool.add(5.12, 5.1, heavy_first ? 1.0 : 3.0, 0.2);
+    pool.add(5.45, 5.45, 1.0, 0.2);
+    pool.sort();
+    const Columns& c = pool.flow.columns;
+    const auto heaviest = [&] { return c.id[std::max_element(c.mass.begin(), c.mass.end()) - c.mass.begin()]; };
+    const std::int64_t heavy = heaviest();
+    std::vector<std::uint8_t> gone;
+    REQUIRE(merger.merge(pool.flow, pool.as_sorted(), gone) == 1);
+    pool.sort(gone);
+    REQUIRE(c.count() == 2);
+    CHECK(heaviest() == heavy);
+}
+
 TEST_CASE("Equal points at the corners of a square are not merged: nothing but round-off would choose", "[points]") {
     Pool pool;
     pool.sort();
