@@ -81,22 +81,21 @@ FlatOf<double> stopped(const StructuredBody& body, Index k, const FlatOf<double>
     return all;
 }
 
-/// Friction, obstacles, and what they took.
+/// Obstacles, then friction, and what they took: what an obstacle bears friction need not hold.
 template <class Real, class Law>
 [[gnu::always_inline]] inline void finish(NodeStep<Law>& step, Index k, const GroundOf<Real>& ground,
                                           const DrivenOf<Real>& node) {
     const StructuredBody& body = step.body;
     TallyOf<Real>& tally = step.of(Real{});
-    const FlatOf<Real> slowed = braked(step.law, body, ground, node.across, node.depth, node.before, node.driven, step.times);
-    tally.friction += node.mass * (slowed - node.driven);
-    FlatOf<Real> left = slowed;
-    if (!body.obstacles.empty()) {
-        left = stopped(body, k, slowed);
-        tally.obstacles += node.mass * (left - slowed);
-        tally.pushed += node.mass * ground.along(slowed - left, left);
-    }
+    const FlatOf<Real> free = body.obstacles.empty() ? node.driven : stopped(body, k, node.driven);
+    const FlatOf<Real> left = braked(step.law, body, ground, node.across, node.depth, node.before, free, step.times);
+    tally.friction += node.mass * (left - free);
     // By the velocity that is left: what rests under stress and friction loses nothing.
-    tally.braked += node.mass * ground.along(node.driven - slowed, left);
+    tally.braked += node.mass * ground.along(free - left, left);
+    if (!body.obstacles.empty()) {
+        tally.obstacles += node.mass * (free - node.driven);
+        tally.pushed += node.mass * ground.along(node.driven - free, left);
+    }
     tally.kinetic += 0.5 * node.mass * ground.along(left, left);
     tally.potential += (body.gravity * node.mass) * (ground.elevation + 0.5 * node.depth);
     keep(&step.body.moved[k], left, node.across, node.depth);
