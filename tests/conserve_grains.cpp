@@ -178,8 +178,13 @@ TEST_CASE("Grains push the whole block beside them as hard as it holds them", "[
     const double k = hydrostatic ? 1.0 : flow.body().law.active();
     const double push = 0.5 * k * scene.density * 9.81 * kDepth * kDepth * kWidth * kEnd;
     CHECK(flow.status().damage == Approx(0.5).epsilon(1e-12));
-    // The grains' corner behind the block is open: a rarefaction takes part of the push there, c t = 1.3 m from each side.
-    CHECK(pushed > 0.7 * push);
-    CHECK(pushed < 1.1 * push);
-    CHECK(std::abs(flow.status().momentum.x()) < 0.1 * push);  // margins' surfaces are mended, not balanced
+    // The grains' corners beside the block are open: a rarefaction takes at most the push within c t of each, c t / 2 in the
+    // mean of the time. Besides, the margin on the other side, whose surface is mended, not balanced, is short of a
+    // twentieth (measured 0.051 and 0.061 of the push; the block gets 0.83 and 0.88, less than that by 0.01).
+    constexpr double kMargin = 0.07;
+    const double taken = std::sqrt(k * 9.81 * kDepth) * kEnd / kWidth;
+    CAPTURE(hydrostatic, pushed / push, flow.status().momentum.x() / push, taken);
+    CHECK(pushed > (1.0 - taken - kMargin) * push);
+    CHECK(pushed < push);
+    CHECK(std::abs(flow.status().momentum.x()) < kMargin * push);
 }

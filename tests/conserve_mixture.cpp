@@ -151,12 +151,12 @@ TEST_CASE("V10: drag alone brings columns and water together with their momentum
     CHECK(m_c * (slip + middle.u) + m_u * middle.u == Approx(m_c * 0.5).epsilon(0.01));
     // mu (D0^2 - D^2) / 2 of the kinetic energy went into drag, but for the rim of the body.
     const double area = 17.0 * 17.0, lost = 0.5 * mu * (0.25 - slip * slip) * area;
-    CHECK(lost > 0.05 * 0.5 * m_c * 0.25 * area);
-    CHECK(flow.columns().status().dragged == Approx(lost).epsilon(0.03));
+    CHECK(lost > 0.25 * 0.5 * m_c * 0.25 * area);
+    CHECK(flow.columns().status().dragged == Approx(lost).epsilon(0.02));  // 1.6 % by the rim of the body
 }
 
 TEST_CASE("xi feeds the slip at its own rate, and is left out where drag is weaker", "[mixture]") {
-    constexpr int steps = 20;
+    constexpr int steps = 5;
     constexpr double dt = 1e-4;
     const auto slip_of = [](double xi, Index* outrun = nullptr) {
         Basin basin(0.8, 1000.0, 2.0);
@@ -183,7 +183,8 @@ TEST_CASE("xi feeds the slip at its own rate, and is left out where drag is weak
     const auto [plain, time] = slip_of(0.0, &outrun);
     CHECK(outrun == 0);
     const double rate = 0.5 * 3.0 * 0.4 / (2.0 * 2.0);  // nu xi (1 - f_sc) alpha_s / h^2
-    CHECK(std::log(slip_of(3.0, &outrun).first / plain) == Approx(rate * (time - 0.5 * dt)).epsilon(0.05));  // leapfrog
+    // The first kick is half a step (leapfrog). Drag grows as the water falls behind, since the flux does: 20 / s of it, 1 %.
+    CHECK(std::log(slip_of(3.0, &outrun).first / plain) == Approx(rate * (time - 0.5 * dt)).epsilon(0.015));
     CHECK(outrun < 20 * steps);  // of 1300 a step: where the rim of the body has next to no columns
     CHECK(slip_of(1e6, &outrun).first == plain);
     CHECK(outrun > 1000);

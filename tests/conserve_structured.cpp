@@ -176,6 +176,18 @@ TEST_CASE("Grains push by Ka where they spread and towards Kp where they are squ
     CHECK(shear.xy == Approx(0.5 * (k.active - k.passive)).epsilon(1e-9));
 }
 
+TEST_CASE("Four hyperbolic tangents at once are the library's to round-off", "[structured]") {
+    double worst = 0.0;
+    for (int n = -2000; n < 40000; n += 4) {
+        Double4 x;
+        for (int k = 0; k < 4; ++k) x[k] = 1e-3 * (n + k);
+        const Double4 t = tanh_above_zero(x);
+        for (int k = 0; k < 4; ++k) worst = std::max(worst, std::abs(t[k] - tanh_above_zero(x[k])));
+        if (n + 3 <= 0) CHECK(!any(t != 0.0));
+    }
+    CHECK(worst < 3e-16);
+}
+
 TEST_CASE("What a step costs beside the depth-averaged flow's", "[.cost]") {
     omp_set_num_threads(1);
     const auto cost = [](const char* what, double per, const verify::Measurement& m) {

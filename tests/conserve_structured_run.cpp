@@ -335,8 +335,8 @@ TEST_CASE("Energy of a wet run: most of what is lost is booked, and the rest is 
     const Status now = run.frame().status;
     const double fallen = first.potential + first.kinetic - now.potential - now.kinetic - now.energy_left;
     CAPTURE(fallen, now.dissipated, now.stored, now.energy_left);
-    CHECK(now.dissipated > 0.85 * fallen);  // 0.91; bores and the scheme have the rest
-    CHECK(now.dissipated + now.stored < 1.02 * fallen);
+    CHECK(now.dissipated > 0.88 * fallen);  // 0.90; bores and the scheme have the rest
+    CHECK(now.dissipated + now.stored < fallen);
 }
 
 TEST_CASE("Wet grains flow farther than dry ones: water bears them", "[structured][mixture]") {

@@ -45,7 +45,7 @@ Raster two_slopes(Index nodes, double cell) {
 
 }  // namespace
 
-TEST_CASE("R2 placement meets the count, stays in the outline and holds the exact volume", "[particles]") {
+TEST_CASE("V17: R2 placement meets the count, stays in the outline and holds the exact volume", "[particles]") {
     const Ring outer = star({50, 40}, 36, 15, 7, 0.2), hole = rotated_square({50, 40}, 12, 0.3);
     Release release = release_of({{{outer, hole}}}, 0.0);
     release.depth_field = bumpy_depth({50, 40, 3.0, 1.0, 2.1});
@@ -63,7 +63,7 @@ TEST_CASE("R2 placement meets the count, stays in the outline and holds the exac
         }
 }
 
-TEST_CASE("Without a count, R2 places per_cell particles to the cell", "[particles]") {
+TEST_CASE("V17: without a count, R2 places per_cell particles to the cell", "[particles]") {
     const Release release = release_of({{{rotated_square({50, 40}, 30, 0.2)}}}, 1.0);
     const Made made = make({release}, flat_bed(51, 51, 2.0), {4.0, {}, Placement::r2});
     CHECK(std::abs(static_cast<double>(made.seeds.count()) - 4.0 * 900.0 / 4.0) <= 1.0);
@@ -77,7 +77,7 @@ TEST_CASE("Two releases share an R2 count by their areas", "[particles]") {
     CHECK(std::abs(made.reports[0].count - 1003 / 5) <= 1);
 }
 
-TEST_CASE("R2 points fill a square more evenly than random ones", "[particles]") {
+TEST_CASE("V17: R2 points fill a square more evenly than random ones", "[particles]") {
     Release everywhere;
     everywhere.depth = 1.0;
     const Made made = make({everywhere}, flat_bed(11, 11, 1.0), count_of(1000, Placement::r2));

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <random>
 
 #include "catch.h"
 #include "law/structured_law.h"
@@ -270,6 +271,33 @@ TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no ne
         ++yielded;
     }
     CHECK(yielded > 300);
+}
+
+TEST_CASE("Any stress outside a cone comes back to it with zz as it was, from near and from far", "[structured]") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(0.0, 1.0), both(-1.0, 1.0);
+    const double dilates = GENERATE(0.0, 0.3, 1.0);  // psi / phi; the last one needs the search for some of them
+    int yielded = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const double phi = 5.0 + 35.0 * unit(random);
+        const ColumnLaw law(clay(phi, ColumnYield::compression, dilates * phi));
+        const double weight = -std::pow(10.0, 2.0 + 3.0 * unit(random)), cohesion = std::pow(10.0, 1.0 + 5.0 * both(random)),
+                     size = std::pow(10.0, 1.0 + 5.0 * unit(random));
+        const ColumnStress trial{weight + size * both(random), weight + size * both(random), weight, size * both(random)};
+        if (law.excess<double>(trial, cohesion) <= 0.0) continue;
+        ColumnStress s = trial;
+        const PlasticStep plastic = law.yield(cohesion, s);
+        ++yielded;
+        // zz is met to 1e-7 of strength and weight; the surface rises by less than that with it.
+        CAPTURE(phi, trial.xx, trial.yy, trial.zz, trial.xy, cohesion);
+        CHECK(std::abs(law.excess<double>(s, cohesion)) < 1e-7 * (law.strength(cohesion) - weight));
+        CHECK(s.zz == weight);
+        // What was taken away is 2 G times the plastic strain in the plane, up to what goes with all three directions.
+        const double gone = std::hypot(0.5 * (trial.xx - trial.yy) - 0.5 * (s.xx - s.yy), trial.xy - s.xy);
+        CHECK(plastic.extension - 0.5 * plastic.dilation ==
+              Approx(gone / (2.0 * law.shear())).epsilon(1e-6).margin(1e-9 * size / law.shear()));
+    }
+    CHECK(yielded > 5000);
 }
 
 TEST_CASE("Four columns at once have the bits of one after the other", "[structured]") {

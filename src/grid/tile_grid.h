@@ -3,6 +3,7 @@
 // Only tiles near material are ever touched; arrays come zeroed from the system and cost nothing until then.
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <new>
@@ -17,15 +18,17 @@ constexpr Index kTile = 16;   ///< nodes along a tile's edge
 constexpr Index kGhosts = 3;  ///< layers of nodes beyond the outer ones that material can reach
 
 /// A zeroed array whose untouched pages take no memory. `guard` numbers before the first and behind the last may be read:
-/// they are zero.
+/// they are zero. Numbers lie where their type wants to, which calloc alone does not promise beyond 16 bytes.
 template <class T>
 class LazyArray {
 public:
     LazyArray() = default;
     explicit LazyArray(Index count, Index guard = 0)
-        : block_(static_cast<T*>(std::calloc(static_cast<std::size_t>(count + 2 * guard), sizeof(T)))),
-          first_(block_.get() + guard), count_(count) {
-        if (!block_ && count > 0) throw std::bad_alloc();
+        : block_(std::calloc(static_cast<std::size_t>(count + 2 * guard) * sizeof(T) + alignof(T), 1)), count_(count) {
+        if (!block_) throw std::bad_alloc();
+        constexpr std::uintptr_t kStep = alignof(T);
+        const std::uintptr_t start = reinterpret_cast<std::uintptr_t>(block_.get());
+        first_ = reinterpret_cast<T*>((start + kStep - 1) / kStep * kStep) + guard;
     }
     T& operator[](Index k) { return first_[k]; }
     const T& operator[](Index k) const { return first_[k]; }
@@ -36,9 +39,9 @@ public:
 
 private:
     struct Free {
-        void operator()(T* p) const { std::free(p); }
+        void operator()(void* p) const { std::free(p); }
     };
-    std::unique_ptr<T[], Free> block_;
+    std::unique_ptr<void, Free> block_;
     T* first_ = nullptr;
     Index count_ = 0;
 };

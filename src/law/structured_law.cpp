@@ -81,8 +81,8 @@ constexpr double kStressError =
 }  // namespace
 
 /// Looks for the strain t across the bed, beyond that of the elastic step, at which the return in space
-/// leaves zz where it was prescribed.
-PlasticStep ColumnLaw::yield_to_cone(double k, ColumnStress& s) const {
+/// leaves zz where it was prescribed. Finds it wherever it is.
+PlasticStep ColumnLaw::search_cone(double k, ColumnStress& s) const {
     const double first = s.xx + s.yy + s.zz, mean = first / 3.0, g = shear_, bulk = bulk_;
     const double x = s.xx - mean, y = s.yy - mean, z = s.zz - mean, xy = s.xy;
     const double in_plane = 0.5 * (x * x + y * y) + xy * xy;
@@ -115,6 +115,47 @@ PlasticStep ColumnLaw::yield_to_cone(double k, ColumnStress& s) const {
     s.xy = back.scale * xy;
     const double half_trace = -0.5 * flow * sz + swell, radius = flow * std::hypot(0.5 * (sx - sy), xy);
     return {2.0 * half_trace, half_trace + radius};
+}
+
+/// search_cone where Newton's method gets there from the elastic step, or from where the mean stress is zz, and the flow is
+/// that of the cone's side; returns in which columns. `plastic`: of those. With t the deviator's z moves, x and y by half as
+/// much against it, and I1; what zz misses is all but linear in t, and two passes mostly do. A pass has one root, q = sqrt(J2)
+/// of the trial, and one division: q^3 times what is missed over q^3 times its slope.
+template <class Real, class Mask>
+inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>& s, PlasticStepOf<Real>& plastic) const {
+    constexpr int kUnasked = 2, kMost = 6;  // passes: a choice after each would keep the next columns waiting
+    const double g = shear_, bulk = bulk_, turn = 4.0 / 3.0 * g, per = 1.0 / (g + 9.0 * bulk * alpha_ * dilates_);
+    const double kept = 1.0 - g * per, swell = 3.0 * bulk * dilates_ * per;  // of q, in what is left of q and in the mean
+    const double lean = 3.0 * bulk * alpha_;
+    const Real first = s.xx + s.yy + s.zz, mean = (1.0 / 3.0) * first, z = s.zz - mean, across = 0.5 * (s.xx - s.yy);
+    const Real plane2 = across * across + s.xy * s.xy, enough = kStressError * (k + abs(s.zz)), axis = alpha_ * first - k;
+    Real t = select(kept * sqrt(plane2 + 0.75 * z * z) - g * per * axis > 0.0, Real{}, z / bulk), sz, q, left, lifted;
+    Mask on_side, open;
+    for (int pass = 0;; ++pass) {
+        sz = z + turn * t;
+        const Real j2 = plane2 + 0.75 * sz * sz, beyond = axis + lean * t;
+        q = sqrt(j2), left = kept * q - g * per * beyond, lifted = (bulk * t - z) - swell * (q + beyond);
+        const Real miss = left * sz + lifted * q;  // times q
+        on_side = yields & (q + beyond > 0.0) & (left > 0.0), open = on_side & (abs(miss) > enough * q);
+        if (pass >= kUnasked && (pass == kMost || !any(open))) break;
+        const Real slope = left * (turn * plane2) + q * ((kept * g) * sz * sz + (bulk - lean * swell) * j2) -
+                           ((lean + 3.0 * bulk * dilates_) * g * per) * sz * j2;
+        const Real newton = t - miss * j2 / slope;
+        t = pass < kUnasked ? newton : select(open, newton, t);
+    }
+    const Mask found = on_side ^ open;
+    const Real multiplier = per * (q + axis + lean * t), scale = left / q, middle = s.zz + lifted - 0.5 * scale * sz;
+    const Real flow = 0.5 * multiplier / q, half_trace = dilates_ * multiplier - 0.5 * flow * sz;
+    s.xx = select(found, middle + scale * across, s.xx);
+    s.yy = select(found, middle - scale * across, s.yy);
+    s.xy = select(found, scale * s.xy, s.xy);
+    plastic = {2.0 * half_trace, half_trace + flow * sqrt(plane2)};
+    return found;
+}
+
+PlasticStep ColumnLaw::yield_to_cone(double k, ColumnStress& s) const {
+    PlasticStep plastic;
+    return newton_to_cone(true, k, s, plastic) ? plastic : search_cone(k, s);
 }
 
 namespace {
@@ -196,72 +237,13 @@ void ColumnLaw::give_way(bool, const ColumnStep& step, double left, ColumnStress
     state.damage = std::min(1.0, state.damage + std::max(0.0, opened) / critical);
 }
 
-namespace {
-
-struct ConeReturns {
-    Double4 scale, first, multiplier;
-};
-
-}  // namespace
-
-/// yield_to_cone for four columns at once, number by number the same, as long as Newton's steps stay in the bracket; returns
-/// which columns got there in a few of them. `dilation`: of those.
-Mask4 ColumnLaw::yield_four_to_cone(const Mask4& yields, const Double4& k, ColumnStressOf<Double4>& s,
-                                    Double4& dilation) const {
-    constexpr int kPasses = 6;
-    const Double4 none = {}, one = all(1.0);
-    const double g = shear_, bulk = bulk_, far = std::numeric_limits<double>::infinity();
-    const double per_multiplier = shear_ + 9.0 * bulk_ * alpha_ * dilates_;
-    const Double4 first = s.xx + s.yy + s.zz, mean = first / 3.0;
-    const Double4 x = s.xx - mean, y = s.yy - mean, z = s.zz - mean, xy = s.xy;
-    const Double4 tolerance = kStressError * (k + abs(s.zz)) + std::numeric_limits<double>::min();
-    Double4 t = none, q = none, sz = none, low = all(-far), high = all(far);
-    ConeReturns back{one, first, none};
-    Mask4 found = ~yields, open = yields;  // found: no need to look any more
-    for (int pass = 0; pass < kPasses && any(open); ++pass) {
-        const Double4 sx = x - 2.0 / 3.0 * g * t, sy = y - 2.0 / 3.0 * g * t, first_t = first + 3.0 * bulk * t;
-        const Double4 sz_t = z + 4.0 / 3.0 * g * t;
-        const Double4 q_t = sqrt(0.5 * (sx * sx + sy * sy + sz_t * sz_t) + xy * xy);
-        const Double4 beyond = q_t + alpha_ * first_t - k, multiplier = beyond / per_multiplier;
-        const Double4 left = q_t - shear_ * multiplier;
-        const Mask4 inside = beyond <= 0.0, apex = left < 0.0;
-        const ConeReturns now{select(inside, one, select(apex, none, left / q_t)),
-                              select(inside, first_t, select(apex, k / alpha_, first_t - 9.0 * bulk_ * dilates_ * multiplier)),
-                              select(inside, none, multiplier)};
-        sz = select(open, sz_t, sz), q = select(open, q_t, q);
-        back = {select(open, now.scale, back.scale), select(open, now.first, back.first),
-                select(open, now.multiplier, back.multiplier)};
-        const Double4 miss = now.scale * sz_t + now.first / 3.0 - s.zz;
-        const Mask4 there = open & (abs(miss) <= tolerance);
-        found |= there, open &= ~there;
-        const Double4 dq = g * sz_t / q_t;
-        const Double4 flow = (dq + 3.0 * bulk * alpha_) / (g + 9.0 * bulk * alpha_ * dilates_);
-        const Double4 bent = 4.0 / 3.0 * g * now.scale + sz_t * (dq - g * flow - now.scale * dq) / q_t +
-                             bulk * (1.0 - 3.0 * dilates_ * flow);
-        const Double4 slope = select(now.scale == 0.0, none,
-                                     select(now.multiplier > 0.0, bent, all(4.0 / 3.0 * g + bulk)));
-        high = select(miss > 0.0, t, high), low = select(miss > 0.0, low, t);
-        const Double4 newton = t - miss / slope;
-        open &= (slope > 0.0) & (newton > low) & (newton < high);
-        t = select(open, newton, t);
-    }
-    found &= yields;
-    const Double4 flow = select(q > 0.0, 0.5 * back.multiplier / q, none), swell = back.multiplier * dilates_;
-    const Double4 sx = x - 2.0 / 3.0 * g * t, sy = y - 2.0 / 3.0 * g * t;
-    s.xx = select(found, back.scale * sx + back.first / 3.0, s.xx);
-    s.yy = select(found, back.scale * sy + back.first / 3.0, s.yy);
-    s.xy = select(found, back.scale * xy, s.xy);
-    dilation = 2.0 * (-0.5 * flow * sz + swell);
-    return found;
-}
-
 void ColumnLaw::give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
                          ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const {
     Mask4 alone = yields;
     if (!is_hexagon() && material_.damage_by == DamageBy::dilation) {
-        Double4 dilation = {};
-        const Mask4 found = yield_four_to_cone(yields, k_ * left, s, dilation);
-        const Double4 more = max(dilation, Double4{}) / material_.critical_strain;
+        PlasticStepOf<Double4> plastic;
+        const Mask4 found = newton_to_cone(yields, k_ * left, s, plastic);
+        const Double4 more = (1.0 / material_.critical_strain) * max(plastic.dilation, Double4{});
         state.damage = select(found, min(all(1.0), state.damage + more), state.damage);
         alone &= ~found;
     }

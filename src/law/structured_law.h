@@ -74,9 +74,18 @@ struct ConeReturn {
 };
 
 /// In-plane plastic strain of a step.
-struct PlasticStep {
-    double dilation = 0.0;   ///< trace in the plane [1]
-    double extension = 0.0;  ///< largest principal value in the plane [1]
+template <class Real>
+struct PlasticStepOf {
+    Real dilation{};   ///< trace in the plane [1]
+    Real extension{};  ///< largest principal value in the plane [1]
+};
+using PlasticStep = PlasticStepOf<double>;
+
+/// Cosine and sine of twice an angle: what turns a stress by it.
+template <class Real>
+struct TurnOf {
+    Real cosine, sine;
+    [[gnu::always_inline]] static TurnOf by(Real angle);
 };
 
 class ColumnLaw {
@@ -108,11 +117,12 @@ public:
     [[gnu::always_inline]] void update_as(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
                                           ColumnStateOf<Real>& state) const {
         const Real left = cohesion * (1.0 - state.damage);
-        ColumnStressOf<Real> s = predicted<Real>(turned<Real>(state.stress, 0.5 * step.turn), step, weight);
+        const TurnOf<Real> half = TurnOf<Real>::by(0.5 * step.turn);
+        ColumnStressOf<Real> s = predicted<Real>(turned<Real>(state.stress, half), step, weight);
         state.strain += abs(step.xx) + abs(step.yy) + 2.0 * abs(step.xy);
         const auto yields = excess_as<kHexagon, Real>(s, left) > 0.0;
         if (__builtin_expect(any(yields), 0)) give_way(yields, step, left, s, state);
-        state.stress = turned<Real>(s, 0.5 * step.turn);
+        state.stress = turned<Real>(s, half);
     }
 
     /// How far a stress lies outside the yield surface [Pa]: sqrt(J2) + alpha I1 - k, or the largest of the
@@ -124,7 +134,7 @@ public:
     template <bool kHexagon, class Real>
     [[gnu::always_inline]] Real excess_as(const ColumnStressOf<Real>& s, Real cohesion) const {
         if constexpr (kHexagon) return hexagon_excess<Real>(s, cohesion);
-        const Real first = s.xx + s.yy + s.zz, mean = first / 3.0;
+        const Real first = s.xx + s.yy + s.zz, mean = (1.0 / 3.0) * first;
         const Real x = s.xx - mean, y = s.yy - mean, z = s.zz - mean;
         return sqrt(0.5 * (x * x + y * y + z * z) + s.xy * s.xy) + alpha_ * first - k_ * cohesion;
     }
@@ -136,9 +146,13 @@ public:
     PlasticStep yield(double cohesion, ColumnStress& s) const;
 
 private:
-    /// R s R^T for the turn by `angle`; zz stays.
+    /// R s R^T; zz stays.
     template <class Real>
-    [[gnu::always_inline]] static ColumnStressOf<Real> turned(const ColumnStressOf<Real>& s, Real angle);
+    [[gnu::always_inline]] static ColumnStressOf<Real> turned(const ColumnStressOf<Real>& s, const TurnOf<Real>& turn) {
+        const Real centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
+        const Real across = half * turn.cosine - s.xy * turn.sine;
+        return {centre + across, centre - across, s.zz, half * turn.sine + s.xy * turn.cosine};
+    }
     template <class Real>
     [[gnu::always_inline]] ColumnStressOf<Real> predicted(const ColumnStressOf<Real>& s,
                                                           const ColumnStepOf<Real>& step, Real weight) const {
@@ -159,8 +173,11 @@ private:
                   ColumnState& state) const;
     void give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
                   ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const;
+    template <class Real, class Mask>
+    [[gnu::always_inline]] Mask newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>& s,
+                                               PlasticStepOf<Real>& plastic) const;
     PlasticStep yield_to_cone(double k, ColumnStress& s) const;
-    Mask4 yield_four_to_cone(const Mask4& yields, const Double4& k, ColumnStressOf<Double4>& s, Double4& dilation) const;
+    PlasticStep search_cone(double k, ColumnStress& s) const;
     PlasticStep yield_to_hexagon(double cohesion, ColumnStress& s) const;
 
     ColumnMaterial material_;
@@ -174,24 +191,21 @@ constexpr double kSmallTurn = 0.05;  // [rad]
 template <class Real>
 [[gnu::always_inline]] inline void small_turn(Real a, Real& cosine, Real& sine) {
     const Real b = a * a;
-    cosine = 1.0 - b / 2.0 * (1.0 - b / 12.0 * (1.0 - b / 30.0 * (1.0 - b / 56.0 * (1.0 - b / 90.0))));
-    sine = a * (1.0 - b / 6.0 * (1.0 - b / 20.0 * (1.0 - b / 42.0 * (1.0 - b / 72.0 * (1.0 - b / 110.0)))));
+    cosine = 1.0 - 0.5 * b * (1.0 - 1.0 / 12 * b * (1.0 - 1.0 / 30 * b * (1.0 - 1.0 / 56 * b * (1.0 - 1.0 / 90 * b))));
+    sine = a * (1.0 - 1.0 / 6 * b * (1.0 - 1.0 / 20 * b * (1.0 - 1.0 / 42 * b * (1.0 - 1.0 / 72 * b * (1.0 - 1.0 / 110 * b)))));
 }
 void large_turn(double a, double& cosine, double& sine);
 void large_turn(const Double4& a, Double4& cosine, Double4& sine);
 
 template <class Real>
-[[gnu::always_inline]] inline ColumnStressOf<Real> ColumnLaw::turned(const ColumnStressOf<Real>& s,
-                                                                     Real angle) {
+[[gnu::always_inline]] inline TurnOf<Real> TurnOf<Real>::by(Real angle) {
     const Real twice = 2.0 * angle;
-    Real cosine, sine;
+    TurnOf turn;
     if (__builtin_expect(any(abs(twice) > kSmallTurn), 0))
-        large_turn(twice, cosine, sine);
+        large_turn(twice, turn.cosine, turn.sine);
     else
-        small_turn<Real>(twice, cosine, sine);
-    const Real centre = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
-    const Real across = half * cosine - s.xy * sine;
-    return {centre + across, centre - across, s.zz, half * sine + s.xy * cosine};
+        small_turn<Real>(twice, turn.cosine, turn.sine);
+    return turn;
 }
 
 }  // namespace frana

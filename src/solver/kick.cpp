@@ -12,14 +12,6 @@ namespace {
 
 constexpr double kSlowest = 1e-30;  ///< below any speed, above the root of the smallest number [m/s]
 
-/// The same for four nodes in a row, all wide.
-Double4 wide_gradients(const Flow& flow, Index k, Index step) {
-    const double* e = flow.nodes.surface.data() + k;
-    const Double4 none = {}, slope = (8.0 * (load(e + step) - load(e - step)) - (load(e + 2 * step) - load(e - 2 * step))) /
-                                     (12.0 * flow.cell);
-    return select(abs(slope) * flow.cell <= kSurfaceRoundOff * abs(load(e)), none, slope);
-}
-
 /// A node, or four in a row.
 template <class Real>
 struct Node {

@@ -50,18 +50,18 @@ inline bool eight_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t uns
 
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
-        : deposit(grid.size() + 1), mass(grid.size()), column_mass(grid.size()), forced(with_force), depth(grid.size()),
+        : deposit(grid.size()), mass(grid.size()), column_mass(grid.size()), forced(with_force), depth(grid.size()),
           level(grid.size()), surface(grid.size()), wave_x(grid.size()),
-          row_known(grid.size(), around(grid)), before(grid.size()), motion(grid.size() + 1),
+          row_known(grid.size(), around(grid)), before(grid.size()), motion(grid.size()),
           viscous_flux(grid.size()), shock(grid.size()), sensed(grid.size(), around(grid)),
           flags(grid.size(), around(grid)) {}
 
-    Deposit* deposits() { return aligned(deposit.data()); }
-    const Deposit* deposits() const { return aligned(deposit.data()); }
-    Motion* motions() { return aligned(motion.data()); }
-    const Motion* motions() const { return aligned(motion.data()); }
+    Deposit* deposits() { return deposit.data(); }
+    const Deposit* deposits() const { return deposit.data(); }
+    Motion* motions() { return motion.data(); }
+    const Motion* motions() const { return motion.data(); }
 
-    LazyArray<Deposit> deposit;      ///< use deposits(): the start is moved to a 32-byte boundary
+    LazyArray<Deposit> deposit;
     LazyArray<double> mass;          ///< sum of m_p N_i; apart, since it goes row by row [kg]
     /// Mass deposited from the points' sub-points: what the depth is made of [kg]. Apart from Deposit, since a vector
     /// read of a node waits for a narrower write to it.
@@ -73,7 +73,7 @@ struct Nodes {
     LazyArray<double> wave_x;        ///< part of the 2-cell wave in x, scratch of the filter [m]
     LazyArray<std::uint8_t> row_known;  ///< 1: the wave in x is known there
     LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]
-    LazyArray<Motion> motion;        ///< use motions(), for the same reason
+    LazyArray<Motion> motion;
     LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^2/s^2]
     LazyArray<Pair> shock;           ///< sensor of those two faces, 0 (smooth) to 1 (bore) [1]
     LazyArray<std::uint8_t> sensed;  ///< 1 where either of `shock` is above zero
@@ -82,12 +82,6 @@ struct Nodes {
 private:
     /// Stencils of the outermost spare nodes read so far beyond the array: two rows and a few.
     static Index around(const TileGrid& grid) { return 2 * grid.stride() + 8; }
-    template <class T>
-    static T* aligned(T* p) {  // calloc promises 16 bytes only
-        using Byte = std::conditional_t<std::is_const_v<T>, const char, char>;
-        const std::uintptr_t beyond = reinterpret_cast<std::uintptr_t>(p) % 32;
-        return reinterpret_cast<T*>(reinterpret_cast<Byte*>(p) + (32 - beyond) % 32);
-    }
 };
 
 }  // namespace frana

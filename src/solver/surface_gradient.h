@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/simd.h"
 #include "solver/surface.h"
 
 namespace frana {
@@ -36,6 +37,14 @@ inline double raw_gradient(const Flow& flow, Index k, Index step, bool wide, dou
 inline double surface_gradient(const Flow& flow, Index k, Index step, bool wide, double bed_slope) {
     const double slope = raw_gradient(flow, k, step, wide, bed_slope);
     return std::abs(slope) * flow.cell <= kSurfaceRoundOff * std::abs(flow.nodes.surface[k]) ? 0.0 : slope;
+}
+
+/// The same for four nodes in a row, all wide.
+[[gnu::always_inline]] inline Double4 wide_gradients(const Flow& flow, Index k, Index step) {
+    const double* e = flow.nodes.surface.data() + k;
+    const Double4 none = {}, slope = (8.0 * (load(e + step) - load(e - step)) - (load(e + 2 * step) - load(e - 2 * step))) /
+                                     (12.0 * flow.cell);
+    return select(abs(slope) * flow.cell <= kSurfaceRoundOff * abs(load(e)), none, slope);
 }
 
 }  // namespace frana

@@ -8,8 +8,10 @@
 #include "grid/stencils.h"
 #include "law/rheology.h"
 #include "solver/domain.h"
+#include "solver/scatter_four.h"
 #include "solver/sides.h"
 #include "solver/sub_points_of_four.h"
+#include "solver/tile_points.h"
 
 namespace frana {
 namespace {
@@ -18,9 +20,7 @@ namespace {
 template <class Law, class Real>
 class PackedKernel final : public TransferKernel {
     static constexpr bool kStress = !std::is_same_v<Law, rheology::None>;
-    static constexpr int kBefore = 1, kAfter = 3;  ///< nodes that sub-points touch around the first of a stencil
     static constexpr Index kBatch = 128;  ///< points whose stresses wait on the stack, and that are read ahead
-    static constexpr Index kFull = 256;   ///< a tile with fewer points may not need all its nodes
 
 public:
     explicit PackedKernel(const Law& law) : law_(law) {}
@@ -36,7 +36,7 @@ public:
             for_each_batch(flow, n, [&](Index first, Index end, bool at_side) {
                 deposit_batch(flow, first, end, cap, at_side, marks, sums);
             });
-            flow.reach[tile] = marks.reach(kBefore, kAfter);
+            flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
             deposited_[tile] = sums.points();
         });
         finish_deposit(flow);
@@ -74,7 +74,7 @@ public:
                 for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, moved); });
                 if (moved.rare.bad < 0) deposit_batch(flow, first, end, cap, at_side, marks, deposited);
             });
-            flow.reach[tile] = marks.reach(kBefore, kAfter);
+            flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
             deposited_[tile] = deposited.points();
             keep_gathered(flow, n, moved);
         });
@@ -134,7 +134,7 @@ private:
     /// Clears what will be deposited; returns the largest 2 mu_eff that is stable explicitly [Pa s].
     double prepare_deposit(Flow& flow, double kick) {
         make_room(flow);
-        start_deposit(flow, kBefore, kAfter);
+        start_deposit(flow, kReachBefore, kReachAfter);
         return most_viscosity(flow, kick);
     }
 
@@ -161,21 +161,11 @@ private:
         }
     }
 
-    /// Calls body(storage index, count) for the rows of nodes that the points of a full tile reach when they have not
-    /// drifted: no point of another tile of its colour reaches these.
-    template <class Body>
-    static void for_each_row_of_full(const Flow& flow, Index n, Body&& body) {
-        const Index tile = flow.active.tile[n];
-        if (flow.active.begin[n + 1] - flow.active.begin[n] < kFull || near_side(flow.grid, tile)) return;
-        const Index i = flow.grid.tile_i(tile) - kBefore, j = flow.grid.tile_j(tile) - kBefore;
-        constexpr Index kReached = kTile + kBefore + kAfter;
-        for (Index row = 0; row < kReached; ++row) body(flow.grid.at(i, j + row), kReached);
-    }
     static void touch_motions(const Flow& flow, Index n) {
-        for_each_row_of_full(flow, n, [&](Index k, Index count) { touch(flow.nodes.motions() + k, count); });
+        for_each_row_of_full(flow.grid, flow.active, n, [&](Index k, Index count) { touch(flow.nodes.motions() + k, count); });
     }
     static void touch_deposits(const Flow& flow, Index n) {
-        for_each_row_of_full(flow, n, [&](Index k, Index count) {
+        for_each_row_of_full(flow.grid, flow.active, n, [&](Index k, Index count) {
             touch(flow.nodes.deposits() + k, count);
             touch(flow.nodes.mass.data() + k, count);
             touch(flow.nodes.column_mass.data() + k, count);
@@ -194,17 +184,6 @@ private:
         });
     }
 
-    template <class Body>
-    static void for_each_four(Index p, Index end, Body&& body) {
-        for (; p + 4 <= end; p += 4) body(p, 4);
-        if (p < end) body(p, static_cast<int>(end - p));
-    }
-
-    static bool near_side(const TileGrid& grid, Index tile) {
-        const Index i = grid.tile_i(tile), j = grid.tile_j(tile);
-        return i <= 0 || j <= 0 || i + 2 * kTile > grid.nx() || j + 2 * kTile > grid.ny();
-    }
-
     void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& pull, bool at_side, StencilMarks& marks,
                       Sums& sums) {
         const Columns& c = flow.columns;
@@ -218,68 +197,13 @@ private:
         const Stencils sx(x), sy(y);
         limit_gradients({r1x, r1y, r2x, r2y}, cxx, cxy, cyx, cyy);
         const Double4 mc = flow.cell * m, px = m * vx, py = m * vy;
-        scatter(flow, lanes, sx, sy, m, px, py, {mc * cxx, mc * cxy, mc * cyx, mc * cyy}, pull);
+        scatter_four(flow.nodes, flow.grid.stride(), lanes, sx, sy, {m, px, py, mc * cxx, mc * cxy, mc * cyx, mc * cyy}, pull);
         marks.mark(sx.first, sy.first, lanes);
         deposit_columns(flow, p, lanes, x, y, m, {r1x, r1y, r2x, r2y}, at_side);
         sums.mass += m;
         sums.px += px;
         sums.py += py;
         sums.p_abs += m * sqrt(vx * vx + vy * vy);
-    }
-
-    struct Gradients { Double4 xx, xy, yx, yy; };
-
-    /// What a point brings to its three by three nodes. A node's momentum is wx wy (b + i qx + j qy), its force
-    /// sx wy fx + wx sy fy: both are one product of wx with a vector of the row, and one of {i wx, sx} with another.
-    struct Brought {
-        Double4 base, along_x, along_y;  ///< {b, fy}, {qx, fx}, {qy, 0}
-        Double4 mass;                    ///< of a row, times wx
-        Double4 of_row, of_column;       ///< {wy0, wy1, sy0, sy1}, {0, wx1, sx0, sx1}
-        Double4 of_third;                ///< {2 wx2, wy2, sx2, sy2}
-        Double4 unused;                  ///< 256 bytes: a lane's address is a shift
-    };
-
-    /// Mass, momentum and the force -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21), of four
-    /// points. `q`: their mass times cell times velocity gradient.
-    static void scatter(Flow& flow, int lanes, const Stencils& sx, const Stencils& sy, Double4 m, Double4 px, Double4 py,
-                        const Gradients& q, const PlaneOf<Double4>& pull) {
-        const Double4 zero = {};
-        Brought brought[4];
-        const auto fill = [&](Double4 Brought::*what, Double4 a, Double4 b, Double4 c, Double4 d) {
-            Double4 of[4];
-            transpose(a, b, c, d, of);
-            for (int lane = 0; lane < 4; ++lane) brought[lane].*what = of[lane];
-        };
-        fill(&Brought::base, px - (sx.offset * q.xx + sy.offset * q.xy), py - (sx.offset * q.yx + sy.offset * q.yy),
-             -pull.xy, -pull.yy);
-        fill(&Brought::along_x, q.xx, q.yx, -pull.xx, -pull.xy);
-        fill(&Brought::along_y, q.xy, q.yy, zero, zero);
-        fill(&Brought::mass, m * sx.w[0], m * sx.w[1], m * sx.w[2], zero);
-        fill(&Brought::of_row, sy.w[0], sy.w[1], sy.s[0], sy.s[1]);
-        fill(&Brought::of_column, zero, sx.w[1], sx.s[0], sx.s[1]);
-        fill(&Brought::of_third, sx.w[2] + sx.w[2], sy.w[2], sx.s[2], sy.s[2]);
-        const Index stride = flow.grid.stride();
-        Deposit* const deposits = flow.nodes.deposits();
-        double* const masses = flow.nodes.mass.data();
-        Index node[4];
-        for (int lane = 0; lane < 4; ++lane) node[lane] = sy.first[lane] * stride + sx.first[lane];
-        for (int lane = 0; lane < lanes; ++lane) {
-            const Brought& b = brought[lane];
-            const Double4 of_row[3] = {first_of_pairs(b.of_row), second_of_pairs(b.of_row), second_of_pairs(b.of_third)};
-            const Double4 of_column[3] = {first_of_pairs(b.of_column), second_of_pairs(b.of_column),
-                                          first_of_pairs(b.of_third)};
-            const double wx[3] = {sx.w[0][lane], sx.w[1][lane], sx.w[2][lane]};
-            const double wy[3] = {sy.w[0][lane], sy.w[1][lane], sy.w[2][lane]};
-            Deposit* row = deposits + node[lane];
-            double* mass = masses + node[lane];
-            Double4 value = b.base;
-            for (int j = 0; j < 3; ++j, row += stride, mass += stride, value += b.along_y) {
-                const Double4 middle = of_row[j] * value, side = wy[j] * b.along_x;
-                for (int i = 0; i < 3; ++i)
-                    store(row + i, load(row + i) + (wx[i] * middle + of_column[i] * side));
-                store(mass, load(mass) + wy[j] * b.mass);
-            }
-        }
     }
 
     /// Those that lie farther from their points than half a cell, or beside the grid's sides, one by one.

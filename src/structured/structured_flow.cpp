@@ -163,6 +163,7 @@ void StructuredFlow::learn_ground() {
         for (Index j = j0; j < j0 + kTile; ++j)
             for (Index i = i0; i < i0 + kTile; ++i) {
                 const GroundPull pull = ground_(g.x(i), g.y(j));
+                body_.has_exits = body_.has_exits || pull.exit;
                 const double open = open_share(body_.obstacles, {g.x(i), g.y(j)}, g.cell, kLeastOpen);
                 body_.pull[body_.grid.at(i, j)] = {pull.x,       pull.y,         pull.across, pull.slope_x,
                                                    pull.slope_y, pull.elevation, open,        pull.exit ? 1.0 : 0.0};
@@ -186,7 +187,7 @@ void StructuredFlow::advance(double until) {
     const double dt = step_length(until);
     const StepTimes times = body_.grains ? StepTimes{0.5 * (status_.dt + dt), dt} : StepTimes{dt, 0.0};
     timed_("clear", [&] { clear_nodes(body_); });
-    timed_("scatter", [&] { scatter(body_, times.kick); });
+    timed_("scatter", [&] { scatter(body_); });
     if (body_.grains) timed_("surface", [&] { raise_surface(body_); });
     timed_("nodes", [&] { move_nodes(body_, times); });
     timed_("gather", [&] { gather(body_, dt); });
@@ -199,7 +200,7 @@ void StructuredFlow::advance(double until) {
 
 void StructuredFlow::look() {
     clear_nodes(body_);
-    scatter(body_, 0.0);
+    scatter(body_);
     if (body_.grains) raise_surface(body_);
     look_nodes(body_);
     weigh();

@@ -122,12 +122,12 @@ struct StructuredBody {
     ActiveTiles& active = flow.active;
     ColumnLaw law;
     StructuredPoints points;
-    Deposit* nodes = flow.nodes.deposits();   ///< momentum; stress is in it
+    Deposit* nodes = flow.nodes.deposits();   ///< momentum, and the force of the structure's stress
     double* node_mass = flow.nodes.mass.data();  ///< [kg]
-    struct Push {
+    struct alignas(32) Push {
         double xx, yy, xy, share;  ///< sums of w m (1 - f) K and w m (1 - f), of grains
     };
-    struct Moved {
+    struct alignas(32) Moved {
         double vx, vy, pull, depth;  ///< after the step
     };
     struct Pull {
@@ -139,7 +139,7 @@ struct StructuredBody {
     LazyArray<Moved> moved;
     LazyArray<Pull> pull;
     /// What columns are made of, beside free water only [m^3].
-    struct Bound {
+    struct alignas(32) Bound {
         double volume, released, solids, structured;
     };
     LazyArray<Bound> bound;
@@ -152,6 +152,7 @@ struct StructuredBody {
     BedLaw bed_law;
     double density, share, gravity;
     bool grains = false;  ///< some column is broken or has grains beside its structure
+    bool has_exits = false;  ///< some node that was asked for has no ground
     bool mapped = false;  ///< coordinates are on the map, and flow has the bed; otherwise they lie in its plane
 };
 
@@ -161,9 +162,24 @@ struct StepTimes {
     double kick, drift;
 };
 
-// The loops of a step (structured_kernel.cpp).
+/// Calls work(grains, water), types that say what there is in a run: asked once a loop, and not of every column.
+template <class Work>
+void with_kinds(const StructuredBody& body, Work&& work) {
+    const auto with_water = [&](auto grains) {
+        if (body.water)
+            work(grains, std::true_type{});
+        else
+            work(grains, std::false_type{});
+    };
+    if (body.grains)
+        with_water(std::true_type{});
+    else
+        with_water(std::false_type{});
+}
+
+// The loops of a step (structured_scatter.cpp, structured_nodes.cpp, structured_gather.cpp).
 void clear_nodes(StructuredBody& body);
-void scatter(StructuredBody& body, double kick);
+void scatter(StructuredBody& body);
 /// After scatter() where there are grains: depth from sub-points, and the free surface by scheme S2 (grain_surface.cpp).
 void raise_surface(StructuredBody& body);
 void move_nodes(StructuredBody& body, const StepTimes& times);

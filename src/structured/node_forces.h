@@ -1,0 +1,153 @@
+#pragma once
+// What drives and brakes the columns of a node (Real: double) or of four in a row (Double4).
+#include "base/simd.h"
+#include "law/bed_stop.h"
+#include "solver/kick_bed.h"
+#include "solver/surface_gradient.h"
+#include "structured/structured_flow.h"
+
+namespace frana {
+
+/// A vector of the plane at a node, or at four.
+template <class Real>
+struct FlatOf {
+    Real x{}, y{};
+    [[gnu::always_inline]] friend FlatOf operator+(const FlatOf& a, const FlatOf& b) { return {a.x + b.x, a.y + b.y}; }
+    [[gnu::always_inline]] friend FlatOf operator-(const FlatOf& a, const FlatOf& b) { return {a.x - b.x, a.y - b.y}; }
+    [[gnu::always_inline]] friend FlatOf operator*(Real s, const FlatOf& a) { return {s * a.x, s * a.y}; }
+    [[gnu::always_inline]] FlatOf& operator+=(const FlatOf& a) { return x += a.x, y += a.y, *this; }
+    [[gnu::always_inline]] Real dot(const FlatOf& a) const { return x * a.x + y * a.y; }
+};
+
+/// The ground there (StructuredBody::Pull).
+template <class Real>
+struct GroundOf {
+    FlatOf<Real> pull;  ///< gravity along the plane [m/s^2]
+    Real across;        ///< and on the ground
+    FlatOf<Real> slope;
+    Real elevation, open;
+
+    /// Product of two velocities along the ground [m^2/s^2].
+    [[gnu::always_inline]] Real along(const FlatOf<Real>& a, const FlatOf<Real>& b) const {
+        return a.dot(b) + slope.dot(a) * slope.dot(b);
+    }
+};
+[[gnu::always_inline]] inline GroundOf<double> ground_at(const StructuredBody::Pull* p, double) {
+    return {{p->x, p->y}, p->across, {p->slope_x, p->slope_y}, p->elevation, p->open};
+}
+[[gnu::always_inline]] inline GroundOf<Double4> ground_at(const StructuredBody::Pull* p, Double4) {
+    Double4 a[4], b[4];
+    transpose(load(&p[0].x), load(&p[1].x), load(&p[2].x), load(&p[3].x), a);
+    transpose(load(&p[0].slope_y), load(&p[1].slope_y), load(&p[2].slope_y), load(&p[3].slope_y), b);
+    return {{a[0], a[1]}, a[2], {a[3], b[0]}, b[1], b[2]};
+}
+
+/// Velocity of a node's columns after the stress of their structure acted for dt.
+[[gnu::always_inline]] inline FlatOf<double> stressed(const StructuredBody& body, Index k, double mass, double dt) {
+    const Deposit& d = body.nodes[k];
+    return 1.0 / mass * FlatOf<double>{d.px + dt * d.fx, d.py + dt * d.fy};
+}
+[[gnu::always_inline]] inline FlatOf<Double4> stressed(const StructuredBody& body, Index k, Double4 mass, double dt) {
+    const Deposit* const d = body.nodes + k;
+    Double4 of[4];
+    transpose(load(d), load(d + 1), load(d + 2), load(d + 3), of);
+    return 1.0 / mass * FlatOf<Double4>{of[0] + dt * of[2], of[1] + dt * of[3]};
+}
+
+/// What is left of grains' pushes at a node once they are shares (share_out): K (1 - f), 1 - f, and 2 cells times
+/// div(K (1 - f)). Beside dry nodes it goes on as it is here.
+template <class Real>
+struct GrainsOf {
+    Sym2Of<Real> k;
+    Real share;
+    FlatOf<Real> change;
+};
+[[gnu::always_inline]] inline GrainsOf<double> grains_at(const StructuredBody& body, Index k, double) {
+    const Double4 here = load(&body.push[k]);
+    const auto at = [&](Index n) { return body.node_mass[n] > 0.0 ? load(&body.push[n]) : here; };
+    const Index up = body.grid.stride();
+    const Double4 x = at(k + 1) - at(k - 1), y = at(k + up) - at(k - up);
+    return {{here[0], here[1], here[2]}, here[3], {x[0] + y[2], x[2] + y[1]}};
+}
+/// Of four nodes with wet ones around.
+[[gnu::always_inline]] inline GrainsOf<Double4> grains_at(const StructuredBody& body, Index k, Double4) {
+    const Index up = body.grid.stride();
+    const StructuredBody::Push* const p = &body.push[k];
+    Double4 here[4], x[4], y[4], of[4];
+    for (int n = 0; n < 4; ++n)
+        here[n] = load(p + n), x[n] = load(p + n + 1) - load(p + n - 1), y[n] = load(p + n + up) - load(p + n - up);
+    transpose(here[0], here[1], here[2], here[3], of);
+    transpose(x[0], x[1], x[2], x[3], here);
+    transpose(y[0], y[1], y[2], y[3], x);
+    return {{of[0], of[1], of[2]}, of[3], {here[0] + x[2], here[2] + x[1]}};
+}
+
+/// Gradient of the grains' free surface.
+[[gnu::always_inline]] inline FlatOf<double> surface_at(const Flow& flow, Index k, double) {
+    const std::uint8_t flags = flow.nodes.flags[k];
+    return {surface_gradient(flow, k, 1, flags & kWideX, flow.bed.slope_x[k]),
+            surface_gradient(flow, k, flow.grid.stride(), flags & kWideY, flow.bed.slope_y[k])};
+}
+[[gnu::always_inline]] inline FlatOf<Double4> surface_at(const Flow& flow, Index k, Double4) {
+    return {wide_gradients(flow, k, 1), wide_gradients(flow, k, flow.grid.stride())};
+}
+
+/// Acceleration by the artificial viscosity at bores (solver/shock.h), as in the depth-averaged flow's kick [m/s^2].
+[[gnu::always_inline]] inline FlatOf<double> viscous_push(const Flow& flow, Index k, double) {
+    const double depth = flow.nodes.depth[k];
+    if (!(depth > 1e-12 * flow.cell)) return {0.0, 0.0};
+    const Pair *flux = &flow.nodes.viscous_flux[k], *below = flux - flow.grid.stride();
+    return 1.0 / (flow.cell * depth) * FlatOf<double>{flux[-1].x - flux[0].x, below->y - flux[0].y};
+}
+[[gnu::always_inline]] inline FlatOf<Double4> viscous_push(const Flow& flow, Index k, Double4) {
+    const Pair* const flux = &flow.nodes.viscous_flux[k];
+    Double4 right, left, above, below, unused;
+    unzip(flux, right, above), unzip(flux - 1, left, unused), unzip(flux - flow.grid.stride(), unused, below);
+    const Double4 depth = load(&flow.nodes.depth[k]), none = {};
+    return select(depth > 1e-12 * flow.cell, 1.0 / (flow.cell * depth), none) * FlatOf<Double4>{left - right, below - above};
+}
+
+/// What drives grains, by scheme S2: the slope of the free surface instead of the ground's, for their share s of the mass;
+/// the rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes, -g_z h / 2 div(s K); and
+/// the artificial viscosity at bores. Besides the share of their weight that the whole node is given. `bears`: share of the
+/// weight on the bed. [m/s^2]
+template <class Real>
+[[gnu::always_inline]] inline FlatOf<Real> grain_drive(const StructuredBody& body, Index k, const GroundOf<Real>& ground,
+                                                       double bears) {
+    const Flow& flow = body.flow;
+    const GrainsOf<Real> grains = grains_at(body, k, Real{});
+    const FlatOf<Real> surface = surface_at(flow, k, Real{});
+    // Of the free surface less the weight that the node was given; of the surface less that of a uniform depth.
+    FlatOf<Real> drive = ground.across * surface, push = drive;
+    if (body.mapped) {
+        const SteepBed<Real, Curvature::none, false> bed(flow, k);
+        const Real one = Real{} + 1.0, g = Real{} + flow.gravity;
+        const Drive<Real> all = bed.drive(surface.x, surface.y, one), even = bed.drive(bed.bx, bed.by, one);
+        drive = {g * all.x + ground.pull.x, g * all.y + ground.pull.y};
+        push = {g * (all.x - even.x), g * (all.y - even.y)};
+    }
+    const Real half = 0.25 / flow.cell * read<Real>(&flow.nodes.depth[k]) * ground.across, s = grains.share;
+    const Real xx = grains.k.xx - s, yy = grains.k.yy - s, xy = grains.k.xy;
+    const FlatOf<Real> beyond{xx * push.x + xy * push.y + half * grains.change.x,
+                              xy * push.x + yy * push.y + half * grains.change.y};
+    return (Real{} - bears) * (s * drive + beyond) + s * viscous_push(flow, k, Real{});
+}
+
+/// A bed law's friction over a step that would change `before` to `driven` (law/bed_law.h, bed_stop.h); `across`: gravity
+/// that presses on the ground [m/s^2].
+template <class Real, class Law>
+[[gnu::always_inline]] inline FlatOf<Real> braked(const Law& law, const StructuredBody& body, const GroundOf<Real>& ground,
+                                                  Real across, Real depth, const FlatOf<Real>& before,
+                                                  const FlatOf<Real>& driven, const StepTimes& times) {
+    constexpr double kSlowest = 1e-30;  // below any speed, above the root of the smallest number [m/s]
+    const Real none = {}, speed = max(sqrt(driven.dot(driven)), none + kSlowest);
+    const FlatOf<Real> unit = 1.0 / speed * driven;
+    const Real along = ground.slope.dot(unit), steep = sqrt(1.0 + ground.slope.dot(ground.slope)),
+               kappa = sqrt(1.0 + along * along), cosine = 1.0 / steep;
+    const BedStateOf<Real> state{across * steep / kappa, max(depth * cosine, none + 1e-9), kappa, cosine,
+                                 body.gravity, body.density};
+    const Real start = max(none, before.dot(unit)), left = speeds_after(law, state, start, speed, times.kick);
+    return mean_if_stopping(law, state, BrakedOf<Real>{start, speed, left, times.kick, times.drift}) * unit;
+}
+
+}  // namespace frana

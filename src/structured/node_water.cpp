@@ -1,0 +1,129 @@
+#include "structured/node_water.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "structured/node_forces.h"
+
+namespace frana {
+
+/// Water has cells around the nodes of the grid; columns at its sides reach nodes beyond them.
+bool has_water(const StructuredBody& body, Index k) {
+    const Index i = k % body.grid.stride() - kTile, j = k / body.grid.stride() - kTile;
+    return i >= 0 && j >= 0 && i < body.grid.nx() && j < body.grid.ny() && body.water->h[k] > body.water->film;
+}
+
+namespace {
+
+/// Elevation of the water's surface where there is water, else `otherwise`.
+double water_surface_at(const StructuredBody& body, Index k, double otherwise) {
+    const FreeWater& water = *body.water;
+    const StructuredBody::Bound& bound = body.bound[k];
+    const double open = body.pull[k].open;  // 0 where no column has been near
+    const double depth = open > 0.0 ? (bound.volume - bound.released) / (open * body.grid.cell() * body.grid.cell()) : 0.0;
+    return has_water(body, k) ? water.bed[k] + water.h[k] + depth : otherwise;
+}
+
+/// Slope of the surface over the cells on both sides that have water, or over one.
+Vec2 surface_slope(const StructuredBody& body, Index k) {
+    const double here = water_surface_at(body, k, 0.0), nan = std::numeric_limits<double>::quiet_NaN();
+    const auto along = [&](Index step) {
+        const double up = water_surface_at(body, k + step, nan), down = water_surface_at(body, k - step, nan);
+        const int sides = (up == up ? 1 : 0) + (down == down ? 1 : 0);
+        if (sides == 0) return 0.0;
+        return ((up == up ? up : here) - (down == down ? down : here)) / (sides * body.grid.cell());
+    };
+    return {along(1), along(body.grid.stride())};
+}
+
+/// Rate at which water speeds up its slip where grains are not spread evenly over the depth (van den Bout et al. 2021, sec.
+/// 2.4; its share of mobile water, alpha_u, stands above and below): stable only where drag is stronger [1/s].
+double spread_rate(const WaterViscosity& viscosity, const Mixture& mixture, double whole) {
+    return viscosity.kinematic * viscosity.profile * mixture.grains() / (whole * whole);
+}
+
+/// What the columns of a node released in the last step joins the water at `to`, with the node's velocity.
+void release_to(StructuredBody& body, Index k, Index to, double dt) {
+    FreeWater& water = *body.water;
+    const double depth = body.bound[k].released / (body.grid.cell() * body.grid.cell());
+    const FlatOf<double> velocity = stressed(body, k, body.node_mass[k], dt);
+    water.h[to] += depth;
+    water.qx[to] += depth * velocity.x, water.qy[to] += depth * velocity.y;
+}
+
+}  // namespace
+
+Met meet_water(const StructuredBody& body, Index k) {
+    const FreeWater& water = *body.water;
+    const StructuredBody::Bound& bound = body.bound[k];
+    const StructuredBody::Pull& ground = body.pull[k];
+    const double area = ground.open * body.grid.cell() * body.grid.cell();
+    Met met{body.node_mass[k] - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
+    if (!has_water(body, k)) return met;
+    met.support = water.support(met.mass / (area * met.depth), met.depth, water.h[k]);
+    met.slope = surface_slope(body, k);
+    met.lift = -met.support * (ground.across * met.slope + Vec2(ground.x, ground.y));
+    return met;
+}
+
+Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,
+          StructuredTally& tally) {
+    FreeWater& water = *body.water;
+    const StructuredBody::Bound& bound = body.bound[k];
+    const double area = body.grid.cell() * body.grid.cell();  // the water's: what one gives the other gets
+    const double h = water.h[k], whole = met.depth + h, solids = bound.solids / area;
+    const double confined = std::max(0.0, met.depth - solids), fluid = confined + h;
+    const Mixture mixture{solids / whole, bound.structured / bound.solids, confined / fluid};
+    Phase c{met.mass / area, before, (met.mass / area / dt) * (driven - before)};
+    Phase u{water.by.material.fluid_density * h, Vec2(water.qx[k], water.qy[k]) / h};
+    // Of what drives the water friction takes a part, and all of it at most.
+    const Vec2 falls = -body.pull[k].across * met.slope;
+    const double drive = falls.norm(),
+                 brake = quadratic_drag(water.friction, {body.gravity, h, 1.0}) * u.velocity.squaredNorm() +
+                         linear_drag(water.viscosity, whole) * u.velocity.norm();
+    const Vec2 carried = drive > brake ? Vec2(falls * (1.0 - brake / drive)) : Vec2(0, 0);
+    const double flux = (mixture.bound() * c.velocity + mixture.free() * u.velocity).norm();
+    const Exchange by{whole * water.drag.coefficient(mixture, flux), water.by.material.power,
+                      virtual_mass(water.by.virtual_mass, water.by.material, mixture, whole), carried};
+    const Vec2 slip = before - u.velocity;
+    if (water.viscosity.solid_gradient) {
+        const double rate = spread_rate(water.viscosity, mixture, whole), reduced = c.mass * u.mass / (c.mass + u.mass);
+        const double holds = by.drag * (by.power == 2 ? slip.norm() : 1.0) / reduced;
+        if (rate > holds)
+            ++tally.outrun;
+        else
+            u.force = -u.mass * rate * slip;
+    }
+    exchange(by, dt, c, u);
+    tally.drag += met.mass * along_ground(body.pull[k], driven - c.velocity, 0.5 * (slip + c.velocity - u.velocity));
+    water.qx[k] = h * u.velocity.x(), water.qy[k] = h * u.velocity.y();
+    return c.velocity;
+}
+
+void release_to_nodes(StructuredBody& body, double dt) {
+    const TileGrid& grid = body.grid;
+    const auto each = [&](Index tile, auto&& visit) {
+        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+        for (Index j = j0; j < j0 + kTile; ++j)
+            for (Index i = i0; i < i0 + kTile; ++i)
+                if (body.bound[grid.at(i, j)].released > 0.0) visit(i, j);
+    };
+    const auto inside = [&](Index i, Index j) { return i >= 0 && j >= 0 && i < grid.nx() && j < grid.ny(); };
+    for_each_work_tile(body.active, [&](Index, Index tile) {
+        each(tile, [&](Index i, Index j) {
+            if (inside(i, j)) release_to(body, grid.at(i, j), grid.at(i, j), dt);
+        });
+    });
+    for (const Index tile : body.active.work) {
+        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+        if (inside(i0, j0) && inside(i0 + kTile - 1, j0 + kTile - 1)) continue;
+        each(tile, [&](Index i, Index j) {
+            if (inside(i, j)) return;
+            const Index a = std::clamp<Index>(i, 0, grid.nx() - 1), b = std::clamp<Index>(j, 0, grid.ny() - 1);
+            release_to(body, grid.at(i, j), grid.at(a, b), dt);
+        });
+    }
+}
+
+}  // namespace frana

@@ -1,0 +1,34 @@
+#pragma once
+// What free water and the columns of a node do to one another.
+#include "structured/structured_flow.h"
+
+namespace frana {
+
+/// Product of two velocities along the ground [m^2/s^2].
+inline double along_ground(const StructuredBody::Pull& ground, const Vec2& a, const Vec2& b) {
+    const Vec2 slope(ground.slope_x, ground.slope_y);
+    return a.dot(b) + slope.dot(a) * slope.dot(b);
+}
+
+/// A node's columns as they meet its water.
+struct Met {
+    double mass;         ///< without what was released [kg]
+    double depth;        ///< of grains and confined water [m]
+    double support = 0;  ///< share of the weight that water takes off the bed
+    Vec2 slope{0, 0};    ///< of the water's surface
+    Vec2 lift{0, 0};     ///< acceleration by the pressure of the water [m/s^2]
+};
+
+/// Whether there is free water at a node.
+bool has_water(const StructuredBody& body, Index k);
+/// A node's columns, without what they released in the last step, and what the water bears of them.
+Met meet_water(const StructuredBody& body, Index k);
+/// Drag and virtual mass between a node's columns and its water over a step that brought the columns from `before`
+/// to `driven`; returns their velocity. What both lose is the impulse times the mean slip.
+Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,
+          StructuredTally& tally);
+/// What the columns released in the last step joins the water, with the velocity of their nodes; of nodes beyond the grid's
+/// sides, which have no water, in one order at the nearest that has.
+void release_to_nodes(StructuredBody& body, double dt);
+
+}  // namespace frana

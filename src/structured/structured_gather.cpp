@@ -1,0 +1,252 @@
+// What columns take from the nodes in a step of structured solids, and what they make of it: four go side by side.
+#include <algorithm>
+#include <cmath>
+
+#include "base/touch.h"
+#include "grid/stencils.h"
+#include "solver/tile_points.h"
+#include "structured/structured_flow.h"
+
+namespace frana {
+namespace {
+
+using Moved = StructuredBody::Moved;
+
+/// What a column takes from its nodes, and how it changes there [1/cell].
+struct Taken {
+    Double4 mean, slope_x, slope_y;
+};
+
+[[gnu::always_inline]] inline Taken take(const Moved* nodes, Index stride, const Reach& r) {
+    Taken taken{};
+    for (int j = 0; j < 3; ++j) {
+        const Moved* const first = nodes + r.node + j * stride;
+        const Double4 a = load(first), b = load(first + 1), c = load(first + 2);
+        const Double4 row = r.wx[0] * a + r.wx[1] * b + r.wx[2] * c;
+        taken.mean += r.wy[j] * row;
+        taken.slope_x += r.wy[j] * (r.sx[0] * a + r.sx[1] * b + r.sx[2] * c);
+        taken.slope_y += r.sy[j] * row;
+    }
+    return taken;
+}
+
+/// Four columns after a step, number by number.
+struct Batch {
+    Double4 vx, vy, pull, layer, cxx, cyx, cxy, cyy;
+};
+
+[[gnu::always_inline]] inline Batch take_four(const StructuredBody& body, Index p, int lanes) {
+    const Stencils sx(load(&body.points.x[p], lanes)), sy(load(&body.points.y[p], lanes));
+    const double per_cell = 1.0 / body.grid.cell();
+    Taken taken[4] = {};
+    for (int n = 0; n < lanes; ++n)
+        taken[n] = take(body.moved.data(), body.grid.stride(), Reach(sx, sy, body.grid.stride(), n));
+    Double4 mean[4], x[4], y[4];
+    transpose(taken[0].mean, taken[1].mean, taken[2].mean, taken[3].mean, mean);
+    transpose(taken[0].slope_x, taken[1].slope_x, taken[2].slope_x, taken[3].slope_x, x);
+    transpose(taken[0].slope_y, taken[1].slope_y, taken[2].slope_y, taken[3].slope_y, y);
+    return {mean[0],         mean[1],         mean[2],         mean[3],
+            per_cell * x[0], per_cell * x[1], per_cell * y[0], per_cell * y[1]};
+}
+
+/// An edge of four domains goes with the material.
+[[gnu::always_inline]] inline void stretch(double* rx, double* ry, const Batch& b, double dt, int lanes) {
+    const Double4 x = load(rx, lanes), y = load(ry, lanes);
+    store(rx, x + dt * (b.cxx * x + b.cxy * y), lanes);
+    store(ry, y + dt * (b.cyx * x + b.cyy * y), lanes);
+}
+
+/// Stress, damage and the column's own depth, which changes with its area: exp(-div dt) to second order.
+/// Returns the work of the strains on the structure [J].
+template <bool kWater, bool kHexagon>
+[[gnu::always_inline]] inline Double4 strain_four(StructuredBody& body, const Batch& b, Index p, int lanes,
+                                               double dt) {
+    StructuredPoints& q = body.points;
+    const Double4 half = (0.5 * dt) * (b.cxx + b.cyy), damage = load(&q.damage[p], lanes);
+    const Double4 depth = load(&q.depth[p], lanes) * ((1.0 - half) / (1.0 + half));
+    store(&q.depth[p], depth, lanes);
+    const Mask4 whole = damage < 1.0;
+    const Double4 none = {};
+    if (!any(whole)) return none;
+    const auto if_whole = [&](Double4 a) { return select(whole, a, none); };
+    ColumnStateOf<Double4> state{{if_whole(load(&q.xx[p], lanes)), if_whole(load(&q.yy[p], lanes)),
+                                  if_whole(load(&q.zz[p], lanes)), if_whole(load(&q.xy[p], lanes))},
+                                 damage,
+                                 load(&q.strain[p], lanes)};
+    const auto step =
+        ColumnStepOf<Double4>::of(if_whole(b.cxx), if_whole(b.cxy), if_whole(b.cyx), if_whole(b.cyy), dt);
+    Double4 density = all(body.density);
+    if constexpr (kWater) density = load(&q.mass[p], lanes) / max(load(&q.volume[p], lanes), all(1e-300));
+    const Double4 weight = if_whole(-0.5 * density * b.pull * depth);
+    const ColumnStressOf<Double4> old = state.stress;
+    body.law.update_as<kHexagon>(step, weight, load(&q.cohesion[p], lanes), state);
+    store(&q.xx[p], state.stress.xx, lanes), store(&q.yy[p], state.stress.yy, lanes);
+    store(&q.zz[p], state.stress.zz, lanes), store(&q.xy[p], state.stress.xy, lanes);
+    store(&q.damage[p], state.damage, lanes), store(&q.strain[p], state.strain, lanes);
+    const ColumnStressOf<Double4>& now = state.stress;
+    const Double4 work = (old.xx + now.xx) * step.xx + (old.yy + now.yy) * step.yy + 2.0 * (old.xy + now.xy) * step.xy;
+    return (0.5 * body.share) * load(&q.volume[p], lanes) * (1.0 - damage) * work;
+}
+
+/// A column gives away what it released in the last step, and notes what breaking releases in this one.
+void release(StructuredBody& body, Index p, double damage_before, StructuredSums& sums) {
+    StructuredPoints& q = body.points;
+    const double gone = q.released[p];
+    if (gone > 0.0) {
+        const double left = q.volume[p] - gone;
+        q.mass[p] -= body.water->by.material.fluid_density * gone;
+        q.depth[p] *= left / q.volume[p], q.volume[p] = left;
+        sums.released += gone;
+    }
+    const double whole = 1.0 - damage_before;
+    q.released[p] = whole > 0.0 ? q.confined[p] * ((q.damage[p] - damage_before) / whole) : 0.0;
+    q.confined[p] -= q.released[p];
+}
+
+/// StructuredSums of the lanes, in a fixed order.
+struct Sums {
+    Double4 mass = {}, kinetic = {}, damaged = {}, px = {}, py = {}, speeds = {}, stored = {}, worked = {};
+    Double4 max_speed2 = {}, max_wave = {};
+    StructuredSums rare;
+    StructuredSums columns() const {
+        StructuredSums s = rare;
+        s.mass = sum(mass), s.kinetic = sum(kinetic), s.damaged = sum(damaged), s.speeds = sum(speeds);
+        s.momentum = Vec2(sum(px), sum(py)), s.stored = sum(stored), s.worked = sum(worked);
+        s.max_speed2 = largest(max_speed2), s.max_wave = largest(max_wave);
+        return s;
+    }
+};
+
+/// Elastic energy of the structure of four columns in the plane [J].
+[[gnu::always_inline]] inline Double4 stored(const StructuredBody& body, Index p, int lanes, Double4 damage) {
+    const StructuredPoints& q = body.points;
+    const ColumnMaterial& of = body.law.material();
+    const Double4 xx = load(&q.xx[p], lanes), yy = load(&q.yy[p], lanes), xy = load(&q.xy[p], lanes);
+    const Double4 twice = xx * xx + yy * yy - (2.0 * of.poisson) * xx * yy + (2.0 * (1.0 + of.poisson)) * xy * xy;
+    return (0.5 * body.share / of.young) * load(&q.volume[p], lanes) * (1.0 - damage) * twice;
+}
+
+/// The ground at the node nearest to a column.
+const StructuredBody::Pull& ground_below(const StructuredBody& body, Index p) {
+    const StructuredPoints& q = body.points;
+    return body.pull[body.grid.at(static_cast<Index>(std::floor(q.x[p] + 0.5)), static_cast<Index>(std::floor(q.y[p] + 0.5)))];
+}
+
+/// Columns leave beyond the outer nodes, and where there is no ground: whether this one does, which is then booked.
+bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
+    const StructuredPoints& q = body.points;
+    const bool inside = q.x[p] >= 0.0 && q.y[p] >= 0.0 &&
+                        q.x[p] <= static_cast<double>(body.grid.nx()) - 1.0 &&
+                        q.y[p] <= static_cast<double>(body.grid.ny()) - 1.0;
+    if (inside && !(ground_below(body, p).exit > 0.0)) return false;
+    const double m = q.mass[p];
+    const Vec2 v(q.vx[p], q.vy[p]);
+    body.gone[static_cast<std::size_t>(p)] = 1;
+    sums.left_mass += m, sums.left_momentum += m * v;
+    sums.left_confined += q.confined[p] + q.released[p];
+    sums.left_energy += m * (0.5 * v.squaredNorm() + body.gravity * (inside ? ground_below(body, p).elevation : 0.0));
+    return true;
+}
+
+/// Sums of four columns, and what bounds the next step.
+[[gnu::always_inline]] inline void count(StructuredBody& body, Index p, int lanes, const Batch& b, Sums& sums) {
+    const StructuredPoints& q = body.points;
+    const Double4 x = load(&q.x[p], lanes), y = load(&q.y[p], lanes), damage = load(&q.damage[p], lanes),
+                  depth = load(&q.depth[p], lanes), speed2 = b.vx * b.vx + b.vy * b.vy, none = {};
+    Double4 m = load(&q.mass[p], lanes), held = stored(body, p, lanes, damage);
+    Mask4 here = m > 0.0;
+    if (!(std::abs(sum(x + y + speed2 + held + depth)) < 1e300)) {
+        for (int n = 0; n < lanes; ++n)
+            if (!std::isfinite(x[n] + y[n] + speed2[n] + held[n] + depth[n])) sums.rare.bad = p + n;
+        return;
+    }
+    const double x_max = static_cast<double>(body.grid.nx() - 1), y_max = static_cast<double>(body.grid.ny() - 1);
+    if (body.has_exits || any((x < 0.0) | (x > x_max) | (y < 0.0) | (y > y_max)))
+        for (int n = 0; n < lanes; ++n)
+            if (leaves(body, p + n, sums.rare)) m[n] = held[n] = 0.0, here[n] = 0;
+    const Double4 speed = sqrt(speed2), high = select(damage < 1.0, max(b.layer, depth), b.layer);
+    sums.mass += m, sums.kinetic += (0.5 * m) * speed2, sums.damaged += m * damage;
+    sums.px += m * b.vx, sums.py += m * b.vy, sums.speeds += m * speed, sums.stored += held;
+    sums.max_speed2 = max(sums.max_speed2, select(here, speed2, none));
+    sums.max_wave = max(sums.max_wave, select(here, speed + sqrt(2.0 * b.pull * high), none));
+}
+
+/// Four columns at once.
+template <bool kGrains, bool kWater, bool kHexagon>
+[[gnu::always_inline]] inline void gather_columns(StructuredBody& body, Index p, int lanes, double dt, Sums& sums) {
+    StructuredPoints& q = body.points;
+    const double cells = dt / body.grid.cell();
+    const Batch b = take_four(body, p, lanes);
+    store(&q.vx[p], b.vx, lanes), store(&q.vy[p], b.vy, lanes);
+    store(&q.cxx[p], b.cxx, lanes), store(&q.cxy[p], b.cxy, lanes);
+    store(&q.cyx[p], b.cyx, lanes), store(&q.cyy[p], b.cyy, lanes);
+    store(&q.pull[p], b.pull, lanes), store(&q.layer[p], b.layer, lanes);
+    store(&q.x[p], load(&q.x[p], lanes) + cells * b.vx, lanes);
+    store(&q.y[p], load(&q.y[p], lanes) + cells * b.vy, lanes);
+    if constexpr (kGrains) {
+        stretch(&q.r1x[p], &q.r1y[p], b, dt, lanes);
+        stretch(&q.r2x[p], &q.r2y[p], b, dt, lanes);
+    }
+    const Double4 damage = load(&q.damage[p], lanes);
+    sums.worked += strain_four<kWater, kHexagon>(body, b, p, lanes, dt);
+    if constexpr (kWater)
+        for (int lane = 0; lane < lanes; ++lane) release(body, p + lane, damage[lane], sums.rare);
+    count(body, p, lanes, b, sums);
+}
+
+/// Reads ahead (base/touch.h) what a batch of columns changes.
+template <bool kGrains>
+void touch_columns(const StructuredPoints& q, Index first, Index end) {
+    const Column* const list[] = {&q.x,  &q.y,      &q.vx,     &q.vy,       &q.cxx,  &q.cxy,   &q.cyx,  &q.cyy, &q.pull,
+                                 &q.xx, &q.yy,     &q.zz,     &q.xy,       &q.mass, &q.layer, &q.depth, &q.volume,
+                                 &q.damage, &q.strain, &q.cohesion, &q.r1x, &q.r1y, &q.r2x,   &q.r2y};
+    constexpr int kWithGrains = sizeof list / sizeof list[0], kCount = kGrains ? kWithGrains : kWithGrains - 4;
+    for (Index p = first; p < end; p += kCacheLine / sizeof(double))
+        for (int n = 0; n < kCount; ++n) touch(list[n]->data() + p);
+}
+
+template <bool kGrains, bool kWater, bool kHexagon>
+StructuredSums gather_tile(StructuredBody& body, Index n, double dt) {
+    constexpr Index kBatch = 128;
+    const Index end = body.active.begin[n + 1];
+    Sums sums;
+    for_each_row_of_full(body.grid, body.active, n,
+                         [&](Index k, Index count) { touch(body.moved.data() + k, count); });
+    for (Index first = body.active.begin[n]; first < end; first += kBatch) {
+        const Index last = std::min(first + kBatch, end);
+        touch_columns<kGrains>(body.points, first, last);
+        for_each_four(first, last, [&](Index p, int lanes) {
+            gather_columns<kGrains, kWater, kHexagon>(body, p, lanes, dt, sums);
+        });
+    }
+    return sums.columns();
+}
+
+}  // namespace
+
+void press(StructuredBody& body) {
+    StructuredPoints& q = body.points;
+    for_each_tile(body.active, [&](Index n) {
+        for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
+            q.pull[p] = take_four(body, p, 1).pull[0];
+            q.zz[p] = -0.5 * body.density * q.pull[p] * q.depth[p];
+        }
+    });
+}
+
+void gather(StructuredBody& body, double dt) {
+    with_kinds(body, [&](auto grains, auto water) {
+        const auto as = [&](auto hexagon) {
+            for_each_tile(body.active, [&](Index n) {
+                body.sums[static_cast<std::size_t>(n)] =
+                    gather_tile<grains.value, water.value, hexagon.value>(body, n, dt);
+            });
+        };
+        if (body.law.is_hexagon())
+            as(std::true_type{});
+        else
+            as(std::false_type{});
+    });
+}
+
+}  // namespace frana
