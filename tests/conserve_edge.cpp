@@ -105,6 +105,31 @@ TEST_CASE("A lake at rest that reaches across the window's edge creeps by less t
     CHECK(run.points()->momentum_residual().norm() < 1e-12 * force);
 }
 
+TEST_CASE("A window in the middle of a lake rests between the columns around it, corners too", "[stages]") {
+    Scene scene = scene_on(19, 19, 1.0, [](double, double) { return 0.0; });
+    scene.particles = {};
+    fill(scene, [](double, double) { return 1.0; });
+    scene.sides = Sides::wall;
+    SolidStage stage;
+    stage.from = 0.05;
+    stage.window = {6, 7, 12, 11};
+    stage.cell = kCell;
+    stage.spacing = 0.5 * kCell;
+    stage.law = solid::Fluid{};
+    scene.solid = stage;
+    StagedRun run(scene);
+    run_to(run, 0.05);
+    const MaterialPoints& q = run.points()->body().points;
+    REQUIRE(q.count() == 28 * 20 * 4);
+    std::map<std::int64_t, Vec3> start;
+    for (Index p = 0; p < q.count(); ++p) start[q.id[p]] = run.points()->position(p);
+    run_to(run, 1.05);
+    REQUIRE(q.count() == 28 * 20 * 4);
+    double worst = 0.0;
+    for (Index p = 0; p < q.count(); ++p) worst = std::max(worst, (run.points()->position(p) - start.at(q.id[p])).norm());
+    CHECK(worst < 0.02 * kCell);  // 1.5 cells without what both sides show each other
+}
+
 TEST_CASE("A uniform flow crosses the window's edge within 2 % of its depth", "[stages]") {
     // Level, where nothing changes, and down 1 in 5 without friction, where it stays as deep and speeds up. What is left
     // is the lattice of the points, seen through the columns' shape functions. (Rows before the 16th feel the sheet's end,
@@ -142,4 +167,27 @@ TEST_CASE("Columns that flow in have their pressure at the bed within 5 % right 
         for (std::size_t k = 21; k <= 24; ++k) pressure += rows[k].pressure, points += rows[k].points;
     }
     CHECK(pressure / (points * whole) == Approx(1.0).epsilon(slope > 0.0 ? 0.05 : 0.01));
+}
+
+TEST_CASE("Momentum closes to round-off at an edge with a barrier across it, with every transfer, and for sand", "[stages]") {
+    Scene scene = sheet(0.2, 1.0, 4.0);
+    Barrier post;
+    post.outline.parts.emplace_back();
+    post.outline.parts[0].rings.push_back({{18.0, 1.5}, {22.0, 1.5}, {22.0, 2.5}, {18.0, 2.5}});
+    post.height = 3.0;
+    post.friction = 0.3;
+    scene.barriers.push_back(post);
+    scene.solid->bed_friction = 0.2;
+    const auto law = GENERATE(0, 1, 2, 3);
+    CAPTURE(law);
+    scene.solid->transfer = law == 0 ? Transfer::tpic : law == 1 ? Transfer::apic : Transfer::flip;
+    scene.solid->blending = 0.2;
+    if (law == 3) scene.solid->law = solid::DruckerPrager::of(solid::Elastic::of(2e6, 0.3), 0.5, 0.0);
+    StagedRun run(scene);
+    const double start = run.status().momentum[0];
+    CHECK(worst_momentum(run, 0.5, start, 4.0) < 1e-12);
+    const SolidStatus& points = run.points()->status();
+    CHECK(points.beside_impulse.norm() > 0.001 * points.momentum.norm());
+    CHECK(run.points()->momentum_residual().norm() < 1e-12 * points.momentum.norm());
+    CHECK(run.loads()->barriers[0].faces.size() > 0);
 }

@@ -270,14 +270,27 @@ private:
             const Vec3 momentum = seeds.mass[p] * (seeds.velocity[p] + dt * body.gravity);
             const Mat3 force = dt * seeds.pressure[p] * seeds.mass[p] / body.density * Mat3::Identity();
             const Vec3 place = (x - origin) / h;
-            if (seen(body, place)) beside.seeds.push_back({place, seeds.mass[p], momentum, force, {}});
+            if (felt(body, place)) beside.seeds.push_back({place, seeds.mass[p], momentum, force, {}});
             for (const Image& image : Images(body.surfaces, beside.near[p], x, h)) {
                 const Vec3 shown = (image.place - origin) / h;
-                if ((shown - place).cwiseAbs().maxCoeff() > kFarthestImage || !seen(body, shown)) continue;
+                if ((shown - place).cwiseAbs().maxCoeff() > kFarthestImage || !felt(body, shown)) continue;
                 beside.images.push_back({shown, seeds.mass[p], image.motion * momentum,
                                          image.motion * force * image.turn.transpose(), image});
             }
         }
+    }
+
+    /// Whether points have given to a node of a stencil in this step. What other tiles hold is old.
+    static bool felt(const SolidBody& body, const Vec3& place) {
+        if (!seen(body, place)) return false;
+        const Index* at[3];
+        for (int axis = 0; axis < 3; ++axis)
+            at[axis] = body.grid.place(axis, static_cast<Index>(std::floor(place[axis] - 0.5)));
+        for (int n = 0; n < 27; ++n) {
+            const Index node = at[0][n % 3] + at[1][n / 3 % 3] + at[2][n / 9];
+            if (body.active.in_work[static_cast<std::size_t>(node / kTileNodes)] && body.nodes[node].m > 0.0) return true;
+        }
+        return false;
     }
 
     /// Tiles of the work list that have nodes of a stencil.
