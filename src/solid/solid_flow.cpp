@@ -39,7 +39,8 @@ SolidBody::SolidBody(const SolidScene& scene)
       surfaces(scene.surfaces),
       impulse(scene.surfaces.size(), Vec3::Zero()),
       gravity(scene.gravity),
-      averaging(scene.averaging) {
+      averaging(scene.averaging),
+      density(scene.density) {
     if (!surfaces.empty()) real = LazyArray<Node>(grid.size());
     for (std::size_t s = 0; s < surfaces.size(); ++s)
         if (surfaces[s].is_barrier()) barriers |= SurfaceSet{1} << s;
@@ -85,10 +86,11 @@ void SolidFlow::place(const SolidSeeds& seeds) {
         const double mass = seeds.mass[n], speed = seeds.velocity[n].norm();
         for (int k = 0; k < 3; ++k) q.x[k][p] = x[k], q.v[k][p] = seeds.velocity[n][k];
         for (Column& column : q.gradient) column[p] = 0.0;
-        for (int k = 0; k < q.states; ++k) q.state[k][p] = 0.0;
+        double state[7];
+        const double energy = kernel_->press(seeds.pressure.empty() ? 0.0 : seeds.pressure[n], q.j[p], state);
+        for (int k = 0; k < q.states; ++k) q.state[k][p] = state[k];
         q.mass[p] = mass;
         q.rest_volume[p] = mass / density_;
-        q.j[p] = kernel_->compressed(seeds.pressure.empty() ? 0.0 : seeds.pressure[n]);
         q.id[p] = next_id_++;
         status_.momentum_given += mass * seeds.velocity[n];
         status_.momentum += mass * seeds.velocity[n];
@@ -96,7 +98,7 @@ void SolidFlow::place(const SolidSeeds& seeds) {
         status_.mass += mass;
         const double kinetic = 0.5 * mass * speed * speed,
                      potential = -mass * body_.gravity.dot(seeds.position[n]),
-                     stored = q.rest_volume[p] * kernel_->stored(q.j[p]);
+                     stored = q.rest_volume[p] * energy;
         status_.kinetic += kinetic, status_.potential += potential, status_.stored += stored;
         given += kinetic + potential + stored;
         status_.speeds += mass * speed;
@@ -231,7 +233,10 @@ void SolidFlow::advance(double until) {
     body_.kept_share = blending_ > 0.0 ? std::exp(-dt / blending_) : 0.0;
     timed_("clear", [&] { kernel_->clear(body_); });
     timed_("scatter", [&] { kernel_->scatter(body_, dt); });
+    const bool beside = !body_.beside.material.empty();
+    if (beside) timed_("beside", [&] { kernel_->scatter_beside(body_, status_.time, dt); });
     timed_("images", [&] { kernel_->scatter_images(body_, dt); });
+    if (beside) timed_("beside", [&] { kernel_->scatter_images_beside(body_); });
     timed_("nodes", [&] { kernel_->move_nodes(body_); });
     timed_("gather", [&] { kernel_->gather(body_, dt); });
     status_.time = dt >= until - status_.time ? until : status_.time + dt;
@@ -260,6 +265,7 @@ void SolidFlow::book(double dt) {
     for (const std::vector<Vec3>* list : {&body_.tile_impulse, &body_.point_impulse})
         for (std::size_t n = 0; n < list->size(); ++n) body_.impulse[n % body_.surfaces.size()] += (*list)[n];
     if (body_.barriers != 0) book_pushes();
+    for (const Vec3& given : body_.beside.tile_impulse) status_.beside_impulse += given;
     status_.weight_impulse += dt * (all.mass + all.left_mass) * body_.gravity;
     status_.step += 1;
     status_.dt = dt;
@@ -321,7 +327,7 @@ Mat3 SolidFlow::gradient(Index p) const {
 }
 
 Vec3 SolidFlow::momentum_residual() const {
-    Vec3 given = status_.momentum_given + status_.weight_impulse;
+    Vec3 given = status_.momentum_given + status_.weight_impulse + status_.beside_impulse;
     for (const Vec3& impulse : body_.impulse) given += impulse;
     return status_.momentum + status_.momentum_left - given;
 }

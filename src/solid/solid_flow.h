@@ -14,16 +14,24 @@
 
 namespace frana {
 
-/// Material points at the start, equal lengths; the state of the law starts at zero but for J.
+/// Material points at the start, equal lengths.
 struct SolidSeeds {
     std::vector<Vec3> position;    ///< [m]
     std::vector<Vec3> velocity;    ///< [m/s]
     std::vector<double> mass;      ///< [kg]
-    std::vector<double> pressure;  ///< that fluids start with [Pa], or empty: none
+    std::vector<double> pressure;  ///< that they start with, the same from all sides [Pa], or empty: none
 
     void add(const Vec3& x, const Vec3& v, double m, double p = 0.0) {
         position.push_back(x), velocity.push_back(v), mass.push_back(m), pressure.push_back(p);
     }
+};
+
+/// Material beside the points that another model carries. It moves on at its velocity.
+struct MaterialBeside {
+    SolidSeeds seeds;
+    double time = 0.0;  ///< when it is at its places [s]
+
+    bool empty() const { return seeds.mass.empty(); }
 };
 
 struct SolidScene {
@@ -54,12 +62,13 @@ struct SolidStatus {
     double energy_left = 0.0;            ///< kinetic, potential and stored, carried out [J]
     double energy_given = 0.0;           ///< the same at the start and with what was added since [J]
     Vec3 weight_impulse{0, 0, 0};        ///< of gravity since the start [kg m/s]
+    Vec3 beside_impulse{0, 0, 0};        ///< of material beside the points since the start [kg m/s]
     Vec3 centre{0, 0, 0};                ///< of mass [m]
     double kinetic = 0.0;                ///< sum of m v^2 / 2 [J]
     double potential = 0.0;              ///< sum of -m gravity . x [J]
     double stored = 0.0;                 ///< of deformation, that unloading gives back [J]
     double friction = 0.0;               ///< lost along surfaces since the start [J]
-    double pushed = 0.0;                 ///< given by surfaces' pushes since the start; impacts lose [J]
+    double pushed = 0.0;                 ///< given by pushes of surfaces and of material beside; impacts lose [J]
     double material = 0.0;               ///< lost to the law since the start: yielding, viscosity [J]
     double speeds = 0.0;                 ///< sum of m |v| [kg m/s]
     double volume = 0.0;                 ///< sum of J V_0 [m^3]
@@ -89,6 +98,10 @@ struct SolidSums {
 /// All that the kernels share.
 struct SolidBody {
     explicit SolidBody(const SolidScene& scene);
+    /// Mass and momentum; then mean J and velocity.
+    struct Node {
+        double m, x, y, z;
+    };
     SpaceGrid grid;
     MaterialPoints points;
     ActiveTiles active;
@@ -100,11 +113,25 @@ struct SolidBody {
 
     std::vector<NodeBox> boxes;  ///< of the step: nodes that the points of each particle tile touch
 
-    /// Mass and momentum; then mean J and velocity.
-    struct Node {
-        double m, x, y, z;
-    };
     LazyArray<Node> nodes, real;  ///< real: without images, near surfaces
+    /// Material beside the points, which gives to the nodes like them. `real` has it too.
+    struct Beside {
+        MaterialBeside material;
+        std::vector<SurfaceSet> near;    ///< surfaces that may show images of each of its seeds
+        /// Of the step, seeds and images: a place [cells], mass and momentum [kg, kg m/s], impulse of the pressure [J s],
+        /// and the seed's image where one is cut (surfaces.h).
+        struct Shown {
+            Vec3 place;
+            double mass;
+            Vec3 momentum;
+            Mat3 force;
+            Image image;
+        };
+        std::vector<Shown> seeds, images;
+        LazyArray<Node> own;                ///< of the points alone, in tiles that it reaches
+        std::vector<std::uint8_t> reaches;  ///< of the step, per tile of the work list: 1 where it gives to a node
+        std::vector<Vec3> tile_impulse;     ///< of the step, what it gave to the points, per tile of the work list
+    };
     /// Of transfers that keep velocities. First m J and the momentum that points brought, without images; then
     /// what v_p / kept_share grows by: the new velocity less kept_share times that brought.
     LazyArray<Node> kept;
@@ -121,8 +148,10 @@ struct SolidBody {
     /// particle tile that they put back.
     std::vector<std::vector<FacePush>> node_pushes, point_pushes;
     std::vector<SolidSums> sums;  ///< of the step, per particle tile
+    Beside beside;
     Vec3 gravity;
     double averaging;
+    double density;  ///< without stress [kg/m^3]
 };
 
 /// The loops of a step, made for one law and transfer.
@@ -132,15 +161,17 @@ public:
     virtual void clear(SolidBody& body) const = 0;
     virtual void scatter(SolidBody& body, double dt) const = 0;
     virtual void scatter_images(SolidBody& body, double dt) const = 0;
+    /// Material beside the points at `time`: before the images, and after them its own.
+    virtual void scatter_beside(SolidBody& body, double time, double dt) const = 0;
+    virtual void scatter_images_beside(SolidBody& body) const = 0;
     virtual void move_nodes(SolidBody& body) const = 0;
     virtual void gather(SolidBody& body, double dt) const = 0;
     virtual double sound_speed(double density) const = 0;
     virtual double explicit_viscosity() const = 0;
     virtual int states() const = 0;
-    /// J of a point at rest under the pressure p.
-    virtual double compressed(double p) const = 0;
-    /// Energy of a point with that J and no other state, per volume without stress [J/m^3].
-    virtual double stored(double j) const = 0;
+    /// J and state of a point at rest under the pressure p, the same from all sides; and the energy that it then stores,
+    /// per volume without stress [J/m^3].
+    virtual double press(double p, double& j, double* state) const = 0;
 };
 
 std::unique_ptr<SolidKernel> make_solid_kernel(const SolidLaw& law, Affine affine, bool keeps);
@@ -154,6 +185,9 @@ public:
     void advance(double until);
     /// More material, between two steps. Its points get the next numbers.
     void add(const SolidSeeds& seeds);
+    /// Material that points feel from now on as they feel each other: nodes that they reach have its mass, motion and
+    /// pressure too. It goes on at its velocity whatever the points do; what it gives them is booked.
+    void stand_beside(MaterialBeside material);
     /// Sets the clock of a flow that has not begun to move [s].
     void start_at(double time);
     /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
@@ -172,7 +206,7 @@ public:
     }
     /// Cauchy stress at a point [Pa].
     Sym3 stress(Index p) const;
-    /// Momentum + carried out - given with points - impulses of gravity and surfaces: round-off [kg m/s]
+    /// Momentum + carried out - given with points - impulses of gravity, surfaces and material beside: round-off [kg m/s]
     Vec3 momentum_residual() const;
     /// Angular momentum about the origin; with apic that of the affine motion too [kg m^2/s].
     Vec3 angular_momentum() const;

@@ -13,7 +13,7 @@ void keep_status(Archive& archive, SolidStatus& s) {
     std::vector<double*> numbers = {&s.time,    &s.dt,        &s.mass,   &s.mass_left, &s.energy_left,
                                     &s.kinetic, &s.potential, &s.speeds, &s.volume,    &s.max_speed,
                                     &s.stored,  &s.friction,  &s.pushed, &s.material,  &s.energy_given};
-    for (Vec3* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &s.weight_impulse, &s.centre})
+    for (Vec3* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &s.weight_impulse, &s.beside_impulse, &s.centre})
         for (int k = 0; k < 3; ++k) numbers.push_back(&(*v)[k]);
     archive.numbers("sums", numbers);
 }

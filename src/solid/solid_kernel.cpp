@@ -51,15 +51,13 @@ public:
     double sound_speed(double density) const override { return law_.sound_speed(density); }
     double explicit_viscosity() const override { return law_.explicit_viscosity(); }
     int states() const override { return Law::kStates; }
-    double compressed(double p) const override {
+    double press(double p, double& j, double* state) const override {
+        std::fill_n(state, Law::kStates, 0.0);
         if constexpr (Law::kAverages)
-            return 1.0 - p / law_.bulk;
+            j = 1.0 - p / law_.bulk;
         else
-            return 1.0;
-    }
-    double stored(double j) const override {
-        const double none[7] = {};
-        return law_.stored(j, none);
+            j = press_solid(elastic_of(law_), p, state);
+        return law_.stored(j, state);
     }
 
     void clear(SolidBody& body) const override {
@@ -117,6 +115,29 @@ public:
         });
     }
 
+    /// One thread: it is a thin layer. Nodes keep apart what the points alone gave them.
+    void scatter_beside(SolidBody& body, double time, double dt) const override {
+        SolidBody::Beside& beside = body.beside;
+        beside.reaches.assign(body.active.work.size(), 0);
+        beside.tile_impulse.assign(body.active.work.size(), Vec3::Zero());
+        list_beside(body, time, dt);
+        for (const auto* list : {&beside.seeds, &beside.images})
+            for (const auto& shown : *list) mark_reached(body, shown.place, beside.reaches);
+        const auto copy = [&](LazyArray<SolidBody::Node>& to) {
+            for_each_work_tile(body.active, [&](Index n, Index tile) {
+                if (beside.reaches[static_cast<std::size_t>(n)])
+                    std::copy_n(&body.nodes[tile * kTileNodes], kTileNodes, &to[tile * kTileNodes]);
+            });
+        };
+        copy(beside.own);
+        for (const auto& shown : beside.seeds) give_beside(body, shown);
+        copy(body.real);
+    }
+
+    void scatter_images_beside(SolidBody& body) const override {
+        for (const auto& shown : body.beside.images) give_beside(body, shown);
+    }
+
     void move_nodes(SolidBody& body) const override {
         for_each_work_tile(body.active, [&](Index n, Index tile) {
             const SurfaceSet near = body.near_nodes[static_cast<std::size_t>(n)];
@@ -128,6 +149,8 @@ public:
                 &body.tile_work[static_cast<std::size_t>(n)]};
             *given.work = {};
             if (given.faces) given.faces->clear();
+            if (!body.beside.reaches.empty() && body.beside.reaches[static_cast<std::size_t>(n)])
+                return move_nodes_beside(body, n, tile, given);
             for (Index k = first; k < first + kTileNodes; ++k) {
                 auto& node = body.nodes[k];
                 const double real = near ? body.real[k].m : node.m;
@@ -164,6 +187,19 @@ public:
     }
 
 private:
+    static const solid::Elastic& elastic_of(const solid::Elastic& law) { return law; }
+    static const solid::Elastic& elastic_of(const solid::DruckerPrager& law) { return law.elastic; }
+
+    /// Logarithmic strain under a pressure: K tr(e) = - J p, J = exp(tr(e)), by turns: each errs p / K less. Returns J.
+    static double press_solid(const solid::Elastic& law, double p, double* strain) {
+        constexpr int kTurns = 20;
+        const double bulk = law.lambda + 2.0 / 3.0 * law.shear;
+        double volume = 0.0;
+        for (int turn = 0; turn < kTurns; ++turn) volume = -p / bulk * std::exp(volume);
+        std::fill_n(strain, 3, volume / 3.0);
+        return std::exp(volume);
+    }
+
     struct Point {
         Vec3 x, v;
         Mat3 gradient;
@@ -219,6 +255,70 @@ private:
                             (s.slope[0][i] * s.w[1][j] * s.w[2][k]) * gift.force[0] +
                             (s.w[0][i] * s.slope[1][j] * s.w[2][k]) * gift.force[1] +
                             (s.w[0][i] * s.w[1][j] * s.slope[2][k]) * gift.force[2]);
+        }
+    }
+
+    /// What material beside the points gives at `time`: itself, and its images in surfaces. Only where points may be.
+    static void list_beside(SolidBody& body, double time, double dt) {
+        SolidBody::Beside& beside = body.beside;
+        const SolidSeeds& seeds = beside.material.seeds;
+        const Vec3& origin = body.grid.geometry().origin;
+        const double h = body.grid.cell();
+        beside.seeds.clear(), beside.images.clear();
+        for (std::size_t p = 0; p < seeds.mass.size(); ++p) {
+            const Vec3 x = seeds.position[p] + (time - beside.material.time) * seeds.velocity[p];
+            const Vec3 momentum = seeds.mass[p] * (seeds.velocity[p] + dt * body.gravity);
+            const Mat3 force = dt * seeds.pressure[p] * seeds.mass[p] / body.density * Mat3::Identity();
+            const Vec3 place = (x - origin) / h;
+            if (felt(body, place)) beside.seeds.push_back({place, seeds.mass[p], momentum, force, {}});
+            for (const Image& image : Images(body.surfaces, beside.near[p], x, h)) {
+                const Vec3 shown = (image.place - origin) / h;
+                if ((shown - place).cwiseAbs().maxCoeff() > kFarthestImage || !felt(body, shown)) continue;
+                beside.images.push_back({shown, seeds.mass[p], image.motion * momentum,
+                                         image.motion * force * image.turn.transpose(), image});
+            }
+        }
+    }
+
+    /// Whether points have given to a node of a stencil in this step. What other tiles hold is old.
+    static bool felt(const SolidBody& body, const Vec3& place) {
+        if (!seen(body, place)) return false;
+        const Index* at[3];
+        for (int axis = 0; axis < 3; ++axis)
+            at[axis] = body.grid.place(axis, static_cast<Index>(std::floor(place[axis] - 0.5)));
+        for (int n = 0; n < 27; ++n) {
+            const Index node = at[0][n % 3] + at[1][n / 3 % 3] + at[2][n / 9];
+            if (body.active.in_work[static_cast<std::size_t>(node / kTileNodes)] && body.nodes[node].m > 0.0) return true;
+        }
+        return false;
+    }
+
+    /// Tiles of the work list that have nodes of a stencil.
+    static void mark_reached(const SolidBody& body, const Vec3& place, std::vector<std::uint8_t>& marks) {
+        const auto& work = body.active.work;
+        for (int corner = 0; corner < 8; ++corner) {
+            Index first[3];
+            for (int axis = 0; axis < 3; ++axis)
+                first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5)) + 2 * (corner >> axis & 1);
+            const Index tile = body.grid.tile_of(first[0], first[1], first[2]);
+            if (body.active.in_work[tile])
+                marks[static_cast<std::size_t>(std::lower_bound(work.begin(), work.end(), tile) - work.begin())] = 1;
+        }
+    }
+
+    static void give_beside(SolidBody& body, const SolidBody::Beside::Shown& shown) {
+        const SpaceStencil<affine> s(body.grid, shown.place);
+        const Vec3& origin = body.grid.geometry().origin;
+        for (int n = 0; n < 27; ++n) {
+            const int i = n % 3, j = n / 3 % 3, k = n / 9;
+            const Vec3 d(s.d[0][i], s.d[1][j], s.d[2][k]);
+            if (!shown.image.shows_at(origin + body.grid.cell() * shown.place + d)) continue;
+            const double w = s.w[0][i] * s.w[1][j] * s.w[2][k];
+            const Vec3 slope(s.slope[0][i] * s.w[1][j] * s.w[2][k], s.w[0][i] * s.slope[1][j] * s.w[2][k],
+                             s.w[0][i] * s.w[1][j] * s.slope[2][k]);
+            SolidBody::Node& node = body.nodes[s.place[0][i] + s.place[1][j] + s.place[2][k]];
+            const Vec3 given = w * shown.momentum + shown.force * slope;
+            node.m += w * shown.mass, node.x += given[0], node.y += given[1], node.z += given[2];
         }
     }
 
@@ -378,6 +478,56 @@ private:
         list.push_back({face, patches.at(push.place - c.distance * c.normal), impulse,
                         (push.place - body.grid.geometry().origin).cross(impulse) +
                             push.mass * push.shift.cross(push.v)});
+    }
+
+    /// The same as move_nodes, where material beside the points gave to the nodes: it and they have one velocity, on
+    /// which surfaces then act. Of all impulses the points get the share of their mass, and what came to them from the
+    /// other material is booked apart. Sums of J are of points alone.
+    [[gnu::noinline]] static void move_nodes_beside(SolidBody& body, Index n, Index tile, const Given& given) {
+        const SurfaceSet near = body.near_nodes[static_cast<std::size_t>(n)];
+        for (Index k = tile * kTileNodes; k < (tile + 1) * kTileNodes; ++k) {
+            SolidBody::Node& node = body.nodes[k];
+            const SolidBody::Node &own = body.beside.own[k], &both = body.real[k];
+            if (!(own.m > 0.0)) {
+                node = {};
+                if constexpr (keeps) body.kept[k] = {};
+                continue;
+            }
+            const Vec3 shared = Vec3(both.x, both.y, both.z) / both.m;
+            Vec3 v = shared;
+            if (near) {
+                const Vec3 mixed = Vec3(node.x, node.y, node.z) / node.m;
+                v = meet_in_part(body, near, place_of(body.grid, tile, k - tile * kTileNodes), both, mixed,
+                                 own.m / both.m, given);
+            }
+            const Vec3 impulse = own.m * shared - Vec3(own.x, own.y, own.z);
+            body.beside.tile_impulse[static_cast<std::size_t>(n)] += impulse;
+            given.work->pushed += impulse.dot(v);
+            double mean_j = 0.0;
+            if constexpr (Law::kAverages) mean_j = (keeps ? body.kept[k].m : body.mass_j[k]) / own.m;
+            node = {mean_j, v[0], v[1], v[2]};
+            if constexpr (keeps) {
+                SolidBody::Node& had = body.kept[k];
+                const double share = body.kept_share / own.m;
+                had = {0.0, v[0] - share * had.x, v[1] - share * had.y, v[2] - share * had.z};
+            }
+        }
+    }
+
+    /// The same as meet, of which `share` is booked.
+    static Vec3 meet_in_part(const SolidBody& body, SurfaceSet near, const Vec3& x, const SolidBody::Node& real,
+                             const Vec3& mixed, double share, const Given& given) {
+        std::array<Vec3, kMostSurfaces> impulse;
+        impulse.fill(Vec3::Zero());
+        SurfaceWork work{};
+        const std::size_t before = given.faces ? given.faces->size() : 0;
+        const Vec3 v = meet(body, near, x, real, mixed, {impulse.data(), given.faces, &work});
+        for (std::size_t s = 0; s < body.surfaces.size(); ++s) given.impulse[s] += share * impulse[s];
+        given.work->pushed += share * work.pushed, given.work->friction += share * work.friction;
+        if (given.faces)
+            for (std::size_t f = before; f < given.faces->size(); ++f)
+                (*given.faces)[f].impulse *= share, (*given.faces)[f].moment *= share;
+        return v;
     }
 
     /// v across the surface, `along` along it.

@@ -34,6 +34,10 @@ public:
     /// The columns that left so since the last call, by id.
     std::vector<Departed> take_departed();
 
+    /// For the next step: depth of other material on the nodes [m] (row after row from the south). Columns feel its surface
+    /// as they feel each other's, and nothing else of it: they are deposited once more, with it. Nothing sleeps any more.
+    void stand_beside(const std::vector<double>& depth);
+
     /// From now on columns that are split are noted.
     void note_parents() { splitter_.note_parents(); }
     /// A column that another one was split into, and that one, by id.
@@ -56,6 +60,7 @@ private:
     void level_points(double level);
     void arrive(const PointSums& points);
     NodeSums raise_surface();
+    void add_beside(const std::vector<double>& depth);
     void keep_points(Archive& archive);
     void keep_sums(Archive& archive);
     void keep_nodes(Archive& archive);

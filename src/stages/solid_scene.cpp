@@ -71,13 +71,30 @@ std::array<double, 4> reach_of(const Scene& scene) {
     return reach;
 }
 
-std::vector<std::uint8_t> nodes_in_window(const Scene& scene) {
-    const GridGeometry& g = scene.bed.geometry;
-    const std::array<Index, 4>& w = scene.solid->window;
+namespace {
+
+/// 1 at nodes i0, j0 to i1, j1 of the terrain.
+std::vector<std::uint8_t> marked(const GridGeometry& g, const std::array<Index, 4>& box) {
     std::vector<std::uint8_t> marks(static_cast<std::size_t>(g.size()), 0);
-    for (Index j = w[1]; j <= w[3]; ++j)
-        for (Index i = w[0]; i <= w[2]; ++i) marks[static_cast<std::size_t>(j * g.nx + i)] = 1;
+    for (Index j = std::max<Index>(0, box[1]); j <= std::min(g.ny - 1, box[3]); ++j)
+        for (Index i = std::max<Index>(0, box[0]); i <= std::min(g.nx - 1, box[2]); ++i)
+            marks[static_cast<std::size_t>(j * g.nx + i)] = 1;
     return marks;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> nodes_in_window(const Scene& scene) { return marked(scene.bed.geometry, scene.solid->window); }
+
+std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
+    // Points come out by a cell of the terrain, they and columns reach 3/2 cells of space each, and columns are half a
+    // cell of the terrain wide each way.
+    const double cell = scene.bed.geometry.cell;
+    const auto more = static_cast<Index>(std::ceil((1.5 * cell + 3.0 * scene.solid->cell) / cell));
+    std::array<Index, 4> box = scene.solid->window;
+    for (std::size_t side = 0; side < 4; ++side)
+        if (!scene.solid->closed[side]) box[side] += side < 2 ? -more : more;
+    return marked(scene.bed.geometry, box);
 }
 
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {

@@ -34,4 +34,8 @@ std::array<double, 4> reach_of(const Scene& scene);
 /// Nodes of the terrain in the window: 1; row after row from the south.
 std::vector<std::uint8_t> nodes_in_window(const Scene& scene);
 
+/// These, and besides those around the window's open sides whose columns points can feel: as far out as points may
+/// come, and their nodes and those of what stands there reach.
+std::vector<std::uint8_t> nodes_at_edge(const Scene& scene);
+
 }  // namespace frana

@@ -68,6 +68,7 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
         points_ = std::make_unique<SolidFlow>(space);
         points_->start_at(scene_.solid->from);
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
+        at_edge_ = nodes_at_edge(scene_);
         columns_->open_exits(inside, true);
     });
     const Status& now = columns_->status();  // what they gave counts as left
@@ -108,7 +109,8 @@ SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns) const {
 }
 
 void StagedRun::step_columns(double until) {
-    if (columns_->status().particles == 0) return;
+    if (columns_->status().particles == 0) return points_->stand_beside({});
+    show_points();
     columns_->advance(until);
     pending_ = columns_->take_departed();
     for (const Departed& column : pending_) {
@@ -116,24 +118,17 @@ void StagedRun::step_columns(double until) {
         handed_.energy += column.energy;
         handed_.momentum[0] += column.mass * column.vx, handed_.momentum[1] += column.mass * column.vy;
     }
+    show_columns();
 }
 
 /// The columns that flowed into the window in the columns' last step.
 void StagedRun::hand_over() {
     if (pending_.empty()) return;
     timed_("hand over", [&] {
-        const GridGeometry& g = scene_.bed.geometry;
-        Seeds seeds;
-        for (const Departed& column : pending_) {
-            seeds.x.push_back(g.x0 + g.cell * column.x);
-            seeds.y.push_back(g.y0 + g.cell * column.y);
-            seeds.vx.push_back(column.vx);
-            seeds.vy.push_back(column.vy);
-            seeds.volume.push_back(column.mass / scene_.density);
-            seeds.depth.push_back(std::max(column.depth, 0.0));
-        }
+        const FlowColumns all = columns_at_edge();
+        FlowColumns columns;
+        for (std::size_t k = 0; k < pending_.size(); ++k) columns.take(all, k);
         pending_.clear();
-        const FlowColumns columns = columns_of(seeds, scene_, nodes_in_window(scene_));
         points_->add(seeds_of_window(columns));
     });
 }
@@ -165,6 +160,7 @@ void StagedRun::book(const Status& columns) {
     }
     Vec3 impulse = s.momentum_given + s.weight_impulse;
     for (const Vec3& of_surface : points_->body().impulse) impulse += of_surface;
+    impulse += s.beside_impulse;
     status_ = columns;
     status_.step = step;
     status_.time = s.time;
@@ -250,6 +246,7 @@ void StagedRun::keep(Archive& archive) {
         points_ = std::make_unique<SolidFlow>(solid_scene(scene_, start_));
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
         columns_->open_exits(nodes_in_window(scene_), false);
+        at_edge_ = nodes_at_edge(scene_);
     }
     {
         const Archive::Part part(archive, "columns");
@@ -283,6 +280,7 @@ void StagedRun::keep(Archive& archive) {
         const Archive::Part part(archive, "points");
         points_->keep(archive);
     }
+    if (archive.loading() && columns_->status().time > points_->status().time) show_columns();
     if (watch_ && archive.loading()) watch_->weigh(*points_);
 }
 

@@ -46,6 +46,9 @@ private:
     void begin_space(const std::function<FlowColumns(const Marks&)>& columns_at);
     void step_columns(double until);
     void hand_over();
+    void show_points();
+    void show_columns();
+    FlowColumns columns_at_edge() const;
     SolidSeeds seeds_of_window(const FlowColumns& columns) const;
     void require_room(const FlowColumns& columns) const;
     void look(double until);
@@ -61,6 +64,7 @@ private:
     FlowMap map_;
     std::optional<BarrierWatch> watch_;  ///< when there are barriers
     std::vector<Departed> pending_;      ///< columns that left into the window, ahead of the points' time
+    std::vector<std::uint8_t> at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
     Handed handed_;
     Status status_;
     StepClock timed_;

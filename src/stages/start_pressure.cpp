@@ -29,37 +29,66 @@ struct PlaneSums {
     }
 };
 
-/// Calls visit(node, weight, place from the node in cells) for the four nodes around a column.
-template <class Visit>
-void for_each_corner(const GridGeometry& g, double x, double y, Visit&& visit) {
-    const double u = std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
-    const double v = std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
-    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
-    for (Index n = j; n <= j + 1; ++n)
-        for (Index m = i; m <= i + 1; ++m) {
-            const Vec2 from(u - static_cast<double>(m), v - static_cast<double>(n));
-            visit(static_cast<std::size_t>(n * g.nx + m),
-                  (1.0 - std::abs(from.x())) * (1.0 - std::abs(from.y())), from);
+/// The four nodes around a column; its place in cells from the grid's first node.
+struct Corners {
+    double u, v;
+    Index i, j;
+
+    Corners(const GridGeometry& g, double x, double y)
+        : u(std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1))),
+          v(std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1))),
+          i(std::min(static_cast<Index>(u), g.nx - 2)),
+          j(std::min(static_cast<Index>(v), g.ny - 2)) {}
+};
+
+/// Sums at the nodes around columns, and at no others of the terrain.
+class SurfaceSums {
+public:
+    SurfaceSums(const GridGeometry& g, const FlowColumns& columns) : geometry_(g) {
+        Index i_end = 0, j_end = 0;
+        i_ = g.nx, j_ = g.ny;
+        for (std::size_t k = 0; k < columns.count(); ++k) {
+            const Corners c(g, columns.x[k], columns.y[k]);
+            i_ = std::min(i_, c.i), i_end = std::max(i_end, c.i + 2);
+            j_ = std::min(j_, c.j), j_end = std::max(j_end, c.j + 2);
         }
-}
+        row_ = std::max<Index>(0, i_end - i_);
+        sums_.resize(static_cast<std::size_t>(row_ * std::max<Index>(0, j_end - j_)));
+    }
+    /// Calls visit(sums, weight, place from the node in cells) for the four nodes around a column.
+    template <class Visit>
+    void each_corner(double x, double y, Visit&& visit) {
+        const Corners c(geometry_, x, y);
+        for (Index n = c.j; n <= c.j + 1; ++n)
+            for (Index m = c.i; m <= c.i + 1; ++m) {
+                const Vec2 from(c.u - static_cast<double>(m), c.v - static_cast<double>(n));
+                visit(sums_[static_cast<std::size_t>((n - j_) * row_ + m - i_)],
+                      (1.0 - std::abs(from.x())) * (1.0 - std::abs(from.y())), from);
+            }
+    }
+
+private:
+    const GridGeometry& geometry_;
+    Index i_, j_, row_;
+    std::vector<PlaneSums> sums_;
+};
 
 }  // namespace
 
 void take_start_pressure(FlowColumns& columns, const Scene& scene) {
     const GridGeometry& g = scene.bed.geometry;
-    std::vector<PlaneSums> nodes(static_cast<std::size_t>(g.size()));
+    SurfaceSums nodes(g, columns);
     for (std::size_t k = 0; k < columns.count(); ++k)
-        for_each_corner(g, columns.x[k], columns.y[k],
-                        [&](std::size_t node, double weight, const Vec2& from) {
-                            nodes[node].add(weight, from, columns.bed[k] + columns.depth[k]);
-                        });
+        nodes.each_corner(columns.x[k], columns.y[k], [&](PlaneSums& node, double weight, const Vec2& from) {
+            node.add(weight, from, columns.bed[k] + columns.depth[k]);
+        });
     for (std::size_t k = 0; k < columns.count(); ++k) {
         const Vec2 bed(columns.slope_x[k], columns.slope_y[k]);
         Vec2 sum = Vec2::Zero();
         double known = 0.0;
-        for_each_corner(g, columns.x[k], columns.y[k], [&](std::size_t node, double weight, const Vec2&) {
+        nodes.each_corner(columns.x[k], columns.y[k], [&](const PlaneSums& node, double weight, const Vec2&) {
             Vec2 slope;
-            if (nodes[node].slope(slope)) sum += weight / g.cell * slope, known += weight;
+            if (node.slope(slope)) sum += weight / g.cell * slope, known += weight;
         });
         const Vec2 surface = known > 0.0 ? Vec2(sum / known) : bed;
         const double q = std::clamp(bed.dot(surface), 0.0, bed.squaredNorm());

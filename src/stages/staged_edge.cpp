@@ -1,0 +1,87 @@
+// What columns and points show each other at the window's edge. Points feel the columns beyond it as they feel points:
+// their mass, motion and hydrostatic pressure. Columns feel how high points stand.
+#include <algorithm>
+
+#include "base/error.h"
+#include "grid/stencil.h"
+#include "stages/staged_run.h"
+#include "stages/start_pressure.h"
+
+namespace frana {
+namespace {
+
+/// Adds to nodes along an axis; beyond walls to the mirror image, and to a node on a wall its own mirror image too, as
+/// columns deposit there. Beyond open sides nothing.
+struct Along {
+    Index node[3];
+    double w[3];
+
+    Along(double u, Index count, bool walls) {
+        const Quadratic s(u);
+        for (int n = 0; n < 3; ++n) {
+            Index k = s.base + n;
+            w[n] = s.w[n];
+            if (walls && k < 0) k = -k;
+            if (walls && k >= count) k = 2 * (count - 1) - k;
+            if (walls && (k == 0 || k == count - 1) && k == s.base + n) w[n] *= 2.0;
+            if (k < 0 || k >= count) k = 0, w[n] = 0.0;
+            node[n] = k;
+        }
+    }
+};
+
+}  // namespace
+
+/// Their volume without pressure over the area of a cell, by the columns' shape functions. One thread: there are many
+/// steps of points in one of columns.
+void StagedRun::show_points() {
+    timed_("edge", [&] {
+        const GridGeometry& g = scene_.bed.geometry;
+        const MaterialPoints& q = points_->body().points;
+        const bool walls = scene_.sides == Sides::wall;
+        const double scale = 1.0 / (scene_.density * g.cell * g.cell);
+        std::vector<double> depth(static_cast<std::size_t>(g.size()), 0.0);
+        for (Index p = 0; p < q.count(); ++p) {
+            const Vec3 x = points_->position(p);
+            const Along u((x[0] - g.x0) / g.cell, g.nx, walls), v((x[1] - g.y0) / g.cell, g.ny, walls);
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i)
+                    depth[static_cast<std::size_t>(v.node[j] * g.nx + u.node[i])] +=
+                        scale * q.mass[p] * u.w[i] * v.w[j];
+        }
+        columns_->stand_beside(depth);
+    });
+}
+
+/// Those on their way into the window first, in their order; then those around it.
+FlowColumns StagedRun::columns_at_edge() const {
+    const GridGeometry& g = scene_.bed.geometry;
+    Seeds seeds;
+    const auto add = [&](double x, double y, double vx, double vy, double mass, double depth) {
+        seeds.x.push_back(g.x0 + g.cell * x), seeds.y.push_back(g.y0 + g.cell * y);
+        seeds.vx.push_back(vx), seeds.vy.push_back(vy);
+        seeds.volume.push_back(mass / scene_.density), seeds.depth.push_back(std::max(depth, 0.0));
+    };
+    for (const Departed& column : pending_)
+        add(column.x, column.y, column.vx, column.vy, column.mass, column.depth);
+    const Columns& c = columns_->flow().columns;
+    c.with_real([&](auto real) {
+        const auto& held = c.carried<decltype(real)>();
+        for (Index p = 0; p < c.count(); ++p) add(c.x[p], c.y[p], held.vx[p], held.vy[p], c.mass[p], held.depth[p]);
+    });
+    FlowColumns columns = columns_of(seeds, scene_, at_edge_);
+    take_start_pressure(columns, scene_);
+    return columns;
+}
+
+/// As the points that they will be when they cross the edge.
+void StagedRun::show_columns() {
+    timed_("edge", [&] {
+        const GridGeometry& g = scene_.bed.geometry;
+        const std::array<double, 4> extent = {g.x0, g.y0, g.x_max(), g.y_max()};
+        const FlowColumns parts = in_parts(columns_at_edge(), scene_.solid->spacing, g.cell, scene_.bed, extent);
+        points_->stand_beside({seeds_of(parts, *scene_.solid), columns_->status().time});
+    });
+}
+
+}  // namespace frana
