@@ -300,7 +300,7 @@ TEST_CASE("Any stress outside a cone comes back to it with zz as it was, from ne
     CHECK(yielded > 5000);
 }
 
-TEST_CASE("Four columns at once have the bits of one after the other", "[structured]") {
+TEST_CASE("Four columns at once come out as one after the other, to round-off", "[structured]") {
     ColumnMaterial m =
         clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::plane_strain, ColumnYield::hexagon));
     m.critical_strain = 0.05;

@@ -130,7 +130,8 @@ inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>&
     const Real first = s.xx + s.yy + s.zz, mean = (1.0 / 3.0) * first, z = s.zz - mean, across = 0.5 * (s.xx - s.yy);
     const Real plane2 = across * across + s.xy * s.xy, enough = kStressError * (k + abs(s.zz)), axis = alpha_ * first - k;
     Real t = select(kept * sqrt(plane2 + 0.75 * z * z) - g * per * axis > 0.0, Real{}, z / bulk), sz, q, left, lifted;
-    Mask on_side, open;
+    const Real one = Real{} + 1.0;
+    Mask on_side, open, rises = yields;
     for (int pass = 0;; ++pass) {
         sz = z + turn * t;
         const Real j2 = plane2 + 0.75 * sz * sz, beyond = axis + lean * t;
@@ -140,10 +141,12 @@ inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>&
         if (pass >= kUnasked && (pass == kMost || !any(open))) break;
         const Real slope = left * (turn * plane2) + q * ((kept * g) * sz * sz + (bulk - lean * swell) * j2) -
                            ((lean + 3.0 * bulk * dilates_) * g * per) * sz * j2;
-        const Real newton = t - miss * j2 / slope;
+        rises &= slope > 0.0;  // where it falls there may be two roots
+        const Real newton = t - miss * j2 / select(slope > 0.0, slope, one);
         t = pass < kUnasked ? newton : select(open, newton, t);
     }
-    const Mask found = on_side ^ open;
+    const Mask found = (on_side ^ open) & rises;
+    q = select(q > 0.0, q, one);  // of columns that do not yield
     const Real multiplier = per * (q + axis + lean * t), scale = left / q, middle = s.zz + lifted - 0.5 * scale * sz;
     const Real flow = 0.5 * multiplier / q, half_trace = dilates_ * multiplier - 0.5 * flow * sz;
     s.xx = select(found, middle + scale * across, s.xx);

@@ -30,6 +30,7 @@ struct SolidSeeds {
 struct MaterialBeside {
     SolidSeeds seeds;
     double time = 0.0;  ///< when it is at its places [s]
+    double span = 0.0;  ///< how long it moves from there, forth or back, at most [s]
 
     bool empty() const { return seeds.mass.empty(); }
 };

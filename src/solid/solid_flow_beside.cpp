@@ -11,10 +11,10 @@ void SolidFlow::stand_beside(MaterialBeside material) {
     expect(seeds.position.size() == count && seeds.velocity.size() == count && seeds.pressure.size() == count,
            "material beside points has a place, a velocity and a pressure each");
     beside.near.clear();
-    const double h = body_.grid.cell(), until = std::abs(material.time - status_.time);
+    const double h = body_.grid.cell();
     for (std::size_t p = 0; p < count; ++p)
         beside.near.push_back(surfaces_near(body_.surfaces, seeds.position[p], seeds.position[p], h,
-                                            until * seeds.velocity[p].norm()));
+                                            material.span * seeds.velocity[p].norm()));
     if (count > 0 && !beside.own) beside.own = LazyArray<SolidBody::Node>(body_.grid.size());
     if (count > 0 && !body_.real) body_.real = LazyArray<SolidBody::Node>(body_.grid.size());
     if (count == 0) beside.reaches.clear(), beside.tile_impulse.clear();

@@ -34,8 +34,9 @@ public:
     /// The columns that left so since the last call, by id.
     std::vector<Departed> take_departed();
 
-    /// For the next step: depth of other material on the nodes [m] (row after row from the south). Columns feel its surface
-    /// as they feel each other's, and nothing else of it: they are deposited once more, with it. Nothing sleeps any more.
+    /// For the next step: depth of other material on the nodes [m] (row after row from the south). It counts as
+    /// depth of the columns wherever that is asked for, but for their mass and motion: they are deposited once more, with it.
+    /// Nothing sleeps any more. Pressure on points (paper preset) does not feel it.
     void stand_beside(const std::vector<double>& depth);
 
     /// From now on columns that are split are noted.

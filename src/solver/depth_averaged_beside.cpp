@@ -1,4 +1,4 @@
-// Other material on the nodes of a depth-averaged run: columns feel how high it stands, and nothing else of it.
+// Other material on the nodes of a depth-averaged run: columns feel how high it stands, not its motion.
 #include "base/error.h"
 #include "solver/depth_averaged.h"
 #include "solver/sides.h"
@@ -11,7 +11,7 @@ void DepthAveraged::stand_beside(const std::vector<double>& depth) {
     flow_.scheme.sleep = false;  // what stands beside sleeping columns may stir them
     for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
     timed_("beside", [&] {
-        transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step()));
+        stress_power_ = transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())).stress_power;
         fold_walls(flow_);
         add_beside(depth);
     });

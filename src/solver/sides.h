@@ -4,8 +4,8 @@
 
 namespace frana {
 
-/// A point so near to a wall lies on it [cells]: the round-off of places on grids of thousands of cells.
-constexpr double kOnWall = 1e-12;
+/// A point so near to a wall lies on it [cells]: the round-off of places on grids of up to 65 000 cells.
+constexpr double kOnWall = 1e-11;
 
 /// Books in `sums` that point p leaves at node k. Returns its kinetic and potential energy [J].
 template <class Real>

@@ -50,7 +50,7 @@ FlowColumns columns_of(const Frame& frame, const Raster& bed, const std::vector<
 FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector<std::uint8_t>& marks) {
     FlowColumns columns;
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
-        if (!marked(marks, scene.bed.geometry, seeds.x[p], seeds.y[p])) continue;
+        if (!marks.empty() && !marked(marks, scene.bed.geometry, seeds.x[p], seeds.y[p])) continue;
         const Vec2 slope = bed_gradient(scene.bed, seeds.x[p], seeds.y[p]);
         columns.x.push_back(seeds.x[p]);
         columns.y.push_back(seeds.y[p]);

@@ -32,8 +32,8 @@ struct Along {
 
 }  // namespace
 
-/// Their volume without pressure over the area of a cell, by the columns' shape functions. One thread: there are many
-/// steps of points in one of columns.
+/// Their volume without pressure over the area of a cell, by quadratic shape functions as columns have by default. One
+/// thread: there are many steps of points in one of columns.
 void StagedRun::show_points() {
     timed_("edge", [&] {
         const GridGeometry& g = scene_.bed.geometry;
@@ -64,12 +64,17 @@ FlowColumns StagedRun::columns_at_edge() const {
     };
     for (const Departed& column : pending_)
         add(column.x, column.y, column.vx, column.vy, column.mass, column.depth);
+    const auto at_edge = [&](double x, double y) {
+        const auto i = static_cast<Index>(std::floor(x + 0.5)), j = static_cast<Index>(std::floor(y + 0.5));
+        return at_edge_[static_cast<std::size_t>(j * g.nx + i)] != 0;
+    };
     const Columns& c = columns_->flow().columns;
     c.with_real([&](auto real) {
         const auto& held = c.carried<decltype(real)>();
-        for (Index p = 0; p < c.count(); ++p) add(c.x[p], c.y[p], held.vx[p], held.vy[p], c.mass[p], held.depth[p]);
+        for (Index p = 0; p < c.count(); ++p)
+            if (at_edge(c.x[p], c.y[p])) add(c.x[p], c.y[p], held.vx[p], held.vy[p], c.mass[p], held.depth[p]);
     });
-    FlowColumns columns = columns_of(seeds, scene_, at_edge_);
+    FlowColumns columns = columns_of(seeds, scene_, {});
     take_start_pressure(columns, scene_);
     return columns;
 }
@@ -80,7 +85,7 @@ void StagedRun::show_columns() {
         const GridGeometry& g = scene_.bed.geometry;
         const std::array<double, 4> extent = {g.x0, g.y0, g.x_max(), g.y_max()};
         const FlowColumns parts = in_parts(columns_at_edge(), scene_.solid->spacing, g.cell, scene_.bed, extent);
-        points_->stand_beside({seeds_of(parts, *scene_.solid), columns_->status().time});
+        points_->stand_beside({seeds_of(parts, *scene_.solid), columns_->status().time, columns_->status().dt});
     });
 }
 

@@ -157,7 +157,7 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     Mask4 here = m > 0.0;
     if (!(std::abs(sum(x + y + speed2 + held + depth)) < 1e300)) {
         for (int n = 0; n < lanes; ++n)
-            if (!std::isfinite(x[n] + y[n] + speed2[n] + held[n] + depth[n])) sums.rare.bad = p + n;
+            if (!(std::abs(x[n] + y[n] + speed2[n] + held[n] + depth[n]) < 0.25e300)) sums.rare.bad = p + n;
         return;
     }
     const double x_max = static_cast<double>(body.grid.nx() - 1), y_max = static_cast<double>(body.grid.ny() - 1);
