@@ -127,7 +127,8 @@ TEST_CASE("Viscosity gives lone columns of any transfer no energy", "[conserve][
     const double start = simulation.status().kinetic + simulation.status().potential;
     while (simulation.status().step < 40) {
         simulation.advance(1e9);
-        REQUIRE(simulation.status().kinetic <= 1.1 * start);  // a tenth as in stress/invariants.h; what is unstable grows by the step
+        // A tenth as in stress/invariants.h; what is unstable grows by the step.
+        REQUIRE(simulation.status().kinetic <= 1.1 * start);
     }
 }
 

@@ -27,9 +27,10 @@ struct PointSums {
 
 /// Largest 2 mu_eff of the rheology in a step of `kick` [s] that is stable explicitly [Pa s]: nu = scheme.stress_cap, or 1/4.
 ///
-/// A point of gradient c alone pulls its nodes by A c, A = nu sum (N')^2 / N: 4 to 6 nu for quadratic shapes, 3 nu for cubic ones.
-/// Affine transfers bring the nodes c too and gather (1 - A) c: stable up to A = 2. Others gather -A c, and are with A = 1; as
-/// nodes have at least half their depth's inertia (kick.cpp), A there is below 4 nu. So it is with linear shapes of any transfer.
+/// A point of gradient c alone pulls its nodes by A c, A = nu sum (N')^2 / N: 4 to 6 nu for quadratic shapes, 3 nu for
+/// cubic ones. Affine transfers bring the nodes c too and gather (1 - A) c: stable up to A = 2. Others gather -A c, and
+/// are with A = 1; as nodes have at least half their depth's inertia (kick.cpp), A there is below 4 nu. So it is with
+/// linear shapes of any transfer.
 double most_viscosity(const Flow& flow, double kick);
 
 class TransferKernel {

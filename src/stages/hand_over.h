@@ -11,7 +11,7 @@ namespace frana {
 /// The columns of a frame of the depth-averaged model that stand in marked nodes' cells.
 FlowColumns columns_of(const Frame& frame, const Raster& bed, const std::vector<std::uint8_t>& marks);
 
-/// The seeds of a release as columns, at rest or not; those in marked nodes' cells.
+/// The seeds of a release as columns, at rest or not; those in marked nodes' cells, or without `marks` all, in their order.
 FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector<std::uint8_t>& marks);
 
 /// Each column as n x n of them side by side on the square of its volume / depth, n such that they are about

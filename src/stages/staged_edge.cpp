@@ -1,8 +1,8 @@
 // What columns and points show each other at the window's edge. Points feel the columns beyond it as they feel points:
 // their mass, motion and hydrostatic pressure. Columns feel how high points stand.
 #include <algorithm>
+#include <cmath>
 
-#include "base/error.h"
 #include "grid/stencil.h"
 #include "stages/staged_run.h"
 #include "stages/start_pressure.h"
@@ -40,7 +40,8 @@ void StagedRun::show_points() {
         const MaterialPoints& q = points_->body().points;
         const bool walls = scene_.sides == Sides::wall;
         const double scale = 1.0 / (scene_.density * g.cell * g.cell);
-        std::vector<double> depth(static_cast<std::size_t>(g.size()), 0.0);
+        std::vector<double>& depth = points_depth_;
+        depth.assign(static_cast<std::size_t>(g.size()), 0.0);
         for (Index p = 0; p < q.count(); ++p) {
             const Vec3 x = points_->position(p);
             const Along u((x[0] - g.x0) / g.cell, g.nx, walls), v((x[1] - g.y0) / g.cell, g.ny, walls);

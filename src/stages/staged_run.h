@@ -65,6 +65,7 @@ private:
     std::optional<BarrierWatch> watch_;  ///< when there are barriers
     std::vector<Departed> pending_;      ///< columns that left into the window, ahead of the points' time
     std::vector<std::uint8_t> at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
+    std::vector<double> points_depth_;   ///< scratch of show_points, on the terrain's nodes [m]
     Handed handed_;
     Status status_;
     StepClock timed_;
