@@ -108,7 +108,7 @@ TEST_CASE("A pile of grains below its angle of friction does not move by one bit
     CHECK(std::equal(y.begin(), y.end(), q.y.begin(), q.y.end()));
 }
 
-TEST_CASE("Grains that spread, split and meet a wall have the same bits for any number of threads", "[structured][grains]") {
+TEST_CASE("Grains that spread, split and meet a wall have the same bits for any number of threads", "[structured][grains][threads]") {
     Scene scene = box_on(0.4, 0.2);
     scene.sides = Sides::wall;
     scene.structure = grains(GENERATE(true, false));

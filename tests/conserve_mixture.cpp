@@ -208,7 +208,7 @@ TEST_CASE("Beside dry columns there is no water, beside water no columns: each m
     CHECK(both.water().status().kinetic == Approx(alone.status().kinetic).epsilon(1e-14));
 }
 
-TEST_CASE("Two phases have the same bits for any number of threads", "[mixture]") {
+TEST_CASE("Two phases have the same bits for any number of threads", "[mixture][threads]") {
     const int threads = omp_get_max_threads();
     std::vector<double> first;
     for (const int count : {1, 2, 4}) {

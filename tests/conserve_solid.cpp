@@ -38,7 +38,7 @@ TEST_CASE("Mass is exact in space, and momentum changes by what gravity and surf
 }
 
 TEST_CASE("Points that keep their velocities keep mass and momentum too, and have the same bits for any threads",
-          "[solid]") {
+          "[solid][threads]") {
     const int threads = omp_get_max_threads();
     for (const SolidLaw& law : all_solid_laws()) {
         CAPTURE(law.index());
@@ -93,7 +93,7 @@ TEST_CASE("The ledger of energy in space has each loss under its name", "[solid]
     CHECK(std::abs(run(smooth, 0.4).friction) < 1e-12 * rough.friction);
 }
 
-TEST_CASE("Bodies in space have the same bits for any number of threads", "[solid]") {
+TEST_CASE("Bodies in space have the same bits for any number of threads", "[solid][threads]") {
     const int threads = omp_get_max_threads();
     for (const SolidLaw& law : all_solid_laws()) {
         CAPTURE(law.index());

@@ -272,7 +272,7 @@ TEST_CASE("What a barrier gives a spinning block is in its ledger: momentum and 
 }
 
 TEST_CASE("Flow around barriers has the same bits for any number of threads, ledger and all",
-          "[solid][barriers]") {
+          "[solid][barriers][threads]") {
     const int threads = omp_get_max_threads();
     SolidScene s = water({}, {1.2, 2.4, 0.8}, {3.0, 2.4, 1.2}, 0.1);
     s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}), Surface::plane({0, 0, 0}, {1, 0, 0}),

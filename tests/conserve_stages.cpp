@@ -158,7 +158,7 @@ TEST_CASE("Points do not cross a closed side that columns still flow in over", "
 }
 
 TEST_CASE("Runs in stages have the same bits for any number of threads, and when taken up again",
-          "[stages]") {
+          "[stages][threads]") {
     const Scene scene = slide();
     const int threads = omp_get_max_threads();
     StagedRun straight(scene);

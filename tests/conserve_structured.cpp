@@ -59,7 +59,7 @@ TEST_CASE("Columns that run off the grid are counted with what they carry", "[st
     CHECK(flow.momentum_residual().norm() < 1e-12 * given);
 }
 
-TEST_CASE("Structured solids have the same bits for any number of threads", "[structured]") {
+TEST_CASE("Structured solids have the same bits for any number of threads", "[structured][threads]") {
     const int threads = omp_get_max_threads();
     std::vector<double> first;
     double damage = 0.0;

@@ -119,7 +119,7 @@ TEST_CASE("What runs out faster than waves leaves undisturbed", "[water][conserv
         }
 }
 
-TEST_CASE("Water has the same bits for any number of threads", "[water][conserve]") {
+TEST_CASE("Water has the same bits for any number of threads", "[water][conserve][threads]") {
     const int threads = omp_get_max_threads();
     std::vector<double> first;
     for (const int count : {1, 2, 4}) {

@@ -109,7 +109,7 @@ void check(const Scene& scene, int steps) {
 
 }  // namespace
 
-TEST_CASE("A deposit sleeps until a slide reaches it, with the bits of a run without sleep", "[solver][sleep]") {
+TEST_CASE("A deposit sleeps until a slide reaches it, with the bits of a run without sleep", "[solver][sleep][threads]") {
     check(slide_into_deposit(), 240);
 }
 

@@ -81,12 +81,24 @@ protected:
         return count;
     }
     void exchange(const std::string& name, Kind kind, void* data, std::size_t count) override {
+        if (count == 0) return;
         const Handle set(access_, open(name), H5Dclose);
-        if (count > 0)
-            access_.check(H5Dread(set, number_type(kind).memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
+        if (!lies_whole(set, count * H5Tget_size(number_type(kind).file)))
+            throw UserError(fmt::format("{}: {} does not lie in it as this program writes it; it is damaged, run without "
+                                        "--resume",
+                                        access_.file().string(), name));
+        access_.check(H5Dread(set, number_type(kind).memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
     }
 
 private:
+    /// In one piece, within the file. HDF5 (1.10) follows other layouts of a damaged file to addresses that are not there.
+    bool lies_whole(hid_t set, std::size_t bytes) const {
+        const Handle made(access_, H5Dget_create_plist(set), H5Pclose);
+        const haddr_t place = H5Dget_offset(set);
+        const std::uintmax_t held = fs::file_size(access_.file());
+        return H5Pget_layout(made) == H5D_CONTIGUOUS && H5Pget_external_count(made) == 0 && place != HADDR_UNDEF &&
+               H5Dget_storage_size(set) == bytes && bytes <= held && place <= held - bytes;
+    }
     hid_t open(const std::string& name) const {
         const hid_t set = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);
         if (set < 0) throw stranger(name);
