@@ -61,16 +61,16 @@ TEST_CASE("A bend turns what is higher than it is wide, and adds nothing to its 
     const double k = bed.gravity(g, vx, vy) - g, wide = (vx * vx + vy * vy) / std::abs(k);
     const Drive<double> slope = bed.drive(bed.bx - 7.0, bed.by + 2.0, cosine);  // of a steep depth
     const auto pull = [&](double high) { return bed.pull(slope, g, high, vx, vy, cosine); };
-    for (const double high : {0.0, 0.5 * wide, 0.999 * wide}) {
+    for (const double high : {0.0, 0.1 * wide, 0.249 * wide}) {
         CHECK(pull(high).x == (g + k) * slope.x);
         CHECK(pull(high).y == (g + k) * slope.y);
     }
     const double c2 = cosine * cosine;
-    for (const double high : {2.0 * wide, 100.0 * wide}) {
+    for (const double high : {0.5 * wide, 100.0 * wide}) {
         CHECK(pull(high).x == Approx(g * slope.x + k * c2 * bed.bx).epsilon(kRoundOff));
         CHECK(pull(high).y == Approx(g * slope.y + k * c2 * bed.by).epsilon(kRoundOff));
     }
-    CHECK(pull(1.5 * wide).x == Approx(0.5 * (pull(wide).x + pull(2.0 * wide).x)).epsilon(kRoundOff));
+    CHECK(pull(0.375 * wide).x == Approx(0.5 * (pull(0.25 * wide).x + pull(0.5 * wide).x)).epsilon(kRoundOff));
     // What is left of the bend works on the velocity along the bed, of which w = B.v is the vertical part, as much as the
     // bend changes w: dw/dt = B.a + k.
     const double ax = pull(2.0 * wide).x - g * slope.x, ay = pull(2.0 * wide).y - g * slope.y;
@@ -111,6 +111,24 @@ TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothe
     bed.climb(bed.bx, 0.0, 0.0, g, g, dt, slow, still);
     CHECK(slow == Approx(0.0).margin(1e-18));  // it stops, and is not turned
     CHECK(slow >= -1e-18);
+}
+
+TEST_CASE("What a bank stops stands still, whichever way the bank rises", "[kick]") {
+    // Along the rise, too slow for a step's climb; what round-off left would have a direction of its own.
+    int moving = 0;
+    for (int n = 0; n < 100; ++n) {
+        const double turn = 0.06283 * n, rise_x = std::cos(turn), rise_y = std::sin(turn);
+        Scene scene = verify::scene_on(31, 31, 2.0, [&](double x, double y) {
+            return std::clamp(5.0 * ((x - 30.0) * rise_x + (y - 30.0) * rise_y), 0.0, 20.0);
+        });
+        scene.scheme.curvature_length = 40.0;
+        const Flow flow(scene);
+        const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(15, 15));
+        double vx = 1e-3 * bed.bx, vy = 1e-3 * bed.by;
+        bed.climb(bed.bx, bed.by, 0.0, 9.81, 9.81, 0.1, vx, vy);
+        moving += vx != 0.0 || vy != 0.0;
+    }
+    CHECK(moving == 0);
 }
 
 TEST_CASE("A climb on a smooth bed costs nothing more", "[kick]") {

@@ -119,6 +119,17 @@ TEST_CASE("Sleep changes no bit with walls, a yield stress, or any shape and tra
         scene.sides = Sides::wall;
         check(scene, 130);
     }
+    SECTION("deposits that lean on walls") {
+        Scene scene = slide_into_deposit();
+        scene.sides = Sides::wall;
+        verify::fill(scene, [](double x, double y) {
+            if (x > 30 && x < 48 && y > 20 && y < 60) return 2.0;
+            return x > 66 ? 1.0 : 0.0;
+        }, {2});
+        for (Index p = 0; p < scene.particles.count(); ++p)
+            if (scene.particles.x[p] < 60.0) scene.particles.vx[p] = 10.0;
+        check(scene, 130);
+    }
     SECTION("Bingham points on a Bingham bed") {
         Scene scene = slide_into_deposit();
         scene.rheology = rheology::Bingham{50.0, 300.0};

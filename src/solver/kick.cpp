@@ -317,7 +317,9 @@ private:
         const Real mx = 0.5 * (n.vx + vx), my = 0.5 * (n.vy + vy), mz = mx * bx + my * by;
         const Real bore = -dt * (n.loss_x * (mx + bx * mz) + n.loss_y * (my + by * mz));
         const Real work = state.kappa * state.kappa * (driven - speed) * 0.5 * (s0 + speed) + bore;
-        return {vx, vy, kinetic, select(driven > kSlowest, work, Real{}), wave_gravity, keep};
+        // The mean over a drift may exceed a speed that gravity has all but stopped; friction makes no velocity grow.
+        const Real kept = min(keep, Real{} + 1.0);
+        return {vx, vy, kinetic, select(driven > kSlowest, work, Real{}), wave_gravity, kept};
     }
 
     Law law_;

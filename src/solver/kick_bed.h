@@ -17,6 +17,8 @@ struct Drive { Real x, y; };
 
 /// Slopes whose squares are far below this are smooth, whatever the ground around: what a bend there could turn is as small.
 constexpr double kFlat = 0.01;
+/// Square of the round-off of a few operations, relative [1].
+constexpr double kRoundOff2 = 1e-28;
 
 /// Steep terrain. kLinear: to first order in the depth gradient. kCurvature: none, inertia (v.H.v in the acceleration
 /// only), full (in the friction too).
@@ -52,7 +54,10 @@ struct SteepBed {
             const Real whole = (g + share * (weight - g)) / (1.0 + share * share * max(zero, bx * cx + by * cy));
             const Real had = weight / (1.0 + q) * max(zero, ex * cx + ey * cy) / square;
             const Real lost = select(rise > 0.0, min(dt * max(zero, whole - had), rise / square), zero);
-            dx -= lost * cx, dy -= lost * cy;
+            const Real left_x = dx - lost * cx, left_y = dy - lost * cy;
+            // What stops leaves round-off, which has no direction; friction would start from the speed in that direction.
+            const auto stays = left_x * left_x + left_y * left_y <= kRoundOff2 * (dx * dx + dy * dy);
+            dx = select(stays, zero, left_x), dy = select(stays, zero, left_y);
         }
     }
     /// Gravity plus the bed's own vertical acceleration along the path, (g + v.H.v)+
@@ -63,16 +68,17 @@ struct SteepBed {
     /// gravity(g, vx, vy) times `slope` (drive()), less where the flow is high against the bend. With k = v.H.v,
     /// k * slope has two parts: k B / (1 + B^2) turns the velocity along the bed and does no work; the rest is k added
     /// to the pressure. That works at -k v.grad(h) / (1 + q), of nothing: what takes it back is of second order in the
-    /// depth times the bed's bend, and not in the model. So the rest fades where the slope of the bed along the path
-    /// changes by more than one within the depth, |k| high > v^2, and is gone at two. `high`: depth a cell around [m].
+    /// depth times the bed's bend, and not in the model. From a column of that height down to its foot it gives v^2/2 a
+    /// share 2 |k| high / v^2. So the rest fades where the slope of the bed along the path changes by more than a quarter
+    /// within the depth, |k| high > v^2 / 4, and is gone at a half: half of v^2/2 at most. `high`: depth a cell around [m].
     Drive<Real> pull(const Drive<Real>& slope, double g, Real high, Real vx, Real vy, Real cosine) const {
         const Real weight = gravity(g, vx, vy);
         const Drive<Real> whole{weight * slope.x, weight * slope.y};
         if constexpr (kCurvature == Curvature::none) return whole;
         const Real k = vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy, speed2 = vx * vx + vy * vy;
-        const auto too_high = abs(k) * high > speed2;
+        const auto too_high = 4.0 * abs(k) * high > speed2;
         if (!any(too_high)) return whole;
-        const Real share = max(Real{}, 2.0 - abs(k) * high / max(speed2, Real{} + 1e-300));
+        const Real share = max(Real{}, 2.0 - 4.0 * abs(k) * high / max(speed2, Real{} + 1e-300));
         const Real lift = select(too_high, weight - max(Real{}, g + share * k), Real{}), c2 = cosine * cosine;
         return {whole.x - lift * (slope.x - c2 * bx), whole.y - lift * (slope.y - c2 * by)};
     }
