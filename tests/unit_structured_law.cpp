@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "catch.h"
 #include "law/structured_law.h"
@@ -140,6 +141,37 @@ TEST_CASE("V5: the return of a cone that dilates: multiplier, pressure and shear
     const double gained = -back.first / 3.0 - p;
     CHECK(gained == Approx(3 * law.bulk() * flows * multiplier).epsilon(1e-12));
     CHECK(back.scale * (q0 + law.shear() * gamma) - q0 == Approx(3 * alpha * gained).epsilon(1e-10));
+}
+
+TEST_CASE("V5: plastic strain in the plane is the elastic strain that the return takes away, wherever the trial stress lies",
+          "[structured]") {
+    const ColumnYield yield = GENERATE(ColumnYield::compression, ColumnYield::plane_strain);
+    // What dilates as much as it rubs and hardly shrinks has states that Newton's method leaves to the search.
+    const auto [phi, psi, poisson] = GENERATE(std::tuple(28.0, 0.0, 0.3), std::tuple(28.0, 10.0, 0.3), std::tuple(45.0, 45.0, 0.45));
+    ColumnMaterial m = clay(phi, yield, psi);
+    m.poisson = poisson;
+    const ColumnLaw law(m);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> size(2.0, 7.0), side(-1.0, 1.0);
+    const auto stress = [&] { return std::copysign(std::pow(10.0, size(random)), side(random)); };
+    int yielded = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const double c = std::pow(10.0, size(random) - 2.0);
+        const ColumnStress trial{stress(), stress(), -std::pow(10.0, size(random) - 1.0), stress()};
+        if (law.excess(trial, c) <= 0.0) continue;
+        ++yielded;
+        ColumnStress s = trial;
+        const PlasticStep plastic = law.yield(c, s);
+        const double dx = trial.xx - s.xx, dy = trial.yy - s.yy, xy = (1.0 + m.poisson) / m.young * (trial.xy - s.xy);
+        const double exx = (dx - m.poisson * dy) / m.young, eyy = (dy - m.poisson * dx) / m.young;
+        const double largest = 0.5 * (exx + eyy) + std::hypot(0.5 * (exx - eyy), xy);
+        // zz is met to 1e-7 of the strength and the weight (kStressError), and is what these strains are without.
+        const double scale = (law.strength(c) + std::abs(s.zz)) / m.young;
+        const double round_off = 1e-14 * (std::abs(trial.xx) + std::abs(trial.yy) + std::abs(trial.xy)) / m.young;
+        REQUIRE(std::abs(plastic.dilation - exx - eyy) <= 1e-6 * scale + round_off);
+        REQUIRE(std::abs(plastic.extension - largest) <= 1e-6 * scale + round_off);
+    }
+    CHECK(yielded > 10000);
 }
 
 TEST_CASE("V6: tension in all directions ends at c cot(phi), and a returned stress stays", "[structured]") {
