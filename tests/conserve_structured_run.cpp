@@ -159,7 +159,8 @@ TEST_CASE("Walls hold structured columns back, open sides and ground without dat
     const auto left = [&] {
         StructuredRun run(scene);
         const double mass = run.status().mass;
-        go_to(run, scene.end);
+        while (run.status().time < scene.end && run.status().mass > 0.0) run.advance(scene.end);
+        if (run.status().mass == 0.0) CHECK(run.status().max_speed == 0.0);  // the last ones left in this step
         CHECK(run.status().mass + run.status().mass_left == Approx(mass).epsilon(1e-12));
         return run.status().mass_left / mass;
     };
