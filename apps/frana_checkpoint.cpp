@@ -59,7 +59,7 @@ std::map<std::string, std::string> keys_of(const std::string& resolved) {
 
 std::string case_text(const CaseFile& file) {
     std::string text;
-    for (const auto& [key, value] : keys_of(resolved_toml(file))) text += key + " = " + value + "\n";
+    for (const auto& [key, value] : keys_of(resolved_toml(file))) text += fmt::format("{} = {}\n", key, value);
     return text;
 }
 

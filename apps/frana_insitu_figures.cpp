@@ -133,6 +133,7 @@ public:
     void look(const Frame& frame, Index number) override {
         const std::vector<Station> places = stations(entry_.line, 0.5 * frame.grid.cell);
         std::vector<double> x;
+        x.reserve(places.size());
         for (const Station& place : places) x.push_back(place.distance);
         const auto curve = [&](const std::string& field, Curve::Kind kind) {
             const Scalar values = scalar(frame.nodes, field, "the grid");

@@ -311,7 +311,8 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     Json look;
     look["title"] = title;
     for (const std::string& name : state_names()) look["states"][name] = missing_for(name, run_dir, seen);
-    if (look["states"]["budgets"] == "") {
+    const auto shows = [&](const char* state) { return look["states"][state].get<std::string>().empty(); };
+    if (shows("budgets")) {
         const Table history = read_table(run_dir / "history.csv");
         const double start = history.rows() > 0 ? history.column("potential").front() : 0.0;
         look["potential_from_start"] = fmt::format("potential - ({})", start);
@@ -327,8 +328,8 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     for (const char* name : {"depth", "speed"}) look["range"][name] = {0.0, round_up(seen.largest[name])};
     const double stress = round_up(seen.largest["stress"]);
     look["range"]["stress"] = {-stress, stress};
-    if (look["states"]["structure"] == "") look["range"]["cohesion"] = {0.0, round_up(seen.largest["cohesion"])};
-    if (look["states"]["phases"] == "")
+    if (shows("structure")) look["range"]["cohesion"] = {0.0, round_up(seen.largest["cohesion"])};
+    if (shows("phases"))
         for (const char* name : {"water_depth", "bound_depth"}) look["range"][name] = {0.0, round_up(seen.largest[name])};
     look["range"]["effective_stress"] = {-round_up(seen.largest["effective_stress"]), 0.0};
     // Some 400 crosses on the flow, since a narrow one has no room for wide distances; but they must be large enough to
@@ -340,10 +341,10 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     look["cross"] = {{"stride", stride},
                      {"scale", 2.5 * static_cast<double>(stride) * seen.grid.cell / stress},
                      {"extent", {0, seen.grid.nx - 1, 0, seen.grid.ny - 1, 0, 0}}};
-    if (look["states"]["profiles"] == "") look["legend"] = free_corner(run_dir);
-    look["camera"] = cameras(run_dir, seen.extent, look["states"]["survey"] == "");
+    if (shows("profiles")) look["legend"] = free_corner(run_dir);
+    look["camera"] = cameras(run_dir, seen.extent, shows("survey"));
     try {
-        if (look["states"]["impact"] == "") look_at_impact(run_dir, look);
+        if (shows("impact")) look_at_impact(run_dir, look);
     } catch (const UserError& error) {  // a list of output.fields without what it needs; the other states stand
         look["states"]["impact"] = error.what();
     }

@@ -62,7 +62,7 @@ std::string filled_state(const std::string& text, const Json& look, const fs::pa
 }
 
 Json write_states(const fs::path& run_dir, const std::string& title) {
-    const Json look = look_at_run(run_dir, title);
+    Json look = look_at_run(run_dir, title);
     const fs::path folder = run_dir / "states";
     std::error_code failure;
     fs::create_directories(folder, failure);
@@ -72,7 +72,7 @@ Json write_states(const fs::path& run_dir, const std::string& title) {
     write_text(folder / "look.json", look.dump(1) + "\n");
     for (const StateTemplate& state : state_templates()) {
         const fs::path file = folder / (state.name + ".pvsm");
-        if (look["states"][state.name] == "")
+        if (look["states"][state.name].get<std::string>().empty())
             write_text(file, filled_state(state.text, look, fs::absolute(run_dir).lexically_normal()));
         else
             fs::remove(file, failure);

@@ -65,7 +65,7 @@ std::string today() {
 std::vector<Measurement> run_problem(const Problem& problem, const verify::Setup& setup, const std::vector<Index>& grids,
                                      std::string& table, std::vector<std::string>& complaints) {
     for (std::string& text : wrong_references(problem)) complaints.push_back(std::move(text));
-    const auto measured = verify::measure(problem, setup, grids.empty() ? problem.grids : grids);
+    auto measured = verify::measure(problem, setup, grids.empty() ? problem.grids : grids);
     for (const Measurement& m : measured) {
         fmt::print("{}\n", verify::table_row(m, true));
         table += verify::table_row(m, false) + "\n";

@@ -23,12 +23,13 @@ template <class T>
 class LazyArray {
 public:
     LazyArray() = default;
-    explicit LazyArray(Index count, Index guard = 0)
-        : block_(std::calloc(static_cast<std::size_t>(count + 2 * guard) * sizeof(T) + alignof(T), 1)), count_(count) {
+    explicit LazyArray(Index count, Index guard = 0) : count_(count) {
+        const std::size_t bytes = static_cast<std::size_t>(count + 2 * guard) * sizeof(T);
+        std::size_t room = bytes + alignof(T);
+        block_.reset(std::calloc(room, 1));
         if (!block_) throw std::bad_alloc();
-        constexpr std::uintptr_t kStep = alignof(T);
-        const std::uintptr_t start = reinterpret_cast<std::uintptr_t>(block_.get());
-        first_ = reinterpret_cast<T*>((start + kStep - 1) / kStep * kStep) + guard;
+        void* start = block_.get();
+        first_ = static_cast<T*>(std::align(alignof(T), bytes, start, room)) + guard;
     }
     T& operator[](Index k) { return first_[k]; }
     const T& operator[](Index k) const { return first_[k]; }

@@ -46,7 +46,7 @@ public:
     /// Number of the first face of a surface.
     int first(int surface) const { return first_[static_cast<std::size_t>(surface)]; }
     const Face& face(int surface, int number) const {
-        return faces_[static_cast<std::size_t>(first(surface) + number)];
+        return faces_[static_cast<std::size_t>(first(surface)) + static_cast<std::size_t>(number)];
     }
     /// Moment of a face's impulse about a point, both given from the grid's origin [kg m^2/s].
     static Vec3 moment_about(const Face& face, const Vec3& point);
