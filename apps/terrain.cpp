@@ -20,7 +20,7 @@ const frana::NamedScene& find_scene(const std::string& name) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     CLI::App app("Writes the terrain (GeoTIFF) and releases (GeoJSON) that the cases use");
     std::string name, out;
     bool list = false;
@@ -29,21 +29,20 @@ int main(int argc, char** argv) {
     app.add_flag("--list", list, "show the names");
     try {
         app.parse(argc, argv);
-        if (list || name.empty() || out.empty()) {
-            for (const frana::NamedScene& scene : frana::made_scenes())
-                std::printf("%-16s %s\n", scene.name, scene.meaning);
-            if (list) return 0;
-            throw frana::UserError("frana_terrain: give a NAME of the list above and --out DIR");
-        }
-        frana::write_scene(find_scene(name).make(), out);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
-    } catch (const frana::UserError& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 2;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "internal error: %s\n", error.what());
-        return 1;
     }
+    if (list || name.empty() || out.empty()) {
+        for (const frana::NamedScene& scene : frana::made_scenes()) std::printf("%-16s %s\n", scene.name, scene.meaning);
+        if (list) return 0;
+        throw frana::UserError("frana_terrain: give a NAME of the list above and --out DIR");
+    }
+    frana::write_scene(find_scene(name).make(), out);
     return 0;
+} catch (const frana::UserError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "internal error: %s\n", error.what());
+    return 1;
 }

@@ -39,6 +39,7 @@ std::vector<Place> nearest_places(Index count) {
 Index first_moving(const std::vector<Place>& places, double resting) {
     if (resting <= 0.0) return std::numeric_limits<Index>::min();
     std::vector<Index> columns;
+    columns.reserve(places.size());
     for (const Place& place : places) columns.push_back(place.i);
     const auto nth = static_cast<std::ptrdiff_t>(resting * static_cast<double>(places.size()));
     std::nth_element(columns.begin(), columns.begin() + nth, columns.end());

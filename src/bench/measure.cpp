@@ -221,6 +221,7 @@ std::vector<Cost> measure_in_turns(const std::vector<Scene>& scenes, const Plan&
     for (int window = 0; window < plan.windows; ++window)
         for (const auto& meter : meters) meter->time_window();
     std::vector<Cost> costs;
+    costs.reserve(meters.size());
     for (const auto& meter : meters) costs.push_back(meter->cost());
     return costs;
 }

@@ -29,7 +29,8 @@ NearestOnRings::NearestOnRings(const Rings& rings) {
     ny_ = 1 + static_cast<Index>(extent.y() / size_);
     for (const auto& ring : rings)
         for (std::size_t k = 0; k < ring.size(); ++k) {
-            const Vec2 a = ring[k], edge = ring[(k + 1) % ring.size()] - ring[k];
+            const Vec2& a = ring[k];
+            const Vec2 edge = ring[(k + 1) % ring.size()] - a;
             const int parts = std::max(1, static_cast<int>(std::ceil(edge.norm() / size_)));
             for (int part = 0; part < parts; ++part) {
                 const Vec2 from = a + static_cast<double>(part) / parts * edge;

@@ -46,8 +46,9 @@ private:
         return (edges_[static_cast<std::size_t>(corner)] & bit(direction)) != 0;
     }
     Vec2 place(Index corner) const {
-        return {grid_.x0 + (static_cast<double>(corner % columns_) - 0.5) * grid_.cell,
-                grid_.y0 + (static_cast<double>(corner / columns_) - 0.5) * grid_.cell};
+        const Index column = corner % columns_, row = corner / columns_;
+        return {grid_.x0 + (static_cast<double>(column) - 0.5) * grid_.cell,
+                grid_.y0 + (static_cast<double>(row) - 0.5) * grid_.cell};
     }
 
     /// `start` is the southernmost, then westernmost corner of its ring, so the ring turns there.

@@ -130,7 +130,7 @@ Vec2 slip_after(const Vec2& slip, const Vec2& drive, double inertia, const Excha
     }
     const Vec2 driven = slip + gain;
     const double speed = driven.norm();
-    if (speed == 0.0) return driven;
+    if (speed == 0.0) return Vec2::Zero();
     const Vec2 direction = driven / speed;
     return riccati_speed(std::max(0.0, slip.dot(direction)), speed, 0.0, rate, dt) * direction;
 }

@@ -21,6 +21,7 @@ void Archive::exchange_one(const std::string& name, Kind kind, void* value) {
 
 void Archive::numbers(const std::string& name, const std::vector<double*>& values) {
     std::vector<double> all;
+    all.reserve(values.size());
     for (const double* value : values) all.push_back(*value);
     array(name, all);
     if (!loading()) return;

@@ -13,6 +13,7 @@ namespace {
 
 std::vector<Scalar> scalars(const Frame& frame, const std::vector<std::string>& names) {
     std::vector<Scalar> found;
+    found.reserve(names.size());
     for (const std::string& name : names) found.push_back(scalar(frame.nodes, name, "the grid"));
     return found;
 }

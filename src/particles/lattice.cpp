@@ -86,7 +86,7 @@ public:
         if (!holes_ || std::isfinite(bed_elevation(bed_, x, y))) return {x, y};
         for (const auto& [sx, sy] :
              {std::array{-1, -1}, std::array{1, -1}, std::array{-1, 1}, std::array{1, 1}}) {
-            const Vec2 quarter(x + 0.5 * half * sx, y + 0.5 * half * sy);
+            Vec2 quarter(x + 0.5 * half * sx, y + 0.5 * half * sy);
             if (std::isfinite(bed_elevation(bed_, quarter.x(), quarter.y()))) return quarter;
         }
         return {Raster::nodata, Raster::nodata};

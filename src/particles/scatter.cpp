@@ -131,8 +131,8 @@ public:
     }
     /// Local coordinates.
     double at(double x, double y) const {
-        const Index i = std::min(static_cast<Index>(x / grid_.cell + 0.5), grid_.nx - 1);
-        const Index j = std::min(static_cast<Index>(y / grid_.cell + 0.5), grid_.ny - 1);
+        const Index i = std::min(static_cast<Index>(std::floor(x / grid_.cell + 0.5)), grid_.nx - 1);
+        const Index j = std::min(static_cast<Index>(std::floor(y / grid_.cell + 0.5)), grid_.ny - 1);
         return density_[i + grid_.nx * j];
     }
 
@@ -218,7 +218,7 @@ OutlineFaults place_scattered(const Material& material, Index count, double area
 
     const Lattice cells{spacing / kCellsPerEdge, material.box().x0, material.box().y0};
     std::vector<Index> owners(cells.column(material.box().x1) + 2, -1);  // of the last row seen, by column
-    const OutlineFaults faults = material.integrate(cells, material.box(), [&](const PatchRow& row) {
+    OutlineFaults faults = material.integrate(cells, material.box(), [&](const PatchRow& row) {
         Index west = -1;
         const double y = cells.y(row.row);
         for (Index k = 0; k < row.count; ++k) {
