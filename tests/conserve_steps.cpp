@@ -132,7 +132,7 @@ TEST_CASE("Viscosity gives lone columns of any transfer no energy", "[conserve][
     }
 }
 
-TEST_CASE("Between nodes the flow is what it is on them, linearly; the outer half pixel shows its rim", "[steps]") {
+TEST_CASE("Between nodes the flow is what it is on them, linearly; the outer half pixel shows its rim", "[conserve][steps]") {
     // A sheet that falls with the bed: depth and velocity are the same on all its nodes.
     Scene scene = scene_on(24, 16, 2.0, [](double x, double y) { return 3.0 + 0.25 * x - 0.5 * y; });
     scene.bed_law = bed::Coulomb{2.0};

@@ -91,13 +91,13 @@ protected:
     }
 
 private:
-    /// In one piece, within the file. HDF5 (1.10) follows other layouts of a damaged file to addresses that are not there.
+    /// In one piece, within the file, whose head HDF5 counts in. HDF5 (1.10) follows other layouts of a damaged file to addresses that are not there.
     bool lies_whole(hid_t set, std::size_t bytes) const {
         const Handle made(access_, H5Dget_create_plist(set), H5Pclose);
         const haddr_t place = H5Dget_offset(set);
         const std::uintmax_t held = fs::file_size(access_.file());
         return H5Pget_layout(made) == H5D_CONTIGUOUS && H5Pget_external_count(made) == 0 && place != HADDR_UNDEF &&
-               H5Dget_storage_size(set) == bytes && bytes <= held && place <= held - bytes;
+               place >= kHead && H5Dget_storage_size(set) == bytes && bytes <= held && place <= held - bytes;
     }
     hid_t open(const std::string& name) const {
         const hid_t set = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);

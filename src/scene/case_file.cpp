@@ -60,7 +60,7 @@ CaseFile CaseFile::parse(const std::string& text, const std::filesystem::path& f
 }
 
 std::string CaseFile::name() const {
-    const std::string stem = file_.stem().string();
+    std::string stem = file_.stem().string();
     if (stem != "case" && stem != "resolved") return stem;
     const std::string folder = std::filesystem::absolute(file_).parent_path().filename().string();
     return folder.empty() ? stem : folder;

@@ -58,6 +58,7 @@ std::string quoted(const std::string& text) {
 template <class Item, class Text>
 std::string list_text(const std::vector<Item>& items, Text&& text) {
     std::vector<std::string> parts;
+    parts.reserve(items.size());
     for (const Item& item : items) parts.push_back(text(item));
     return "[" + joined(parts, ", ") + "]";
 }

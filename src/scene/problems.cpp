@@ -1,5 +1,7 @@
 #include "scene/problems.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace frana {
@@ -12,7 +14,7 @@ void Problems::add(int line, const std::string& place, const std::string& found,
 void Problems::add(const std::string& place, const UserError& error) {
     for (const std::string& problem : error.problems()) {
         const bool placed = problem.compare(0, place.size(), place) == 0;
-        problems_.push_back({no_line, placed ? problem : place + ": " + problem});
+        problems_.push_back({no_line, placed ? problem : fmt::format("{}: {}", place, problem)});
     }
 }
 
@@ -22,6 +24,7 @@ void Problems::throw_if_any() const {
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const Problem& a, const Problem& b) { return a.line < b.line; });
     std::vector<std::string> texts;
+    texts.reserve(sorted.size());
     for (const Problem& problem : sorted) texts.push_back(problem.text);
     throw UserError(texts);
 }

@@ -99,7 +99,7 @@ private:
     }
 
     std::optional<std::string> name(const toml::node& node) const {
-        const std::optional<std::string> value = text(node);
+        std::optional<std::string> value = text(node);
         if (!value) return std::nullopt;
         const bool fit = !value->empty() && std::all_of(value->begin(), value->end(), [](unsigned char c) {
             return std::isalnum(c) != 0 || c == '-' || c == '_';
@@ -109,7 +109,7 @@ private:
     }
 
     std::optional<std::string> chosen(const toml::node& node) const {
-        const std::optional<std::string> value = text(node);
+        std::optional<std::string> value = text(node);
         if (!value) return std::nullopt;
         const auto& choices = parameter_.choices;
         if (std::find(choices.begin(), choices.end(), *value) != choices.end()) return value;

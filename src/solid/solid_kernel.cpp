@@ -299,7 +299,7 @@ private:
         for (int corner = 0; corner < 8; ++corner) {
             Index first[3];
             for (int axis = 0; axis < 3; ++axis)
-                first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5)) + 2 * (corner >> axis & 1);
+                first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5)) + Index{2} * (corner >> axis & 1);
             const Index tile = body.grid.tile_of(first[0], first[1], first[2]);
             if (body.active.in_work[tile])
                 marks[static_cast<std::size_t>(std::lower_bound(work.begin(), work.end(), tile) - work.begin())] = 1;
@@ -346,16 +346,16 @@ private:
         bool listed = false;
         for (int corner = 0; corner < 8; ++corner)
             listed |=
-                body.active.in_work[body.grid.tile_of(first[0] + 2 * (corner & 1), first[1] + (corner & 2),
+                body.active.in_work[body.grid.tile_of(first[0] + Index{2} * (corner & 1), first[1] + (corner & 2),
                                                       first[2] + (corner & 4) / 2)] != 0;
         return listed;
     }
 
     static Vec3 place_of(const SpaceGrid& grid, Index tile, Index within) {
         const std::array<Index, 3> t = grid.tile_place(tile);
-        const Vec3 node(static_cast<double>(grid.first_node(t[0]) + within % kSpaceTile),
-                        static_cast<double>(grid.first_node(t[1]) + within / kSpaceTile % kSpaceTile),
-                        static_cast<double>(grid.first_node(t[2]) + within / (kSpaceTile * kSpaceTile)));
+        const Index i = within % kSpaceTile, j = within / kSpaceTile % kSpaceTile, k = within / (kSpaceTile * kSpaceTile);
+        const Vec3 node(static_cast<double>(grid.first_node(t[0]) + i), static_cast<double>(grid.first_node(t[1]) + j),
+                        static_cast<double>(grid.first_node(t[2]) + k));
         return grid.geometry().origin + grid.cell() * node;
     }
 
@@ -521,7 +521,7 @@ private:
         impulse.fill(Vec3::Zero());
         SurfaceWork work{};
         const std::size_t before = given.faces ? given.faces->size() : 0;
-        const Vec3 v = meet(body, near, x, real, mixed, {impulse.data(), given.faces, &work});
+        Vec3 v = meet(body, near, x, real, mixed, {impulse.data(), given.faces, &work});
         for (std::size_t s = 0; s < body.surfaces.size(); ++s) given.impulse[s] += share * impulse[s];
         given.work->pushed += share * work.pushed, given.work->friction += share * work.friction;
         if (given.faces)

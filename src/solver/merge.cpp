@@ -64,7 +64,8 @@ public:
     std::int32_t* points(Index s) const { return order_ + (s == 0 ? 0 : end_of_[s - 1]); }
     Index held(Index s) const { return end_of_[s] - (s == 0 ? 0 : end_of_[s - 1]); }
     Square at(Index s) const {
-        return {static_cast<double>(i0_ + s % kSide), static_cast<double>(j0_ + s / kSide), 1.0, 0};
+        const Index i = i0_ + s % kSide, j = j0_ + s / kSide;
+        return {static_cast<double>(i), static_cast<double>(j), 1.0, 0};
     }
 
 private:

@@ -80,9 +80,10 @@ double emerging(const Flow& flow, Index k, double level) {
 std::uint8_t flags_now(const Nodes& nodes, Index k) { return __atomic_load_n(&nodes.flags[k], __ATOMIC_RELAXED); }
 
 /// What a film adds to the line through its surface at p and q when that is continued to k: it bends as the ground does. Of a
-/// film only, on ground that bends by more than it is deep: on what a grid resolves waves are linear at shores.
+/// film only, on ground that bends by more than it is deep: on what a grid resolves waves are linear at shores. Nothing where
+/// the ground from q to p is next to level, as on a crest: a lake is as level there as a film.
 double film_bend(const Flow& flow, Index k, Index p, Index q) {
-    const double bend = flow.bed.z[k] - 2.0 * flow.bed.z[p] + flow.bed.z[q], depth = flow.nodes.depth[p];
+    const double bend = flow.bed.z[k] - 2.0 * flow.bed.z[p] + flow.bed.z[q], depth = std::max(flow.nodes.depth[p], flow.nodes.depth[q]);
     if (std::abs(bend) <= depth) return 0.0;
     const double rise = flow.nodes.surface[p] - flow.nodes.surface[q], ground = flow.bed.z[p] - flow.bed.z[q];
     return std::min(1.0, std::abs(bend) / depth - 1.0) * film_share(rise / flow.cell, ground / flow.cell) * bend;
@@ -109,10 +110,11 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
             if (di == 0 && dj == 0) continue;
             const Index step = dj * up + di, p = k + step, q = p + step, r = q + step;
             if (!known(p) || !known(q)) continue;
-            double e = 2.0 * nodes.surface[p] - nodes.surface[q] + film_bend(flow, k, p, q);
+            const double film = film_bend(flow, k, p, q);
+            double e = 2.0 * nodes.surface[p] - nodes.surface[q] + film;
             const double limit = flow.scheme.margin_limit * nodes.depth[p];
             if (known(r)) {
-                const double bend = std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r], -limit, limit);
+                const double bend = std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r] - film, -limit, limit);
                 e += bend + rests * (std::max(bend, std::min(0.0, nodes.level[k] - e)) - bend);
             }
             const double weight = di == 0 || dj == 0 ? nodes.depth[p] : 0.25 * nodes.depth[p];

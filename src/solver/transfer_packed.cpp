@@ -238,7 +238,7 @@ private:
             const Index stride = flow.grid.stride();
             Double4 value[4], by_x[4], by_y[4];
             for (int lane = 0; lane < 4; ++lane) {
-                Double4 v = {}, vx_ = {}, vy_ = {};
+                Double4 v = {}, slope_x = {}, slope_y = {};
                 if (lane < lanes) {
                     const Reach reach(sx, sy, stride, lane);
                     const Motion* row = flow.nodes.motions() + reach.node;
@@ -246,11 +246,11 @@ private:
                         const Double4 a = load(row), b = load(row + 1), d = load(row + 2);
                         const Double4 along = reach.wx[0] * a + reach.wx[1] * b + reach.wx[2] * d;
                         v += reach.wy[j] * along;
-                        vx_ += reach.wy[j] * (reach.sx[0] * a + reach.sx[1] * b + reach.sx[2] * d);
-                        vy_ += reach.sy[j] * along;
+                        slope_x += reach.wy[j] * (reach.sx[0] * a + reach.sx[1] * b + reach.sx[2] * d);
+                        slope_y += reach.sy[j] * along;
                     }
                 }
-                value[lane] = v, by_x[lane] = vx_, by_y[lane] = vy_;
+                value[lane] = v, by_x[lane] = slope_x, by_y[lane] = slope_y;
             }
             const double scale = 1.0 / flow.cell;
             Double4 of[4];

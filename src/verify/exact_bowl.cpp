@@ -106,11 +106,11 @@ Bowl radial_bowl() {
     bowl.bed = [](double x, double y) { return -h0 + steepness * (square(x - kMiddle) + square(y - kMiddle)); };
     bowl.rest = [](double x, double y) { return h0 - steepness * (square(x - kMiddle) + square(y - kMiddle)); };
     bowl.at = [omega, bed = bowl.bed](double x, double y, double t) {
-        const double X = x - kMiddle, Y = y - kMiddle, c = 1 - A * std::cos(omega * t);
-        const double r2 = (X * X + Y * Y) / (a * a);
+        const double dx = x - kMiddle, dy = y - kMiddle, c = 1 - A * std::cos(omega * t);
+        const double r2 = (dx * dx + dy * dy) / (a * a);
         const double surface = h0 * (std::sqrt(1 - A * A) / c - 1 - r2 * ((1 - A * A) / (c * c) - 1));
         const double rate = 0.5 * omega * A * std::sin(omega * t) / c;
-        return BowlState{surface - bed(x, y), rate * X, rate * Y};
+        return BowlState{surface - bed(x, y), rate * dx, rate * dy};
     };
     bowl.centre_x = [](double) { return kMiddle; };
     bowl.published = {{"A, printed 0.21951220", A - 0.21951220, kPrinted},
