@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "base/free_memory.h"
 #include "frana_commands.h"
 #include "frana_run_insitu.h"
 #include "io/gdal_reader.h"
@@ -104,6 +105,18 @@ double memory_of(const Scene& scene) {
            (scene.output.png || draws ? graphics_need : 0.0);
 }
 
+/// A remark when the scene may not fit into memory. What points in space need is not known before their stage begins.
+std::string memory_remark(const Scene& scene) {
+    const double bytes = memory_of(scene), free = free_memory();
+    if (bytes <= free) return {};
+    const bool space = scene.solid && bytes_per_point * most_points(scene) > 0.5 * bytes;
+    return fmt::format("remark      {}: found a need of {:.3g} GB{}; expected what fits into the {:.3g} GB that are "
+                       "free; {}\n",
+                       space ? "stage.spacing" : "memory", bytes / 1e9,
+                       space ? " once all of the release is in the window" : "", free / 1e9,
+                       space ? "give a larger spacing or a smaller window" : "use fewer particles or a coarser grid");
+}
+
 Forecast forecast(const Scene& scene) {
     const Seeds& seeds = scene.particles;
     const auto& bed = scene.bed;
@@ -187,7 +200,7 @@ int check_command(const CheckOptions& options) {
     for (const Insitu& entry : built.scene.insitu)
         std::cout << fmt::format("in situ     {} \"{}\"\n", kind_word(entry.kind), entry.name);
     for (const std::string& remark : built.scene.log) std::cout << "remark      " << remark << '\n';
-    std::cout << "ready to run\n";
+    std::cout << memory_remark(built.scene) << "ready to run\n";
     return 0;
 }
 

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "solid_maker.h"
+#include "verify/library.h"
 
 using namespace frana;
 
@@ -220,4 +221,38 @@ TEST_CASE("No point is found behind a surface, and one that is not finite is tol
         SolidFlow bad(s);
         CHECK_THROWS_AS(bad.advance(1.0), NumericsError);
     }
+}
+
+// Its gates; with nodes at rest on the floor and behind it both are 0.11.
+TEST_CASE("A viscous sheet has its speeds on a floor that holds it, whether nodes lie on it or not", "[solid]") {
+    const verify::Problem* sheet = verify::find_problem("viscous_sheet");
+    REQUIRE(sheet);
+    const verify::Measurement found = sheet->run({sheet->grids.front()});
+    for (const verify::Gate& gate : sheet->gates) {
+        if (gate.cells > sheet->grids.front()) continue;
+        CAPTURE(gate.quantity);
+        CHECK(std::abs(found.value(gate.quantity)) <= gate.bound);
+    }
+}
+
+// Where nodes behind the floor take part in the turn, points that keep their velocities gain half of the fall and more.
+TEST_CASE("A floor that holds material gives it no energy, whatever the transfer", "[solid]") {
+    const auto energy = [](const SolidStatus& s) { return s.kinetic + s.stored + s.potential; };
+    for (const SolidLaw& law : {SolidLaw(solid::Fluid{4e5, 0.0}), SolidLaw(solid::Bingham{4e5, 1e5, 10.0, 200.0})})
+        for (const char* transfer : {"tpic", "apic", "flip"}) {
+            CAPTURE(law.index(), transfer);
+            SolidScene s = lump(law);
+            s.surfaces[0] = Surface::plane({0, 0, 0.03}, {0, 0, 1}, Hold::stuck);
+            if (transfer[0] == 'a') s.affine = Affine::apic;
+            if (transfer[0] == 'f') s = kept(s), s.blending = 1.0;
+            SolidFlow flow(s);
+            flow.advance(1e9);
+            const double start = energy(flow.status()), fall = flow.status().mass * 9.81 * 0.1;
+            double most = 0.0;
+            while (flow.status().time < 0.6) {
+                flow.advance(0.6);
+                most = std::max(most, energy(flow.status()) - start);
+            }
+            CHECK(most < 1e-3 * fall);
+        }
 }

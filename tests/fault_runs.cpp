@@ -47,8 +47,10 @@ public:
             return;
         }
         const bool refused = ending.code == 2 && says_why(ending.errors);
-        const bool good = expected.empty() ? ending.code == 0 || refused : expected.count(ending.code) > 0;
-        ++(good ? ending.code == 0 ? tally.whole : tally.refused : tally.bad);
+        // A signal may come when all is written and nobody listens any more.
+        const bool whole = ending.code == 0 || (ending.signal != 0 && is_whole());
+        const bool good = expected.empty() ? ending.code == 0 || refused : whole || expected.count(ending.code) > 0;
+        ++(good ? whole ? tally.whole : tally.refused : tally.bad);
         if (!good)
             std::printf("%s: exit %d, signal %d, said: %s\n", fault.c_str(), ending.code, ending.signal,
                         ending.errors.c_str());
@@ -103,12 +105,14 @@ private:
         return names && errors.size() > 20 && std::count(errors.begin(), errors.end(), '\n') <= 3 &&
                errors.find("std::") == std::string::npos && errors.find("nternal") == std::string::npos;
     }
+    bool is_whole() const { return fs::exists(out() / "run.json") && compare(undisturbed(), out()) >= 0; }
     fs::path folder_;
     Runner runner_;
     double wall_ = 0.0;
     std::map<std::string, Tally> tallies_;
     std::set<std::string> said_;
-    const std::set<std::string> must_refuse_ = {"files may not grow beyond a size", "the disk is full", "little memory"};
+    const std::set<std::string> must_refuse_ = {"files may not grow beyond a size", "the disk is full", "little memory",
+                                                "Ctrl-C or SIGTERM"};
 };
 
 void limit(decltype(RLIMIT_FSIZE) resource, rlim_t bytes) {
@@ -184,13 +188,22 @@ void closed_streams(Faults& faults) {
     faults.attempt("stdout is full", full, [] {}, {0});
 }
 
+/// Before main() has begun a signal ends any program; on a busy machine libraries take a while to load.
+bool catches(pid_t program, int number) {
+    std::istringstream status(text_of("/proc/" + std::to_string(program) + "/status"));
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind("SigCgt:", 0) == 0) return std::stoull(line.substr(7), nullptr, 16) >> (number - 1) & 1;
+    return false;
+}
+
 void signals(Faults& faults) {
     for (const int number : {SIGINT, SIGTERM})
         for (const double share : {0.2, 0.5, 0.8}) {
             Disturbance signalled;
+            signalled.ready = [number](pid_t program) { return catches(program, number); };
             signalled.moment = share * faults.wall();
             signalled.at_moment = [number](pid_t program) { ::kill(program, number); };
-            faults.attempt("Ctrl-C or SIGTERM", signalled, [] {}, {130, 0});  // 0: it was done by then
+            faults.attempt("Ctrl-C or SIGTERM", signalled, [] {}, {130});
         }
 }
 

@@ -79,6 +79,15 @@ TEST_CASE("check tells grid, particles and volume of a good case without running
     CHECK_FALSE(fs::exists(scene.folder() / "out"));
 }
 
+TEST_CASE("check tells of points in space that memory may not hold", "[cli]") {
+    const PlaneCase scene;
+    scene.write("[[stage]]\nmodel = \"solid_flow\"\nspacing = 0.001\n");
+    const Outcome check = scene.frana("check CASE");
+    CHECK(check.code == 0);
+    CHECK_THAT(check.out, Contains("remark      stage.spacing: found a need of"));
+    CHECK_THAT(check.out, Contains("GB that are free; give a larger spacing or a smaller window"));
+}
+
 TEST_CASE("An in-situ entry that cannot work is refused before the run folder is touched", "[cli][insitu]") {
     const PlaneCase scene;
     const std::string name = scene.file().string();

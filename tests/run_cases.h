@@ -168,7 +168,8 @@ struct Ending {
 /// What else happens to a run.
 struct Disturbance {
     std::function<void()> in_program = [] {};  ///< before the program starts, in its process
-    double moment = 1e9;                       ///< [s] after its start
+    std::function<bool(pid_t)> ready = [](pid_t) { return true; };  ///< from then on the moment counts
+    double moment = 1e9;                                            ///< [s]
     std::function<void(pid_t)> at_moment = [](pid_t program) { ::kill(program, SIGKILL); };
 };
 
@@ -185,13 +186,14 @@ public:
         if (resume) words.push_back("--resume");
         const pid_t child = ::fork();
         if (child == 0) become(words, disturbance);
-        const auto start = Clock::now();
+        auto start = Clock::now();
         int status = 0;
         rusage used{};
-        bool disturbed = false;
+        bool ready = false, disturbed = false;
         while (::wait4(child, &status, WNOHANG, &used) == 0) {
             std::this_thread::sleep_for(std::chrono::microseconds(300));
-            if (disturbed || std::chrono::duration<double>(Clock::now() - start).count() < disturbance.moment) continue;
+            if (!ready && !(ready = disturbance.ready(child))) start = Clock::now();
+            if (!ready || disturbed || std::chrono::duration<double>(Clock::now() - start).count() < disturbance.moment) continue;
             disturbance.at_moment(child);
             disturbed = true;
         }

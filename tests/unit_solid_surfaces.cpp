@@ -1,5 +1,7 @@
 // Rigid surfaces in space: distances, mirror images, shares of an impulse.
 #include "catch.h"
+#include "law/solid_law.h"
+#include "solid/image_batch.h"
 #include "solid/surfaces.h"
 
 using namespace frana;
@@ -46,6 +48,55 @@ TEST_CASE("A stuck surface turns velocities round, and two sides of a slice have
     REQUIRE(images.size() == 2);
     CHECK((images[0].motion * Vec3(1, 2, 3) + Vec3(1, 2, 3)).norm() < 1e-15);
     CHECK((images[1].place - Vec3(0, 3.5, 0)).norm() < 1e-15);
+}
+
+TEST_CASE("Behind a stuck surface the images of a flow that bends go on with its bend, in a corner too", "[solid]") {
+    // Along the floor z = 0 the speeds (2, -1) z + bend z^2: at rest on it; a side at y = 0 mirrors them. Speeds whose
+    // gradient is gone at the point have just met the floor: they are turned round as they are.
+    const bool settled = GENERATE(true, false);
+    const Vec3 slope(2, -1, 0), x(4.0, 1.2, 1.1), bend = (settled ? -0.15 : -0.5 / x.z()) * slope;
+    const std::vector<Surface> corner = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck),
+                                         Surface::plane({0, 0, 0}, {0, 1, 0})};
+    MaterialPoints q;
+    q.each([](Column& column) { column.assign(1, 0.0); });
+    q.mass[0] = 3.0, q.rest_volume[0] = 1.0, q.j[0] = 1.0;
+    for (int k = 0; k < 3; ++k) {
+        q.v[static_cast<std::size_t>(k)][0] = slope[k] * x.z() + bend[k] * x.z() * x.z();
+        q.gradient[static_cast<std::size_t>(6 + k)][0] = slope[k] + 2.0 * bend[k] * x.z();
+    }
+    int held = 0;
+    for (const Image& image : images_of(corner, x)) {
+        if (image.place.z() > 0.0) continue;
+        ImageBatch batch;
+        batch.add(0, image.place, image, 1.0);
+        batch.fill();
+        const BatchGift gift = mirrored_gift<true>(solid::Fluid{1e6, 0.0}, q, batch, Vec3::Zero(), 0.0);
+        const double z = image.place.z();
+        for (int k = 0; k < 3; ++k) {
+            const double side = k == 1 && image.place.y() < 0.0 ? -1.0 : 1.0;
+            const double speed = settled ? slope[k] * z + bend[k] * z * z : slope[k] * z - bend[k] * z * z;
+            const double gradient = settled ? slope[k] + 2.0 * bend[k] * z : 0.0;
+            CHECK(gift.momentum[k][0] / 3.0 == Approx(side * speed).margin(1e-14));
+            CHECK(gift.affine[2][k][0] / 3.0 == Approx(side * gradient).margin(1e-14));
+            CHECK(gift.affine[0][k][0] == 0.0);
+        }
+        ++held;
+    }
+    CHECK(held == 2);
+}
+
+TEST_CASE("Images bend with one stuck plane, not in a corner of two, in one that leans, or in barriers", "[solid]") {
+    const Surface floor = Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck);
+    const auto bent = [](const Surface& one, const Surface& other, const Vec3& x) {
+        int count = 0;
+        for (const Image& image : images_of({one, other}, x)) count += image.held_above > 0.0;
+        return count;
+    };
+    const Vec3 x(5.0, 0.5, 0.5);
+    CHECK(bent(floor, Surface::plane({0, 0, 0}, {0, 1, 0}), x) == 2);               // its own and the corner's
+    CHECK(bent(Surface::plane({0, 0, 0}, {0, 1, 0}), floor, x) == 2);               // whichever comes first
+    CHECK(bent(floor, Surface::plane({0, 0, 0}, {0, 1, 0}, Hold::stuck), x) == 2);  // each its own, none in the corner
+    CHECK(bent(floor, Surface::plane({0, 0, 0}, {0, 1, 0.2}), x) == 1);
 }
 
 TEST_CASE("The ground's tangent plane is exact on a tilted bilinear bed", "[solid]") {

@@ -192,6 +192,19 @@ TEST_CASE("Barriers that cannot be are refused in one sentence", "[barrier]") {
     CHECK(has(barrier("height = -4\noutline = \"wall.geojson\"\n"), "barrier.0.height: found -4"));
 }
 
+TEST_CASE("A barrier that stands outside of the stage's window is remarked on, one inside it is not", "[barrier]") {
+    const auto remarks = [](const std::string& window) {
+        std::string all;
+        for (const std::string& line :
+             scene_of(two + window + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 4\n").log)
+            all += line;
+        return all;
+    };
+    CHECK_FALSE(has(remarks(west), "barrier.0"));
+    CHECK(has(remarks("window = [1100, 2000, 1160, 2100]\n"),
+              "barrier.0.outline: stands outside of stage.window: points in space do not meet it"));
+}
+
 TEST_CASE("A barrier of any shape comes from a mesh alone, through the reader that the program hands in", "[barrier]") {
     MeshSampling asked;
     std::string asked_file;

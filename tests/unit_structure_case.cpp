@@ -103,7 +103,9 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(has(problem_of("[material.structure]\ncohesion = 2e4\n"),
               "material.structure.cohesion: found, but material.structure.law = \"none\" does not use it"));
     CHECK(has(problem_of(structure + "fraction = 1.2\n"), "material.structure.fraction: found 1.2"));
+    CHECK(has(problem_of(structure + "fraction = -0.1\n"), "material.structure.fraction: found -0.1"));
     CHECK(has(problem_of(structure + "poisson_ratio = 0.5\n"), "material.structure.poisson_ratio: found 0.5"));
+    CHECK(has(problem_of(structure + "poisson_ratio = 0\n"), "material.structure.poisson_ratio: found 0"));
     CHECK(has(problem_of(structure + "bulk_modulus = 1e7\n"), "which no solid can have"));
     CHECK(has(problem_of(structure + "bulk_modulus = 3e7\n"), "a negative Poisson ratio"));
     CHECK(has(problem_of(structure + "dilatancy_angle_deg = 31\n"), "expected at most friction_angle_deg = 30"));

@@ -194,7 +194,8 @@ DistanceField field_around(const Path& file, vtkPolyData* mesh, const MeshSampli
     field.spacing = sampling.spacing;
     double count = 1.0;
     for (int k = 0; k < 3; ++k) {
-        const double low = bounds[2 * k] - sampling.margin, size = bounds[2 * k + 1] + sampling.margin - low;
+        const double* const ends = bounds + 2 * static_cast<std::ptrdiff_t>(k);
+        const double low = ends[0] - sampling.margin, size = ends[1] + sampling.margin - low;
         const double nodes = std::ceil(size / sampling.spacing) + 1.0;
         // The box's middle is the field's, so that both ends have the margin.
         field.origin[k] = low - 0.5 * ((nodes - 1.0) * sampling.spacing - size);

@@ -27,7 +27,7 @@ fs::path found_in_path(const char* program) {
     std::istringstream list(folders ? folders : "");
     for (std::string folder; std::getline(list, folder, ':');) {
         std::error_code failure;
-        const fs::path file = fs::absolute(folder.empty() ? "." : folder, failure) / program;
+        fs::path file = fs::absolute(folder.empty() ? "." : folder, failure) / program;
         if (!failure && fs::is_regular_file(file, failure) && access(file.c_str(), X_OK) == 0) return file;
     }
     return {};
@@ -45,6 +45,7 @@ std::string last_words(const fs::path& log) {
 /// Runs a program in a folder, without a shell. False with the reason unless it ends well.
 bool run_in(const fs::path& folder, const fs::path& program, std::vector<std::string> words, std::string& why_not) {
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     posix_spawn_file_actions_t actions;

@@ -34,6 +34,7 @@ Eigen::Vector4d with_one(const Vec3& p) { return {p.x(), p.y(), p.z(), 1.0}; }
 double height_of_most(const std::vector<SpaceObjects::Ball>& balls) {
     if (balls.empty()) return 0.0;
     std::vector<double> heights;
+    heights.reserve(balls.size());
     for (const auto& ball : balls) heights.push_back(ball.centre.z());
     const auto at = heights.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(heights.size() - 1));
     std::nth_element(heights.begin(), at, heights.end());

@@ -32,7 +32,7 @@
 // VTK before 9.4 loads OpenGL through GLEW, and Debian builds GLEW for GLX: glewInit() finds all entry
 // points, then answers 4, "no GLX display". The entry points serve EGL as well, so this definition, which the
 // dynamic linker finds before GLEW's, turns that one answer into success. The executable must export it.
-extern "C" __attribute__((visibility("default"))) unsigned int glewInit() {
+extern "C" __attribute__((visibility("default"))) unsigned int glewInit() {  // NOLINT(readability-identifier-naming)
     using Init = unsigned int (*)();
     constexpr unsigned int no_glx_display = 4;
     const auto real = reinterpret_cast<Init>(dlsym(RTLD_NEXT, "glewInit"));

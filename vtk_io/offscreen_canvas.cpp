@@ -168,13 +168,12 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
     while (at < text.size()) {
         const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
         const std::string word = text.substr(at, end - at);
-        if (lines.empty()) {
-            lines.push_back(word);
-        } else if (text[at - 1] != '\n' && text_size(lines.back() + " " + word, style).x() <= width) {
+        const bool fits = !lines.empty() && text[at - 1] != '\n' &&
+                          text_size(lines.back() + " " + word, style).x() <= width;
+        if (fits)
             lines.back() += " " + word;
-        } else {
+        else
             lines.push_back(word);
-        }
         at = end + 1;
     }
     return lines;

@@ -24,7 +24,7 @@ vtkSmartPointer<vtkDoubleArray> borrowed(const std::string& name, const double* 
     auto array = vtkSmartPointer<vtkDoubleArray>::New();
     array->SetName(name.c_str());
     array->SetNumberOfComponents(static_cast<int>(components));
-    array->SetArray(const_cast<double*>(values), static_cast<vtkIdType>(count * components), 1);
+    array->SetArray(const_cast<double*>(values), static_cast<vtkIdType>(count) * static_cast<vtkIdType>(components), 1);
     return array;
 }
 

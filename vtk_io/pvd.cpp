@@ -57,7 +57,7 @@ std::string PvdSeries::relative(std::int64_t number) const {
 }
 
 std::filesystem::path PvdSeries::file(std::int64_t number) const {
-    const std::filesystem::path file = pvd_.parent_path() / relative(number);
+    std::filesystem::path file = pvd_.parent_path() / relative(number);
     std::error_code failure;
     std::filesystem::create_directories(file.parent_path(), failure);
     if (failure)

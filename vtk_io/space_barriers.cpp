@@ -178,7 +178,8 @@ private:
     void add_edges(const Polyline& ring) {
         constexpr double kDense = 40.0;  // places along an edge at most, for a top that follows the bed
         for (std::size_t k = 0; k < ring.size(); ++k) {
-            const Vec2 from = ring[k], way = ring[(k + 1) % ring.size()] - from;
+            const Vec2& from = ring[k];
+            const Vec2 way = ring[(k + 1) % ring.size()] - from;
             const double parts = top_.level ? 1.0 : kDense;
             std::vector<Vec3> edge;
             for (double n = 0.0; n <= parts; n += 1.0) {

@@ -11,9 +11,9 @@ namespace {
 struct Corners {
     Index i, j;
     double weights[4];
-    Corners(const GridGeometry& g, double u, double v) {
-        i = std::clamp<Index>(static_cast<Index>(u), 0, std::max<Index>(g.nx - 2, 0));
-        j = std::clamp<Index>(static_cast<Index>(v), 0, std::max<Index>(g.ny - 2, 0));
+    Corners(const GridGeometry& g, double u, double v)
+        : i(std::clamp<Index>(static_cast<Index>(u), 0, std::max<Index>(g.nx - 2, 0))),
+          j(std::clamp<Index>(static_cast<Index>(v), 0, std::max<Index>(g.ny - 2, 0))) {
         const double s = std::clamp(u - static_cast<double>(i), 0.0, 1.0);
         const double t = std::clamp(v - static_cast<double>(j), 0.0, 1.0);
         weights[0] = (1 - s) * (1 - t), weights[1] = s * (1 - t), weights[2] = (1 - s) * t, weights[3] = s * t;

@@ -47,6 +47,9 @@ public:
                           fmt::format("expected the barrier within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}",
                                       extent[0], extent[2], extent[1], extent[3]),
                           "correct the coordinates or the CRS, or widen terrain.window");
+        else if (scene_.solid && !meets(vertices, window_extent()))
+            scene_.log.push_back(
+                fmt::format("{}: stands outside of stage.window: points in space do not meet it", place()));
         barrier.wet_left = case_.word(prefix_ + "wet") == "left";
         if (given("thickness")) barrier.thickness = case_.number(prefix_ + "thickness");
         if (given("top")) barrier.top = case_.number(prefix_ + "top");
@@ -60,6 +63,13 @@ private:
     bool given(const char* name) const { return case_.given(prefix_ + name); }
     std::string place() const {
         return case_.place(prefix_ + (given("mesh") ? "mesh" : given("line") ? "line" : "outline"));
+    }
+
+    /// Of the stage in space: x, y of the low corner and of the high one [m].
+    std::array<double, 4> window_extent() const {
+        const GridGeometry& g = scene_.bed.geometry;
+        const std::array<Index, 4>& w = scene_.solid->window;
+        return {g.x(w[0]), g.y(w[1]), g.x(w[2]), g.y(w[3])};
     }
 
     bool read_plan(Barrier& barrier, std::vector<Vec2>& vertices) {

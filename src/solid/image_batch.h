@@ -20,12 +20,16 @@ struct ImageBatch {
     Index point[4];
     Double4 place[3];            ///< of the images [cells]
     Mat3x4 turned_back, motion;  ///< the transpose of Image::turn, and Image::motion
+    Double4 normal[3], above;    ///< Image::held_normal and Image::held_above [m]
+    Double4 shift, steeper;      ///< of held images: 2 d^2 / m^2 and 4 d / m^2 [1/m] (see bend)
     int count = 0;
 
-    void add(Index p, const Vec3& at, const Image& image) {
-        point[count] = p;
+    void add(Index p, const Vec3& at, const Image& image, double cell) {
+        constexpr double kLeast = 0.75;  // of m [cells]: nearer to the surface a profile's bend is mostly noise
+        const double d = image.held_above, m = std::max(d, kLeast * cell);
+        point[count] = p, above[count] = d, shift[count] = 2.0 * d * d / (m * m), steeper[count] = 4.0 * d / (m * m);
         for (int k = 0; k < 3; ++k) {
-            place[k][count] = at[k];
+            place[k][count] = at[k], normal[k][count] = image.held_normal[k];
             for (int l = 0; l < 3; ++l) {
                 turned_back(l, k)[count] = image.turn(k, l);
                 motion(k, l)[count] = image.motion(k, l);
@@ -40,6 +44,8 @@ struct ImageBatch {
             for (Double4& p : place) p[lane] = p[0];
             for (Double4& e : turned_back.entry) e[lane] = e[0];
             for (Double4& e : motion.entry) e[lane] = e[0];
+            for (Double4& n : normal) n[lane] = n[0];
+            above[lane] = above[0], shift[lane] = shift[0], steeper[lane] = steeper[0];
         }
     }
     Double4 of(const Column& column) const {
@@ -47,18 +53,49 @@ struct ImageBatch {
     }
 };
 
+/// In a stuck surface images turn velocities round; this changes v and its gradient so that what flows along the
+/// surface goes on through it with its bend, which each step would otherwise take from the layer beside it. With v and
+/// v' at the distance d, and at rest on the surface, the speed is a z + b z^2, b = (v' d - v) / d^2: at -d it is
+/// 2 b d^2 - v, its gradient v' - 4 b d. What bends by more than a third of v over d (kGentle: the square of
+/// b d^2 / v), and at 0.47 of it and more altogether (kRough), is no layer that has settled, but strikes the surface or
+/// is noise, and is turned round only: a sheet's bend is d / (2 H - d), a third at half of its depth H.
+[[gnu::always_inline]] inline void bend(const ImageBatch& batch, Double4* v, Mat3x4& gradient) {
+    constexpr double kGentle = 1.0 / 9.0, kRough = 2.0 / 9.0;
+    Double4 q[3], across{}, sinks{};
+    for (int k = 0; k < 3; ++k) {
+        const Double4 slope =
+            gradient(k, 0) * batch.normal[0] + gradient(k, 1) * batch.normal[1] + gradient(k, 2) * batch.normal[2];
+        q[k] = slope * batch.above - v[k];
+        across += q[k] * batch.normal[k], sinks += v[k] * batch.normal[k];
+    }
+    Double4 bends{}, moves{};
+    for (int k = 0; k < 3; ++k) {
+        q[k] -= across * batch.normal[k];
+        const Double4 along = v[k] - sinks * batch.normal[k];
+        bends += q[k] * q[k], moves += along * along;
+    }
+    const Double4 none{}, share = min(max(kRough * moves - bends, none), (kRough - kGentle) * moves);
+    const Double4 whole = (kRough - kGentle) * moves, weight = share / select(whole > 0.0, whole, none + 1.0);
+    for (int k = 0; k < 3; ++k) {
+        v[k] -= weight * batch.shift * q[k];
+        for (int l = 0; l < 3; ++l) gradient(k, l) -= weight * batch.steeper * q[k] * batch.normal[l];
+    }
+}
+
 /// What the images give: the motion and the stress of their points, mirrored; a point and its image push each other
-/// alike.
-template <class Law>
+/// alike. bends: also in their speeds along stuck surfaces.
+template <bool bends, class Law>
 [[gnu::always_inline]] inline BatchGift mirrored_gift(const Law& law, const MaterialPoints& q, const ImageBatch& batch,
                                                 const Vec3& gravity, double dt) {
     Double4 state[7], v[3];
     Mat3x4 gradient;
     for (int n = 0; n < Law::kStates; ++n) state[n] = batch.of(q.state[n]);
     for (int n = 0; n < 9; ++n) gradient.entry[n] = batch.of(q.gradient[n]);
-    for (int k = 0; k < 3; ++k) v[k] = batch.of(q.v[k]) + dt * gravity[k];
     const Double4 push = -dt * batch.of(q.rest_volume);
     const Mat3x4 stress = (law.stress(batch.of(q.j), state, gradient) * push).matrix();
+    for (int k = 0; k < 3; ++k) v[k] = batch.of(q.v[k]);
+    if (bends && any(batch.above > 0.0)) bend(batch, v, gradient);
+    for (int k = 0; k < 3; ++k) v[k] += dt * gravity[k];
     const Mat3x4 affine = product(product(batch.motion, gradient), batch.turned_back),
                  force = product(product(batch.motion, stress), batch.turned_back);
     BatchGift gift;

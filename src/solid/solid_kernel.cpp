@@ -107,7 +107,7 @@ public:
                         show_before_cuts(body, p, image, place, dt);
                         continue;
                     }
-                    batch.add(p, place, image);
+                    batch.add(p, place, image, h);
                     if (batch.count == 4) show(body, batch, dt);
                 }
             }
@@ -325,7 +325,7 @@ private:
     /// Images give to their nodes, and the batch is empty again.
     [[gnu::noinline]] void show(SolidBody& body, ImageBatch& batch, double dt) const {
         batch.fill();
-        const BatchGift gift = mirrored_gift(law_, body.points, batch, body.gravity, dt);
+        const BatchGift gift = mirrored_gift<!keeps>(law_, body.points, batch, body.gravity, dt);
         const double ahead = static_cast<double>(kSpaceTile);  // places count from here: images may lie below zero
         const Double4 from_there[3] = {batch.place[0] + ahead, batch.place[1] + ahead, batch.place[2] + ahead};
         const BatchPlace at(from_there);
@@ -419,6 +419,21 @@ private:
             }
     }
 
+    struct Touches {
+        const Touch *begin, *end;
+    };
+    /// v, held by a stuck surface: along it, what points and images have, and nothing into others. Also behind it, where
+    /// images turn velocities round: with nodes at rest, material would stand still above a surface that lies between
+    /// them, and lose more to it at each step. But in a barrier images end halfway, and points that keep their velocities
+    /// would have each turn added to the one before.
+    static Vec3 held(const SolidBody& body, const Vec3& mixed, const Vec3& v, const Touch* by, const Touches& all) {
+        const bool still = by->contact.distance <= 0.0 && (keeps || (body.barriers >> by->surface & 1));
+        Vec3 kept = along_of(still ? Vec3::Zero() : mixed, v, by->contact.normal);
+        for (const Touch* t = all.begin; t < all.end; ++t)
+            if (t != by) kept += std::max(0.0, t->least - kept.dot(t->contact.normal)) * t->contact.normal;
+        return kept;
+    }
+
     /// Where impulses on the nodes of a tile are booked.
     struct Given {
         Vec3* impulse;                 ///< per surface
@@ -444,7 +459,7 @@ private:
             if (t->push > 0.0) {
                 const Vec3 before = v;
                 if (surface.hold == Hold::stuck)
-                    v = along_of(t->contact.distance <= 0.0 ? Vec3::Zero() : mixed, v, normal);
+                    v = held(body, mixed, v, t, {list, list + count});
                 else if (surface.friction > 0.0)
                     v = braked(v, normal, surface.friction * t->push);
                 t->brake = v - before;

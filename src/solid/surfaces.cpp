@@ -6,6 +6,12 @@
 #include "solid/bed_height.h"
 
 namespace frana {
+namespace {
+
+constexpr double kSquare = 1e-9;
+
+}  // namespace
+
 Surface Surface::plane(const Vec3& through, const Vec3& normal, Hold hold, double friction) {
     Surface s;
     s.normal = normal.normalized();
@@ -116,7 +122,7 @@ Images::Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3
         if (c.distance < image_reach(c.normal) * cell)
             list[count++] = {c, surface.hold == Hold::stuck, std::numeric_limits<double>::infinity()};
     }
-    reflect(list, count, {x, Mat3::Identity(), Mat3::Identity(), 0, {}}, 0);
+    reflect(list, count, {x, Mat3::Identity(), Mat3::Identity(), Vec3::Zero(), 0.0, false, 0, {}}, 0);
 }
 
 int Images::near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count) {
@@ -131,6 +137,7 @@ int Images::near_barrier(const Surface& surface, const Vec3& x, double cell, Nea
 }
 
 /// Reflects in each of the surfaces, and these images in those listed behind; at most three times in a row.
+/// Surfaces are perpendicular to each other when the cosine of their angle is below kSquare, round-off.
 void Images::reflect(const Near* near, int count, const Image& from, int depth) {
     for (int n = 0; n < count && count_ < kMost; ++n) {
         const Vec3& normal = near[n].contact.normal;
@@ -138,8 +145,16 @@ void Images::reflect(const Near* near, int count, const Image& from, int depth) 
         Image image{from.place - 2.0 * near[n].contact.distance * normal,
                     mirror * from.turn,
                     near[n].stuck ? Mat3(-from.motion) : Mat3(mirror * from.motion),
+                    Vec3::Zero(),
+                    0.0,
+                    from.held || near[n].stuck,
                     from.cuts,
                     {from.cut[0], from.cut[1]}};
+        const bool square = (from.turn * normal - normal).norm() < kSquare;  // to all mirrors before
+        if (near[n].bends() && square && !from.held)
+            image.held_normal = normal, image.held_above = near[n].contact.distance;
+        else if (!near[n].stuck && std::abs(from.held_normal.dot(normal)) < kSquare)
+            image.held_normal = from.held_normal, image.held_above = from.held_above;
         if (near[n].thick < std::numeric_limits<double>::infinity() && image.cuts < 2)
             image.cut[image.cuts++] = {
                 {normal[0], normal[1], normal[2]},

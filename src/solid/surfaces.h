@@ -2,6 +2,7 @@
 // Rigid surfaces that 3D material meets: planes, the ground as a height field, and barriers.
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -68,6 +69,11 @@ SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, 
 struct Image {
     Vec3 place;  ///< of the point's image [m]
     Mat3 turn, motion;
+    /// Of the one stuck surface that it is an image in, and how far the point is above it: what flows there bends. Zero
+    /// in barriers, and in corners of which not all surfaces are perpendicular to that one.
+    Vec3 held_normal;
+    double held_above;  ///< [m]
+    bool held;          ///< in a stuck surface, or more
     /// Places x with normal . x < least do not see it.
     struct Cut {
         double normal[3];
@@ -97,6 +103,7 @@ private:
         Contact contact;
         bool stuck;
         double thick;  ///< [m], without end but for barriers
+        bool bends() const { return stuck && thick == std::numeric_limits<double>::infinity(); }
     };
     static constexpr int kMostNear = 4, kMost = 14;
     static int near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count);

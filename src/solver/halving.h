@@ -60,7 +60,7 @@ bool straighten(Held& held, Index p) {
 
 /// Edges whose squared lengths differ by no more than this share are equally long: round-off.
 template <class Held>
-constexpr double kSameLength = std::is_same_v<typename decltype(Held::r1x)::value_type, float> ? 1e-5 : 1e-9;
+constexpr double kSameLength = sizeof(*Held().r1x.data()) == sizeof(float) ? 1e-5 : 1e-9;
 
 /// How many points a domain becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one, or
 /// mirror images part.

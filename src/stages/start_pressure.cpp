@@ -44,9 +44,8 @@ struct Corners {
 /// Sums at the nodes around columns, and at no others of the terrain.
 class SurfaceSums {
 public:
-    SurfaceSums(const GridGeometry& g, const FlowColumns& columns) : geometry_(g) {
+    SurfaceSums(const GridGeometry& g, const FlowColumns& columns) : geometry_(g), i_(g.nx), j_(g.ny) {
         Index i_end = 0, j_end = 0;
-        i_ = g.nx, j_ = g.ny;
         for (std::size_t k = 0; k < columns.count(); ++k) {
             const Corners c(g, columns.x[k], columns.y[k]);
             i_ = std::min(i_, c.i), i_end = std::max(i_end, c.i + 2);

@@ -32,7 +32,8 @@ struct Field {
     double width() const { return kSide / static_cast<double>(cells); }
     Index columns() const { return cells * cells; }
     ErrorColumn column(Index p) const {
-        const double x = width() * static_cast<double>(p % cells), y = width() * static_cast<double>(p / cells);
+        const Index place = p % cells, row = p / cells;
+        const double x = width() * static_cast<double>(place), y = width() * static_cast<double>(row);
         const double even = volume_over(0.0, kSide, 0.0, kSide) / static_cast<double>(columns());
         const double volume = sharing == Sharing::even ? even : volume_over(x, x + width(), y, y + width());
         const double mass = kDensity * volume;
@@ -51,8 +52,9 @@ Conservation keep(const Field& field) {
     FlowColumns c;
     for (Index p = 0; p < field.columns(); ++p) {
         const ErrorColumn column = field.column(p);
-        c.x.push_back(field.width() * (static_cast<double>(p % field.cells) + 0.5));
-        c.y.push_back(field.width() * (static_cast<double>(p / field.cells) + 0.5));
+        const Index place = p % field.cells, row = p / field.cells;
+        c.x.push_back(field.width() * (static_cast<double>(place) + 0.5));
+        c.y.push_back(field.width() * (static_cast<double>(row) + 0.5));
         c.depth.push_back(column.depth);
         c.mass.push_back(column.mass);
         c.volume.push_back(column.volume);

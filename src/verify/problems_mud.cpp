@@ -1,4 +1,4 @@
-// Mud in space: a sheet of Herschel and Bulkley's fluid that flows down an incline.
+// Sheets in space that flow down an incline which holds them: viscous fluid, Herschel and Bulkley's mud.
 #include <algorithm>
 #include <cmath>
 
@@ -8,16 +8,78 @@
 namespace frana::verify {
 namespace {
 
-/// A sheet 1 m thick on a plane that holds it. Depth below the surface gives the shear stress, rho g sin (H - z): where
+constexpr double kMiddle = 1.0;  ///< half of what is looked at [m]
+
+/// A sheet 1 m thick of water's density on a floor that holds it, 45 degrees steep, from rest.
+struct Sheet {
+    static constexpr double kGravity = 9.81, kDensity = 1000.0, kWidthCells = 3.0;
+    double length = 12.0;
+    double sound = 10.0;  ///< over sqrt(g), of 1 m
+    double floor = 0.0;   ///< how far above nodes [cells]
+    SolidLaw law = solid::Fluid{};
+
+    double bulk() const { return kDensity * sound * sound * kGravity; }
+    SolidScene scene(double cell, int per_side) const {
+        const double width = kWidthCells * cell, low = floor * cell, along = kGravity * std::sqrt(0.5);
+        SolidScene s;
+        s.gravity = {along, 0.0, -along};
+        s.density = kDensity;
+        s.law = law;
+        s.grid = grid_around({}, {-1.0, 0, 0}, {length + 3.0, width, 2.0}, cell);
+        s.surfaces = {Surface::plane({0, 0, low}, {0, 0, 1}, Hold::stuck)};
+        add_slice(s, width);
+        for_each_part({0, 0, 0}, {length, width, 1.0}, cell, per_side, [&](const Vec3& x, double volume) {
+            const double p = kDensity * along * (1.0 - x.z());
+            s.points.add(x + Vec3(0, 0, low), Vec3::Zero(), kDensity * volume / (1.0 - p / bulk()), p);
+        });
+        return s;
+    }
+};
+
+/// A viscous sheet: u = rho g sin / mu (z - z^2 / 2).
+constexpr double kViscosity = 5000.0;
+double viscous_speed(double z) {
+    return Sheet::kDensity * Sheet::kGravity * std::sqrt(0.5) / kViscosity * (z - 0.5 * z * z);
+}
+
+/// How far points' speeds in the middle of the sheet are off, over the speed, after eight of the times in which shear
+/// crosses it.
+double viscous_error(const Setup& setup, double floor, Measurement& m) {
+    Sheet sheet;
+    sheet.sound = 20.0, sheet.floor = floor;
+    sheet.law = solid::Fluid{sheet.bulk(), kViscosity};
+    const double cell = 1.0 / static_cast<double>(setup.cells);
+    SolidFlow flow(sheet.scene(cell, setup.per_side));
+    m = joined(m, run_body(flow, 8.0 * 4.0 * Sheet::kDensity / (M_PI * M_PI * kViscosity)));
+    double off = 0.0, all = 0.0;
+    for (Index p = 0; p < flow.body().points.count(); ++p) {
+        const Vec3 x = flow.position(p);
+        if (std::abs(x.x() - 0.5 * sheet.length) > kMiddle) continue;
+        const double exact = viscous_speed(x.z() - floor * cell);
+        off += std::abs(flow.velocity(p).x() - exact), all += exact;
+    }
+    return off / all;
+}
+
+/// Its floor through nodes, and half a cell above them.
+Measurement run_viscous_sheet(const Setup& setup) {
+    Measurement m;
+    const double on = viscous_error(setup, 0.0, m), between = viscous_error(setup, 0.5, m);
+    m.add("profile_error", on);
+    m.add("error_between", between);
+    return m;
+}
+
+/// A sheet of mud. Depth below the surface gives the shear stress, rho g sin (H - z): where
 /// that is above the yield stress, below z_y, the sheet shears; above it moves as a plug. In its middle, until the
 /// ends are felt, the speed goes to (Huang and Garcia 1998, J. Fluid Mech. 374, 305, without inertia)
 ///   u = n / (n + 1) (rho g sin / K)^(1/n) (z_y^(1 + 1/n) - (z_y - z)+^(1 + 1/n)).
 struct Mud {
-    double thickness = 1.0, slope = 45.0 * M_PI / 180.0, gravity = 9.81, density = 1000.0;
+    double thickness = 1.0, density = Sheet::kDensity;
     double yield_share = 0.4;  ///< of the stress at the bed
     double consistency = 5250.0, exponent = 0.5;
 
-    double pull() const { return density * gravity * std::sin(slope); }  ///< [Pa/m]
+    double pull() const { return density * Sheet::kGravity * std::sqrt(0.5); }  ///< [Pa/m]
     double yield_stress() const { return yield_share * pull() * thickness; }
     double sheared() const { return (1.0 - yield_share) * thickness; }  ///< z_y [m]
     double speed(double z) const {
@@ -33,36 +95,20 @@ struct Mud {
     double diffusivity() const { return exponent * consistency * std::pow(rate(0.0), exponent - 1.0) / density; }
 };
 
-constexpr double kLength = 24.0, kMiddle = 1.0;  ///< of the sheet; half of what is looked at [m]
-constexpr double kWidthCells = 3.0;
-
-SolidScene sheet(const Mud& mud, double cell, int per_side) {
-    const double width = kWidthCells * cell, sound = 10.0 * std::sqrt(mud.gravity * mud.thickness);
-    SolidScene s;
-    s.gravity = mud.gravity * Vec3(std::sin(mud.slope), 0.0, -std::cos(mud.slope));
-    s.density = mud.density;
-    s.law = solid::HerschelBulkley{mud.density * sound * sound, 100.0 * mud.yield_stress(), mud.consistency,
-                                   mud.exponent, mud.yield_stress()};
-    s.grid = grid_around({}, {-1.0, 0, 0}, {kLength + 3.0, width, 2.0 * mud.thickness}, cell);
-    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck)};
-    add_slice(s, width);
-    for_each_part({0, 0, 0}, {kLength, width, mud.thickness}, cell, per_side, [&](const Vec3& x, double volume) {
-        const double p = mud.density * mud.gravity * std::cos(mud.slope) * (mud.thickness - x.z());
-        s.points.add(x, Vec3::Zero(), mud.density * volume, p);
-    });
-    return s;
-}
-
-/// From rest, for eight of the times in which shear crosses the sheet. What the ends do comes along the plug: on 20
-/// degrees a sheet half as long thins by 2 % in its middle in that time, and this one by 0.1 %.
+/// From rest, for eight of the times in which shear crosses the sheet. What the ends do comes along the plug, as the
+/// plug is stiff: a sheet half as long is pulled on in its middle by 4 % of its weight, and its plug 4 % faster.
 Measurement run_mud_sheet(const Setup& setup) {
     const Mud mud;
     const double cell = mud.thickness / static_cast<double>(setup.cells);
-    SolidFlow flow(sheet(mud, cell, setup.per_side));
+    Sheet sheet;
+    sheet.length = 48.0;
+    sheet.law = solid::HerschelBulkley{sheet.bulk(), 100.0 * mud.yield_stress(), mud.consistency, mud.exponent,
+                                       mud.yield_stress()};
+    SolidFlow flow(sheet.scene(cell, setup.per_side));
     const double crossing = 4.0 * mud.thickness * mud.thickness / (M_PI * M_PI * mud.diffusivity());
     Measurement m = run_body(flow, 8.0 * crossing);
     // The middle has moved; its depth and the ends have hardly changed it.
-    const double middle = 0.5 * kLength + 0.5 * mud.speed(mud.thickness) * flow.status().time;
+    const double middle = 0.5 * sheet.length + 0.5 * mud.speed(mud.thickness) * flow.status().time;
     double off = 0.0, all = 0.0, plug = 0.0, highest = 0.0;
     Index in_plug = 0;
     for (Index p = 0; p < flow.body().points.count(); ++p) {
@@ -98,13 +144,27 @@ std::vector<Problem> mud_problems() {
                 mud_residuals,
                 run_mud_sheet};
     mud.order_of = "profile_error";
-    // Not of the grid: at 8 cells the speed still grows as layers of points pass each other (plug 3 % too fast after three
-    // crossings, 8 % after eight), supposedly since the rate takes the square of a noisy stress.
-    mud.gates = {{0, "profile_error", 0.05, "an aim, missed on both grids"},
-                 {0, "plug_error", 0.05, "the same, missed on the finer"},
+    // Two errors of opposite signs: points are pressed by up to 0.7 %, which raises the stress as much, and the law
+    // takes it to the power of two; and each step takes a little from what shears.
+    const std::string own = "a fifth above its own figure; 0.05 is the aim";
+    mud.gates = {{4, "profile_error", 0.039, own},
+                 {8, "profile_error", 0.023, own},
+                 {8, "plug_error", 0.026, own},
                  {0, "momentum_residual", 1e-12, "round-off"}};
     mud.in_space = true;
-    return {mud};
+    Problem viscous{"viscous_sheet",
+                    "a sheet of viscous fluid flows down an incline that holds it: its profile",
+                    {4, 8},
+                    {},
+                    run_viscous_sheet};
+    viscous.order_of = "profile_error";
+    viscous.gates = {{4, "profile_error", 0.018, own},
+                     {4, "error_between", 0.033, own},
+                     {8, "profile_error", 0.0068, own},
+                     {8, "error_between", 0.011, own},
+                     {0, "momentum_residual", 1e-12, "round-off"}};
+    viscous.in_space = true;
+    return {mud, viscous};
 }
 
 }  // namespace frana::verify

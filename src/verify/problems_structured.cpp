@@ -230,7 +230,7 @@ std::vector<Problem> structured_problems() {
                   closed,
                   mass};
     Problem bar{"structured_bar",
-                "a bar strikes a wall: stress rho c v, over 2 L / c",
+                "V9: a bar strikes a wall: stress rho c v, over 2 L / c",
                 {50, 100, 200},
                 {},
                 run_structured_bar};
@@ -241,7 +241,7 @@ std::vector<Problem> structured_problems() {
                  closed,
                  mass};
     Problem slide{"structured_slide",
-                  "a block slides from rest, stands, and stops: Coulomb",
+                  "V13: a block slides from rest, stands, and stops: Coulomb",
                   {8, 16, 32},
                   {},
                   run_structured_slide};

@@ -116,7 +116,7 @@ std::vector<Problem> structured_case_problems() {
         torn{0, "numerical", 0.0, "no pair of neighbours parts unbroken"};
     Problem flume{"clay_flume",
                   "two clays strike an obstacle: the soft one cracks, the stiff one is dented",
-                  {24, 36},
+                  {24, 30, 36},
                   {},
                   run_clay_flume};
     flume.order_of = "soft_coverage";

@@ -186,14 +186,14 @@ std::vector<Problem> water_problems() {
                   volume};
     const std::string own = "a fifth above its own figure: ";
     Problem ritter{"water_ritter",
-                   "free water: dam break on a dry bed (Ritter 1892)",
+                   "V15: free water: dam break on a dry bed (Ritter 1892)",
                    {100, 200, 400, 800},
                    {},
                    run_ritter};
     ritter.gates = {{400, "l1_depth", 2.1e-3, own + "1.7e-3; GeoClaw 3.6e-3"},
                     {800, "l1_depth", 1.05e-3, own + "8.6e-4"}};
     Problem stoker{"water_stoker",
-                   "free water: dam break onto shallow water (Stoker 1957)",
+                   "V15: free water: dam break onto shallow water (Stoker 1957)",
                    {100, 200, 400, 800},
                    {},
                    run_stoker};

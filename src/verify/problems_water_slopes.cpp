@@ -79,7 +79,7 @@ std::vector<Problem> water_slope_problems() {
     const Gate volume{0, "mass_error", 1e-13, "round-off"},
         closed{0, "momentum_residual", 1e-12, "round-off"};
     Problem normal{"water_normal",
-                   "free water: down a plane to the normal flow of Manning, and of Darcy and Weisbach",
+                   "V15: free water: down a plane to the normal flow of Manning, and of Darcy and Weisbach",
                    {100},
                    {},
                    run_normal};

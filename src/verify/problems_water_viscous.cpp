@@ -110,7 +110,7 @@ std::vector<Problem> water_viscous_problems() {
     film.gates = {{0, "speed_error", 1e-12, "exact for a constant drive: round-off of a bed 2 m high"},
                   {0, "steep_error", 1e-12, "exact for a constant drive: round-off of a bed 96 m high"},
                   {0, "rough_error", 1e-12, "a steady speed is kept: round-off"}};
-    Problem shear{"water_shear", "free water: viscous decay of a shear wave", {12, 24, 48}, {}, run_shear};
+    Problem shear{"water_shear", "V20: free water: viscous decay of a shear wave", {12, 24, 48}, {}, run_shear};
     shear.order_of = "l1_momentum";
     shear.gates = {{48, "l1_momentum", 1.7e-3, "a fifth above its own figure: 1.4e-3"}};
     film.gates.push_back({100, "l1_depth", 5.8e-3,
