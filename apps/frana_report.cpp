@@ -61,6 +61,8 @@ std::string results(const RunRecord& r) {
         text += row("mean damage", fmt::format("{:.3g}; of {} pairs of neighbours {} parted, {} of them without damage",
                                                b.damage, b.pairs, b.torn, b.numerical));
     }
+    if (r.breakage)
+        text += row("steps for each that the flow without elastic waves would need", fmt::format("{:.3g}", r.breakage->sub_cycling));
     text += row("left the domain", fmt::format("{:.6g} m3", s.last.mass_left / r.density));
     return text + "\n";
 }
@@ -84,6 +86,13 @@ std::string budgets(const RunRecord& r) {
         "\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated. Particles to grid, "
         "worst step: mass {:.1e}, momentum {:.1e} (relative).\n\n",
         s.last.kinetic, s.last.dissipated, s.extremes.p2g_mass_error, s.extremes.p2g_momentum_error);
+    if (r.water) {
+        const WaterBudget& w = *r.water;
+        text += fmt::format(
+            "Water [m3]: {:.8g} at the start and {:.4g} of rain; now {:.8g} free and {:.8g} in columns (these released {:.4g}), "
+            "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",
+            w.given, w.rained, w.free, w.confined, w.released, w.infiltrated, w.left, w.residual);
+    }
     const Status::InSpace& points = s.last.in_space;
     if (points.friction != 0.0 || points.walls != 0.0 || points.material != 0.0 || points.numerical != 0.0)
         text += fmt::format(

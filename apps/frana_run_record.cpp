@@ -171,7 +171,22 @@ Json breakage_json(const Breakage& b) {
             {"pieces", b.pieces},
             {"neighbour_pairs", b.pairs},
             {"torn_pairs", b.torn},
-            {"torn_without_damage", b.numerical}};
+            {"torn_without_damage", b.numerical},
+            {"sub_cycling", b.sub_cycling}};
+}
+
+Json water_json(const WaterBudget& w) {
+    return {{"unit", "m3"},
+            {"given", w.given},
+            {"free", w.free},
+            {"confined", w.confined},
+            {"released", w.released},
+            {"rained", w.rained},
+            {"infiltrated", w.infiltrated},
+            {"left_domain", w.left},
+            {"residual", w.residual},
+            {"energy_lost", {{"unit", "J"}, {"bed", w.bed}, {"viscosity", w.viscosity}, {"drag", w.drag}}},
+            {"column_steps_per_water_step", w.steps}};
 }
 
 std::string run_json(const RunRecord& record) {
@@ -214,6 +229,7 @@ std::string run_json(const RunRecord& record) {
           {"resumed_at", record.checkpoints.resumed_at}}},
         {"warnings", record.warnings}};
     if (record.breakage) json["structure"] = breakage_json(*record.breakage);
+    if (record.water) json["budgets"]["water"] = water_json(*record.water);
     return json.dump(2) + "\n";
 }
 

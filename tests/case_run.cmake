@@ -1,6 +1,7 @@
 # Runs a case as a user would, and compares it with the figures its README promises.
 # cmake -DFRANA=... -DCHECK_RUN=... -DCASE=case.toml -DEXPECTED=expected.csv -DOUT=dir -P case_run.cmake
 # and -DCONVERT="NAME TIME SPACING PROFILE,..." for 3D points in OUT/convert/NAME.h5, whose conservation is compared as well.
+# and -DSET=KEY=VALUE for another value than the case's.
 # One thread: results are the same for any number, and tests run side by side.
 function(must)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
@@ -10,7 +11,11 @@ function(must)
 endfunction()
 file(REMOVE_RECURSE ${OUT})
 must(${FRANA} check ${CASE})
-must(${FRANA} run ${CASE} --out ${OUT} --threads 1 --quiet)
+set(changed)
+if(SET)
+  set(changed --set ${SET})
+endif()
+must(${FRANA} run ${CASE} --out ${OUT} --threads 1 --quiet ${changed})
 foreach(product run.json report.md history.csv particles.pvd grid.pvd terrain.vti footprint.geojson
                 rasters/peak_depth.tif rasters/final_depth.tif figures/map_peak_depth.png)
   if(NOT EXISTS ${OUT}/${product})

@@ -8,6 +8,8 @@
 //   profile/x675/length/last        of a profile, last (or first) output: way from the first to the last
 //                                   station deeper than 0.1 m; gap: widest way between two of them; depth
 //   raster/final_depth/mirror_y     largest difference between a raster and its north-south mirror image
+//   raster/final_depth-final_water_depth/quantile_x/0.5   of a raster, or of one less another: x of a line from south to
+//                                   north, west of which that share of its sum lies
 #include <gdal_priv.h>
 
 #include <algorithm>
@@ -94,22 +96,59 @@ double from_profile(const std::filesystem::path& run, const Row& path) {
     return deepest;
 }
 
-double from_raster(const std::filesystem::path& run, const Row& path) {
+struct Pixels {
+    int nx = 0, ny = 0;
+    double x0 = 0.0, width = 0.0;  ///< of the west side, of a pixel [m]
+    std::vector<double> value;
+    double at(int i, int j) const { return value[static_cast<std::size_t>(j * nx + i)]; }
+};
+
+Pixels read_raster(const std::filesystem::path& run, const std::string& name) {
     GDALAllRegister();
-    const std::string file = (run / "rasters" / (path.at(1) + ".tif")).string();
+    const std::string file = (run / "rasters" / (name + ".tif")).string();
     const std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> raster(
         GDALDataset::Open(file.c_str()), [](GDALDataset* dataset) { GDALClose(dataset); });
     if (!raster) throw std::runtime_error(file + ": cannot be read");
-    const int nx = raster->GetRasterXSize(), ny = raster->GetRasterYSize();
-    std::vector<double> values(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
-    if (raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float64, 0, 0) !=
-        CE_None)
+    Pixels p;
+    p.nx = raster->GetRasterXSize(), p.ny = raster->GetRasterYSize();
+    double place[6];
+    p.value.resize(static_cast<std::size_t>(p.nx) * static_cast<std::size_t>(p.ny));
+    if (raster->GetGeoTransform(place) != CE_None ||
+        raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, p.nx, p.ny, p.value.data(), p.nx, p.ny, GDT_Float64, 0, 0) !=
+            CE_None)
         throw std::runtime_error(file + ": cannot be read");
+    p.x0 = place[0], p.width = place[1];
+    const double nodata = raster->GetRasterBand(1)->GetNoDataValue();
+    for (double& v : p.value)
+        if (v == nodata) v = 0.0;
+    return p;
+}
+
+double quantile_x(const Pixels& p, double share) {
+    std::vector<double> sums(static_cast<std::size_t>(p.nx) + 1, 0.0);
+    for (int i = 0; i < p.nx; ++i) {
+        const std::size_t n = static_cast<std::size_t>(i);
+        sums[n + 1] = sums[n];
+        for (int j = 0; j < p.ny; ++j) sums[n + 1] += p.at(i, j);
+    }
+    const double wanted = share * sums.back();
+    std::size_t n = 0;
+    while (n + 2 < sums.size() && sums[n + 1] < wanted) ++n;
+    return p.x0 + p.width * (static_cast<double>(n) + (wanted - sums[n]) / (sums[n + 1] - sums[n]));
+}
+
+double from_raster(const std::filesystem::path& run, const Row& path) {
+    const Row names = split(path.at(1), '-');
+    Pixels p = read_raster(run, names.at(0));
+    if (names.size() > 1) {
+        const Pixels less = read_raster(run, names[1]);
+        for (std::size_t n = 0; n < p.value.size(); ++n) p.value[n] -= less.value.at(n);
+    }
+    if (path.at(2) == "quantile_x") return quantile_x(p, std::stod(path.at(3)));
+    if (path.at(2) != "mirror_y") throw std::runtime_error(path.at(2) + ": expected quantile_x or mirror_y");
     double largest = 0.0;
-    for (int j = 0; j < ny; ++j)
-        for (int i = 0; i < nx; ++i)
-            largest = std::max(largest, std::abs(values[static_cast<std::size_t>(j * nx + i)] -
-                                                 values[static_cast<std::size_t>((ny - 1 - j) * nx + i)]));
+    for (int j = 0; j < p.ny; ++j)
+        for (int i = 0; i < p.nx; ++i) largest = std::max(largest, std::abs(p.at(i, j) - p.at(i, p.ny - 1 - j)));
     return largest;
 }
 

@@ -72,6 +72,23 @@ TEST_CASE("V14: a body heavier than water lies on the ground below it, held by f
     CHECK(flow.water().status().max_speed < 1e-12);
 }
 
+TEST_CASE("V14: a lake rests over a bumpy bed with a body in it, its columns at different depths", "[mixture]") {
+    Basin basin(0.8, 1000.0, 0.0);
+    const auto bed = [](double x, double y) { return 0.15 * std::sin(1.1 * x + 0.4) * std::cos(0.7 * y); };
+    const auto slope = [](double x, double y) {
+        return Vec2(0.165 * std::cos(1.1 * x + 0.4) * std::cos(0.7 * y), -0.105 * std::sin(1.1 * x + 0.4) * std::sin(0.7 * y));
+    };
+    basin.scene.columns.ground = terrain_ground(slope);
+    basin.scene.columns.bed_law = bed::Coulomb{0.3};
+    basin.scene.water.bed = bed;
+    basin.fill(2.0);
+    TwoPhaseFlow flow(basin.scene);
+    run(flow, 2.0);
+    // As dense as water it weighs nothing on the bed, so that no friction helps: only that bed, body and water agree.
+    CHECK(flow.water().status().max_speed < 1e-12);
+    CHECK(flow.columns().status().max_speed < 1e-12);
+}
+
 TEST_CASE("V13: a body below water slides down with its weight in it", "[mixture]") {
     // Surface as steep as the bed, so that water's pressure drives the body too: with support s = rho_f / rho_c
     // a = g_z (tan - (1 - s) mu), of which water's pressure has the part s tan.
@@ -96,7 +113,7 @@ TEST_CASE("V13: a body below water slides down with its weight in it", "[mixture
     CHECK(inside >= 16);
 }
 
-TEST_CASE("Columns and water exchange momentum exactly, and what breaks gives its water to the nodes", "[mixture]") {
+TEST_CASE("V8: columns and water exchange momentum exactly, and what breaks gives its water to the nodes", "[mixture]") {
     Basin basin(0.8, 1900.0, 0.3);
     StructuredScene& s = basin.scene.columns;
     s.confined = 0.3;
@@ -206,6 +223,27 @@ TEST_CASE("Beside dry columns there is no water, beside water no columns: each m
     CHECK(both.columns().body().points.x == dry.body().points.x);
     CHECK(both.columns().body().points.vx == dry.body().points.vx);
     CHECK(both.water().status().kinetic == Approx(alone.status().kinetic).epsilon(1e-14));
+}
+
+TEST_CASE("Without columns the two phases are the water alone, to the last bit", "[mixture]") {
+    Basin basin(0.8, 1900.0, 0.0);
+    basin.scene.columns.points = {};
+    basin.scene.water.bed = [](double x, double y) { return 0.1 * std::sin(0.5 * x) * std::cos(0.3 * y) - 0.05 * x; };
+    basin.scene.water.start = [](double x, double y) { return WaterState{x < 3.0 && y > 1.0 ? 1.2 : 0.0, 0.3, 0.0}; };
+    WaterFlow alone(basin.scene.water);
+    TwoPhaseFlow both(basin.scene);
+    for (int step = 0; step < 200; ++step) both.advance(1e9), alone.advance(1e9);
+    CHECK(both.time() == alone.status().time);
+    CHECK(both.water().status().volume == alone.status().volume);
+    const GridGeometry& g = basin.scene.water.grid;
+    Index differ = 0, wet = 0;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            const WaterState a = alone.at(i, j), b = both.water().at(i, j);
+            differ += a.depth != b.depth || a.u != b.u || a.v != b.v, wet += a.depth > 0.0;
+        }
+    CHECK(differ == 0);
+    CHECK(wet > g.size() / 3);
 }
 
 TEST_CASE("Two phases have the same bits for any number of threads", "[mixture][threads]") {

@@ -77,7 +77,7 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK_FALSE(scene_of(structure).water.has_value());
     const WaterPhase water = scene_of(density + structure + "confined_water = 0.25\n" + free +
                                       "share = 0.3\nlevel = 12\nrain = 1e-5\nfriction = \"manning\"\nmanning_n = 0.04\n"
-                                      "drag_power = 1\nvirtual_mass = \"bounded\"\n")
+                                      "drag_power = 1\ndrag = \"unsplit\"\nvirtual_mass = \"bounded\"\n")
                                  .water.value();
     CHECK(water.share == 0.3);
     CHECK(water.level.value() == 12.0);
@@ -86,6 +86,8 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK(water.friction.law == WaterFriction::Law::manning);
     CHECK(water.friction.coefficient == 0.04);
     CHECK(water.exchange.material.power == 1);
+    CHECK_FALSE(water.exchange.material.split);
+    CHECK(scene_of(density + structure + free).water->exchange.material.split);
     CHECK(water.exchange.virtual_mass == VirtualMass::bounded);
     CHECK(water.exchange.material.solid_density == Approx((1900.0 - 250.0) / 0.75).epsilon(1e-15));
     CHECK(has(problem_of(density + free), "found \"free\" without material.structure"));

@@ -147,6 +147,11 @@ TEST_CASE(
             CHECK(drag.coefficient({0.4, 0.5, 0.25}, flux) > 0.0);
         }
     }
+    // Unsplit, it is that of grains in all of the water, whatever holds together.
+    TwoPhaseMaterial whole = m;
+    whole.split = false;
+    for (const double structured : {0.0, 0.5, 1.0})
+        CHECK(TwoPhaseDrag(whole).coefficient({0.4, structured, 0.25}, 0.3) == TwoPhaseDrag(whole).unsplit(0.4, 0.3));
     // S_p of a mixture with structure: P / alpha_c + (1 - P) / alpha_u
     const TwoPhaseDrag drag(m);
     const double p = 0.2 / 0.65;

@@ -83,6 +83,7 @@ double TwoPhaseDrag::unsplit(double solids, double flux) const {
 
 double TwoPhaseDrag::coefficient(const Mixture& x, double flux) const {
     const TwoPhaseMaterial& m = material_;
+    if (!m.split) return unsplit(x.solids, flux);
     const double both = x.bound() * x.free() * m.gravity;
     double sum = 0.0;
     if (x.structured > 0.0)

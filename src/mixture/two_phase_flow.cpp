@@ -131,6 +131,8 @@ double TwoPhaseFlow::sub_cycles() const {
     return steps > 0 ? static_cast<double>(columns_.status().step) / static_cast<double>(steps) : 0.0;
 }
 
+double TwoPhaseFlow::confined() const { return confined_volume(columns_); }
+
 double TwoPhaseFlow::volume_residual() const {
     const WaterLedger& l = water_.status().ledger;
     return confined_volume(columns_) + columns_.status().confined_left + water_.status().volume + l.left + l.infiltrated -

@@ -28,6 +28,9 @@ public:
     double sub_cycles() const;
     /// Water now, confined and free, and lost, less what was given [m^3]: round-off
     double volume_residual() const;
+    double volume_given() const { return volume_given_; }
+    /// In columns, now [m^3].
+    double confined() const;
     /// Of the water over its density: energies of height and of motion along the ground [m^5/s^2], and sum of volume times
     /// speed [m^4/s].
     double water_potential() const { return potential_; }

@@ -67,6 +67,17 @@ struct Breakage {
     Index pairs = 0;             ///< of columns that were neighbours at the start
     Index torn = 0;              ///< of these, now apart
     Index numerical = 0;         ///< of these, without damage to either: torn by the scheme
+    double sub_cycling = 1.0;    ///< steps for each that the flow alone would need: what elastic waves cost
+};
+
+/// Free water, and that which columns confine.
+struct WaterBudget {
+    double given = 0.0, free = 0.0, confined = 0.0;  ///< at the start, all; now [m3]
+    double released = 0.0;                           ///< by what broke, since the start [m3]
+    double rained = 0.0, infiltrated = 0.0, left = 0.0;  ///< the last also within columns [m3]
+    double residual = 0.0;                               ///< of all these: round-off [m3]
+    double bed = 0.0, viscosity = 0.0, drag = 0.0;       ///< energy lost there [J]
+    double steps = 0.0;                                  ///< of the columns for each of the water
 };
 
 /// A face of a barrier in patches, and what material gave to each since the start.

@@ -55,6 +55,9 @@ void add_water(Table& table) {
                                    "xi of that term, of how grains are spread over the depth: 0 evenly, 3 as a parabola; left "
                                    "out where drag does not dominate it"),
                             {"clear", "mud"}));
+    table.push_back(used(choice("water.drag", {"split", "unsplit"}, "split",
+                                "split: blocks of what holds together and grains have each their own (van den Bout et al. "
+                                "2021, eq. 31); unsplit: all solids drag as grains in all of the water (Pudasaini 2012)")));
     Parameter power = make("water.drag_power", Kind::integer, "1", "drag grows with the slip (1) or with its square (2)");
     power.range = between(1.0, 2.0);
     power.fallback = 2.0;

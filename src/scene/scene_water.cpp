@@ -78,6 +78,7 @@ WaterExchange exchange_of(const CaseFile& file, double viscosity, const Scene& s
     TwoPhaseMaterial& m = exchange.material;
     m.fluid_density = number(file, "density"), m.viscosity = viscosity, m.gravity = scene.gravity;
     m.grain = number(file, "grain_diameter"), m.block = number(file, "block_diameter");
+    m.split = file.word("water.drag") == "split";
     m.power = static_cast<int>(number(file, "drag_power"));
     const double confined = scene.structure->confined;
     m.solid_density = (scene.density - confined * m.fluid_density) / (1.0 - confined);

@@ -25,6 +25,8 @@ public:
     virtual std::vector<std::string> remarks() const { return {}; }
     /// What the material has come apart into; nothing of material that has no structure.
     virtual std::optional<Breakage> breakage() const { return {}; }
+    /// Where the water is and has gone; nothing without any.
+    virtual std::optional<WaterBudget> water_budget() const { return {}; }
     /// Wall time by phase since the start.
     virtual std::vector<PhaseTime> timings() const = 0;
     /// Saves the state between two steps, or takes it up again with all its bits, in a simulation of the same scene

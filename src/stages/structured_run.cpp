@@ -134,7 +134,22 @@ std::optional<Breakage> StructuredRun::breakage() const {
     PieceRule rule = kPieces;
     rule.link *= cell;
     const Neighbours::Torn torn = neighbours_.torn(flow(), kTorn * cell);
-    return Breakage{flow().status().damage, pieces(flow(), rule), neighbours_.pairs(), torn.all, torn.numerical};
+    return Breakage{flow().status().damage, pieces(flow(), rule), neighbours_.pairs(), torn.all, torn.numerical,
+                    flow().sub_cycling()};
+}
+
+std::optional<WaterBudget> StructuredRun::water_budget() const {
+    if (!both_) return {};
+    const WaterStatus& w = both_->water().status();
+    const WaterLedger& l = w.ledger;
+    WaterBudget b;
+    b.given = both_->volume_given(), b.free = w.volume, b.confined = both_->confined();
+    b.released = flow().status().released;
+    b.rained = l.rained, b.infiltrated = l.infiltrated, b.left = l.left + flow().status().confined_left;
+    b.residual = both_->volume_residual();
+    b.bed = water_density_ * l.braked, b.viscosity = water_density_ * l.sheared, b.drag = flow().status().dragged;
+    b.steps = both_->sub_cycles();
+    return b;
 }
 
 std::vector<std::string> StructuredRun::remarks() const {

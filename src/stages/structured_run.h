@@ -32,6 +32,7 @@ public:
     Sample at(const Vec2& point) const override;
     std::vector<std::string> remarks() const override;
     std::optional<Breakage> breakage() const override;
+    std::optional<WaterBudget> water_budget() const override;
     std::vector<PhaseTime> timings() const override;
     void keep(Archive& archive) override;
 

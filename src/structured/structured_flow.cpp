@@ -51,7 +51,8 @@ StructuredFlow::StructuredFlow(const StructuredScene& scene)
       bed_(scene.bed),
       rules_{scene.scheme.split_length, 0.0, scene.scheme.split, scene.scheme.reset_domains, 0.0},
       cfl_(scene.cfl),
-      sound_(scene.share > 0.0 || !scene.hydrostatic ? body_.law.sound_speed(scene.density) : 0.0) {
+      sound_(scene.share > 0.0 || !scene.hydrostatic ? body_.law.sound_speed(scene.density) : 0.0),
+      hydrostatic_(scene.hydrostatic) {
     flush_denormals_on_all_threads();
     for (const double m : scene.points.mass) rules_.least_mass = std::max(rules_.least_mass, scene.scheme.split_min_mass * m);
     place(scene);
@@ -175,16 +176,26 @@ void StructuredFlow::learn_ground() {
 /// grows so fast with the rate of squeezing (earth_pressure.h) that it needs steps below cell^2 / (5 (Kp -
 /// Ka) sqrt(g_z h^3)), or is noisy; the elastic step is mostly near that.
 double StructuredFlow::step_length(double until) const {
-    const double reach = cfl_ * body_.grid.cell(), left = until - status_.time;
-    // Grains alone at rest have no speed to go by, but fall (DepthAveraged::longest_step).
-    const double fall = sound_ == 0.0 ? std::sqrt(wave_ * wave_ + 2.0 * body_.gravity * reach) : wave_;
-    const double dt = sound_ == 0.0 ? 2.0 * reach / (wave_ + fall) : reach / (sound_ + wave_);
+    const double left = until - status_.time;
+    const bool elastic = sound_ > 0.0 && !(hydrostatic_ && status_.damage >= 1.0);  // all grains, to the last bit
+    const double dt = elastic ? cfl_ * body_.grid.cell() / (sound_ + wave_) : flow_step();
     return dt < left ? std::min(dt, 0.5 * left + 0.5 * dt) : left;
+}
+
+/// The step if nothing were elastic. Grains at rest have no speed to go by, but fall (DepthAveraged::longest_step).
+double StructuredFlow::flow_step() const {
+    const double reach = cfl_ * body_.grid.cell();
+    return 2.0 * reach / (wave_ + std::sqrt(wave_ * wave_ + 2.0 * body_.gravity * reach));
+}
+
+double StructuredFlow::sub_cycling() const {
+    return status_.flow_steps > 0.0 ? static_cast<double>(status_.step) / status_.flow_steps : 1.0;
 }
 
 void StructuredFlow::advance(double until) {
     expect(until > status_.time, "a step goes forward");
     const double dt = step_length(until);
+    status_.flow_steps += dt / flow_step();
     const StepTimes times = body_.grains ? StepTimes{0.5 * (status_.dt + dt), dt} : StepTimes{dt, 0.0};
     timed_("clear", [&] { clear_nodes(body_); });
     timed_("scatter", [&] { scatter(body_); });

@@ -101,6 +101,7 @@ struct StructuredStatus {
     Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
     double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
     double energy_left = 0.0;  ///< carried out, motion in the plane and height of the ground [J]
+    double flow_steps = 0.0;   ///< that the same time would have taken if only the flow bounded them, not sound
 };
 
 /// Sums of the loops over points, tile by tile.
@@ -210,6 +211,8 @@ public:
     Index particle_bytes() const;
     /// Largest speed of columns and the waves on them [m/s].
     double wave() const { return wave_; }
+    /// Steps taken so far for each that the flow alone would need: what elastic waves cost.
+    double sub_cycling() const;
     /// Position of a point [m].
     Vec2 position(Index p) const;
     /// Momentum + carried out - given - impulses: round-off [kg m/s]
@@ -225,6 +228,7 @@ private:
     void begin_grains();
     void split();
     double step_length(double until) const;
+    double flow_step() const;
     void book(double dt);
     void weigh();
 
@@ -240,6 +244,7 @@ private:
     StepClock timed_;
     StructuredStatus status_;
     double cfl_, sound_;
+    bool hydrostatic_;
     double wave_ = 0.0;   ///< largest speed with which surfaces and columns run [m/s]
     double drift_ = 0.0;  ///< since the last sort [cells]
 };
