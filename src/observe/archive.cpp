@@ -63,7 +63,8 @@ void keep(Archive& archive, const std::string& name, Status& s) {
                                 &s.impulse[1], &s.momentum_left[0], &s.momentum_left[1], &s.kinetic, &s.potential,
                                 &s.dissipated, &s.energy_left, &s.p2g_mass_error, &s.p2g_momentum_error, &s.max_depth,
                                 &s.max_speed, &s.mean_speed, &s.covered_area, &s.front, &s.stored, &s.in_space.friction,
-                                &s.in_space.walls, &s.in_space.material, &s.in_space.numerical});
+                                &s.in_space.walls, &s.in_space.material, &s.in_space.numerical,
+                                &s.in_space.volume});
 }
 
 void keep(Archive& archive, const std::string& name, std::vector<PhaseTime>& phases) {

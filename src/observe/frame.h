@@ -42,6 +42,7 @@ struct Status {
         double walls = 0.0;      ///< lost to their pushes
         double material = 0.0;   ///< yielding and viscosity
         double numerical = 0.0;  ///< what is left: of the scheme
+        double volume = 0.0;     ///< of the points now, compressed as they are [m3]; not a part, but a diagnostic
     } in_space;
     double p2g_mass_error = 0.0;     ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
     double p2g_momentum_error = 0.0; ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]

@@ -40,7 +40,8 @@ const std::vector<std::string>& columns() {
                                                    "points_friction",
                                                    "points_walls",
                                                    "points_material",
-                                                   "points_numerical"};
+                                                   "points_numerical",
+                                                   "points_volume"};
     return names;
 }
 
@@ -97,7 +98,8 @@ void History::add(const Status& now) {
                                      now.in_space.friction,
                                      now.in_space.walls,
                                      now.in_space.material,
-                                     now.in_space.numerical};
+                                     now.in_space.numerical,
+                                     now.in_space.volume};
     for (std::size_t i = 0; i < row.size(); ++i)
         if (!std::isfinite(row[i]))
             throw NumericsError(

@@ -177,7 +177,7 @@ void StagedRun::book(const Status& columns) {
     status_.kinetic += s.kinetic;
     status_.potential += s.potential + energy;
     status_.stored = s.stored;
-    status_.in_space = {s.friction, -s.pushed, s.material, s.numerical()};
+    status_.in_space = {s.friction, -s.pushed, s.material, s.numerical(), s.volume};
     status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left;
     status_.energy_left += s.energy_left - handed_.energy;
     status_.max_depth = std::max(columns.max_depth, map_.max_depth());

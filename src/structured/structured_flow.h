@@ -107,6 +107,7 @@ struct StructuredStatus {
 /// Sums of the loops over points, tile by tile.
 struct StructuredSums {
     double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0;
+    double max_stiffness = 0.0;  ///< g_z h^3 [m^4/s^2]
     double speeds = 0.0, stored = 0.0, worked = 0.0;
     Vec2 momentum{0, 0};
     double left_mass = 0.0, left_energy = 0.0, left_confined = 0.0, released = 0.0;
@@ -229,6 +230,7 @@ private:
     void split();
     double step_length(double until) const;
     double flow_step() const;
+    double grain_step() const;
     void book(double dt);
     void weigh();
 
@@ -244,9 +246,9 @@ private:
     StepClock timed_;
     StructuredStatus status_;
     double cfl_, sound_;
-    bool hydrostatic_;
     double wave_ = 0.0;   ///< largest speed with which surfaces and columns run [m/s]
-    double drift_ = 0.0;  ///< since the last sort [cells]
+    double stiffness_ = 0.0;  ///< largest g_z h^3 [m^4/s^2]
+    double drift_ = 0.0;      ///< since the last sort [cells]
 };
 
 }  // namespace frana

@@ -72,6 +72,7 @@ struct Problem {
     std::vector<Gate> gates = {};
     std::string order_of = "l1_depth";    ///< quantity whose order is observed
     bool needs_level = false;             ///< the paper preset is given the still level
+    bool takes_minutes = false;           ///< runs when it is named only
     bool in_space = false;                ///< of the 3D model: knows no presets
     bool has_presets = true;              ///< false: of a model on the plane that knows none
 };
