@@ -124,7 +124,7 @@ void StructuredRun::node_fields(Frame& frame) {
     for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
         const StructuredBody::Moved& node = body.moved[k];
         const StructuredBody::Pull& ground = body.pull[k];
-        const double h = node.depth, up = node.vx * ground.slope_x + node.vy * ground.slope_y;
+        const double h = StructuredMap::depth_of(body, k), up = node.vx * ground.slope_x + node.vy * ground.slope_y;
         if (!(h > 0.0)) return;
         depth[n] = h, surface[n] += h;
         thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);

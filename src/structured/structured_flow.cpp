@@ -145,8 +145,10 @@ void StructuredFlow::take_tiles() {
     for (const Index tile : left_) {  // what nobody clears any more must not be seen when columns come back
         if (body_.active.in_work[static_cast<std::size_t>(tile)]) continue;
         const Index first = body_.grid.at(body_.grid.tile_i(tile), body_.grid.tile_j(tile));
-        for (Index j = 0; j < kTile; ++j)
+        for (Index j = 0; j < kTile; ++j) {
             std::fill_n(&body_.moved[first + j * body_.grid.stride()], kTile, StructuredBody::Moved{});
+            if (body_.grains) std::fill_n(&body_.flow.nodes.column_mass[first + j * body_.grid.stride()], kTile, 0.0);
+        }
     }
     body_.gone.assign(static_cast<std::size_t>(q.count()), 0);
     body_.sums.resize(body_.active.tile.size());

@@ -24,8 +24,9 @@ struct Standing {
 
 Standing columns_on(const StructuredBody& body, Index k) {
     const StructuredBody::Moved& node = body.moved[k];
-    if (!(node.depth > 0.0)) return {};
-    return {node.depth, body.density * body.pull[k].across * node.depth, body.density * node.depth, Vec2(node.vx, node.vy),
+    const double depth = StructuredMap::depth_of(body, k);
+    if (!(depth > 0.0)) return {};
+    return {depth, body.density * body.pull[k].across * depth, body.density * depth, Vec2(node.vx, node.vy),
             Vec2(body.pull[k].slope_x, body.pull[k].slope_y)};
 }
 
