@@ -106,6 +106,13 @@ TEST_CASE("Friction on a block is Coulomb's along its way: mu g cos^2 down a slo
 TEST_CASE("Frames of structured columns have finite fields, of stress, damage and cohesion too", "[structured]") {
     const Scene scene = sliding(600.0);
     StructuredRun run(scene);
+    for (const double time : {0.15, 0.6, 0.75, 1.4}) {  // depth is shown wherever parts of columns lie
+        go_to(run, time);
+        double volume = 0.0;
+        const Field depth = *run.frame().node("depth");
+        for (Index n = 0; n < depth.count; ++n) volume += depth.data[n] * 0.25;
+        CHECK(volume * scene.density == Approx(run.status().mass).epsilon(1e-12));
+    }
     go_to(run, scene.end);
     const Frame frame = run.frame();
     require_finite(frame);

@@ -85,7 +85,7 @@ TEST_CASE("Behind a stuck surface the images of a flow that bends go on with its
     CHECK(held == 2);
 }
 
-TEST_CASE("Images bend with one stuck plane, not in a corner of two, in one that leans, or in barriers", "[solid]") {
+TEST_CASE("Images bend with one stuck plane, not in a corner of two or in one that leans", "[solid]") {
     const Surface floor = Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck);
     const auto bent = [](const Surface& one, const Surface& other, const Vec3& x) {
         int count = 0;
