@@ -369,15 +369,8 @@ private:
     };
     static constexpr int kMostTouched = 6;
 
-    /// The speed away from a surface that a node is to have, by what points and images together have (`mixed`). Behind
-    /// the surface none into it, which keeps fluids quiet whose J is averaged in every step. Stress that adds up strain
-    /// would keep what that takes of each expansion: beside a wall it was 5 % too high on any grid (`elastic_column`).
-    static double asked(const Contact& c, const Vec3& mixed) {
-        const double along = mixed.dot(c.normal);
-        return c.distance <= 0.0 && Law::kAverages ? std::max(along, 0.0) : along;
-    }
-
-    /// Surfaces that images of points at `x` can reach, with the speeds they ask for.
+    /// Surfaces that images of points at `x` can reach, with the speeds they ask for: what points and images
+    /// together have along the normal (`mixed`), and behind a surface none into it.
     static int touched(const SolidBody& body, SurfaceSet near, const Vec3& x, const Vec3& mixed,
                        Touch* list) {
         int count = 0;
@@ -389,7 +382,8 @@ private:
             }
             const Contact c = contact(body.surfaces[static_cast<std::size_t>(s)], x);
             if (c.distance > 0.5 * image_reach(c.normal) * body.grid.cell()) continue;
-            list[count++] = {s, c, asked(c, mixed)};
+            const double asked = mixed.dot(c.normal);
+            list[count++] = {s, c, c.distance <= 0.0 ? std::max(asked, 0.0) : asked};
         }
         return count;
     }
