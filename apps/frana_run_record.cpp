@@ -185,6 +185,7 @@ Json water_json(const WaterBudget& w) {
             {"infiltrated", w.infiltrated},
             {"left_domain", w.left},
             {"residual", w.residual},
+            {"relative_error", w.residual / std::max(w.given + w.rained, 1e-300)},
             {"energy_lost", {{"unit", "J"}, {"bed", w.bed}, {"viscosity", w.viscosity}, {"drag", w.drag}}},
             {"column_steps_per_water_step", w.steps}};
 }

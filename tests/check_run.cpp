@@ -118,9 +118,6 @@ Pixels read_raster(const std::filesystem::path& run, const std::string& name) {
             CE_None)
         throw std::runtime_error(file + ": cannot be read");
     p.x0 = place[0], p.width = place[1];
-    const double nodata = raster->GetRasterBand(1)->GetNoDataValue();
-    for (double& v : p.value)
-        if (v == nodata) v = 0.0;
     return p;
 }
 
@@ -134,17 +131,25 @@ double quantile_x(const Pixels& p, double share) {
     const double wanted = share * sums.back();
     std::size_t n = 0;
     while (n + 2 < sums.size() && sums[n + 1] < wanted) ++n;
+    if (!(sums[n + 1] > sums[n])) throw std::runtime_error("quantile_x: expected a raster with material and a share above 0");
     return p.x0 + p.width * (static_cast<double>(n) + (wanted - sums[n]) / (sums[n + 1] - sums[n]));
 }
 
 double from_raster(const std::filesystem::path& run, const Row& path) {
     const Row names = split(path.at(1), '-');
-    Pixels p = read_raster(run, names.at(0));
+    const bool sums = path.at(2) == "quantile_x";
+    const auto read = [&](const std::string& name) {
+        Pixels p = read_raster(run, name);
+        if (sums)  // what has no value is -9999 in all of them, and has no material
+            for (double& v : p.value) v = std::max(v, 0.0);
+        return p;
+    };
+    Pixels p = read(names.at(0));
     if (names.size() > 1) {
-        const Pixels less = read_raster(run, names[1]);
+        const Pixels less = read(names[1]);
         for (std::size_t n = 0; n < p.value.size(); ++n) p.value[n] -= less.value.at(n);
     }
-    if (path.at(2) == "quantile_x") return quantile_x(p, std::stod(path.at(3)));
+    if (sums) return quantile_x(p, std::stod(path.at(3)));
     if (path.at(2) != "mirror_y") throw std::runtime_error(path.at(2) + ": expected quantile_x or mirror_y");
     double largest = 0.0;
     for (int j = 0; j < p.ny; ++j)

@@ -66,6 +66,23 @@ TEST_CASE("A run of a block keeps mass and momentum, and loses energy to what it
     for (const double share : breakage->pieces) CHECK((share > 0.0 && share <= 1.0));
 }
 
+TEST_CASE("What elastic waves cost is the flow's step over theirs, and nothing where hydrostatic grains flow alone", "[structured]") {
+    Scene scene = sliding();
+    StructuredRun whole(scene);
+    const double wave = whole.flow().wave(), reach = scene.structure->cfl * 0.5,
+                 sound = whole.flow().body().law.sound_speed(scene.density);
+    whole.advance(1.0);
+    CHECK(whole.status().dt == Approx(reach / (sound + wave)).epsilon(1e-14));
+    const double flow = 2.0 * reach / (wave + std::sqrt(wave * wave + 2.0 * scene.gravity * reach));
+    CHECK(whole.breakage()->sub_cycling == Approx(flow / whole.status().dt).epsilon(1e-14));
+    CHECK(whole.breakage()->sub_cycling > 5.0);
+    scene.structure->hydrostatic = true;
+    scene.structure->share = 0.0;
+    StructuredRun grains(scene);
+    grains.advance(1.0);
+    CHECK(grains.breakage()->sub_cycling == 1.0);
+}
+
 TEST_CASE("Energy of a whole block on a plane: what it loses is friction", "[structured]") {
     Scene scene = sliding();
     scene.bed = scene_on(81, 31, 0.5, [](double x, double) { return 20.0 - x / 3.0; }).bed;

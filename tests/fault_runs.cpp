@@ -47,9 +47,10 @@ public:
             return;
         }
         const bool refused = ending.code == 2 && says_why(ending.errors);
-        // A signal may come when all is written and nobody listens any more.
-        const bool whole = ending.code == 0 || (ending.signal != 0 && is_whole());
-        const bool good = expected.empty() ? ending.code == 0 || refused : whole || expected.count(ending.code) > 0;
+        // The signal may come when all is written and nobody listens any more.
+        const bool late = ending.signal != 0 && ending.signal == disturbance.signal && is_whole();
+        const bool whole = ending.code == 0 || late;
+        const bool good = late || (expected.empty() ? ending.code == 0 || refused : expected.count(ending.code) > 0);
         ++(good ? whole ? tally.whole : tally.refused : tally.bad);
         if (!good)
             std::printf("%s: exit %d, signal %d, said: %s\n", fault.c_str(), ending.code, ending.signal,
@@ -202,8 +203,9 @@ void signals(Faults& faults) {
             Disturbance signalled;
             signalled.ready = [number](pid_t program) { return catches(program, number); };
             signalled.moment = share * faults.wall();
+            signalled.signal = number;
             signalled.at_moment = [number](pid_t program) { ::kill(program, number); };
-            faults.attempt("Ctrl-C or SIGTERM", signalled, [] {}, {130});
+            faults.attempt("Ctrl-C or SIGTERM", signalled, [] {}, {130, 0});  // 0: it was done by then
         }
 }
 

@@ -170,6 +170,7 @@ struct Disturbance {
     std::function<void()> in_program = [] {};  ///< before the program starts, in its process
     std::function<bool(pid_t)> ready = [](pid_t) { return true; };  ///< from then on the moment counts
     double moment = 1e9;                                            ///< [s]
+    int signal = 0;                                                 ///< that may end it, besides
     std::function<void(pid_t)> at_moment = [](pid_t program) { ::kill(program, SIGKILL); };
 };
 

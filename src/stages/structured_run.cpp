@@ -155,16 +155,6 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
 std::vector<std::string> StructuredRun::remarks() const {
     const Breakage now = *breakage();
     std::vector<std::string> remarks;
-    if (both_) {
-        const WaterLedger& l = both_->water().status().ledger;
-        remarks.push_back(fmt::format("water: {:.6g} m3 free at the end, {:.6g} m3 of it released by what broke; {:.3g} steps "
-                                      "of the columns for each of the water",
-                                      both_->water().status().volume, flow().status().released, both_->sub_cycles()));
-        remarks.push_back(fmt::format("water's energy: of what was dissipated {:.4g} J went at the bed, {:.4g} J into viscosity "
-                                      "inside, {:.4g} J into drag between water and columns; what shocks take is not booked, it "
-                                      "is part of the residual",
-                                      water_density_ * l.braked, water_density_ * l.sheared, flow().status().dragged));
-    }
     if (flow().status().outrun > 0)
         remarks.push_back(fmt::format("water.profile_factor: in {} nodes and steps drag was weaker than what it adds to the "
                                       "slip, and it was left out there; a smaller one, or finer grains, may help",

@@ -51,7 +51,8 @@ StructuredFlow::StructuredFlow(const StructuredScene& scene)
       bed_(scene.bed),
       rules_{scene.scheme.split_length, 0.0, scene.scheme.split, scene.scheme.reset_domains, 0.0},
       cfl_(scene.cfl),
-      sound_(scene.share > 0.0 || !scene.hydrostatic ? body_.law.sound_speed(scene.density) : 0.0) {
+      sound_(scene.share > 0.0 || !scene.hydrostatic ? body_.law.sound_speed(scene.density) : 0.0),
+      hydrostatic_(scene.hydrostatic) {
     flush_denormals_on_all_threads();
     for (const double m : scene.points.mass) rules_.least_mass = std::max(rules_.least_mass, scene.scheme.split_min_mass * m);
     place(scene);
@@ -89,7 +90,6 @@ void StructuredFlow::place(const StructuredScene& scene) {
         status_.damage += q.mass[p] * q.damage[p];
         status_.max_speed = std::max(status_.max_speed, v.norm());
         wave_ = std::max(wave_, v.norm() + std::sqrt(2.0 * q.pull[p] * q.depth[p]));
-        stiffness_ = std::max(stiffness_, q.pull[p] * std::pow(q.depth[p], 3));
         if (q.damage[p] > 0.0 || body_.share < 1.0) body_.grains = true;
     }
     if (status_.mass > 0.0) status_.damage /= status_.mass;
@@ -174,28 +174,23 @@ void StructuredFlow::learn_ground() {
     }
 }
 
-/// Sound and flow pass part of a cell; sound while anything holds together.
 double StructuredFlow::step_length(double until) const {
-    const double left = until - status_.time;
-    const double elastic = sound_ > 0.0 ? cfl_ * body_.grid.cell() / (sound_ + wave_) : flow_step();
-    const bool whole = status_.damage < 1.0;  // something is: otherwise all are grains, to the last bit
-    const double dt = whole ? elastic : std::max(elastic, grain_step());
+    const double dt = longest_step(), left = until - status_.time;
     return dt < left ? std::min(dt, 0.5 * left + 0.5 * dt) : left;
+}
+
+/// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone: their earth pressure
+/// grows so fast with the rate of squeezing (earth_pressure.h) that it needs steps below cell^2 / (5 (Kp -
+/// Ka) sqrt(g_z h^3)), or is noisy; the elastic step is mostly near that. Hydrostatic grains do not.
+double StructuredFlow::longest_step() const {
+    const bool flows = sound_ == 0.0 || (hydrostatic_ && status_.damage >= 1.0);  // all grains, to the last bit
+    return flows ? flow_step() : cfl_ * body_.grid.cell() / (sound_ + wave_);
 }
 
 /// The step if nothing were elastic. Grains at rest have no speed to go by, but fall (DepthAveraged::longest_step).
 double StructuredFlow::flow_step() const {
     const double reach = cfl_ * body_.grid.cell();
     return 2.0 * reach / (wave_ + std::sqrt(wave_ * wave_ + 2.0 * body_.gravity * reach));
-}
-
-/// Earth pressure grows so fast with the rate of squeezing (earth_pressure.h) that it acts as a viscosity of 5 (Kp - Ka)
-/// sqrt(g_z h^3), which is noisy in longer steps than this one; in the elastic one it is not, even where that is longer
-/// (the dam of grains is less wrong with it). Hydrostatic grains are bounded by the flow only.
-double StructuredFlow::grain_step() const {
-    const double viscosity = 5.0 * (body_.rankine.passive - body_.rankine.active) * std::sqrt(stiffness_);
-    const double reach = body_.grid.cell() * body_.grid.cell(), free = flow_step();
-    return viscosity * free > reach ? reach / viscosity : free;
 }
 
 double StructuredFlow::sub_cycling() const {
@@ -205,7 +200,7 @@ double StructuredFlow::sub_cycling() const {
 void StructuredFlow::advance(double until) {
     expect(until > status_.time, "a step goes forward");
     const double dt = step_length(until);
-    status_.flow_steps += dt / flow_step();
+    status_.flow_steps += longest_step() / flow_step();
     const StepTimes times = body_.grains ? StepTimes{0.5 * (status_.dt + dt), dt} : StepTimes{dt, 0.0};
     timed_("clear", [&] { clear_nodes(body_); });
     timed_("scatter", [&] { scatter(body_); });
@@ -240,8 +235,7 @@ void StructuredFlow::book(double dt) {
     for (const StructuredSums& tile : body_.sums) {
         all.mass += tile.mass, all.kinetic += tile.kinetic, all.damaged += tile.damaged;
         all.max_speed2 = std::max(all.max_speed2, tile.max_speed2),
-        all.max_wave = std::max(all.max_wave, tile.max_wave),
-        all.max_stiffness = std::max(all.max_stiffness, tile.max_stiffness);
+        all.max_wave = std::max(all.max_wave, tile.max_wave);
         all.speeds += tile.speeds, all.stored += tile.stored, all.worked += tile.worked;
         all.momentum += tile.momentum, all.left_mass += tile.left_mass,
             all.left_momentum += tile.left_momentum;
@@ -267,7 +261,7 @@ void StructuredFlow::book(double dt) {
     status_.energy_left += all.left_energy;
     status_.damage = all.mass > 0.0 ? all.damaged / all.mass : 0.0;
     status_.max_speed = std::sqrt(all.max_speed2);
-    wave_ = all.max_wave, stiffness_ = all.max_stiffness;
+    wave_ = all.max_wave;
     if (all.damaged > 0.0 && !body_.grains) begin_grains();
     status_.released += all.released, status_.confined_left += all.left_confined;
     status_.mass_left += all.left_mass, status_.momentum_left += all.left_momentum;

@@ -101,13 +101,12 @@ struct StructuredStatus {
     Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
     double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
     double energy_left = 0.0;  ///< carried out, motion in the plane and height of the ground [J]
-    double flow_steps = 0.0;   ///< that the same time would have taken if only the flow bounded them, not sound
+    double flow_steps = 0.0;   ///< sum of each step's bound over the flow's alone
 };
 
 /// Sums of the loops over points, tile by tile.
 struct StructuredSums {
     double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0;
-    double max_stiffness = 0.0;  ///< g_z h^3 [m^4/s^2]
     double speeds = 0.0, stored = 0.0, worked = 0.0;
     Vec2 momentum{0, 0};
     double left_mass = 0.0, left_energy = 0.0, left_confined = 0.0, released = 0.0;
@@ -230,7 +229,7 @@ private:
     void split();
     double step_length(double until) const;
     double flow_step() const;
-    double grain_step() const;
+    double longest_step() const;
     void book(double dt);
     void weigh();
 
@@ -246,9 +245,9 @@ private:
     StepClock timed_;
     StructuredStatus status_;
     double cfl_, sound_;
+    bool hydrostatic_;
     double wave_ = 0.0;   ///< largest speed with which surfaces and columns run [m/s]
-    double stiffness_ = 0.0;  ///< largest g_z h^3 [m^4/s^2]
-    double drift_ = 0.0;      ///< since the last sort [cells]
+    double drift_ = 0.0;  ///< since the last sort [cells]
 };
 
 }  // namespace frana

@@ -106,14 +106,13 @@ void release(StructuredBody& body, Index p, double damage_before, StructuredSums
 /// StructuredSums of the lanes, in a fixed order.
 struct Sums {
     Double4 mass = {}, kinetic = {}, damaged = {}, px = {}, py = {}, speeds = {}, stored = {}, worked = {};
-    Double4 max_speed2 = {}, max_wave = {}, max_stiffness = {};
+    Double4 max_speed2 = {}, max_wave = {};
     StructuredSums rare;
     StructuredSums columns() const {
         StructuredSums s = rare;
         s.mass = sum(mass), s.kinetic = sum(kinetic), s.damaged = sum(damaged), s.speeds = sum(speeds);
         s.momentum = Vec2(sum(px), sum(py)), s.stored = sum(stored), s.worked = sum(worked);
         s.max_speed2 = largest(max_speed2), s.max_wave = largest(max_wave);
-        s.max_stiffness = largest(max_stiffness);
         return s;
     }
 };
@@ -170,7 +169,6 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     sums.px += m * b.vx, sums.py += m * b.vy, sums.speeds += m * speed, sums.stored += held;
     sums.max_speed2 = max(sums.max_speed2, select(here, speed2, none));
     sums.max_wave = max(sums.max_wave, select(here, speed + sqrt(2.0 * b.pull * high), none));
-    sums.max_stiffness = max(sums.max_stiffness, select(here, b.pull * high * high * high, none));
 }
 
 /// Four columns at once.

@@ -28,7 +28,8 @@ public:
     const Sums& sums() const { return sums_; }
     double footprint_depth() const { return footprint_depth_; }
     const Peak& peak(Index node) const { return peaks_[node]; }
-    /// Depth of columns on a node [m], also where parts of them reach and none's shape function does.
+    /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. Beside water it
+    /// is spread by shape functions, and nothing lies beyond them.
     static double depth_of(const StructuredBody& body, Index k) {
         if (body.moved[k].depth > 0.0 || !body.grains || body.water) return body.moved[k].depth;
         return body.flow.nodes.column_mass[k] / (body.density * body.flow.area);
