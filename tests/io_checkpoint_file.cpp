@@ -144,7 +144,7 @@ TEST_CASE("a checkpoint with any flipped bit is refused with one sentence", "[re
     put(file, damaged);
     CHECK_THAT(complaint(file), Contains("is damaged, its checksum does not fit"));
     damaged = whole;
-    damaged.replace(0, 18, "frana checkpoint 4");
+    damaged.replace(0, 18, "frana checkpoint 9");
     put(file, damaged);
     CHECK_THAT(complaint(file), Contains("has a format that this version does not know"));
 }

@@ -122,7 +122,7 @@ Images::Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3
         if (c.distance < image_reach(c.normal) * cell)
             list[count++] = {c, surface.hold == Hold::stuck, std::numeric_limits<double>::infinity()};
     }
-    reflect(list, count, {x, Mat3::Identity(), Mat3::Identity(), Vec3::Zero(), 0.0, false, 0, {}}, 0);
+    if (count > 0) reflect(list, count, x);
 }
 
 int Images::near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count) {
@@ -136,8 +136,45 @@ int Images::near_barrier(const Surface& surface, const Vec3& x, double cell, Nea
     return count;
 }
 
-/// Reflects in each of the surfaces, and these images in those listed behind; at most three times in a row.
-/// Surfaces are perpendicular to each other when the cosine of their angle is below kSquare, round-off.
+/// In a barrier an image shows only down to half of its thickness.
+void Images::cut_off(Image& image, const Near& near, const Vec3& from) {
+    const Vec3& normal = near.contact.normal;
+    if (near.thick < std::numeric_limits<double>::infinity() && image.cuts < 2)
+        image.cut[image.cuts++] = {{normal[0], normal[1], normal[2]},
+                                   normal.dot(from) - near.contact.distance - 0.5 * near.thick};
+}
+
+/// Reflects a point in each of the surfaces, and these images in those listed behind; at most three times in a row.
+void Images::reflect(const Near* near, int count, const Vec3& x) {
+    for (int n = 0; n < count && count_ < kMost; ++n) {
+        const Vec3& normal = near[n].contact.normal;
+        Image& image = list_[static_cast<std::size_t>(count_++)];
+        image.place = x - 2.0 * near[n].contact.distance * normal;
+        image.turn = Mat3::Identity() - 2.0 * normal * normal.transpose();
+        image.motion = near[n].stuck ? Mat3(-Mat3::Identity()) : image.turn;
+        image.held_normal = near[n].bends() ? normal : Vec3(Vec3::Zero());
+        image.held_above = near[n].bends() ? near[n].contact.distance : 0.0;
+        image.held = near[n].stuck, image.cuts = 0;
+        cut_off(image, near[n], x);
+        if (n + 1 < count) reflect_in_others(near, count, n, x, image, 0);
+    }
+}
+
+/// The image of `from` in near[n], in the surfaces behind that one.
+void Images::reflect_in_others(const Near* near, int count, int n, const Vec3& from, const Image& image, int depth) {
+    Near others[kMostNear];
+    int left = 0;
+    for (int m = n + 1; m < count; ++m) {
+        if (near[n].contact.normal.dot(near[m].contact.normal) < kOpposite) continue;
+        Near other = near[m];
+        other.contact.distance += other.contact.normal.dot(image.place - from);
+        if (other.contact.distance > 0.0) others[left++] = other;  // in a wide corner it may lie behind already
+    }
+    reflect(others, left, image, depth + 1);
+}
+
+/// The same of an image. Surfaces are perpendicular to each other when the cosine of their angle is below kSquare,
+/// round-off.
 void Images::reflect(const Near* near, int count, const Image& from, int depth) {
     for (int n = 0; n < count && count_ < kMost; ++n) {
         const Vec3& normal = near[n].contact.normal;
@@ -155,22 +192,9 @@ void Images::reflect(const Near* near, int count, const Image& from, int depth) 
             image.held_normal = normal, image.held_above = near[n].contact.distance;
         else if (!near[n].stuck && std::abs(from.held_normal.dot(normal)) < kSquare)
             image.held_normal = from.held_normal, image.held_above = from.held_above;
-        if (near[n].thick < std::numeric_limits<double>::infinity() && image.cuts < 2)
-            image.cut[image.cuts++] = {
-                {normal[0], normal[1], normal[2]},
-                normal.dot(from.place) - near[n].contact.distance - 0.5 * near[n].thick};
+        cut_off(image, near[n], from.place);
         list_[static_cast<std::size_t>(count_++)] = image;
-        if (depth == 2) continue;
-        Near others[kMostNear];
-        int left = 0;
-        for (int m = n + 1; m < count; ++m) {
-            if (normal.dot(near[m].contact.normal) < kOpposite) continue;
-            Near other = near[m];
-            other.contact.distance += other.contact.normal.dot(image.place - from.place);
-            if (other.contact.distance > 0.0)
-                others[left++] = other;  // in a wide corner it may lie behind already
-        }
-        reflect(others, left, image, depth + 1);
+        if (depth < 2) reflect_in_others(near, count, n, from.place, image, depth);
     }
 }
 

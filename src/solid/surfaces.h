@@ -107,7 +107,10 @@ private:
     };
     static constexpr int kMostNear = 4, kMost = 14;
     static int near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count);
+    void reflect(const Near* near, int count, const Vec3& x);
     void reflect(const Near* near, int count, const Image& from, int depth);
+    void reflect_in_others(const Near* near, int count, int n, const Vec3& from, const Image& image, int depth);
+    static void cut_off(Image& image, const Near& near, const Vec3& from);
     std::array<Image, kMost> list_;
     int count_ = 0;
 };
