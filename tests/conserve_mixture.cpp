@@ -225,7 +225,7 @@ TEST_CASE("Beside dry columns there is no water, beside water no columns: each m
     CHECK(both.water().status().kinetic == Approx(alone.status().kinetic).epsilon(1e-14));
 }
 
-TEST_CASE("Without columns the two phases are the water alone, to the last bit", "[mixture]") {
+TEST_CASE("V14: without columns the two phases are the water alone, to the last bit", "[mixture]") {
     Basin basin(0.8, 1900.0, 0.0);
     basin.scene.columns.points = {};
     basin.scene.water.bed = [](double x, double y) { return 0.1 * std::sin(0.5 * x) * std::cos(0.3 * y) - 0.05 * x; };

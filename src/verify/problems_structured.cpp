@@ -222,7 +222,7 @@ Measurement run_structured_dam(const Setup& setup) {
 std::vector<Problem> structured_problems() {
     const Gate closed{0, "momentum_residual", 1e-12, "round-off"}, mass{0, "mass_error", 1e-14, "round-off"};
     Problem spin{
-        "structured_spin", "an elastic block turns once: spin, energy, angle", {12, 24}, {}, run_spin};
+        "structured_spin", "V1: an elastic block turns once: spin, energy, angle", {12, 24}, {}, run_spin};
     spin.order_of = "kinetic_lost";
     spin.gates = {{24, "spin_error", 1e-3, "prototype 2e-5"},
                   {24, "kinetic_lost", 5e-3, "prototype 3.4e-3"},
@@ -255,7 +255,7 @@ std::vector<Problem> structured_problems() {
                    closed,
                    mass};
     Problem stand{"structured_stand",
-                  "a block on the ground: whole it rests exactly, below Bell's height it stands",
+                  "V16: a block on the ground: whole it rests exactly, below Bell's height it stands",
                   {12, 24},
                   {},
                   run_structured_stand};
@@ -265,7 +265,7 @@ std::vector<Problem> structured_problems() {
                    closed,
                    mass};
     Problem dam{
-        "structured_dam", "grains behind a dam: Ritter with Ka g", {100, 200}, {}, run_structured_dam};
+        "structured_dam", "V16: grains behind a dam: Ritter with Ka g", {100, 200}, {}, run_structured_dam};
     dam.gates = {
         {100, "l1_depth", 2.4e-2, "a fifth above S2's 1.98e-2; the form without it had 4.4e-2"},
         {200, "l1_depth", 1.45e-2, "a fifth above S2's 1.21e-2; the form without it had 4.3e-2"},
