@@ -62,8 +62,8 @@ TEST_CASE("Columns that become points keep mass, momentum and energy, at once an
         most = std::max(most, run.points()->status().points);
     }
     CHECK(worst < round_off);
-    CHECK(run.columns().status().particles ==
-          0);  // everything has flowed into the window, and some of it out again
+    // Everything has flowed into the window, and some of it out again: as columns, and at the sides out of the terrain.
+    CHECK(run.columns().status().mass > 0.1 * mass);
     CHECK(run.status().mass_left > 0.1 * mass);
     CHECK(most > run.points()->status().points);
 }
@@ -159,28 +159,35 @@ TEST_CASE("Points do not cross a closed side that columns still flow in over", "
 
 TEST_CASE("Runs in stages have the same bits for any number of threads, and when taken up again",
           "[stages][threads]") {
-    const Scene scene = slide();
+    // In the second points are on their way to be columns when it stops, and the stage in space ends between two stops.
+    Scene scene = slide();
+    std::vector<double> stops = {0.3, 0.55};
+    double end = 0.7;
+    if (GENERATE(false, true)) {
+        scene.solid->window = {12, 0, 18, 12};
+        scene.solid->until = 0.95;
+        stops = {0.8, 0.83, 0.86, 0.89, 0.97}, end = 1.1;
+    }
     const int threads = omp_get_max_threads();
     StagedRun straight(scene);
-    run_to(straight, 0.3);
-    MemoryArchive early, late;
-    straight.keep(early);
-    while (straight.status().time < 0.55) straight.advance(0.7);
-    straight.keep(late);
-    run_to(straight, 0.7);
+    std::vector<MemoryArchive> kept(stops.size());
+    for (std::size_t n = 0; n < stops.size(); ++n) {
+        while (straight.status().time < stops[n]) straight.advance(end);
+        straight.keep(kept[n]);
+    }
+    run_to(straight, end);
+    CHECK((straight.points()->status().points == 0) == scene.solid->until.has_value());
     const auto expected = kept_bits(straight);
     for (const int other : {1, 2, 4}) {
         omp_set_num_threads(other);
-        for (MemoryArchive* archive : {&early, &late}) {
+        for (std::size_t n = 0; n < stops.size(); ++n) {
             StagedRun resumed(scene, Start::kept);
-            resumed.keep(archive->rewind());
-            if (archive == &early)
-                while (resumed.status().time < 0.55) resumed.advance(0.7);
-            run_to(resumed, 0.7);
+            resumed.keep(kept[n].rewind());
+            run_to(resumed, end);
             const auto found = kept_bits(resumed);
             REQUIRE(found.size() == expected.size());
             for (const auto& [name, entry] : expected) {
-                INFO(name << " with " << other << " threads");
+                INFO(name << " with " << other << " threads, from " << stops[n] << " s");
                 CHECK((found.at(name) == entry));
             }
         }

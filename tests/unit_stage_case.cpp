@@ -71,6 +71,19 @@ TEST_CASE("A window is closed where the case says so, and where it reaches walls
           Closed{true, true, false, false});
 }
 
+TEST_CASE("A stage in space ends where columns follow it", "[stages]") {
+    const std::string after = "[[stage]]\nmodel = \"depth_averaged\"\n";
+    const SolidStage middle = scene_of(two + west + "until = 12\n" + after).solid.value();
+    CHECK(middle.from == 8.0);
+    CHECK(middle.until == 12.0);
+    CHECK(middle.window == std::array<Index, 4>{1, 0, 11, 19});
+    const SolidStage first =
+        scene_of("[[stage]]\nmodel = \"solid_flow\"\nuntil = 5\n" + west + after).solid.value();
+    CHECK(first.from == 0.0);
+    CHECK(first.until == 5.0);
+    CHECK_FALSE(scene_of(two + west).solid->until.has_value());
+}
+
 TEST_CASE("A stage of columns to the end changes nothing", "[stages]") {
     CHECK_FALSE(scene_of("[[stage]]\nmodel = \"depth_averaged\"\n").solid.has_value());
     CHECK_FALSE(scene_of("").solid.has_value());
@@ -88,9 +101,12 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
         "stage.0.until: found 25 s; expected a time before time.end = 20 s"));
     CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\n[[stage]]\nmodel = \"solid_flow\"\n" + west),
               "stage.0: not given until, and another stage follows"));
-    CHECK(has(problem_of("[[stage]]\nmodel = \"solid_flow\"\nuntil = 5\n" + west +
-                         "[[stage]]\nmodel = \"depth_averaged\"\n"),
-              "stage.0: found another stage after it"));
+    const std::string columns = "[[stage]]\nmodel = \"depth_averaged\"\n";
+    CHECK(has(problem_of(two + west + columns), "stage.1: not given until, and another stage follows"));
+    CHECK(has(problem_of(two + west + "until = 8\n" + columns),
+              "stage.1.until: found 8 s; expected a time between the stage's begin, 8 s, and time.end = 20 s"));
+    CHECK(has(problem_of(two + west + "until = 12\n" + columns + "until = 15\n[[stage]]\nmodel = \"solid_flow\"\n"),
+              "stage.3: found it after the others; expected depth_averaged, then solid_flow, then depth_averaged"));
     CHECK(has(problem_of(two + west + "until = 15\n"),
               "stage.1.until: found 15 s; expected none in the last stage"));
     CHECK(has(problem_of(two + west + "spacing = 3\n"),

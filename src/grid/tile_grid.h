@@ -66,6 +66,11 @@ public:
     Index size() const { return stride_ * tiles_y_ * kTile; }
     Index at(Index i, Index j) const { return (j + kTile) * stride_ + i + kTile; }
 
+    /// The node whose cell holds (x, y) [cells].
+    Index nearest(double x, double y) const {
+        return at(static_cast<Index>(std::floor(x + 0.5)), static_cast<Index>(std::floor(y + 0.5)));
+    }
+
     Index tiles_x() const { return tiles_x_; }
     Index tiles() const { return tiles_x_ * tiles_y_; }
     /// Tile that a particle at (x, y) [cells] belongs to: the one of its stencil's first node.

@@ -19,7 +19,6 @@ using hdf5::Handle;
 namespace {
 
 constexpr std::size_t kHead = 512;  ///< HDF5's smallest user block [bytes]
-constexpr const char* kFormat = "frana checkpoint 4";
 
 struct NumberType { hid_t memory, file; };
 NumberType number_type(Archive::Kind kind) {
@@ -126,7 +125,7 @@ std::uint64_t sum_of(std::ifstream& stream) {
 }
 
 std::string head_text(std::uintmax_t bytes, std::uint64_t sum) {
-    return fmt::format("{}\nbytes {}\nsum {:016x}\n", kFormat, bytes, sum);
+    return fmt::format("{}\nbytes {}\nsum {:016x}\n", kCheckpointFormat, bytes, sum);
 }
 
 void write_head(const fs::path& file) {
@@ -156,8 +155,8 @@ void require_whole(const fs::path& file) {
     expected.resize(kHead, '\0');
     if (text == expected) return;
     if (text.rfind("frana checkpoint ", 0) != 0) throw damaged("is not a checkpoint of frana");
-    if (text.rfind(kFormat + std::string("\n"), 0) != 0) throw damaged("has a format that this version does not know");
-    if (text.rfind(fmt::format("{}\nbytes {}\n", kFormat, bytes), 0) != 0) throw damaged("was cut short or added to");
+    if (text.rfind(kCheckpointFormat + std::string("\n"), 0) != 0) throw damaged("has a format that this version does not know");
+    if (text.rfind(fmt::format("{}\nbytes {}\n", kCheckpointFormat, bytes), 0) != 0) throw damaged("was cut short or added to");
     throw damaged("is damaged, its checksum does not fit");
 }
 

@@ -102,7 +102,8 @@ void add_barriers(Table& table) {
 void add_stages(Table& table) {
     Parameter choice_of_model =
         make(model, Kind::choice, "",
-             "depth_averaged: columns; solid_flow: points in space, within the stage's window");
+             "depth_averaged: columns; solid_flow: points in space, within the stage's window; columns may come before it, "
+             "after it, or both");
     choice_of_model.choices = {"depth_averaged", "solid_flow"};
     table.push_back(required(choice_of_model));
     table.push_back(

@@ -32,46 +32,46 @@ public:
         : case_(file), scene_(scene), problems_(problems) {}
 
     std::optional<SolidStage> read() {
-        double begin = 0.0;
-        for (Index i = 0; i < case_.count("stage"); ++i) {
-            const std::string table = fmt::format("stage.{}", i);
-            prefix_ = table + ".";
-            const bool last = i + 1 == case_.count("stage"),
-                       in_space = case_.word(prefix_ + "model") == "solid_flow";
-            if (in_space && last) return solid(begin);
-            if (last) break;
-            if (in_space || i > 0) {
-                problems_.add(case_.table_place(table), "found another stage after it",
-                              "expected depth_averaged, then solid_flow, then the end",
-                              "remove what follows; `frana convert --points --back` makes columns of points");
-                return {};
-            }
-            if (!case_.given(prefix_ + "until")) {
-                problems_.add(case_.table_place(table), "not given until, and another stage follows",
-                              "expected the time at which the next stage begins",
-                              "add until = ... under [[stage]]");
-                return {};
-            }
-            begin = case_.number(prefix_ + "until");
+        const Index count = case_.count("stage");
+        Index space = count;  // the one in space
+        for (Index i = 0; i < count; ++i) {
+            prefix_ = fmt::format("stage.{}.", i);
+            const bool in_space = case_.word(prefix_ + "model") == "solid_flow";
+            if (in_space && space == count) space = i;
+            if (space < count ? i > space + 1 || (in_space && i > space) || space > 1 : i > 1)
+                return refuse(i, "found it after the others",
+                              "expected depth_averaged, then solid_flow, then depth_averaged, or a part of that",
+                              "remove it; `frana convert` makes points of columns and columns of points besides");
+            if (i + 1 < count && !given("until"))
+                return refuse(i, "not given until, and another stage follows",
+                              "expected the time at which the next stage begins", "add until = ... under [[stage]]");
         }
-        return {};
+        if (space == count) return {};
+        const double begin = space > 0 ? case_.number(fmt::format("stage.{}.until", space - 1)) : 0.0;
+        prefix_ = fmt::format("stage.{}.", space);
+        return solid(begin, space + 1 == count);
     }
 
 private:
+    std::optional<SolidStage> refuse(Index i, const char* found, const char* expected, const char* advice) {
+        problems_.add(case_.table_place(fmt::format("stage.{}", i)), found, expected, advice);
+        return {};
+    }
     bool given(const char* name) const { return case_.given(prefix_ + name); }
     double number(const char* name) const { return case_.number(prefix_ + name); }
     double number_or(const char* name, double otherwise) const {
         return given(name) ? number(name) : otherwise;
     }
 
-    std::optional<SolidStage> solid(double begin) {
+    std::optional<SolidStage> solid(double begin, bool last) {
         SolidStage stage;
         stage.from = begin;
         if (begin >= scene_.end)
             problems_.add(case_.place("stage.0.until"), fmt::format("found {:.10g} s", begin),
                           fmt::format("expected a time before time.end = {:.10g} s", scene_.end),
                           "let the run end later, or the stage earlier");
-        if (given("until") && number("until") != scene_.end)
+        if (!last) read_end(stage);
+        if (last && given("until") && number("until") != scene_.end)
             problems_.add(case_.place(prefix_ + "until"), fmt::format("found {:.10g} s", number("until")),
                           fmt::format("expected none in the last stage, or time.end = {:.10g} s", scene_.end),
                           "remove it, or change time.end");
@@ -95,6 +95,15 @@ private:
         stage.profile = profile_of(case_.word(prefix_ + "profile"));
         stage.along_bed = case_.word(prefix_ + "vertical") == "along-bed";
         return stage;
+    }
+
+    void read_end(SolidStage& stage) {
+        stage.until = number("until");
+        if (*stage.until > stage.from && *stage.until < scene_.end) return;
+        problems_.add(case_.place(prefix_ + "until"), fmt::format("found {:.10g} s", *stage.until),
+                      fmt::format("expected a time between the stage's begin, {:.10g} s, and time.end = {:.10g} s", stage.from,
+                                  scene_.end),
+                      "correct it, or remove the stage after it");
     }
 
     /// Sand flips: where layers of few cells flow, a step's damping holds them back. The pressure of fluids is

@@ -241,6 +241,9 @@ void SolidFlow::advance(double until) {
     timed_("gather", [&] { kernel_->gather(body_, dt); });
     status_.time = dt >= until - status_.time ? until : status_.time + dt;
     book(dt);
+    if (notes_ && status_.points != body_.points.count())
+        for (Index p = 0; p < body_.points.count(); ++p)
+            if (body_.gone[static_cast<std::size_t>(p)]) departed_.push_back(departed(p));
     if (drift_ > kDriftLimit - 0.5 || status_.points != body_.points.count()) timed_("sort", [&] { sort(); });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The 3D material point method: explicit, quadratic B-splines, TPIC or APIC, against rigid surfaces.
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "law/solid_law.h"
@@ -29,10 +30,22 @@ struct SolidSeeds {
 /// Material beside the points that another model carries. It moves on at its velocity.
 struct MaterialBeside {
     SolidSeeds seeds;
+    std::vector<Mat3> gradient;  ///< of the velocity at each, dv_k/dx_l at (k, l) [1/s]
     double time = 0.0;  ///< when it is at its places [s]
     double span = 0.0;  ///< how long it moves from there, forth or back, at most [s]
 
     bool empty() const { return seeds.mass.empty(); }
+};
+
+/// A point that left, as it was then.
+struct DepartedPoint {
+    double time;    ///< [s]
+    Vec3 position;  ///< [m]
+    Vec3 velocity;  ///< [m/s]
+    Mat3 gradient;  ///< of the velocity, dv_k/dx_l at (k, l) [1/s]
+    double mass;    ///< [kg]
+    double energy;  ///< kinetic, potential and stored, as it was booked but for round-off [J]
+    double pressure;  ///< [Pa]
 };
 
 struct SolidScene {
@@ -119,13 +132,13 @@ struct SolidBody {
     struct Beside {
         MaterialBeside material;
         std::vector<SurfaceSet> near;    ///< surfaces that may show images of each of its seeds
-        /// Of the step, seeds and images: a place [cells], mass and momentum [kg, kg m/s], impulse of the pressure [J s],
-        /// and the seed's image where one is cut (surfaces.h).
+        /// Of the step, seeds and images: a place [cells], mass and momentum [kg, kg m/s], mass times the velocity's gradient
+        /// [kg/s], impulse of the pressure [J s], and the seed's image where one is cut (surfaces.h).
         struct Shown {
             Vec3 place;
             double mass;
             Vec3 momentum;
-            Mat3 force;
+            Mat3 affine, force;
             Image image;
         };
         std::vector<Shown> seeds, images;
@@ -189,6 +202,14 @@ public:
     /// Material that points feel from now on as they feel each other: nodes that they reach have its mass, motion and
     /// pressure too. It goes on at its velocity whatever the points do; what it gives them is booked.
     void stand_beside(MaterialBeside material);
+    /// A point that left goes on like that, besides.
+    void stand_beside(const DepartedPoint& point);
+    /// From now on points that leave are noted.
+    void note_departed() { notes_ = true; }
+    /// Those that left since the last call, step by step in the order of the tiles: the same for any number of threads.
+    std::vector<DepartedPoint> take_departed() { return std::exchange(departed_, {}); }
+    /// Between two steps, all points leave.
+    void leave();
     /// Sets the clock of a flow that has not begun to move [s].
     void start_at(double time);
     /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
@@ -217,11 +238,14 @@ private:
     void sort();
     void mark_near();
     void mark_seen_images();
+    void make_room_beside();
+    void note_near(std::size_t seed);
     void make_room_for_pushes();
     double step_length(double until) const;
     void book(double dt);
     void book_pushes();
     void require_sound(const SolidSums& sums) const;
+    DepartedPoint departed(Index p) const;
     Mat3 gradient(Index p) const;
 
     SolidBody body_;
@@ -232,6 +256,8 @@ private:
     SolidStatus status_;
     double density_, cfl_, sound_, blending_, drift_ = 0.0;
     Index next_id_ = 0;
+    std::vector<DepartedPoint> departed_;  ///< when they are noted
+    bool notes_ = false;
     bool apic_;
 };
 

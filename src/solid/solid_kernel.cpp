@@ -268,13 +268,15 @@ private:
         for (std::size_t p = 0; p < seeds.mass.size(); ++p) {
             const Vec3 x = seeds.position[p] + (time - beside.material.time) * seeds.velocity[p];
             const Vec3 momentum = seeds.mass[p] * (seeds.velocity[p] + dt * body.gravity);
+            const Mat3 motion = seeds.mass[p] * beside.material.gradient[p];
             const Mat3 force = dt * seeds.pressure[p] * seeds.mass[p] / body.density * Mat3::Identity();
             const Vec3 place = (x - origin) / h;
-            if (felt(body, place)) beside.seeds.push_back({place, seeds.mass[p], momentum, force, {}});
+            if (felt(body, place)) beside.seeds.push_back({place, seeds.mass[p], momentum, motion, force, {}});
             for (const Image& image : Images(body.surfaces, beside.near[p], x, h)) {
                 const Vec3 shown = (image.place - origin) / h;
                 if ((shown - place).cwiseAbs().maxCoeff() > kFarthestImage || !felt(body, shown)) continue;
                 beside.images.push_back({shown, seeds.mass[p], image.motion * momentum,
+                                         image.motion * motion * image.turn.transpose(),
                                          image.motion * force * image.turn.transpose(), image});
             }
         }
@@ -317,7 +319,7 @@ private:
             const Vec3 slope(s.slope[0][i] * s.w[1][j] * s.w[2][k], s.w[0][i] * s.slope[1][j] * s.w[2][k],
                              s.w[0][i] * s.w[1][j] * s.slope[2][k]);
             SolidBody::Node& node = body.nodes[s.place[0][i] + s.place[1][j] + s.place[2][k]];
-            const Vec3 given = w * shown.momentum + shown.force * slope;
+            const Vec3 given = w * (shown.momentum + shown.affine * d) + shown.force * slope;
             node.m += w * shown.mass, node.x += given[0], node.y += given[1], node.z += given[2];
         }
     }

@@ -101,6 +101,7 @@ struct Departed {
     double depth;   ///< [m]
     double mass;    ///< [kg]
     double energy;  ///< kinetic and potential, as it was booked [J]
+    std::array<double, 4> gradient;  ///< of the velocity: cxx, cyx, cxy, cyy [1/s]
 };
 
 /// Sorts columns by tile; points marked in `gone` are dropped. Needs no memory once warmed up.

@@ -56,28 +56,40 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     signal_ += std::sqrt(flow_.gravity * status_.max_depth);
 }
 
-/// Seeds become columns: positions in cells, square domains, sorted by tile.
+/// Seeds become columns behind those that are there: positions in cells, square domains.
 template <class Real>
-void DepthAveraged::place(const Seeds& seeds) {
+void DepthAveraged::append(const Seeds& seeds, Index first_id) {
     Columns& c = flow_.columns;
     Carried<Real>& held = c.carried<Real>();
     const GridGeometry& g = flow_.grid.geometry();
-    c.resize(seeds.count());
+    const Index before = c.count();
+    c.resize(before + seeds.count());
+    for (Index n = 0; n < seeds.count(); ++n) {
+        const Index p = before + n;
+        c.x[p] = (seeds.x[n] - g.x0) / g.cell;
+        c.y[p] = (seeds.y[n] - g.y0) / g.cell;
+        held.vx[p] = static_cast<Real>(seeds.vx[n]);
+        held.vy[p] = static_cast<Real>(seeds.vy[n]);
+        c.mass[p] = seeds.volume[n] * flow_.density;
+        held.r1x[p] = held.r2y[p] = static_cast<Real>(seeds.size[n] / g.cell);
+        held.depth[p] = static_cast<Real>(seeds.depth[n]);
+        c.id[p] = first_id + n;
+        status_.max_speed = std::max(status_.max_speed, std::hypot(seeds.vx[n], seeds.vy[n]));
+    }
+}
+template void DepthAveraged::append<double>(const Seeds&, Index);
+template void DepthAveraged::append<float>(const Seeds&, Index);
+
+template <class Real>
+void DepthAveraged::place(const Seeds& seeds) {
+    append<Real>(seeds, 0);
+    Columns& c = flow_.columns;
     double mass = 0.0;
     for (Index p = 0; p < seeds.count(); ++p) {
-        c.x[p] = (seeds.x[p] - g.x0) / g.cell;
-        c.y[p] = (seeds.y[p] - g.y0) / g.cell;
-        held.vx[p] = static_cast<Real>(seeds.vx[p]);
-        held.vy[p] = static_cast<Real>(seeds.vy[p]);
-        c.mass[p] = seeds.volume[p] * flow_.density;
-        held.r1x[p] = held.r2y[p] = static_cast<Real>(seeds.size[p] / g.cell);
-        held.depth[p] = static_cast<Real>(seeds.depth[p]);
-        c.id[p] = p;
         centre_ += c.mass[p] * Vec2(c.x[p], c.y[p]);
         mass += c.mass[p];
-        signal_ = std::max(signal_, std::hypot(seeds.vx[p], seeds.vy[p]));
     }
-    status_.max_speed = signal_;
+    signal_ = status_.max_speed;
     if (mass > 0.0) centre_ /= mass;
     splitter_.set_next_id(seeds.count());
     sorter_.sort(c, flow_.grid, {}, flow_.active);

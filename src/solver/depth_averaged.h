@@ -34,6 +34,15 @@ public:
     /// The columns that left so since the last call, by id.
     std::vector<Departed> take_departed();
 
+    /// Nothing leaves any more at the nodes that open_exits() marked.
+    void close_exits();
+    /// More columns, between two steps at `time` [s], the columns' own unless there are none; `gradient` of the velocity of
+    /// each, dv_k/dx_l at (k, l) [1/s]. They are booked as what did not leave after all: mass, momentum and energy, which is
+    /// returned [J].
+    double take_in(const Seeds& seeds, const std::vector<Mat2>& gradient, double time);
+    /// Whether a column may stand at a place of the map: on ground, and not where columns leave.
+    bool may_stand(double x, double y) const;
+
     /// For the next step: depth of other material on the nodes [m] (row after row from the south). It counts as
     /// depth of the columns wherever that is asked for, but for their mass and motion: they are deposited once more, with it.
     /// Nothing sleeps any more. Pressure on points (paper preset) does not feel it.
@@ -57,6 +66,8 @@ public:
 private:
     template <class Real>
     void place(const Seeds& seeds);
+    template <class Real>
+    void append(const Seeds& seeds, Index first_id);
     void leave_at_exits();
     void level_points(double level);
     void arrive(const PointSums& points);

@@ -74,7 +74,8 @@ void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& 
         const double energy = leave<Real>(flow, p, k, sums);
         if (flow.bed.exit[k] == kNoted)
             flow.departed[static_cast<std::size_t>(omp_get_thread_num())].push_back(
-                {c.id[p], c.x[p], c.y[p], held.vx[p], held.vy[p], held.depth[p], c.mass[p], energy});
+                {c.id[p], c.x[p], c.y[p], held.vx[p], held.vy[p], held.depth[p], c.mass[p], energy,
+                 {held.cxx[p], held.cyx[p], held.cxy[p], held.cyy[p]}});
         c.mass[p] = 0.0;
     }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "particles/bed_points.h"
@@ -99,6 +100,40 @@ FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, 
     return parts;
 }
 
+MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ColumnsAt& at) {
+    struct Sum {
+        double mass = 0.0;
+        Vec2 moment{0, 0}, momentum{0, 0};
+        Mat2 gradient = Mat2::Zero();  // times mass
+    };
+    const GridGeometry& g = scene.bed.geometry;
+    const double size = 0.5 * g.cell;
+    std::map<std::pair<Index, Index>, Sum> quarters;  // row after row from the south
+    for (const DepartedPoint& point : points) {
+        const Vec2 left = point.position.head<2>(), v = point.velocity.head<2>();
+        Vec2 x = left + (at.time - point.time) * v;
+        if (!at.may_stand(x.x(), x.y())) x = left;
+        Sum& sum = quarters[{static_cast<Index>(std::floor((x.y() - g.y0) / size)),
+                             static_cast<Index>(std::floor((x.x() - g.x0) / size))}];
+        sum.mass += point.mass;
+        sum.moment += point.mass * x;
+        sum.momentum += point.mass * v;
+        sum.gradient += point.mass * point.gradient.topLeftCorner<2, 2>();
+    }
+    MovingColumns columns;
+    Seeds& seeds = columns.seeds;
+    for (const auto& [quarter, sum] : quarters) {
+        const Vec2 x = sum.moment / sum.mass, v = sum.momentum / sum.mass;
+        const double volume = sum.mass / scene.density;
+        seeds.x.push_back(x.x()), seeds.y.push_back(x.y());
+        seeds.vx.push_back(v.x()), seeds.vy.push_back(v.y());
+        seeds.volume.push_back(volume), seeds.size.push_back(size);
+        seeds.depth.push_back(std::max(at.depth(x.x(), x.y()), volume / (size * size)));
+        columns.gradient.push_back(sum.gradient / sum.mass);
+    }
+    return columns;
+}
+
 SolidSeeds seeds_of(const FlowColumns& columns, const SolidStage& stage) {
     ConversionChoice choice;
     choice.spacing = stage.spacing;
@@ -111,6 +146,13 @@ SolidSeeds seeds_of(const FlowColumns& columns, const SolidStage& stage) {
         seeds.add({x[0], x[1], x[2]}, {v[0], v[1], v[2]}, points.mass[k], points.pressure[k]);
     }
     return seeds;
+}
+
+std::vector<std::size_t> parts_of_seeds(const FlowColumns& columns, const SolidStage& stage) {
+    std::vector<std::size_t> parts;
+    for (std::size_t k = 0; k < columns.count(); ++k)
+        parts.insert(parts.end(), static_cast<std::size_t>(layer_count(columns.depth[k], stage.spacing)), k);
+    return parts;
 }
 
 }  // namespace frana

@@ -1,6 +1,7 @@
 #pragma once
-// Columns that become points in space.
+// Columns that become points in space, and points that become columns.
 #include <array>
+#include <functional>
 
 #include "convert/solid_points.h"
 #include "scene/scene.h"
@@ -21,7 +22,29 @@ FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector
 FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
                      const std::array<double, 4>& extent);
 
+/// When points become columns, and what is there: functions of a place on the map [m].
+struct ColumnsAt {
+    double time;                                    ///< [s]
+    std::function<bool(double, double)> may_stand;  ///< whether columns can be there
+    std::function<double(double, double)> depth;    ///< of what is there already [m]
+};
+
+/// Columns that were points, with the gradients of their velocities, dv_k/dx_l at (k, l) [1/s].
+struct MovingColumns {
+    Seeds seeds;
+    std::vector<Mat2> gradient;
+};
+
+/// Points that left as columns: one for all of them in each quarter of a cell of the terrain, at their centre of mass, with
+/// their mass and momentum. Until then they went on at the speed that they had, as far as columns may stand there; so their
+/// velocities are half a step behind their places, as those of columns are. They are as deep as what is there, and at least
+/// as all that is new on their quarter.
+MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ColumnsAt& at);
+
 /// The points of columns (convert/solid_points.h) for the solver.
 SolidSeeds seeds_of(const FlowColumns& columns, const SolidStage& stage);
+
+/// Of which of the columns each of them is.
+std::vector<std::size_t> parts_of_seeds(const FlowColumns& columns, const SolidStage& stage);
 
 }  // namespace frana

@@ -54,8 +54,9 @@ void StagedRun::show_points() {
     });
 }
 
-/// Those on their way into the window first, in their order; then those around it.
-FlowColumns StagedRun::columns_at_edge() const {
+/// Those on their way into the window first, in their order; then those around it. And the gradients of their velocities:
+/// without them the nodes that both sides share would take columns that are faster, for being farther on, for a push.
+FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
     const GridGeometry& g = scene_.bed.geometry;
     Seeds seeds;
     const auto add = [&](double x, double y, double vx, double vy, double mass, double depth) {
@@ -63,8 +64,11 @@ FlowColumns StagedRun::columns_at_edge() const {
         seeds.vx.push_back(vx), seeds.vy.push_back(vy);
         seeds.volume.push_back(mass / scene_.density), seeds.depth.push_back(std::max(depth, 0.0));
     };
-    for (const Departed& column : pending_)
+    gradients.clear();
+    for (const Departed& column : pending_) {
         add(column.x, column.y, column.vx, column.vy, column.mass, column.depth);
+        gradients.push_back(Mat2(column.gradient.data()));
+    }
     const auto at_edge = [&](double x, double y) {
         const auto i = static_cast<Index>(std::floor(x + 0.5)), j = static_cast<Index>(std::floor(y + 0.5));
         return at_edge_[static_cast<std::size_t>(j * g.nx + i)] != 0;
@@ -72,21 +76,48 @@ FlowColumns StagedRun::columns_at_edge() const {
     const Columns& c = columns_->flow().columns;
     c.with_real([&](auto real) {
         const auto& held = c.carried<decltype(real)>();
-        for (Index p = 0; p < c.count(); ++p)
-            if (at_edge(c.x[p], c.y[p])) add(c.x[p], c.y[p], held.vx[p], held.vy[p], c.mass[p], held.depth[p]);
+        for (Index p = 0; p < c.count(); ++p) {
+            if (!at_edge(c.x[p], c.y[p])) continue;
+            add(c.x[p], c.y[p], held.vx[p], held.vy[p], c.mass[p], held.depth[p]);
+            Mat2 gradient;
+            gradient << held.cxx[p], held.cxy[p], held.cyx[p], held.cyy[p];
+            gradients.push_back(gradient);
+        }
     });
     FlowColumns columns = columns_of(seeds, scene_, {});
     take_start_pressure(columns, scene_);
     return columns;
 }
 
-/// As the points that they will be when they cross the edge.
+/// As the points that they will be when they cross the edge, but each with the column's velocity at its place: what widens
+/// sinks, as it does in nature, in proportion to the height above the bed.
+MaterialBeside StagedRun::beside_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const {
+    const GridGeometry& g = scene_.bed.geometry;
+    const FlowColumns parts =
+        in_parts(columns, scene_.solid->spacing, g.cell, scene_.bed, {g.x0, g.y0, g.x_max(), g.y_max()});
+    const std::vector<std::size_t> part_of = parts_of_seeds(parts, *scene_.solid);
+    MaterialBeside beside{seeds_of(parts, *scene_.solid), {}, columns_->status().time, columns_->status().dt};
+    for (std::size_t k = 0; k < part_of.size(); ++k) {
+        const std::size_t part = part_of[k], column = static_cast<std::size_t>(parts.id[part]);
+        const Mat2& c = gradients[column];
+        const Vec2 slope(parts.slope_x[part], parts.slope_y[part]);
+        Mat3 gradient = Mat3::Zero();
+        gradient.topLeftCorner<2, 2>() = c;
+        if (scene_.solid->along_bed) gradient.bottomLeftCorner<1, 2>() = slope.transpose() * c;
+        gradient(2, 2) = -c.trace();
+        const Vec3 x = beside.seeds.position[k];
+        beside.seeds.velocity[k] +=
+            gradient * Vec3(x[0] - columns.x[column], x[1] - columns.y[column], x[2] - parts.bed[part]);
+        beside.gradient.push_back(gradient);
+    }
+    return beside;
+}
+
 void StagedRun::show_columns() {
     timed_("edge", [&] {
-        const GridGeometry& g = scene_.bed.geometry;
-        const std::array<double, 4> extent = {g.x0, g.y0, g.x_max(), g.y_max()};
-        const FlowColumns parts = in_parts(columns_at_edge(), scene_.solid->spacing, g.cell, scene_.bed, extent);
-        points_->stand_beside({seeds_of(parts, *scene_.solid), columns_->status().time, columns_->status().dt});
+        std::vector<Mat2> gradients;
+        const FlowColumns columns = columns_at_edge(gradients);
+        points_->stand_beside(beside_of(columns, gradients));
     });
 }
 

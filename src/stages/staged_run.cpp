@@ -32,9 +32,7 @@ StagedRun::StagedRun(const Scene& scene, Start start)
         begin_space([&](const Marks& marks) { return columns_of(scene.particles, scene, marks); });
 }
 
-/// One step of the model in charge: columns until their stage ends; then points, with the columns that are
-/// left a step ahead of them, so that what flows into the window is there when the points arrive at that
-/// time.
+/// One step of the model in charge: columns until their stage ends; then points; then, perhaps, columns.
 void StagedRun::advance(double until) {
     if (!points_) {
         columns_->advance(std::min(until, scene_.solid->from));
@@ -44,15 +42,27 @@ void StagedRun::advance(double until) {
         begin_space([&](const Marks& marks) { return columns_of(columns_->frame(), scene_.bed, marks); });
         return;
     }
+    const double end = scene_.solid->until.value_or(until);
+    if (ended_)
+        columns_->advance(until);
+    else
+        step_points(std::min(until, end));
+    status_.step += 1;
+    if (!ended_ && scene_.solid->until && points_->status().time >= end) end_space();
+    book(columns_->status());
+}
+
+/// Columns that are left go a step ahead of the points, so that what flows into the window is there when the points arrive
+/// at that time.
+void StagedRun::step_points(double until) {
     if (columns_->status().time <= points_->status().time) step_columns(until);
     const bool alone = columns_->status().particles == 0 && pending_.empty();
     points_->advance(alone ? until : std::min(until, columns_->status().time));
+    note_departed();
     if (points_->status().time == columns_->status().time) hand_over();
-    status_.step += 1;
     if (watch_) watch_->weigh(*points_);
     moved_ += points_->status().max_speed * points_->status().dt;
     look(until);
-    book(columns_->status());
 }
 
 /// Columns in the window become points, those outside stay; none of them is in both.
@@ -67,6 +77,7 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
         space.points = seeds_of_window(columns);
         points_ = std::make_unique<SolidFlow>(space);
         points_->start_at(scene_.solid->from);
+        points_->note_departed();
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
         at_edge_ = nodes_at_edge(scene_);
         columns_->open_exits(inside, true);
@@ -109,7 +120,8 @@ SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns) const {
 }
 
 void StagedRun::step_columns(double until) {
-    if (columns_->status().particles == 0) return points_->stand_beside({});
+    take_back();
+    if (columns_->status().particles == 0) return points_->stand_beside(MaterialBeside{});
     show_points();
     columns_->advance(until);
     pending_ = columns_->take_departed();
@@ -125,12 +137,47 @@ void StagedRun::step_columns(double until) {
 void StagedRun::hand_over() {
     if (pending_.empty()) return;
     timed_("hand over", [&] {
-        const FlowColumns all = columns_at_edge();
+        std::vector<Mat2> gradients;
+        const FlowColumns all = columns_at_edge(gradients);
         FlowColumns columns;
         for (std::size_t k = 0; k < pending_.size(); ++k) columns.take(all, k);
         pending_.clear();
         points_->add(seeds_of_window(columns));
     });
+}
+
+/// Of the points that left, those that left where columns may stand: beyond the window's open sides. Until they are columns
+/// the others go on to feel them.
+void StagedRun::note_departed() {
+    for (const DepartedPoint& point : points_->take_departed()) {
+        if (!columns_->may_stand(point.position.x(), point.position.y())) continue;
+        returning_.push_back(point);
+        points_->stand_beside(point);
+    }
+}
+
+/// They become columns. What these have no place for, motion up and down and against each other, is lost.
+void StagedRun::take_back() {
+    if (returning_.empty()) return;
+    timed_("hand back", [&] {
+        const double time = points_->status().time;
+        for (const DepartedPoint& point : returning_) returned_.mass += point.mass, returned_.lost += point.energy;
+        const MovingColumns columns = columns_of(returning_, scene_,
+                                                 {time, [&](double x, double y) { return columns_->may_stand(x, y); },
+                                                  [&](double x, double y) { return columns_->at({x, y}).depth; }});
+        returned_.lost -= columns_->take_in(columns.seeds, columns.gradient, time);
+        returning_.clear();
+    });
+}
+
+/// All points become columns, and the window is a part of the map like any other.
+void StagedRun::end_space() {
+    points_->leave();
+    columns_->close_exits();
+    note_departed();
+    take_back();
+    ended_ = true;
+    timed_("map", [&] { map_.look(*points_, points_->status().time); });
 }
 
 /// The map follows when material has moved by a quarter of a cell, and at output times; with barriers when it
@@ -158,28 +205,33 @@ void StagedRun::book(const Status& columns) {
         mass += column.mass, energy += column.energy;
         momentum += column.mass * Vec2(column.vx, column.vy);
     }
+    double mass_back = 0.0, energy_back = 0.0;  // the same the other way
+    Vec2 momentum_back(0, 0);
+    for (const DepartedPoint& point : returning_) {
+        mass_back += point.mass, energy_back += point.energy;
+        momentum_back += point.mass * point.velocity.head<2>();
+    }
     Vec3 impulse = s.momentum_given + s.weight_impulse;
     for (const Vec3& of_surface : points_->body().impulse) impulse += of_surface;
     impulse += s.beside_impulse;
     status_ = columns;
     status_.step = step;
-    status_.time = s.time;
-    status_.dt = s.dt;
-    status_.particles += s.points + static_cast<Index>(pending_.size());
-    status_.mass += s.mass + mass;
-    status_.mass_left += s.mass_left - handed_.mass;
+    if (!ended_) status_.time = s.time, status_.dt = s.dt;
+    status_.particles += s.points + static_cast<Index>(pending_.size() + returning_.size());
+    status_.mass += s.mass + mass + mass_back;
+    status_.mass_left += s.mass_left - handed_.mass - mass_back;
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
-        status_.momentum[axis] += s.momentum[k] + momentum[k];
+        status_.momentum[axis] += s.momentum[k] + momentum[k] + momentum_back[k];
         status_.impulse[axis] += impulse[k] + momentum[k] - handed_.momentum[axis];
-        status_.momentum_left[axis] += s.momentum_left[k] - handed_.momentum[axis];
+        status_.momentum_left[axis] += s.momentum_left[k] - handed_.momentum[axis] - momentum_back[k];
     }
     status_.kinetic += s.kinetic;
-    status_.potential += s.potential + energy;
+    status_.potential += s.potential + energy + energy_back;
     status_.stored = s.stored;
-    status_.in_space = {s.friction, -s.pushed, s.material, s.numerical(), s.volume};
-    status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left;
-    status_.energy_left += s.energy_left - handed_.energy;
+    status_.in_space = {s.friction, -s.pushed, s.material, s.numerical() + returned_.lost, s.volume};
+    status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left + returned_.lost;
+    status_.energy_left += s.energy_left - handed_.energy - energy_back - returned_.lost;
     status_.max_depth = std::max(columns.max_depth, map_.max_depth());
     status_.max_speed = std::max(columns.max_speed, s.max_speed);
     status_.mean_speed =
@@ -191,7 +243,7 @@ void StagedRun::book(const Status& columns) {
 }
 
 bool StagedRun::at_rest() const {
-    if (!points_) return false;  // what rests as columns may flow as points
+    if (!points_ || (scene_.solid->until && !ended_)) return false;  // what rests as columns may flow as points
     return status_.max_speed == 0.0 || status_.mean_speed < scene_.rest_fraction * peak_mean_speed_;
 }
 
@@ -212,9 +264,9 @@ std::vector<std::string> StagedRun::remarks() const {
     const double density = scene_.density, rest = s.mass / density;
     remarks.push_back(fmt::format(
         "points in space from {:.6g} s on: {} now, {:.6g} m3 of them came in over the window's edges later, "
-        "{:.6g} m3 left "
-        "through its sides; top of the space {:.6g} m",
-        scene_.solid->from, s.points, handed_.mass_later / density, s.mass_left / density, start_.top));
+        "{:.6g} m3 became columns again, {:.6g} m3 left through its sides; top of the space {:.6g} m",
+        scene_.solid->from, s.points, handed_.mass_later / density, returned_.mass / density,
+        std::max(0.0, s.mass_left - returned_.mass) / density, start_.top));
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
     if (fluid)
         remarks.push_back(fmt::format(
@@ -239,13 +291,15 @@ std::vector<PhaseTime> StagedRun::timings() const {
 }
 
 void StagedRun::keep(Archive& archive) {
-    Index in_space = points_ ? 1 : 0;
+    Index in_space = ended_ ? 2 : points_ ? 1 : 0;
     archive.number("in_space", in_space);
     archive.numbers("start", {&start_.sound_speed, &start_.top, &start_.blur});
     if (archive.loading() && in_space) {
+        ended_ = in_space == 2;
         points_ = std::make_unique<SolidFlow>(solid_scene(scene_, start_));
+        points_->note_departed();
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
-        columns_->open_exits(nodes_in_window(scene_), false);
+        if (!ended_) columns_->open_exits(nodes_in_window(scene_), false);
         at_edge_ = nodes_at_edge(scene_);
     }
     {
@@ -254,25 +308,10 @@ void StagedRun::keep(Archive& archive) {
     }
     frana::keep(archive, "status", status_);
     archive.numbers("sums",
-                    {&handed_.mass, &handed_.energy, &handed_.mass_later,
-                     &handed_.momentum[0], &handed_.momentum[1], &moved_, &peak_mean_speed_, &largest_mach_});
+                    {&handed_.mass, &handed_.energy, &handed_.mass_later, &handed_.momentum[0], &handed_.momentum[1],
+                     &returned_.mass, &returned_.lost, &moved_, &peak_mean_speed_, &largest_mach_});
     timed_.keep(archive);
-    std::vector<std::int64_t> ids;
-    std::vector<double> numbers;
-    for (const Departed& c : pending_) {
-        ids.push_back(c.id);
-        numbers.insert(numbers.end(), {c.x, c.y, c.vx, c.vy, c.depth, c.mass, c.energy});
-    }
-    archive.array("pending_id", ids);
-    archive.array("pending", numbers);
-    if (numbers.size() != 7 * ids.size()) Archive::wrong_length("pending", numbers.size(), 7 * ids.size());
-    if (archive.loading()) {
-        pending_.clear();
-        for (std::size_t n = 0; n < ids.size(); ++n) {
-            const double* const c = &numbers[7 * n];
-            pending_.push_back({ids[n], c[0], c[1], c[2], c[3], c[4], c[5], c[6]});
-        }
-    }
+    keep_on_their_way(archive);
     if (!points_) return;
     map_.keep(archive);
     if (watch_) watch_->keep(archive);
@@ -280,8 +319,46 @@ void StagedRun::keep(Archive& archive) {
         const Archive::Part part(archive, "points");
         points_->keep(archive);
     }
-    if (archive.loading() && columns_->status().time > points_->status().time) show_columns();
+    if (archive.loading() && !ended_) {
+        if (columns_->status().time > points_->status().time) show_columns();
+        for (const DepartedPoint& point : returning_) points_->stand_beside(point);
+    }
     if (watch_ && archive.loading()) watch_->weigh(*points_);
+}
+
+void StagedRun::keep_on_their_way(Archive& archive) {
+    std::vector<std::int64_t> ids;
+    std::vector<double> numbers;
+    for (const Departed& c : pending_) {
+        ids.push_back(c.id);
+        numbers.insert(numbers.end(), {c.x, c.y, c.vx, c.vy, c.depth, c.mass, c.energy});
+        numbers.insert(numbers.end(), c.gradient.begin(), c.gradient.end());
+    }
+    archive.array("pending_id", ids);
+    archive.array("pending", numbers);
+    constexpr std::size_t kOfColumn = 11, kOfPoint = 19;
+    if (numbers.size() != kOfColumn * ids.size())
+        Archive::wrong_length("pending", numbers.size(), kOfColumn * ids.size());
+    if (archive.loading()) {
+        pending_.clear();
+        for (std::size_t n = 0; n < ids.size(); ++n) {
+            const double* const c = &numbers[kOfColumn * n];
+            pending_.push_back({ids[n], c[0], c[1], c[2], c[3], c[4], c[5], c[6], {c[7], c[8], c[9], c[10]}});
+        }
+    }
+    std::vector<double> back;
+    for (const DepartedPoint& p : returning_) {
+        back.insert(back.end(), p.position.data(), p.position.data() + 3);
+        back.insert(back.end(), p.velocity.data(), p.velocity.data() + 3);
+        back.insert(back.end(), p.gradient.data(), p.gradient.data() + 9);
+        back.insert(back.end(), {p.time, p.mass, p.energy, p.pressure});
+    }
+    archive.array("returning", back);
+    if (back.size() % kOfPoint != 0) Archive::wrong_length("returning", back.size(), back.size() / kOfPoint * kOfPoint);
+    if (!archive.loading()) return;
+    returning_.clear();
+    for (const double* p = back.data(); p < back.data() + back.size(); p += kOfPoint)
+        returning_.push_back({p[15], Vec3(p), Vec3(p + 3), Mat3(p + 6), p[16], p[17], p[18]});
 }
 
 }  // namespace frana

@@ -1,6 +1,7 @@
 #pragma once
-// A run in two stages: columns, and from a time on points in space in a window of the map (Fois, de Falco,
-// Formaggia 2025, with the tail that still flows into the window handed over column by column).
+// A run in stages: columns, from a time on points in space in a window of the map (Fois, de Falco, Formaggia 2025, with
+// the tail that still flows into the window handed over column by column, and what flows out made columns), and where the
+// case asks for it columns alone again.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -42,17 +43,28 @@ private:
         std::array<double, 2> momentum{};
     };
 
+    /// What points gave back: what columns took of it, and the energy that they have no place for.
+    struct Returned {
+        double mass = 0.0, lost = 0.0;
+    };
+
     using Marks = std::vector<std::uint8_t>;  ///< of nodes, 1 or 0
     void begin_space(const std::function<FlowColumns(const Marks&)>& columns_at);
     void step_columns(double until);
+    void step_points(double until);
     void hand_over();
+    void note_departed();
+    void take_back();
+    void end_space();
     void show_points();
     void show_columns();
-    FlowColumns columns_at_edge() const;
+    FlowColumns columns_at_edge(std::vector<Mat2>& gradients) const;
+    MaterialBeside beside_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const;
     SolidSeeds seeds_of_window(const FlowColumns& columns) const;
     void require_room(const FlowColumns& columns) const;
     void look(double until);
     void book(const Status& columns);
+    void keep_on_their_way(Archive& archive);
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
     double* add_field(std::vector<Field>& fields, const Field& like, int components, Index count);
@@ -66,7 +78,10 @@ private:
     std::vector<Departed> pending_;      ///< columns that left into the window, ahead of the points' time
     std::vector<std::uint8_t> at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
     std::vector<double> points_depth_;   ///< scratch of show_points, on the terrain's nodes [m]
+    std::vector<DepartedPoint> returning_;  ///< points that left where columns may stand, since the columns' last step
     Handed handed_;
+    Returned returned_;
+    bool ended_ = false;  ///< the stage in space is over: its points, none, only have its sums
     Status status_;
     StepClock timed_;
     double moved_ = 0.0;  ///< farthest way of a point since the last look at the map [m]

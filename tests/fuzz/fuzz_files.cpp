@@ -77,7 +77,7 @@ void checkpoint(const Input& bytes) {
     Input mended = bytes;
     Checksum sum;
     sum.add(bytes.data() + kHead, bytes.size() - kHead);
-    std::string head = fmt::format("frana checkpoint 3\nbytes {}\nsum {:016x}\n", bytes.size(), sum.sum());
+    std::string head = fmt::format("{}\nbytes {}\nsum {:016x}\n", kCheckpointFormat, bytes.size(), sum.sum());
     head.resize(kHead, '\0');
     mended.replace(0, kHead, head);
     load(mended);
