@@ -236,15 +236,15 @@ double most_pressure(const std::vector<LoadedPatch>& patches) {
     return most(std::move(pressures));
 }
 
-/// The output with the largest load on a barrier, with its loads; the last one where there is never any, or none that
-/// can be told (barriers of any shape).
+/// The output with the largest load on a barrier, with its loads; the last one where there is never any.
 SpaceMoment hardest_moment(const fs::path& run_dir, const Raster& bed) {
     const std::vector<double> times = barrier_times(run_dir), frames = particle_times(run_dir);
+    const BarrierMeshes meshes = read_barrier_meshes(run_dir);
     SpaceMoment hardest;
     double most_load = -1.0;
     for (std::size_t k = 0; k < times.size(); ++k) {
         SpaceMoment moment;
-        moment.barriers = barrier_solids(read_barriers(run_dir, static_cast<Index>(k)), {}, bed);
+        moment.barriers = barrier_solids(read_barriers(run_dir, static_cast<Index>(k)), {}, bed, meshes);
         const double load = moment.most_loaded() ? moment.most_loaded()->load.head<2>().norm() : 0.0;
         const auto frame = std::find(frames.begin(), frames.end(), times[k]);
         if (frame == frames.end() || load < most_load) continue;

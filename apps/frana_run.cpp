@@ -15,6 +15,7 @@
 #include "scene/build_scene.h"
 #include "solver/simulation.h"
 #include "vtk_io/barrier_mesh.h"
+#include "vtk_io/writers.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -44,6 +45,19 @@ void keep_case(const CaseFile& file, const fs::path& run_dir) {
     if (!fs::equivalent(file.file(), run_dir / "case.toml", not_there))
         write_text(run_dir / "case.toml", file.text());
     write_text(run_dir / "resolved.toml", resolved_toml(file));
+}
+
+/// For pictures, which are drawn again when the files that the case names may have gone.
+void keep_meshes(const CaseFile& file, const fs::path& run_dir) {
+    BarrierMeshes meshes(static_cast<std::size_t>(file.count("barrier")));
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const std::string prefix = fmt::format("barrier.{}.", i);
+        if (!file.given(prefix + "mesh")) continue;
+        Vec3 origin(0, 0, 0);
+        if (file.given(prefix + "origin")) origin = Vec3(file.numbers(prefix + "origin").data());
+        meshes[i] = std::make_shared<TriangleMesh>(barrier_triangles(file.path(prefix + "mesh"), origin));
+    }
+    write_barrier_meshes(run_dir, meshes);
 }
 
 void say_what_runs(const RunRecord& record, const fs::path& run_dir) {
@@ -80,6 +94,7 @@ int run_command(const RunOptions& options) {
         prepare_run_folder(run_dir);
     }
     keep_case(file, run_dir);
+    if (scene.output.vtk) keep_meshes(file, run_dir);
     CheckpointKeeper keeper(run_dir, labels, std::chrono::duration<double>(60.0 * scene.output.checkpoint_minutes),
                             std::move(kept));
 

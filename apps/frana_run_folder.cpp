@@ -27,6 +27,7 @@ const std::vector<ProductKind>& product_kinds() {
         {"profiles", "profiles_\\d+\\.vtp", "frames of the profiles", true},
         {"", "barriers\\.pvd", "pressure on barriers over time, for ParaView", false},
         {"barriers", "barriers_\\d+\\.vtp", "frames of the barriers", true},
+        {"", "barrier_meshes\\.vtp", "barriers that were given as meshes, for ParaView", false},
         {"", "survey_(areas|outlines)\\.vtp", "the survey on the terrain, for ParaView", false},
         {"", "terrain\\.vti", "bed elevation, slope and hillshade", false},
         {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
@@ -95,7 +96,7 @@ UserError trouble(const fs::path& run_dir, const std::string& what) {
 bool grows(const ProductKind& kind) {
     for (const char* folder : {"particles", "grid", "profiles", "gauges", "barriers", "insitu", "insitu/*"})
         if (kind.folder == folder) return true;
-    static const std::regex growing("(history|particles|grid|profiles|barriers|run|terrain|checkpoint|resolved).*");
+    static const std::regex growing("(history|particles|grid|profiles|barrier|run|terrain|checkpoint|resolved).*");
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);
 }
 

@@ -18,7 +18,8 @@ namespace {
 class SpaceRun {
 public:
     explicit SpaceRun(const FigureSource& source)
-        : source_(source), times_(particle_times(source.run_dir)), loads_(barrier_times(source.run_dir)) {
+        : source_(source), times_(particle_times(source.run_dir)), loads_(barrier_times(source.run_dir)),
+          meshes_(read_barrier_meshes(source.run_dir)) {
         if (!times_.empty()) named_ = read_particles(source.run_dir, -1).columns.count("model") > 0;
     }
 
@@ -80,11 +81,12 @@ private:
         std::vector<LoadedPatch> patches = read_barriers(source_.run_dir, known ? found - loads_.begin() : 0);
         if (!known)
             for (LoadedPatch& patch : patches) patch.pressure = 0.0;
-        return barrier_solids(patches, source_.barrier_tops, source_.bed);
+        return barrier_solids(patches, source_.barrier_tops, source_.bed, meshes_);
     }
 
     const FigureSource& source_;
     std::vector<double> times_, loads_;
+    BarrierMeshes meshes_;
     bool named_ = false;  ///< the last frame says which are points; then frames that do not have columns only
 };
 

@@ -247,4 +247,15 @@ MeshField barrier_mesh_of(const std::filesystem::path& file, const MeshSampling&
     return {std::move(field), low, high};
 }
 
+TriangleMesh barrier_triangles(const std::filesystem::path& file, const Vec3& origin) {
+    const vtkSmartPointer<vtkPolyData> read = read_triangles(file);
+    const std::vector<Triangle> triangles = triangles_of(read);
+    const bool inwards = volume6(read, triangles) < 0.0;
+    TriangleMesh mesh;
+    for (vtkIdType n = 0; n < read->GetNumberOfPoints(); ++n) mesh.points.emplace_back(point_of(read, n) + origin);
+    for (const Triangle& t : triangles)
+        mesh.triangles.push_back({t[0], inwards ? t[2] : t[1], inwards ? t[1] : t[2]});
+    return mesh;
+}
+
 }  // namespace frana

@@ -3,6 +3,7 @@
 
 #include "scene/toolbox.h"
 #include "solid/distance_field.h"
+#include "terrain/triangle_mesh.h"
 
 namespace frana {
 
@@ -13,5 +14,9 @@ DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSam
 
 /// The same for build_scene().
 MeshField barrier_mesh_of(const std::filesystem::path& file, const MeshSampling& sampling);
+
+/// The triangles of such a file in map coordinates, turned outwards, for pictures; `origin` [m] as in MeshSampling.
+/// Throws UserError when it cannot be read.
+TriangleMesh barrier_triangles(const std::filesystem::path& file, const Vec3& origin);
 
 }  // namespace frana

@@ -199,6 +199,34 @@ std::vector<LoadedPatch> read_barriers(const std::filesystem::path& run_dir, Ind
     return patches;
 }
 
+BarrierMeshes read_barrier_meshes(const std::filesystem::path& run_dir) {
+    const std::filesystem::path file = run_dir / "barrier_meshes.vtp";
+    if (!std::filesystem::exists(file)) return {};
+    vtkNew<vtkXMLPolyDataReader> reader;
+    read_file(reader, file);
+    vtkPolyData* const data = reader->GetOutput();
+    vtkDataArray* const barrier = data->GetCellData()->GetArray("barrier");
+    std::map<int, TriangleMesh> meshes;
+    std::map<int, std::map<vtkIdType, Index>> numbers;  // of a point in its barrier's mesh
+    for (vtkIdType k = 0; k < data->GetNumberOfCells(); ++k) {
+        vtkIdList* const corners = data->GetCell(k)->GetPointIds();
+        if (!barrier || barrier->GetTuple1(k) < 0.0 || corners->GetNumberOfIds() != 3)
+            throw UserError(file.string() + ": has no triangles of barriers; run the case again");
+        const int n = static_cast<int>(barrier->GetTuple1(k));
+        TriangleMesh& mesh = meshes[n];
+        auto& triangle = mesh.triangles.emplace_back();
+        for (vtkIdType c = 0; c < 3; ++c) {
+            const vtkIdType point = corners->GetId(c);
+            const auto [number, is_new] = numbers[n].try_emplace(point, static_cast<Index>(mesh.points.size()));
+            if (is_new) mesh.points.emplace_back(data->GetPoint(point));
+            triangle[static_cast<std::size_t>(c)] = number->second;
+        }
+    }
+    BarrierMeshes all(meshes.empty() ? 0 : static_cast<std::size_t>(meshes.rbegin()->first) + 1);
+    for (auto& [n, mesh] : meshes) all[static_cast<std::size_t>(n)] = std::make_shared<TriangleMesh>(std::move(mesh));
+    return all;
+}
+
 std::optional<std::array<double, 4>> bounds_of(const std::filesystem::path& vtp) {
     vtkNew<vtkXMLPolyDataReader> reader;
     read_file(reader, vtp);

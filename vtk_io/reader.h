@@ -10,6 +10,7 @@
 
 #include "base/types.h"
 #include "terrain/raster.h"
+#include "terrain/triangle_mesh.h"
 
 namespace frana {
 
@@ -73,6 +74,10 @@ std::vector<double> barrier_times(const std::filesystem::path& run_dir);
 
 /// The faces in frame `number` of RUN_DIR/barriers.pvd. UserError when there is no such frame or no file of it.
 std::vector<LoadedPatch> read_barriers(const std::filesystem::path& run_dir, Index number);
+
+/// The meshes in RUN_DIR/barrier_meshes.vtp (writers.h) by the number of their barrier; none when the run has no such
+/// file. UserError when it cannot be read.
+BarrierMeshes read_barrier_meshes(const std::filesystem::path& run_dir);
 
 /// [xmin, ymin, xmax, ymax] of the points of a .vtp file; nothing when it has none.
 std::optional<std::array<double, 4>> bounds_of(const std::filesystem::path& vtp);

@@ -3,40 +3,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
+
+#include "vtk_io/space_faces.h"
+#include "vtk_io/space_mesh.h"
 
 namespace frana {
 namespace {
 
-/// The patches of one face, first row first.
-struct Face {
-    std::vector<LoadedPatch> patches;
-    Vec3 corner() const { return patches.front().corners[0]; }
-    double size() const { return (patches.front().corners[1] - corner()).norm(); }
-    Vec3 right() const { return (patches.front().corners[1] - corner()) / size(); }
-    Vec3 up() const { return (patches.front().corners[3] - corner()) / size(); }
-    bool is_side() const { return up().z() > 0.999; }
-    /// To the end of the last patch, which may be beyond the face's [m].
-    double longest() const {
-        double most = 0.0;
-        for (const LoadedPatch& patch : patches)
-            most = std::max(most, right().dot(patch.corners[1] - corner()));
-        return most;
-    }
-};
-
-std::vector<Face> faces_of(const std::vector<LoadedPatch>& patches, int barrier) {
-    std::vector<Face> faces;
-    for (const LoadedPatch& patch : patches) {
-        if (patch.barrier != barrier) continue;
-        if (faces.empty() || faces.back().patches.front().face != patch.face) faces.emplace_back();
-        faces.back().patches.push_back(patch);
-    }
-    return faces;
-}
-
 /// Length of a side that ends at `next`, or nothing when it does not: within its last patch, on its line.
-std::optional<double> length_to(const Face& side, const Vec3& next) {
+std::optional<double> length_to(const LoadedFace& side, const Vec3& next) {
     const Vec3 way = next - side.corner();
     const double along = side.right().dot(way), all = side.longest(), slack = 1e-3 * side.size();
     const double beside = (way - along * side.right()).head<2>().norm();
@@ -45,7 +20,7 @@ std::optional<double> length_to(const Face& side, const Vec3& next) {
 }
 
 /// Lengths of the sides and, from their corners, the rings of the outline.
-std::vector<double> lengths_of(const std::vector<Face>& sides, std::vector<Polyline>& rings) {
+std::vector<double> lengths_of(const std::vector<LoadedFace>& sides, std::vector<Polyline>& rings) {
     std::vector<double> lengths;
     std::size_t first = 0;
     for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -59,54 +34,11 @@ std::vector<double> lengths_of(const std::vector<Face>& sides, std::vector<Polyl
     return lengths;
 }
 
-/// Means over a patch and its neighbours on the face; `counts` says which of them can be pushed.
-template <class Counts>
-std::vector<double> smoothed(const Face& face, const Counts& counts) {
-    const Vec3 corner = face.corner(), right = face.right(), up = face.up();
-    const double size = face.size();
-    const auto place = [&](const LoadedPatch& patch) {
-        const Vec3 way = patch.corners[0] - corner;
-        return std::pair(std::lround(right.dot(way) / size), std::lround(up.dot(way) / size));
-    };
-    std::map<std::pair<long, long>, const LoadedPatch*> at;
-    for (const LoadedPatch& patch : face.patches)
-        if (counts(patch)) at[place(patch)] = &patch;
-    std::vector<double> means;
-    for (const LoadedPatch& patch : face.patches) {
-        const auto [i, j] = place(patch);
-        double sum = 0.0, number = 0.0;
-        for (long b = j - 1; b <= j + 1; ++b)
-            for (long a = i - 1; a <= i + 1; ++a)
-                if (const auto found = at.find({a, b}); found != at.end())
-                    sum += found->second->pressure, number += 1.0;
-        means.push_back(number > 0.0 ? sum / number : 0.0);
-    }
-    return means;
-}
-
-/// The part of a ring within a square of the map (Sutherland and Hodgman 1974).
-Polyline cut_to_square(Polyline ring, const Vec2& low, const Vec2& high) {
-    for (int side = 0; side < 4 && !ring.empty(); ++side) {
-        const int axis = side % 2;
-        const double limit = side < 2 ? low[axis] : high[axis], sign = side < 2 ? 1.0 : -1.0;
-        Polyline kept;
-        for (std::size_t k = 0; k < ring.size(); ++k) {
-            const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-            const double from = sign * (a[axis] - limit), to = sign * (b[axis] - limit);
-            if (from >= 0.0) kept.push_back(a);
-            if ((from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0))
-                kept.emplace_back(a + (b - a) * (from / (from - to)));
-        }
-        ring = std::move(kept);
-    }
-    return ring;
-}
-
 class Builder {
 public:
-    Builder(std::vector<Face> faces, const BarrierTop& top, const Raster& bed) : top_(top), bed_(bed) {
-        for (Face& face : faces) (face.is_side() ? sides_ : tops_).push_back(std::move(face));
-        for (const Face& side : sides_)
+    Builder(std::vector<LoadedFace> faces, const BarrierTop& top, const Raster& bed) : top_(top), bed_(bed) {
+        for (LoadedFace& face : faces) (face.is_side() ? sides_ : tops_).push_back(std::move(face));
+        for (const LoadedFace& side : sides_)
             for (const LoadedPatch& patch : side.patches) highest_ = std::max(highest_, patch.corners[2].z());
         if (!tops_.empty()) highest_ = tops_.front().corner().z();
     }
@@ -114,7 +46,7 @@ public:
     BarrierSolid solid() {
         const std::vector<double> lengths = lengths_of(sides_, solid_.rings);
         for (std::size_t k = 0; k < sides_.size(); ++k) add_side(sides_[k], lengths[k]);
-        for (const Face& top : tops_) add_top(top);
+        for (const LoadedFace& top : tops_) add_top(top);
         for (const Polyline& ring : solid_.rings) add_edges(ring);
         weigh();
         return std::move(solid_);
@@ -123,7 +55,7 @@ public:
 private:
     double end(const Vec2& p) const { return std::min(highest_, top_at(top_, bed_, p, highest_)); }
 
-    void add_side(const Face& side, double length) {
+    void add_side(const LoadedFace& side, double length) {
         const Vec3 normal = side.right().cross(side.up()), corner = side.corner(), right = side.right();
         const std::vector<double> pressure = smoothed(side, [&](const LoadedPatch& patch) {
             return patch.corners[3].z() >
@@ -150,7 +82,7 @@ private:
     }
 
     /// With one ring what is within; with several, whole patches by their middles.
-    void add_top(const Face& top) {
+    void add_top(const LoadedFace& top) {
         if (solid_.rings.size() == 1 && top_.level) add_bare_top(0.001 * top.size());
         const std::vector<double> pressure = smoothed(top, [](const LoadedPatch&) { return true; });
         for (std::size_t k = 0; k < top.patches.size(); ++k) {
@@ -195,7 +127,7 @@ private:
     void weigh() {
         double weight = 0.0;
         Vec3 place(0, 0, 0), middle(0, 0, 0);
-        for (const Face& side : sides_) {
+        for (const LoadedFace& side : sides_) {
             const double area = side.size() * side.size();
             for (const LoadedPatch& patch : side.patches) {
                 const double push = patch.pressure * area;
@@ -211,7 +143,7 @@ private:
 
     BarrierTop top_;
     const Raster& bed_;
-    std::vector<Face> sides_, tops_;
+    std::vector<LoadedFace> sides_, tops_;
     double highest_ = -1e300;
     BarrierSolid solid_;
 };
@@ -245,21 +177,26 @@ double top_at(const BarrierTop& top, const Raster& bed, const Vec2& p, double ot
     return std::isnan(z) ? otherwise : z;
 }
 
-std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches,
-                                         const std::vector<BarrierTop>& tops, const Raster& bed) {
+std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches, const std::vector<BarrierTop>& tops,
+                                         const Raster& bed, const BarrierMeshes& meshes) {
     int count = 0;
     for (const LoadedPatch& patch : patches) count = std::max(count, patch.barrier + 1);
     std::vector<BarrierSolid> solids;
     for (int n = 0; n < count; ++n) {
-        std::vector<Face> faces = faces_of(patches, n);
+        std::vector<LoadedFace> faces = faces_of(patches, n);
         if (faces.empty()) continue;
+        if (static_cast<std::size_t>(n) < meshes.size() && meshes[static_cast<std::size_t>(n)]) {
+            solids.push_back(mesh_solid(faces, meshes[static_cast<std::size_t>(n)], bed));
+            if (solids.back().pieces.empty()) solids.pop_back();  // all of it is buried
+            continue;
+        }
         BarrierTop top;
         top.level = 1e300;  // as high as its sides
         if (static_cast<std::size_t>(n) < tops.size()) top = tops[static_cast<std::size_t>(n)];
         const bool has_one_top =
-            std::count_if(faces.begin(), faces.end(), [](const Face& f) { return !f.is_side(); }) == 1;
+            std::count_if(faces.begin(), faces.end(), [](const LoadedFace& f) { return !f.is_side(); }) == 1;
         if (faces.size() < 4 || !has_one_top || faces.back().is_side())
-            continue;  // of any shape, seen as a box
+            continue;  // of any shape, and its mesh is not known
         solids.push_back(Builder(std::move(faces), top, bed).solid());
     }
     return solids;

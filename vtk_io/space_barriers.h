@@ -1,9 +1,11 @@
 #pragma once
 // Barriers as solids to be drawn, put together again from the patches of their faces.
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "terrain/raster.h"
+#include "terrain/triangle_mesh.h"
 #include "vtk_io/reader.h"
 
 namespace frana {
@@ -25,8 +27,9 @@ struct BarrierSolid {
     std::vector<Piece> pieces;
     std::vector<Polyline> rings;           ///< of the outline, open: the last corner is not the first [m]
     std::vector<std::vector<Vec3>> edges;  ///< along the top and down the corners
-    Vec3 load{0, 0, 0};                    ///< of the pressure on the sides [N]
+    Vec3 load{0, 0, 0};                    ///< of the pressure on the sides, of a mesh on all of it [N]
     Vec3 middle_of_load{0, 0, 0};          ///< where it acts, or without any the middle of the outline [m]
+    std::shared_ptr<const TriangleMesh> mesh;  ///< of a barrier that was given as one: it has no rings
 
     /// Whether a place lies within the outline.
     bool within(const Vec2& p) const;
@@ -34,10 +37,11 @@ struct BarrierSolid {
 
 /// The solids of all barriers in `patches`, which has the faces of each in their order, the sides round the
 /// outline before the top (observe/frame.h); a barrier of any shape, whose faces are those of a box, has no
-/// solid. A barrier without an entry in `tops` is as high as its sides. A node pushes over three cells, but is booked with one patch: each piece has the mean of up to
-/// 3 x 3 patches, without those of a side that are below the ground.
-std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches,
-                                         const std::vector<BarrierTop>& tops, const Raster& bed);
+/// solid without its mesh. A barrier without an entry in `tops` is as high as its sides. A node pushes over three
+/// cells, but is booked with one patch: each piece has the mean of up to 3 x 3 patches, without those of a side
+/// that are below the ground.
+std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches, const std::vector<BarrierTop>& tops,
+                                         const Raster& bed, const BarrierMeshes& meshes = {});
 
 /// Elevation between the nodes [m]; beside the raster that of its nearest place. NaN near nodata.
 double elevation_at(const Raster& bed, const Vec2& p);

@@ -79,9 +79,8 @@ namespace {
 
 /// Sides a little darker than tops, and each direction differently.
 double light_on(const Vec3& normal, double azimuth) {
-    if (normal.z() > 0.5) return 1.0;
     const Vec2 lamp(std::sin(azimuth + 2.2), std::cos(azimuth + 2.2));  // behind the eye, to its right
-    return 0.86 + 0.1 * lamp.dot(normal.head<2>());
+    return 0.86 + 0.14 * normal.z() + 0.1 * lamp.dot(normal.head<2>());
 }
 
 /// The sides that the load pushes, seen along it.

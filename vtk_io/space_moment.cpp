@@ -22,6 +22,9 @@ std::array<double, 4> around(const BarrierSolid& barrier) {
     std::array<double, 4> box{1e300, 1e300, -1e300, -1e300};
     for (const Polyline& ring : barrier.rings)
         for (const Vec2& p : ring) box = united(box, {p.x(), p.y(), p.x(), p.y()});
+    if (!barrier.mesh) return box;
+    for (const auto& piece : barrier.pieces)
+        for (const Vec3& p : piece.corners) box = united(box, {p.x(), p.y(), p.x(), p.y()});
     return box;
 }
 
@@ -98,7 +101,7 @@ void SharedSpace::add(const SpaceMoment& moment) {
         fastest_ = std::max(fastest_, percentile(speeds, 0.995));
     }
     for (const BarrierSolid& barrier : moment.barriers) {
-        if (barrier.rings.empty()) continue;
+        if (barrier.rings.empty() && !barrier.mesh) continue;
         hold(around(barrier));
         for (const auto& piece : barrier.pieces) pressure_ = std::max(pressure_, piece.pressure);
     }

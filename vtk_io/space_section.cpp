@@ -9,6 +9,7 @@
 #include "vtk_io/offscreen.h"
 #include "vtk_io/space_colours.h"
 #include "vtk_io/space_figure.h"
+#include "vtk_io/space_mesh.h"
 
 namespace frana {
 namespace {
@@ -44,6 +45,8 @@ public:
           captions_(make_captions(figure.title, figure.footer, unit_, figure.width)) {
         if (plane_.length <= 0.0) return;
         choose_material();
+        for (const BarrierSolid& barrier : figure_.moment.barriers)
+            if (barrier.mesh) mesh_cuts_.push_back(cut_of(barrier, plane_.from, plane_.along));
         lay_out();
     }
     bool nothing_to_show() const { return plane_.length <= 0.0 || near_.empty(); }
@@ -53,6 +56,7 @@ public:
         canvas.fill(frame_, colours::white);
         grid(canvas);
         barriers(canvas);
+        meshes(canvas);
         ground(canvas);
         material(canvas);
         mask_and_axes(canvas);
@@ -87,6 +91,7 @@ private:
         for (const Piece* piece : near_) hold(piece->place.z() + 0.6 * piece->size);
         for (const BarrierSolid& barrier : figure_.moment.barriers)
             for (const Stretch& part : cut(barrier)) hold(part.top);
+        for (const MeshCut& mesh : mesh_cuts_) hold(top_of(mesh));  // its foot may be deep in the ground
         const double rim = 0.03 * plane_.length;
         low_ -= rim, high_ += rim;
         const double left = 6.0 * unit_, right = 9.0 * unit_, foot = captions_.footer_height() + 4.6 * unit_,
@@ -140,6 +145,15 @@ private:
         return nearest < 1e300 ? top : highest;  // a top too narrow to have pieces
     }
 
+    /// In view; minus infinity where nothing of it is [m].
+    double top_of(const MeshCut& mesh) const {
+        double top = -INFINITY;
+        for (const auto& outline : mesh.outlines)
+            for (const Vec2& p : outline)
+                if (p.x() >= 0.0 && p.x() <= plane_.length) top = std::max(top, p.y());
+        return top;
+    }
+
     void grid(Canvas& canvas) const {
         for (const double s : ticks(true).at)
             canvas.stroke({pixel(s, low_), pixel(s, high_)}, {colours::grid, 1.0, {}});
@@ -179,6 +193,23 @@ private:
                 if (part.last) edge.push_back({b.x(), a.y()});
                 canvas.stroke(edge, {colours::black, 0.1 * unit_, {}});
             }
+        }
+    }
+
+    /// The same of barriers that are meshes.
+    void meshes(Canvas& canvas) const {
+        const auto pixels = [&](std::vector<Vec2> places) {
+            for (Vec2& p : places) p = pixel(p.x(), p.y());
+            return places;
+        };
+        for (const MeshCut& mesh : mesh_cuts_) {
+            for (const auto& area : mesh.areas) canvas.fill(pixels(area), colours::unloaded);
+            for (const MeshCut::Strip& strip : mesh.strips) {
+                const Vec2 wide = 0.5 * unit_ / scale_ * strip.inward;
+                canvas.fill(pixels({strip.from, strip.to, strip.to + wide, strip.from + wide}),
+                            colours_.of_pressure(strip.pressure));
+            }
+            for (const auto& outline : mesh.outlines) canvas.stroke(pixels(outline), {colours::black, 0.1 * unit_, {}});
         }
     }
 
@@ -264,6 +295,7 @@ private:
     double unit_;
     Captions captions_;
     std::vector<const Piece*> near_;
+    std::vector<MeshCut> mesh_cuts_;  ///< of the barriers that are meshes
     double low_ = 0.0, high_ = 1.0, scale_ = 1.0;  ///< elevations in view [m]; [px/m]
     Rectangle frame_;
     int height_ = 1;

@@ -14,6 +14,7 @@
 #include "observe/observer.h"
 #include "observe/profiles.h"
 #include "terrain/raster.h"
+#include "terrain/triangle_mesh.h"
 
 namespace frana {
 
@@ -36,6 +37,10 @@ std::unique_ptr<Observer> make_profile_writer(const std::filesystem::path& run_d
 /// of about a cell of the model in space. Cell data `pressure` (mean since the frame before, across the face),
 /// `peak_pressure` (largest of these) [Pa], `impulse_per_area` [Pa s], `barrier`, `face`. Errors as above.
 std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir);
+
+/// barrier_meshes.vtp: the triangles of barriers that were given as meshes, in map coordinates; cell data `barrier` as
+/// above. No file without any. UserError as above.
+void write_barrier_meshes(const std::filesystem::path& run_dir, const BarrierMeshes& meshes);
 
 /// terrain.vti: "elevation" [m], "slope" [degree], "hillshade" [1, 0 dark to 1 bright] at the nodes of the
 /// bed.

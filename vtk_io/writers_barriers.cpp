@@ -109,6 +109,31 @@ private:
 
 }  // namespace
 
+void write_barrier_meshes(const std::filesystem::path& run_dir, const BarrierMeshes& meshes) {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    vtkNew<vtkCellArray> cells;
+    vtkNew<vtkIntArray> barrier;
+    barrier->SetName("barrier");
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+        if (!meshes[n]) continue;
+        const vtkIdType first = points->GetNumberOfPoints();
+        for (const Vec3& x : meshes[n]->points) points->InsertNextPoint(x.data());
+        for (const auto& triangle : meshes[n]->triangles) {
+            cells->InsertNextCell({first + triangle[0], first + triangle[1], first + triangle[2]});
+            barrier->InsertNextValue(static_cast<int>(n));
+        }
+    }
+    if (cells->GetNumberOfCells() == 0) return;
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetPolys(cells);
+    data->GetCellData()->AddArray(barrier);
+    add_unit(data->GetFieldData(), "barrier", "1");
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    write_xml(writer, data, run_dir / "barrier_meshes.vtp");
+}
+
 std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir) {
     return std::make_unique<BarrierWriter>(run_dir);
 }
