@@ -33,15 +33,23 @@ public:
         return best;
     }
 
-    /// The output with the largest horizontal load on one barrier; nothing without any.
+    /// The last output with points, or the last.
+    Index last() const {
+        for (Index number = count() - 1; named_ && number > 0; --number)
+            if (moment(number).typical_size > 0.0) return number;
+        return count() - 1;
+    }
+
+    /// The output with points and with the largest horizontal load on one barrier; nothing without any.
     std::optional<Index> hardest() const {
         double most = 0.0;
         std::optional<Index> number;
         for (const double time : loads_) {
-            SpaceMoment moment;
-            moment.barriers = barriers(time);
-            const BarrierSolid* barrier = moment.most_loaded();
+            SpaceMoment loaded;
+            loaded.barriers = barriers(time);
+            const BarrierSolid* barrier = loaded.most_loaded();
             if (!barrier || barrier->load.head<2>().norm() <= most) continue;
+            if (moment(nearest(time)).typical_size <= 0.0) continue;
             most = barrier->load.head<2>().norm();
             number = nearest(time);
         }
@@ -106,7 +114,9 @@ std::vector<Wanted> wanted_moments(const SpaceRun& run, const FigureSource& sour
         wanted.push_back(
             {*hardest, "impact",
              fmt::format("at {:.4g} s, the output with the largest load on a barrier", run.time(*hardest))});
-    wanted.push_back({run.count() - 1, "points", "at the end"});
+    const Index last = run.last();
+    wanted.push_back({last, "points",
+                      last + 1 == run.count() ? "at the end" : fmt::format("at {:.4g} s, the last", run.time(last))});
     if (source.time) {
         const Index number = run.nearest(*source.time);
         const std::string moment = fmt::format("{:.6g}", run.time(number));

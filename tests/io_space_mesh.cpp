@@ -285,7 +285,7 @@ TEST_CASE("The oblique view and the section show a mesh and the pressure on it",
     CHECK(changed > 2000);
 }
 
-TEST_CASE("Figures of a finished run show its mesh when the file that it came from has gone", "[space]") {
+TEST_CASE("Figures of a finished run show its points and its mesh when both, and the mesh's file, have gone", "[space]") {
     if (cannot_draw()) return;
     const FreshFolder folder;
     const std::string data = std::string(FRANA_SOURCE_DIR) + "/cases/wall/data/";
@@ -294,7 +294,8 @@ TEST_CASE("Figures of a finished run show its mesh when the file that it came fr
         << "[case]\ntitle = \"A block\"\n[terrain]\ndem = \"" << data << "dem.tif\"\n[[release]]\noutline = \"" << data
         << "release.geojson\"\nsurface = 9.5\n[material]\ndensity = 1000.0\n[material.bed]\nlaw = \"none\"\n"
            "[boundary]\nsides = \"wall\"\n[[stage]]\nmodel = \"depth_averaged\"\nuntil = 2.0\n[[stage]]\nmodel = \"solid_flow\"\n"
-           "cell = 0.5\n[[barrier]]\nmesh = \"block.obj\"\norigin = [20, -1, 5.67]\n[time]\nend = 2.6\n"
+           "cell = 0.5\nuntil = 2.6\n[[stage]]\nmodel = \"depth_averaged\"\n"
+           "[[barrier]]\nmesh = \"block.obj\"\norigin = [20, -1, 5.67]\n[time]\nend = 2.8\n"
            "[output]\nevery = 0.1\nformats = [\"vtk\"]\n";
     RunOptions run;
     run.case_file = folder.path() / "case.toml";
@@ -304,11 +305,15 @@ TEST_CASE("Figures of a finished run show its mesh when the file that it came fr
     const BarrierMeshes meshes = read_barrier_meshes(run.out);
     REQUIRE(meshes.size() == 1);
     CHECK(meshes[0]->points.front().isApprox(Vec3(20, -1, 5.67)));
+    const LoadedParticles last = read_particles(run.out, -1);
+    const std::vector<double>& model = last.columns.at("model");
+    CHECK(std::count(model.begin(), model.end(), 0.0) == last.count);  // columns again
     std::filesystem::remove(folder.path() / "block.obj");
     FiguresOptions again;
     again.run_dir = run.out;
     REQUIRE(figures_command(again) == 0);
     CHECK(std::filesystem::exists(run.out / "figures" / "view_impact.png"));
+    CHECK(std::filesystem::exists(run.out / "figures" / "view_points.png"));
     const Pixels section = read_png(run.out / "figures" / "section_impact.png");
     CHECK(all(pixels_of(section, colours::unloaded)) > 500);  // a metre of some 20 m across, 2 m high
 }
