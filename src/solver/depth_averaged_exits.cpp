@@ -78,6 +78,7 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     status_.momentum_left[1] -= came.left_py;
     status_.energy_left -= came.left_energy;
     status_.kinetic += kinetic;  // of nodes, and to the next kick only
+    signal_ = std::max(signal_, status_.max_speed);
     sorter_.sort(c, flow_.grid, {}, flow_.active);
     drift_ = 0.0;
     arrive(transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())));

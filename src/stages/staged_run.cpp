@@ -59,7 +59,7 @@ void StagedRun::step_points(double until) {
     const bool alone = columns_->status().particles == 0 && pending_.empty();
     points_->advance(alone ? until : std::min(until, columns_->status().time));
     note_departed();
-    if (points_->status().time == columns_->status().time) hand_over();
+    if (alone || points_->status().time == columns_->status().time) hand_over(), take_back();
     if (watch_) watch_->weigh(*points_);
     moved_ += points_->status().max_speed * points_->status().dt;
     look(until);
@@ -120,7 +120,6 @@ SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns) const {
 }
 
 void StagedRun::step_columns(double until) {
-    take_back();
     if (columns_->status().particles == 0) return points_->stand_beside(MaterialBeside{});
     show_points();
     columns_->advance(until);
