@@ -19,7 +19,7 @@ using hdf5::Handle;
 namespace {
 
 constexpr std::size_t kHead = 512;  ///< HDF5's smallest user block [bytes]
-constexpr const char* kFormat = "frana checkpoint 4";
+constexpr const char* kFormat = "frana checkpoint 5";
 
 struct NumberType { hid_t memory, file; };
 NumberType number_type(Archive::Kind kind) {
