@@ -63,6 +63,12 @@ std::string results(const RunRecord& r) {
     }
     if (r.breakage)
         text += row("steps for each that the flow without elastic waves would need", fmt::format("{:.3g}", r.breakage->sub_cycling));
+    if (r.points_apart) {
+        const PointsApart& a = *r.points_apart;
+        text += row("pieces of points in space, more than a cell apart",
+                    fmt::format("{}; {:.3g} % of the mass outside the largest, {:.3g} % out of its reach", a.pieces,
+                                100.0 * a.apart, 100.0 * a.alone));
+    }
     text += row("left the domain", fmt::format("{:.6g} m3", s.last.mass_left / r.density));
     return text + "\n";
 }

@@ -139,6 +139,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest, record.end < record.whole_end};
     record.summary = run(simulation, plan, observers, interrupt, progress, keeper);
     record.breakage = simulation.breakage();
+    record.points_apart = simulation.points_apart();
     record.water = simulation.water_budget();
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
     record.release_volume = record.summary.first.mass / scene.density;

@@ -175,6 +175,14 @@ Json breakage_json(const Breakage& b) {
             {"sub_cycling", b.sub_cycling}};
 }
 
+Json apart_json(const PointsApart& a) {
+    return {{"pieces", a.pieces},
+            {"share_apart", a.apart},
+            {"share_alone", a.alone},
+            {"most_apart", a.most_apart},
+            {"most_apart_time", a.most_apart_time}};
+}
+
 Json water_json(const WaterBudget& w) {
     return {{"unit", "m3"},
             {"given", w.given},
@@ -229,6 +237,7 @@ std::string run_json(const RunRecord& record) {
           {"failed", record.checkpoints.failed},
           {"resumed_at", record.checkpoints.resumed_at}}},
         {"warnings", record.warnings}};
+    if (record.points_apart) json["points_apart"] = apart_json(*record.points_apart);
     if (record.breakage) json["structure"] = breakage_json(*record.breakage);
     if (record.water) json["budgets"]["water"] = water_json(*record.water);
     return json.dump(2) + "\n";

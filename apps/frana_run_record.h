@@ -52,6 +52,7 @@ struct RunRecord {
     std::vector<BarrierSummary> barriers;
     CheckpointKeeper::Progress checkpoints;
     std::optional<Breakage> breakage;  ///< of material that holds together
+    std::optional<PointsApart> points_apart;
     std::optional<WaterBudget> water;  ///< beside it
     std::vector<std::string> warnings;
 };

@@ -71,6 +71,14 @@ struct Breakage {
     double sub_cycling = 1.0;    ///< steps for each that the flow alone would need: what elastic waves cost
 };
 
+/// What points in space have come apart into (solid/pieces.h), at the last output and where it was most.
+struct PointsApart {
+    Index pieces = 0;            ///< points of different ones are more than a cell apart
+    double apart = 0.0;          ///< share of their mass outside the largest [1]
+    double alone = 0.0;          ///< share that feels nothing of the largest any more [1]
+    double most_apart = 0.0, most_apart_time = 0.0;  ///< largest `apart` of all outputs [1], [s]
+};
+
 /// Free water, and that which columns confine.
 struct WaterBudget {
     double given = 0.0, free = 0.0, confined = 0.0;  ///< at the start, all; now [m3]

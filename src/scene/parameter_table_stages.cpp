@@ -147,6 +147,10 @@ void add_stages(Table& table) {
     table.push_back(of_space(number("stage.blending", "s", positive,
                                     "time in which points with flip take over the grid's velocity"),
                              "sqrt(cell / gravity), in which material falls half a cell"));
+    table.push_back(with(flag("stage.split", false,
+                              "points that are drawn 0.8 of a cell apart become two, down to 1/64 of a cell each: thin ends "
+                              "keep together; up to eight times as many points"),
+                         model, in_space));
     table.push_back(with(choice("stage.profile", {"plug", "linear", "parabolic", "bagnold"}, "plug",
                                 "velocity over the depth that columns become points with"),
                          model, in_space));

@@ -101,6 +101,7 @@ struct SolidStage {
     SolidLaw law;                      ///< of fluids without the bulk modulus, which the speed of sound gives
     std::optional<double> sound_speed; ///< of fluids [m/s]; nothing: chosen when the stage begins
     std::optional<double> top;         ///< elevation where the space ends [m]; nothing: chosen when the stage begins
+    bool split = false;                ///< points that are drawn apart become two
     bool stuck = false;                ///< the lowest material does not slide on the bed
     double bed_friction = 0.0;         ///< Coulomb's coefficient [1]
     double cfl = 0.4;                  ///< fraction of a cell that sound and flow may pass in a step [1]

@@ -89,6 +89,7 @@ private:
         if (given("sound_speed")) stage.sound_speed = number("sound_speed");
         stage.law = law();
         stage.stuck = case_.flag(prefix_ + "stuck");
+        stage.split = case_.flag(prefix_ + "split");
         stage.bed_friction = number_or("bed_friction", friction_of(scene_.bed_law));
         stage.cfl = number("cfl");
         read_transfer(stage);

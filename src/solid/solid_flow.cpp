@@ -57,7 +57,8 @@ SolidFlow::SolidFlow(const SolidScene& scene)
       cfl_(scene.cfl),
       sound_(kernel_->sound_speed(scene.density)),
       blending_(scene.blending),
-      apic_(scene.affine == Affine::apic) {
+      apic_(scene.affine == Affine::apic),
+      splits_(scene.split) {
     expect(!scene.keeps || (scene.affine == Affine::tpic && scene.blending > 0.0),
            "points that keep their velocities have tpic's gradients and a time in which they give them up");
     expect(scene.surfaces.size() <= kMostSurfaces, "more surfaces than a set of them can hold");
@@ -244,7 +245,10 @@ void SolidFlow::advance(double until) {
     if (notes_ && status_.points != body_.points.count())
         for (Index p = 0; p < body_.points.count(); ++p)
             if (body_.gone[static_cast<std::size_t>(p)]) departed_.push_back(departed(p));
-    if (drift_ > kDriftLimit - 0.5 || status_.points != body_.points.count()) timed_("sort", [&] { sort(); });
+    if (drift_ > kDriftLimit - 0.5 || status_.points != body_.points.count()) timed_("sort", [&] {
+        if (splits_) split();
+        sort();
+    });
 }
 
 /// Sums in the order of the tiles: the same bits for any number of threads.

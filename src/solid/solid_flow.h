@@ -59,6 +59,7 @@ struct SolidScene {
     bool keeps = false;
     double blending = 0.0;  ///< [s]
     double averaging = 0.005;       ///< share of J's mean taken over in a step, of laws that average [1]
+    bool split = false;             ///< points that are drawn apart become two (split_points.h)
     double cfl = 0.4;               ///< fraction of a cell that sound and flow may pass in a step [1]
     std::vector<Surface> surfaces;  ///< at most kMostSurfaces
     SolidSeeds points;
@@ -236,6 +237,7 @@ public:
 private:
     void place(const SolidSeeds& seeds);
     void sort();
+    void split();
     void mark_near();
     void mark_seen_images();
     void make_room_beside();
@@ -258,7 +260,7 @@ private:
     Index next_id_ = 0;
     std::vector<DepartedPoint> departed_;  ///< when they are noted
     bool notes_ = false;
-    bool apic_;
+    bool apic_, splits_;
 };
 
 }  // namespace frana

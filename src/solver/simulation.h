@@ -25,6 +25,8 @@ public:
     virtual std::vector<std::string> remarks() const { return {}; }
     /// What the material has come apart into; nothing of material that has no structure.
     virtual std::optional<Breakage> breakage() const { return {}; }
+    /// What points in space have come apart into; nothing without any.
+    virtual std::optional<PointsApart> points_apart() const { return {}; }
     /// Where the water is and has gone; nothing without any.
     virtual std::optional<WaterBudget> water_budget() const { return {}; }
     /// Wall time by phase since the start.

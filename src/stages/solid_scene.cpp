@@ -163,6 +163,7 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
     result.keeps = stage.transfer == Transfer::flip;
     result.blending = stage.blending;
     result.cfl = stage.cfl;
+    result.split = stage.split;
     return result;
 }
 

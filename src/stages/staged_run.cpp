@@ -186,6 +186,7 @@ void StagedRun::look(double until) {
     double far = kShare * scene_.bed.geometry.cell;
     if (watch_) far = std::min(far, 2.0 * kShare * scene_.solid->cell);
     if (points_->status().time < until && moved_ < far) return;
+    if (points_->status().time >= until) look_for_pieces();
     timed_("map", [&] {
         map_.look(*points_, points_->status().time);
         if (watch_) watch_->look(*points_);
@@ -274,6 +275,7 @@ std::vector<std::string> StagedRun::remarks() const {
             "{:.2g} %{}; volume {:.4g} of that without pressure",
             start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
             largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : "", rest > 0.0 ? s.volume / rest : 1.0));
+    remark_pieces(remarks);
     return remarks;
 }
 
@@ -309,6 +311,8 @@ void StagedRun::keep(Archive& archive) {
     archive.numbers("sums",
                     {&handed_.mass, &handed_.energy, &handed_.mass_later, &handed_.momentum[0], &handed_.momentum[1],
                      &returned_.mass, &returned_.lost, &moved_, &peak_mean_speed_, &largest_mach_});
+    archive.number("pieces", apart_.pieces);
+    archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
     timed_.keep(archive);
     keep_on_their_way(archive);
     if (!points_) return;

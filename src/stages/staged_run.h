@@ -29,6 +29,7 @@ public:
     Sample at(const Vec2& point) const override;
     const BarrierLoads* loads() const override { return watch_ ? &watch_->loads() : nullptr; }
     std::vector<std::string> remarks() const override;
+    std::optional<PointsApart> points_apart() const override;
     std::vector<PhaseTime> timings() const override;
     void keep(Archive& archive) override;
 
@@ -63,6 +64,8 @@ private:
     SolidSeeds seeds_of_window(const FlowColumns& columns) const;
     void require_room(const FlowColumns& columns) const;
     void look(double until);
+    void look_for_pieces();
+    void remark_pieces(std::vector<std::string>& remarks) const;
     void book(const Status& columns);
     void keep_on_their_way(Archive& archive);
     void particle_fields(Frame& frame);
@@ -85,6 +88,7 @@ private:
     Status status_;
     StepClock timed_;
     double moved_ = 0.0;  ///< farthest way of a point since the last look at the map [m]
+    PointsApart apart_;
     double peak_mean_speed_ = 0.0;
     double largest_mach_ = 0.0;  ///< fastest point over the speed of sound [1]
     std::vector<std::vector<double>> frame_storage_;
