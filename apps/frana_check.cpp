@@ -158,13 +158,13 @@ std::string stage_text(const Scene& scene) {
     double depth = 0.0;
     for (const double here : scene.particles.depth) depth = std::max(depth, here);
     const double sound = stage.sound_speed.value_or(10.0 * std::sqrt(2.0 * scene.gravity * depth));
-    const double steps = std::ceil((scene.end - stage.from) * sound / (stage.cfl * stage.cell)),
+    const double steps = std::ceil((stage.until.value_or(scene.end) - stage.from) * sound / (stage.cfl * stage.cell)),
                  points = most_points(scene);
     return fmt::format(
-        "stage       points in space from {:.6g} s on, at most about {:.3g} of them, {:.3g} MB; {:.0f} steps "
+        "stage       points in space from {:.6g} s to {:.6g} s, at most about {:.3g} of them, {:.3g} MB; {:.0f} steps "
         "or more with "
         "sound at {:.3g} m/s, {} on one core if all are there, assuming {:.0f} ns per point and step\n",
-        stage.from, points, points * bytes_per_point / 1e6, steps, sound,
+        stage.from, stage.until.value_or(scene.end), points, points * bytes_per_point / 1e6, steps, sound,
         seconds_text(steps * points * seconds_per_point_step), seconds_per_point_step * 1e9);
 }
 

@@ -236,7 +236,8 @@ double most_pressure(const std::vector<LoadedPatch>& patches) {
     return most(std::move(pressures));
 }
 
-/// The output with the largest load on a barrier, with its loads; the last one where there is never any.
+/// The output with points and with the largest load on a barrier, with its loads; the last such one where there is never
+/// any.
 SpaceMoment hardest_moment(const fs::path& run_dir, const Raster& bed) {
     const std::vector<double> times = barrier_times(run_dir), frames = particle_times(run_dir);
     const BarrierMeshes meshes = read_barrier_meshes(run_dir);
@@ -248,8 +249,10 @@ SpaceMoment hardest_moment(const fs::path& run_dir, const Raster& bed) {
         const double load = moment.most_loaded() ? moment.most_loaded()->load.head<2>().norm() : 0.0;
         const auto frame = std::find(frames.begin(), frames.end(), times[k]);
         if (frame == frames.end() || load < most_load) continue;
+        moment = space_moment(read_particles(run_dir, frame - frames.begin()), moment.barriers);
+        if (moment.typical_size <= 0.0) continue;
         most_load = load;
-        hardest = space_moment(read_particles(run_dir, frame - frames.begin()), moment.barriers);
+        hardest = std::move(moment);
     }
     return hardest;
 }

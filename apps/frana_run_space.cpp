@@ -35,7 +35,7 @@ public:
 
     /// The last output with points, or the last.
     Index last() const {
-        for (Index number = count() - 1; named_ && number > 0; --number)
+        for (Index number = count() - 1; named_ && number >= 0; --number)
             if (moment(number).typical_size > 0.0) return number;
         return count() - 1;
     }
@@ -150,7 +150,12 @@ void draw_space(const FigureSource& source, std::vector<DrawnFigure>& figures,
         if (shared.empty()) return;  // it ended before there were any
         for (const Wanted& one : wanted) {
             SpaceFigure figure = run.figure(one.number, shared.view(), run.digits());
-            if (figure.moment.typical_size <= 0.0) continue;
+            if (figure.moment.typical_size <= 0.0) {
+                if (one.name != "points")
+                    warnings.push_back(fmt::format("figures/view_{}.png was not drawn: there are no points in space {}",
+                                                   one.name, one.caption));
+                continue;
+            }
             attempt(source, {"figures/view_" + one.name + ".png", "points in space " + one.caption}, figures,
                     warnings, [&](const fs::path& png, std::string& why_not) {
                         return render_space(figure, png, why_not);

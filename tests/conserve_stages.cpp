@@ -2,6 +2,8 @@
 // flow in.
 #include <omp.h>
 
+#include <algorithm>
+
 #include "analytic_scene.h"
 #include "catch.h"
 #include "memory_archive.h"
@@ -175,6 +177,10 @@ TEST_CASE("Runs in stages have the same bits for any number of threads, and when
         while (straight.status().time < stops[n]) straight.advance(end);
         straight.keep(kept[n]);
     }
+    if (scene.solid->until)
+        CHECK(std::any_of(kept.begin(), kept.end(), [](const MemoryArchive& state) {
+            return !state.entries().at("returning").bytes.empty();
+        }));
     run_to(straight, end);
     CHECK((straight.points()->status().points == 0) == scene.solid->until.has_value());
     const auto expected = kept_bits(straight);

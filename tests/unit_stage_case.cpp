@@ -69,6 +69,10 @@ TEST_CASE("A window is closed where the case says so, and where it reaches walls
     CHECK(scene_of(two + edge + "closed = [\"north\"]\n").solid->closed == Closed{false, false, false, true});
     CHECK(scene_of(two + edge + "[boundary]\nsides = \"wall\"\n").solid->closed ==
           Closed{true, true, false, false});
+    // A cell away from a wall points would go on through it.
+    const SolidStage near = scene_of(two + "window = [1005, 2005, 1060, 2100]\n[boundary]\nsides = \"wall\"\n").solid.value();
+    CHECK(near.closed == Closed{true, true, false, false});
+    CHECK(near.window == std::array<Index, 4>{0, 0, 11, 19});
 }
 
 TEST_CASE("A stage in space ends where columns follow it", "[stages]") {
@@ -105,6 +109,10 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
     CHECK(has(problem_of(two + west + columns), "stage.1: not given until, and another stage follows"));
     CHECK(has(problem_of(two + west + "until = 8\n" + columns),
               "stage.1.until: found 8 s; expected a time between the stage's begin, 8 s, and time.end = 20 s"));
+    CHECK(has(problem_of(two + west + "until = 12\n" + columns + "until = 99\n"),
+              "stage.2.until: found 99 s; expected none in the last stage, or time.end = 20 s"));
+    CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 5\n" + columns),
+              "stage.1: found it after the others"));
     CHECK(has(problem_of(two + west + "until = 12\n" + columns + "until = 15\n[[stage]]\nmodel = \"solid_flow\"\n"),
               "stage.3: found it after the others; expected depth_averaged, then solid_flow, then depth_averaged"));
     CHECK(has(problem_of(two + west + "until = 15\n"),

@@ -38,7 +38,7 @@ public:
             prefix_ = fmt::format("stage.{}.", i);
             const bool in_space = case_.word(prefix_ + "model") == "solid_flow";
             if (in_space && space == count) space = i;
-            if (space < count ? i > space + 1 || (in_space && i > space) || space > 1 : i > 1)
+            if (space < count ? i > space + 1 || (in_space && i > space) || space > 1 : i > 0)
                 return refuse(i, "found it after the others",
                               "expected depth_averaged, then solid_flow, then depth_averaged, or a part of that",
                               "remove it; `frana convert` makes points of columns and columns of points besides");
@@ -46,6 +46,7 @@ public:
                 return refuse(i, "not given until, and another stage follows",
                               "expected the time at which the next stage begins", "add until = ... under [[stage]]");
         }
+        require_no_end();
         if (space == count) return {};
         const double begin = space > 0 ? case_.number(fmt::format("stage.{}.until", space - 1)) : 0.0;
         prefix_ = fmt::format("stage.{}.", space);
@@ -71,10 +72,6 @@ private:
                           fmt::format("expected a time before time.end = {:.10g} s", scene_.end),
                           "let the run end later, or the stage earlier");
         if (!last) read_end(stage);
-        if (last && given("until") && number("until") != scene_.end)
-            problems_.add(case_.place(prefix_ + "until"), fmt::format("found {:.10g} s", number("until")),
-                          fmt::format("expected none in the last stage, or time.end = {:.10g} s", scene_.end),
-                          "remove it, or change time.end");
         if (read_window(stage)) require_ground(stage);
         read_closed(stage);
         stage.cell = number_or("cell", 0.5 * scene_.bed.geometry.cell);
@@ -96,6 +93,14 @@ private:
         stage.profile = profile_of(case_.word(prefix_ + "profile"));
         stage.along_bed = case_.word(prefix_ + "vertical") == "along-bed";
         return stage;
+    }
+
+    /// Of the last stage, whose keys are the ones that are read.
+    void require_no_end() {
+        if (case_.count("stage") == 0 || !given("until") || number("until") == scene_.end) return;
+        problems_.add(case_.place(prefix_ + "until"), fmt::format("found {:.10g} s", number("until")),
+                      fmt::format("expected none in the last stage, or time.end = {:.10g} s", scene_.end),
+                      "remove it, or change time.end");
     }
 
     void read_end(SolidStage& stage) {
@@ -159,10 +164,13 @@ private:
             stage.closed[side] = std::find(closed.begin(), closed.end(), sides[side]) != closed.end();
         const GridGeometry& g = scene_.bed.geometry;
         if (scene_.sides != Sides::wall) return;  // walls of the terrain hold points back as well
-        stage.closed[0] = stage.closed[0] || stage.window[0] == 0;
-        stage.closed[1] = stage.closed[1] || stage.window[1] == 0;
-        stage.closed[2] = stage.closed[2] || stage.window[2] == g.nx - 1;
-        stage.closed[3] = stage.closed[3] || stage.window[3] == g.ny - 1;
+        const std::array<Index, 4> wall = {0, 0, g.nx - 1, g.ny - 1};
+        for (std::size_t side = 0; side < 4; ++side) {
+            // Points go on for a cell beyond an open side, which would be through a wall that is nearer.
+            if (stage.closed[side] || std::abs(stage.window[side] - wall[side]) > 1) continue;
+            stage.window[side] = wall[side];
+            stage.closed[side] = true;
+        }
     }
 
     /// Points in space need ground below them everywhere.

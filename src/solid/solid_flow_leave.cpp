@@ -15,6 +15,7 @@ DepartedPoint SolidFlow::departed(Index p) const {
 }
 
 void SolidFlow::leave() {
+    if (notes_) departed_.reserve(departed_.size() + static_cast<std::size_t>(body_.points.count()));
     for (Index p = 0; p < body_.points.count(); ++p) {
         const DepartedPoint left = departed(p);
         if (notes_) departed_.push_back(left);
@@ -23,6 +24,7 @@ void SolidFlow::leave() {
     }
     status_.mass_left += status_.mass;
     body_.points.resize(0);
+    body_.points.each([](Column& column) { column.shrink_to_fit(); });
     status_.points = 0;
     status_.mass = status_.kinetic = status_.potential = status_.stored = 0.0;
     status_.speeds = status_.volume = status_.max_speed = 0.0;

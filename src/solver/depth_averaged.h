@@ -34,7 +34,10 @@ public:
     /// The columns that left so since the last call, by id.
     std::vector<Departed> take_departed();
 
-    /// Nothing leaves any more at the nodes that open_exits() marked.
+    /// Velocities, half a step behind, come to the present; as at a start the next step is half a step of forces. What
+    /// has been deposited is of before: take_in() has to follow.
+    void catch_up();
+    /// Nothing leaves any more at the nodes that open_exits() marked, and columns may sleep again.
     void close_exits();
     /// More columns, between two steps at `time` [s], the columns' own unless there are none; `gradient` of the velocity of
     /// each, dv_k/dx_l at (k, l) [1/s]. They are booked as what did not leave after all: mass, momentum and energy, which is
@@ -107,7 +110,7 @@ private:
     std::optional<MassFit> fit_;
 
     Rheology rheology_;
-    bool steep_, curved_;
+    bool steep_, curved_, sleeps_;
     double footprint_depth_, rest_fraction_;
     std::array<double, 2> start_momentum_{};  ///< [kg m/s]
     double signal_ = 0.0;       ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]

@@ -34,7 +34,21 @@ void DepthAveraged::open_exits(const std::vector<std::uint8_t>& marks, bool leav
     if (leave_now) leave_at_exits();
 }
 
+void DepthAveraged::catch_up() {
+    if (status_.dt == 0.0) return;
+    const Frame now = frame();
+    flow_.columns.with_real([&](auto real) {
+        using Real = decltype(real);
+        Carried<Real>& held = flow_.columns.carried<Real>();
+        for (Index p = 0; p < flow_.columns.count(); ++p)
+            held.vx[p] = static_cast<Real>(probe_.vx[p]), held.vy[p] = static_cast<Real>(probe_.vy[p]);
+    });
+    status_ = now.status;
+    status_.dt = 0.0;
+}
+
 void DepthAveraged::close_exits() {
+    flow_.scheme.sleep = sleeps_;
     flow_.bed.has_exits = false;
     for (Index j = 0; j < flow_.grid.ny(); ++j)
         for (Index i = 0; i < flow_.grid.nx(); ++i) {

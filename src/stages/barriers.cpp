@@ -30,13 +30,6 @@ std::pair<Vec3, Vec3> box_of(const Surface& barrier) {
     return {low, high};
 }
 
-/// Elevation of a barrier's top at a place of the map; minus infinity beside it.
-double top_of(const Surface& barrier, const Vec2& place) {
-    if (barrier.shape) return barrier.shape->top_at(place);
-    const double top = barrier.prism->top_at(place);
-    return barrier.prism->inside({place.x(), place.y(), top - 1.0}) ? top : -std::numeric_limits<double>::infinity();
-}
-
 bool near_box(const std::pair<Vec3, Vec3>& box, const Vec2& place, double margin) {
     const auto& [low, high] = box;
     return ((place - low.head<2>()).array() >= -margin).all() && ((high.head<2>() - place).array() >= -margin).all();
@@ -98,6 +91,12 @@ double top_near(const Surface& barrier, const Vec2& node, double cell) {
 }
 
 }  // namespace
+
+double top_of(const Surface& barrier, const Vec2& place) {
+    if (barrier.shape) return barrier.shape->top_at(place);
+    const double top = barrier.prism->top_at(place);
+    return barrier.prism->inside({place.x(), place.y(), top - 1.0}) ? top : -std::numeric_limits<double>::infinity();
+}
 
 Prism solid_of(const Barrier& barrier, const Raster& bed, double cell) {
     Polygons outline = barrier.outline;

@@ -20,6 +20,9 @@ Raster with_barriers(const Scene& scene);
 /// A barrier of that scene as a surface in space. Throws as solid_of().
 Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);
 
+/// Elevation of a barrier's top at a place of the map; minus infinity beside it [m].
+double top_of(const Surface& barrier, const Vec2& place);
+
 /// A column's place in the map [m], and what it reaches up to and holds there.
 struct ColumnAt {
     Index id;

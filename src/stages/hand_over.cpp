@@ -110,9 +110,8 @@ MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& 
     const double size = 0.5 * g.cell;
     std::map<std::pair<Index, Index>, Sum> quarters;  // row after row from the south
     for (const DepartedPoint& point : points) {
-        const Vec2 left = point.position.head<2>(), v = point.velocity.head<2>();
-        Vec2 x = left + (at.time - point.time) * v;
-        if (!at.may_stand(x.x(), x.y())) x = left;
+        const Vec2 v = point.velocity.head<2>();
+        const Vec2 x = at.place(point, point.position.head<2>() + (at.time - point.time) * v);
         Sum& sum = quarters[{static_cast<Index>(std::floor((x.y() - g.y0) / size)),
                              static_cast<Index>(std::floor((x.x() - g.x0) / size))}];
         sum.mass += point.mass;
@@ -128,7 +127,7 @@ MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& 
         seeds.x.push_back(x.x()), seeds.y.push_back(x.y());
         seeds.vx.push_back(v.x()), seeds.vy.push_back(v.y());
         seeds.volume.push_back(volume), seeds.size.push_back(size);
-        seeds.depth.push_back(std::max(at.depth(x.x(), x.y()), volume / (size * size)));
+        seeds.depth.push_back(std::max(at.depth(x), volume / (size * size)));
         columns.gradient.push_back(sum.gradient / sum.mass);
     }
     return columns;

@@ -22,11 +22,11 @@ FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector
 FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
                      const std::array<double, 4>& extent);
 
-/// When points become columns, and what is there: functions of a place on the map [m].
+/// When points become columns, and what is there. Places are on the map [m].
 struct ColumnsAt {
-    double time;                                    ///< [s]
-    std::function<bool(double, double)> may_stand;  ///< whether columns can be there
-    std::function<double(double, double)> depth;    ///< of what is there already [m]
+    double time;                                                        ///< [s]
+    std::function<Vec2(const DepartedPoint&, const Vec2&)> place;  ///< of a column of a point that has come there
+    std::function<double(const Vec2&)> depth;                           ///< of what is there already [m]
 };
 
 /// Columns that were points, with the gradients of their velocities, dv_k/dx_l at (k, l) [1/s].
@@ -36,8 +36,7 @@ struct MovingColumns {
 };
 
 /// Points that left as columns: one for all of them in each quarter of a cell of the terrain, at their centre of mass, with
-/// their mass and momentum. Until then they went on at the speed that they had, as far as columns may stand there; so their
-/// velocities are half a step behind their places, as those of columns are. They are as deep as what is there, and at least
+/// their mass and momentum. Until then they went on at the speed that they had; so their velocities are half a step behind their places, as those of columns are. They are as deep as what is there, and at least
 /// as all that is new on their quarter.
 MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ColumnsAt& at);
 

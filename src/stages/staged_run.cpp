@@ -26,6 +26,7 @@ StagedRun::StagedRun(const Scene& scene, Start start)
           scene.barriers.empty() ? scene : on_bed(scene, with_barriers(scene)), start)),
       map_(scene) {
     expect(scene.solid.has_value(), "a staged run has a stage in space");
+    if (!scene.barriers.empty()) mark_raised(with_barriers(scene));
     scene_.particles = {};
     status_ = columns_->status();
     if (start == Start::placed && scene.solid->from == 0.0)
@@ -59,7 +60,10 @@ void StagedRun::step_points(double until) {
     const bool alone = columns_->status().particles == 0 && pending_.empty();
     points_->advance(alone ? until : std::min(until, columns_->status().time));
     note_departed();
-    if (alone || points_->status().time == columns_->status().time) hand_over(), take_back();
+    if (alone || points_->status().time == columns_->status().time) {
+        hand_over();
+        if (!returning_.empty()) timed_("hand back", [&] { take_back(); });
+    }
     if (watch_) watch_->weigh(*points_);
     moved_ += points_->status().max_speed * points_->status().dt;
     look(until);
@@ -93,8 +97,8 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
 
 /// Refuses what does not fit below the top of the space, or into memory before it is asked for.
 void StagedRun::require_room(const FlowColumns& columns) const {
-    constexpr double kBytes =
-        450.0;  // of a point: its numbers, room to sort, and both forms while it is handed over
+    // Of a point: its numbers, room to sort, and both forms while it is handed over, at the end back as well.
+    const double bytes = scene_.solid->until ? 600.0 : 450.0;
     for (std::size_t k = 0; k < columns.count(); ++k)
         if (columns.bed[k] + columns.depth[k] > start_.top)
             throw UserError(
@@ -104,12 +108,12 @@ void StagedRun::require_room(const FlowColumns& columns) const {
                             start_.top, columns.bed[k] + columns.depth[k], columns.x[k], columns.y[k],
                             std::max(columns_->status().time, scene_.solid->from)));
     const double points = forecast_points(columns, scene_.solid->spacing), free = free_memory();
-    if (points * kBytes <= free) return;
+    if (points * bytes <= free) return;
     throw UserError(
         fmt::format("stage.spacing = {:.6g}: makes {:.3g} points, about {:.3g} GB; expected what fits into "
                     "the {:.3g} GB that are free; "
                     "give a larger spacing or a smaller window",
-                    scene_.solid->spacing, points, points * kBytes / 1e9, free / 1e9));
+                    scene_.solid->spacing, points, points * bytes / 1e9, free / 1e9));
 }
 
 SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns) const {
@@ -143,40 +147,6 @@ void StagedRun::hand_over() {
         pending_.clear();
         points_->add(seeds_of_window(columns));
     });
-}
-
-/// Of the points that left, those that left where columns may stand: beyond the window's open sides. Until they are columns
-/// the others go on to feel them.
-void StagedRun::note_departed() {
-    for (const DepartedPoint& point : points_->take_departed()) {
-        if (!columns_->may_stand(point.position.x(), point.position.y())) continue;
-        returning_.push_back(point);
-        points_->stand_beside(point);
-    }
-}
-
-/// They become columns. What these have no place for, motion up and down and against each other, is lost.
-void StagedRun::take_back() {
-    if (returning_.empty()) return;
-    timed_("hand back", [&] {
-        const double time = points_->status().time;
-        for (const DepartedPoint& point : returning_) returned_.mass += point.mass, returned_.lost += point.energy;
-        const MovingColumns columns = columns_of(returning_, scene_,
-                                                 {time, [&](double x, double y) { return columns_->may_stand(x, y); },
-                                                  [&](double x, double y) { return columns_->at({x, y}).depth; }});
-        returned_.lost -= columns_->take_in(columns.seeds, columns.gradient, time);
-        returning_.clear();
-    });
-}
-
-/// All points become columns, and the window is a part of the map like any other.
-void StagedRun::end_space() {
-    points_->leave();
-    columns_->close_exits();
-    note_departed();
-    take_back();
-    ended_ = true;
-    timed_("map", [&] { map_.look(*points_, points_->status().time); });
 }
 
 /// The map follows when material has moved by a quarter of a cell, and at output times; with barriers when it
@@ -243,7 +213,8 @@ void StagedRun::book(const Status& columns) {
 }
 
 bool StagedRun::at_rest() const {
-    if (!points_ || (scene_.solid->until && !ended_)) return false;  // what rests as columns may flow as points
+    // What rests as columns may flow as points, and the other way round.
+    if (!points_ || (scene_.solid->until && (!ended_ || columns_->status().dt == 0.0))) return false;
     return status_.max_speed == 0.0 || status_.mean_speed < scene_.rest_fraction * peak_mean_speed_;
 }
 
@@ -261,12 +232,13 @@ std::vector<std::string> StagedRun::remarks() const {
     std::vector<std::string> remarks = columns_->remarks();
     if (!points_) return remarks;
     const SolidStatus& s = points_->status();
-    const double density = scene_.density, rest = s.mass / density;
+    constexpr double kRoundOff = 1e-12;
+    const double density = scene_.density, rest = s.mass / density, gone = s.mass_left - returned_.mass;
     remarks.push_back(fmt::format(
         "points in space from {:.6g} s on: {} now, {:.6g} m3 of them came in over the window's edges later, "
         "{:.6g} m3 became columns again, {:.6g} m3 left through its sides; top of the space {:.6g} m",
         scene_.solid->from, s.points, handed_.mass_later / density, returned_.mass / density,
-        std::max(0.0, s.mass_left - returned_.mass) / density, start_.top));
+        gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
     if (fluid)
         remarks.push_back(fmt::format(

@@ -57,6 +57,10 @@ private:
     void note_departed();
     void take_back();
     void end_space();
+    Vec2 place_of_column(const DepartedPoint& point, const Vec2& to) const;
+    void mark_raised(const Raster& bed);
+    bool above_barrier(const Vec2& place) const;
+    bool behind_barrier(const Vec3& from, const Vec2& place) const;
     void show_points();
     void show_columns();
     FlowColumns columns_at_edge(std::vector<Mat2>& gradients) const;
@@ -80,6 +84,7 @@ private:
     std::optional<BarrierWatch> watch_;  ///< when there are barriers
     std::vector<Departed> pending_;      ///< columns that left into the window, ahead of the points' time
     std::vector<std::uint8_t> at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
+    std::vector<std::uint8_t> raised_;   ///< with barriers: 1 at nodes whose ground they raise for columns
     std::vector<double> points_depth_;   ///< scratch of show_points, on the terrain's nodes [m]
     std::vector<DepartedPoint> returning_;  ///< points that left where columns may stand, since the columns' last step
     Handed handed_;

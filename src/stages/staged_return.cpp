@@ -1,0 +1,111 @@
+// Points of a run in stages that become columns again: those that leave their window, and in the end all.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "stages/staged_run.h"
+
+namespace frana {
+
+/// Of the points that left, those that left where columns may stand: beyond the window's open sides. Until they are columns
+/// the others go on to feel them.
+void StagedRun::note_departed() {
+    for (const DepartedPoint& point : points_->take_departed()) {
+        if (!columns_->may_stand(point.position.x(), point.position.y())) continue;
+        returning_.push_back(point);
+        points_->stand_beside(point);
+    }
+}
+
+/// Where a column of a point that has come to `to` stands: there; or where it left; or, where a barrier raises the ground of
+/// columns that the point is not above, before that barrier on its own side: as far behind the edge of the nearest cell as it lay
+/// before it, so that all of them do not stand on that edge.
+Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) const {
+    const Vec2 left = point.position.head<2>();
+    const Vec2 x = columns_->may_stand(to.x(), to.y()) ? to : left;
+    const GridGeometry& g = scene_.bed.geometry;
+    const auto raised = [&](Index i, Index j) { return raised_[static_cast<std::size_t>(j * g.nx + i)] != 0; };
+    const auto i0 = static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
+               j0 = static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5));
+    if (raised_.empty() || !raised(i0, j0) || above_barrier(x)) return x;
+    constexpr Index kFar = 3;  // cells
+    constexpr double kWithin = 0.499;  // of a cell: what belongs to its node for certain
+    Vec2 best = x;
+    double least = std::numeric_limits<double>::max();
+    for (Index j = std::max<Index>(0, j0 - kFar); j <= std::min(g.ny - 1, j0 + kFar); ++j)
+        for (Index i = std::max<Index>(0, i0 - kFar); i <= std::min(g.nx - 1, i0 + kFar); ++i) {
+            if (raised(i, j) || !columns_->may_stand(g.x(i), g.y(j))) continue;
+            const auto in_cell = [&](const Vec2& at) {
+                const auto near = [&](double u, double node, double low, double high) {
+                    return std::clamp(u, std::max(low, node - kWithin * g.cell), std::min(high, node + kWithin * g.cell));
+                };
+                return Vec2(near(at.x(), g.x(i), g.x0, g.x_max()), near(at.y(), g.y(j), g.y0, g.y_max()));
+            };
+            const Vec2 place = in_cell(x);
+            if ((place - x).norm() >= least || behind_barrier(point.position, place)) continue;
+            least = (place - x).norm();
+            best = in_cell(2.0 * place - x);
+        }
+    return best;
+}
+
+/// Their ground is filtered: nodes beside those that a barrier raises are raised too.
+void StagedRun::mark_raised(const Raster& bed) {
+    const GridGeometry& g = bed.geometry;
+    raised_.assign(static_cast<std::size_t>(g.size()), 0);
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            if (!(bed.at(i, j) > scene_.bed.at(i, j))) continue;
+            for (Index b = std::max<Index>(0, j - 1); b <= std::min(g.ny - 1, j + 1); ++b)
+                for (Index a = std::max<Index>(0, i - 1); a <= std::min(g.nx - 1, i + 1); ++a)
+                    raised_[static_cast<std::size_t>(b * g.nx + a)] = 1;
+        }
+}
+
+bool StagedRun::above_barrier(const Vec2& place) const {
+    const std::vector<Surface>& surfaces = points_->body().surfaces;
+    return std::any_of(surfaces.begin(), surfaces.end(),
+                       [&](const Surface& s) { return s.is_barrier() && std::isfinite(top_of(s, place)); });
+}
+
+/// Whether a barrier stands between a point and a place, at the point's height.
+bool StagedRun::behind_barrier(const Vec3& from, const Vec2& place) const {
+    Entry entry;
+    const Vec3 to(place.x(), place.y(), from.z());
+    const std::vector<Surface>& surfaces = points_->body().surfaces;
+    return std::any_of(surfaces.begin(), surfaces.end(),
+                       [&](const Surface& s) { return s.is_barrier() && enters(s, from, to, entry); });
+}
+
+/// They become columns. What these have no place for, motion up and down and against each other, is lost.
+void StagedRun::take_back() {
+    const double time = points_->status().time;
+    for (const DepartedPoint& point : returning_) returned_.mass += point.mass, returned_.lost += point.energy;
+    const MovingColumns columns =
+        columns_of(returning_, scene_,
+                   {time, [&](const DepartedPoint& point, const Vec2& to) { return place_of_column(point, to); },
+                    [&](const Vec2& x) { return columns_->at(x).depth; }});
+    returned_.lost -= columns_->take_in(columns.seeds, columns.gradient, time);
+    returning_.clear();
+}
+
+/// All points become columns, and the window is a part of the map like any other.
+void StagedRun::end_space() {
+    timed_("hand back", [&] {
+        points_->stand_beside(MaterialBeside{});
+        points_->leave();
+        columns_->close_exits();
+        columns_->catch_up();
+        std::vector<DepartedPoint> all = points_->take_departed();
+        if (returning_.empty())
+            returning_ = std::move(all);
+        else
+            returning_.insert(returning_.end(), all.begin(), all.end());
+        take_back();
+        returning_.shrink_to_fit();
+        ended_ = true;
+    });
+    timed_("map", [&] { map_.look(*points_, points_->status().time); });
+}
+
+}  // namespace frana
