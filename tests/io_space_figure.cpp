@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "fresh_folder.h"
 #include "io_figures_scene.h"
+#include "io_space_pictures.h"
 #include "vtk_io/reader.h"
 #include "vtk_io/space_colours.h"
 #include "vtk_io/space_figure.h"
@@ -14,6 +15,7 @@
 
 using namespace frana;
 using figures::cannot_draw;
+using figures::drawn;
 
 namespace {
 
@@ -97,17 +99,6 @@ SpaceFigure figure_of(const SpaceMoment& moment) {
     figure.width = 900;
     figure.height = 700;
     return figure;
-}
-
-using Render = bool (*)(const SpaceFigure&, const std::filesystem::path&, std::string&);
-
-Pixels drawn(Render render, const SpaceFigure& figure) {
-    const figures::Folder folder;
-    std::string why_not;
-    const bool done = render(figure, folder / "space.png", why_not);
-    INFO(why_not);
-    REQUIRE(done);
-    return read_png(folder / "space.png");
 }
 
 /// Pixels of the picture without its colour bars that are nearest in hue to a colour: channels in the same

@@ -9,6 +9,7 @@
 #include "frana_commands.h"
 #include "fresh_folder.h"
 #include "io_figures_scene.h"
+#include "io_space_pictures.h"
 #include "vtk_io/barrier_mesh.h"
 #include "vtk_io/reader.h"
 #include "vtk_io/space_colours.h"
@@ -18,6 +19,7 @@
 
 using namespace frana;
 using figures::cannot_draw;
+using figures::drawn;
 
 namespace {
 
@@ -104,17 +106,6 @@ SpaceFigure figure_with(const std::vector<BarrierSolid>& barriers) {
     figure.width = 900;
     figure.height = 700;
     return figure;
-}
-
-using Render = bool (*)(const SpaceFigure&, const std::filesystem::path&, std::string&);
-
-Pixels drawn(Render render, const SpaceFigure& figure) {
-    const figures::Folder folder;
-    std::string why_not;
-    const bool done = render(figure, folder / "space.png", why_not);
-    INFO(why_not);
-    REQUIRE(done);
-    return read_png(folder / "space.png");
 }
 
 /// Pixels of just that colour in each row of the picture without its colour bars, the lowest row first.
