@@ -155,8 +155,10 @@ void require_whole(const fs::path& file) {
     expected.resize(kHead, '\0');
     if (text == expected) return;
     if (text.rfind("frana checkpoint ", 0) != 0) throw damaged("is not a checkpoint of frana");
-    if (text.rfind(kCheckpointFormat + std::string("\n"), 0) != 0) throw damaged("has a format that this version does not know");
-    if (text.rfind(fmt::format("{}\nbytes {}\n", kCheckpointFormat, bytes), 0) != 0) throw damaged("was cut short or added to");
+    if (text.rfind(kCheckpointFormat + std::string("\n"), 0) != 0)
+        throw damaged("has a format that this version does not know");
+    if (text.rfind(fmt::format("{}\nbytes {}\n", kCheckpointFormat, bytes), 0) != 0)
+        throw damaged("was cut short or added to");
     throw damaged("is damaged, its checksum does not fit");
 }
 

@@ -32,7 +32,8 @@ double least_split_mass(const Scene& scene) {
 DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
       peaks_(flow_.grid), rheology_(scene.rheology), steep_(scene.terrain != TerrainModel::shallow),
-      curved_(steep_ && scene.curvature == Curvature::full), sleeps_(scene.scheme.sleep), footprint_depth_(scene.output.footprint_depth),
+      curved_(steep_ && scene.curvature == Curvature::full), sleeps_(scene.scheme.sleep),
+      footprint_depth_(scene.output.footprint_depth),
       rest_fraction_(scene.rest_fraction) {
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
@@ -80,6 +81,7 @@ void DepthAveraged::append(const Seeds& seeds, Index first_id) {
 template void DepthAveraged::append<double>(const Seeds&, Index);
 template void DepthAveraged::append<float>(const Seeds&, Index);
 
+/// The columns of a start, sorted by tile.
 template <class Real>
 void DepthAveraged::place(const Seeds& seeds) {
     append<Real>(seeds, 0);

@@ -67,8 +67,7 @@ void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& 
         }
         settle_on_walls<Real>(flow, p, x_max, y_max);
     }
-    const Index k = flow.grid.at(static_cast<Index>(std::floor(c.x[p] + 0.5)),
-                                 static_cast<Index>(std::floor(c.y[p] + 0.5)));
+    const Index k = flow.grid.nearest(c.x[p], c.y[p]);
     if ((!flow.walls && (outside_x || outside_y)) || flow.bed.exit[k]) {
         gone[p] = 1;
         const double energy = leave<Real>(flow, p, k, sums);
