@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "frana_commands.h"
+#include "frana_run_folder.h"
 #include "io/gdal_reader.h"
 #include "io/hdf5_version.h"
 #include "scene/parameters.h"
@@ -41,6 +42,13 @@ void add_case(CLI::App& command, std::filesystem::path& file, std::vector<std::s
         ->allow_extra_args(false);
 }
 
+/// What a command on a finished run makes is listed in its run.json, as what the run made.
+int adding_to(const std::filesystem::path& run_dir, const Action& command) {
+    int code = 0;
+    add_to_files(run_dir, [&] { code = command(); });
+    return code;
+}
+
 void add_run(CLI::App& app, RunOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("run", "run a case");
     add_case(*command, options.case_file, options.sets);
@@ -49,6 +57,7 @@ void add_run(CLI::App& app, RunOptions& options, Action& action) {
         ->check(CLI::Range(1, 4096));
     command->add_option("--until", options.until, "stop at this simulated time [s]");
     command->add_flag("--resume", options.resume, "go on, bit for bit, from the checkpoint.h5 that a run left");
+    command->add_flag("--overwrite", options.overwrite, "replace the files of an earlier run in the folder");
     command->add_flag("--quiet", options.quiet, "no progress");
     command->callback([&] {
         action = [&] { return run_command(options); };
@@ -118,7 +127,7 @@ void add_figures(CLI::App& app, FiguresOptions& options, std::string& size, Acti
     command->callback([&] {
         action = [&] {
             if (!size.empty()) read_size(size, options);
-            return figures_command(options);
+            return adding_to(options.run_dir, [&] { return figures_command(options); });
         };
     });
 }
@@ -131,14 +140,14 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
     command->add_option("--deposit", options.deposit, "raster of the surveyed deposit's thickness [m]");
     command->add_option("--path", options.path, "line for the runout; default the steepest from the release");
     command->add_option("--json", options.json, "file of the scores; default RUN_DIR/compare.json");
-    command->callback([&] { action = [&] { return compare_command(options); }; });
+    command->callback([&] { action = [&] { return adding_to(options.run_dir, [&] { return compare_command(options); }); }; });
 }
 
 void add_states(CLI::App& app, StatesOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("states", "write the ParaView states of a run again, after it was moved");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
     command->add_option("NAME", options.names, "states that must be there: overview, stress, profiles, survey, impact, structure, budgets");
-    command->callback([&] { action = [&] { return states_command(options); }; });
+    command->callback([&] { action = [&] { return adding_to(options.run_dir, [&] { return states_command(options); }); }; });
 }
 
 void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {

@@ -8,7 +8,7 @@
 
 namespace frana {
 
-/// `frana run CASE [--out DIR] [--set key=value]... [--threads N] [--until T] [--resume] [--quiet]`
+/// `frana run CASE [--out DIR] [--set key=value]... [--threads N] [--until T] [--resume] [--overwrite] [--quiet]`
 struct RunOptions {
     std::filesystem::path case_file;
     std::filesystem::path out;      ///< empty: out/<case name>
@@ -16,6 +16,7 @@ struct RunOptions {
     int threads = 0;                ///< 0: as OMP_NUM_THREADS or the machine says
     std::optional<double> until;    ///< stop at this simulated time instead of time.end [s]
     bool resume = false;            ///< go on from the folder's checkpoint.h5
+    bool overwrite = false;         ///< replace the files of an earlier run in the folder
     bool quiet = false;
 };
 

@@ -74,24 +74,25 @@ void say_what_runs(const RunRecord& record, const fs::path& run_dir) {
 int run_command(const RunOptions& options) {
     if (options.threads > 0) omp_set_num_threads(options.threads);
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
+    const fs::path run_dir = options.out.empty() ? fs::path("out") / file.name() : options.out;
+    const std::vector<fs::path> inputs = file.inputs();
+    const Overwrite overwrite = options.overwrite ? Overwrite::yes : Overwrite::no;
+    std::optional<RunLock> lock;
+    if (fs::is_directory(run_dir)) lock.emplace(run_dir);
+    if (!options.resume) require_room_for_run(run_dir, inputs, overwrite);  // before the work of building the scene
     Scene scene = build_scene(file, GdalReader(), barrier_mesh_of);
     shorten(scene, options.until);
     check_insitu(scene);
-    const fs::path run_dir = options.out.empty() ? fs::path("out") / scene.name : options.out;
     const CheckpointLabels labels = checkpoint_labels(scene, file);
-    std::optional<RunLock> lock;
     std::unique_ptr<CheckpointFile> kept;
-    if (options.resume) {
-        if (fs::is_directory(run_dir)) lock.emplace(run_dir);
-        kept = open_checkpoint(run_dir, labels);
-    }
+    if (options.resume) kept = open_checkpoint(run_dir, labels);
     const std::unique_ptr<Simulation> simulation =
         make_simulation(scene, options.resume ? Start::kept : Start::placed);
 
     // Only now is the folder touched: what lies there survives a case that cannot run.
     if (!options.resume) {
-        lock.emplace(run_dir);
-        prepare_run_folder(run_dir);
+        if (!lock) lock.emplace(run_dir);
+        prepare_run_folder(run_dir, inputs, overwrite);
     }
     keep_case(file, run_dir);
     if (scene.output.vtk) keep_meshes(file, run_dir);

@@ -3,7 +3,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <fstream>
 #include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "base/atomic_file.h"
@@ -11,6 +15,7 @@
 
 namespace frana {
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 const std::vector<ProductKind>& product_kinds() {
     static const std::vector<ProductKind> kinds = {
@@ -92,11 +97,48 @@ UserError trouble(const fs::path& run_dir, const std::string& what) {
                     run_dir.string(), what));
 }
 
+std::string relative_to(const fs::path& run_dir, const fs::path& file) {
+    return file.lexically_relative(run_dir).generic_string();
+}
+
+std::int64_t last_change(const fs::path& file) {
+    std::error_code gone;
+    return static_cast<std::int64_t>(fs::last_write_time(file, gone).time_since_epoch().count());
+}
+
+/// All files in the folder that are named like products, whosever they are.
+std::vector<fs::path> files_named_like_products(const fs::path& run_dir) {
+    std::vector<fs::path> all;
+    for (const ProductKind& kind : product_kinds()) {
+        const std::vector<fs::path> files = all_files_of(run_dir, kind);
+        all.insert(all.end(), files.begin(), files.end());
+    }
+    return all;
+}
+
+/// Files that are named like products and are not the run's: path relative to the run folder -> last change
+/// [ns of the file clock]. One that has changed since is the run's: it was replaced.
+using OtherFiles = std::map<std::string, std::int64_t>;
+
+bool same_file(const fs::path& a, const fs::path& b) {
+    std::error_code not_there;
+    return fs::equivalent(a, b, not_there) && !not_there;
+}
+
+Json read_record(const fs::path& run_dir) {
+    std::ifstream stream(run_dir / "run.json");
+    return Json::parse(stream, nullptr, false);  // discarded where it is no JSON
+}
+
+bool has_list(const Json& record) {
+    return record.is_object() && record.contains("files") && record["files"].is_array();
+}
+
 /// Whether files of a kind are written while the run goes on, and not at its end.
 bool grows(const ProductKind& kind) {
     for (const char* folder : {"particles", "grid", "profiles", "gauges", "barriers", "insitu", "insitu/*"})
         if (kind.folder == folder) return true;
-    static const std::regex growing("(history|particles|grid|profiles|barrier|run|terrain|checkpoint|resolved).*");
+    static const std::regex growing("(history|particles|grid|profiles|barrier|run|terrain|checkpoint|case|resolved).*");
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);
 }
 
@@ -119,16 +161,40 @@ void remove_half_written(const fs::path& run_dir) {
     }
 }
 
-/// Marks the folder as that of a running case and removes all products but those of the kinds that stay.
-void clear(const fs::path& run_dir, const std::function<bool(const ProductKind&)>& stays) {
-    write_text(run_dir / "run.json",
-               "{\"exit_reason\": \"running\"}\n");  // also shows that the folder is writable
+/// By run.json: what its list lacks or, when the run did not end, what was there before it. Without a run.json
+/// that says so, all files are others'.
+OtherFiles other_files(const fs::path& run_dir) {
+    const Json record = read_record(run_dir);
+    const bool ended = has_list(record);
+    const bool begun = record.is_object() && record.contains("others") && record["others"].is_object();
+    const auto is_theirs = [&](const std::string& name, const fs::path& file) {
+        if (ended) return std::find(record["files"].begin(), record["files"].end(), name) == record["files"].end();
+        if (begun) return record["others"].contains(name) && record["others"][name] == last_change(file);
+        return true;
+    };
+    OtherFiles others;
+    for (const fs::path& file : files_named_like_products(run_dir)) {
+        const std::string name = relative_to(run_dir, file);
+        if (is_theirs(name, file)) others[name] = last_change(file);
+    }
+    return others;
+}
+
+bool is_others(const OtherFiles& others, const fs::path& run_dir, const fs::path& file) {
+    const auto found = others.find(relative_to(run_dir, file));
+    return found != others.end() && found->second == last_change(file);
+}
+
+/// Marks the folder as that of a running case and removes its products but those of the kinds that stay.
+void clear(const fs::path& run_dir, const OtherFiles& others, const std::function<bool(const ProductKind&)>& stays) {
+    // Written first: it also shows that the folder is writable.
+    write_text(run_dir / "run.json", Json{{"exit_reason", "running"}, {"others", others}}.dump(2) + "\n");
     remove_half_written(run_dir);
     std::error_code failure;
     for (const ProductKind& kind : product_kinds())
         for (const fs::path& file : all_files_of(run_dir, kind)) {
             const std::string name = file.filename().string();
-            if (name == "run.json" || name == "case.toml" || stays(kind)) continue;  // case.toml may be the case itself
+            if (name == "run.json" || stays(kind) || is_others(others, run_dir, file)) continue;
             fs::remove(file, failure);
             if (failure)
                 throw trouble(run_dir, fmt::format("{} of an earlier run cannot be removed: {}", name,
@@ -136,13 +202,49 @@ void clear(const fs::path& run_dir, const std::function<bool(const ProductKind&)
         }
 }
 
+/// Without those that the case reads: a case may lie in the folder that it runs in.
+std::vector<fs::path> files_in_the_way(const fs::path& run_dir, const std::vector<fs::path>& inputs) {
+    std::vector<fs::path> found = files_named_like_products(run_dir);
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        for (const fs::path& file : found) {
+            if (!same_file(file, inputs[i])) continue;
+            if (i == 0 && same_file(file, run_dir / "case.toml")) continue;  // is kept as it is
+            throw UserError(fmt::format("{}: the case reads this file and a run writes one of its name; expected a "
+                                        "folder without the case's inputs; choose another one with --out",
+                                        file.string()));
+        }
+    if (!inputs.empty())
+        found.erase(std::remove_if(found.begin(), found.end(),
+                                   [&](const fs::path& file) { return same_file(file, inputs[0]); }),
+                    found.end());
+    return found;
+}
+
+/// Whether every run writes this very name. Names in gauges, states, ... are the case's or the user's.
+bool has_one_name(const fs::path& run_dir, const fs::path& file) {
+    const std::string folder = file.parent_path().lexically_relative(run_dir).generic_string();
+    return folder == "." || folder == "rasters";
+}
+
+std::string names_of(const fs::path& run_dir, const std::vector<fs::path>& files) {
+    constexpr std::size_t kNamed = 3;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(kNamed, files.size()); ++i)
+        text += (i > 0 ? ", " : "") + relative_to(run_dir, files[i]);
+    return files.size() > kNamed ? fmt::format("{} and {} more", text, files.size() - kNamed) : text;
+}
+
 }  // namespace
 
 std::vector<Product> products_in(const fs::path& run_dir) {
+    const OtherFiles others = other_files(run_dir);
     std::vector<Product> products;
     for (const ProductKind& kind : product_kinds())
         for (const fs::path& folder : folders_of(run_dir, kind)) {
-            const std::vector<fs::path> files = files_in(run_dir / folder, kind);
+            std::vector<fs::path> files = files_in(run_dir / folder, kind);
+            files.erase(std::remove_if(files.begin(), files.end(),
+                                       [&](const fs::path& file) { return is_others(others, run_dir, file); }),
+                        files.end());
             if (files.empty()) continue;
             if (kind.one_of_many)
                 products.push_back({folder.generic_string() + "/", kind.meaning, files.size()});
@@ -154,24 +256,66 @@ std::vector<Product> products_in(const fs::path& run_dir) {
 }
 
 std::vector<fs::path> product_files(const fs::path& run_dir) {
-    std::vector<fs::path> all;
-    for (const ProductKind& kind : product_kinds()) {
-        const std::vector<fs::path> files = all_files_of(run_dir, kind);
-        all.insert(all.end(), files.begin(), files.end());
-    }
-    return all;
+    const OtherFiles others = other_files(run_dir);
+    std::vector<fs::path> files = files_named_like_products(run_dir);
+    files.erase(std::remove_if(files.begin(), files.end(),
+                               [&](const fs::path& file) { return is_others(others, run_dir, file); }),
+                files.end());
+    return files;
 }
 
-void prepare_run_folder(const fs::path& run_dir) {
+std::vector<std::string> files_made(const fs::path& run_dir) {
+    std::vector<std::string> made = {"report.md", "run.json"};  // the last to be written
+    for (const fs::path& file : product_files(run_dir)) made.push_back(relative_to(run_dir, file));
+    std::sort(made.begin(), made.end());
+    made.erase(std::unique(made.begin(), made.end()), made.end());
+    return made;
+}
+
+void require_room_for_run(const fs::path& run_dir, const std::vector<fs::path>& inputs, Overwrite overwrite) {
+    const std::vector<fs::path> found = files_in_the_way(run_dir, inputs);
+    if (overwrite == Overwrite::no && !found.empty())
+        throw UserError(fmt::format("{}: found {}, which a run would replace; expected a folder without a run's files; "
+                                    "choose another one with --out, give --overwrite to replace an earlier run, or "
+                                    "--resume to go on with it",
+                                    run_dir.string(), names_of(run_dir, found)));
+    if (overwrite == Overwrite::no) return;
+    const OtherFiles others = other_files(run_dir);
+    for (const fs::path& file : found)
+        if (has_one_name(run_dir, file) && is_others(others, run_dir, file))
+            throw UserError(fmt::format("{}: found a file that no run left there, by the list in run.json; expected a "
+                                        "folder without files of such names; choose another one with --out, or move it "
+                                        "away",
+                                        file.string()));
+}
+
+void prepare_run_folder(const fs::path& run_dir, const std::vector<fs::path>& inputs, Overwrite overwrite) {
     std::error_code failure;
     if (fs::exists(run_dir) && !fs::is_directory(run_dir)) throw trouble(run_dir, "this is a file");
+    require_room_for_run(run_dir, inputs, overwrite);
     fs::create_directories(run_dir, failure);
     if (failure) throw trouble(run_dir, "cannot be made: " + failure.message());
-    clear(run_dir, [](const ProductKind&) { return false; });
+    OtherFiles others = other_files(run_dir);
+    const fs::path case_there = run_dir / "case.toml";
+    if (!inputs.empty() && same_file(inputs[0], case_there)) others["case.toml"] = last_change(case_there);
+    clear(run_dir, others, [](const ProductKind&) { return false; });
 }
 
-void clear_for_resume(const fs::path& run_dir) {
-    clear(run_dir, [](const ProductKind& kind) { return grows(kind); });
+void clear_for_resume(const fs::path& run_dir) { clear(run_dir, other_files(run_dir), grows); }
+
+void add_to_files(const fs::path& run_dir, const std::function<void()>& work) {
+    const OtherFiles others = other_files(run_dir);
+    work();
+    Json record = read_record(run_dir);
+    if (!has_list(record)) return;
+    std::vector<std::string> made = record["files"];
+    for (const fs::path& file : files_named_like_products(run_dir))
+        if (!is_others(others, run_dir, file)) made.push_back(relative_to(run_dir, file));
+    std::sort(made.begin(), made.end());
+    made.erase(std::unique(made.begin(), made.end()), made.end());
+    if (record["files"] == Json(made)) return;
+    record["files"] = made;
+    write_text(run_dir / "run.json", record.dump(2) + "\n");
 }
 
 }  // namespace frana

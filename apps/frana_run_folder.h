@@ -2,6 +2,7 @@
 // The folder of a run: which files frana writes there, which are there now, and how to make room for new
 // ones.
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,18 +25,36 @@ struct Product {
     std::size_t files = 1;
 };
 
-/// What frana's files there are in the folder now, in the order of product_kinds(), names sorted.
+/// The run's files that are in the folder now, in the order of product_kinds(), names sorted. A file is the run's
+/// when its run.json lists it or, while the run goes on, when it has come or changed since the run began.
 std::vector<Product> products_in(const std::filesystem::path& run_dir);
 
 /// The files behind these, with the folder's name.
 std::vector<std::filesystem::path> product_files(const std::filesystem::path& run_dir);
 
-/// Creates the folder and removes the files of an earlier run. Files that frana does not write stay. Throws
-/// UserError when the folder is a file, cannot be made or cannot be written to.
-void prepare_run_folder(const std::filesystem::path& run_dir);
+/// The same relative to the folder, sorted, with report.md and run.json: what run.json lists as "files".
+std::vector<std::string> files_made(const std::filesystem::path& run_dir);
+
+/// Whether a run may take the place of an earlier one.
+enum class Overwrite { no, yes };
+
+/// Refuses a folder where a run would replace files: those of an earlier run (unless `overwrite`), files that no
+/// run left there but whose names each run writes, and files that the case itself reads. Touches nothing. `inputs` begins with the case
+/// file. Throws UserError.
+void require_room_for_run(const std::filesystem::path& run_dir, const std::vector<std::filesystem::path>& inputs,
+                          Overwrite overwrite);
+
+/// Creates the folder and removes the files of an earlier run, which are those that its run.json lists. Everything
+/// else stays. Throws UserError as above, and when the folder is a file, cannot be made or cannot be written to.
+void prepare_run_folder(const std::filesystem::path& run_dir,
+                        const std::vector<std::filesystem::path>& inputs = {}, Overwrite overwrite = Overwrite::no);
 
 /// Removes what a run leaves at its end (report, rasters, figures, ...) and half-written files of a run that was
 /// killed; series and tables stay, for the run to go on with. Throws UserError as above.
 void clear_for_resume(const std::filesystem::path& run_dir);
+
+/// Does `work`, then adds what it made in the folder of a finished run to the list in its run.json. A run.json
+/// without such a list is left as it is.
+void add_to_files(const std::filesystem::path& run_dir, const std::function<void()>& work);
 
 }  // namespace frana

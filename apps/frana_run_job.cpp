@@ -11,6 +11,7 @@
 #include "frana_comparison.h"
 #include "frana_run_figures.h"
 #include "frana_run_film.h"
+#include "frana_run_folder.h"
 #include "frana_run_space.h"
 #include "frana_run_insitu.h"
 #include "frana_states.h"
@@ -165,8 +166,9 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
         draw_space_film(source, scene.output.film, record.figures, record.warnings);
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
-    write_text(run_dir / "run.json", run_json(record));
     write_text(run_dir / "report.md", report_markdown(record, run_dir));
+    record.files = files_made(run_dir);
+    write_text(run_dir / "run.json", run_json(record));  // last: until then it says which files are not the run's
     return record;
 }
 

@@ -34,7 +34,11 @@ RunLock::RunLock(const fs::path& run_dir) : file_(run_dir / ".frana.lock") {
     std::error_code ignored;
     fs::create_directories(run_dir, ignored);  // prepare_run_folder says what is wrong
     for (int attempt = 0; attempt < 100; ++attempt) {
-        opened_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        opened_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+        if (opened_ < 0 && errno == ELOOP)
+            throw UserError(fmt::format("{}: found a link; expected the lock of a run, whose content is replaced; "
+                                        "remove the link, or choose another folder with --out",
+                                        file_.string()));
         if (opened_ < 0) return;  // the same
         const bool locked = ::flock(opened_, LOCK_EX | LOCK_NB) == 0;
         const bool busy = !locked && errno == EWOULDBLOCK;

@@ -55,6 +55,7 @@ struct RunRecord {
     std::optional<PointsApart> points_apart;
     std::optional<WaterBudget> water;  ///< beside it
     std::vector<std::string> warnings;
+    std::vector<std::string> files;  ///< that the run made, relative to its folder: frana_run_folder.h
 };
 
 /// What the scene and its case file contribute.

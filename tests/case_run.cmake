@@ -15,7 +15,7 @@ if(SET)
   set(changed --set ${SET})
 endif()
 must(${FRANA} check ${CASE} ${changed})
-must(${FRANA} run ${CASE} --out ${OUT} --threads 1 --quiet ${changed})
+must(${FRANA} run ${CASE} --out ${OUT} --threads 1 --overwrite --quiet ${changed})
 foreach(product run.json report.md history.csv particles.pvd grid.pvd terrain.vti footprint.geojson
                 rasters/peak_depth.tif rasters/final_depth.tif figures/map_peak_depth.png)
   if(NOT EXISTS ${OUT}/${product})

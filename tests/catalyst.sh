@@ -35,7 +35,7 @@ fields = ["depth"]
 END
 FRANA_CATALYST_NOTES=$out/notes.txt
 export FRANA_CATALYST_NOTES
-"$frana" run "$out/case.toml" --out "$out/run" --threads 1 --quiet
+"$frana" run "$out/case.toml" --out "$out/run" --threads 1 --overwrite --quiet
 
 # column 5 of the reduction is depth_max; the grid that ParaView gets is in single precision (6e-8 relative)
 tail -n +2 "$out/run/insitu/own.csv" | cut -d, -f1,5 | tr ',' ' ' | paste -d' ' - "$out/notes.txt" | awk '

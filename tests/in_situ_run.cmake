@@ -2,7 +2,7 @@
 # written.
 # cmake -DFRANA=... -DCASE=in_situ.toml -DOUT=dir -P in_situ_run.cmake
 file(REMOVE_RECURSE ${OUT})
-execute_process(COMMAND ${FRANA} run ${CASE} --out ${OUT} --until 8 --threads 1 --quiet RESULT_VARIABLE result)
+execute_process(COMMAND ${FRANA} run ${CASE} --out ${OUT} --until 8 --threads 1 --overwrite --quiet RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "exit code ${result}")
 endif()

@@ -203,7 +203,7 @@ TEST_CASE("A survey that says nothing stops a run before its first step, with th
     const std::string given = text_of(slope.path() / "case.toml");
     for (const auto& [name, what] : {std::pair{"away", "does not touch the terrain"}, {"line", "holds 1 line only"}}) {
         write_text(slope.path() / "case.toml", given + "[survey]\nfootprint = \"" + name + ".geojson\"\n");
-        for (const char* command : {"run case.toml --out run --quiet", "check case.toml"}) {
+        for (const char* command : {"run case.toml --out run --overwrite --quiet", "check case.toml"}) {
             const Outcome outcome = slope.frana(command);
             CAPTURE(command, outcome.err);
             CHECK(outcome.code == 2);

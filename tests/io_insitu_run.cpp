@@ -132,7 +132,7 @@ TEST_CASE("a new run in the folder takes the pictures of the earlier one away", 
     const BareRun run({lines});
     REQUIRE(run.files("insitu/lines") == 5);
     write_text(run.dir() / "insitu" / "lines" / "mine.txt", "kept");
-    prepare_run_folder(run.dir());
+    prepare_run_folder(run.dir(), {}, Overwrite::yes);
     CHECK(run.files("insitu/lines") == 1);
     CHECK_FALSE(fs::exists(run.dir() / "insitu" / "lines.pvd"));
 }

@@ -290,7 +290,7 @@ TEST_CASE("files that a killed run was writing are removed by the next one", "[r
     for (const char* name : {".checkpoint.tmp17.h5", "rasters/.peak_depth.tmp17.tif"})
         write_text(folder.out() / name, "half a file");
     write_text(folder.out() / ".notes.tmp17.txt", "the user's own");
-    const std::string arguments = GENERATE("", "--resume");
+    const std::string arguments = GENERATE("--overwrite", "--resume");
     REQUIRE(folder.run(arguments).code == 0);
     CHECK_FALSE(fs::exists(folder.out() / ".checkpoint.tmp17.h5"));
     CHECK_FALSE(fs::exists(folder.out() / "rasters" / ".peak_depth.tmp17.tif"));

@@ -1,8 +1,10 @@
+#include <chrono>
 #include <set>
 
 #include "base/error.h"
 #include "catch.h"
 #include "frana_run_folder.h"
+#include "frana_run_lock.h"
 #include "fresh_folder.h"
 
 using namespace frana;
@@ -15,9 +17,16 @@ void touch(const fs::path& file) {
     std::ofstream(file) << "text";
 }
 
+/// A run.json that says which files the run of the folder made.
+void list_as_made(const fs::path& folder, const std::vector<std::string>& files) {
+    std::string list;
+    for (const std::string& file : files) list += (list.empty() ? "\"" : ", \"") + file + "\"";
+    std::ofstream(folder / "run.json") << "{\"exit_reason\": \"end\", \"files\": [" << list << "]}";
+}
+
 }  // namespace
 
-TEST_CASE("preparing a run folder removes the files of an earlier run and nothing else") {
+TEST_CASE("preparing a run folder removes the files that the earlier run lists and nothing else") {
     const FreshFolder folder;
     const std::vector<std::string> ours = {"report.md",
                                            "history.csv",
@@ -34,10 +43,15 @@ TEST_CASE("preparing a run folder removes the files of an earlier run and nothin
                                              "rasters/dem.tif",
                                              "case.toml",
                                              "particles/particles_best.vtp",
+                                             "gauges/station.csv",
+                                             "states/mine.pvsm",
                                              "profiles/.hidden.csv"};
     for (const auto& names : {ours, theirs})
         for (const std::string& name : names) touch(folder.path() / name);
-    prepare_run_folder(folder.path());
+    std::vector<std::string> made = ours;
+    made.push_back("run.json");
+    list_as_made(folder.path(), made);
+    prepare_run_folder(folder.path(), {folder.path() / "case.toml"}, Overwrite::yes);
     for (const std::string& name : ours) CHECK_FALSE(fs::exists(folder.path() / name));
     for (const std::string& name : theirs) CHECK(fs::exists(folder.path() / name));
 }
@@ -56,12 +70,83 @@ TEST_CASE("products are listed by name, frames by their folder and number") {
     for (const char* name : {"grid/grid_000000.vti", "grid/grid_000001.vti", "rasters/final_depth.tif",
                              "run.xdmf", "run.h5", "stranger.txt"})
         touch(folder.path() / name);
+    list_as_made(folder.path(), {"grid/grid_000000.vti", "grid/grid_000001.vti", "rasters/final_depth.tif", "run.xdmf",
+                                 "run.h5", "run.json"});
+    touch(folder.path() / "gauges/station.csv");  // a product's name, but nobody's
     const std::vector<Product> products = products_in(folder.path());
-    REQUIRE(products.size() == 4);
-    CHECK(products[0].path == "grid/");
-    CHECK(products[0].files == 2);
-    CHECK(products[1].path == "run.h5");
-    CHECK(products[2].path == "run.xdmf");
-    CHECK(products[3].path == "rasters/final_depth.tif");
+    REQUIRE(products.size() == 5);
+    CHECK(products[0].path == "run.json");
+    CHECK(products[1].path == "grid/");
+    CHECK(products[1].files == 2);
+    CHECK(products[2].path == "run.h5");
+    CHECK(products[3].path == "run.xdmf");
+    CHECK(products[4].path == "rasters/final_depth.tif");
     CHECK(products_in(folder.path() / "nothing").empty());
+}
+
+TEST_CASE("a folder with a run's files is refused unless they may be overwritten") {
+    const FreshFolder folder;
+    touch(folder.path() / "history.csv");
+    list_as_made(folder.path(), {"history.csv", "run.json"});
+    CHECK_THROWS_WITH(prepare_run_folder(folder.path()),
+                      Catch::Contains("run.json, history.csv") && Catch::Contains("--overwrite"));
+    CHECK(text_of(folder.path() / "history.csv") == "text");
+    prepare_run_folder(folder.path(), {}, Overwrite::yes);
+    CHECK_FALSE(fs::exists(folder.path() / "history.csv"));
+}
+
+TEST_CASE("a file that no run made is not replaced, whatever is asked for") {
+    const FreshFolder folder;
+    for (const char* name : {"case.toml", "footprint.geojson", "rasters/peak_depth.tif"}) {
+        touch(folder.path() / name);
+        CHECK_THROWS_WITH(prepare_run_folder(folder.path(), {}, Overwrite::yes),
+                          Catch::Contains(name) && Catch::Contains("no run left there"));
+        CHECK(text_of(folder.path() / name) == "text");
+        fs::remove(folder.path() / name);
+    }
+}
+
+TEST_CASE("what the case reads is never in its run's way, even when an earlier run made it") {
+    const FreshFolder folder;
+    touch(folder.path() / "rasters/final_depth.tif");
+    list_as_made(folder.path(), {"rasters/final_depth.tif", "run.json"});
+    fs::create_symlink(folder.path() / "rasters/final_depth.tif", folder.path() / "link.tif");
+    for (const char* input : {"rasters/final_depth.tif", "link.tif"})
+        CHECK_THROWS_WITH(
+            prepare_run_folder(folder.path(), {folder.path() / "my.toml", folder.path() / input}, Overwrite::yes),
+            Catch::Contains("the case reads this file"));
+    CHECK(text_of(folder.path() / "rasters/final_depth.tif") == "text");
+}
+
+TEST_CASE("of a run that was killed, what came or changed since it began is its own") {
+    const FreshFolder folder;
+    touch(folder.path() / "gauges/station.csv");
+    touch(folder.path() / "gauges/bridge.csv");
+    prepare_run_folder(folder.path(), {}, Overwrite::yes);
+    touch(folder.path() / "history.csv");
+    fs::last_write_time(folder.path() / "gauges/bridge.csv", fs::file_time_type::clock::now() + std::chrono::hours(1));
+    CHECK(files_made(folder.path()) ==
+          std::vector<std::string>{"gauges/bridge.csv", "history.csv", "report.md", "run.json"});
+    prepare_run_folder(folder.path(), {}, Overwrite::yes);
+    CHECK(fs::exists(folder.path() / "gauges/station.csv"));
+    CHECK_FALSE(fs::exists(folder.path() / "gauges/bridge.csv"));
+    CHECK_FALSE(fs::exists(folder.path() / "history.csv"));
+}
+
+TEST_CASE("what a command adds to a finished run is listed with what the run made") {
+    const FreshFolder folder;
+    touch(folder.path() / "history.csv");
+    touch(folder.path() / "gauges/station.csv");
+    list_as_made(folder.path(), {"history.csv", "run.json"});
+    add_to_files(folder.path(), [&] { touch(folder.path() / "compare.json"); });
+    CHECK(files_made(folder.path()) ==
+          std::vector<std::string>{"compare.json", "history.csv", "report.md", "run.json"});
+}
+
+TEST_CASE("the lock of a run does not follow a link") {
+    const FreshFolder folder;
+    touch(folder.path() / "letter.txt");
+    fs::create_symlink(folder.path() / "letter.txt", folder.path() / ".frana.lock");
+    CHECK_THROWS_WITH(RunLock(folder.path()), Catch::Contains("found a link") && Catch::Contains("--out"));
+    CHECK(text_of(folder.path() / "letter.txt") == "text");
 }

@@ -267,7 +267,7 @@ TEST_CASE("earlier results survive a run that cannot start") {
     RunOptions options;
     options.case_file = folder.path() / "case.toml";
     options.out = earlier.dir();
-    options.quiet = true;
+    options.quiet = options.overwrite = true;
     // the terrain can be read, the release lies beside it: only the whole scene shows that nothing can start
     CHECK_THROWS_WITH(run_command(options), Catch::Contains("release"));
 

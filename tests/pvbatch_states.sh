@@ -38,20 +38,20 @@ look_once() {
 }
 
 rm -rf "$work/run" "$work/impact" "$work/structure" "$work/phases" "$work/elsewhere"
-"$frana" run "$source/tests/states_case/case.toml" --out "$work/run" --threads 1 --quiet || exit 1
+"$frana" run "$source/tests/states_case/case.toml" --out "$work/run" --threads 1 --overwrite --quiet || exit 1
 look "$work/run" full "as the run left them"
 
 # Points in space before a wall: a run of its own.
-"$frana" run "$source/tests/states_case/impact.toml" --out "$work/impact" --threads 1 --quiet || exit 1
+"$frana" run "$source/tests/states_case/impact.toml" --out "$work/impact" --threads 1 --overwrite --quiet || exit 1
 look "$work/impact" full "the impact" impact
 look "$work/impact" searched "the impact, with the folder given to ParaView" impact
 
 # Solids that hold together: another one.
-"$frana" run "$source/tests/states_case/structure.toml" --out "$work/structure" --threads 1 --quiet || exit 1
+"$frana" run "$source/tests/states_case/structure.toml" --out "$work/structure" --threads 1 --overwrite --quiet || exit 1
 look "$work/structure" full "the structure" structure
 
 # Solids and free water: another one.
-"$frana" run "$source/tests/states_case/phases.toml" --out "$work/phases" --threads 1 --quiet || exit 1
+"$frana" run "$source/tests/states_case/phases.toml" --out "$work/phases" --threads 1 --overwrite --quiet || exit 1
 look "$work/phases" full "the phases" phases
 
 moved="$work/elsewhere/a run & more"

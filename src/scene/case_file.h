@@ -60,6 +60,8 @@ public:
     /// A path as it is to be opened: relative ones from the case file's folder, GDAL's virtual names
     /// untouched.
     std::filesystem::path resolve(const std::string& path) const;
+    /// The case file, then every file that the given keys name: what the case reads.
+    std::vector<std::filesystem::path> inputs() const;
     /// "case.toml:12: grid.cell", the place of a key for messages; for an absent key, that of its table.
     std::string place(const std::string& key) const;
     /// "case.toml:4: release.0", the place of a table's header.
