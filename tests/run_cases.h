@@ -184,7 +184,7 @@ public:
                                           (folder_ / "out").string(), "--threads", std::to_string(threads),
                                           // 20 ms: kills then lose little, and some fall into a checkpoint
                                           "--set", "output.checkpoint_minutes=0.00033"};
-        if (resume) words.push_back("--resume");
+        words.push_back(resume ? "--resume" : "--overwrite");  // one that died early left a folder without a state
         const pid_t child = ::fork();
         if (child == 0) become(words, disturbance);
         auto start = Clock::now();
