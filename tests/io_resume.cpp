@@ -197,11 +197,11 @@ TEST_CASE("a state of another version or precision is refused", "[resume]") {
     CHECK_THAT(keeper.warnings().front(), Contains("resumed by another build") && Contains("another compiler"));
 }
 
-TEST_CASE("Ctrl-C and SIGTERM leave a state to go on from, and 130", "[resume][cli]") {
+TEST_CASE("Ctrl-C, SIGTERM, SIGHUP and SIGPIPE leave a state to go on from, and 130", "[resume][cli]") {
     const Folder folder;
     REQUIRE(folder.run("").code == 0);
     fs::rename(folder.out(), folder.path() / "whole");
-    const char* const name = GENERATE("INT", "TERM");
+    const char* const name = GENERATE("INT", "TERM", "HUP", "PIPE");
     // A gauge that the run writes to at every output says that it is under way.
     const std::string program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
     const std::string script = "cd " + folder.path().string() + " && { " + program +

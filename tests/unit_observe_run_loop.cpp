@@ -140,8 +140,8 @@ TEST_CASE("an interruption at an output time does not show the same state twice"
     CHECK(outcome.notes.frame_times == std::vector<double>{0.0, 0.4});
 }
 
-TEST_CASE("SIGINT and SIGTERM are requests while an interrupt listens") {
-    for (const int signal : {SIGINT, SIGTERM}) {
+TEST_CASE("SIGINT, SIGTERM, SIGHUP and SIGPIPE are requests while an interrupt listens") {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
         const Interrupt interrupt(Interrupt::Listen::signals);
         CHECK_FALSE(interrupt.requested());
         std::raise(signal);

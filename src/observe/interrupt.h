@@ -1,12 +1,14 @@
 #pragma once
+#include <array>
 #include <atomic>
 #include <csignal>
 
 namespace frana {
 
-/// Notices Ctrl-C and SIGTERM, so that a run can finish its step and leave valid files. While a listening
-/// object lives it owns both signals; the second one kills the program as usual. One listening object at a
-/// time.
+/// Notices Ctrl-C, SIGTERM, a closed terminal (SIGHUP) and a closed pipe behind standard output (SIGPIPE), so that a
+/// run can finish its step and leave valid files. While a listening object lives it owns these signals; a second one
+/// of the same kind kills the program as usual, but for SIGPIPE, which every further line would raise. One listening
+/// object at a time.
 class Interrupt {
 public:
     enum class Listen { no, signals };
@@ -22,8 +24,7 @@ public:
 private:
     bool listening_ = false;
     std::atomic<bool> requested_{false};
-    struct sigaction previous_interrupt_ {};
-    struct sigaction previous_terminate_ {};
+    std::array<struct sigaction, 4> previous_{};
 };
 
 }  // namespace frana
