@@ -103,7 +103,7 @@ end = 1
         "case.toml:12: scheme.preset: found the text \"papr\"; expected one of \"default\", \"paper\"; did "
         "you mean "
         "\"paper\"?",
-        "case.toml:14: output.every: found true; expected a number above 0 [s]; see `frana describe "
+        "case.toml:14: output.every: found true; expected a number at least 1e-09 [s]; see `frana describe "
         "output.every`"};
     CHECK(problems_of(text) == expected);
 }

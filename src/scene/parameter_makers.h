@@ -33,6 +33,7 @@ inline const Range not_negative{0.0, infinity, false, false};
 inline const Range fraction{0.0, 1.0, false, false};
 
 inline Range between(double low, double high) { return {low, high, false, false}; }
+inline Range at_least(double low) { return {low, infinity, false, false}; }
 inline Range above_to(double low, double high) { return {low, high, true, false}; }
 
 inline Value text(const char* value) { return std::string(value); }

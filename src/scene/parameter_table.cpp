@@ -191,7 +191,7 @@ void add_run(Table& table) {
     table.push_back(flag("time.stop_at_rest", false, "stop when the mass has come to rest"));
     table.push_back(number("time.rest_fraction", "1", {0.0, 1.0, true, true}, 0.05,
                            "mean speed, as a share of its peak, that counts as rest"));
-    table.push_back(number("output.every", "s", positive, 1.0, "time between frames, which are hit exactly"));
+    table.push_back(number("output.every", "s", at_least(1e-9), 1.0, "time between frames, which are hit exactly"));
     Parameter formats = make("output.formats", Kind::words, "", "what is written");
     formats.choices = {"vtk", "xdmf", "geotiff", "png"};
     formats.may_be_empty = true;
