@@ -37,6 +37,12 @@ std::string heading(const RunRecord& r) {
     return text;
 }
 
+/// Of two phases each has its own volume: that of the grains is without pores.
+std::string left_text(const RunRecord& r) {
+    if (!r.water) return fmt::format("{:.6g} m3", r.summary.last.mass_left / r.density);
+    return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.water->solids_left / r.density, r.water->left);
+}
+
 std::string results(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
@@ -69,7 +75,7 @@ std::string results(const RunRecord& r) {
                     fmt::format("{}; {:.3g} % of the mass outside the largest, {:.3g} % out of its reach", a.pieces,
                                 100.0 * a.apart, 100.0 * a.alone));
     }
-    text += row("left the domain", fmt::format("{:.6g} m3", s.last.mass_left / r.density));
+    text += row("left the domain", left_text(r));
     return text + "\n";
 }
 
@@ -231,8 +237,8 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
         "  computed   {} steps, {} particles, {:.3g} M particle-steps/s, {} ({:.0f} % output)\n", s.steps,
         s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
         clock_text(s.wall_seconds), 100.0 * s.output_share());
-    text += fmt::format("  released   {:.6g} m3; {:.6g} m3 left the domain; mass error {:.1e}\n",
-                        r.release_volume, s.last.mass_left / r.density, budget(s.first, s.last).mass_error);
+    text += fmt::format("  released   {:.6g} m3; {} left the domain; mass error {:.1e}\n",
+                        r.release_volume, left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n",
                         s.extremes.max_depth, s.extremes.max_speed, s.extremes.max_front);
     text += fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m\n",

@@ -143,7 +143,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     record.points_apart = simulation.points_apart();
     record.water = simulation.water_budget();
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
-    record.release_volume = record.summary.first.mass / scene.density;
+    if (!record.water) record.release_volume = record.summary.first.mass / scene.density;
     if (keeper) {
         record.checkpoints = keeper->progress();
         for (const std::string& warning : keeper->warnings()) record.warnings.push_back(warning);

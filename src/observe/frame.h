@@ -84,6 +84,7 @@ struct WaterBudget {
     double given = 0.0, free = 0.0, confined = 0.0;  ///< at the start, all; now [m3]
     double released = 0.0;                           ///< by what broke, since the start [m3]
     double rained = 0.0, infiltrated = 0.0, left = 0.0;  ///< the last also within columns [m3]
+    double solids_left = 0.0;                       ///< mass of grains that left within columns [kg]
     double residual = 0.0;                               ///< of all these: round-off [m3]
     double bed = 0.0, viscosity = 0.0, drag = 0.0;       ///< energy lost there [J]
     double steps = 0.0;                                  ///< of the columns for each of the water

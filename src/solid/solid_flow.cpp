@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
+#include "base/step_length.h"
 
 namespace frana {
 namespace {
@@ -80,6 +82,7 @@ void SolidFlow::place(const SolidSeeds& seeds) {
     const Index before = q.count(), count = static_cast<Index>(seeds.mass.size());
     q.resize(before + count);
     double given = 0.0;
+    CompensatedSum total(status_.mass);
     Vec3 moment = status_.mass * status_.centre;
     for (Index p = before; p < before + count; ++p) {
         const std::size_t n = static_cast<std::size_t>(p - before);
@@ -96,7 +99,7 @@ void SolidFlow::place(const SolidSeeds& seeds) {
         status_.momentum_given += mass * seeds.velocity[n];
         status_.momentum += mass * seeds.velocity[n];
         moment += mass * seeds.position[n];
-        status_.mass += mass;
+        total.add(mass);
         const double kinetic = 0.5 * mass * speed * speed,
                      potential = -mass * body_.gravity.dot(seeds.position[n]),
                      stored = q.rest_volume[p] * energy;
@@ -107,6 +110,7 @@ void SolidFlow::place(const SolidSeeds& seeds) {
         status_.max_speed = std::max(status_.max_speed, speed);
     }
     status_.energy_given += given;
+    status_.mass = total.value();
     if (status_.mass > 0.0) status_.centre = moment / status_.mass;
     status_.points = q.count();
 }
@@ -221,9 +225,7 @@ double SolidFlow::step_length(double until) const {
     constexpr double kViscous =
         0.1;  // of rho h^2 / mu: half of what a slice was stable with, for the third direction
     if (viscosity > 0.0) longest = std::min(longest, kViscous * density_ * h * h / viscosity);
-    const double left = until - status_.time;
-    if (left <= longest) return left;
-    return left < 2.0 * longest ? 0.5 * left : longest;
+    return step_towards(until - status_.time, longest);
 }
 
 /// One step: points give mass, momentum and stress to the nodes, surfaces show their images, nodes meet the

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/flush_denormals.h"
+#include "base/step_length.h"
 #include "grid/stencil.h"
 #include "solver/shock.h"
 
@@ -212,9 +213,7 @@ double DepthAveraged::longest_step() const {
 
 /// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
 double DepthAveraged::step_length(double until) const {
-    const double left = until - status_.time, longest = longest_step();
-    if (left <= longest) return left;
-    return left < 2.0 * longest ? 0.5 * left : longest;
+    return step_towards(until - status_.time, longest_step());
 }
 
 void DepthAveraged::book_kick(const KickSums& sums, double kick) {

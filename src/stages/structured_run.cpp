@@ -146,6 +146,7 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
     b.given = both_->volume_given(), b.free = w.volume, b.confined = both_->confined();
     b.released = flow().status().released;
     b.rained = l.rained, b.infiltrated = l.infiltrated, b.left = l.left + flow().status().confined_left;
+    b.solids_left = flow().status().mass_left - water_density_ * flow().status().confined_left;
     b.residual = both_->volume_residual();
     b.bed = water_density_ * l.braked, b.viscosity = water_density_ * l.sheared, b.drag = flow().status().dragged;
     b.steps = both_->sub_cycles();

@@ -35,7 +35,7 @@ public:
                 pull.exit = pull.exit || !std::isfinite(z);
                 pull.elevation += w * z, slope += w * slope_at(i + di, j + dj);
             }
-        if (pull.exit) pull.elevation = 0.0, slope = Vec2(0, 0);
+        if (pull.exit) pull.elevation = beside_hole(i, j), slope = Vec2(0, 0);
         // Along the ground the slope is a sine, on the map a tangent.
         const double drive = unrolled_ ? gravity_ : gravity_ / (1.0 + slope.squaredNorm());
         pull.across = unrolled_ ? gravity_ * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) : drive;
@@ -45,6 +45,20 @@ public:
     }
 
 private:
+    /// Where there is no ground: the mean elevation of the nearest ring of nodes that has any, as far as columns reach [m].
+    /// Nodes there carry a share of the columns beside the hole, and that share has its height.
+    double beside_hole(Index i, Index j) const {
+        constexpr Index kReach = 4;
+        for (Index reach = 1; reach <= kReach; ++reach) {
+            double sum = 0.0, known = 0.0;
+            for (Index b = std::max<Index>(0, j - reach); b <= std::min(bed_.geometry.ny - 1, j + reach); ++b)
+                for (Index a = std::max<Index>(0, i - reach); a <= std::min(bed_.geometry.nx - 1, i + reach); ++a)
+                    if (std::isfinite(bed_.at(a, b))) sum += bed_.at(a, b), known += 1.0;
+            if (known > 0.0) return sum / known;
+        }
+        return 0.0;
+    }
+
     /// Central differences; one-sided at the edge and beside what has no ground.
     Vec2 slope_at(Index i, Index j) const {
         const auto along = [&](Index di, Index dj) {

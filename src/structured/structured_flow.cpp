@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
+#include "base/step_length.h"
 
 namespace frana {
 namespace {
@@ -68,6 +70,7 @@ void StructuredFlow::place(const StructuredScene& scene) {
     StructuredPoints& q = body_.points;
     const Index count = static_cast<Index>(seeds.x.size());
     q.resize(count);
+    CompensatedSum mass;
     for (Index p = 0; p < count; ++p) {
         const std::size_t n = static_cast<std::size_t>(p);
         q.x[p] = (seeds.x[n] - g.x0) / g.cell, q.y[p] = (seeds.y[n] - g.y0) / g.cell;
@@ -84,7 +87,7 @@ void StructuredFlow::place(const StructuredScene& scene) {
         q.r1x[p] = q.r2y[p] = std::sqrt(q.volume[p] / q.depth[p]) / g.cell, q.r1y[p] = q.r2x[p] = 0.0;
         q.id[p] = p;
         const Vec2 v(q.vx[p], q.vy[p]);
-        status_.mass += q.mass[p];
+        mass.add(q.mass[p]);
         status_.momentum += q.mass[p] * v;
         status_.kinetic += 0.5 * q.mass[p] * v.squaredNorm();
         status_.damage += q.mass[p] * q.damage[p];
@@ -92,6 +95,7 @@ void StructuredFlow::place(const StructuredScene& scene) {
         wave_ = std::max(wave_, v.norm() + std::sqrt(2.0 * q.pull[p] * q.depth[p]));
         if (q.damage[p] > 0.0 || body_.share < 1.0) body_.grains = true;
     }
+    status_.mass = mass.value();
     if (status_.mass > 0.0) status_.damage /= status_.mass;
     status_.momentum_given = status_.momentum;
     status_.points = count;
@@ -175,8 +179,7 @@ void StructuredFlow::learn_ground() {
 }
 
 double StructuredFlow::step_length(double until) const {
-    const double dt = longest_step(), left = until - status_.time;
-    return dt < left ? std::min(dt, 0.5 * left + 0.5 * dt) : left;
+    return step_towards(until - status_.time, longest_step());
 }
 
 /// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone: their earth pressure

@@ -100,7 +100,7 @@ struct StructuredStatus {
     double dragged = 0.0;      ///< lost by columns and water to the drag between them since the start [J]
     Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
     double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
-    double energy_left = 0.0;  ///< carried out, motion in the plane and height of the ground [J]
+    double energy_left = 0.0;  ///< carried out: motion along the bed, and height above z = 0 [J]
     double flow_steps = 0.0;   ///< sum of each step's bound over the flow's alone
 };
 

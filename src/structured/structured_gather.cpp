@@ -126,10 +126,22 @@ struct Sums {
     return (0.5 * body.share / of.young) * load(&q.volume[p], lanes) * (1.0 - damage) * twice;
 }
 
-/// The ground at the node nearest to a column.
+/// The ground at the node nearest to a column, of the grid's own nodes: beyond its sides that of its edge.
 const StructuredBody::Pull& ground_below(const StructuredBody& body, Index p) {
+    const auto nearest = [](double u, Index count) {
+        return static_cast<Index>(std::floor(std::clamp(u, 0.0, static_cast<double>(count - 1)) + 0.5));
+    };
     const StructuredPoints& q = body.points;
-    return body.pull[body.grid.at(static_cast<Index>(std::floor(q.x[p] + 0.5)), static_cast<Index>(std::floor(q.y[p] + 0.5)))];
+    return body.pull[body.grid.at(nearest(q.x[p], body.grid.nx()), nearest(q.y[p], body.grid.ny()))];
+}
+
+/// What a column carries out: motion along the bed, and its own height above z = 0 [J].
+double energy_of(const StructuredBody& body, Index p) {
+    const StructuredPoints& q = body.points;
+    const StructuredBody::Pull& ground = ground_below(body, p);
+    const double vz = ground.slope_x * q.vx[p] + ground.slope_y * q.vy[p];
+    return q.mass[p] * (0.5 * (q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p] + vz * vz) +
+                        body.gravity * (ground.elevation + 0.5 * std::max(q.depth[p], 0.0)));
 }
 
 /// Columns leave beyond the outer nodes, and where there is no ground: whether this one does, which is then booked.
@@ -144,7 +156,7 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     body.gone[static_cast<std::size_t>(p)] = 1;
     sums.left_mass += m, sums.left_momentum += m * v;
     sums.left_confined += q.confined[p] + q.released[p];
-    sums.left_energy += m * (0.5 * v.squaredNorm() + body.gravity * (inside ? ground_below(body, p).elevation : 0.0));
+    sums.left_energy += energy_of(body, p);
     return true;
 }
 

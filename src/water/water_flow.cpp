@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/flush_denormals.h"
+#include "base/step_length.h"
 
 namespace frana {
 namespace {
@@ -169,7 +170,7 @@ double WaterFlow::step_length(double until) const {
     const double reach = cfl_ * body_.grid.cell(), nu = body_.viscosity.kinematic;
     double dt = 2.0 * reach / (signal_ + std::sqrt(signal_ * signal_ + body_.gravity * reach));
     if (nu > 0.0) dt = std::min(dt, kViscous * body_.grid.cell() * body_.grid.cell() / nu);
-    return dt < left ? std::min(dt, 0.5 * left + 0.5 * dt) : left;
+    return step_towards(left, dt);
 }
 
 void WaterFlow::advance(double until) {
