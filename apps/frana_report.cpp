@@ -51,9 +51,11 @@ std::string results(const RunRecord& r) {
                                               s.steps, s.frames));
     text += row("deepest flow",
                 fmt::format("{:.4g} m at t = {:.4g} s", s.extremes.max_depth, s.extremes.max_depth_time));
-    text += row("fastest particle",
+    text += row("fastest flow, along the bed",
                 fmt::format("{:.4g} m/s at t = {:.4g} s", s.extremes.max_speed, s.extremes.max_speed_time));
-    text += row("largest bed pressure", fmt::format("{:.4g} Pa", r.peak_pressure));
+    text += row("largest dynamic pressure, density times speed squared",
+                fmt::format("{:.4g} kPa", 1e-3 * r.peak_dynamic_pressure));
+    text += row("largest bed pressure", fmt::format("{:.4g} kPa", 1e-3 * r.peak_pressure));
     text += row("farthest front from the release's centre", fmt::format("{:.5g} m", s.extremes.max_front));
     text += row(fmt::format("area ever deeper than {:.3g} m", r.footprint_depth),
                 fmt::format("{:.5g} m2", r.footprint_area));

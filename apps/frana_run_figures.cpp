@@ -23,6 +23,9 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     MapFigure map;
     map.bed = source.bed;
     map.field = product.raster.values;
+    const bool pascal = product.unit == "Pa";  // files are in SI units, pictures in those of the field
+    if (pascal)
+        for (double& value : map.field) value *= 1e-3;
     map.shown_above = source.footprint_depth;
     if (!depth && extent && extent->raster.values.size() == map.field.size()) {
         map.outline_field = extent->raster.values;
@@ -33,7 +36,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     if (product.name.find("damage") != std::string::npos) map.range = {0.0, 1.0};
     map.title = fmt::format("{}: {}", source.title, what);
     map.field_label =
-        fmt::format("{} [{}]", what.substr(0, what.find(" at ")), product.unit);  // the title has the moment
+        fmt::format("{} [{}]", what.substr(0, what.find(" at ")), pascal ? "kPa" : product.unit);  // the title has the moment
     map.survey = source.survey;
     for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
     for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});

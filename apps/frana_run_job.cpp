@@ -53,6 +53,7 @@ void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) 
     record.peak_depth = largest(rasters, "peak_depth");
     record.peak_speed = largest(rasters, "peak_speed");
     record.peak_pressure = largest(rasters, "peak_pressure");
+    record.peak_dynamic_pressure = largest(rasters, "peak_dynamic_pressure");
     record.final_depth = largest(rasters, "final_depth");
 }
 

@@ -118,7 +118,8 @@ Json results_json(const RunRecord& record) {
             {"footprint_area", record.footprint_area},
             {"footprint_depth", record.footprint_depth},
             {"final_max_depth", record.final_depth},
-            {"peak_pressure", record.peak_pressure}};
+            {"peak_pressure", record.peak_pressure},
+            {"peak_dynamic_pressure", record.peak_dynamic_pressure}};
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ struct RunRecord {
     double footprint_depth = 0.1;  ///< [m]
     double footprint_area = 0.0;   ///< ever deeper than footprint_depth [m2]
     double peak_depth = 0.0, peak_speed = 0.0, peak_pressure = 0.0;  ///< of the rasters [m], [m/s], [Pa]
+    double peak_dynamic_pressure = 0.0;                                ///< [Pa]
     double final_depth = 0.0;                                        ///< deepest at the end [m]
     int threads = 1;
     std::optional<Comparison> comparison;  ///< with the survey, when the case gives one

@@ -176,7 +176,7 @@ TEST_CASE("Stress at the rim of a stencil drives no node away from its points", 
         DepthAveraged simulation(scene);
         for (int step = 0; step < 150; ++step) {
             simulation.advance(1e9);
-            const double points = simulation.status().max_speed;
+            const double points = simulation.status().max_speed_on_map;
             double nodes = 0.0;
             for (const Index tile : simulation.flow().active.work)
                 for_each_node_of(simulation.flow().grid, tile, simulation.flow().touched[tile], [&](Index k, Index, Index) {

@@ -62,7 +62,7 @@ void keep(Archive& archive, const std::string& name, Status& s) {
     archive.numbers("numbers", {&s.time, &s.dt, &s.mass, &s.mass_left, &s.momentum[0], &s.momentum[1], &s.impulse[0],
                                 &s.impulse[1], &s.momentum_left[0], &s.momentum_left[1], &s.kinetic, &s.potential,
                                 &s.dissipated, &s.energy_left, &s.p2g_mass_error, &s.p2g_momentum_error, &s.max_depth,
-                                &s.max_speed, &s.mean_speed, &s.covered_area, &s.front, &s.stored, &s.in_space.friction,
+                                &s.max_speed, &s.max_speed_on_map, &s.mean_speed, &s.covered_area, &s.front, &s.stored, &s.in_space.friction,
                                 &s.in_space.walls, &s.in_space.material, &s.in_space.numerical,
                                 &s.in_space.volume});
 }

@@ -47,7 +47,9 @@ struct Status {
     double p2g_mass_error = 0.0;     ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
     double p2g_momentum_error = 0.0; ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]
     double max_depth = 0.0;          ///< [m]
-    double max_speed = 0.0;          ///< largest particle speed along the map [m/s]
+    double max_speed = 0.0;          ///< largest speed along the bed, of nodes deeper than a tenth of the footprint depth
+                                     ///< [m/s]; of points in space that of the fastest
+    double max_speed_on_map = 0.0;   ///< largest particle speed along the map [m/s]
     double mean_speed = 0.0;         ///< mass mean of the speed [m/s]
     double covered_area = 0.0;       ///< deeper than the footprint depth now [m2]
     double front = 0.0;              ///< largest map distance of such a node from the release's centre [m]

@@ -41,7 +41,8 @@ const std::vector<std::string>& columns() {
                                                    "points_walls",
                                                    "points_material",
                                                    "points_numerical",
-                                                   "points_volume"};
+                                                   "points_volume",
+                                                   "max_speed_on_map"};
     return names;
 }
 
@@ -99,7 +100,8 @@ void History::add(const Status& now) {
                                      now.in_space.walls,
                                      now.in_space.material,
                                      now.in_space.numerical,
-                                     now.in_space.volume};
+                                     now.in_space.volume,
+                                     now.max_speed_on_map};
     for (std::size_t i = 0; i < row.size(); ++i)
         if (!std::isfinite(row[i]))
             throw NumericsError(

@@ -35,7 +35,7 @@ bool all_finite(const Field& field) {
 /// The first reason why a frame may not reach a file. Node fields hold NaN for nodata, particles never do.
 std::optional<std::string> unfit(const Frame& frame) {
     const Status& s = frame.status;
-    for (const double value : {s.time, s.mass, s.kinetic, s.potential, s.max_depth, s.max_speed})
+    for (const double value : {s.time, s.mass, s.kinetic, s.potential, s.max_depth, s.max_speed, s.max_speed_on_map})
         if (!std::isfinite(value)) return "a sum over the particles is not finite";
     for (const Field& field : frame.particles)
         if (!all_finite(field)) return fmt::format("the particles' {} is not finite", field.name);

@@ -173,7 +173,7 @@ void add_scheme(Table& table) {
     table.push_back(paper(
         flag("scheme.mass_fit", true, "fit the masses so that a smooth release starts at rest"), false));
     table.push_back(number("scheme.curvature_length", "m", not_negative, 10.0,
-                           "smoothing of the bed for its curvature; 0: none"));
+                           "smoothing of the bed for its curvature and for speeds along it; 0: none"));
     table.push_back(number("scheme.strain_rate_floor", "1/s", positive, 1e-3,
                            "strain rate below which the yield stress is regularised"));
     table.push_back(number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,

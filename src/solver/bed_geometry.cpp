@@ -121,9 +121,9 @@ double slope_at(const double* z, Index step, double cell) {
     return (8.0 * (z[step] - z[-step]) - (z[2 * step] - z[-2 * step])) * (1.0 / (12.0 * cell));
 }
 
-/// The bed's Hessian and slopes as far as they are smooth, from the bed extended linearly whatever the sides: a slope that meets a wall is mirrored for
-/// the pressure, but it has no curvature there.
-void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<double>& z, BedGeometry& bed) {
+/// The bed averaged over the shape function and smoothed to `curvature_length`, extended linearly whatever the sides: a
+/// slope that meets a wall is mirrored for the pressure, but it has no curvature there.
+LazyArray<double> smoothed_bed(const Scene& scene, const TileGrid& grid, const std::vector<double>& z) {
     const double cell = grid.cell(), length = scene.scheme.curvature_length;
     LazyArray<double> smoothed(grid.size()), scratch(grid.size());
     for_each_node(grid, 0, [&](Index i, Index j, Index k) {
@@ -137,19 +137,30 @@ void fill_curvature(const Scene& scene, const TileGrid& grid, const std::vector<
         smooth(grid, smoothed, scratch, Axis::x, binomial);
         smooth(grid, smoothed, scratch, Axis::y, binomial);
     }
+    return smoothed;
+}
+
+void fill_smooth_slopes(const TileGrid& grid, const LazyArray<double>& smoothed, BedGeometry& bed) {
+    bed.smooth_x = LazyArray<double>(grid.size());
+    bed.smooth_y = LazyArray<double>(grid.size());
+    for_each_node(grid, 3, [&](Index, Index, Index k) {
+        const double* c = smoothed.data() + k;
+        bed.smooth_x[k] = slope_at(c, 1, grid.cell());
+        bed.smooth_y[k] = slope_at(c, grid.stride(), grid.cell());
+    });
+}
+
+void fill_curvature(const TileGrid& grid, const LazyArray<double>& smoothed, BedGeometry& bed) {
+    const double cell = grid.cell();
     bed.hxx = LazyArray<double>(grid.size());
     bed.hxy = LazyArray<double>(grid.size());
     bed.hyy = LazyArray<double>(grid.size());
-    bed.smooth_x = LazyArray<double>(grid.size());
-    bed.smooth_y = LazyArray<double>(grid.size());
     const Index up = grid.stride();
     for_each_node(grid, 3, [&](Index, Index, Index k) {
         const double* c = smoothed.data() + k;
         bed.hxx[k] = (c[1] - 2.0 * c[0] + c[-1]) / (cell * cell);
         bed.hyy[k] = (c[up] - 2.0 * c[0] + c[-up]) / (cell * cell);
         bed.hxy[k] = (c[up + 1] - c[up - 1] - c[-up + 1] + c[-up - 1]) / (4.0 * cell * cell);
-        bed.smooth_x[k] = slope_at(c, 1, cell);
-        bed.smooth_y[k] = slope_at(c, up, cell);
         for (auto* h : {&bed.hxx, &bed.hxy, &bed.hyy}) (*h)[k] = std::clamp((*h)[k], -kSharpest / cell, kSharpest / cell);
     });
 }
@@ -186,7 +197,10 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
             for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);
         bed.z_min[k] = least;
     });
-    if (scene.curvature != Curvature::none && scene.terrain != TerrainModel::shallow) fill_curvature(scene, grid, z, bed);
+    if (scene.terrain == TerrainModel::shallow) return bed;
+    const LazyArray<double> smoothed = smoothed_bed(scene, grid, z);
+    fill_smooth_slopes(grid, smoothed, bed);
+    if (scene.curvature != Curvature::none) fill_curvature(grid, smoothed, bed);
     return bed;
 }
 

@@ -20,7 +20,7 @@ struct BedGeometry {
     LazyArray<double> slope_x;  ///< dz/dx by the 4th-order stencil that also differentiates the free surface [1]
     LazyArray<double> slope_y;  ///< [1]
     LazyArray<double> hxx, hxy, hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
-    LazyArray<double> smooth_x, smooth_y;  ///< slopes of that smoothed bed [1]; empty without curvature
+    LazyArray<double> smooth_x, smooth_y;  ///< slopes of that smoothed bed, which the flow's path has [1]; empty on gentle terrain
     LazyArray<std::uint8_t> exit;     ///< kNoData or kNoted where material leaves
     bool has_exits = false;           ///< any of them
 };

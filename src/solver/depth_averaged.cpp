@@ -76,7 +76,7 @@ void DepthAveraged::append(const Seeds& seeds, Index first_id) {
         held.r1x[p] = held.r2y[p] = static_cast<Real>(seeds.size[n] / g.cell);
         held.depth[p] = static_cast<Real>(seeds.depth[n]);
         c.id[p] = first_id + n;
-        status_.max_speed = std::max(status_.max_speed, std::hypot(seeds.vx[n], seeds.vy[n]));
+        status_.max_speed_on_map = std::max(status_.max_speed_on_map, std::hypot(seeds.vx[n], seeds.vy[n]));
     }
 }
 template void DepthAveraged::append<double>(const Seeds&, Index);
@@ -92,7 +92,7 @@ void DepthAveraged::place(const Seeds& seeds) {
         centre_ += c.mass[p] * Vec2(c.x[p], c.y[p]);
         mass += c.mass[p];
     }
-    signal_ = status_.max_speed;
+    signal_ = status_.max_speed_on_map;
     if (mass > 0.0) centre_ /= mass;
     splitter_.set_next_id(seeds.count());
     sorter_.sort(c, flow_.grid, {}, flow_.active);
@@ -160,7 +160,9 @@ void DepthAveraged::arrive(const PointSums& points) {
         points.p_abs > 0.0 ? std::hypot(nodes.px - points.px, nodes.py - points.py) / points.p_abs : 0.0;
     timed_("depth", [&] { fold_walls(flow_); });
     const NodeSums sums = raise_surface();
-    timed_("peaks", [&] { update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_); });
+    status_.max_speed = timed_("peaks", [&] {
+        return update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_);
+    });
 
     stress_power_ = points.stress_power;
     status_.particles = flow_.columns.count();
@@ -227,7 +229,7 @@ void DepthAveraged::book_kick(const KickSums& sums, double kick) {
 void DepthAveraged::book_points(const PointSums& sums) {
     signal_ = std::max(signal_, sums.max_signal);
     drift_ += sums.max_shift;
-    status_.max_speed = sums.max_speed;
+    status_.max_speed_on_map = sums.max_speed;
     if (flow_.walls)  // what walls push is not seen on the nodes: it is what else the points gained
         for (int axis = 0; axis < 2; ++axis) {
             const double gathered = axis == 0 ? sums.px + sums.left_px : sums.py + sums.left_py;
@@ -253,7 +255,7 @@ void DepthAveraged::require_sound(const PointSums& sums) const {
 
 bool DepthAveraged::at_rest() const {
     if (status_.step == 0) return false;
-    return status_.max_speed == 0.0 || status_.mean_speed < rest_fraction_ * peak_mean_speed_;
+    return status_.max_speed_on_map == 0.0 || status_.mean_speed < rest_fraction_ * peak_mean_speed_;
 }
 
 Sample DepthAveraged::at(const Vec2& point) const {

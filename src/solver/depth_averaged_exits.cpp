@@ -92,11 +92,11 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     status_.momentum_left[1] -= came.left_py;
     status_.energy_left -= came.left_energy;
     status_.kinetic += kinetic;  // of nodes, and to the next kick only
-    signal_ = std::max(signal_, status_.max_speed);
+    signal_ = std::max(signal_, status_.max_speed_on_map);
     sorter_.sort(c, flow_.grid, {}, flow_.active);
     drift_ = 0.0;
     arrive(transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())));
-    signal_ = std::max(signal_, status_.max_speed + std::sqrt(flow_.gravity * status_.max_depth));
+    signal_ = std::max(signal_, status_.max_speed_on_map + std::sqrt(flow_.gravity * status_.max_depth));
     return came.left_energy;
 }
 

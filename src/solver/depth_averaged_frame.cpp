@@ -27,9 +27,9 @@ void for_all_output_nodes(const Flow& flow, Body&& body) {
         for (Index i = 0; i < nx; ++i) body(flow.grid.at(i, j), j * nx + i);
 }
 
-/// Bed at a point: elevation, slope and normal thickness factor.
-struct BedHere { double z = 0.0, slope_x = 0.0, slope_y = 0.0; };
-BedHere bed_at(const Flow& flow, double x, double y) {
+/// Bed at a point: elevation, its own slope, and that of the smoothed bed, which velocities follow (zero on gentle terrain).
+struct BedHere { double z = 0.0, slope_x = 0.0, slope_y = 0.0, path_x = 0.0, path_y = 0.0; };
+BedHere bed_at(const Flow& flow, bool steep, double x, double y) {
     const Quadratic sx(x), sy(y);
     BedHere here;
     for (int j = 0; j < 3; ++j)
@@ -39,6 +39,7 @@ BedHere bed_at(const Flow& flow, double x, double y) {
             here.z += w * flow.bed.z[k];
             here.slope_x += w * flow.bed.slope_x[k];
             here.slope_y += w * flow.bed.slope_y[k];
+            if (steep) here.path_x += w * flow.bed.smooth_x[k], here.path_y += w * flow.bed.smooth_y[k];
         }
     return here;
 }
@@ -82,7 +83,7 @@ Frame DepthAveraged::frame() {
             frame.status.momentum[1] += flow_.columns.mass[p] * probe_.vy[p];
             speed2 = std::max(speed2, probe_.vx[p] * probe_.vx[p] + probe_.vy[p] * probe_.vy[p]);
         }
-        frame.status.max_speed = std::sqrt(speed2);
+        frame.status.max_speed_on_map = std::sqrt(speed2);
         if (flow_.walls)
             for (int axis = 0; axis < 2; ++axis)
                 frame.status.impulse[axis] =
@@ -114,10 +115,10 @@ void DepthAveraged::particle_fields(Frame& frame) {
     double* id = column("id", "1", 1);
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < count; ++p) {
-        const BedHere bed = bed_at(flow_, c.x[p], c.y[p]);
+        const BedHere bed = bed_at(flow_, steep_, c.x[p], c.y[p]);
         const double h = std::max(probe_.depth[p], 0.0), vx = probe_.vx[p], vy = probe_.vy[p];
         const double slope2 = steep_ ? bed.slope_x * bed.slope_x + bed.slope_y * bed.slope_y : 0.0;
-        const double vz = steep_ ? vx * bed.slope_x + vy * bed.slope_y : 0.0;
+        const double vz = vx * bed.path_x + vy * bed.path_y, path2 = bed.path_x * bed.path_x + bed.path_y * bed.path_y;
         position[3 * p] = g.x0 + c.x[p] * g.cell;
         position[3 * p + 1] = g.y0 + c.y[p] * g.cell;
         position[3 * p + 2] = bed.z + h;
@@ -129,7 +130,7 @@ void DepthAveraged::particle_fields(Frame& frame) {
         speed[p] = std::sqrt(vx * vx + vy * vy + vz * vz);
         elevation[p] = bed.z;
         surface[p] = bed.z + h;
-        pressure[p] = flow_.density * flow_.gravity * h / (1.0 + slope2);
+        pressure[p] = flow_.density * flow_.gravity * h / (1.0 + path2);
         mass[p] = c.mass[p];
         volume[p] = c.mass[p] / flow_.density;
         id[p] = static_cast<double>(c.id[p]);
@@ -163,6 +164,7 @@ void DepthAveraged::node_fields(Frame& frame) {
         arrival[n] = peaks_.depth[k] > footprint_depth_ ? peaks_.arrival[k] : -1.0;
     });
     const Motion* motions = flow_.nodes.motions();
+    double fastest = 0.0;
     for_each_output_node(flow_, [&](Index k, Index n) {
         const double h = flow_.nodes.depth[k], vx = motions[k].vx, vy = motions[k].vy;
         if (h <= 0.0) return;
@@ -173,10 +175,12 @@ void DepthAveraged::node_fields(Frame& frame) {
         surface[n] += h;
         velocity[3 * n] = vx;
         velocity[3 * n + 1] = vy;
-        velocity[3 * n + 2] = vx * bx + vy * by;
+        if (steep_) velocity[3 * n + 2] = vx * flow_.bed.smooth_x[k] + vy * flow_.bed.smooth_y[k];
         speed[n] = contact.speed;
+        if (!(h < 0.1 * footprint_depth_)) fastest = std::max(fastest, contact.speed);
         pressure[n] = contact.pressure;
     });
+    frame.status.max_speed = fastest;
 }
 
 /// Stress of the rheology at the points and, mass-weighted, on the nodes; effective_stress adds the depth-averaged

@@ -1,5 +1,7 @@
 #include "solver/peaks.h"
 
+#include <algorithm>
+
 #include "base/simd.h"
 
 namespace frana {
@@ -14,7 +16,7 @@ template <class Real>
 Contact<Real> contact(const Flow& flow, bool steep, bool curved, Index k, Real vx, Real vy) {
     Real gravity = Real{} + flow.gravity, rise{}, cosine2 = Real{} + 1.0;
     if (steep) {
-        const Real bx = read<Real>(&flow.bed.slope_x[k]), by = read<Real>(&flow.bed.slope_y[k]);
+        const Real bx = read<Real>(&flow.bed.smooth_x[k]), by = read<Real>(&flow.bed.smooth_y[k]);
         rise = vx * bx + vy * by;
         cosine2 = 1.0 / (1.0 + bx * bx + by * by);
         if (curved)
@@ -35,8 +37,10 @@ BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, doubl
     return {c.speed, c.pressure};
 }
 
-void update_peaks(const Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
+double update_peaks(const Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
+    double fastest = 0.0;
     for_each_work_run(flow.active, [&](const TileRun& run) {
+        Double4 most = {};
         for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) {
             const Double4 h = load(&flow.nodes.depth[k]), none = {};
             if (!any(h > 0.0)) return;
@@ -51,9 +55,14 @@ void update_peaks(const Flow& flow, bool steep, bool curved, double time, double
             raise(&peaks.depth[k], h);
             raise(&peaks.pressure[k], c.pressure);
             raise(&peaks.speed[k], speed);
+            most = max(most, speed);
             raise(&peaks.dynamic_pressure[k], flow.density * speed * speed);
         });
+        const double of_run = largest(most);
+#pragma omp critical(frana_fastest_node)
+        fastest = std::max(fastest, of_run);
     });
+    return fastest;
 }
 
 }  // namespace frana

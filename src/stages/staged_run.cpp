@@ -204,6 +204,7 @@ void StagedRun::book(const Status& columns) {
     status_.energy_left += s.energy_left - handed_.energy - energy_back - returned_.lost;
     status_.max_depth = std::max(columns.max_depth, map_.max_depth());
     status_.max_speed = std::max(columns.max_speed, s.max_speed);
+    status_.max_speed_on_map = std::max(columns.max_speed_on_map, s.max_speed);
     status_.mean_speed =
         status_.mass > 0.0 ? (columns.mean_speed * columns.mass + s.speeds) / status_.mass : 0.0;
     status_.covered_area += map_.covered_area();
@@ -215,7 +216,7 @@ void StagedRun::book(const Status& columns) {
 bool StagedRun::at_rest() const {
     // What rests as columns may flow as points, and the other way round.
     if (!points_ || (scene_.solid->until && (!ended_ || columns_->status().dt == 0.0))) return false;
-    return status_.max_speed == 0.0 || status_.mean_speed < scene_.rest_fraction * peak_mean_speed_;
+    return status_.max_speed_on_map == 0.0 || status_.mean_speed < scene_.rest_fraction * peak_mean_speed_;
 }
 
 Sample StagedRun::at(const Vec2& point) const {

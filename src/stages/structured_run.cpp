@@ -81,7 +81,7 @@ void StructuredRun::book() {
     status_.stored = s.stored;
     status_.dissipated = s.friction + s.pushed + (s.worked - s.stored);
     status_.energy_left = s.energy_left;
-    status_.max_speed = s.max_speed;
+    status_.max_speed = map_.sums().max_speed, status_.max_speed_on_map = s.max_speed;
     status_.mean_speed = s.mass > 0.0 ? s.speeds / s.mass : 0.0;
     status_.max_depth = map_.sums().max_depth;
     status_.covered_area = map_.sums().covered_area;
@@ -113,14 +113,14 @@ void StructuredRun::book_water() {
     const WaterBody& body = both_->water().body();
     status_.energy_left +=
         density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained));
-    status_.max_speed = std::max(status_.max_speed, w.max_speed);
+    status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
     const double speeds = density * both_->water_speeds();
     status_.mean_speed = mass > 0.0 ? (status_.mean_speed * solids + speeds) / mass : 0.0;
 }
 
 bool StructuredRun::at_rest() const {
     return status_.step > 0 &&
-           (status_.max_speed == 0.0 || status_.mean_speed < rest_fraction_ * peak_mean_speed_);
+           (status_.max_speed_on_map == 0.0 || status_.mean_speed < rest_fraction_ * peak_mean_speed_);
 }
 
 Sample StructuredRun::at(const Vec2& point) const {

@@ -21,7 +21,7 @@ void WalledColumns::advance(double until) {
     columns_->advance(until);
     for (const DepthAveraged::Birth& birth : columns_->take_births()) watch_.inherit(birth.child, birth.parent);
     const Status& now = columns_->status();
-    moved_ += now.max_speed * now.dt;
+    moved_ += now.max_speed_on_map * now.dt;
     if (moved_ < 0.5 * columns_->flow().cell && now.time < until) return;
     timed_("barriers", [&] { look(); });
     moved_ = 0.0;

@@ -76,7 +76,7 @@ void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, dou
                 if (node.depth >= 0.1 * footprint_depth_) {
                     const double up = node.slope.dot(node.velocity);
                     const double speed = std::sqrt(node.velocity.squaredNorm() + up * up);
-                    peak.speed = std::max(peak.speed, speed);
+                    peak.speed = std::max(peak.speed, speed), sums.max_speed = std::max(sums.max_speed, speed);
                     peak.dynamic_pressure = std::max(peak.dynamic_pressure, node.inertia / node.depth * speed * speed);
                 }
                 sums.max_depth = std::max(sums.max_depth, node.depth);
@@ -89,6 +89,7 @@ void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, dou
     sums_ = {};
     for (const Sums& tile : of_tile_) {
         sums_.max_depth = std::max(sums_.max_depth, tile.max_depth);
+        sums_.max_speed = std::max(sums_.max_speed, tile.max_speed);
         sums_.covered_area += tile.covered_area;
         sums_.front = std::max(sums_.front, tile.front);
     }
@@ -130,7 +131,7 @@ void StructuredMap::keep(Archive& archive) {
             all.insert(all.end(), {q.depth, q.speed, q.pressure, q.dynamic_pressure, q.arrival});
         });
     archive.array("peaks", all);
-    archive.numbers("sums", {&sums_.max_depth, &sums_.covered_area, &sums_.front});
+    archive.numbers("sums", {&sums_.max_depth, &sums_.max_speed, &sums_.covered_area, &sums_.front});
     const std::size_t expected = kNumbers * static_cast<std::size_t>(nx_ * ny_);
     if (all.size() != expected) Archive::wrong_length("peaks", all.size(), expected);
     if (!archive.loading()) return;

@@ -15,6 +15,7 @@ public:
     };
     struct Sums {
         double max_depth = 0.0;     ///< [m]
+        double max_speed = 0.0;     ///< along the bed, where deeper than a tenth of the footprint depth [m/s]
         double covered_area = 0.0;  ///< deeper than the footprint depth [m2]
         double front = 0.0;         ///< farthest of these nodes from `centre` [m]
     };

@@ -60,7 +60,7 @@ Measurement run_slump(const Setup& setup, const Slump& slump, const YieldMateria
     m.add("front_cells", contour_cells(frame, row, 1, 1.0, level, deposit.contour(level)), "cells");
     m.front_error = m.extras.back().value * frame.grid.cell;
     m.add("wall_depth_error", frame.node("depth")->data[row] / deposit.depth(0.0) - 1);
-    m.add("max_speed", frame.status.max_speed, "m/s");
+    m.add("max_speed", frame.status.max_speed_on_map, "m/s");
     return m;
 }
 
@@ -100,7 +100,7 @@ Measurement run_axial(const Setup& setup) {
     m.add("front_axis", axis, "cells");
     m.add("front_diagonal", diagonal, "cells");
     m.add("centre_depth_error", frame.node("depth")->data[0] / deposit.depth(0.0) - 1);
-    m.add("max_speed", frame.status.max_speed, "m/s");
+    m.add("max_speed", frame.status.max_speed_on_map, "m/s");
     return m;
 }
 

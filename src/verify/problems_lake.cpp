@@ -29,9 +29,9 @@ double surface_error(const Frame& frame, double level) {
 struct Unrest { double speed = 0.0, surface = 0.0; };
 Unrest unrest_of(const Lake& lake, Trial& trial, double end) {
     Unrest worst;
-    trial.run_to(end, [&](const Status& now) { worst.speed = std::max(worst.speed, now.max_speed); });
+    trial.run_to(end, [&](const Status& now) { worst.speed = std::max(worst.speed, now.max_speed_on_map); });
     const Frame frame = trial.simulation().frame();
-    worst.speed = std::max(worst.speed, frame.status.max_speed);
+    worst.speed = std::max(worst.speed, frame.status.max_speed_on_map);
     const double* v = frame.node("velocity")->data;
     for (Index k = 0; k < frame.grid.size(); ++k)
         worst.speed = std::max(worst.speed, std::hypot(v[3 * k], v[3 * k + 1]));

@@ -45,7 +45,7 @@ Measurement run_table(Setup setup) {
     double speed = 0.0, without_level = 0.0;
     const auto run = [&](Scene scene, double& fastest) {
         Trial trial(std::move(scene), setup, false);
-        trial.run_to(1.0, [&](const Status& now) { fastest = std::max(fastest, now.max_speed); });
+        trial.run_to(1.0, [&](const Status& now) { fastest = std::max(fastest, now.max_speed_on_map); });
         const double wall = m.wall_seconds;
         m = trial.measure();
         m.wall_seconds += wall;

@@ -79,7 +79,7 @@ Measurement run_piles(const Setup& setup) {
             fill(scene, [&](double x, double y) { return pile.depth(x, y); }, {setup.per_side});
             Trial trial(std::move(scene), setup);
             const Columns before = trial.simulation().flow().columns;
-            trial.run_to(kEnd, [&](const Status& now) { speed = std::max(speed, now.max_speed); });
+            trial.run_to(kEnd, [&](const Status& now) { speed = std::max(speed, now.max_speed_on_map); });
             moved = std::max(moved, cell * displacement(before, trial.simulation().flow().columns));
             const double wall = m.wall_seconds;
             m = trial.measure();

@@ -128,7 +128,7 @@ void Trial::run_to_rest(double latest) {
     do {
         simulation_->advance(latest);
         peak_kinetic_ = std::max(peak_kinetic_, simulation_->status().kinetic);
-    } while (simulation_->status().time < latest && simulation_->status().max_speed > 0.0);
+    } while (simulation_->status().time < latest && simulation_->status().max_speed_on_map > 0.0);
     wall_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
