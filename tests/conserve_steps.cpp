@@ -37,7 +37,7 @@ TEST_CASE("A film at rest on a cliff of many cells begins with a step that it ca
     while (simulation.status().step < 12) {
         const Columns before = simulation.flow().columns;
         REQUIRE_NOTHROW(simulation.advance(1e9));
-        fastest = std::max(fastest, simulation.status().max_speed);
+        fastest = std::max(fastest, simulation.status().max_speed_on_map);
         if (simulation.status().step == 1) most = farthest(before, simulation.flow().columns);
     }
     CHECK(most > 0.1 * scene.scheme.cfl);  // it did begin to fall
