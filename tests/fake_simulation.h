@@ -100,6 +100,7 @@ private:
         status_.particles = t >= script_.leave_time ? 0 : 25;
         status_.mass_left = 1.0 * t;
         status_.mass = 25.0e3 - 1.0 * t + 0.5e-3 * t;  // an error of 2e-8 per second, for the budget to find
+        if (status_.particles == 0) status_.mass = 0.0;
         status_.momentum = {25.0e3 * u, 25.0e3 * v};
         status_.momentum_left = {3.0 * t, 0.0};
         status_.impulse = {2.0 * t, -1.0 * t};
