@@ -55,6 +55,12 @@ struct Residual {
     double bound = 0.0;
 };
 
+/// One list after the other.
+inline std::vector<Residual> joined(std::vector<Residual> list, const std::vector<Residual>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+    return list;
+}
+
 /// The largest absolute value that a quantity may have at so many cells (0: at every number of cells).
 struct Gate {
     Index cells = 0;
