@@ -157,6 +157,8 @@ void add_scheme(Table& table) {
     table.push_back(paper(number("scheme.viscosity_quadratic", "1", not_negative, 1.0,
                                  "artificial viscosity, coefficient of the velocity jump"),
                           0.0));
+    table.push_back(number("scheme.lateral_drag", "1", not_negative, 0.0,
+                           "drag between neighbouring material of different velocity, SamosAT's artificial viscosity; 0: none"));
     table.push_back(number("scheme.shock_gate", "1", not_negative, 0.2,
                            "velocity jump between nodes, in wave speeds, that counts as a bore for the viscosity; 0: none"));
     table.push_back(number("scheme.shock_sensor", "1", not_negative, 0.1,

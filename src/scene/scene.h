@@ -70,6 +70,7 @@ struct Scheme {
     double shock_sensor = 0.1;         ///< unlimited jump, in wave speeds, from which the filter is held back; 0: never
     double viscosity_linear = 0.5;     ///< c1 of the artificial viscosity [1]
     double viscosity_quadratic = 1.0;  ///< c2 [1]
+    double lateral_drag = 0.0;         ///< C of the drag between neighbours of different velocity, 0: none [1]
     double split_length = 0.8;         ///< domain edge that triggers a split, in cells [1]
     double split_min_mass = 0.02;      ///< no split below this fraction of the largest initial mass [1]
     bool split = true;

@@ -64,6 +64,7 @@ Scheme scheme_of(const CaseFile& file) {
     scheme.margin_limit = value("margin_limit");
     scheme.viscosity_linear = value("viscosity_linear");
     scheme.viscosity_quadratic = value("viscosity_quadratic");
+    scheme.lateral_drag = value("lateral_drag");
     scheme.shock_gate = value("shock_gate");
     scheme.shock_sensor = value("shock_sensor");
     scheme.split = file.flag("scheme.split");

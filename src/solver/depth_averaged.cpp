@@ -7,6 +7,7 @@
 #include "base/flush_denormals.h"
 #include "base/step_length.h"
 #include "grid/stencil.h"
+#include "solver/lateral.h"
 #include "solver/shock.h"
 
 namespace frana {
@@ -184,6 +185,7 @@ NodeSums DepthAveraged::raise_surface() {
         shock_pass(flow_);
         filter(flow_);
     });
+    lateral_pass(flow_, status_.dt > 0.0 ? status_.dt : longest_step());
     timed_("shoreline", [&] { shoreline(flow_); });
     return sums;
 }

@@ -4,6 +4,7 @@
 
 #include "law/bed_stop.h"
 #include "solver/kick_bed.h"
+#include "solver/lateral.h"
 #include "solver/shock.h"
 #include "solver/surface_gradient.h"
 
@@ -201,6 +202,11 @@ private:
             node.push_x = node.loss_x = scale * (nodes.viscous_flux[k - 1].x - nodes.viscous_flux[k].x);
             node.push_y = node.loss_y = scale * (nodes.viscous_flux[k - up].y - nodes.viscous_flux[k].y);
         }
+        if (has_lateral_drag(flow.scheme)) {
+            const Pair& drag = nodes.lateral[k];
+            node.push_x += drag.x, node.push_y += drag.y;
+            node.loss_x += drag.x, node.loss_y += drag.y;
+        }
         if (nodes.forced) {
             const double inertia = inertia_of(flow, node.mass, resisting_depth<double>(flow, k));
             node.push_x += nodes.deposits()[k].fx / inertia;
@@ -227,6 +233,12 @@ private:
             const Double4 none = {}, scale = select(node.depth > 1e-12 * flow.cell, 1.0 / (flow.cell * node.depth), none);
             node.push_x = node.loss_x = scale * (left - right);
             node.push_y = node.loss_y = scale * (below - above);
+        }
+        if (has_lateral_drag(flow.scheme)) {
+            Double4 x, y;
+            unzip(&nodes.lateral[k], x, y);
+            node.push_x += x, node.push_y += y;
+            node.loss_x += x, node.loss_y += y;
         }
         if (nodes.forced) {
             const Deposit* d = nodes.deposits() + k;

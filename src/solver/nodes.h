@@ -53,7 +53,7 @@ struct Nodes {
         : deposit(grid.size()), mass(grid.size()), column_mass(grid.size()), forced(with_force), depth(grid.size()),
           level(grid.size()), surface(grid.size()), wave_x(grid.size()),
           row_known(grid.size(), around(grid)), before(grid.size()), motion(grid.size()),
-          viscous_flux(grid.size()), shock(grid.size()), sensed(grid.size(), around(grid)),
+          viscous_flux(grid.size()), lateral(grid.size()), shock(grid.size()), sensed(grid.size(), around(grid)),
           flags(grid.size(), around(grid)) {}
 
     Deposit* deposits() { return deposit.data(); }
@@ -75,6 +75,7 @@ struct Nodes {
     LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]
     LazyArray<Motion> motion;
     LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^2/s^2]
+    LazyArray<Pair> lateral;         ///< acceleration by the lateral drag; used only when the scheme has one [m/s^2]
     LazyArray<Pair> shock;           ///< sensor of those two faces, 0 (smooth) to 1 (bore) [1]
     LazyArray<std::uint8_t> sensed;  ///< 1 where either of `shock` is above zero
     LazyArray<std::uint8_t> flags;   ///< NodeFlag bits
