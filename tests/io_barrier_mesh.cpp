@@ -81,7 +81,7 @@ void check_box(const DistanceField& field) {
         for (Index j = 0; j < field.nodes[1]; ++j)
             for (Index i = 0; i < field.nodes[0]; ++i)
                 worst = std::max(worst, std::abs(field.at(i, j, k) - box_distance(field.place(i, j, k))));
-    CHECK(worst < 1e-6);  // VTK keeps points as float: 1e-7 of 3 m
+    CHECK(worst < 1e-6);  // VTK's STL reader keeps points as float: 1e-7 of 3 m
 }
 
 }  // namespace
@@ -167,9 +167,45 @@ TEST_CASE("A mesh that is no solid is refused with what was found and what to do
     std::ofstream(folder / "words.vtp") << "not a mesh at all\n";
     refused(folder / "words.vtp", "cannot be read as a mesh");
     refused(write_stl(folder / "thin.stl", box_corners({1, 2, -1}, {3, 2.05, 1.25}), kBox), "thinner than the 0.25 m");
+    std::ofstream(folder / "beyond.obj") << "v 1 2 3\nf 1 2 9999999\n";
+    refused(folder / "beyond.obj", "a face names point 9999998, counted from 0, of 1 points");
+    Sides beyond = kBox;
+    beyond[3][1] = 99999999;
+    refused(write_vtp(folder / "beyond.vtp", corners, beyond), "a face names point 99999999, counted from 0, of 8");
+    std::ofstream(folder / "word.obj") << "v 1 2 3\nv 1 2 O\nf 1 2 2\n";
+    refused(folder / "word.obj", "word.obj:2: found \"O\" in a point; expected three numbers");
+    std::ofstream(folder / "nowhere.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 nan\nf 1 2 3\n";
+    refused(folder / "nowhere.obj", "point 2, counted from 0, is at no place (0, 1, nan)");
     Corners large = corners;
     for (Vec3& x : large) x *= 1000.0;
     refused(write_obj(folder / "millimetres.obj", large, kBox), "is it in metres?");
+}
+
+TEST_CASE("A sheet with two sides and nothing between them is refused, alone and beside a solid", "[mesh]") {
+    const Corners sheet = {{1, 2, 1}, {3, 2, 1}, {3, 4, 2}, {1, 4, 2}};
+    const Sides two_sides = {{0, 1, 2}, {0, 2, 3}, {3, 1, 0}, {3, 2, 1}};
+    Corners both = sheet;
+    for (const Vec3& x : box_corners({10, 0, 0}, {12, 2, 2})) both.push_back(x);
+    Sides sides = two_sides;
+    for (auto side : kBox) sides.push_back({side[0] + 4, side[1] + 4, side[2] + 4});
+    const FreshFolder folder;
+    for (const auto& file : {write_obj(folder.path() / "sheet.obj", sheet, two_sides),
+                             write_obj(folder.path() / "both.obj", both, sides)})
+        CHECK_THROWS_WITH(read_barrier_mesh(file, {0.25, 0.5}),
+                          Catch::Contains("has two sides and nothing between them; expected a solid"));
+}
+
+TEST_CASE("A face of an OBJ may name textures and normals, count from the end, and go on in another line", "[mesh]") {
+    const FreshFolder folder;
+    std::ofstream out(folder.path() / "box.obj");
+    out << "# a box\r\no wall\nvt 0 0\nvn 0 0 1\n";
+    out.precision(17);
+    const Vec3 far(500000.1, 4000000.3, 0.0);  // single precision would move these points by centimetres
+    for (const Vec3& x : box_corners(kLow + far, kHigh + far))
+        out << "v " << x.x() << ' ' << x.y() << " \\\n " << x.z() << "\r\n";
+    for (const auto& side : kBox) out << "f " << side[0] + 1 << "/1/1 " << side[1] - 8 << "//7 " << side[2] + 1 << "/9\n";
+    out.close();
+    check_box(read_barrier_mesh(folder.path() / "box.obj", {0.125, 0.5, -far}));
 }
 
 TEST_CASE("Parts that stand apart are one barrier", "[mesh]") {
