@@ -203,7 +203,8 @@ TEST_CASE("A face of an OBJ may name textures and normals, count from the end, a
     const Vec3 far(500000.1, 4000000.3, 0.0);  // single precision would move these points by centimetres
     for (const Vec3& x : box_corners(kLow + far, kHigh + far))
         out << "v " << x.x() << ' ' << x.y() << " \\\n " << x.z() << "\r\n";
-    for (const auto& side : kBox) out << "f " << side[0] + 1 << "/1/1 " << side[1] - 8 << "//7 " << side[2] + 1 << "/9\n";
+    for (const auto& side : kBox)
+        out << "f " << side[0] + 1 << "/1/1 " << side[1] - 8 << "//7 " << side[2] + 1 << "/9\n";
     out.close();
     check_box(read_barrier_mesh(folder.path() / "box.obj", {0.125, 0.5, -far}));
 }

@@ -227,8 +227,9 @@ void require_volume(const Path& file, vtkPolyData* mesh, const std::vector<Trian
     for (const auto& [start, part] : parts) {
         const double thickness = part.area2 > 0.0 ? 2.0 / 3.0 * std::abs(part.volume6) / part.area2 : 0.0;
         if (!(thickness > kRoundOff * part.box.diagonal().norm()))
-            throw UserError(fmt::format("{}: the part of the mesh at {} has two sides and nothing between them; expected "
-                                        "a solid: give it a thickness, or give the wall as a line with a height",
+            throw UserError(fmt::format("{}: the part of the mesh at {} has two sides and nothing between them; "
+                                        "expected a solid: give it a thickness, or give the wall as a line with a "
+                                        "height",
                                         file.string(), place_of(point_of(mesh, start))));
     }
 }
