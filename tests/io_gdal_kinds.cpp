@@ -1,4 +1,6 @@
 // One elevation model, stored in every common way, must read the same.
+#include <sys/stat.h>
+
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -243,6 +245,8 @@ TEST_CASE("A file that is missing, no raster, cut off or without georeference is
         return message;
     };
     CHECK(contains(refused("nowhere.tif"), "no such file"));
+    REQUIRE(::mkfifo((folder.path() / "pipe.tif").c_str(), 0666) == 0);
+    CHECK(contains(refused("pipe.tif"), "a pipe or a device"));
     std::ofstream(folder.path() / "text.tif") << "this is a letter\n";
     CHECK(contains(refused("text.tif"), "expected a raster"));
 
