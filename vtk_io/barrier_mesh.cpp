@@ -7,7 +7,6 @@
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
 #include <vtkIdList.h>
-#include <vtkImplicitPolyDataDistance.h>
 #include <vtkIntersectionPolyDataFilter.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -31,6 +30,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "solid/mesh_distance.h"
 #include "vtk_io/obj_file.h"
 #include "vtk_io/xml_reading.h"
 
@@ -244,6 +244,15 @@ double volume6(vtkPolyData* mesh, const std::vector<Triangle>& triangles) {
     return sum;
 }
 
+TriangleMesh turned_outwards(vtkPolyData* read, const std::vector<Triangle>& triangles) {
+    const bool inwards = volume6(read, triangles) < 0.0;
+    TriangleMesh mesh;
+    for (vtkIdType n = 0; n < read->GetNumberOfPoints(); ++n) mesh.points.emplace_back(point_of(read, n));
+    for (const Triangle& t : triangles)
+        mesh.triangles.push_back({t[0], inwards ? t[2] : t[1], inwards ? t[1] : t[2]});
+    return mesh;
+}
+
 /// An empty field around the mesh.
 DistanceField field_around(const Path& file, vtkPolyData* mesh, const MeshSampling& sampling) {
     double bounds[6];
@@ -275,7 +284,8 @@ DistanceField field_around(const Path& file, vtkPolyData* mesh, const MeshSampli
 
 }  // namespace
 
-DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSampling& sampling) {
+static DistanceField distances_of(const Path& file, const MeshSampling& sampling,
+                                  const std::function<void(const std::string&)>& say) {
     expect(sampling.spacing > 0.0 && sampling.margin >= 0.0, "a mesh is sampled at a distance above zero");
     const vtkSmartPointer<vtkPolyData> mesh = read_triangles(file);
     const std::vector<Triangle> triangles = triangles_of(mesh);
@@ -283,15 +293,11 @@ DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSam
     require_simple(file, mesh, triangles);
     require_volume(file, mesh, triangles);
     DistanceField field = field_around(file, mesh, sampling);
-    const double sign = volume6(mesh, triangles) < 0.0 ? -1.0 : 1.0;
-    vtkNew<vtkImplicitPolyDataDistance> distance;
-    distance->SetInput(mesh);
-    for (Index k = 0; k < field.nodes[2]; ++k)
-        for (Index j = 0; j < field.nodes[1]; ++j)
-            for (Index i = 0; i < field.nodes[0]; ++i) {
-                Vec3 x = field.place(i, j, k);
-                field.at(i, j, k) = sign * distance->EvaluateFunction(x.data());
-            }
+    constexpr std::size_t kMany = 5'000'000;  // a second of one thread
+    if (field.distance.size() > kMany && say)
+        say(fmt::format("{}: measuring its distance from {:.3g} million places, {:.6g} m apart", file.string(),
+                        1e-6 * static_cast<double>(field.distance.size()), sampling.spacing));
+    measure_distances(turned_outwards(mesh, triangles), field);
     if (std::none_of(field.distance.begin(), field.distance.end(), [](double d) { return d < 0.0; }))
         throw UserError(fmt::format("{}: the mesh is thinner than the {:.6g} m between the nodes of its distances; expected a "
                                     "solid of a cell at least: take finer cells, or give the wall as a line with a height",
@@ -300,20 +306,31 @@ DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSam
     return field;
 }
 
-MeshField barrier_mesh_of(const std::filesystem::path& file, const MeshSampling& sampling) {
-    auto field = std::make_shared<DistanceField>(read_barrier_mesh(file, sampling));
+DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSampling& sampling) {
+    return distances_of(file, sampling, nullptr);
+}
+
+static MeshField with_its_box(DistanceField&& distances, const MeshSampling& sampling) {
+    auto field = std::make_shared<DistanceField>(std::move(distances));
     const Vec3 around = Vec3::Constant(sampling.margin), low = field->origin + around, high = field->end() - around;
     return {std::move(field), low, high};
+}
+
+MeshField barrier_mesh_of(const std::filesystem::path& file, const MeshSampling& sampling) {
+    return with_its_box(read_barrier_mesh(file, sampling), sampling);
+}
+
+MeshReader barrier_meshes_told(std::function<void(const std::string&)> say) {
+    return [say = std::move(say)](const Path& file, const MeshSampling& sampling) {
+        return with_its_box(distances_of(file, sampling, say), sampling);
+    };
 }
 
 TriangleMesh barrier_triangles(const std::filesystem::path& file, const Vec3& origin) {
     const vtkSmartPointer<vtkPolyData> read = read_triangles(file);
     const std::vector<Triangle> triangles = triangles_of(read);
-    const bool inwards = volume6(read, triangles) < 0.0;
-    TriangleMesh mesh;
-    for (vtkIdType n = 0; n < read->GetNumberOfPoints(); ++n) mesh.points.emplace_back(point_of(read, n) + origin);
-    for (const Triangle& t : triangles)
-        mesh.triangles.push_back({t[0], inwards ? t[2] : t[1], inwards ? t[1] : t[2]});
+    TriangleMesh mesh = turned_outwards(read, triangles);
+    for (Vec3& x : mesh.points) x += origin;
     return mesh;
 }
 
