@@ -186,7 +186,8 @@ std::string forecast_text(const Scene& scene) {
 
 int check_command(const CheckOptions& options) {
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
-    const BuiltScene built = build_scene_in_detail(file, GdalReader(), barrier_mesh_of);
+    const MeshReader meshes = barrier_meshes_told([](const std::string& line) { std::cerr << line << std::endl; });
+    const BuiltScene built = build_scene_in_detail(file, GdalReader(), meshes);
     std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
     std::cout << total_text(built) << forecast_text(built.scene);

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "frana_run_folder.h"
+#include "io/gdal_sum.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -79,6 +80,16 @@ std::string sum_of_particles(const Seeds& seeds) {
     return fmt::format("{:016x}", sum.sum());
 }
 
+/// "release.0.depth = 0123456789abcdef data/depth.tif" for each file that the case names: key, number among the files
+/// of that key, sum, name.
+std::string sums_of_inputs(const CaseFile& file) {
+    std::string text;
+    std::map<std::string, int> counts;
+    for (const auto& [key, path] : file.named_files())
+        text += fmt::format("{}.{} = {} {}\n", key, counts[key]++, sum_of_input(path), path.string());
+    return text;
+}
+
 std::map<std::string, std::string> lines_of(const std::string& text) {
     std::map<std::string, std::string> keys;
     std::istringstream lines(text);
@@ -100,6 +111,18 @@ std::string difference(const std::string& there, const std::string& here) {
     return "its keys differ";
 }
 
+/// Name of the first input that holds something else than it did, or empty.
+std::string changed_input(const std::string& there, const std::string& here) {
+    const auto kept = lines_of(there);
+    for (const auto& [key, sum_and_name] : lines_of(here)) {
+        const std::size_t space = sum_and_name.find(' ');
+        const auto found = kept.find(key);
+        if (found == kept.end() || found->second.compare(0, space + 1, sum_and_name, 0, space + 1) != 0)
+            return sum_and_name.substr(space + 1);
+    }
+    return "";
+}
+
 std::string label(const CheckpointLabels& labels, const char* name) {
     const auto found = labels.find(name);
     return found == labels.end() ? kNotGiven : found->second;
@@ -119,6 +142,10 @@ void require_same(const fs::path& file, const CheckpointLabels& there, const Che
     if (differs("case"))
         throw refused("found the state of another case: " + difference(label(there, "case"), label(here, "case")),
                       "give the case and the --set it was left with");
+    const std::string input = changed_input(label(there, "inputs"), label(here, "inputs"));
+    if (!input.empty())
+        throw refused(fmt::format("found a state from before the file {} was changed", input),
+                      "put the file back as it was");
     if (differs("bed"))
         throw refused("found a state on another terrain: the elevations on the grid have changed since",
                       "put the elevation model back");
@@ -135,6 +162,7 @@ CheckpointLabels checkpoint_labels(const Scene& scene, const CaseFile& file) {
             {"build", fmt::format("{}, {}, march {}, commit {}", FRANA_BUILD_TYPE, FRANA_COMPILER, FRANA_ARCH,
                                   FRANA_COMMIT)},
             {"case", case_text(file)},
+            {"inputs", sums_of_inputs(file)},
             {"bed", sum_of_bed(scene.bed)},
             {"particles", sum_of_particles(scene.particles)}};
 }

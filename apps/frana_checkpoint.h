@@ -13,12 +13,12 @@
 
 namespace frana {
 
-/// What a state must agree with to be taken up: version, precision, the case with all its keys, sums of bed and
-/// particles; and the build, which it need not.
+/// What a state must agree with to be taken up: version, precision, the case with all its keys, sums of the files
+/// that it names, of bed and particles; and the build, which it need not.
 CheckpointLabels checkpoint_labels(const Scene& scene, const CaseFile& file);
 
 /// Opens the state in a run folder and holds it against `labels`. Throws UserError with the reason when there is
-/// none, it is damaged, or it is of another version, precision or case (the first key that differs, or the data).
+/// none, it is damaged, or it is of another version, precision or case (the first key that differs, or the file).
 std::unique_ptr<CheckpointFile> open_checkpoint(const std::filesystem::path& run_dir, const CheckpointLabels& labels);
 
 /// Keeps a run's states in its folder: every `interval` of wall time and at its end.

@@ -34,14 +34,19 @@ std::string text_of(const fs::path& file) {
 /// The part of run.json that figures need.
 void read_record(const fs::path& run_dir, FigureSource& source) {
     const fs::path file = run_dir / "run.json";
+    const auto json = nlohmann::json::parse(text_of(file), nullptr, false);
+    if (json.is_object() && json.value("exit_reason", nlohmann::json()) == "running")
+        throw UserError(fmt::format("{}: found a run that has not ended; expected a finished one; wait for its end or, "
+                                    "where it was killed, let it go on with `frana run CASE --out {} --resume`",
+                                    run_dir.string(), run_dir.string()));
     try {
-        const auto json = nlohmann::json::parse(text_of(file));
         source.title = json.at("title").get<std::string>();
         source.footer = json.at("caption").get<std::string>();
         source.footprint_depth = json.at("results").at("footprint_depth").get<double>();
-    } catch (const nlohmann::json::exception& error) {
-        throw UserError(fmt::format("{}: {}; expected the record of a finished run; run the case again",
-                                    file.string(), error.what()));
+    } catch (const nlohmann::json::exception&) {
+        throw UserError(fmt::format("{}: is not what a run leaves there; expected the record of a finished run; "
+                                    "run the case again",
+                                    file.string()));
     }
 }
 

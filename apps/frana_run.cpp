@@ -80,7 +80,10 @@ int run_command(const RunOptions& options) {
     std::optional<RunLock> lock;
     if (fs::is_directory(run_dir)) lock.emplace(run_dir);
     if (!options.resume) require_room_for_run(run_dir, inputs, overwrite);  // before the work of building the scene
-    Scene scene = build_scene(file, GdalReader(), barrier_mesh_of);
+    const MeshReader meshes = barrier_meshes_told([&](const std::string& line) {
+        if (!options.quiet) std::cout << line << std::endl;
+    });
+    Scene scene = build_scene(file, GdalReader(), meshes);
     shorten(scene, options.until);
     check_insitu(scene);
     const CheckpointLabels labels = checkpoint_labels(scene, file);

@@ -1,4 +1,6 @@
 // The program as a person calls it: exit codes, what goes to stdout and what to stderr.
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -118,6 +120,35 @@ TEST_CASE("A run without formats leaves its in-situ products only", "[cli][insit
     CHECK(fs::exists(scene.folder() / "out" / "insitu" / "most.csv"));
     for (const char* frames : {"grid.pvd", "particles.pvd", "rasters", "figures", "terrain.vti"})
         CHECK_FALSE(fs::exists(scene.folder() / "out" / frames));
+}
+
+TEST_CASE("A pipe in the place of a file is refused at once: nobody may ever write to it", "[cli]") {
+    const PlaneCase scene;
+    REQUIRE(::mkfifo((scene.folder() / "survey.geojson").c_str(), 0666) == 0);
+    scene.write("[survey]\nfootprint = \"survey.geojson\"\n");
+    const Outcome check = scene.frana("check CASE");
+    CHECK(check.code == 2);
+    CHECK(check.err == scene.file().string() + ":9: survey.footprint: found \"" +
+                           (scene.folder() / "survey.geojson").string() +
+                           "\", a pipe or a device; expected a file; copy what comes out of it into a file, and name "
+                           "that\n");
+}
+
+TEST_CASE("Pictures and scores of a run that has not ended are refused in one sentence", "[cli]") {
+    const PlaneCase scene;
+    fs::create_directories(scene.folder() / "out");
+    for (const char* record : {R"({"exit_reason": "running", "others": {}})", R"({"title": 7})", "half a rec"}) {
+        std::ofstream(scene.folder() / "out" / "run.json") << record;
+        for (const char* command : {"figures out", "compare out --survey a.geojson", "states out"}) {
+            CAPTURE(record, command);
+            const Outcome refused = scene.frana(command);
+            CHECK(refused.code == 2);
+            CHECK_FALSE(Contains("json.exception").match(refused.err));
+            CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
+            if (std::string(record).find("running") != std::string::npos)
+                CHECK_THAT(refused.err, Contains("found a run that has not ended; expected a finished one; wait for"));
+        }
+    }
 }
 
 TEST_CASE("check lists all problems of a bad case on stderr and is not ready", "[cli]") {

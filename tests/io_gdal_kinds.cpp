@@ -1,4 +1,6 @@
 // One elevation model, stored in every common way, must read the same.
+#include <sys/stat.h>
+
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -202,6 +204,34 @@ TEST_CASE("The first of several bands is used, and the log says so", "[gdal]") {
     CHECK(any_contains(log, "3 bands, the first is used"));
 }
 
+TEST_CASE("A word in a raster of numbers in words is refused with its line, and never taken for 0", "[gdal]") {
+    const FreshFolder folder;
+    const auto file = [&](const char* name, const std::string& text) {
+        std::ofstream(folder.path() / name) << text;
+        return folder.path() / name;
+    };
+    const std::string arc = "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 4\nNODATA_value -9999\n";
+    const std::string grass = "north: 2\nsouth: 0\neast: 3\nwest: 0\nrows: 2\ncols: 3\nnull: *\n";
+    const auto refused = [&](const std::filesystem::path& of) { return user_error([&] { read(of); }); };
+    CHECK(contains(refused(file("a.asc", arc + "1 2 3\n4 water 6\n")),
+                   "a.asc:8: found \"water\"; expected numbers only; put a number there"));
+    CHECK(contains(refused(file("b.asc", arc + "1 2 3\n4 1.2.3 6\n")), "b.asc:8: found \"1.2.3\""));
+    CHECK(contains(refused(file("c.asc", arc + "1 2 3\n4 12O 6\n")), "c.asc:8: found \"12O\""));
+    CHECK(contains(refused(file("d.asc", grass + "1 2 3\n4 * none\n")), "d.asc:9: found \"none\""));
+    std::string points = "x,y,z\n";
+    for (int row = 0; row < 20; ++row)
+        for (int column = 0; column < 20; ++column)
+            points += fmt::format("{},{},{}\n", column, row, row == 15 && column == 3 ? "?" : "7");
+    CHECK(contains(refused(file("e.xyz", points)), "e.xyz:305: found \"?\""));
+    const Raster dem = read(file("good.asc", arc + "+1 2,5 -3e-2\r\n-9999 nan .5\n"));
+    CHECK(dem.at(0, 1) == 1.0);
+    CHECK(dem.at(1, 1) == 2.5);
+    CHECK(dem.at(2, 1) == Approx(-0.03));
+    CHECK(std::isnan(dem.at(0, 0)));
+    CHECK(std::isnan(dem.at(1, 0)));
+    CHECK(dem.at(2, 0) == 0.5);
+}
+
 TEST_CASE("A file that is missing, no raster, cut off or without georeference is refused in one sentence",
           "[gdal]") {
     const FreshFolder folder;
@@ -215,6 +245,8 @@ TEST_CASE("A file that is missing, no raster, cut off or without georeference is
         return message;
     };
     CHECK(contains(refused("nowhere.tif"), "no such file"));
+    REQUIRE(::mkfifo((folder.path() / "pipe.tif").c_str(), 0666) == 0);
+    CHECK(contains(refused("pipe.tif"), "a pipe or a device"));
     std::ofstream(folder.path() / "text.tif") << "this is a letter\n";
     CHECK(contains(refused("text.tif"), "expected a raster"));
 

@@ -16,6 +16,7 @@
 #include "fake_simulation.h"
 #include "frame_maker.h"
 #include "fresh_folder.h"
+#include "io_gdal_make.h"
 #include "vtk_io/insitu.h"
 #include "vtk_io/pvd.h"
 #include "vtk_read.h"
@@ -114,6 +115,16 @@ TEST_CASE("a threshold keeps the particles whose values lie in the interval, wit
     CHECK(cloud->GetNumberOfVerts() == next);
     CHECK(next > 100);
     CHECK(next < 400);
+}
+
+TEST_CASE("a threshold of particles that have all left is an empty file and a quiet one", "[insitu]") {
+    const FreshFolder folder;
+    FrameMaker made(0, 1.5, 0, FrameMaker::utm(5, 5));
+    const auto work = make_particle_threshold(folder.path(), "none", "velocity_y", {0.1, 1e9});
+    CHECK(heard_on_stderr([&] { work->look(made.frame, 0); }).empty());
+    const auto reader = read<vtkXMLPolyDataReader>(folder.path() / "none" / "none_000000.vtp");
+    CHECK(reader->GetOutput()->GetNumberOfPoints() == 0);
+    CHECK(time_of(reader->GetOutput()) == 1.5);
 }
 
 TEST_CASE("a threshold keeps the cells all of whose nodes have terrain and lie in the interval", "[insitu]") {

@@ -16,6 +16,7 @@
 #include "frana_run_job.h"
 #include "frana_run_lock.h"
 #include "fresh_folder.h"
+#include "io/gdal_sum.h"
 #include "program.h"
 #include "small_disk.h"
 
@@ -40,6 +41,33 @@ end = 4
 [output]
 every = 0.5
 formats = ["xdmf"]
+)";
+
+const char* const barrier = R"(
+[[stage]]
+model = "depth_averaged"
+until = 0.3
+[[stage]]
+model = "solid_flow"
+window = [60, 20, 100, 80]
+[[barrier]]
+outline = "wall.geojson"
+height = 3
+)";
+
+const char* const rain_on_blocks = R"(
+[material]
+density = 2600.0
+[material.structure]
+law = "drucker_prager"
+cohesion = 0.0
+friction_angle_deg = 30.0
+young_modulus = 1e5
+fraction = 0.0
+[water]
+model = "free"
+share = 0.4
+rain = "rain.asc"
 )";
 
 /// A plane of 30 x 20 nodes, 5 m apart, with a release; runs go into "out".
@@ -143,13 +171,14 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
     }
     SECTION("another terrain") {
         folder.write_dem(101.0);
-        sentence = "found a state on another terrain: the elevations on the grid have changed since";
+        sentence = "out/checkpoint.h5: found a state from before the file dem.asc was changed; put the file back as it "
+                   "was, or run without --resume to start at the beginning";
     }
     SECTION("another release") {
         std::string outline = text_of(folder.path() / "release.geojson");
         outline.replace(outline.find("[50, 70]"), 8, "[55, 70]");
         write_text(folder.path() / "release.geojson", outline);
-        sentence = "found the state of another release: the particles at the start have changed since";
+        sentence = "found a state from before the file release.geojson was changed";
     }
     SECTION("a damaged file") {
         std::fstream file(folder.out() / "checkpoint.h5", std::ios::in | std::ios::out | std::ios::binary);
@@ -167,6 +196,78 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
     CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
     CHECK(files_of(folder.out()) == before);
     CHECK(text_of(folder.out() / "report.md") == report);
+}
+
+TEST_CASE("a state is refused when any file that the case names has changed since", "[resume][cli]") {
+    const Folder folder;
+    const auto outline = [&](const char* name, double from, double to) {
+        write_text(folder.path() / name,
+                   fmt::format(R"({{"type": "FeatureCollection", "features": [{{"type": "Feature", "properties": {{}},
+                               "geometry": {{"type": "Polygon", "coordinates": [[[{0}, 30], [{1}, 30], [{1}, 70],
+                               [{0}, 70], [{0}, 30]]]}}}}]}})", from, to));
+    };
+    const auto rain = [&](double rate) {
+        write_text(folder.path() / "rain.asc",
+                   fmt::format("ncols 2\nnrows 2\nxllcorner -1\nyllcorner -1\ncellsize 100\n{0} {0}\n{0} {0}\n",
+                               rate));
+    };
+    outline("wall.geojson", 90, 95);
+    outline("survey.geojson", 20, 100);
+    rain(1e-5);
+    const bool water = GENERATE(false, true);
+    write_text(folder.path() / "case.toml",
+               std::string(plane) + (water ? rain_on_blocks : barrier) + "[survey]\nfootprint = \"survey.geojson\"\n");
+    REQUIRE(folder.run("--until 1").code == 0);
+    REQUIRE(folder.run("--resume --until 1.5").code == 0);
+    std::string name = "survey.geojson";
+    SECTION("a survey") { outline("survey.geojson", 20, 101); }
+    SECTION("a barrier or the rain") {
+        name = water ? "rain.asc" : "wall.geojson";
+        rain(2e-5);
+        outline("wall.geojson", 90, 96);
+    }
+    const Outcome refused = folder.run("--resume");
+    CHECK(refused.code == 2);
+    CHECK(refused.err == "out/checkpoint.h5: found a state from before the file " + name +
+                             " was changed; put the file back as it was, or run without --resume to start at the "
+                             "beginning\n");
+}
+
+TEST_CASE("the sum of an input is that of all the files that are read with it", "[resume]") {
+    const FreshFolder folder;
+    const fs::path grid = folder.path() / "rain.asc", virtual_grid = folder.path() / "rain.vrt";
+    const auto write_grid = [&](int last) {
+        write_text(grid, fmt::format("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 {}\n", last));
+    };
+    write_grid(2);
+    write_text(virtual_grid, R"(<VRTDataset rasterXSize="2" rasterYSize="1">
+        <GeoTransform>0, 1, 0, 1, 0, -1</GeoTransform><VRTRasterBand dataType="Float32" band="1"><SimpleSource>
+        <SourceFilename relativeToVRT="1">rain.asc</SourceFilename><SourceBand>1</SourceBand></SimpleSource>
+        </VRTRasterBand></VRTDataset>)");
+    const std::string before = sum_of_input(grid), virtually = sum_of_input(virtual_grid);
+    CHECK(before.size() == 16);
+    CHECK(virtually != before);
+    SECTION("another value") {
+        write_grid(3);
+        CHECK(sum_of_input(grid) != before);
+        CHECK(sum_of_input(virtual_grid) != virtually);
+    }
+    SECTION("statistics that a viewer left beside it") {
+        write_text(folder.path() / "rain.asc.aux.xml", "<PAMDataset></PAMDataset>");
+        CHECK(sum_of_input(grid) == before);
+    }
+    SECTION("the same elsewhere, under another name") {
+        fs::rename(grid, folder.path() / "other.asc");
+        CHECK(sum_of_input(folder.path() / "other.asc") == before);
+        CHECK(sum_of_input(grid) == "missing");
+    }
+    SECTION("no file of GDAL's") {
+        const fs::path mesh = folder.path() / "wall.stl";
+        write_text(mesh, "solid made");
+        const std::string first = sum_of_input(mesh);
+        write_text(mesh, "solid male");
+        CHECK(sum_of_input(mesh) != first);
+    }
 }
 
 TEST_CASE("a state of another version or precision is refused", "[resume]") {

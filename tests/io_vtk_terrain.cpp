@@ -142,3 +142,26 @@ TEST_CASE("A missing, broken or absent frame is an error that names it", "[io][v
     fs::remove(run.path() / "grid/grid_000000.vti");
     CHECK_THROWS_WITH(read_frame(run.path(), 0), Contains("grid_000000.vti: not found"));
 }
+
+TEST_CASE("A frame with a damaged header is an error that names it, whatever VTK makes of it", "[io][vtk]") {
+    const FreshFolder run;
+    FrameMaker maker(0, 0.0, 10, FrameMaker::utm(5, 5));
+    make_particle_writer(run.path())->see(maker.frame);
+    const fs::path file = run.path() / "particles/particles_000000.vtp";
+    std::string text = text_of(file);
+    std::string sentence = "cannot be read";
+    const auto replace_first = [&](const std::string& what, const std::string& by) {
+        REQUIRE(text.find(what) != text.npos);
+        text.replace(text.find(what), what.size(), by);
+    };
+    SECTION("a type that nobody knows") { replace_first("type=\"String\"", "type=\"Strang\""); }
+    SECTION("a type without its name") { replace_first("<DataArray type=", "<DataArray tupe="); }
+    SECTION("a block that claims more than any memory has") { replace_first("AQAAAAAAAAAAgAAA", "AQAAAAAAArAAgAAA"); }
+    SECTION("vertices of points that are not there") {
+        replace_first("NumberOfPoints=\"10\"", "NumberOfPoints=\"4\"");
+        sentence = "names point 9, counted from 0, of 4 points";
+    }
+    std::ofstream(file, std::ios::binary) << text;
+    CHECK_THROWS_AS(read_particles(run.path(), 0), UserError);
+    CHECK_THROWS_WITH(read_particles(run.path(), 0), Contains("particles_000000.vtp: ") && Contains(sentence));
+}

@@ -7,10 +7,8 @@
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
 #include <vtkIdList.h>
-#include <vtkImplicitPolyDataDistance.h>
 #include <vtkIntersectionPolyDataFilter.h>
 #include <vtkNew.h>
-#include <vtkOBJReader.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
@@ -26,12 +24,15 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "solid/mesh_distance.h"
+#include "vtk_io/obj_file.h"
+#include "vtk_io/xml_reading.h"
 
 namespace frana {
 namespace {
@@ -39,26 +40,32 @@ namespace {
 using Path = std::filesystem::path;
 using Triangle = std::array<vtkIdType, 3>;
 
-template <class Reader>
-vtkSmartPointer<vtkPolyData> read_with(const Path& file) {
+UserError unreadable(const Path& file) {
+    return UserError(fmt::format("{}: cannot be read as a mesh; expected triangles in a {} file: write it "
+                                 "again from the program that made it",
+                                 file.string(), file.extension().string()));
+}
+
+vtkSmartPointer<vtkPolyData> read_stl(const Path& file) {
     bool complained = false;
     vtkNew<vtkCallbackCommand> listener;
     listener->SetClientData(&complained);
     listener->SetCallback(
         [](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
-    vtkNew<Reader> reader;
+    vtkNew<vtkSTLReader> reader;
     for (const char* event : {"ErrorEvent", "WarningEvent"}) {
         reader->AddObserver(event, listener);
         reader->GetExecutive()->AddObserver(event, listener);
     }
-    if constexpr (std::is_base_of_v<vtkXMLReader, Reader>) reader->SetParserErrorObserver(listener);
     reader->SetFileName(file.string().c_str());
     reader->Update();
-    if (complained || reader->GetErrorCode() != vtkErrorCode::NoError)
-        throw UserError(
-            fmt::format("{}: cannot be read as a mesh; expected triangles in a {} file: write it "
-                        "again from the program that made it",
-                        file.string(), file.extension().string()));
+    if (complained || reader->GetErrorCode() != vtkErrorCode::NoError) throw unreadable(file);
+    return reader->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> read_vtp(const Path& file) {
+    vtkNew<vtkXMLPolyDataReader> reader;
+    if (!read_xml(reader, file)) throw unreadable(file);
     return reader->GetOutput();
 }
 
@@ -68,17 +75,32 @@ vtkSmartPointer<vtkPolyData> read_any(const Path& file) {
     std::string kind = file.extension().string();
     std::transform(kind.begin(), kind.end(), kind.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (kind == ".stl") return read_with<vtkSTLReader>(file);
-    if (kind == ".obj") return read_with<vtkOBJReader>(file);
-    if (kind == ".vtp") return read_with<vtkXMLPolyDataReader>(file);
+    if (kind == ".stl") return read_stl(file);
+    if (kind == ".obj") return read_obj(file);
+    if (kind == ".vtp") return read_vtp(file);
     throw UserError(
         fmt::format("{}: a mesh of the kind '{}' is not known; expected .stl, .vtp or .obj: convert it",
                     file.string(), kind));
 }
 
+/// Throws UserError with what VTK's filters would die of, or take for something else.
+void require_sound(const Path& file, vtkPolyData* mesh) {
+    std::string fault = fault_of(mesh);
+    for (vtkIdType n = 0; n < mesh->GetNumberOfPoints(); ++n) {
+        const Vec3 x = Vec3(mesh->GetPoint(n));
+        if (!x.allFinite() && fault.empty())
+            fault = fmt::format("point {}, counted from 0, is at no place ({}, {}, {})", n, x.x(), x.y(), x.z());
+    }
+    if (!fault.empty())
+        throw UserError(fmt::format("{}: {}; expected a closed surface of triangles: write the mesh again from the "
+                                    "program that made it",
+                                    file.string(), fault));
+}
+
 /// Triangles only, with one point at each place: files may repeat it for every triangle.
 vtkSmartPointer<vtkPolyData> read_triangles(const Path& file) {
     const vtkSmartPointer<vtkPolyData> raw = read_any(file);
+    require_sound(file, raw);
     vtkNew<vtkTriangleFilter> triangles;
     triangles->SetInputData(raw);
     triangles->PassVertsOff(), triangles->PassLinesOff();
@@ -176,6 +198,42 @@ void require_simple(const Path& file, vtkPolyData* mesh, const std::vector<Trian
     }
 }
 
+/// Every part that hangs together encloses more than round-off: a sheet with two sides is no solid.
+void require_volume(const Path& file, vtkPolyData* mesh, const std::vector<Triangle>& triangles) {
+    struct Part {
+        double volume6 = 0.0, area2 = 0.0;
+        Eigen::AlignedBox3d box;
+    };
+    std::vector<vtkIdType> of(static_cast<std::size_t>(mesh->GetNumberOfPoints()));  // a point of the same part
+    std::iota(of.begin(), of.end(), vtkIdType{0});
+    const auto root = [&](vtkIdType n) {
+        while (of[static_cast<std::size_t>(n)] != n)
+            n = of[static_cast<std::size_t>(n)] = of[static_cast<std::size_t>(of[static_cast<std::size_t>(n)])];
+        return n;
+    };
+    for (const Triangle& t : triangles)
+        for (const vtkIdType n : t) of[static_cast<std::size_t>(root(n))] = root(t[0]);
+    std::map<vtkIdType, Part> parts;
+    for (const Triangle& t : triangles) {
+        const vtkIdType part_of = root(t[0]);
+        Part& part = parts[part_of];
+        const Vec3 from = point_of(mesh, part_of), a = point_of(mesh, t[0]) - from, b = point_of(mesh, t[1]) - from,
+                   c = point_of(mesh, t[2]) - from;
+        part.volume6 += a.dot(b.cross(c));
+        part.area2 += (b - a).cross(c - a).norm();
+        for (const Vec3& x : {a, b, c}) part.box.extend(x);
+    }
+    constexpr double kRoundOff = 1e-9;  // of the size: doubles have 16 digits, a sum of many triangles some fewer
+    for (const auto& [start, part] : parts) {
+        const double thickness = part.area2 > 0.0 ? 2.0 / 3.0 * std::abs(part.volume6) / part.area2 : 0.0;
+        if (!(thickness > kRoundOff * part.box.diagonal().norm()))
+            throw UserError(fmt::format("{}: the part of the mesh at {} has two sides and nothing between them; "
+                                        "expected a solid: give it a thickness, or give the wall as a line with a "
+                                        "height",
+                                        file.string(), place_of(point_of(mesh, start))));
+    }
+}
+
 /// Six times the volume inside: below zero where the triangles turn inwards.
 double volume6(vtkPolyData* mesh, const std::vector<Triangle>& triangles) {
     const Vec3 from = point_of(mesh, 0);
@@ -184,6 +242,15 @@ double volume6(vtkPolyData* mesh, const std::vector<Triangle>& triangles) {
         sum += (point_of(mesh, t[0]) - from)
                    .dot((point_of(mesh, t[1]) - from).cross(point_of(mesh, t[2]) - from));
     return sum;
+}
+
+TriangleMesh turned_outwards(vtkPolyData* read, const std::vector<Triangle>& triangles) {
+    const bool inwards = volume6(read, triangles) < 0.0;
+    TriangleMesh mesh;
+    for (vtkIdType n = 0; n < read->GetNumberOfPoints(); ++n) mesh.points.emplace_back(point_of(read, n));
+    for (const Triangle& t : triangles)
+        mesh.triangles.push_back({t[0], inwards ? t[2] : t[1], inwards ? t[1] : t[2]});
+    return mesh;
 }
 
 /// An empty field around the mesh.
@@ -217,22 +284,20 @@ DistanceField field_around(const Path& file, vtkPolyData* mesh, const MeshSampli
 
 }  // namespace
 
-DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSampling& sampling) {
+static DistanceField distances_of(const Path& file, const MeshSampling& sampling,
+                                  const std::function<void(const std::string&)>& say) {
     expect(sampling.spacing > 0.0 && sampling.margin >= 0.0, "a mesh is sampled at a distance above zero");
     const vtkSmartPointer<vtkPolyData> mesh = read_triangles(file);
     const std::vector<Triangle> triangles = triangles_of(mesh);
     require_closed(file, mesh, triangles);
     require_simple(file, mesh, triangles);
+    require_volume(file, mesh, triangles);
     DistanceField field = field_around(file, mesh, sampling);
-    const double sign = volume6(mesh, triangles) < 0.0 ? -1.0 : 1.0;
-    vtkNew<vtkImplicitPolyDataDistance> distance;
-    distance->SetInput(mesh);
-    for (Index k = 0; k < field.nodes[2]; ++k)
-        for (Index j = 0; j < field.nodes[1]; ++j)
-            for (Index i = 0; i < field.nodes[0]; ++i) {
-                Vec3 x = field.place(i, j, k);
-                field.at(i, j, k) = sign * distance->EvaluateFunction(x.data());
-            }
+    constexpr std::size_t kMany = 5'000'000;  // a second of one thread
+    if (field.distance.size() > kMany && say)
+        say(fmt::format("{}: measuring its distance from {:.3g} million places, {:.6g} m apart", file.string(),
+                        1e-6 * static_cast<double>(field.distance.size()), sampling.spacing));
+    measure_distances(turned_outwards(mesh, triangles), field);
     if (std::none_of(field.distance.begin(), field.distance.end(), [](double d) { return d < 0.0; }))
         throw UserError(fmt::format("{}: the mesh is thinner than the {:.6g} m between the nodes of its distances; expected a "
                                     "solid of a cell at least: take finer cells, or give the wall as a line with a height",
@@ -241,20 +306,31 @@ DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSam
     return field;
 }
 
-MeshField barrier_mesh_of(const std::filesystem::path& file, const MeshSampling& sampling) {
-    auto field = std::make_shared<DistanceField>(read_barrier_mesh(file, sampling));
+DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSampling& sampling) {
+    return distances_of(file, sampling, nullptr);
+}
+
+static MeshField with_its_box(DistanceField&& distances, const MeshSampling& sampling) {
+    auto field = std::make_shared<DistanceField>(std::move(distances));
     const Vec3 around = Vec3::Constant(sampling.margin), low = field->origin + around, high = field->end() - around;
     return {std::move(field), low, high};
+}
+
+MeshField barrier_mesh_of(const std::filesystem::path& file, const MeshSampling& sampling) {
+    return with_its_box(read_barrier_mesh(file, sampling), sampling);
+}
+
+MeshReader barrier_meshes_told(std::function<void(const std::string&)> say) {
+    return [say = std::move(say)](const Path& file, const MeshSampling& sampling) {
+        return with_its_box(distances_of(file, sampling, say), sampling);
+    };
 }
 
 TriangleMesh barrier_triangles(const std::filesystem::path& file, const Vec3& origin) {
     const vtkSmartPointer<vtkPolyData> read = read_triangles(file);
     const std::vector<Triangle> triangles = triangles_of(read);
-    const bool inwards = volume6(read, triangles) < 0.0;
-    TriangleMesh mesh;
-    for (vtkIdType n = 0; n < read->GetNumberOfPoints(); ++n) mesh.points.emplace_back(point_of(read, n) + origin);
-    for (const Triangle& t : triangles)
-        mesh.triangles.push_back({t[0], inwards ? t[2] : t[1], inwards ? t[1] : t[2]});
+    TriangleMesh mesh = turned_outwards(read, triangles);
+    for (Vec3& x : mesh.points) x += origin;
     return mesh;
 }
 

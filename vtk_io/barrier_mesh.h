@@ -1,5 +1,7 @@
 #pragma once
 #include <filesystem>
+#include <functional>
+#include <string>
 
 #include "scene/toolbox.h"
 #include "solid/distance_field.h"
@@ -14,6 +16,9 @@ DistanceField read_barrier_mesh(const std::filesystem::path& file, const MeshSam
 
 /// The same for build_scene().
 MeshField barrier_mesh_of(const std::filesystem::path& file, const MeshSampling& sampling);
+
+/// Makes that tell `say` beforehand, in one line, of a mesh that takes a second or more.
+MeshReader barrier_meshes_told(std::function<void(const std::string&)> say);
 
 /// The triangles of such a file in map coordinates, turned outwards, for pictures; `origin` [m] as in MeshSampling.
 /// Throws UserError when it cannot be read.

@@ -142,11 +142,16 @@ public:
 
     void look(const Frame& frame, Index number) override {
         const auto cloud = cloud_of(frame);
-        mark(cloud, scalar(frame.particles, field_, "the particles"), kept_);
+        const Scalar values = scalar(frame.particles, field_, "the particles");
+        vtkNew<vtkXMLPolyDataWriter> writer;
+        if (cloud->GetNumberOfPoints() == 0) {  // VTK's filter calls that an error, loudly
+            series_.write(writer, cloud, frame, number);
+            return;
+        }
+        mark(cloud, values, kept_);
         vtkNew<vtkThresholdPoints> threshold;
         threshold->ThresholdByUpper(1.0);
         threshold->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-        vtkNew<vtkXMLPolyDataWriter> writer;
         series_.write(writer, filtered(threshold.Get(), cloud), frame, number);
     }
     void keep(Archive& archive) override { series_.keep(archive); }

@@ -1,11 +1,8 @@
 #include "vtk_io/reader.h"
 
 #include <fmt/core.h>
-#include <vtkCallbackCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
-#include <vtkErrorCode.h>
-#include <vtkExecutive.h>
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
@@ -14,6 +11,7 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
@@ -22,6 +20,7 @@
 
 #include "base/error.h"
 #include "vtk_io/pvd.h"
+#include "vtk_io/xml_reading.h"
 
 namespace frana {
 namespace {
@@ -31,18 +30,16 @@ void read_file(vtkXMLReader* reader, const std::filesystem::path& file) {
     const UserError unreadable(
         fmt::format("{}: cannot be read as a VTK file; run the case again", file.string()));
     if (!std::filesystem::exists(file)) throw UserError(file.string() + ": not found; run the case again");
-    bool complained = false;
-    vtkNew<vtkCallbackCommand> listener;
-    listener->SetClientData(&complained);
-    listener->SetCallback(
-        [](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
-    reader->AddObserver("ErrorEvent", listener);
-    reader->GetExecutive()->AddObserver("ErrorEvent", listener);
-    reader->SetParserErrorObserver(listener);
-    if (!reader->CanReadFile(file.string().c_str())) throw unreadable;
-    reader->SetFileName(file.string().c_str());
-    reader->Update();
-    if (complained || reader->GetErrorCode() != vtkErrorCode::NoError) throw unreadable;
+    if (!read_xml(reader, file)) throw unreadable;
+}
+
+/// Points and what they make up, every number of a point being that of one.
+vtkSmartPointer<vtkPolyData> read_polydata(const std::filesystem::path& file) {
+    vtkNew<vtkXMLPolyDataReader> reader;
+    read_file(reader, file);
+    if (const std::string fault = fault_of(reader->GetOutput()); !fault.empty())
+        throw UserError(fmt::format("{}: {}; run the case again", file.string(), fault));
+    return reader->GetOutput();
 }
 
 std::vector<double> numbers_of(vtkDataArray* array) {
@@ -142,15 +139,14 @@ LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number) {
 
 LoadedParticles read_particles(const std::filesystem::path& run_dir, Index number) {
     const auto [entry, position] = entry_of(run_dir / "particles.pvd", number);
-    vtkNew<vtkXMLPolyDataReader> reader;
-    read_file(reader, run_dir / entry.file);
+    const vtkSmartPointer<vtkPolyData> points = read_polydata(run_dir / entry.file);
     LoadedParticles particles;
     particles.number = position;
     particles.time = entry.time;
-    particles.count = reader->GetOutput()->GetNumberOfPoints();
-    take_columns(reader->GetOutput(), particles, particles.columns);
+    particles.count = points->GetNumberOfPoints();
+    take_columns(points, particles, particles.columns);
     if (particles.count > 0)
-        particles.columns["position"] = numbers_of(reader->GetOutput()->GetPoints()->GetData());
+        particles.columns["position"] = numbers_of(points->GetPoints()->GetData());
     else
         particles.columns["position"] = {};
     particles.components["position"] = 3;
@@ -159,11 +155,10 @@ LoadedParticles read_particles(const std::filesystem::path& run_dir, Index numbe
 
 std::pair<double, double> profile_ends(const std::filesystem::path& run_dir) {
     const auto entry = entry_of(run_dir / "profiles.pvd", 0).first;
-    vtkNew<vtkXMLPolyDataReader> reader;
-    read_file(reader, run_dir / entry.file);
-    vtkPolyData* lines = reader->GetOutput();
+    const vtkSmartPointer<vtkPolyData> lines = read_polydata(run_dir / entry.file);
     if (lines->GetNumberOfCells() == 0) return {0.0, 0.0};
     vtkIdList* stations = lines->GetCell(0)->GetPointIds();
+    if (stations->GetNumberOfIds() == 0) return {0.0, 0.0};
     double first[3], last[3];
     lines->GetPoint(stations->GetId(0), first);
     lines->GetPoint(stations->GetId(stations->GetNumberOfIds() - 1), last);
@@ -177,9 +172,7 @@ std::vector<double> barrier_times(const std::filesystem::path& run_dir) {
 
 std::vector<LoadedPatch> read_barriers(const std::filesystem::path& run_dir, Index number) {
     const std::filesystem::path file = run_dir / entry_of(run_dir / "barriers.pvd", number).first.file;
-    vtkNew<vtkXMLPolyDataReader> reader;
-    read_file(reader, file);
-    vtkPolyData* faces = reader->GetOutput();
+    const vtkSmartPointer<vtkPolyData> faces = read_polydata(file);
     vtkDataArray *pressure = faces->GetCellData()->GetArray("pressure"),
                  *barrier = faces->GetCellData()->GetArray("barrier"), *face = faces->GetCellData()->GetArray("face");
     if (!pressure || !barrier || !face)
@@ -202,9 +195,7 @@ std::vector<LoadedPatch> read_barriers(const std::filesystem::path& run_dir, Ind
 BarrierMeshes read_barrier_meshes(const std::filesystem::path& run_dir) {
     const std::filesystem::path file = run_dir / "barrier_meshes.vtp";
     if (!std::filesystem::exists(file)) return {};
-    vtkNew<vtkXMLPolyDataReader> reader;
-    read_file(reader, file);
-    vtkPolyData* const data = reader->GetOutput();
+    const vtkSmartPointer<vtkPolyData> data = read_polydata(file);
     vtkDataArray* const barrier = data->GetCellData()->GetArray("barrier");
     std::map<int, TriangleMesh> meshes;
     std::map<int, std::map<vtkIdType, Index>> numbers;  // of a point in its barrier's mesh
@@ -228,11 +219,10 @@ BarrierMeshes read_barrier_meshes(const std::filesystem::path& run_dir) {
 }
 
 std::optional<std::array<double, 4>> bounds_of(const std::filesystem::path& vtp) {
-    vtkNew<vtkXMLPolyDataReader> reader;
-    read_file(reader, vtp);
-    if (reader->GetOutput()->GetNumberOfPoints() == 0) return std::nullopt;
+    const vtkSmartPointer<vtkPolyData> shape = read_polydata(vtp);
+    if (shape->GetNumberOfPoints() == 0) return std::nullopt;
     double b[6];
-    reader->GetOutput()->GetBounds(b);
+    shape->GetBounds(b);
     return std::array<double, 4>{b[0], b[2], b[1], b[3]};
 }
 

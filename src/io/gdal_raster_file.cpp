@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "io/gdal_ascii.h"
 #include "io/gdal_crs.h"
 
 namespace frana::gdal {
@@ -34,6 +35,7 @@ RasterFile::RasterFile(const std::filesystem::path& file, Meaning meaning, std::
                               : std::string("; expected a raster such as a GeoTIFF")));
     }
     band_ = dataset_->GetRasterBand(1);
+    require_numbers(file_, *dataset_);
     if (GDALDataTypeIsComplex(band_->GetRasterDataType()))
         throw UserError(
             fmt::format("{}: holds complex numbers; expected real ones; run: gdal_translate -ot Float64 "

@@ -17,7 +17,8 @@ enum class Meaning { elevation, any };
 /// A north- or south-up raster with a geotransform. Reads band 1 in blocks: only the pixels asked for.
 class RasterFile {
 public:
-    /// Opens and checks. UserError: missing, no raster, no georeference, rotated, complex numbers.
+    /// Opens and checks. UserError: missing, no raster, no georeference, rotated, complex numbers,
+    /// words where numbers should be.
     RasterFile(const std::filesystem::path& file, Meaning meaning, std::vector<std::string>& log);
 
     const PixelAxis& x_axis() const { return x_; }

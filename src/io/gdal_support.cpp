@@ -47,12 +47,18 @@ void register_drivers() {
 Dataset open(const std::filesystem::path& file, unsigned kind) {
     register_drivers();
     const Messages messages;
+    std::error_code ignored;
+    const auto kind_of_file = std::filesystem::status(file, ignored).type();
+    using Type = std::filesystem::file_type;
+    if (kind_of_file == Type::fifo || kind_of_file == Type::character || kind_of_file == Type::socket)
+        throw UserError(fmt::format("{}: is a pipe or a device, which may never end; expected a file; copy what comes "
+                                    "out of it into a file",
+                                    file.string()));
     Dataset dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
     if (dataset) return dataset;
     const bool raster = kind == GDAL_OF_RASTER;
     const char* wanted = raster ? "a raster that GDAL can read (GeoTIFF, ESRI ASCII grid, ...)"
                                 : "a vector file that GDAL can read (GeoJSON, GeoPackage, Shapefile, ...)";
-    std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
         throw UserError(
             fmt::format("{}: no such file; expected {}; check the name, which is taken relative to the "

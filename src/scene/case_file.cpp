@@ -115,17 +115,24 @@ std::filesystem::path CaseFile::resolve(const std::string& path) const {
     return virtual_name ? std::filesystem::path(path) : beside;
 }
 
-std::vector<std::filesystem::path> CaseFile::inputs() const {
-    std::vector<std::filesystem::path> files = {file_};
+std::vector<std::pair<std::string, std::filesystem::path>> CaseFile::named_files() const {
+    std::vector<std::pair<std::string, std::filesystem::path>> files;
     for (const auto& [key, setting] : settings_) {
         const Parameter* parameter = find_parameter(key);
-        const bool names_files = parameter && (parameter->kind == Kind::path || parameter->kind == Kind::number_or_path ||
-                                               parameter->kind == Kind::numbers_or_paths);
+        const bool names_files =
+            parameter && (parameter->kind == Kind::path || parameter->kind == Kind::number_or_path ||
+                          parameter->kind == Kind::numbers_or_paths);
         if (!names_files || !is_text(key)) continue;
-        if (const auto* one = std::get_if<std::string>(&setting.value)) files.push_back(resolve(*one));
+        if (const auto* one = std::get_if<std::string>(&setting.value)) files.emplace_back(key, resolve(*one));
         if (const auto* several = std::get_if<std::vector<std::string>>(&setting.value))
-            for (const std::string& name : *several) files.push_back(resolve(name));
+            for (const std::string& name : *several) files.emplace_back(key, resolve(name));
     }
+    return files;
+}
+
+std::vector<std::filesystem::path> CaseFile::inputs() const {
+    std::vector<std::filesystem::path> files = {file_};
+    for (const auto& [key, path] : named_files()) files.push_back(path);
     return files;
 }
 

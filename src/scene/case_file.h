@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/parameters.h"
@@ -60,7 +61,9 @@ public:
     /// A path as it is to be opened: relative ones from the case file's folder, GDAL's virtual names
     /// untouched.
     std::filesystem::path resolve(const std::string& path) const;
-    /// The case file, then every file that the given keys name: what the case reads.
+    /// Every file that the given keys name, as it is to be opened, beside its key. A key may name several.
+    std::vector<std::pair<std::string, std::filesystem::path>> named_files() const;
+    /// The case file, then those: what the case reads.
     std::vector<std::filesystem::path> inputs() const;
     /// "case.toml:12: grid.cell", the place of a key for messages; for an absent key, that of its table.
     std::string place(const std::string& key) const;

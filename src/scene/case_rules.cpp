@@ -231,7 +231,12 @@ void CaseReader::check_files() {
             // Names such as /vsizip/a.zip/dem.tif or NETCDF:a.nc:z are GDAL's own; only GDAL can look for
             // them.
             const bool virtual_name = file.rfind("/vsi", 0) == 0 || file.find(':') != std::string::npos;
-            if (virtual_name || std::filesystem::exists(path)) continue;
+            std::error_code unknown;
+            const std::filesystem::file_status status = std::filesystem::status(path, unknown);
+            if (std::filesystem::exists(status) && !is_regular_file(status) && !is_directory(status))
+                wrong(key, fmt::format("found \"{}\", a pipe or a device", path.string()), "expected a file",
+                      "copy what comes out of it into a file, and name that");
+            if (virtual_name || std::filesystem::exists(status)) continue;
             wrong(key, fmt::format("found no file \"{}\"", path.string()), "expected an existing file",
                   "correct the name (it is relative to the case file), or put the file there");
         }

@@ -1,0 +1,11 @@
+#pragma once
+#include "solid/distance_field.h"
+#include "terrain/triangle_mesh.h"
+
+namespace frana {
+
+/// Fills a field with the signed distances from a closed mesh whose triangles all run the same way round: below zero on
+/// the side that they turn away from. On all threads, with the same bits on any number of them.
+void measure_distances(const TriangleMesh& mesh, DistanceField& field);
+
+}  // namespace frana

@@ -1,0 +1,86 @@
+#include "vtk_io/xml_reading.h"
+
+#include <fmt/core.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkDataArray.h>
+#include <vtkErrorCode.h>
+#include <vtkExecutive.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkXMLReader.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+
+namespace frana {
+namespace {
+
+/// VTK 9.1 dies of an array whose type it does not know.
+bool knows_type_in(std::string_view tag) {
+    constexpr std::array<std::string_view, 12> kTypes = {"Float32", "Float64", "Int8",   "UInt8",  "Int16",  "UInt16",
+                                                         "Int32",   "UInt32",  "Int64",  "UInt64", "String", "Bit"};
+    const std::string_view key = " type=\"";
+    const std::size_t found = tag.find(key);
+    if (found == tag.npos) return false;
+    const std::string_view rest = tag.substr(found + key.size());
+    return std::find(kTypes.begin(), kTypes.end(), rest.substr(0, rest.find('"'))) != kTypes.end();
+}
+
+/// Every array of the file is of a type that VTK knows.
+bool types_are_known(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    const std::string_view all = text;
+    for (std::size_t at = all.find('<'); at != all.npos; at = all.find('<', at + 1)) {
+        const std::string_view tag = all.substr(at, all.find('>', at) - at);
+        if (tag.rfind("<AppendedData", 0) == 0) return true;  // bytes of any kind follow
+        const bool is_array = tag.rfind("<DataArray", 0) == 0 || tag.rfind("<Array", 0) == 0;
+        if (is_array && !knows_type_in(tag)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file) {
+    if (!types_are_known(file)) return false;
+    bool complained = false;
+    vtkNew<vtkCallbackCommand> listener;
+    listener->SetClientData(&complained);
+    listener->SetCallback(
+        [](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
+    for (const char* event : {"ErrorEvent", "WarningEvent"}) {
+        reader->AddObserver(event, listener);
+        reader->GetExecutive()->AddObserver(event, listener);
+    }
+    reader->SetParserErrorObserver(listener);
+    if (!reader->CanReadFile(file.string().c_str())) return false;
+    reader->SetFileName(file.string().c_str());
+    try {
+        reader->Update();
+    } catch (const std::length_error&) {  // of a block that claims more than any memory has
+        return false;
+    }
+    return !complained && reader->GetErrorCode() == vtkErrorCode::NoError;
+}
+
+std::string fault_of(vtkPolyData* mesh) {
+    const vtkIdType points = mesh->GetNumberOfPoints();
+    for (vtkCellArray* cells : {mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys(), mesh->GetStrips()}) {
+        if (cells->GetNumberOfCells() == 0 && cells->GetNumberOfConnectivityIds() == 0) continue;
+        if (!cells->IsValid()) return "its lists of faces and of their corners do not fit each other";
+        double range[2];
+        cells->GetConnectivityArray()->GetRange(range);
+        if (range[0] < 0.0 || range[1] >= static_cast<double>(points))
+            return fmt::format("a face names point {:.0f}, counted from 0, of {} points",
+                               range[0] < 0.0 ? range[0] : range[1], points);
+    }
+    return "";
+}
+
+}  // namespace frana

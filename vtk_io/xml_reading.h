@@ -1,0 +1,19 @@
+#pragma once
+// Files of VTK's XML kinds and meshes from anywhere: what VTK itself would die of is found before or after it reads.
+#include <filesystem>
+#include <string>
+
+class vtkPolyData;
+class vtkXMLReader;
+
+namespace frana {
+
+/// Has `reader` read a file. False when it is not of the reader's kind, damaged, or VTK says anything about it;
+/// nothing reaches stderr.
+bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file);
+
+/// What is wrong with faces, lines or vertices, as "a face names point 7, counted from 0, of 4 points"; empty when
+/// nothing is. VTK's filters trust what a file says.
+std::string fault_of(vtkPolyData* mesh);
+
+}  // namespace frana
