@@ -138,7 +138,7 @@ TEST_CASE("Nodata near the material is an error that names the pixel; elsewhere 
     const Scene scene = built(text, gis).scene;
     CHECK(std::isnan(scene.bed.at(1, 1)));
     CHECK(scene.log.front().find("material.bed.law is not given") == 0);
-    CHECK(scene.log[1] == "1 of 1200 nodes have no elevation: an exit, mass that enters is counted as left");
+    CHECK(scene.log[2] == "1 of 1200 nodes have no elevation: an exit, mass that enters is counted as left");
 
     gis.rasters["dem.tif"].at(12, 18) =
         Raster::nodata;  // 2 cells north of the edge at y = 2080 (node row 15)

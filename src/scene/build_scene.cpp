@@ -26,6 +26,7 @@ public:
         scene_.case_file = case_.file();
         scene_.log = case_.log();
         set_physics(case_, scene_);
+        remark_on_material(case_, scene_);
         read_terrain();
         problems_.throw_if_any();  // nothing below can be judged without terrain
         read_releases();
@@ -38,6 +39,7 @@ public:
         scene_.insitu = read_insitu(case_, scene_, problems_);
         if (problems_.empty()) make_particles();
         problems_.throw_if_any();
+        remark_on_releases(case_, built_.releases, scene_);
         cut_releases();
         return std::move(built_);
     }
@@ -59,6 +61,7 @@ private:
             problems_.add(place, fmt::format("found {} x {} nodes", grid.nx, grid.ny),
                           "expected at least 4 x 4", "choose a smaller grid.cell or a larger terrain.window");
         note_nodata();
+        remark_on_terrain(case_, scene_);
     }
 
     void note_nodata() {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "particles/release.h"
+#include "scene/build_scene.h"
 #include "scene/case_file.h"
 #include "scene/problems.h"
 #include "scene/scene.h"
@@ -17,6 +18,15 @@ using NodeMarks = std::vector<char>;
 
 /// Laws, scheme, boundary, time and output of the case; no files are read.
 void set_physics(const CaseFile& file, Scene& scene);
+
+/// Remarks on a terrain that may not be what was meant, on the material's numbers, and on releases that have their
+/// particles; they go to the scene's log.
+void remark_on_terrain(const CaseFile& file, Scene& scene);
+void remark_on_material(const CaseFile& file, Scene& scene);
+void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene);
+/// A remark on the pixels without data where a release claims material.
+void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,
+                    std::vector<std::string>& log);
 
 /// [[release]] number `i` in the terms of the particle generation: depth vertical, rasters read, outline read
 /// and within the terrain. A pixel that is material by outline or mask, but over nodata of the bed, has

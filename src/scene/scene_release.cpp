@@ -77,17 +77,31 @@ private:
 
     std::string place(const char* name) const { return case_.place(key(name)); }
 
+    static NodeMarks marks_above_zero(const Raster& mask) {
+        NodeMarks marks(mask.values.size(), 0);
+        for (std::size_t k = 0; k < marks.size(); ++k) marks[k] = mask.values[k] > 0.0;
+        return marks;
+    }
+
+    /// The pixels that the outline touches, or all.
+    static NodeMarks claimed(const Release& release, const GridGeometry& pixels) {
+        Release bare;
+        bare.outline = release.outline;
+        return nodes_under(bare, pixels);
+    }
+
     void set_depth(Release& release) const {
         const bool normal = case_.word(key("thickness")) == "normal";
         if (given("mask")) {
             const Raster mask = raster(case_.path(key("mask")));
-            release.depth_field = depth_on(mask.geometry, true);
+            release.depth_field = depth_on(mask.geometry, true, marks_above_zero(mask));
             for (std::size_t k = 0; k < mask.values.size(); ++k)
                 if (!(mask.values[k] > 0.0)) release.depth_field->values[k] = Raster::nodata;
         } else if (is_file("depth")) {
             release.depth_field = raster(case_.path(key("depth")));
+            remark_on_gaps(*release.depth_field, claimed(release, release.depth_field->geometry), place("depth"), log_);
         } else if (given("surface") || normal) {
-            release.depth_field = depth_on(bed_.geometry, given("outline"));
+            release.depth_field = depth_on(bed_.geometry, given("outline"), claimed(release, bed_.geometry));
         } else {
             release.depth = case_.number(key("depth"));
         }
@@ -96,11 +110,12 @@ private:
 
     /// Depth, or surface minus bed, at the pixels of `grid`. Over nodata of the bed the depth is unknown when
     /// the case claims material there, and none otherwise.
-    Raster depth_on(const GridGeometry& grid, bool claimed) const {
+    Raster depth_on(const GridGeometry& grid, bool claimed, const NodeMarks& places) const {
         const char* name = given("surface") ? "surface" : "depth";
         Raster field = is_file(name) ? reader_.read_onto(case_.path(key(name)), grid, bed_.crs_wkt, log_)
                                      : Raster::filled(grid, case_.number(key(name)));
         if (field.source.empty()) field.source = key(name);
+        if (is_file(name)) remark_on_gaps(field, places, place(name), log_);
         if (!given("surface")) return field;
         for (Index j = 0; j < grid.ny; ++j) {
             for (Index i = 0; i < grid.nx; ++i) {
