@@ -100,9 +100,9 @@ void remark_named_feet(const RasterFile& raster, std::vector<std::string>& log) 
 Raster GdalReader::read_dem(const std::filesystem::path& file, const DemRequest& request,
                             std::vector<std::string>& log) const {
     const RasterFile raster(file, gdal::Meaning::elevation, log);
-    const auto all = raster.extent();
+    const auto used = request.window.value_or(raster.extent());
     gdal::Place place{
-        file, &raster.crs(), {0.5 * (all[0] + all[2]), 0.5 * (all[1] + all[3])}, raster.unit(), true};
+        file, &raster.crs(), {0.5 * (used[0] + used[2]), 0.5 * (used[1] + used[3])}, raster.unit(), true};
     gdal::require_metres(place, log);
     remark_named_feet(raster, log);
     const auto window = checked_window(raster, request);
