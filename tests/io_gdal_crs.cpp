@@ -174,8 +174,8 @@ TEST_CASE("The scale of a map is that of its projection", "[gdal]") {
         REQUIRE(found);
         return *found;
     };
-    // UTM on its central meridian: 0.9996 by definition, alike in all directions; central differences over 200 m are good
-    // to their square over the Earth's radius
+    // UTM on its central meridian: 0.9996 by definition, alike in all directions; central differences over 200 m are
+    // good to their square over the Earth's radius
     for (const double k : scale("EPSG:32632", 500000.0, 6000000.0)) CHECK(k == Approx(0.9996).epsilon(1e-8));
     // Mercator's sphere against the ellipsoid on the equator: 1 along it, a / M = 1 / (1 - e^2) across
     const auto mercator = scale("EPSG:3857", 0.0, 0.0);

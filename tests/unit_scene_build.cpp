@@ -1,9 +1,12 @@
 // From case file to Scene, with files that exist in memory only.
+#include <algorithm>
+#include <fstream>
 #include <numeric>
 
 #include "base/error.h"
 #include "catch.h"
 #include "fake_gis.h"
+#include "fresh_folder.h"
 #include "scene/build_scene.h"
 #include "verify/trial.h"
 
@@ -353,4 +356,26 @@ TEST_CASE("The verification's presets are those of the case file", "[scene]") {
         CHECK(std::tuple(a.viscosity_linear, a.viscosity_quadratic, a.split_length, a.split_min_mass, a.stress_cap) ==
               std::tuple(b.viscosity_linear, b.viscosity_quadratic, b.split_length, b.split_min_mass, b.stress_cap));
     }
+}
+
+TEST_CASE("An outline's layer is named beside it or with it, and its file is looked for without it", "[scene]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["outlines.gpkg|layername=scar"] = gis.polygons["release.geojson"];
+    for (const char* keys : {"outline = \"outlines.gpkg\"\nlayer = \"scar\"\ndepth = 2.0",
+                             "outline = \"outlines.gpkg|layername=scar\"\ndepth = 2.0"})
+        CHECK(sum(built(with_release(keys), gis).scene.particles.volume) == Approx(50 * 30 * 2.0).epsilon(round_off));
+    const auto twice =
+        problems_of(with_release("outline = \"a.gpkg|layername=b\"\nlayer = \"c\"\ndepth = 2.0"), gis);
+    REQUIRE(twice.size() == 1);
+    CHECK(twice[0].find("release.0.layer: found, but outline names a layer as well") != std::string::npos);
+    REQUIRE(problems_of(with_release("layer = \"c\"\ndepth = 2.0"), gis).size() == 1);
+
+    const FreshFolder folder;
+    std::ofstream(folder.path() / "dem.tif") << "not looked into";
+    std::ofstream(folder.path() / "case.toml") << with_release("outline = \"a.gpkg|layername=b\"\ndepth = 2.0");
+    CHECK_THROWS_WITH(CaseFile::read(folder.path() / "case.toml"),
+                      Catch::Contains("found no file") && Catch::Contains("a.gpkg\""));
+    std::ofstream(folder.path() / "a.gpkg") << "not looked into";
+    const auto inputs = CaseFile::read(folder.path() / "case.toml").inputs();
+    CHECK(std::count(inputs.begin(), inputs.end(), folder.path() / "a.gpkg") == 1);
 }

@@ -27,8 +27,8 @@ std::string crs_name(const OGRSpatialReference& crs);
 /// stereographic.
 int utm_code(double longitude, double latitude);
 
-/// Lengths on the map over lengths on the ground, the least and the largest of all directions, at a place of a projected
-/// CRS. Nothing where the CRS cannot tell.
+/// Lengths on the map over lengths on the ground, the least and the largest of all directions, at a place of a
+/// projected CRS. Nothing where the CRS cannot tell.
 std::optional<std::array<double, 2>> map_scale(const OGRSpatialReference& crs, const std::array<double, 2>& place);
 
 /// A raster as far as its CRS is concerned.

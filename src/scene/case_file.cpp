@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/layer_name.h"
 #include "scene/case_reader.h"
 
 namespace frana {
@@ -122,7 +123,8 @@ std::vector<std::filesystem::path> CaseFile::inputs() const {
         const bool names_files = parameter && (parameter->kind == Kind::path || parameter->kind == Kind::number_or_path ||
                                                parameter->kind == Kind::numbers_or_paths);
         if (!names_files || !is_text(key)) continue;
-        if (const auto* one = std::get_if<std::string>(&setting.value)) files.push_back(resolve(*one));
+        if (const auto* one = std::get_if<std::string>(&setting.value))
+            files.push_back(resolve(split_layer(*one).file));
         if (const auto* several = std::get_if<std::vector<std::string>>(&setting.value))
             for (const std::string& name : *several) files.push_back(resolve(name));
     }

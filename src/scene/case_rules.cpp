@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/layer_name.h"
 #include "scene/case_reader.h"
 
 namespace frana {
@@ -124,6 +125,7 @@ void CaseReader::check_unused(const std::string& prefix, const std::string& tabl
 }
 
 void CaseReader::check_release(const std::string& prefix) {
+    check_layer(prefix);
     const auto there = [&](const char* name) {
         return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
     };
@@ -139,6 +141,15 @@ void CaseReader::check_release(const std::string& prefix) {
         wrong(prefix + "included_in_dem", "found true together with surface",
               "expected depth, since the elevation model is the surface already",
               "give depth = ..., a number or a raster of the thickness");
+}
+
+void CaseReader::check_layer(const std::string& prefix) {
+    if (!case_.given(prefix + "layer")) return;
+    if (!case_.given(prefix + "outline"))
+        wrong(prefix + "layer", "found without outline", "expected it with outline only", "remove it, or give outline");
+    else if (!split_layer(case_.word(prefix + "outline")).layer.empty())
+        wrong(prefix + "layer", "found, but outline names a layer as well", "expected one of the two",
+              "remove " + kLayerMark + " from outline");
 }
 
 void CaseReader::check_barrier(const std::string& prefix) {
@@ -227,7 +238,7 @@ void CaseReader::check_meaning() {
 void CaseReader::check_files() {
     for (const auto& [key, setting] : case_.settings_) {
         for (const std::string& file : files_of(*find_parameter(key), setting.value)) {
-            const std::filesystem::path path = case_.resolve(file);
+            const std::filesystem::path path = case_.resolve(split_layer(file).file);
             // Names such as /vsizip/a.zip/dem.tif or NETCDF:a.nc:z are GDAL's own; only GDAL can look for
             // them.
             const bool virtual_name = file.rfind("/vsi", 0) == 0 || file.find(':') != std::string::npos;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/layer_name.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -47,7 +48,9 @@ private:
     }
 
     Polygons outline() const {
-        Polygons polygons = reader_.read_polygons(case_.path(key("outline")), bed_.crs_wkt, log_);
+        std::string name = case_.path(key("outline")).string();
+        if (given("layer")) name += kLayerMark + case_.word(key("layer"));
+        Polygons polygons = reader_.read_polygons(name, bed_.crs_wkt, log_);
         const auto extent = bed_.geometry.pixel_extent();
         const double slack = 1e-9 * (std::abs(extent[2]) + std::abs(extent[3]) + 1.0);
         Index outside = 0;
