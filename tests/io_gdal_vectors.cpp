@@ -203,6 +203,31 @@ TEST_CASE("An outline that crosses itself is repaired to the area it draws, and 
     CHECK(any_contains(out.log, "Self-intersection"));
 }
 
+TEST_CASE("Polygons come with the numbers of an attribute, and one without its number is refused", "[gdal]") {
+    GeoJson json;
+    const auto with = [](const std::string& properties, const std::string& type, const std::string& coordinates) {
+        std::string text = feature(type, coordinates);
+        return text.replace(text.find("{}"), 2, "{" + properties + "}");
+    };
+    const std::string two = "[[[[20,0],[21,0],[21,1],[20,0]]],[[[30,0],[31,0],[31,1],[30,0]]]]";
+    const auto valued = [&](const std::string& features) {
+        std::vector<std::string> log;
+        return GdalReader().read_valued_polygons(json.write(features), "thickness_m", "", log).values;
+    };
+    CHECK(valued(with(R"("thickness_m":2)", "Polygon", square) + "," +
+                 with(R"("thickness_m":1.5,"name":"scar")", "MultiPolygon", two)) ==
+          std::vector<double>{2.0, 1.5, 1.5});
+    CHECK(contains(user_error([&] { valued(with(R"("depth":2,"name":"a")", "Polygon", square)); }),
+                   "has no attribute \"thickness_m\"; expected one of \"depth\", \"name\""));
+    CHECK(contains(user_error([&] { valued(with(R"("thickness_m":"2 m")", "Polygon", square)); }),
+                   "its attribute \"thickness_m\" holds String; expected numbers"));
+    CHECK(contains(user_error([&] {
+                       valued(with(R"("thickness_m":2)", "Polygon", square) + "," +
+                              with(R"("thickness_m":null)", "Polygon", square));
+                   }),
+                   "feature 1 has no \"thickness_m\"; expected a number for each feature"));
+}
+
 TEST_CASE("Features without a geometry are refused by their numbers", "[gdal]") {
     GeoJson json;
     const std::string none = R"({"type":"Feature","properties":{},"geometry":null})";

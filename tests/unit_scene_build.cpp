@@ -379,3 +379,33 @@ TEST_CASE("An outline's layer is named beside it or with it, and its file is loo
     const auto inputs = CaseFile::read(folder.path() / "case.toml").inputs();
     CHECK(std::count(inputs.begin(), inputs.end(), folder.path() / "a.gpkg") == 1);
 }
+
+TEST_CASE("Each polygon of an outline has the depth of its attribute", "[scene]") {
+    FakeGis gis = slope_gis();
+    Polygons& scars = gis.polygons["scars.gpkg"];
+    scars = rectangle(1050, 2050, 1070, 2080);
+    for (const double x : {1080.0, 1110.0}) scars.parts.push_back(rectangle(x, 2050, x + 20, 2080).parts[0]);
+    gis.attributes["thickness_m"] = {3.0, 1.5, 3.0};
+    const std::string keys = "outline = \"scars.gpkg\"\ndepth = \"field:thickness_m\"";
+    const BuiltScene result = built(with_release(keys), gis);
+    REQUIRE(result.releases.size() == 2);
+    CHECK(result.releases[0].report.volume == Approx(20 * 30 * 1.5).epsilon(round_off));
+    CHECK(result.releases[1].report.volume == Approx(2 * 20 * 30 * 3.0).epsilon(round_off));
+    CHECK(result.releases[1].max_depth == Approx(3.0).epsilon(round_off));
+    const BuiltScene normal = built(with_release(keys + "\nthickness = \"normal\""), gis);
+    CHECK(sum(normal.scene.particles.volume) == Approx(20 * 30 * 7.5 * std::sqrt(1.25)).epsilon(round_off));
+    const Scene cut = built(with_release(keys + "\nincluded_in_dem = true"), gis).scene;
+    double removed = 0.0;
+    for (std::size_t k = 0; k < cut.bed.values.size(); ++k)
+        removed += gis.rasters["dem.tif"].values[k] - cut.bed.values[k];
+    CHECK(removed * 25.0 == Approx(20 * 30 * 7.5).epsilon(1e-11));
+
+    const auto refusal = [&](const std::string& text) {
+        const auto problems = problems_of(with_release(text), gis);
+        REQUIRE(problems.size() == 1);
+        return problems[0];
+    };
+    gis.attributes["thickness_m"][1] = 0.0;
+    CHECK(refusal(keys).find("release.0.depth: found a depth of 0 m in ") != std::string::npos);
+    CHECK(refusal("depth = \"field:thickness_m\"").find("an attribute without an outline") != std::string::npos);
+}

@@ -128,9 +128,10 @@ void refuse_null(const Source& source, const std::vector<GIntBig>& without) {
                                 without.size() == 1 ? "s" : "ve", ids, without.size() > most ? ", ..." : ""));
 }
 
-/// Calls `use(geometry, "feature 3")` for each geometry of the layer: flat, without curves, in terrain coordinates.
+/// Calls `use(feature, geometry, "feature 3")` for each geometry of the layer: flat, without curves, in terrain
+/// coordinates.
 void for_each_geometry(Source& source, Census& census,
-                       const std::function<void(const OGRGeometry&, const std::string&)>& use) {
+                       const std::function<void(const OGRFeature&, const OGRGeometry&, const std::string&)>& use) {
     OGRLayer* layer = chosen_layer(source);
     if (!layer) return;
     gdal::Messages messages;
@@ -152,7 +153,7 @@ void for_each_geometry(Source& source, Census& census,
                 fmt::format("{}: {} lies where its CRS cannot be brought to the terrain's ({}); check "
                             "its coordinates and its CRS",
                             source.file.string(), where, messages.reason("no reason given")));
-        use(*flat, where);
+        use(*feature, *flat, where);
     }
     if (messages.failed())
         throw UserError(
@@ -216,25 +217,62 @@ void collect_lines(const OGRGeometry& geometry, Census& census, const std::strin
         census.features == 0 ? "holds no features" : "holds " + census.text() + " only", wanted, way_out));
 }
 
-}  // namespace
+/// The number that a feature has under `attribute`.
+double value_of(const OGRFeature& feature, const std::string& attribute, const Source& source,
+                const std::string& where) {
+    const int field = feature.GetFieldIndex(attribute.c_str());
+    if (field < 0) {
+        std::string names;
+        for (int n = 0; n < feature.GetFieldCount(); ++n)
+            names += fmt::format("{}\"{}\"", n ? ", " : "", feature.GetFieldDefnRef(n)->GetNameRef());
+        throw UserError(fmt::format("{}: has no attribute \"{}\"; expected {}; correct its name", source.file.string(),
+                                    attribute, names.empty() ? "one, but there is none" : "one of " + names));
+    }
+    const OGRFieldType type = feature.GetFieldDefnRef(field)->GetType();
+    if (type != OFTReal && type != OFTInteger && type != OFTInteger64)
+        throw UserError(fmt::format("{}: its attribute \"{}\" holds {}; expected numbers; change its type",
+                                    source.file.string(), attribute, OGRFieldDefn::GetFieldTypeName(type)));
+    const double value = feature.IsFieldSetAndNotNull(field) ? feature.GetFieldAsDouble(field) : NAN;
+    if (!std::isfinite(value))
+        throw UserError(fmt::format("{}: {} has no \"{}\"; expected a number for each feature; fill it in",
+                                    source.file.string(), where, attribute));
+    return value;
+}
 
-Polygons GdalReader::read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
-                                   std::vector<std::string>& log) const {
+/// All polygons; with an attribute, a value for each.
+ValuedPolygons polygons_of(const std::filesystem::path& file, const std::string& attribute, const std::string& crs_wkt,
+                           std::vector<std::string>& log) {
     Source source = open_source(file, crs_wkt, log);
-    Polygons polygons;
+    ValuedPolygons valued;
+    Polygons& polygons = valued.polygons;
     polygons.crs_wkt = crs_wkt;
     polygons.source = file.string();
     Census census;
-    for_each_geometry(source, census, [&](const OGRGeometry& geometry, const std::string& where) {
+    const auto use = [&](const OGRFeature& feature, const OGRGeometry& geometry, const std::string& where) {
         collect_polygons(geometry, census, [&](const OGRPolygon& polygon) {
             append_valid(polygon, where, source, polygons.parts);
         });
-    });
+        if (attribute.empty() || polygons.parts.size() == valued.values.size()) return;
+        valued.values.resize(polygons.parts.size(), value_of(feature, attribute, source, where));
+    };
+    for_each_geometry(source, census, use);
     if (polygons.parts.empty())
         refuse_content(source, census, "polygon", "draw the outline as a polygon and export it again");
     if (census.points + census.lines > 0)
         log.push_back(fmt::format("{}: only polygons are used; it holds {}", source.name(), census.text()));
-    return polygons;
+    return valued;
+}
+
+}  // namespace
+
+Polygons GdalReader::read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                   std::vector<std::string>& log) const {
+    return polygons_of(file, "", crs_wkt, log).polygons;
+}
+
+ValuedPolygons GdalReader::read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
+                                                const std::string& crs_wkt, std::vector<std::string>& log) const {
+    return polygons_of(file, attribute, crs_wkt, log);
 }
 
 std::vector<Polyline> GdalReader::read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
@@ -242,7 +280,7 @@ std::vector<Polyline> GdalReader::read_lines(const std::filesystem::path& file, 
     Source source = open_source(file, crs_wkt, log);
     std::vector<Polyline> lines;
     Census census;
-    for_each_geometry(source, census, [&](const OGRGeometry& geometry, const std::string& where) {
+    for_each_geometry(source, census, [&](const OGRFeature&, const OGRGeometry& geometry, const std::string& where) {
         collect_lines(geometry, census, fmt::format("{}: {}", file.string(), where), lines);
     });
     if (lines.empty()) refuse_content(source, census, "line", "draw the path as a line and export it again");

@@ -133,6 +133,10 @@ void CaseReader::check_release(const std::string& prefix) {
         wrong(prefix + "depth", "not given, and no surface either",
               "expected the depth of the release [m] or its surface",
               "add depth = ... or surface = ... under [[release]]");
+    if (there("depth") && case_.given(prefix + "depth") && case_.is_text(prefix + "depth") &&
+        case_.word(prefix + "depth").rfind("field:", 0) == 0 && !there("outline"))
+        wrong(prefix + "depth", "found an attribute without an outline", "expected the outline whose features have it",
+              "give outline, or a number");
     if (!case_.given(prefix + "surface")) return;
     if (case_.word(prefix + "thickness") == "normal")
         wrong(prefix + "thickness", "found \"normal\" together with surface",

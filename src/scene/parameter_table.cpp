@@ -53,7 +53,8 @@ void add_release(Table& table) {
                 "release.outline"),
         "the outline, or the whole terrain"));
     Parameter depth =
-        make("release.depth", Kind::number_or_path, "m", "depth of the release, or a raster of it");
+        make("release.depth", Kind::number_or_path, "m",
+             "depth of the release, or a raster of it, or \"field:NAME\": an attribute of the outline's features");
     depth.range = positive;
     table.push_back(absent(instead(depth, "release.surface"), "surface is needed"));
     table.push_back(absent(

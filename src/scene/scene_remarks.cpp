@@ -92,10 +92,10 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
 }
 
 void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene) {
-    for (std::size_t i = 0; i < releases.size(); ++i) {
-        const std::string place = file.table_place(fmt::format("release.{}", i));
-        remark_on(scene.log, Remark::release_slope, place, {releases[i].slope_max_deg});
-        remark_on(scene.log, Remark::release_depth, place, {releases[i].max_depth});
+    for (const ReleaseSummary& release : releases) {
+        const std::string place = file.table_place(fmt::format("release.{}", release.table));
+        remark_on(scene.log, Remark::release_slope, place, {release.slope_max_deg});
+        remark_on(scene.log, Remark::release_depth, place, {release.max_depth});
     }
     remark_on(scene.log, Remark::few_particles, file.place("particles.per_cell"), {double(scene.particles.count())});
 }
