@@ -223,8 +223,8 @@ std::string remarks(const RunRecord& r) {
 std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir) {
     const std::vector<Product> products = products_in(run_dir);
     const std::string survey = record.comparison ? comparison_section(*record.comparison) : "";
-    return heading(record) + results(record) + survey + barriers(record) + budgets(record) + figures(record) +
-           parameter_table(record) + files(record, products) + times(record.summary) + remarks(record);
+    return heading(record) + remarks(record) + results(record) + survey + barriers(record) + budgets(record) +
+           figures(record) + parameter_table(record) + files(record, products) + times(record.summary);
 }
 
 std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_dir) {

@@ -237,7 +237,8 @@ std::string run_json(const RunRecord& record) {
          {{"written", record.checkpoints.written},
           {"failed", record.checkpoints.failed},
           {"resumed_at", record.checkpoints.resumed_at}}},
-        {"warnings", record.warnings},
+        {"remarks", record.warnings},
+        {"warnings", record.warnings},  // their earlier name
         {"files", record.files}};
     if (record.points_apart) json["points_apart"] = apart_json(*record.points_apart);
     if (record.breakage) json["structure"] = breakage_json(*record.breakage);

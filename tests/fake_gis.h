@@ -13,6 +13,7 @@ class FakeGis : public frana::GisReader {
 public:
     std::map<std::string, frana::Raster> rasters;
     std::map<std::string, frana::Polygons> polygons;
+    std::map<std::string, std::vector<double>> attributes;  ///< of the polygons of any file
 
     frana::Raster read_dem(const std::filesystem::path& file, const frana::DemRequest&,
                            std::vector<std::string>&) const override {
@@ -41,6 +42,12 @@ public:
         const auto found = polygons.find(file.filename().string());
         if (found == polygons.end()) throw frana::UserError(file.string() + ": no such polygons");
         return found->second;
+    }
+    frana::ValuedPolygons read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
+                                               const std::string& crs, std::vector<std::string>& log) const override {
+        const auto found = attributes.find(attribute);
+        if (found == attributes.end()) throw frana::UserError(file.string() + ": no such attribute");
+        return {read_polygons(file, crs, log), found->second};
     }
     std::vector<frana::Polyline> read_lines(const std::filesystem::path&, const std::string&,
                                             std::vector<std::string>&) const override {

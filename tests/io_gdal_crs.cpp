@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "fresh_folder.h"
+#include "io/gdal_crs.h"
 #include "io/gdal_reader.h"
 #include "io_gdal_make.h"
 #include "shared_data.h"
@@ -146,4 +147,42 @@ TEST_CASE("A real elevation model in degrees is refused with a way out that lead
     CHECK(dem.geometry.cell > 70.0);  // 3 arc seconds: 92.5 m north, 74.4 m east at 36.6 degrees
     CHECK(dem.geometry.cell < 95.0);
     CHECK(range(dem, false) > 200.0);  // Tennessee, not a frame of 0 m
+}
+
+TEST_CASE("A map whose lengths are not those on the ground is refused and cured: Web Mercator", "[gdal]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.crs = "EPSG:3857";
+    spec.columns = spec.rows = 40;
+    // at 61.97 N, 7.27 E
+    spec.transform = {809000.0, 20.0, 0.0, 8860000.0, 0.0, -20.0};
+    spec.value = [](int column, int) { return 1000.0 + column; };
+    make_raster(folder.path() / "dem.tif", spec);
+    const std::string message = user_error([&] { read(folder.path() / "dem.tif"); });
+    INFO(message);
+    CHECK(contains(message, "EPSG:3857"));
+    CHECK(contains(message, "in which 1 m on the ground is 2.1"));
+    run_gdal_line(cure_in(message));
+    const Raster dem = read(folder.path() / "dem_utm.tif");
+    CHECK(contains(dem.crs_wkt, "UTM zone 32N"));
+    CHECK(dem.geometry.cell == Approx(20.0 / 2.13).epsilon(0.01));  // 1 / cos(61.97 degrees) = 2.128
+}
+
+TEST_CASE("The scale of a map is that of its projection", "[gdal]") {
+    const auto scale = [](const char* code, double x, double y) {
+        const auto found = gdal::map_scale(gdal::crs_from_wkt(wkt_of(code)), {x, y});
+        REQUIRE(found);
+        return *found;
+    };
+    // UTM on its central meridian: 0.9996 by definition, alike in all directions; central differences over 200 m are
+    // good to their square over the Earth's radius
+    for (const double k : scale("EPSG:32632", 500000.0, 6000000.0)) CHECK(k == Approx(0.9996).epsilon(1e-8));
+    // Mercator's sphere against the ellipsoid on the equator: 1 along it, a / M = 1 / (1 - e^2) across
+    const auto mercator = scale("EPSG:3857", 0.0, 0.0);
+    CHECK(mercator[0] == Approx(1.0).epsilon(1e-8));
+    CHECK(mercator[1] == Approx(1.0 / (1.0 - 0.00669437999)).epsilon(1e-8));
+    // An equal-area map far from its centre: what is drawn out one way is squeezed the other
+    const auto equal_area = scale("EPSG:6933", 8000000.0, 6000000.0);
+    CHECK(equal_area[0] * equal_area[1] == Approx(1.0).epsilon(1e-6));
+    CHECK(equal_area[1] > 1.2);
 }

@@ -230,3 +230,19 @@ TEST_CASE("A small window of a huge raster is read without reading the raster", 
     CHECK(seconds < 10.0);  // 0.1 s here; the whole raster would take minutes, if it fitted
     CHECK(contains(user_error([&] { read(file, {}, {}); }), "smaller window or a larger cell"));
 }
+
+TEST_CASE("Heights that the file only calls feet are remarked upon, unless it declares metres", "[gdal][remarks]") {
+    const FreshFolder folder;
+    RasterSpec spec = plane_spec();
+    make_raster(folder.path() / "dem.tif", spec);
+    const std::string dem = (folder.path() / "dem.tif").string(), named = (folder.path() / "named.tif").string();
+    run_gdal_line("gdal_translate -mo HEIGHTS=in_feet,NAVD88 -mo NOTE=lifted_aloft " + dem + " " + named);
+    CHECK_FALSE(any_contains(read(dem, {}, {}).log, "feet"));
+    CHECK_FALSE(any_contains(read(named, {}, {}).log, "feet"));  // a word within a name
+    run_gdal_line("gdal_translate -mo HEIGHTS=feet,NAVD88 " + dem + " " + named);
+    CHECK(any_contains(read(named, {}, {}).log, "named.tif: found \"HEIGHTS=feet,NAVD88\" in its description"));
+    spec.unit = "m";
+    make_raster(folder.path() / "dem.tif", spec);
+    run_gdal_line("gdal_translate -mo HEIGHTS=feet,NAVD88 " + dem + " " + named);
+    CHECK_FALSE(any_contains(read(named, {}, {}).log, "feet"));
+}

@@ -97,7 +97,7 @@ TEST_CASE("Multipolygons, collections and several features are flattened, Z is d
     CHECK(any_contains(out.log, "4 polygons, 1 point"));
 }
 
-TEST_CASE("A GeoPackage with two layers gives the polygons of both; curves become chords", "[gdal]") {
+TEST_CASE("A GeoPackage with two layers is read by the layer that is named; curves become chords", "[gdal]") {
     GeoJson folder;
     GDALAllRegister();
     const auto file = folder.path("outlines.gpkg");
@@ -118,11 +118,17 @@ TEST_CASE("A GeoPackage with two layers gives the polygons of both; curves becom
             REQUIRE(layer->CreateFeature(one.get()) == OGRERR_NONE);
         }
     }
-    const auto out = read(file, wkt_of("EPSG:32632"));
-    CHECK(out.polygons.parts.size() == 2);
-    CHECK(area(out.polygons) == Approx(100.0 + 3.14159265 * 100.0).epsilon(1e-3));  // chords of 4 degrees
-    CHECK(any_contains(out.log, "2 layers"));
-    CHECK_FALSE(any_contains(out.log, "reprojected"));
+    const auto of = [&](const std::string& layer) {
+        return read(file.string() + (layer.empty() ? "" : "|layername=" + layer), wkt_of("EPSG:32632"));
+    };
+    CHECK(area(of("square").polygons) == 100.0);
+    CHECK(area(of("round").polygons) == Approx(3.14159265 * 100.0).epsilon(1e-3));  // chords of 4 degrees
+    CHECK_FALSE(any_contains(of("round").log, "reprojected"));
+    const std::string message = user_error([&] { of(""); });
+    CHECK(contains(message, "outlines.gpkg: has 2 layers (\"square\", \"round\"); expected one, or its name; give "
+                            "outlines.gpkg|layername=square"));
+    CHECK(contains(user_error([&] { of("oval"); }),
+                   "no layer \"oval\" with features; expected one of \"square\", \"round\""));
 }
 
 TEST_CASE("Longitude and latitude are brought to the terrain's UTM zone within a millimetre", "[gdal]") {
@@ -195,6 +201,43 @@ TEST_CASE("An outline that crosses itself is repaired to the area it draws, and 
     CHECK(out.polygons.parts.size() == 2);
     CHECK(area(out.polygons) == Approx(50.0));
     CHECK(any_contains(out.log, "Self-intersection"));
+}
+
+TEST_CASE("Polygons come with the numbers of an attribute, and one without its number is refused", "[gdal]") {
+    GeoJson json;
+    const auto with = [](const std::string& properties, const std::string& type, const std::string& coordinates) {
+        std::string text = feature(type, coordinates);
+        return text.replace(text.find("{}"), 2, "{" + properties + "}");
+    };
+    const std::string two = "[[[[20,0],[21,0],[21,1],[20,0]]],[[[30,0],[31,0],[31,1],[30,0]]]]";
+    const auto valued = [&](const std::string& features) {
+        std::vector<std::string> log;
+        return GdalReader().read_valued_polygons(json.write(features), "thickness_m", "", log).values;
+    };
+    CHECK(valued(with(R"("thickness_m":2)", "Polygon", square) + "," +
+                 with(R"("thickness_m":1.5,"name":"scar")", "MultiPolygon", two)) ==
+          std::vector<double>{2.0, 1.5, 1.5});
+    CHECK(contains(user_error([&] { valued(with(R"("depth":2,"name":"a")", "Polygon", square)); }),
+                   "has no attribute \"thickness_m\"; expected one of \"depth\", \"name\""));
+    CHECK(contains(user_error([&] { valued(with(R"("thickness_m":"2 m")", "Polygon", square)); }),
+                   "its attribute \"thickness_m\" holds String; expected numbers"));
+    CHECK(contains(user_error([&] {
+                       valued(with(R"("thickness_m":2)", "Polygon", square) + "," +
+                              with(R"("thickness_m":null)", "Polygon", square));
+                   }),
+                   "feature 1 has no \"thickness_m\"; expected a number for each feature"));
+}
+
+TEST_CASE("Features without a geometry are refused by their numbers", "[gdal]") {
+    GeoJson json;
+    const std::string none = R"({"type":"Feature","properties":{},"geometry":null})";
+    const auto message = [&](const std::string& features) {
+        return user_error([&] { read(json.write(features)); });
+    };
+    CHECK(contains(message(feature("Polygon", square) + "," + none),
+                   "outline.geojson: 1 feature has no geometry (feature 1); expected one in each"));
+    CHECK(contains(message(none + "," + feature("Polygon", square) + "," + none),
+                   "2 features have no geometry (feature 0, 2)"));
 }
 
 TEST_CASE("Files without an outline are refused with what they hold", "[gdal]") {

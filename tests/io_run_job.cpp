@@ -99,6 +99,7 @@ TEST_CASE("a run leaves every product, and the report mentions each of them") {
     CHECK(report.find("# A hill that slides") == 0);
     CHECK(report.find("| `material.bed.mu` | 0.4 | 1 |") != std::string::npos);
     CHECK(report.find("- a remark | made while building") != std::string::npos);
+    CHECK(report.find("## Remarks") < report.find("## Results"));  // on the first page
     for (const DrawnFigure& figure : run.record.figures) {
         CHECK(report.find("](" + figure.path + ")") != std::string::npos);
         CHECK(fs::file_size(run.dir() / figure.path) > 1000);
@@ -134,7 +135,8 @@ TEST_CASE("run.json has the contract's keys with the simulation's numbers") {
         CHECK(json["wall_seconds"]["output"].contains(part));
     CHECK(json["wall_seconds"]["output_share"].get<double>() > 0.0);
     CHECK(json["wall_seconds"]["output_share"].get<double>() <= 1.0);
-    CHECK(json["warnings"][0] == "a remark | made while building");
+    CHECK(json["remarks"][0] == "a remark | made while building");
+    CHECK(json["warnings"] == json["remarks"]);
 }
 
 TEST_CASE("rasters read back as the fields of the last frame, with nodata where nothing arrived") {

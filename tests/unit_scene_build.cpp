@@ -1,9 +1,12 @@
 // From case file to Scene, with files that exist in memory only.
+#include <algorithm>
+#include <fstream>
 #include <numeric>
 
 #include "base/error.h"
 #include "catch.h"
 #include "fake_gis.h"
+#include "fresh_folder.h"
 #include "scene/build_scene.h"
 #include "verify/trial.h"
 
@@ -138,7 +141,7 @@ TEST_CASE("Nodata near the material is an error that names the pixel; elsewhere 
     const Scene scene = built(text, gis).scene;
     CHECK(std::isnan(scene.bed.at(1, 1)));
     CHECK(scene.log.front().find("material.bed.law is not given") == 0);
-    CHECK(scene.log[1] == "1 of 1200 nodes have no elevation: an exit, mass that enters is counted as left");
+    CHECK(scene.log[2] == "1 of 1200 nodes have no elevation: an exit, mass that enters is counted as left");
 
     gis.rasters["dem.tif"].at(12, 18) =
         Raster::nodata;  // 2 cells north of the edge at y = 2080 (node row 15)
@@ -353,4 +356,56 @@ TEST_CASE("The verification's presets are those of the case file", "[scene]") {
         CHECK(std::tuple(a.viscosity_linear, a.viscosity_quadratic, a.split_length, a.split_min_mass, a.stress_cap) ==
               std::tuple(b.viscosity_linear, b.viscosity_quadratic, b.split_length, b.split_min_mass, b.stress_cap));
     }
+}
+
+TEST_CASE("An outline's layer is named beside it or with it, and its file is looked for without it", "[scene]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["outlines.gpkg|layername=scar"] = gis.polygons["release.geojson"];
+    for (const char* keys : {"outline = \"outlines.gpkg\"\nlayer = \"scar\"\ndepth = 2.0",
+                             "outline = \"outlines.gpkg|layername=scar\"\ndepth = 2.0"})
+        CHECK(sum(built(with_release(keys), gis).scene.particles.volume) == Approx(50 * 30 * 2.0).epsilon(round_off));
+    const auto twice =
+        problems_of(with_release("outline = \"a.gpkg|layername=b\"\nlayer = \"c\"\ndepth = 2.0"), gis);
+    REQUIRE(twice.size() == 1);
+    CHECK(twice[0].find("release.0.layer: found, but outline names a layer as well") != std::string::npos);
+    REQUIRE(problems_of(with_release("layer = \"c\"\ndepth = 2.0"), gis).size() == 1);
+
+    const FreshFolder folder;
+    std::ofstream(folder.path() / "dem.tif") << "not looked into";
+    std::ofstream(folder.path() / "case.toml") << with_release("outline = \"a.gpkg|layername=b\"\ndepth = 2.0");
+    CHECK_THROWS_WITH(CaseFile::read(folder.path() / "case.toml"),
+                      Catch::Contains("found no file") && Catch::Contains("a.gpkg\""));
+    std::ofstream(folder.path() / "a.gpkg") << "not looked into";
+    const auto inputs = CaseFile::read(folder.path() / "case.toml").inputs();
+    CHECK(std::count(inputs.begin(), inputs.end(), folder.path() / "a.gpkg") == 1);
+}
+
+TEST_CASE("Each polygon of an outline has the depth of its attribute", "[scene]") {
+    FakeGis gis = slope_gis();
+    Polygons& scars = gis.polygons["scars.gpkg"];
+    scars = rectangle(1050, 2050, 1070, 2080);
+    for (const double x : {1080.0, 1110.0}) scars.parts.push_back(rectangle(x, 2050, x + 20, 2080).parts[0]);
+    gis.attributes["thickness_m"] = {3.0, 1.5, 3.0};
+    const std::string keys = "outline = \"scars.gpkg\"\ndepth = \"field:thickness_m\"";
+    const BuiltScene result = built(with_release(keys), gis);
+    REQUIRE(result.releases.size() == 2);
+    CHECK(result.releases[0].report.volume == Approx(20 * 30 * 1.5).epsilon(round_off));
+    CHECK(result.releases[1].report.volume == Approx(2 * 20 * 30 * 3.0).epsilon(round_off));
+    CHECK(result.releases[1].max_depth == Approx(3.0).epsilon(round_off));
+    const BuiltScene normal = built(with_release(keys + "\nthickness = \"normal\""), gis);
+    CHECK(sum(normal.scene.particles.volume) == Approx(20 * 30 * 7.5 * std::sqrt(1.25)).epsilon(round_off));
+    const Scene cut = built(with_release(keys + "\nincluded_in_dem = true"), gis).scene;
+    double removed = 0.0;
+    for (std::size_t k = 0; k < cut.bed.values.size(); ++k)
+        removed += gis.rasters["dem.tif"].values[k] - cut.bed.values[k];
+    CHECK(removed * 25.0 == Approx(20 * 30 * 7.5).epsilon(1e-11));
+
+    const auto refusal = [&](const std::string& text) {
+        const auto problems = problems_of(with_release(text), gis);
+        REQUIRE(problems.size() == 1);
+        return problems[0];
+    };
+    gis.attributes["thickness_m"][1] = 0.0;
+    CHECK(refusal(keys).find("release.0.depth: found a depth of 0 m in ") != std::string::npos);
+    CHECK(refusal("depth = \"field:thickness_m\"").find("an attribute without an outline") != std::string::npos);
 }

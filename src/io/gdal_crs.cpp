@@ -7,12 +7,14 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/types.h"
 
 namespace frana::gdal {
 namespace {
 
 constexpr double us_foot = 1200.0 / 3937.0;  // [m]
 constexpr double unit_tolerance = 1e-9;      // a US survey foot differs from a foot by 2e-6
+constexpr double scale_tolerance = 0.01;     // UTM: 0.0004 in the middle of its zone, 0.001 at its rim
 
 std::string authority(const OGRSpatialReference& crs) {
     const char* name = crs.GetAuthorityName(nullptr);
@@ -102,7 +104,50 @@ std::string scale_line(const Place& place, const Unit& unit) {
                     metres && place.elevation ? " (its elevations are taken as metres)" : ""));
 }
 
+/// A map whose lengths are not those on the ground, such as Web Mercator's.
+void require_true_lengths(const Place& place) {
+    const auto scale = map_scale(*place.crs, place.centre);
+    if (!scale) return;
+    const auto [least, most] = *scale;
+    if (least >= 1.0 - scale_tolerance && most <= 1.0 + scale_tolerance) return;
+    const double worst = most - 1.0 > 1.0 - least ? most : least;
+    refuse_plane(place,
+                 fmt::format("its CRS is {}, in which 1 m on the ground is {:.4g} m on the map at {:.10g} {:.10g}",
+                             crs_name(*place.crs), worst, place.centre[0], place.centre[1]));
+}
+
 }  // namespace
+
+std::optional<std::array<double, 2>> map_scale(const OGRSpatialReference& crs, const std::array<double, 2>& place) {
+    const Messages quiet;
+    const OGRSpatialReference flat = horizontal(crs);
+    OGRSpatialReference* cloned = flat.CloneGeogCS();
+    if (!cloned) return {};
+    cloned->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const Transformation to_degrees(OGRCreateCoordinateTransformation(&flat, cloned));
+    const double a = cloned->GetSemiMajor(), inverse = cloned->GetInvFlattening();
+    cloned->Release();
+    constexpr double reach = 100.0;  // [m]; short against how the scale varies, long against round-off
+    const double x = place[0], y = place[1];
+    double lon[] = {x, x - reach, x + reach, x, x}, lat[] = {y, y, y, y - reach, y + reach};
+    if (!to_degrees || !to_degrees->Transform(5, lon, lat)) return {};
+    constexpr double radians = 3.14159265358979323846 / 180.0;
+    const double e2 = inverse > 0.0 ? (2.0 - 1.0 / inverse) / inverse : 0.0, sine = std::sin(lat[0] * radians);
+    const double w2 = 1.0 - e2 * sine * sine;
+    const double across = a / std::sqrt(w2) * std::cos(lat[0] * radians);  // radius of the parallel
+    const double along = a * (1.0 - e2) / (w2 * std::sqrt(w2));            // of the meridian's curvature
+    const auto ground = [&](int from, int to) -> Vec2 {
+        const double degrees_east = std::remainder(lon[to] - lon[from], 360.0), degrees_north = lat[to] - lat[from];
+        return Vec2(across * degrees_east, along * degrees_north) * (radians / (2.0 * reach));
+    };
+    // The ellipse that a circle of the map is on the ground: its half axes are the singular values of this matrix.
+    const Vec2 east = ground(1, 2), north = ground(3, 4);
+    const double sum = 0.5 * (east.squaredNorm() + north.squaredNorm());
+    const double area = east.x() * north.y() - east.y() * north.x();
+    const double spread = std::sqrt(std::max(0.0, sum * sum - area * area));
+    if (!(sum - spread > 0.0) || !std::isfinite(sum)) return {};
+    return std::array<double, 2>{1.0 / std::sqrt(sum + spread), 1.0 / std::sqrt(sum - spread)};
+}
 
 OGRSpatialReference crs_from_wkt(const std::string& wkt) {
     OGRSpatialReference crs;
@@ -162,6 +207,7 @@ void require_metres(const Place& place, std::vector<std::string>& log) {
         if (std::abs(metres - 1.0) > unit_tolerance)
             refuse_plane(place, fmt::format("its CRS is {}, whose unit is {}", crs_name(*place.crs),
                                             unit ? unit : "not the metre"));
+        require_true_lengths(place);
     }
     if (const Unit up = vertical_unit(place); !up.name.empty())
         throw UserError(fmt::format("{}: its elevations are declared in {}; expected metres; run: {}",

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
+#include <sstream>
 
 #include "base/error.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
+#include "scene/remarks.h"
 
 namespace frana {
 namespace {
@@ -83,15 +86,25 @@ Raster resampled(const RasterFile& raster, const std::array<double, 4>& window, 
     return dem;
 }
 
+/// Heights in feet that the file only speaks of: no unit of the band and no vertical CRS says so.
+void remark_named_feet(const RasterFile& raster, std::vector<std::string>& log) {
+    if (!raster.unit().empty()) return;
+    static const std::regex feet("\\b(feet|foot|ft|ftUS)\\b", std::regex::icase);
+    std::istringstream lines(raster.description());
+    for (std::string line; std::getline(lines, line);)
+        if (std::regex_search(line, feet)) return remark_on(log, Remark::named_feet, raster.name(), {NAN, 0.0, line});
+}
+
 }  // namespace
 
 Raster GdalReader::read_dem(const std::filesystem::path& file, const DemRequest& request,
                             std::vector<std::string>& log) const {
     const RasterFile raster(file, gdal::Meaning::elevation, log);
-    const auto all = raster.extent();
+    const auto used = request.window.value_or(raster.extent());
     gdal::Place place{
-        file, &raster.crs(), {0.5 * (all[0] + all[2]), 0.5 * (all[1] + all[3])}, raster.unit(), true};
+        file, &raster.crs(), {0.5 * (used[0] + used[2]), 0.5 * (used[1] + used[3])}, raster.unit(), true};
     gdal::require_metres(place, log);
+    remark_named_feet(raster, log);
     const auto window = checked_window(raster, request);
     const double pixel = std::min(raster.x_axis().size, raster.y_axis().size);
     const double cell = request.cell.value_or(pixel);

@@ -99,6 +99,13 @@ std::array<double, 4> RasterFile::extent() const {
     return {x_.start, y_.start, x_.start + double(x_.count) * x_.size, y_.start + double(y_.count) * y_.size};
 }
 
+std::string RasterFile::description() const {
+    std::string text = band_->GetDescription();
+    for (char** items : {dataset_->GetMetadata(), band_->GetMetadata()})
+        for (int n = 0; n < CSLCount(items); ++n) text += fmt::format("\n{}", items[n]);
+    return text;
+}
+
 std::vector<double> RasterFile::read(Index i, Index j, Index nx, Index ny) const {
     expect(i >= 0 && j >= 0 && nx > 0 && ny > 0 && i + nx <= x_.count && j + ny <= y_.count,
            "pixels outside the raster");

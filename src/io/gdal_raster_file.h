@@ -27,6 +27,8 @@ public:
     std::array<double, 4> extent() const;           ///< xmin, ymin, xmax, ymax of the pixels' outer edges
     const OGRSpatialReference& crs() const { return crs_; }
     const std::string& unit() const { return unit_; }
+    /// What the file says of itself and of its band, in words.
+    std::string description() const;
     const std::filesystem::path& file() const { return file_; }
     std::string name() const { return file_.filename().string(); }
 

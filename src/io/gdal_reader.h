@@ -31,6 +31,10 @@ public:
     Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                            std::vector<std::string>& log) const override;
 
+    /// UserError for an attribute that is not there, is no number, or is not given for a feature.
+    ValuedPolygons read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
+                                        const std::string& crs_wkt, std::vector<std::string>& log) const override;
+
     /// Polygons or, where the file is a raster, the outlines of its pixels above 0 (along the pixels' edges, then
     /// reprojected). Stricter than read_polygons, since a survey in the wrong place would still give scores:
     /// UserError also when the terrain has a CRS and the file has none (or claims degrees for coordinates that are

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/layer_name.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_onto.h"
 #include "io/gdal_reader.h"
@@ -64,10 +65,12 @@ bool opens_as(const fs::path& file, unsigned kind) {
 
 bool no_crs(const OGRSpatialReference* crs) { return !crs || crs->IsEmpty() || crs->IsLocal(); }
 
-void require_vector_crs(const fs::path& file, const OGRSpatialReference& terrain) {
+void require_vector_crs(const LayerName& name, const OGRSpatialReference& terrain) {
+    const fs::path file = name.file;
     const gdal::Dataset dataset = gdal::open(file, GDAL_OF_VECTOR);
     for (OGRLayer* layer : dataset->GetLayers()) {
-        if (layer->GetFeatureCount() == 0) continue;
+        if (layer->GetFeatureCount() == 0 || layer->GetGeomType() == wkbNone) continue;
+        if (!name.layer.empty() && layer->GetName() != name.layer) continue;
         const OGRSpatialReference* declared = layer->GetSpatialRef();
         if (no_crs(declared)) refuse_crs(file, "has no CRS", terrain, "ogr2ogr");
         OGREnvelope box;
@@ -175,14 +178,16 @@ void require_overlap(const Polygons& polygons, const std::array<double, 4>& exte
 
 Polygons GdalReader::read_survey(const fs::path& file, const std::array<double, 4>& extent,
                                  const std::string& crs_wkt, std::vector<std::string>& log) const {
-    const bool vector = opens_as(file, GDAL_OF_VECTOR);
+    const LayerName name = split_layer(file.string());
+    const bool vector = opens_as(name.file, GDAL_OF_VECTOR);
     if (!vector && !opens_as(file, GDAL_OF_RASTER)) {
         std::error_code ignored;
         throw UserError(fmt::format("{}: {}; expected {}; {}", file.string(),
-                                    fs::exists(file, ignored) ? "cannot be read" : "no such file", what_it_is,
-                                    fs::exists(file, ignored) ? "export it again from your GIS" : "correct the name"));
+                                    fs::exists(name.file, ignored) ? "cannot be read" : "no such file", what_it_is,
+                                    fs::exists(name.file, ignored) ? "export it again from your GIS"
+                                                                   : "correct the name"));
     }
-    if (vector && !crs_wkt.empty()) require_vector_crs(file, gdal::crs_from_wkt(crs_wkt));
+    if (vector && !crs_wkt.empty()) require_vector_crs(name, gdal::crs_from_wkt(crs_wkt));
     Polygons polygons = vector ? read_polygons(file, crs_wkt, log) : from_mask(file, crs_wkt, log);
     if (vector) unite(polygons, file, log);
     polygons.crs_wkt = crs_wkt;

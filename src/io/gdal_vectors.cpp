@@ -1,11 +1,13 @@
 // Outlines and lines from vector files.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
 
 #include "base/error.h"
+#include "base/layer_name.h"
 #include "io/gdal_crs.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_shapes.h"
@@ -23,6 +25,7 @@ using gdal::vertices;
 /// A layer's geometries in the terrain's coordinates, and how they got there.
 struct Source {
     std::filesystem::path file;
+    std::string layer;  ///< asked for; empty: the only one
     gdal::Dataset dataset;
     std::optional<OGRSpatialReference> terrain;  ///< nothing: unknown
     std::vector<std::string>& log;
@@ -75,44 +78,89 @@ gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
 
 Source open_source(const std::filesystem::path& file, const std::string& crs_wkt,
                    std::vector<std::string>& log) {
-    Source source{file, gdal::open(file, GDAL_OF_VECTOR), std::nullopt, log};
+    const LayerName name = split_layer(file.string());
+    Source source{name.file, name.layer, gdal::open(name.file, GDAL_OF_VECTOR), std::nullopt, log};
     if (!crs_wkt.empty()) source.terrain = gdal::crs_from_wkt(crs_wkt);
     return source;
 }
 
-/// Calls `use(geometry, "feature 3")` for each geometry of each layer: flat, without curves, in terrain
+/// The layers with features that have a place; others are tables, such as the styles that QGIS keeps in a GeoPackage.
+std::vector<OGRLayer*> layers_of(const Source& source) {
+    const gdal::Messages quiet;
+    std::vector<OGRLayer*> layers;
+    for (OGRLayer* layer : source.dataset->GetLayers())
+        if (layer->GetGeomType() != wkbNone && layer->GetFeatureCount() != 0) layers.push_back(layer);
+    return layers;
+}
+
+std::string names_of(const std::vector<OGRLayer*>& layers) {
+    std::string names;
+    for (OGRLayer* layer : layers) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", layer->GetName());
+    return names;
+}
+
+/// The layer asked for, or the only one; null when there is none.
+OGRLayer* chosen_layer(const Source& source) {
+    const std::vector<OGRLayer*> layers = layers_of(source);
+    if (!source.layer.empty()) {
+        for (OGRLayer* layer : layers)
+            if (layer->GetName() == source.layer) return layer;
+        throw UserError(fmt::format("{}: has no layer \"{}\" with features; expected {}; correct the layer's name",
+                                    source.file.string(), source.layer,
+                                    layers.empty() ? "one" : "one of " + names_of(layers)));
+    }
+    if (layers.size() > 1)
+        throw UserError(
+            fmt::format("{}: has {} layers ({}); expected one, or its name; give {}{}{}", source.file.string(),
+                        layers.size(), names_of(layers), source.name(), kLayerMark, layers.front()->GetName()));
+    return layers.empty() ? nullptr : layers.front();
+}
+
+/// Features that draw nothing: they may stand for an outline that was lost on the way.
+void refuse_null(const Source& source, const std::vector<GIntBig>& without) {
+    if (without.empty()) return;
+    constexpr std::size_t most = 5;
+    std::string ids;
+    for (std::size_t n = 0; n < std::min(most, without.size()); ++n) ids += fmt::format(n ? ", {}" : "{}", without[n]);
+    throw UserError(fmt::format("{}: {} feature{} ha{} no geometry (feature {}{}); expected one in each; delete them, "
+                                "or draw them again",
+                                source.file.string(), without.size(), without.size() == 1 ? "" : "s",
+                                without.size() == 1 ? "s" : "ve", ids, without.size() > most ? ", ..." : ""));
+}
+
+/// Calls `use(feature, geometry, "feature 3")` for each geometry of the layer: flat, without curves, in terrain
 /// coordinates.
 void for_each_geometry(Source& source, Census& census,
-                       const std::function<void(const OGRGeometry&, const std::string&)>& use) {
-    const int layers = source.dataset->GetLayerCount();
-    for (int l = 0; l < layers; ++l) {
-        OGRLayer& layer = *source.dataset->GetLayer(l);
-        gdal::Messages messages;
-        if (layer.GetFeatureCount() == 0) continue;
-        const gdal::Transformation transformation = to_terrain(source, layer);
-        layer.ResetReading();
-        while (const OGRFeatureUniquePtr feature{layer.GetNextFeature()}) {
-            ++census.features;
-            const OGRGeometry* stored = feature->GetGeometryRef();
-            if (!stored || stored->IsEmpty()) continue;
-            const std::string where =
-                (layers > 1 ? fmt::format("layer {}, ", layer.GetName()) : std::string()) +
-                fmt::format("feature {}", feature->GetFID());
-            const Geometry flat(stored->hasCurveGeometry() ? stored->getLinearGeometry() : stored->clone());
-            flat->flattenTo2D();
-            if (transformation && flat->transform(transformation.get()) != OGRERR_NONE)
-                throw UserError(
-                    fmt::format("{}: {} lies where its CRS cannot be brought to the terrain's ({}); check "
-                                "its coordinates and its CRS",
-                                source.file.string(), where, messages.reason("no reason given")));
-            use(*flat, where);
+                       const std::function<void(const OGRFeature&, const OGRGeometry&, const std::string&)>& use) {
+    OGRLayer* layer = chosen_layer(source);
+    if (!layer) return;
+    gdal::Messages messages;
+    const gdal::Transformation transformation = to_terrain(source, *layer);
+    std::vector<GIntBig> without;
+    layer->ResetReading();
+    while (const OGRFeatureUniquePtr feature{layer->GetNextFeature()}) {
+        ++census.features;
+        const OGRGeometry* stored = feature->GetGeometryRef();
+        if (!stored || stored->IsEmpty()) {
+            without.push_back(feature->GetFID());
+            continue;
         }
-        if (messages.failed())
+        const std::string where = fmt::format("feature {}", feature->GetFID());
+        const Geometry flat(stored->hasCurveGeometry() ? stored->getLinearGeometry() : stored->clone());
+        flat->flattenTo2D();
+        if (transformation && flat->transform(transformation.get()) != OGRERR_NONE)
             throw UserError(
-                fmt::format("{}: cannot be read to its end ({}); the file is damaged or incomplete: copy "
-                            "or export it again",
-                            source.file.string(), messages.reason("")));
+                fmt::format("{}: {} lies where its CRS cannot be brought to the terrain's ({}); check "
+                            "its coordinates and its CRS",
+                            source.file.string(), where, messages.reason("no reason given")));
+        use(*feature, *flat, where);
     }
+    if (messages.failed())
+        throw UserError(
+            fmt::format("{}: cannot be read to its end ({}); the file is damaged or incomplete: copy "
+                        "or export it again",
+                        source.file.string(), messages.reason("")));
+    refuse_null(source, without);
 }
 
 /// A valid polygon as it is; one that crosses itself repaired, with a remark.
@@ -169,41 +217,70 @@ void collect_lines(const OGRGeometry& geometry, Census& census, const std::strin
         census.features == 0 ? "holds no features" : "holds " + census.text() + " only", wanted, way_out));
 }
 
-void note_layers(const Source& source) {
-    if (source.dataset->GetLayerCount() > 1)
-        source.log.push_back(
-            fmt::format("{}: has {} layers, all are used", source.name(), source.dataset->GetLayerCount()));
+/// The number that a feature has under `attribute`.
+double value_of(const OGRFeature& feature, const std::string& attribute, const Source& source,
+                const std::string& where) {
+    const int field = feature.GetFieldIndex(attribute.c_str());
+    if (field < 0) {
+        std::string names;
+        for (int n = 0; n < feature.GetFieldCount(); ++n)
+            names += fmt::format("{}\"{}\"", n ? ", " : "", feature.GetFieldDefnRef(n)->GetNameRef());
+        throw UserError(fmt::format("{}: has no attribute \"{}\"; expected {}; correct its name", source.file.string(),
+                                    attribute, names.empty() ? "one, but there is none" : "one of " + names));
+    }
+    const OGRFieldType type = feature.GetFieldDefnRef(field)->GetType();
+    if (type != OFTReal && type != OFTInteger && type != OFTInteger64)
+        throw UserError(fmt::format("{}: its attribute \"{}\" holds {}; expected numbers; change its type",
+                                    source.file.string(), attribute, OGRFieldDefn::GetFieldTypeName(type)));
+    const double value = feature.IsFieldSetAndNotNull(field) ? feature.GetFieldAsDouble(field) : NAN;
+    if (!std::isfinite(value))
+        throw UserError(fmt::format("{}: {} has no \"{}\"; expected a number for each feature; fill it in",
+                                    source.file.string(), where, attribute));
+    return value;
+}
+
+/// All polygons; with an attribute, a value for each.
+ValuedPolygons polygons_of(const std::filesystem::path& file, const std::string& attribute, const std::string& crs_wkt,
+                           std::vector<std::string>& log) {
+    Source source = open_source(file, crs_wkt, log);
+    ValuedPolygons valued;
+    Polygons& polygons = valued.polygons;
+    polygons.crs_wkt = crs_wkt;
+    polygons.source = file.string();
+    Census census;
+    const auto use = [&](const OGRFeature& feature, const OGRGeometry& geometry, const std::string& where) {
+        collect_polygons(geometry, census, [&](const OGRPolygon& polygon) {
+            append_valid(polygon, where, source, polygons.parts);
+        });
+        if (attribute.empty() || polygons.parts.size() == valued.values.size()) return;
+        valued.values.resize(polygons.parts.size(), value_of(feature, attribute, source, where));
+    };
+    for_each_geometry(source, census, use);
+    if (polygons.parts.empty())
+        refuse_content(source, census, "polygon", "draw the outline as a polygon and export it again");
+    if (census.points + census.lines > 0)
+        log.push_back(fmt::format("{}: only polygons are used; it holds {}", source.name(), census.text()));
+    return valued;
 }
 
 }  // namespace
 
 Polygons GdalReader::read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                    std::vector<std::string>& log) const {
-    Source source = open_source(file, crs_wkt, log);
-    note_layers(source);
-    Polygons polygons;
-    polygons.crs_wkt = crs_wkt;
-    polygons.source = file.string();
-    Census census;
-    for_each_geometry(source, census, [&](const OGRGeometry& geometry, const std::string& where) {
-        collect_polygons(geometry, census, [&](const OGRPolygon& polygon) {
-            append_valid(polygon, where, source, polygons.parts);
-        });
-    });
-    if (polygons.parts.empty())
-        refuse_content(source, census, "polygon", "draw the outline as a polygon and export it again");
-    if (census.points + census.lines > 0)
-        log.push_back(fmt::format("{}: only polygons are used; it holds {}", source.name(), census.text()));
-    return polygons;
+    return polygons_of(file, "", crs_wkt, log).polygons;
+}
+
+ValuedPolygons GdalReader::read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
+                                                const std::string& crs_wkt, std::vector<std::string>& log) const {
+    return polygons_of(file, attribute, crs_wkt, log);
 }
 
 std::vector<Polyline> GdalReader::read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
                                              std::vector<std::string>& log) const {
     Source source = open_source(file, crs_wkt, log);
-    note_layers(source);
     std::vector<Polyline> lines;
     Census census;
-    for_each_geometry(source, census, [&](const OGRGeometry& geometry, const std::string& where) {
+    for_each_geometry(source, census, [&](const OGRFeature&, const OGRGeometry& geometry, const std::string& where) {
         collect_lines(geometry, census, fmt::format("{}: {}", file.string(), where), lines);
     });
     if (lines.empty()) refuse_content(source, census, "line", "draw the path as a line and export it again");

@@ -26,6 +26,7 @@ public:
         scene_.case_file = case_.file();
         scene_.log = case_.log();
         set_physics(case_, scene_);
+        remark_on_material(case_, scene_);
         read_terrain();
         problems_.throw_if_any();  // nothing below can be judged without terrain
         read_releases();
@@ -38,6 +39,7 @@ public:
         scene_.insitu = read_insitu(case_, scene_, problems_);
         if (problems_.empty()) make_particles();
         problems_.throw_if_any();
+        remark_on_releases(case_, built_.releases, scene_);
         cut_releases();
         return std::move(built_);
     }
@@ -59,6 +61,7 @@ private:
             problems_.add(place, fmt::format("found {} x {} nodes", grid.nx, grid.ny),
                           "expected at least 4 x 4", "choose a smaller grid.cell or a larger terrain.window");
         note_nodata();
+        remark_on_terrain(case_, scene_);
     }
 
     void note_nodata() {
@@ -74,16 +77,14 @@ private:
 
     void read_releases() {
         for (Index i = 0; i < case_.count("release"); ++i) {
-            std::optional<Release> release =
-                read_release(case_, i, scene_.bed, reader_, scene_.log, problems_);
-            if (!release) continue;
-            problems_.attempt(release->name, [&] {
-                const NodeMarks marks = nodes_under(*release, scene_.bed.geometry);
-                if (std::count(marks.begin(), marks.end(), 1) == 0) throw UserError(no_material(*release));
-                refuse_nodata(marks, scene_.bed, nodata_reach);
-                releases_.push_back(std::move(*release));
-                summarise(i, marks);
-            });
+            for (Release& release : read_release(case_, i, scene_.bed, reader_, scene_.log, problems_))
+                problems_.attempt(release.name, [&] {
+                    const NodeMarks marks = nodes_under(release, scene_.bed.geometry);
+                    if (std::count(marks.begin(), marks.end(), 1) == 0) throw UserError(no_material(release));
+                    refuse_nodata(marks, scene_.bed, nodata_reach);
+                    releases_.push_back(std::move(release));
+                    summarise(i, marks);
+                });
         }
     }
 
@@ -98,6 +99,7 @@ private:
     void summarise(Index i, const NodeMarks& marks) {
         ReleaseSummary summary;
         summary.name = fmt::format("release.{}", i);
+        summary.table = i;
         for (const char* name : {"outline", "mask", "depth", "surface"}) {
             const std::string key = fmt::format("release.{}.{}", i, name);
             if (case_.given(key) && case_.is_text(key)) summary.name += fmt::format(" ({})", case_.word(key));
@@ -165,10 +167,11 @@ private:
 
     void cut_releases() {
         for (std::size_t i = 0; i < releases_.size(); ++i) {
-            if (!case_.flag(fmt::format("release.{}.included_in_dem", i))) continue;
+            const Index table = built_.releases[i].table;
+            if (!case_.flag(fmt::format("release.{}.included_in_dem", table))) continue;
             const double volume = cut_release(releases_[i], scene_.bed);
             scene_.log.push_back(
-                fmt::format("release.{}: its {:.6g} m3 are cut out of the bed (included_in_dem)", i, volume));
+                fmt::format("release.{}: its {:.6g} m3 are cut out of the bed (included_in_dem)", table, volume));
         }
     }
 

@@ -13,6 +13,7 @@ namespace frana {
 /// One release as it was understood, for `frana check` and reports.
 struct ReleaseSummary {
     std::string name;            ///< "release.0 (release.geojson)"
+    Index table = 0;             ///< number of its [[release]]
     ReleaseReport report;        ///< area, volume, particles: particles/generate.h
     double max_depth = 0.0;      ///< vertical [m]
     double slope_min_deg = 0.0;  ///< bed slope at the nodes under the release [degrees]

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/layer_name.h"
 #include "scene/case_reader.h"
 
 namespace frana {
@@ -123,9 +124,10 @@ std::vector<std::pair<std::string, std::filesystem::path>> CaseFile::named_files
             parameter && (parameter->kind == Kind::path || parameter->kind == Kind::number_or_path ||
                           parameter->kind == Kind::numbers_or_paths);
         if (!names_files || !is_text(key)) continue;
-        if (const auto* one = std::get_if<std::string>(&setting.value)) files.emplace_back(key, resolve(*one));
+        if (const auto* one = std::get_if<std::string>(&setting.value))
+            if (!names_field(*one)) files.emplace_back(key, resolve(split_layer(*one).file));
         if (const auto* several = std::get_if<std::vector<std::string>>(&setting.value))
-            for (const std::string& name : *several) files.emplace_back(key, resolve(name));
+            for (const std::string& name : *several) files.emplace_back(key, resolve(split_layer(name).file));
     }
     return files;
 }

@@ -41,6 +41,7 @@ private:
     void check_alternatives(const std::string& prefix, const std::string& table);
     void check_unused(const std::string& prefix, const std::string& table);
     void check_release(const std::string& prefix);
+    void check_layer(const std::string& prefix);
     void check_barrier(const std::string& prefix);
     void check_line_names(const std::string& table);
     void check_meaning();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/layer_name.h"
 #include "scene/case_reader.h"
 
 namespace frana {
@@ -124,6 +125,7 @@ void CaseReader::check_unused(const std::string& prefix, const std::string& tabl
 }
 
 void CaseReader::check_release(const std::string& prefix) {
+    check_layer(prefix);
     const auto there = [&](const char* name) {
         return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
     };
@@ -131,6 +133,10 @@ void CaseReader::check_release(const std::string& prefix) {
         wrong(prefix + "depth", "not given, and no surface either",
               "expected the depth of the release [m] or its surface",
               "add depth = ... or surface = ... under [[release]]");
+    if (there("depth") && case_.given(prefix + "depth") && case_.is_text(prefix + "depth") &&
+        case_.word(prefix + "depth").rfind("field:", 0) == 0 && !there("outline"))
+        wrong(prefix + "depth", "found an attribute without an outline", "expected the outline whose features have it",
+              "give outline, or a number");
     if (!case_.given(prefix + "surface")) return;
     if (case_.word(prefix + "thickness") == "normal")
         wrong(prefix + "thickness", "found \"normal\" together with surface",
@@ -139,6 +145,15 @@ void CaseReader::check_release(const std::string& prefix) {
         wrong(prefix + "included_in_dem", "found true together with surface",
               "expected depth, since the elevation model is the surface already",
               "give depth = ..., a number or a raster of the thickness");
+}
+
+void CaseReader::check_layer(const std::string& prefix) {
+    if (!case_.given(prefix + "layer")) return;
+    if (!case_.given(prefix + "outline"))
+        wrong(prefix + "layer", "found without outline", "expected it with outline only", "remove it, or give outline");
+    else if (!split_layer(case_.word(prefix + "outline")).layer.empty())
+        wrong(prefix + "layer", "found, but outline names a layer as well", "expected one of the two",
+              "remove " + kLayerMark + " from outline");
 }
 
 void CaseReader::check_barrier(const std::string& prefix) {
@@ -227,7 +242,7 @@ void CaseReader::check_meaning() {
 void CaseReader::check_files() {
     for (const auto& [key, setting] : case_.settings_) {
         for (const std::string& file : files_of(*find_parameter(key), setting.value)) {
-            const std::filesystem::path path = case_.resolve(file);
+            const std::filesystem::path path = case_.resolve(split_layer(file).file);
             // Names such as /vsizip/a.zip/dem.tif or NETCDF:a.nc:z are GDAL's own; only GDAL can look for
             // them.
             const bool virtual_name = file.rfind("/vsi", 0) == 0 || file.find(':') != std::string::npos;

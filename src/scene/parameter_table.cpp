@@ -44,12 +44,17 @@ void add_release(Table& table) {
                             "polygons of the release, with or without holes: any OGR vector file"),
                        "release.mask"),
                "the mask, or the whole terrain"));
+    table.push_back(absent(make("release.layer", Kind::text, "",
+                                "layer of the outline's file that is meant, where it has several; any vector file may "
+                                "also be given as FILE|layername=LAYER"),
+                           "the only layer"));
     table.push_back(absent(
         instead(make("release.mask", Kind::path, "", "raster of the release: material where it is above 0"),
                 "release.outline"),
         "the outline, or the whole terrain"));
     Parameter depth =
-        make("release.depth", Kind::number_or_path, "m", "depth of the release, or a raster of it");
+        make("release.depth", Kind::number_or_path, "m",
+             "depth of the release, or a raster of it, or \"field:NAME\": an attribute of the outline's features");
     depth.range = positive;
     table.push_back(absent(instead(depth, "release.surface"), "surface is needed"));
     table.push_back(absent(

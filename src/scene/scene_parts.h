@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "particles/release.h"
+#include "scene/build_scene.h"
 #include "scene/case_file.h"
 #include "scene/problems.h"
 #include "scene/scene.h"
@@ -18,11 +19,21 @@ using NodeMarks = std::vector<char>;
 /// Laws, scheme, boundary, time and output of the case; no files are read.
 void set_physics(const CaseFile& file, Scene& scene);
 
+/// Remarks on a terrain that may not be what was meant, on the material's numbers, and on releases that have their
+/// particles; they go to the scene's log.
+void remark_on_terrain(const CaseFile& file, Scene& scene);
+void remark_on_material(const CaseFile& file, Scene& scene);
+void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene);
+/// A remark on the pixels without data where a release claims material.
+void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,
+                    std::vector<std::string>& log);
+
 /// [[release]] number `i` in the terms of the particle generation: depth vertical, rasters read, outline read
 /// and within the terrain. A pixel that is material by outline or mask, but over nodata of the bed, has
-/// infinite depth. What is wrong with its files goes to `problems`, and nothing comes back.
-std::optional<Release> read_release(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
-                                    std::vector<std::string>& log, Problems& problems);
+/// infinite depth. Outlines with depths of their own (depth = "field:NAME") are a release for each depth; otherwise it
+/// is one. What is wrong with its files goes to `problems`, and nothing comes back.
+std::vector<Release> read_release(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
+                                  std::vector<std::string>& log, Problems& problems);
 
 /// All [[barrier]] of a scene that has its terrain and its stages. What is wrong with their files or their place goes to
 /// `problems`.

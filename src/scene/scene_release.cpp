@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "base/error.h"
+#include "base/layer_name.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
 
+const std::string kField = "field:";  // before an attribute's name
 constexpr double unknown_depth = std::numeric_limits<double>::infinity();
 
 class ReleaseReader {
@@ -24,21 +27,58 @@ public:
           reader_(reader),
           log_(log) {}
 
-    std::optional<Release> read(Problems& problems) {
+    std::vector<Release> read(Problems& problems) {
         Release release;
         release.name = case_.table_place(table_);
         bool good = true;
         if (given("outline"))
             good &= problems.attempt(place("outline"), [&] { release.outline = outline(); });
+        if (good && !depths_.empty()) return by_depth(release, problems);
         const char* depth_key = given("mask") ? "mask" : given("surface") ? "surface" : "depth";
         good &= problems.attempt(place(depth_key), [&] { set_depth(release); });
         good &= problems.attempt(place("velocity"), [&] { set_velocity(release); });
-        if (!good) return std::nullopt;
-        return release;
+        if (!good) return {};
+        return {release};
     }
 
 private:
     bool given(const char* name) const { return case_.given(prefix_ + name); }
+
+    /// A release for each depth that the outline's features have, the smallest first.
+    std::vector<Release> by_depth(const Release& all, Problems& problems) {
+        std::map<double, Polygons> parts;
+        for (std::size_t n = 0; n < all.outline->parts.size(); ++n) {
+            Polygons& same = parts[depths_[n]];
+            same.crs_wkt = all.outline->crs_wkt, same.source = all.outline->source;
+            same.parts.push_back(all.outline->parts[n]);
+        }
+        std::vector<Release> releases;
+        const bool good = problems.attempt(place("depth"), [&] {
+            if (!(parts.begin()->first > 0.0))
+                throw UserError(
+                    fmt::format("found a depth of {:.6g} m in {}; expected depths above 0; correct the attribute",
+                                parts.begin()->first, all.outline->source));
+            for (const auto& [depth, outline] : parts) {
+                releases.push_back(all);
+                releases.back().outline = outline;
+                depth_of_features_ = depth;
+                set_depth(releases.back());
+                set_velocity(releases.back());
+            }
+        });
+        return good ? releases : std::vector<Release>();
+    }
+
+    /// Of "field:thickness_m"; empty for other depths.
+    std::string depth_attribute() const {
+        if (!given("depth") || !case_.is_text(key("depth"))) return {};
+        const std::string& text = case_.word(key("depth"));
+        return text.rfind(kField, 0) == 0 ? text.substr(kField.size()) : std::string();
+    }
+
+    double depth_number(const char* name) const {
+        return depth_of_features_ ? *depth_of_features_ : case_.number(key(name));
+    }
     std::string key(const char* name) const { return prefix_ + name; }
     bool is_file(const char* name) const { return given(name) && case_.is_text(key(name)); }
 
@@ -46,8 +86,15 @@ private:
         return reader_.read_raster(path, bed_.geometry.pixel_extent(), bed_.crs_wkt, log_);
     }
 
-    Polygons outline() const {
-        Polygons polygons = reader_.read_polygons(case_.path(key("outline")), bed_.crs_wkt, log_);
+    Polygons outline() {
+        std::string name = case_.path(key("outline")).string();
+        if (given("layer")) name += kLayerMark + case_.word(key("layer"));
+        const std::string attribute = depth_attribute();
+        ValuedPolygons valued;
+        if (attribute.empty()) valued.polygons = reader_.read_polygons(name, bed_.crs_wkt, log_);
+        else valued = reader_.read_valued_polygons(name, attribute, bed_.crs_wkt, log_);
+        depths_ = valued.values;
+        Polygons& polygons = valued.polygons;
         const auto extent = bed_.geometry.pixel_extent();
         const double slack = 1e-9 * (std::abs(extent[2]) + std::abs(extent[3]) + 1.0);
         Index outside = 0;
@@ -77,30 +124,46 @@ private:
 
     std::string place(const char* name) const { return case_.place(key(name)); }
 
+    static NodeMarks marks_above_zero(const Raster& mask) {
+        NodeMarks marks(mask.values.size(), 0);
+        for (std::size_t k = 0; k < marks.size(); ++k) marks[k] = mask.values[k] > 0.0;
+        return marks;
+    }
+
+    /// The pixels that the outline touches, or all.
+    static NodeMarks claimed(const Release& release, const GridGeometry& pixels) {
+        Release bare;
+        bare.outline = release.outline;
+        return nodes_under(bare, pixels);
+    }
+
     void set_depth(Release& release) const {
         const bool normal = case_.word(key("thickness")) == "normal";
         if (given("mask")) {
             const Raster mask = raster(case_.path(key("mask")));
-            release.depth_field = depth_on(mask.geometry, true);
+            release.depth_field = depth_on(mask.geometry, true, marks_above_zero(mask));
             for (std::size_t k = 0; k < mask.values.size(); ++k)
                 if (!(mask.values[k] > 0.0)) release.depth_field->values[k] = Raster::nodata;
-        } else if (is_file("depth")) {
+        } else if (!depth_of_features_ && is_file("depth")) {
             release.depth_field = raster(case_.path(key("depth")));
+            remark_on_gaps(*release.depth_field, claimed(release, release.depth_field->geometry), place("depth"), log_);
         } else if (given("surface") || normal) {
-            release.depth_field = depth_on(bed_.geometry, given("outline"));
+            release.depth_field = depth_on(bed_.geometry, given("outline"), claimed(release, bed_.geometry));
         } else {
-            release.depth = case_.number(key("depth"));
+            release.depth = depth_number("depth");
         }
         if (normal) make_vertical(*release.depth_field);
     }
 
     /// Depth, or surface minus bed, at the pixels of `grid`. Over nodata of the bed the depth is unknown when
     /// the case claims material there, and none otherwise.
-    Raster depth_on(const GridGeometry& grid, bool claimed) const {
+    Raster depth_on(const GridGeometry& grid, bool claimed, const NodeMarks& places) const {
         const char* name = given("surface") ? "surface" : "depth";
-        Raster field = is_file(name) ? reader_.read_onto(case_.path(key(name)), grid, bed_.crs_wkt, log_)
-                                     : Raster::filled(grid, case_.number(key(name)));
+        const bool file = !depth_of_features_ && is_file(name);
+        Raster field = file ? reader_.read_onto(case_.path(key(name)), grid, bed_.crs_wkt, log_)
+                            : Raster::filled(grid, depth_number(name));
         if (field.source.empty()) field.source = key(name);
+        if (file) remark_on_gaps(field, places, place(name), log_);
         if (!given("surface")) return field;
         for (Index j = 0; j < grid.ny; ++j) {
             for (Index i = 0; i < grid.nx; ++i) {
@@ -162,12 +225,14 @@ private:
     const Raster& bed_;
     const GisReader& reader_;
     std::vector<std::string>& log_;
+    std::vector<double> depths_;               ///< of the outline's polygons, when they have their own [m]
+    std::optional<double> depth_of_features_;  ///< of those that are a release now [m]
 };
 
 }  // namespace
 
-std::optional<Release> read_release(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
-                                    std::vector<std::string>& log, Problems& problems) {
+std::vector<Release> read_release(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
+                                  std::vector<std::string>& log, Problems& problems) {
     return ReleaseReader(file, i, bed, reader, log).read(problems);
 }
 

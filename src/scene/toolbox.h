@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "terrain/raster.h"
 
 namespace frana {
@@ -17,6 +18,12 @@ namespace frana {
 struct DemRequest {
     std::optional<std::array<double, 4>> window;  ///< xmin, ymin, xmax, ymax in map coordinates [m]
     std::optional<double> cell;                   ///< node distance [m]; nothing: the pixel of the file
+};
+
+/// Polygons with a number each.
+struct ValuedPolygons {
+    Polygons polygons;
+    std::vector<double> values;  ///< one for each part; empty: none were asked for
 };
 
 /// Readers of GIS files. Every problem is a UserError that names the file, what was found and a way out.
@@ -40,6 +47,12 @@ public:
     /// All polygons of a vector file, reprojected to `crs_wkt` when both are known and differ.
     virtual Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                    std::vector<std::string>& log) const = 0;
+    /// The same with a number for each polygon, from the attribute of that name.
+    virtual ValuedPolygons read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
+                                                const std::string& crs_wkt, std::vector<std::string>& log) const {
+        static_cast<void>(attribute), static_cast<void>(crs_wkt), static_cast<void>(log);
+        throw UserError(file.string() + ": attributes cannot be read here");
+    }
     /// A surveyed extent on the terrain of `extent` (xmin, ymin, xmax, ymax). Polygons that do not overlap one
     /// another; readers that can also take a raster whose pixels above 0 are the extent.
     virtual Polygons read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,

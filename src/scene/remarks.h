@@ -1,0 +1,46 @@
+#pragma once
+// Remarks on a case that runs, but may not be what was meant. All of them stand in one table: from which number on each
+// is made, and what it says.
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace frana {
+
+enum class Remark {
+    density_not_given,
+    density,
+    friction,
+    xi,
+    release_slope,
+    release_depth,
+    few_particles,
+    depth_without_data,
+    zero_margin,
+    steep_as_in_feet,
+    high_as_in_feet,
+    named_feet,
+};
+
+/// A row of the table. The text may name {value}, {low}, {high}, {other} and {what}.
+struct RemarkRow {
+    Remark remark;
+    const char* title;  ///< what it is about, in a few words
+    double low, high;   ///< values within need no remark
+    const char* text;
+};
+
+const std::vector<RemarkRow>& remark_table();
+
+/// What was found, beside the number that the table judges.
+struct Found {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    double other = 0.0;
+    std::string what = {};
+};
+
+/// Appends "place: what was found; what is expected; what to do" to `log`, unless the value lies within the row's
+/// limits.
+void remark_on(std::vector<std::string>& log, Remark remark, const std::string& place, const Found& found);
+
+}  // namespace frana

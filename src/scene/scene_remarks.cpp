@@ -1,0 +1,114 @@
+// What of a case that can run is worth a remark: scene/remarks.h says from which number on.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/remarks.h"
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+constexpr double degrees = 180.0 / 3.14159265358979323846;
+
+/// "dem.tif dem_metres.tif": what a line of gdal_translate ends with.
+std::string into(const std::string& source, const char* suffix) {
+    const std::string file = source.empty() ? "dem.tif" : source;
+    const std::size_t dot = file.rfind('.');
+    return fmt::format("{} {}{}.tif", file, file.substr(0, dot), suffix);
+}
+
+/// A band of exact zeros, two nodes and more wide, that ends at a step of more than 60 degrees. A low coast at sea
+/// level is none: there most of the band's rim is flat.
+void remark_zero_margin(Scene& scene, const std::string& place) {
+    constexpr double kCliff = 1.7320508075688772;  // tangent of 60 degrees
+    constexpr Index kReach = 3;                    // cells over which resampling smears a step
+    const GridGeometry& g = scene.bed.geometry;
+    Index rim = 0, cliffs = 0;
+    double highest = 0.0;
+    const auto look = [&](Index i, Index j, Index di, Index dj) {
+        const Index ahead_i = i + kReach * di, ahead_j = j + kReach * dj, behind_i = i - di, behind_j = j - dj;
+        const auto inside = [&](Index a, Index b) { return a >= 0 && b >= 0 && a < g.nx && b < g.ny; };
+        if (!inside(ahead_i, ahead_j) || !inside(behind_i, behind_j)) return;
+        if (scene.bed.at(behind_i, behind_j) != 0.0 || scene.bed.at(i + di, j + dj) == 0.0) return;
+        const double step = std::abs(scene.bed.at(ahead_i, ahead_j));
+        if (!std::isfinite(step)) return;
+        ++rim;
+        if (step <= kCliff * double(kReach) * g.cell) return;
+        ++cliffs;
+        highest = std::max(highest, step);
+    };
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i)
+            if (scene.bed.at(i, j) == 0.0)
+                for (const auto& [di, dj] : {std::pair<Index, Index>{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+                    look(i, j, di, dj);
+    remark_on(scene.log, Remark::zero_margin, place,
+              {2 * cliffs > rim ? double(cliffs) : 0.0, highest, into(scene.bed.source, "_nodata")});
+}
+
+/// Heights in feet are 3.28 times as high, and ground of 28 degrees then has 60.
+void remark_feet(Scene& scene, const std::string& place) {
+    constexpr double kSteep2 = 3.0;  // square of the tangent of 60 degrees
+    const GridGeometry& g = scene.bed.geometry;
+    Index known = 0, steep = 0;
+    double highest = -INFINITY;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            if (std::isnan(scene.bed.at(i, j))) continue;
+            ++known;
+            highest = std::max(highest, scene.bed.at(i, j));
+            if (node_gradient(scene.bed, i, j).squaredNorm() > kSteep2) ++steep;
+        }
+    const std::string files = into(scene.bed.source, "_metres");
+    remark_on(scene.log, Remark::steep_as_in_feet, place, {100.0 * double(steep) / double(known), 0.0, files});
+    remark_on(scene.log, Remark::high_as_in_feet, place, {highest, 0.0, files});
+}
+
+}  // namespace
+
+void remark_on_terrain(const CaseFile& file, Scene& scene) {
+    const std::string place = file.place("terrain.dem");
+    remark_zero_margin(scene, place);
+    remark_feet(scene, place);
+}
+
+void remark_on_material(const CaseFile& file, Scene& scene) {
+    const bool given = file.given("material.density");
+    remark_on(scene.log, given ? Remark::density : Remark::density_not_given, file.place("material.density"),
+              {file.number("material.density")});
+    const auto angle = [&](const std::string& key, bool tangent) {
+        if (!file.given(key)) return;
+        const double value = file.number(key);
+        remark_on(scene.log, Remark::friction, file.place(key), {tangent ? std::atan(value) * degrees : value});
+    };
+    for (const char* key : {"material.bed.mu", "material.bed.mu_s", "material.bed.mu_2"}) angle(key, true);
+    for (const char* key : {"material.bed.friction_angle_deg", "material.structure.friction_angle_deg"})
+        angle(key, false);
+    for (Index i = 0; i < file.count("stage"); ++i) angle(fmt::format("stage.{}.friction_angle_deg", i), false);
+    if (file.given("material.bed.xi"))
+        remark_on(scene.log, Remark::xi, file.place("material.bed.xi"), {file.number("material.bed.xi")});
+}
+
+void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene) {
+    for (const ReleaseSummary& release : releases) {
+        const std::string place = file.table_place(fmt::format("release.{}", release.table));
+        remark_on(scene.log, Remark::release_slope, place, {release.slope_max_deg});
+        remark_on(scene.log, Remark::release_depth, place, {release.max_depth});
+    }
+    remark_on(scene.log, Remark::few_particles, file.place("particles.per_cell"), {double(scene.particles.count())});
+}
+
+void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,
+                    std::vector<std::string>& log) {
+    Index gaps = 0, all = 0;
+    for (std::size_t k = 0; k < claimed.size(); ++k) {
+        if (!claimed[k]) continue;
+        ++all;
+        if (std::isnan(field.values[k])) ++gaps;
+    }
+    remark_on(log, Remark::depth_without_data, place, {double(gaps), double(all)});
+}
+
+}  // namespace frana

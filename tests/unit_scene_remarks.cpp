@@ -1,0 +1,148 @@
+// Remarks on cases that run but may not be what was meant: each is made beyond its limit and not within.
+#include <fstream>
+#include <sstream>
+
+#include "catch.h"
+#include "fake_gis.h"
+#include "scene/build_scene.h"
+#include "scene/remarks.h"
+
+using namespace frana;
+
+namespace {
+
+const GridGeometry grid{40, 30, 1002.5, 2002.5, 5.0};
+
+/// A slope that rises to the east by `rise`, from `foot`.
+FakeGis slope(double rise, double foot = 100.0) {
+    FakeGis gis;
+    gis.rasters["dem.tif"] = sampled(grid, [&](double x, double) { return foot + rise * (x - 1000.0); });
+    gis.rasters["dem.tif"].source = "dem.tif";
+    gis.polygons["release.geojson"] = rectangle(1050, 2050, 1100, 2080);
+    return gis;
+}
+
+std::string case_of(const std::string& material, const std::string& depth = "2.0", const std::string& rest = "") {
+    return "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = " + depth +
+           "\n[time]\nend = 20\n[material]\n" + material + "\n" + rest;
+}
+
+/// The remarks on a case that have the words.
+std::vector<std::string> remarks(const std::string& text, const FakeGis& gis, const std::string& words) {
+    std::vector<std::string> found;
+    for (const std::string& line : build_scene(CaseFile::parse(text, "slide/case.toml"), gis).log)
+        if (line.find(words) != std::string::npos) found.push_back(line);
+    return found;
+}
+
+std::string remark(const std::string& text, const FakeGis& gis, const std::string& words) {
+    const std::vector<std::string> found = remarks(text, gis, words);
+    REQUIRE(found.size() == 1);
+    return found.front();
+}
+
+const std::string coulomb = "density = 1500\nbed.law = \"coulomb\"\n";
+
+}  // namespace
+
+TEST_CASE("A density that is missing, or of no mass that slides, is remarked upon", "[scene][remarks]") {
+    const auto of = [](const std::string& density) { return case_of(density + "\nbed.law = \"none\""); };
+    CHECK(remark(of(""), slope(0.5), "density") ==
+          "slide/case.toml:8: material.density: not given, so it is 1000 kg/m3; expected the density of the mass; give "
+          "it");
+    CHECK(remark(of("density = 1.8"), slope(0.5), "density").find("found 1.8 kg/m3; expected 100 to 4000") !=
+          std::string::npos);
+    CHECK(remark(of("density = 4001"), slope(0.5), "density").find("found 4001 kg/m3") != std::string::npos);
+    for (const char* fit : {"density = 100", "density = 4000"}) CHECK(remarks(of(fit), slope(0.5), "density").empty());
+}
+
+TEST_CASE("Friction that no ground has is remarked upon, as an angle", "[scene][remarks]") {
+    const auto of = [](const std::string& friction) { return case_of(coulomb + "bed." + friction); };
+    CHECK(remark(of("friction_angle_deg = 1.5"), slope(0.5), "friction angle of")
+              .find("bed.friction_angle_deg: found a friction angle of 1.5 degrees; expected 2 to 60") !=
+          std::string::npos);
+    // atan 3 = 71.6 degrees
+    CHECK(remark(of("mu = 3"), slope(0.5), "friction angle of").find("71.6 degrees") != std::string::npos);
+    for (const char* fit : {"friction_angle_deg = 2", "friction_angle_deg = 60", "mu = 0.4"})
+        CHECK(remarks(of(fit), slope(0.5), "friction angle of").empty());
+}
+
+TEST_CASE("A turbulence coefficient that is none of Voellmy's is remarked upon", "[scene][remarks]") {
+    const auto of = [](const std::string& xi) {
+        return case_of("density = 300\nbed.law = \"voellmy\"\nbed.mu = 0.2\nbed.xi = " + xi);
+    };
+    CHECK(remark(of("19"), slope(0.5), ".xi").find("found 19 m/s^2; expected 20 or more") != std::string::npos);
+    CHECK(remarks(of("20"), slope(0.5), ".xi").empty());
+}
+
+TEST_CASE("A release on a cliff, or as deep as a valley, is remarked upon", "[scene][remarks]") {
+    const std::string plain = case_of(coulomb + "bed.mu = 0.4");
+    // atan 1.8 = 60.9 degrees, atan 1.7 = 59.5
+    CHECK(remark(plain, slope(1.8), "under it").find("release.0: found a bed of up to 60.9 degrees") !=
+          std::string::npos);
+    CHECK(remarks(plain, slope(1.7), "under it").empty());
+    CHECK(remark(case_of(coulomb + "bed.mu = 0.4", "101"), slope(0.5), "found a depth")
+              .find("up to 101 m; expected 100 m at most") != std::string::npos);
+    CHECK(remarks(case_of(coulomb + "bed.mu = 0.4", "99"), slope(0.5), "found a depth").empty());
+}
+
+TEST_CASE("Fewer than 100 particles are remarked upon", "[scene][remarks]") {
+    const auto of = [](int count) {
+        return case_of(coulomb + "bed.mu = 0.4", "2",
+                       "[particles]\nplacement = \"r2\"\ncount = " + std::to_string(count));
+    };
+    CHECK(remark(of(99), slope(0.5), "particles in all").find("found 99 particles in all; expected 100 or more") !=
+          std::string::npos);
+    CHECK(remarks(of(100), slope(0.5), "particles in all").empty());
+}
+
+TEST_CASE("Pixels of a depth without data are counted where the release claims material", "[scene][remarks]") {
+    FakeGis gis = slope(0.5);
+    const GridGeometry pixels{20, 20, 1005, 2005, 10};  // the release touches 5 x 3 of them
+    gis.rasters["depth.tif"] = sampled(pixels, [](double, double) { return 2.0; });
+    const std::string text = case_of(coulomb + "bed.mu = 0.4", "\"depth.tif\"");
+    gis.rasters["depth.tif"].at(0, 0) = Raster::nodata;
+    CHECK(remarks(text, gis, "taken as no material").empty());
+    gis.rasters["depth.tif"].at(7, 6) = Raster::nodata;
+    const std::string said = remark(text, gis, "taken as no material");
+    CHECK(said.find("release.0.depth: found no data in 1 of ") != std::string::npos);
+    const std::string everywhere =
+        "[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = \"depth.tif\"\n[time]\nend = 20\n";
+    CHECK(remark(everywhere, gis, "taken as no material").find("no data in 2 of 400 pixels") != std::string::npos);
+}
+
+TEST_CASE("A margin filled with zeros is remarked upon, a coast is not", "[scene][remarks]") {
+    const std::string plain = case_of(coulomb + "bed.mu = 0.4");
+    FakeGis gis = slope(0.5, 900.0);
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 35; i < grid.nx; ++i) gis.rasters["dem.tif"].at(i, j) = 0.0;
+    // three cells before the band the slope is 900 m + (162.5 m / 2) high; the release is far from it
+    const std::string said = remark(plain, gis, "exactly 0 m");
+    CHECK(said.find("slide/case.toml:2: terrain.dem: found 30 nodes of exactly 0 m below cliffs of up to 981.2 m") ==
+          0);
+    CHECK(said.find("gdal_translate -a_nodata 0 dem.tif dem_nodata.tif") != std::string::npos);
+    FakeGis coast = slope(0.5);
+    coast.rasters["dem.tif"] = sampled(grid, [](double x, double) { return x < 1030 ? 0.0 : 0.5 * (x - 1030.0); });
+    CHECK(remarks(plain, coast, "exactly 0 m").empty());
+}
+
+TEST_CASE("Terrain that is as steep or as high as heights in feet is remarked upon", "[scene][remarks]") {
+    const std::string plain = case_of(coulomb + "bed.mu = 0.4");
+    // slopes of 30 degrees: 1.894 in feet, 62 degrees
+    CHECK(remark(plain, slope(0.5774 / 0.3048), "if the heights are feet")
+              .find("terrain.dem: found 100 % of the terrain steeper than 60 degrees; expected 33 % at most") !=
+          std::string::npos);
+    CHECK(remarks(plain, slope(0.5774), "if the heights are feet").empty());
+    CHECK(remark(plain, slope(0.5, 9000.0), "if the heights are feet").find("found a height of 9098.75 m") !=
+          std::string::npos);
+}
+
+TEST_CASE("Every remark of the table is in the README", "[scene][remarks]") {
+    std::ifstream file(FRANA_SOURCE_DIR "/README.md");
+    std::stringstream text;
+    text << file.rdbuf();
+    for (const RemarkRow& row : remark_table()) {
+        CAPTURE(row.title);
+        CHECK(text.str().find(std::string("| ") + row.title + " |") != std::string::npos);
+    }
+}
