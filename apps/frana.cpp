@@ -64,6 +64,18 @@ void add_run(CLI::App& app, RunOptions& options, Action& action) {
     });
 }
 
+void add_converge(CLI::App& app, ConvergeOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("converge", "the same case on several cells: has the answer converged?");
+    add_case(*command, options.case_file, options.sets);
+    command->add_option("--cells", options.cells, "cells [m]: N,N,...; two or more")->required();
+    command->add_option("--out", options.out, "folder of the runs and the tables; default out/<case name>_converge");
+    command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
+    command->add_flag("--resume", options.resume, "take finished runs as they are, go on with the others");
+    command->add_flag("--overwrite", options.overwrite, "replace the files of an earlier study in the folder");
+    command->add_flag("--quiet", options.quiet, "no progress");
+    command->callback([&] { action = [&] { return converge_command(options); }; });
+}
+
 void add_check(CLI::App& app, CheckOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("check", "read and build the whole scene without running it");
     add_case(*command, options.case_file, options.sets);
@@ -237,6 +249,7 @@ int run_program(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", version_text);
     RunOptions run;
+    ConvergeOptions converge;
     CheckOptions check;
     std::string key;
     ParticlesOptions particles;
@@ -250,6 +263,7 @@ int run_program(int argc, char** argv) {
     StressOptions stress;
     Action action;
     add_run(app, run, action);
+    add_converge(app, converge, action);
     add_check(app, check, action);
     add_describe(app, key, action);
     add_particles(app, particles, action);
@@ -278,7 +292,7 @@ int run_program(int argc, char** argv) {
 /// are told to sleep soon, unless the environment has a wish of its own. The runtime reads it before main(), hence the
 /// program starts itself anew; not under tools that have loaded it by ways of their own.
 void wait_briefly(int argc, char** argv) {
-    static const std::set<std::string> kComputing{"run", "verify", "bench", "stress"};
+    static const std::set<std::string> kComputing{"run", "converge", "verify", "bench", "stress"};
     if (argc < 2 || !kComputing.count(argv[1])) return;
     if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY") || std::getenv("LD_PRELOAD")) return;
     std::error_code none;

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <type_traits>
 
 #include "base/free_memory.h"
+#include "compare/expected_width.h"
+#include "compare/flow_width.h"
 #include "frana_commands.h"
 #include "frana_run_insitu.h"
 #include "io/gdal_reader.h"
@@ -146,6 +149,31 @@ Forecast forecast(const Scene& scene) {
     return result;
 }
 
+/// Of the laws that have one.
+double friction_of(const BedLaw& law) {
+    return std::visit(
+        [](const auto& chosen) {
+            using Law = std::decay_t<decltype(chosen)>;
+            if constexpr (std::is_same_v<Law, bed::None>) return 0.0;
+            else if constexpr (std::is_same_v<Law, bed::Pouliquen>) return chosen.mu_s;
+            else return chosen.mu;
+        },
+        law);
+}
+
+/// How many cells will lie across the flow, with a remark where they are too few.
+std::string width_text(const Scene& scene) {
+    const ExpectedWidth expected = expected_width(scene.bed, scene.particles, friction_of(scene.bed_law));
+    const double cell = scene.bed.geometry.cell;
+    if (!std::isfinite(expected.width)) return "";
+    std::string text = fmt::format(
+        "width       about {:.3g} m, {:.2g} cells, from the release ({:.3g} m across) and the valley below; a run "
+        "measures it\n",
+        expected.width, expected.width / cell, expected.release);
+    const std::string remark = width_remark(expected.width, cell);
+    return remark.empty() ? text : text + fmt::format("remark      by the estimate {}\n", remark);
+}
+
 std::string seconds_text(double seconds) {
     if (seconds < 120.0) return fmt::format("{:.2g} s", seconds);
     return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0)
@@ -190,7 +218,7 @@ int check_command(const CheckOptions& options) {
     const BuiltScene built = build_scene_in_detail(file, GdalReader(), meshes);
     std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
-    std::cout << total_text(built) << forecast_text(built.scene);
+    std::cout << total_text(built) << width_text(built.scene) << forecast_text(built.scene);
     for (const Barrier& barrier : built.scene.barriers)
         std::cout << (barrier.shape ? fmt::format("barrier     {}, a mesh\n", barrier.name)
                       : barrier.top

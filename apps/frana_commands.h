@@ -8,6 +8,8 @@
 
 namespace frana {
 
+class Interrupt;
+
 /// `frana run CASE [--out DIR] [--set key=value]... [--threads N] [--until T] [--resume] [--overwrite] [--quiet]`
 struct RunOptions {
     std::filesystem::path case_file;
@@ -17,6 +19,19 @@ struct RunOptions {
     std::optional<double> until;    ///< stop at this simulated time instead of time.end [s]
     bool resume = false;            ///< go on from the folder's checkpoint.h5
     bool overwrite = false;         ///< replace the files of an earlier run in the folder
+    bool quiet = false;
+    const Interrupt* interrupt = nullptr;  ///< who listens for Ctrl-C; nullptr: the run itself does
+};
+
+/// `frana converge CASE --cells N,N,... [--out DIR] [--set key=value]... [--threads N] [--resume] [--overwrite] [--quiet]`
+struct ConvergeOptions {
+    std::filesystem::path case_file;
+    std::string cells;              ///< as given: "10,5,2.5"
+    std::filesystem::path out;      ///< empty: out/<case name>_converge
+    std::vector<std::string> sets;  ///< "key=value" overrides of all runs
+    int threads = 0;
+    bool resume = false;            ///< take finished runs as they are, and go on with the others
+    bool overwrite = false;         ///< replace the files of an earlier study
     bool quiet = false;
 };
 
@@ -115,6 +130,7 @@ int stress_command(const StressOptions& options);        // frana_stress.cpp
 int bench_command(const BenchOptions& options);          // frana_bench.cpp
 int verify_command(const VerifyOptions& options);        // frana_verify.cpp
 int run_command(const RunOptions& options);              // frana_run.cpp
+int converge_command(const ConvergeOptions& options);    // frana_converge.cpp
 int figures_command(const FiguresOptions& options);      // frana_figures.cpp
 int compare_command(const CompareOptions& options);      // frana_compare.cpp
 int states_command(const StatesOptions& options);        // frana_states_command.cpp

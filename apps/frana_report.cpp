@@ -59,6 +59,9 @@ std::string results(const RunRecord& r) {
     text += row("farthest front from the release's centre", fmt::format("{:.5g} m", s.extremes.max_front));
     text += row(fmt::format("area ever deeper than {:.3g} m", r.footprint_depth),
                 fmt::format("{:.5g} m2", r.footprint_area));
+    if (std::isfinite(r.flow_width))
+        text += row("width of the flow, median over its length",
+                    fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
     text += row("deepest at the end", fmt::format("{:.4g} m", r.final_depth));
     text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
     if (r.breakage) {

@@ -107,7 +107,9 @@ int run_command(const RunOptions& options) {
     record.threads = omp_get_max_threads();
     if (!options.quiet) say_what_runs(record, run_dir);
 
-    const Interrupt interrupt(Interrupt::Listen::signals);
+    std::optional<Interrupt> own;
+    if (!options.interrupt) own.emplace(Interrupt::Listen::signals);
+    const Interrupt& interrupt = options.interrupt ? *options.interrupt : *own;
     Progress progress(std::cout, Progress::fitting(options.quiet), scene.density);
     record = carry_out(scene, *simulation, run_dir, std::move(record), interrupt, progress, &keeper);
 

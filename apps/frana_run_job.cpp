@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "compare/flow_width.h"
 #include "frana_comparison.h"
 #include "frana_run_figures.h"
 #include "frana_run_film.h"
@@ -47,9 +48,19 @@ double largest(const std::vector<ProductRaster>& rasters, const char* name) {
     return result;
 }
 
+/// The flow's width, and a remark where too few cells lie across it.
+void note_width(RunRecord& record, const std::vector<ProductRaster>& rasters) {
+    const ProductRaster* peak = find_product(rasters, "peak_depth");
+    if (peak == nullptr) return;
+    record.flow_width = flow_width(peak->raster, record.footprint_depth);
+    const std::string remark = width_remark(record.flow_width, record.grid.cell);
+    if (!remark.empty()) record.warnings.push_back(remark);
+}
+
 void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) {
     if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
         record.footprint_area = area_deeper(peak->raster, record.footprint_depth);
+    note_width(record, rasters);
     record.peak_depth = largest(rasters, "peak_depth");
     record.peak_speed = largest(rasters, "peak_speed");
     record.peak_pressure = largest(rasters, "peak_pressure");

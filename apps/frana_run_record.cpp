@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -117,9 +118,15 @@ Json results_json(const RunRecord& record) {
             {"max_front", most.max_front},
             {"footprint_area", record.footprint_area},
             {"footprint_depth", record.footprint_depth},
+            {"flow_width", std::isfinite(record.flow_width) ? Json(record.flow_width) : Json(nullptr)},
             {"final_max_depth", record.final_depth},
             {"peak_pressure", record.peak_pressure},
             {"peak_dynamic_pressure", record.peak_dynamic_pressure}};
+}
+
+Json flow_width_cells(const RunRecord& record) {
+    if (!std::isfinite(record.flow_width)) return nullptr;  // nothing was covered
+    return record.flow_width / record.grid.cell;
 }
 
 }  // namespace
@@ -229,6 +236,7 @@ std::string run_json(const RunRecord& record) {
         {"particle_steps_per_second", per_second},
         {"budgets", {{"mass", mass_json(s)}, {"momentum", momentum_json(s)}, {"energy", energy_json(s)}}},
         {"results", results_json(record)},
+        {"flow_width_cells", flow_width_cells(record)},
         {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},
         {"figures", figures},
         {"insitu", insitu_json(record.insitu)},

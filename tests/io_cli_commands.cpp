@@ -42,7 +42,7 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     CHECK(unknown.code == 2);
     CHECK(unknown.out.empty());
     CHECK(unknown.err ==
-          "command line: found the unknown command \"chekc\"; expected one of run, check, describe, "
+          "command line: found the unknown command \"chekc\"; expected one of run, converge, check, describe, "
           "particles, convert, figures, compare, states, verify, bench, stress; did you mean check?\n");
     const Outcome threads = scene.frana("run CASE --threads 0");
     CHECK(threads.code == 2);
@@ -75,6 +75,7 @@ TEST_CASE("check tells grid, particles and volume of a good case without running
     CHECK_THAT(check.out, Contains("192 particles on 1200 m2, depth up to 1.5 m"));  // 48 cells of 4
     CHECK_THAT(check.out, Contains("volume 1800 m3 from raster or polygon, 1800 m3 in particles"));
     CHECK_THAT(check.out, Contains("bed slope 5.7 to 5.7 degrees"));  // atan(0.1)
+    CHECK_THAT(check.out, Contains("width       about 40 m, 8 cells, from the release (40 m across)"));
     CHECK_THAT(check.out, Contains("150 ns per particle and step"));
     CHECK_THAT(check.out, Contains("remark      material.bed.law is not given"));
     CHECK_THAT(check.out, Catch::EndsWith("ready to run\n"));

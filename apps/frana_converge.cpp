@@ -1,0 +1,218 @@
+// `frana converge CASE --cells N,N,...`: the same case on several cells, each in a run folder of its own.
+#include <fmt/core.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+
+#include "base/error.h"
+#include "frana_checkpoint.h"
+#include "frana_commands.h"
+#include "frana_converge_study.h"
+#include "frana_run_folder.h"
+#include "frana_run_lock.h"
+#include "io/gdal_reader.h"
+#include "observe/interrupt.h"
+#include "scene/build_scene.h"
+#include "vtk_io/barrier_mesh.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// Coarse to fine, each once.
+std::vector<double> read_cells(const std::string& text) {
+    const auto complain = [&](const std::string& what) {
+        return UserError(fmt::format("--cells: {}; expected two or more different cells in metres, each above 0; write "
+                                     "them like 10,5,2.5",
+                                     what));
+    };
+    std::vector<double> cells;
+    std::istringstream words(text);
+    for (std::string word; std::getline(words, word, ',');) {
+        word.erase(std::remove(word.begin(), word.end(), ' '), word.end());
+        double cell = 0.0;
+        const char* end = word.data() + word.size();
+        const auto read = std::from_chars(word.data(), end, cell);
+        if (read.ec != std::errc() || read.ptr != end || !(cell > 0.0 && cell < 1e300))
+            throw complain(fmt::format("found \"{}\"", word));
+        cells.push_back(cell);
+    }
+    std::sort(cells.begin(), cells.end(), std::greater<>());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    if (cells.size() < 2) throw complain(fmt::format("found \"{}\"", text));
+    return cells;
+}
+
+/// How the folder of a run is found.
+enum class Standing {
+    fresh,        ///< without a run's files, or with those that are to be replaced
+    unfinished,   ///< with a state to go on from
+    broken,       ///< a run died in it before its first state
+    finished
+};
+
+struct PlannedRun {
+    double cell = 0.0;
+    RunOptions options;
+    Standing standing = Standing::fresh;
+};
+
+std::string exit_reason_in(const fs::path& run_dir) {
+    std::ifstream stream(run_dir / "run.json");
+    const auto record = nlohmann::json::parse(stream, nullptr, false);
+    return record.is_object() ? record.value("exit_reason", "") : "";
+}
+
+Standing standing_of(const fs::path& run_dir) {
+    const std::string reason = exit_reason_in(run_dir);
+    for (const char* whole : {"end", "rest", "left"})
+        if (reason == whole) return Standing::finished;
+    if (fs::exists(run_dir / "checkpoint.h5")) return Standing::unfinished;
+    return reason == "running" ? Standing::broken : Standing::fresh;
+}
+
+/// The case's overrides and the cell; rasters are what runs are held against each other by.
+std::vector<std::string> sets_of(const ConvergeOptions& options, double cell) {
+    std::vector<std::string> sets = options.sets;
+    sets.push_back(fmt::format("grid.cell={}", cell));
+    const CaseFile file = CaseFile::read(options.case_file, sets);
+    std::vector<std::string> formats = file.words("output.formats");
+    if (std::find(formats.begin(), formats.end(), "geotiff") != formats.end()) return sets;
+    formats.emplace_back("geotiff");
+    std::string list;
+    for (const std::string& format : formats) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", format);
+    sets.push_back(fmt::format("output.formats=[{}]", list));
+    return sets;
+}
+
+std::vector<PlannedRun> plan_runs(const ConvergeOptions& options, const std::vector<double>& cells,
+                                  const fs::path& out) {
+    std::vector<PlannedRun> runs;
+    for (const double cell : cells) {
+        PlannedRun run;
+        run.cell = cell;
+        run.options.case_file = options.case_file;
+        run.options.out = out / fmt::format("cell_{}", cell);
+        run.options.sets = sets_of(options, cell);
+        run.options.threads = options.threads;
+        run.options.quiet = options.quiet;
+        if (options.resume) run.standing = standing_of(run.options.out);
+        run.options.resume = run.standing == Standing::unfinished;
+        run.options.overwrite = options.overwrite || run.standing == Standing::broken;
+        runs.push_back(run);
+    }
+    return runs;
+}
+
+/// The tables of an earlier study are replaced when asked for, other files of their names never.
+void require_room_for_tables(const fs::path& out, const ConvergeOptions& options) {
+    std::ifstream stream(out / "converge.json");
+    const auto record = nlohmann::json::parse(stream, nullptr, false);
+    for (const std::string& name : study_files()) {
+        if (!fs::exists(out / name)) continue;
+        const bool listed = record.is_object() && record.contains("files") && record["files"].is_array() &&
+                            std::find(record["files"].begin(), record["files"].end(), name) != record["files"].end();
+        if (!listed)
+            throw UserError(fmt::format("{}: found a file that no study left there; expected a folder without files of "
+                                        "such names; choose another one with --out, or move it away",
+                                        (out / name).string()));
+        if (!options.overwrite && !options.resume)
+            throw UserError(fmt::format("{}: found {} of an earlier study; expected a folder without; choose another "
+                                        "one with --out, give --overwrite to replace that study, or --resume to go on with it",
+                                        out.string(), name));
+    }
+}
+
+/// Every scene is built before the first run: what is wrong with the finest must not show after hours on the others.
+/// Finished runs must be of this very case. Returns the finest bed.
+Raster check_scenes(const std::vector<PlannedRun>& runs) {
+    Raster bed;
+    for (const PlannedRun& run : runs) {
+        const CaseFile file = CaseFile::read(run.options.case_file, run.options.sets);
+        const Overwrite overwrite = run.options.overwrite ? Overwrite::yes : Overwrite::no;
+        if (run.standing == Standing::fresh || run.standing == Standing::broken)
+            require_room_for_run(run.options.out, file.inputs(), overwrite);
+        Scene scene = build_scene(file, GdalReader(), barrier_mesh_of);
+        if (run.standing == Standing::finished) open_checkpoint(run.options.out, checkpoint_labels(scene, file));
+        bed = std::move(scene.bed);
+    }
+    return bed;
+}
+
+/// Tables of an earlier study do not stand beside runs that replace its own.
+void remove_tables(const fs::path& out) {
+    for (const std::string& name : study_files()) fs::remove(out / name);
+}
+
+/// 0 when all runs are finished, 130 when one was interrupted.
+int carry_out(const std::vector<PlannedRun>& runs, bool quiet) {
+    const Interrupt interrupt(Interrupt::Listen::signals);
+    for (PlannedRun run : runs) {
+        if (run.standing == Standing::finished) {
+            if (!quiet)
+                std::cout << fmt::format("cells of {:g} m: finished, in {}\n", run.cell, run.options.out.string());
+            continue;
+        }
+        run.options.interrupt = &interrupt;
+        const int code = interrupt.requested() ? 130 : run_command(run.options);
+        if (code != 0 || interrupt.requested()) {
+            if (!quiet) std::cout << "interrupted; --resume goes on where the study stopped\n";
+            return code != 0 ? code : 130;
+        }
+    }
+    return 0;
+}
+
+std::string overrides(const ConvergeOptions& options) {
+    std::string text;
+    for (const std::string& set : options.sets) text += fmt::format("{}--set {}", text.empty() ? "" : " ", set);
+    return text;
+}
+
+std::string remark_on_count(const CaseFile& file) {
+    if (!file.given("particles.count")) return "";
+    return "particles.count is the same on all cells, so finer cells have fewer particles each; per_cell would keep "
+           "their number in a cell";
+}
+
+}  // namespace
+
+int converge_command(const ConvergeOptions& options) {
+    const std::vector<double> cells = read_cells(options.cells);
+    const CaseFile file = CaseFile::read(options.case_file, options.sets);
+    const fs::path out = options.out.empty() ? fs::path("out") / (file.name() + "_converge") : options.out;
+    if (fs::exists(out) && !fs::is_directory(out))
+        throw UserError(fmt::format("{}: this is a file; expected a folder that can be written to; choose another one "
+                                    "with --out",
+                                    out.string()));
+    std::optional<RunLock> lock;
+    if (fs::is_directory(out)) lock.emplace(out);
+    require_room_for_tables(out, options);
+    if (options.threads > 0) omp_set_num_threads(options.threads);
+    const std::vector<PlannedRun> runs = plan_runs(options, cells, out);
+    const Raster bed = check_scenes(runs);
+    if (!lock) lock.emplace(out);
+    if (options.overwrite) remove_tables(out);
+    if (const int code = carry_out(runs, options.quiet)) return code;
+
+    ConvergenceStudy study;
+    study.folder = out;
+    study.case_file = options.case_file.string();
+    study.overrides = overrides(options);
+    for (const PlannedRun& run : runs) study.runs.push_back({run.cell, run.options.out});
+    if (const std::string remark = remark_on_count(file); !remark.empty()) study.remarks.push_back(remark);
+    measure_runs(study, bed);
+    write_study(study);
+    std::cout << '\n' << study_section(study);
+    for (const std::string& name : study.files) std::cout << (out / name).string() << '\n';
+    return 0;
+}
+
+}  // namespace frana

@@ -1,0 +1,140 @@
+#include "frana_converge_study.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "compare/flow_width.h"
+#include "compare/outline.h"
+#include "compare/runout.h"
+#include "frana_products.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// What of a run is looked at.
+struct RunFiles {
+    nlohmann::json record;
+    std::vector<ProductRaster> rasters;
+    fs::path folder;
+
+    const Raster& raster(const char* name) const {
+        const ProductRaster* product = find_product(rasters, name);
+        if (product == nullptr)
+            throw UserError(fmt::format("{}: is not there; expected the rasters of a finished run; run the study again "
+                                        "with --overwrite",
+                                        (folder / "rasters" / name).string() + ".tif"));
+        return product->raster;
+    }
+};
+
+RunFiles read_run(const fs::path& folder) {
+    std::ifstream stream(folder / "run.json");
+    RunFiles run{nlohmann::json::parse(stream, nullptr, false), {}, folder};
+    for (const char* key : {"results", "wall_seconds", "exit_reason", "flow_width_cells"})
+        if (!run.record.is_object() || !run.record.contains(key))
+            throw UserError(fmt::format("{}: has no \"{}\"; expected the record of a finished run; run the study again "
+                                        "with --overwrite",
+                                        (folder / "run.json").string(), key));
+    run.rasters = read_rasters(folder);
+    return run;
+}
+
+/// The path that all runouts are measured along.
+struct Path {
+    Polyline line;              ///< empty: none is known
+    std::optional<Vec2> start;  ///< the release's middle
+};
+
+Path path_of(const RunFiles& finest, const Raster& bed, std::vector<std::string>& remarks) {
+    Path path;
+    path.start = release_middle(finest.raster("arrival_time"));
+    if (!path.start) {
+        remarks.push_back("nothing covers the ground at the start, so neither runout nor reach are known");
+        return path;
+    }
+    path.line = steepest_path(bed, *path.start);
+    if (length_of(path.line) > 0.0) return path;
+    path.line.clear();
+    remarks.push_back("no steepest path from the release is known; the runout is the straight reach");
+    return path;
+}
+
+double volume_of(const Raster& depth) {
+    double sum = 0.0;
+    for (const double h : depth.values)
+        if (h > 0.0) sum += h;
+    return sum * depth.geometry.cell * depth.geometry.cell;
+}
+
+CellFigures figures_of(const RunFiles& run, const RunFiles& finest, const Path& path, double limit) {
+    const Raster &peak = run.raster("peak_depth"), &speed = run.raster("peak_speed");
+    const Raster& deposit = run.raster("final_depth");
+    constexpr double nearly_all = 0.999;  // the maximum is that of a single node
+    const Rings outline = pixel_outline(peak, limit);
+    CellFigures figures;
+    figures.cell = peak.geometry.cell;
+    figures.reach = path.start ? farthest_from(*path.start, outline) : Raster::nodata;
+    figures.runout = path.line.empty() ? figures.reach : reach_along(path.line, outline, figures.cell);
+    figures.footprint_area = area_deeper(peak, limit);
+    figures.deposit_area = area_deeper(deposit, limit);
+    figures.deposit_volume = volume_of(deposit);
+    figures.peak_depth = covered_quantile(peak, peak, limit, nearly_all);
+    figures.largest_depth = covered_quantile(peak, peak, limit, 1.0);
+    figures.peak_speed = covered_quantile(speed, peak, limit, nearly_all);
+    figures.largest_speed = covered_quantile(speed, peak, limit, 1.0);
+    figures.iou = footprints_iou(peak, finest.raster("peak_depth"), limit);
+    figures.elsewhere = share_elsewhere(deposit, finest.raster("final_depth"));
+    const auto& across = run.record["flow_width_cells"];
+    figures.cells_across = across.is_number() ? across.get<double>() : Raster::nodata;
+    figures.seconds = run.record["wall_seconds"].at("total").get<double>();
+    return figures;
+}
+
+void remark_on_ends(ConvergenceStudy& study) {
+    for (std::size_t k = 0; k < study.runs.size(); ++k)
+        if (study.ends[k] == "end")
+            study.remarks.push_back(fmt::format("on cells of {:g} m the simulated time ended the run: what it has for "
+                                                "a deposit may still move; raise time.end",
+                                                study.runs[k].cell));
+}
+
+/// A flow that runs up an opposite slope leaves the path that water would take.
+void remark_on_path(ConvergenceStudy& study) {
+    constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
+    const CellFigures& finest = study.figures.back();
+    for (const CellFigures& f : study.figures) {
+        const double along = f.runout - finest.runout, straight = f.reach - finest.reach;
+        if (!(std::abs(along - straight) > noticeable * f.cell)) continue;
+        study.remarks.push_back(fmt::format(
+            "the steepest path may turn away from the fronts: on cells of {:g} m they differ from the finest by "
+            "{:+.4g} m along it, but by {:+.4g} m straight from the release",
+            f.cell, along, straight));
+    }
+}
+
+}  // namespace
+
+void measure_runs(ConvergenceStudy& study, const Raster& bed) {
+    const RunFiles finest = read_run(study.runs.back().folder);
+    study.footprint_depth = finest.record["results"].at("footprint_depth").get<double>();
+    study.title = finest.record.value("title", "");
+    const Path path = path_of(finest, bed, study.remarks);
+    for (const StudiedRun& run : study.runs) {
+        const RunFiles files = read_run(run.folder);
+        study.figures.push_back(figures_of(files, finest, path, study.footprint_depth));
+        study.ends.push_back(files.record["exit_reason"].get<std::string>());
+    }
+    const double across = study.figures.back().cells_across, cell = study.figures.back().cell;
+    const std::string narrow = width_remark(across * cell, cell);
+    if (!narrow.empty()) study.remarks.push_back(fmt::format("on the finest cell of {:g} m {}", cell, narrow));
+    remark_on_ends(study);
+    remark_on_path(study);
+    study.verdict = judge(study.figures, study.rule);
+}
+
+}  // namespace frana

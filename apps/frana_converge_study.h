@@ -1,0 +1,44 @@
+#pragma once
+// One case on several cells, as its run folders tell: figures, table, page and picture.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "compare/refinement.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// A run of the study.
+struct StudiedRun {
+    double cell = 0.0;             ///< [m]
+    std::filesystem::path folder;  ///< of the run
+};
+
+struct ConvergenceStudy {
+    std::filesystem::path folder;  ///< of the tables
+    std::string title, case_file, overrides;
+    std::vector<StudiedRun> runs;  ///< coarse to fine
+    std::vector<CellFigures> figures;
+    std::vector<std::string> ends;  ///< why each run ended
+    double footprint_depth = 0.1;   ///< [m]
+    ConvergenceRule rule;
+    Verdict verdict;
+    std::vector<std::string> remarks;
+    std::vector<std::string> files;  ///< that write_study() made, in the folder
+};
+
+/// Fills in what the run folders tell. `bed`: of the finest run, for the path along which all runouts are measured.
+/// Throws UserError when a folder lacks a raster or its run.json.
+void measure_runs(ConvergenceStudy& study, const Raster& bed);
+
+/// Names of the files that a study may leave in its folder beside those of its runs.
+const std::vector<std::string>& study_files();
+
+/// Writes them: converge.png (a remark where it cannot be drawn), converge.md, converge.json. Throws UserError.
+void write_study(ConvergenceStudy& study);
+
+/// The table with the verdict, for people.
+std::string study_section(const ConvergenceStudy& study);
+
+}  // namespace frana

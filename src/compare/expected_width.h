@@ -1,0 +1,19 @@
+#pragma once
+// How wide a flow may become, before it is computed: from its release and the valley below.
+#include "particles/seeds.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+struct ExpectedWidth {
+    double width = Raster::nodata;    ///< median along the path, no wider than the release; NaN: not known [m]
+    double release = Raster::nodata;  ///< of the release, across the steepest path [m]
+};
+
+/// The release is taken for the rectangle with its second moments, along and across the first part of the steepest
+/// path. A section of the valley across that path, filled until it holds the rectangle's section (volume over length),
+/// is as wide as the flow there; on open ground the release's width is. The path ends where the straight line to it
+/// from the release's middle falls less than `friction` [1] (0: at the edge of the terrain).
+ExpectedWidth expected_width(const Raster& bed, const Seeds& release, double friction);
+
+}  // namespace frana
