@@ -174,6 +174,32 @@ TEST_CASE("A point in space that is too high, or too fast where it is, is seen",
     }
 }
 
+TEST_CASE("Scenes of other models that once broke an invariant break none", "[stress]") {
+    struct Past { Model model; std::uint64_t seed, n; const char* key; const char* value; };  // still that scene
+    const std::vector<Past> past = {
+        // The spread of grains over the depth drove thin, thick water at hundreds of m/s.
+        {Model::water, 1, 224, "water.profile_factor", "3.0"},
+        {Model::water, 2, 364, "water.share", "0.8200577434555706"},
+        {Model::water, 2, 470, "water.viscosity", "0.19193959929416746"},
+        {Model::water, 2, 1271, "water.mud_alpha", "0.04977025032683622"},
+        {Model::mixture, 2, 362, "water.profile_factor", "3.0"},
+        // Affine transfers where streams of columns meet.
+        {Model::structured, 2, 97, "material.structure.young_modulus", "165676880.48915252"},
+        // A block that goes under a lake.
+        {Model::water, 2, 623, "water.level", "270.26186061017535"},
+        {Model::water, 2, 1169, "water.level", "250.85933892752848"},
+    };
+    for (const auto& [model, seed, n, key, value] : past) {
+        const Draft draft = draw(model, seed, n);
+        CAPTURE(word_of(model), seed, n);
+        REQUIRE(draft.has(key));
+        CHECK(draft.keys.at(key) == value);
+        const Verdict verdict = examine(draft);
+        CAPTURE(verdict.broken ? verdict.broken->text : "");
+        CHECK_FALSE(verdict.broken);
+    }
+}
+
 TEST_CASE("A campaign draws of the models that it is asked for, and tells the mix", "[stress]") {
     Plan plan;
     plan.models = {Model::structured, Model::water};

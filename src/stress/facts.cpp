@@ -144,6 +144,13 @@ void forget_columns(Facts& facts) {
 
 void learn_water(const Scene& scene, Facts& facts) {
     facts.all_in_points = false;
+    facts.virtual_mass = scene.water->exchange.virtual_mass != VirtualMass::none;
+    if (scene.water->level) {
+        double volume = 0.0;
+        for (const double of : scene.particles.volume) volume += of;
+        facts.displaces = scene.water->exchange.material.fluid_density * scene.gravity * volume;
+        facts.bears = scene.water->exchange.pore_pressure;
+    }
     if (scene.water->rain.values.empty()) return;
     for (const double z : scene.bed.values) facts.highest_rain = std::max(facts.highest_rain, z);
 }

@@ -40,6 +40,9 @@ struct Facts {
     bool space = false;          ///< points in space, some of the time
     double space_cell = 0.0;     ///< of their grid [m]
     bool cancels = false;        ///< impulses of weight and pressure are booked each, and cancel where material rests
+    double displaces = 0.0;      ///< weight of the water that columns can displace [N]
+    double bears = 1.0;          ///< share of that which bears them (WaterExchange::pore_pressure) [1]
+    bool virtual_mass = false;   ///< columns carry water's inertia: they part from it by what a step gets wrong
     double highest_rain = -std::numeric_limits<double>::infinity();  ///< highest ground that rain falls on [m]
 };
 /// Of a simulation that make_simulation() made of `scene` and that has not moved.

@@ -154,7 +154,7 @@ double Watch::slope_uphill() const { return std::min(facts_.steepest, deepest_ /
 
 std::optional<Violation> Watch::energy(const Snapshot& state) {
     if (!facts_.energy_law || (facts_.linear && !facts_.claims.resolved)) return std::nullopt;
-    if (facts_.turn * facts_.turn > kEnergyShare) return std::nullopt;
+    if (facts_.turn * facts_.turn > kEnergyShare || facts_.virtual_mass) return std::nullopt;
     const Status &first = start_.now, &now = state.now;
     const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
                           (now.stored - first.stored) + (now.energy_left - first.energy_left);
@@ -167,8 +167,9 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double slope = slope_uphill();
     const double gone = now.energy_left - first.energy_left - now.mass_left * facts_.gravity * lowest_;
     const double uphill = slope * slope / (1.0 + slope * slope) * (now.kinetic + std::max(0.0, gone));
+    const double lifted = facts_.displaces * (facts_.one_cell_drop + (1.0 - facts_.bears) * (highest_ - lowest_));
     const double share = kEnergyShare * (at_hand_ + turned_over_);
-    return judged("energy", growth, facts_.hidden_energy + share + uphill + booked + bends + round_off, state,
+    return judged("energy", growth, facts_.hidden_energy + share + uphill + booked + bends + lifted + round_off, state,
                   "mechanical energy gained beyond the work of gravity [J]");
 }
 
@@ -178,6 +179,7 @@ double Watch::beyond(double bound) const {
 }
 
 std::optional<Violation> Watch::speed(const Snapshot& state) {
+    if (facts_.virtual_mass) return std::nullopt;
     const double uphill = facts_.energy_law ? std::hypot(1.0, slope_uphill()) : 1.0;  // otherwise in `stretch`
     const double wave = start_.fastest() + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
     const double drop = std::max(0.0, highest_ - lowest_);

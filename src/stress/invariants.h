@@ -53,7 +53,10 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   and keeps the energy of the horizontal velocity: what the vertical one adds, B^2 / (1 + B^2) of K, is the model's own,
 ///   of what is there and of what left with it. That takes a depth that changes by more than the bed, so B there is at most
 ///   the largest depth over a cell. Not for the paper preset, whose explicit forces act on nodes of vanishing mass.
-///   Structured columns and water bend with no Hessian: their energy is looked at on ground that does not bend. Points in
+///   Structured columns and water bend with no Hessian: their energy is looked at on ground that does not bend. Columns
+///   that go under a lake lift the water over them; a shore within a cell, and cells of water that reach half a cell behind a
+///   wall, do not take that back by up to the displaced weight over the drop of a cell, nor, where only a share of the
+///   pores' pressure bears columns (water.pore_pressure), the rest of it over the whole fall. Points in
 ///   space have an energy law anywhere, and none of the excuses above; a run with columns as well has those of columns.
 /// speed (columns and water): V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
 ///   start, h the largest depth (which pushes: of nodes, or what points carry) and drop to the lowest bed so far.
@@ -67,7 +70,9 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   transfer of second order keeps extremes (Godunov 1959), and these bring nodes a cell away from a point its velocity
 ///   and the change across a cell besides. Where the largest such change so far is more than kConvergence of the bound
 ///   it takes its place, up to the bound itself; so it does in the paper preset, which no energy line binds (see `energy`;
-///   seed 888, scene 8148: a column of 138 m whose outer points run 1.48 times as fast as the bound in four steps).
+///   seed 888, scene 8148: a column of 138 m whose outer points run 1.48 times as fast as the bound in four steps). Neither
+///   energy nor speed is looked at with water's virtual mass, which a step takes from an estimate of what drives the water,
+///   so that columns part from it by what that gets wrong (speeds of up to three times the bound have been seen).
 /// head (points in space): z + V^2 / 2g of each point is no higher than the highest surface of the start, and above it the
 ///   head of a front, (1 + kConvergence)^2 (v0 + 2 sqrt(g h))^2 / 2g with v0 and h of `speed`, `kEnergyShare` of what the
 ///   point has fallen, and a cell of the grid in space, within which the ground's height is not told apart.

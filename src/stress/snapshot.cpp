@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/depth_averaged.h"
+#include "stages/structured_run.h"
 
 namespace frana::stress {
 namespace {
@@ -103,6 +104,15 @@ void sharpen(const DepthAveraged& simulation, bool steep, Snapshot& shot) {
         });
 }
 
+/// The same of structured columns: what velocity changes across a cell.
+void sharpen(const StructuredRun& simulation, Snapshot& shot) {
+    const StructuredBody& body = simulation.flow().body();
+    const StructuredPoints& q = body.points;
+    for (Index p = 0; p < q.count(); ++p)
+        shot.points.change.push_back(body.grid.cell() * std::sqrt(q.cxx[p] * q.cxx[p] + q.cxy[p] * q.cxy[p] +
+                                                                  q.cyx[p] * q.cyx[p] + q.cyy[p] * q.cyy[p]));
+}
+
 }  // namespace
 
 double Snapshot::fastest() const {
@@ -121,6 +131,7 @@ Snapshot snapshot_of(Simulation& simulation, bool steep) {
     shot.nodes = nodes_of(frame);
     shot.not_finite = count_not_finite(frame);
     if (const auto* columns = dynamic_cast<const DepthAveraged*>(&simulation)) sharpen(*columns, steep, shot);
+    if (const auto* columns = dynamic_cast<const StructuredRun*>(&simulation)) sharpen(*columns, shot);
     return shot;
 }
 

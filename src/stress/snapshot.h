@@ -23,7 +23,7 @@ struct PointStates {
     std::vector<double> speed;     ///< along the bed or in space [m/s]
     std::vector<double> mass;      ///< [kg]
     std::vector<double> depth;     ///< [m]
-    std::vector<double> change;    ///< of the velocity across a cell, of the depth-averaged flow; else empty [m/s]
+    std::vector<double> change;    ///< of the velocity across a cell, of columns; else empty [m/s]
     std::vector<double> id;
     std::vector<std::uint8_t> in_space;  ///< 1: a point in space, 0: a column
 
