@@ -195,6 +195,9 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("stress", "random hostile scenes; invariants checked each step");
     command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60")
         ->check(CLI::PositiveNumber);
+    command->add_option("--model", options.models,
+                        "what carries the scenes: all (the default), or with commas between them depth_averaged, solid_flow "
+                        "(points in space), structured, water, mixture (structured columns and water), staged");
     command->add_option("--seed", options.seed, "of the series; default 1")->check(CLI::NonNegativeNumber);
     command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows")
         ->check(CLI::PositiveNumber);
@@ -204,7 +207,7 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
         ->check(CLI::NonNegativeNumber);
     command->add_option("--json", options.json, "write the results as JSON");
     command->add_option("--out", options.out, "folder for cases of failing scenes; default out/stress");
-    command->add_option("--known", options.known, "list of known failures (SEED SCENE INVARIANT): only others count");
+    command->add_option("--known", options.known, "list of known failures (SEED MODEL SCENE INVARIANT): only others count");
     command->add_flag("--cfl-map", options.cfl_map, "find the largest stable scheme.cfl of each scheme instead");
     command->add_option("--figure", options.figure, "draw that map (PNG)");
     command->add_option("--case", options.case_file, "watch this case instead");
@@ -212,6 +215,7 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     command->add_flag("--rests", options.rests, "nothing in that case may move");
     command->add_option("--mirror", options.mirror, "that case is its own mirror image: x, y or diagonal");
     command->add_flag("--same-threads", options.same_threads, "one thread and two must give that case the same bits");
+    command->add_flag("--same-resumed", options.same_resumed, "kept half way and taken up again it must end with the same bits");
     command->callback([&] { action = [&] { return stress_command(options); }; });
 }
 

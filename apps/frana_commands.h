@@ -108,21 +108,23 @@ struct BenchOptions {
 };
 
 /// `frana stress [--seconds S] [--seed N] [--scenes N] [--first N] [--shrunk N] [--json FILE] [--out DIR]
-/// [--cfl-map [--figure FILE.png]] [--case CASE --steps N [--rests] [--mirror x|y|diagonal] [--same-threads]]`
+/// [--model WORDS] [--cfl-map [--figure FILE.png]]
+/// [--case CASE --steps N [--rests] [--mirror x|y|diagonal] [--same-threads] [--same-resumed]]`
 struct StressOptions {
     double seconds = 60.0;            ///< of running scenes; shrinking comes on top
+    std::string models = "all";       ///< to draw of: all, or words with commas
     long long seed = 1;
     long long scenes = 0;             ///< at most so many; 0: as many as the time allows
     long long first = 0;              ///< number of the first
     long long shrunk = 20;            ///< failures that are shrunk and saved; the others are counted
     std::filesystem::path json;       ///< file to write, or empty
     std::filesystem::path out = "out/stress";  ///< where cases of failing scenes go
-    std::filesystem::path known;      ///< list of failures that are known (lines: seed scene invariant), or empty
+    std::filesystem::path known;      ///< list of failures that are known (lines: seed model scene invariant), or empty
     bool cfl_map = false;             ///< instead: the largest stable scheme.cfl of each scheme
     std::filesystem::path figure;     ///< PNG of it, or empty
     std::filesystem::path case_file;  ///< instead: this case under watch, or empty
     long long steps = 100;            ///< of it
-    bool rests = false, same_threads = false;
+    bool rests = false, same_threads = false, same_resumed = false;
     std::string mirror = "none";
 };
 

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "base/atomic_file.h"
+#include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/free_memory.h"
 #include "base/text_file.h"
@@ -15,7 +16,6 @@
 #include "frana_figures.h"
 #include "frana_run_state.h"
 #include "io/kratos_mdpa.h"
-#include "particles/sum.h"
 
 namespace frana {
 namespace fs = std::filesystem;

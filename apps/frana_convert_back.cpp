@@ -7,12 +7,12 @@
 #include <iostream>
 #include <tuple>
 
+#include "base/compensated_sum.h"
 #include "convert/gather.h"
 #include "frana_commands.h"
 #include "frana_run_state.h"
 #include "io/gdal_writer.h"
 #include "io/hdf5_points.h"
-#include "particles/sum.h"
 
 namespace frana {
 namespace {

@@ -14,6 +14,7 @@
 #include "observe/interrupt.h"
 #include "scene/build_scene.h"
 #include "stress/campaign.h"
+#include "stress/draw.h"
 
 namespace frana {
 namespace {
@@ -29,6 +30,7 @@ int watch_case(const StressOptions& options) {
     Claims claims;
     claims.rests = options.rests;
     claims.threads = options.same_threads;
+    claims.resumes = options.same_resumed;
     claims.mirror = mirror_of(options.mirror);
     const Scene scene = build_scene(CaseFile::read(options.case_file), GdalReader());
     const Verdict verdict = examine(scene, claims, options.steps);
@@ -54,23 +56,23 @@ int map_cfl(const StressOptions& options) {
 
 /// Saves what was shrunk, and says what became of it.
 void report(const Failure& failure, const StressOptions& options) {
-    fmt::print(stderr, "scene {}: {}\n", failure.n, text_of(failure.found));
+    fmt::print(stderr, "{} scene {}: {}\n", word_of(failure.model), failure.n, text_of(failure.found));
     const Shrunk& shrunk = failure.shrunk;
     if (shrunk.trials == 0 || !shrunk.verdict.broken) return;
-    const std::filesystem::path folder = options.out / fmt::format("stress-{}-{}", options.seed, failure.n);
+    const std::filesystem::path folder = options.out / fmt::format("stress-{}-{}-{}", word_of(failure.model), options.seed, failure.n);
     save_draft(folder, shrunk.draft, *shrunk.verdict.broken);
     fmt::print(stderr, "  shrunk in {} trials to {} particles, {} steps: frana stress --case {}/case.toml {}\n",
                shrunk.trials, shrunk.verdict.particles, shrunk.draft.steps, folder.string(),
                replay_options(shrunk.draft));
 }
 
-/// Failures by seed, scene and invariant, a line each; # begins a comment.
+/// Failures by seed, model, scene and invariant, a line each; # begins a comment.
 std::set<std::string> known_failures(const std::filesystem::path& file) {
     std::set<std::string> known;
     if (file.empty()) return known;
     std::ifstream in(file);
     if (!in)
-        throw UserError(fmt::format("{}: cannot be read; expected lines of SEED SCENE INVARIANT; give another --known",
+        throw UserError(fmt::format("{}: cannot be read; expected lines of SEED MODEL SCENE INVARIANT; give another --known",
                                     file.string()));
     for (std::string line; std::getline(in, line);)
         if (!line.empty() && line[0] != '#') known.insert(line);
@@ -82,12 +84,15 @@ Index new_failures(const Campaign& campaign, const StressOptions& options) {
     std::set<std::string> known = known_failures(options.known);
     Index found = 0;
     for (const Failure& failure : campaign.failures)
-        if (known.erase(fmt::format("{} {} {}", options.seed, failure.n, failure.found.invariant)) == 0) ++found;
+        if (known.erase(fmt::format("{} {} {} {}", options.seed, word_of(failure.model), failure.n,
+                                    failure.found.invariant)) == 0) ++found;
     for (const std::string& mended : known) {
         unsigned long long seed = 0, n = 0;
-        std::istringstream(mended) >> seed >> n;
+        std::string model;
+        std::istringstream(mended) >> seed >> model >> n;
         const bool ran = seed == campaign.plan.seed && n >= campaign.plan.first &&
-                         n < campaign.plan.first + static_cast<unsigned long long>(campaign.scenes);
+                         n < campaign.plan.first + static_cast<unsigned long long>(campaign.scenes) &&
+                         model == word_of(model_of(campaign.plan.models, seed, n));
         if (ran) fmt::print(stderr, "{}: {} does not fail any more; take the line out\n", options.known.string(), mended);
     }
     return found;
@@ -99,6 +104,7 @@ int stress_command(const StressOptions& options) {
     if (!options.case_file.empty()) return watch_case(options);
     if (options.cfl_map) return map_cfl(options);
     Plan plan;
+    plan.models = models_of(options.models);
     plan.seed = static_cast<std::uint64_t>(options.seed);
     plan.first = static_cast<std::uint64_t>(options.first);
     plan.scenes = options.scenes;

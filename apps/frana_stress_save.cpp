@@ -18,15 +18,20 @@ std::string replay_options(const Draft& draft) {
     if (draft.claims.rests) text += " --rests";
     if (draft.claims.mirror != Mirror::none) text += fmt::format(" --mirror {}", word_of(draft.claims.mirror));
     if (draft.claims.threads) text += " --same-threads";
+    if (draft.claims.resumes) text += " --same-resumed";
     return text;
 }
 
 void save_draft(const std::filesystem::path& folder, const Draft& draft, const Violation& broken) {
     std::filesystem::create_directories(folder);
     for (const auto& [name, raster] : draft.rasters)
-        write_geotiff(folder / name, raster, name[0] == 'v' ? "m/s" : "m", name.substr(0, name.find('.')));
+        write_geotiff(folder / name, raster, name == "dem.tif" || name == "depth.tif" ? "m" : "m/s",
+                      name.substr(0, name.find('.')));
     Draft as_run = draft;  // what `frana run` is to reach: a little beyond the step that fails
-    as_run.keys["time.end"] = toml_number(broken.time > 0.0 ? 1.1 * broken.time : 1.0);
+    double end = broken.time > 0.0 ? broken.time : 1.0;
+    for (const auto& [key, value] : draft.keys)  // a case with a stage that begins after its end would be refused
+        if (key.rfind("stage#", 0) == 0 && key.substr(key.find('.')) == ".until") end = std::max(end, std::stod(value));
+    as_run.keys["time.end"] = toml_number(1.1 * end);
     as_run.keys["output.every"] = as_run.keys["time.end"];
     const std::string why = fmt::format("# {}, step {}: {}\n# Watched by: frana stress --case case.toml {}\n",
                                         broken.invariant, broken.step, broken.text, replay_options(draft));

@@ -6,7 +6,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "memory_archive.h"
+#include "observe/memory_archive.h"
 #include "stages/structured_run.h"
 #include "verify/structured.h"
 

@@ -6,7 +6,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "memory_archive.h"
+#include "observe/memory_archive.h"
 #include "stages/staged_run.h"
 
 using namespace frana;

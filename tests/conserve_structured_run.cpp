@@ -3,8 +3,8 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "memory_archive.h"
 #include "observe/budget.h"
+#include "observe/memory_archive.h"
 #include "observe/run_loop.h"
 #include "stages/structured_run.h"
 

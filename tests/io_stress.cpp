@@ -25,39 +25,46 @@ bool same_values(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-TEST_CASE("A saved draft is read back as the same scene to the last bit", "[stress][io]") {
-    Index with_velocity = 0, with_exits = 0;
-    for (std::uint64_t n = 0; n < 60; ++n) {
-        const FreshFolder folder;
-        const Draft draft = draw(4, n);
-        save_draft(folder.path(), draft, {"speed", 2.0, 7, 0.5, "as found"});
-        CAPTURE(n, toml_of(draft));
-        const Scene drawn = scene_of(draft);
-        const Scene read = build_scene(CaseFile::read(folder.path() / "case.toml"), GdalReader());
-        REQUIRE(read.bed.geometry == drawn.bed.geometry);
-        REQUIRE(same_values(read.bed.values, drawn.bed.values));
-        const Seeds &a = read.particles, &b = drawn.particles;
-        REQUIRE(a.x == b.x);
-        REQUIRE(a.y == b.y);
-        REQUIRE(a.vx == b.vx);
-        REQUIRE(a.vy == b.vy);
-        REQUIRE(a.volume == b.volume);
-        REQUIRE(a.depth == b.depth);
-        REQUIRE(read.bed_law.index() == drawn.bed_law.index());
-        REQUIRE(read.scheme.cfl == drawn.scheme.cfl);
-        with_velocity += draft.rasters.count("vx.tif");
-        for (const double z : drawn.bed.values) with_exits += std::isnan(z);
-    }
+TEST_CASE("A saved draft of any model is read back as the same scene to the last bit", "[stress][io]") {
+    Index with_velocity = 0, with_exits = 0, with_rain = 0;
+    for (const Model model : all_models())
+        for (std::uint64_t n = 0; n < (model == Model::depth_averaged ? 60u : 15u); ++n) {
+            const FreshFolder folder;
+            const Draft draft = draw(model, 4, n);
+            save_draft(folder.path(), draft, {"speed", 2.0, 7, 0.5, "as found"});
+            CAPTURE(n, toml_of(draft));
+            const Scene drawn = scene_of(draft);
+            const Scene read = build_scene(CaseFile::read(folder.path() / "case.toml"), GdalReader());
+            REQUIRE(read.bed.geometry == drawn.bed.geometry);
+            REQUIRE(same_values(read.bed.values, drawn.bed.values));
+            const Seeds &a = read.particles, &b = drawn.particles;
+            REQUIRE(a.x == b.x);
+            REQUIRE(a.y == b.y);
+            REQUIRE(a.vx == b.vx);
+            REQUIRE(a.vy == b.vy);
+            REQUIRE(a.volume == b.volume);
+            REQUIRE(a.depth == b.depth);
+            REQUIRE(read.bed_law.index() == drawn.bed_law.index());
+            REQUIRE(read.scheme.cfl == drawn.scheme.cfl);
+            REQUIRE(read.solid.has_value() == drawn.solid.has_value());
+            if (read.solid) REQUIRE(read.solid->window == drawn.solid->window);
+            REQUIRE(read.water.has_value() == drawn.water.has_value());
+            if (read.water) REQUIRE(same_values(read.water->rain.values, drawn.water->rain.values));
+            with_rain += read.water && !read.water->rain.values.empty();
+            with_velocity += draft.rasters.count("vx.tif");
+            for (const double z : drawn.bed.values) with_exits += std::isnan(z);
+        }
     CHECK(with_velocity > 0);
     CHECK(with_exits > 0);
+    CHECK(with_rain > 0);
 }
 
 TEST_CASE("A saved case says how it is watched", "[stress][io]") {
     const FreshFolder folder;
     Draft draft = draw(4, 0);
-    draft.claims = {true, Mirror::diagonal, true};
+    draft.claims = {true, Mirror::diagonal, true, true};
     draft.steps = 9;
-    CHECK(replay_options(draft) == "--steps 9 --rests --mirror diagonal --same-threads");
+    CHECK(replay_options(draft) == "--steps 9 --rests --mirror diagonal --same-threads --same-resumed");
     save_draft(folder.path(), draft, {"rest", 2.0, 7, 0.5, "moved"});
     const std::string text = text_of(folder.path() / "case.toml");
     CHECK(text.find("# rest, step 7: moved\n") == 0);
@@ -77,6 +84,25 @@ TEST_CASE("frana stress runs scenes, counts them and writes JSON", "[stress][io]
     CHECK(json["steps"] > 0);
     CHECK(json["worst"].size() > 0);
     CHECK((json["failures"].empty() == (outcome.code == 0)));
+}
+
+TEST_CASE("frana stress draws the models that it is told, and prints the mix", "[stress][io]") {
+    const FreshFolder folder;
+    const Outcome outcome =
+        call_frana(folder.path(), "stress --model water,staged --scenes 4 --seed 12 --seconds 1e6 --shrunk 0 --json s.json");
+    CHECK(outcome.out.find("4 run") != std::string::npos);
+    const auto json = nlohmann::json::parse(text_of(folder.path() / "s.json"));
+    Index scenes = 0;
+    for (const auto& part : json["mix"]) {
+        const std::string model = part["model"];
+        CHECK((model == "water" || model == "staged"));
+        CHECK(outcome.out.find("\n" + model) != std::string::npos);
+        scenes += part["scenes"].get<Index>();
+    }
+    CHECK(scenes == 4);
+    const Outcome wrong = call_frana(folder.path(), "stress --model ice");
+    CHECK(wrong.code == 2);
+    CHECK(wrong.err.find("--model: found \"ice\"; expected all, or some of depth_averaged") != std::string::npos);
 }
 
 TEST_CASE("frana stress --case watches a case, and sees a claim that does not hold", "[stress][io]") {

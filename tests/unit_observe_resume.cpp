@@ -5,10 +5,10 @@
 #include "catch.h"
 #include "fake_simulation.h"
 #include "fresh_folder.h"
-#include "memory_archive.h"
 #include "observe/history.h"
 #include "observe/insitu.h"
 #include "observe/insitu_tables.h"
+#include "observe/memory_archive.h"
 #include "observe/run_loop.h"
 
 using namespace frana;

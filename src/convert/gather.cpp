@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/compensated_sum.h"
 #include "particles/bed_points.h"
-#include "particles/sum.h"
 
 namespace frana {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "particles/sum.h"
+#include "base/compensated_sum.h"
 
 namespace frana {
 

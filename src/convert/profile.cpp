@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "particles/sum.h"
+#include "base/compensated_sum.h"
 
 namespace frana {
 

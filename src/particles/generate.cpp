@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compensated_sum.h"
 #include "base/error.h"
 #include "particles/lattice.h"
 #include "particles/material.h"
 #include "particles/scatter.h"
-#include "particles/sum.h"
 
 namespace frana {
 

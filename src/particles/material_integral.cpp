@@ -4,8 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include "base/compensated_sum.h"
 #include "particles/material.h"
-#include "particles/sum.h"
 
 namespace frana {
 

@@ -20,6 +20,8 @@ public:
     std::vector<PhaseTime> timings() const override;
     void keep(Archive& archive) override;
 
+    const DepthAveraged& columns() const { return *columns_; }
+
 private:
     void look();
 

@@ -14,7 +14,12 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void note(const Verdict& verdict, std::uint64_t n, Campaign& campaign) {
+void note(const Verdict& verdict, Model model, std::uint64_t n, Campaign& campaign) {
+    Part& part = campaign.mix[model];
+    part.scenes += 1, part.refused += verdict.refused, part.failed += verdict.broken.has_value();
+    part.steps += verdict.steps;
+    campaign.scenes += 1, campaign.refused += verdict.refused, campaign.parted += verdict.parted;
+    if (verdict.refused) campaign.refusals[verdict.text] += 1;
     campaign.steps += verdict.steps;
     campaign.particle_steps += static_cast<double>(verdict.steps) * static_cast<double>(verdict.particles);
     if (verdict.broken) {
@@ -22,8 +27,8 @@ void note(const Verdict& verdict, std::uint64_t n, Campaign& campaign) {
         return;
     }
     for (const auto& [invariant, value] : verdict.worst) {
-        const auto [worst, is_new] = campaign.worst.try_emplace(invariant, Worst{value, n});
-        if (!is_new && value > worst->second.value) worst->second = {value, n};
+        const auto [worst, is_new] = campaign.worst.try_emplace(invariant, Worst{value, model, n});
+        if (!is_new && value > worst->second.value) worst->second = {value, model, n};
     }
 }
 
@@ -40,9 +45,9 @@ std::string json_text(const std::string& text) {
 
 std::string json_of(const Failure& failure) {
     const Violation& v = failure.found;
-    std::string text = fmt::format("{{\"scene\": {}, \"invariant\": {}, \"value\": {}, \"step\": {}, \"time\": {}, "
-                                   "\"text\": {}",
-                                   failure.n, json_text(v.invariant), json_number(v.value), v.step, json_number(v.time),
+    std::string text = fmt::format("{{\"model\": \"{}\", \"scene\": {}, \"invariant\": {}, \"value\": {}, \"step\": {}, "
+                                   "\"time\": {}, \"text\": {}",
+                                   word_of(failure.model), failure.n, json_text(v.invariant), json_number(v.value), v.step, json_number(v.time),
                                    json_text(v.text));
     if (failure.shrunk.trials > 0)
         text += fmt::format(", \"shrunk_trials\": {}, \"shrunk_steps\": {}, \"shrunk_particles\": {}",
@@ -59,15 +64,14 @@ Campaign run(const Plan& plan, const std::function<void(const Failure&)>& see, c
     for (std::uint64_t n = plan.first; campaign.seconds < plan.seconds; ++n) {
         if ((plan.scenes > 0 && campaign.scenes >= plan.scenes) || (stop && stop())) break;
         const auto start = std::chrono::steady_clock::now();
-        const Draft draft = draw(plan.seed, n);
+        const Model model = model_of(plan.models, plan.seed, n);
+        const Draft draft = draw(model, plan.seed, n);
         const Verdict verdict = examine(draft);
-        campaign.seconds += seconds_since(start);
-        campaign.scenes += 1;
-        campaign.refused += verdict.refused;
-        campaign.parted += verdict.parted;
-        note(verdict, n, campaign);
+        const double seconds = seconds_since(start);
+        note(verdict, model, n, campaign);
+        campaign.seconds += seconds, campaign.mix[model].seconds += seconds;
         if (!verdict.broken) continue;
-        Failure failure{n, *verdict.broken, {draft, verdict, 0}};
+        Failure failure{model, n, *verdict.broken, {draft, verdict, 0}};
         if (static_cast<Index>(campaign.failures.size()) < plan.most_shrunk)
             failure.shrunk = shrink(draft, judge, plan.shrink_trials);
         see(failure);
@@ -84,28 +88,40 @@ std::string table_of(const Campaign& c) {
                                    c.plan.seed, c.plan.first, end, c.scenes, c.refused, c.failures.size(), c.steps,
                                    c.particle_steps, c.seconds);
     if (c.parted > 0) text += fmt::format("{} whose mirror images parted by round-off that the flow made grow\n", c.parted);
-    text += fmt::format("{:<10} {:>8} {:>16} {:>8}\n", "invariant", "failed", "worst / allowed", "scene");
+    text += fmt::format("{:<14} {:>8} {:>8} {:>8} {:>8} {:>10}\n", "model", "scenes", "refused", "failed", "steps", "ms a scene");
+    for (const auto& [model, part] : c.mix)
+        text += fmt::format("{:<14} {:>8} {:>8} {:>8} {:>8} {:>10.1f}\n", word_of(model), part.scenes, part.refused, part.failed,
+                            part.steps, 1e3 * part.seconds / static_cast<double>(part.scenes));
+    for (const auto& [what, count] : c.refusals) text += fmt::format("{} refused: {}\n", count, what);
+    text += fmt::format("{:<10} {:>8} {:>16} {:<14} {:>8}\n", "invariant", "failed", "worst / allowed", "  of", "scene");
     for (const std::string& name : invariant_names()) {
         const auto worst = c.worst.find(name);
         const auto broken = c.broken.find(name);
         if (worst == c.worst.end() && broken == c.broken.end()) continue;
         text += fmt::format("{:<10} {:>8} ", name, broken == c.broken.end() ? 0 : broken->second);
         text += worst == c.worst.end() ? std::string(16, ' ') + "\n"
-                                       : fmt::format("{:>16.3g} {:>8}\n", worst->second.value, worst->second.n);
+                                       : fmt::format("{:>16.3g}   {:<14} {:>6}\n", worst->second.value, word_of(worst->second.model),
+                                                     worst->second.n);
     }
     return text;
 }
 
 std::string json_of(const Campaign& c) {
-    std::string worst, failures;
+    std::string worst, failures, mix;
     for (const auto& [name, value] : c.worst)
-        worst += fmt::format("{}{{\"invariant\": {}, \"value\": {}, \"scene\": {}}}", worst.empty() ? "\n  " : ",\n  ",
-                             json_text(name), json_number(value.value), value.n);
+        worst += fmt::format("{}{{\"invariant\": {}, \"value\": {}, \"model\": \"{}\", \"scene\": {}}}",
+                             worst.empty() ? "\n  " : ",\n  ", json_text(name), json_number(value.value),
+                             word_of(value.model), value.n);
+    for (const auto& [model, part] : c.mix)
+        mix += fmt::format("{}{{\"model\": \"{}\", \"scenes\": {}, \"refused\": {}, \"failed\": {}, \"steps\": {}, "
+                           "\"seconds\": {}}}",
+                           mix.empty() ? "\n  " : ",\n  ", word_of(model), part.scenes, part.refused, part.failed, part.steps,
+                           json_number(part.seconds));
     for (const Failure& failure : c.failures) failures += (failures.empty() ? "\n  " : ",\n  ") + json_of(failure);
     return fmt::format("{{\"seed\": {}, \"first\": {}, \"scenes\": {}, \"refused\": {}, \"parted\": {}, \"steps\": {}, "
-                       "\"particle_steps\": {}, \"seconds\": {},\n\"worst\": [{}],\n\"failures\": [{}]}}\n",
+                       "\"particle_steps\": {}, \"seconds\": {},\n\"mix\": [{}],\n\"worst\": [{}],\n\"failures\": [{}]}}\n",
                        c.plan.seed, c.plan.first, c.scenes, c.refused, c.parted, c.steps, json_number(c.particle_steps),
-                       json_number(c.seconds), worst, failures);
+                       json_number(c.seconds), mix, worst, failures);
 }
 
 }  // namespace frana::stress

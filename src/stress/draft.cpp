@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "base/error.h"
 #include "scene/build_scene.h"
@@ -57,7 +58,9 @@ std::string toml_of(const Draft& draft) {
         const std::size_t dot = key.rfind('.');
         if (key.substr(0, dot) != table) {
             table = key.substr(0, dot);
-            text += fmt::format(table == "release" ? "[[{}]]\n" : "[{}]\n", table);
+            const std::size_t number = table.find('#');
+            const bool repeated = table == "release" || number != std::string::npos;
+            text += fmt::format(repeated ? "[[{}]]\n" : "[{}]\n", table.substr(0, number));
         }
         text += fmt::format("{} = {}\n", key.substr(dot + 1), value);
     }
@@ -69,7 +72,7 @@ Scene scene_of(const Draft& draft) {
 }
 
 bool same(const Draft& a, const Draft& b) {
-    if (a.keys != b.keys || a.steps != b.steps || a.rasters.size() != b.rasters.size()) return false;
+    if (a.model != b.model || a.keys != b.keys || a.steps != b.steps || a.rasters.size() != b.rasters.size()) return false;
     for (const auto& [name, raster] : a.rasters) {
         const Raster& other = b.rasters.at(name);
         if (!(raster.geometry == other.geometry)) return false;
@@ -78,6 +81,41 @@ bool same(const Draft& a, const Draft& b) {
                 return false;
     }
     return true;
+}
+
+const std::vector<Model>& all_models() {
+    static const std::vector<Model> models = {Model::depth_averaged, Model::solid_flow, Model::structured,
+                                              Model::water,          Model::mixture,    Model::staged};
+    return models;
+}
+
+const char* word_of(Model model) {
+    switch (model) {
+        case Model::depth_averaged: return "depth_averaged";
+        case Model::solid_flow: return "solid_flow";
+        case Model::structured: return "structured";
+        case Model::water: return "water";
+        case Model::mixture: return "mixture";
+        case Model::staged: return "staged";
+    }
+    throw InternalError("unknown model");
+}
+
+std::vector<Model> models_of(const std::string& words) {
+    if (words == "all") return all_models();
+    std::vector<Model> models;
+    std::istringstream in(words);
+    for (std::string word; std::getline(in, word, ',');) {
+        const std::size_t before = models.size();
+        for (const Model model : all_models())
+            if (word == word_of(model)) models.push_back(model);
+        if (models.size() == before)
+            throw UserError(fmt::format("--model: found \"{}\"; expected all, or some of depth_averaged, solid_flow, "
+                                        "structured, water, mixture, staged with commas between; choose of these",
+                                        word));
+    }
+    if (models.empty()) throw UserError("--model: found no word; expected all, or the models to draw; name one");
+    return models;
 }
 
 const char* word_of(Mirror mirror) {

@@ -9,6 +9,9 @@
 
 namespace frana::stress {
 
+/// What carries the material of a scene.
+enum class Model { depth_averaged, solid_flow, structured, water, mixture, staged };
+
 /// Images of a draft that are the draft itself.
 enum class Mirror { none, x, y, diagonal };
 
@@ -17,12 +20,15 @@ struct Claims {
     bool rests = false;             ///< nothing moves by one bit (a lake: no more than its level asks for)
     Mirror mirror = Mirror::none;   ///< x: west and east change places, y: south and north, diagonal: x and y
     bool threads = false;           ///< one thread and two give the same bits
+    bool resumes = false;           ///< kept half way and taken up again it ends with the same bits
     bool resolved = false;          ///< the grid resolves its depth and bed: linear shapes keep energy too
 };
 
 struct Draft {
-    /// "material.bed.mu" -> "0.4": what a case file says, in TOML. Those of `release` belong to its one release.
+    /// "material.bed.mu" -> "0.4": what a case file says, in TOML. Those of `release` belong to its one release;
+    /// of other tables that come more than once each has a number: "stage#0.model".
     std::map<std::string, std::string> keys;
+    Model model = Model::depth_averaged;  ///< that the keys ask for
     /// By file name, on one grid; values that float32 holds, since that is what a GeoTIFF of ours holds.
     std::map<std::string, Raster> rasters;
     Claims claims;
@@ -43,6 +49,12 @@ Scene scene_of(const Draft& draft);
 
 /// The same keys, steps and rasters, bit for bit.
 bool same(const Draft& a, const Draft& b);
+
+/// All of them, and the word of each on the command line.
+const std::vector<Model>& all_models();
+const char* word_of(Model model);
+/// Those that "all" or a list of words with commas names. Throws UserError for any other word.
+std::vector<Model> models_of(const std::string& words);
 
 const char* word_of(Mirror mirror);
 /// Throws UserError for any other word.

@@ -140,4 +140,47 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
     return draft;
 }
 
+namespace {
+
+/// Numbers of a series of its own: every model draws other scenes from one seed.
+std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) { return Dice(seed ^ (salt * 0x9fb21c651e98df25u)).bits(); }
+
+constexpr std::uint64_t kModel = 1, kBits = 2, kScene = 16;  // salts
+
+void draw_other(Dice& dice, Draft& draft) {
+    draft.steps = 25 + dice.below(50);
+    switch (draft.model) {
+        case Model::depth_averaged: break;
+        case Model::solid_flow: return draw_solid_flow(dice, draft);
+        case Model::structured: return draw_structured(dice, draft);
+        case Model::water: return draw_water(dice, draft);
+        case Model::mixture: return draw_mixture(dice, draft);
+        case Model::staged: return draw_staged(dice, draft);
+    }
+}
+
+}  // namespace
+
+Draft draw(Model model, std::uint64_t seed, std::uint64_t n) {
+    Dice bits(salted(seed, kBits), n);
+    const bool threads = bits.chance(0.05), resumes = bits.chance(0.1);
+    if (model == Model::depth_averaged) {
+        Draft draft = draw(seed, n);
+        draft.claims.resumes = resumes;
+        return draft;
+    }
+    Dice dice(salted(seed, kScene + static_cast<std::uint64_t>(model)), n);
+    Draft draft;
+    draft.model = model;
+    draft.claims.threads = threads, draft.claims.resumes = resumes;  // with threads the terrain is wide
+    draw_other(dice, draft);
+    draft.keys["time.end"] = "1.0e6";
+    draft.keys["output.formats"] = "[\"vtk\"]";
+    return draft;
+}
+
+Model model_of(const std::vector<Model>& models, std::uint64_t seed, std::uint64_t n) {
+    return models[static_cast<std::size_t>(Dice(salted(seed, kModel), n).below(static_cast<Index>(models.size())))];
+}
+
 }  // namespace frana::stress

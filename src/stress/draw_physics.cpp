@@ -8,30 +8,7 @@
 namespace frana::stress {
 namespace {
 
-/// A key whose value is a word.
-void say(Draft& draft, const std::string& key, const std::string& word) { draft.keys[key] = "\"" + word + "\""; }
-void say(Draft& draft, const std::string& key, double number) { draft.keys[key] = toml_number(number); }
-
 double draw_mu(Dice& dice) { return dice.one_of({0.0, 1e-6, 0.1, 0.4, 1.0, 3.0, 10.0, dice.between(0.0, 1.0)}); }
-
-void draw_bed_law(Dice& dice, Draft& draft) {
-    const std::string law = dice.one_of({"none", "coulomb", "voellmy", "voellmy", "manning", "bingham", "pouliquen"});
-    say(draft, "material.bed.law", law);
-    if (law != "none" && law != "pouliquen") say(draft, "material.bed.mu", draw_mu(dice));
-    if (law == "voellmy") say(draft, "material.bed.xi", dice.decades(1e-3, 1e7));
-    if (law == "manning") say(draft, "material.bed.manning_n", dice.decades(1e-4, 1.0));
-    if (law == "bingham") {
-        say(draft, "material.bed.viscosity", dice.decades(1e-4, 1e6));
-        say(draft, "material.bed.yield_stress", dice.chance(0.2) ? 0.0 : dice.decades(1e-4, 1e6));
-    }
-    if (law == "pouliquen") {
-        const double slow = dice.decades(0.01, 3.0);
-        say(draft, "material.bed.mu_s", slow);
-        say(draft, "material.bed.mu_2", slow * dice.decades(1.001, 3.0));
-        say(draft, "material.bed.i0", dice.decades(1e-3, 10.0));
-        say(draft, "material.bed.grain_diameter", dice.decades(1e-5, 1.0));
-    }
-}
 
 /// Some keys of the scheme off their defaults.
 void draw_parts(Dice& dice, Draft& draft) {
@@ -55,6 +32,28 @@ void draw_parts(Dice& dice, Draft& draft) {
 std::string toml_number(double value) {
     const std::string text = fmt::format("{}", value);
     return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+void say(Draft& draft, const std::string& key, const std::string& word) { draft.keys[key] = "\"" + word + "\""; }
+void say(Draft& draft, const std::string& key, double number) { draft.keys[key] = toml_number(number); }
+
+void draw_bed_law(Dice& dice, Draft& draft) {
+    const std::string law = dice.one_of({"none", "coulomb", "voellmy", "voellmy", "manning", "bingham", "pouliquen"});
+    say(draft, "material.bed.law", law);
+    if (law != "none" && law != "pouliquen") say(draft, "material.bed.mu", draw_mu(dice));
+    if (law == "voellmy") say(draft, "material.bed.xi", dice.decades(1e-3, 1e7));
+    if (law == "manning") say(draft, "material.bed.manning_n", dice.decades(1e-4, 1.0));
+    if (law == "bingham") {
+        say(draft, "material.bed.viscosity", dice.decades(1e-4, 1e6));
+        say(draft, "material.bed.yield_stress", dice.chance(0.2) ? 0.0 : dice.decades(1e-4, 1e6));
+    }
+    if (law == "pouliquen") {
+        const double slow = dice.decades(0.01, 3.0);
+        say(draft, "material.bed.mu_s", slow);
+        say(draft, "material.bed.mu_2", slow * dice.decades(1.001, 3.0));
+        say(draft, "material.bed.i0", dice.decades(1e-3, 10.0));
+        say(draft, "material.bed.grain_diameter", dice.decades(1e-5, 1.0));
+    }
 }
 
 void draw_material(Dice& dice, Draft& draft) {

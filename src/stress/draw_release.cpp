@@ -119,4 +119,42 @@ void draw_release(Dice& dice, Draft& draft) {
     draw_particles(dice, draft, pixels);
 }
 
+void draw_release(Dice& dice, Draft& draft, const ReleaseKind& kind) {
+    const GridGeometry& grid = draft.dem().geometry;
+    Raster depth = empty_like(draft.dem());
+    const auto inside = draw_place(dice, grid);
+    const double usual = dice.decades(kind.least, kind.most), other = dice.decades(kind.least, kind.most);
+    const Index pattern = dice.below(4);
+    Index pixels = 0;
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 0; i < grid.nx; ++i) {
+            if (!inside[static_cast<std::size_t>(j * grid.nx + i)] || pixels == kind.pixels) continue;
+            const bool differs = (pattern == 0 && i < grid.nx / 2) || (pattern == 1 && dice.chance(0.2));
+            depth.at(i, j) = single(grid.cell * (differs ? other : usual));
+            ++pixels;
+        }
+    draft.rasters["depth.tif"] = depth;
+    draft.keys["release.depth"] = "\"depth.tif\"";
+    if (dice.chance(0.5)) draw_velocity(dice, draft, grid.cell);
+    draw_particles(dice, draft, pixels);
+}
+
+Scales scales_of(const Draft& draft) {
+    Scales of{0.0, 0.0, 0.0, 0.0, 9.81};
+    const Raster& depth = draft.rasters.at("depth.tif");
+    const double area = depth.geometry.cell * depth.geometry.cell;
+    for (const double h : depth.values)
+        if (h > 0.0) of.deepest = std::max(of.deepest, h), of.volume += area * h;
+    if (draft.has("terrain.gravity")) of.gravity = std::stod(draft.keys.at("terrain.gravity"));
+    for (const char* name : {"vx.tif", "vy.tif"})
+        if (draft.rasters.count(name))
+            for (const double v : draft.rasters.at(name).values) of.speed = std::max(of.speed, std::abs(v));
+    if (draft.has("release.velocity") && !draft.rasters.count("vx.tif")) {
+        const std::string& text = draft.keys.at("release.velocity");  // "[vx, vy]"
+        of.speed = std::max(std::abs(std::stod(text.substr(1))), std::abs(std::stod(text.substr(text.find(',') + 1))));
+    }
+    of.wave = of.speed + std::sqrt(of.gravity * of.deepest);
+    return of;
+}
+
 }  // namespace frana::stress

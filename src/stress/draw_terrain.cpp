@@ -113,4 +113,22 @@ void draw_terrain(Dice& dice, Draft& draft) {
     draft.keys["boundary.sides"] = dice.chance(0.4) ? "\"wall\"" : "\"open\"";
 }
 
+void flatten(Draft& draft, double rise) {
+    Raster& dem = draft.rasters["dem.tif"];
+    const GridGeometry& g = dem.geometry;
+    double largest = 0.0;
+    for (Index j = 0; j + 1 < g.ny; ++j)
+        for (Index i = 0; i + 1 < g.nx; ++i)
+            largest = std::max({largest, std::abs(dem.at(i + 1, j) - dem.at(i, j)), std::abs(dem.at(i, j + 1) - dem.at(i, j))});
+    if (largest <= rise * g.cell) return;
+    const double low = *std::min_element(dem.values.begin(), dem.values.end());
+    for (double& z : dem.values) z = single(low + (z - low) * rise * g.cell / largest);
+}
+
+void draw_ground(Dice& dice, Draft& draft) {
+    draw_terrain(dice, draft);
+    const double rise = dice.one_of({0.2, 0.5, 0.8, 1.2, 2.0, 1e9});
+    flatten(draft, rise);
+}
+
 }  // namespace frana::stress

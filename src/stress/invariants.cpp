@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/compensated_sum.h"
 #include "observe/budget.h"
-#include "particles/sum.h"
 
 namespace frana::stress {
 namespace {
@@ -15,9 +15,9 @@ namespace {
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-double sum_of(const Column& column) {
+double sum_of(const std::vector<double>& values) {
     CompensatedSum sum;
-    for (const double value : column) sum.add(value);
+    for (const double value : values) sum.add(value);
     return sum.value();
 }
 
@@ -25,66 +25,16 @@ std::vector<double> numbers_of(const Status& s) {
     return {s.time,       s.dt,           s.mass,        s.mass_left,   s.momentum[0],      s.momentum[1],
             s.impulse[0], s.impulse[1],   s.kinetic,     s.potential,   s.momentum_left[0], s.momentum_left[1],
             s.dissipated, s.energy_left,  s.max_depth,   s.max_speed,   s.p2g_mass_error,   s.p2g_momentum_error,
-            s.mean_speed, s.covered_area, s.front};
-}
-
-/// What the bed's curvature is against the scheme's steps and the flow's depth; zero on gentle terrain, which has none.
-struct Bends {
-    double unresolved = 0.0;  ///< largest change of slope from node to node that the Hessian does not account for [1]
-    double sharpest = 0.0;    ///< largest entry of the Hessian [1/m]
-};
-
-Bends bends_of(const Flow& flow) {
-    Bends worst;
-    if (!flow.steep) return worst;
-    const bool bent = flow.bed.hxx.count() > 0;
-    const Index up = flow.grid.stride();
-    for (Index j = 0; j < flow.grid.ny(); ++j)
-        for (Index i = 0; i < flow.grid.nx(); ++i) {
-            const Index k = flow.grid.at(i, j);
-            const auto look = [&](Index step, double hessian) {
-                const double* z = flow.bed.z.data() + k;
-                const double bend = (z[step] - 2.0 * z[0] + z[-step]) / flow.cell;
-                worst.unresolved = std::max(worst.unresolved, std::abs(bend - hessian * flow.cell));
-                worst.sharpest = std::max(worst.sharpest, std::abs(hessian));
-            };
-            look(1, bent ? flow.bed.hxx[k] : 0.0);
-            look(up, bent ? flow.bed.hyy[k] : 0.0);
-        }
-    return worst;
-}
-
-/// What the depth on the nodes could set free [J].
-double depth_energy(const Flow& flow) {
-    CompensatedSum sum;
-    for (const Index tile : flow.active.work)
-        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
-            const double h = flow.nodes.depth[k];
-            sum.add(0.5 * flow.share(i, j) * flow.density * flow.area * flow.gravity * h * h);
-        });
-    return sum.value();
-}
-
-/// Largest change of velocity across a cell at a point [m/s].
-double largest_change(const Columns& points, double cell) {
-    double largest2 = 0.0;
-    points.with_real([&](auto real) {
-        const auto& held = points.carried<decltype(real)>();
-        for (Index p = 0; p < points.count(); ++p) {
-            const double xx = held.cxx[p], xy = held.cxy[p], yx = held.cyx[p], yy = held.cyy[p];
-            largest2 = std::max(largest2, xx * xx + xy * xy + yx * yx + yy * yy);
-        }
-    });
-    return cell * std::sqrt(largest2);
+            s.mean_speed, s.covered_area, s.front,       s.stored};
 }
 
 /// Mass of points whose sub-points an open side may hold back [kg]: they lie within 3/4 of a cell (solver/sub_points.h).
-double beside_open_sides(const Facts& facts, const Columns& points) {
+double beside_open_sides(const Facts& facts, const PointStates& points) {
     if (facts.walls) return 0.0;
     constexpr double kReach = 0.75;
     const double x_max = static_cast<double>(facts.nodes_x - 1), y_max = static_cast<double>(facts.nodes_y - 1);
     CompensatedSum sum;
-    for (Index p = 0; p < points.count(); ++p) {
+    for (std::size_t p = 0; p < points.mass.size(); ++p) {
         const double x = points.x[p], y = points.y[p];
         if (std::min({x, y, x_max - x, y_max - y}) < kReach) sum.add(points.mass[p]);
     }
@@ -94,59 +44,15 @@ double beside_open_sides(const Facts& facts, const Columns& points) {
 }  // namespace
 
 const std::vector<std::string>& invariant_names() {
-    static const std::vector<std::string> names = {"finite", "positive", "mass",     "momentum", "energy", "speed",
-                                                   "rest",   "symmetry", "threads", "numerics", "program"};
+    static const std::vector<std::string> names = {"finite", "positive", "mass",   "momentum", "energy",  "speed",
+                                                   "head",   "rest",     "symmetry", "threads", "resume", "numerics", "program"};
     return names;
 }
 
-Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims) {
-    Facts facts;
-    facts.claims = claims;
-    facts.gravity = scene.gravity;
-    facts.walls = flow.walls;
-    facts.steep = flow.steep;
-    facts.cell = flow.cell;
-    facts.nodes_x = flow.grid.nx(), facts.nodes_y = flow.grid.ny();
-    double steepest2 = 0.0;
-    for (Index j = 0; j < flow.grid.ny(); ++j)
-        for (Index i = 0; i < flow.grid.nx(); ++i) {
-            const Index k = flow.grid.at(i, j);
-            const double bx = flow.bed.slope_x[k], by = flow.bed.slope_y[k];
-            steepest2 = std::max(steepest2, bx * bx + by * by);
-            for (const Index step : {Index{1}, flow.grid.stride()}) {
-                const double* z = flow.bed.z.data() + k;
-                facts.one_cell_drop = std::max(facts.one_cell_drop, std::abs(z[step] - z[0]));
-                facts.one_cell_bend = std::max(facts.one_cell_bend, std::abs(z[step] - 2.0 * z[0] + z[-step]));
-            }
-        }
-    for (Index p = 0; p < scene.particles.count(); ++p) {
-        const double depth = scene.particles.depth[p], mass = scene.density * scene.particles.volume[p];
-        facts.release_depth = std::max(facts.release_depth, depth);
-        facts.release_energy += 0.5 * mass * scene.gravity * depth;
-    }
-    if (scene.still_surface) {
-        facts.lake = true;
-        facts.level_error = off_level(flow, *scene.still_surface);
-        facts.level_round_off = 16.0 * kEps * (std::abs(*scene.still_surface) + facts.release_depth);
-    }
-    constexpr double kSmooth = 0.02, kThin = 0.1;  // slope a cell; depth over radius of curvature
-    const Bends bends = bends_of(flow);
-    facts.energy_law = bends.unresolved < kSmooth && bends.sharpest * facts.release_depth < kThin &&
-                       scene.terrain != TerrainModel::linearised && !scene.scheme.paper_pressure;
-    const Transfer transfer = scene.scheme.transfer;
-    facts.affine = transfer == Transfer::tpic || transfer == Transfer::apic;
-    facts.turn = bends.sharpest * flow.cell;
-    facts.linear = scene.scheme.shape == Shape::linear;
-    facts.carried_depth = scene.scheme.paper_pressure;
-    facts.hidden_energy = std::max(0.0, facts.release_energy - depth_energy(flow));
-    if (!facts.energy_law && facts.steep) facts.stretch = std::sqrt(1.0 + steepest2);
-    if (facts.steep) facts.steepest = std::sqrt(steepest2);
-    return facts;
-}
-
 Watch::Watch(const Facts& facts, const Snapshot& start) : facts_(facts), start_(start) {
-    mass_ = sum_of(start.points.mass);
-    highest_ = -kInfinite, lowest_ = kInfinite;
+    mass_ = facts.all_in_points ? sum_of(start.points.mass) : start.now.mass;
+    most_mass_ = mass_;
+    highest_ = facts.highest_rain, lowest_ = kInfinite;
     at_hand_ = start.now.kinetic + facts.release_energy;
     deepest_ = facts.release_depth;
     for (const NodeState& node : start.nodes)
@@ -164,11 +70,15 @@ void Watch::note_extremes(const Snapshot& state) {
     }
     if (facts_.carried_depth)
         for (const double depth : state.points.depth) deepest_ = std::max(deepest_, depth);
-    if (facts_.affine) change_ = std::max(change_, largest_change(state.points, facts_.cell));
+    for (const double change : state.points.change)
+        if (facts_.affine) change_ = std::max(change_, change);
+    for (const double speed : state.points.speed) fastest_ = std::max(fastest_, speed);
+    most_mass_ = std::max(most_mass_, state.now.mass);
     fastest_ = std::max({fastest_, state.max_speed, state.between.max_speed});
     turned_over_ = std::max({turned_over_, state.now.kinetic, state.now.dissipated - start_.now.dissipated,
                              std::abs(state.now.potential - start_.now.potential)});
     points_ = std::max(points_, state.points.count());
+    if (!facts_.all_in_points) most_nodes_ = std::max(most_nodes_, static_cast<Index>(state.nodes.size()));
 }
 
 std::optional<Violation> Watch::judged(const char* invariant, double value, double allowed, const Snapshot& state,
@@ -185,7 +95,7 @@ std::optional<Violation> Watch::see(const Snapshot& state) {
     if (auto broken = finite(state)) return broken;  // the others would compare with what is no number
     note_extremes(state);
     std::optional<Violation> first;
-    for (const auto check : {&Watch::positive, &Watch::mass, &Watch::momentum, &Watch::energy, &Watch::speed,
+    for (const auto check : {&Watch::positive, &Watch::mass, &Watch::momentum, &Watch::energy, &Watch::speed, &Watch::head,
                              &Watch::rest, &Watch::symmetry}) {
         auto broken = (this->*check)(state);
         if (!first) first = std::move(broken);
@@ -194,11 +104,12 @@ std::optional<Violation> Watch::see(const Snapshot& state) {
 }
 
 std::optional<Violation> Watch::finite(const Snapshot& state) {
-    Index bad = 0;
+    Index bad = state.not_finite;
     const auto look = [&](double value) { bad += !std::isfinite(value); };
-    state.points.each([&](const auto& column) {
-        for (const double value : column) look(value);
-    });
+    const PointStates& points = state.points;
+    for (const auto* column : {&points.x, &points.y, &points.z, &points.vx, &points.vy, &points.speed, &points.mass,
+                               &points.depth, &points.change})
+        for (const double value : *column) look(value);
     for (const NodeState& node : state.nodes)
         for (const double value : {node.depth, node.surface, node.vx, node.vy, node.speed}) look(value);
     for (const Status* status : {&state.between, &state.now})
@@ -215,15 +126,20 @@ std::optional<Violation> Watch::positive(const Snapshot& state) {
 }
 
 std::optional<Violation> Watch::mass(const Snapshot& state) {
-    const double error = std::abs(sum_of(state.points.mass) + state.between.mass_left - mass_);
-    const double allowed = 0.5 * kEps * mass_ * static_cast<double>(points_ + state.between.step);
+    const double present = facts_.all_in_points ? sum_of(state.points.mass) : state.between.mass;
+    const double error = std::abs(present + state.between.mass_left - mass_);
+    double share = 0.5 * kEps * static_cast<double>(points_ + state.between.step);
+    if (!facts_.all_in_points) share = std::max(share, kMassShare);
+    const double allowed = share * (most_mass_ + std::abs(state.between.mass_left));
     return judged("mass", error, allowed, state, "mass lost or gained [kg]");
 }
 
 std::optional<Violation> Watch::momentum(const Snapshot& state) {
     // A step rounds each point's velocity some ten times, half of them on the way to the nodes.
-    const double roundings = 16.0 * static_cast<double>(state.between.step + 10) + static_cast<double>(points_);
-    const double allowed = kEps * mass_ * fastest_ * roundings;  // two sums over points, half a unit each time
+    const double roundings = 16.0 * static_cast<double>(state.between.step + 10) + static_cast<double>(points_ + most_nodes_);
+    double speed = fastest_;
+    if (facts_.cancels) speed += facts_.gravity * state.now.time + std::sqrt(facts_.gravity * deepest_);
+    const double allowed = kEps * most_mass_ * speed * roundings;  // two sums over points, half a unit each time
     std::optional<Violation> first;
     for (const auto& [from, to] : {std::pair{&start_.between, &state.between}, std::pair{&start_.now, &state.now}}) {
         const Budget left = budget(*from, *to);
@@ -238,21 +154,22 @@ double Watch::slope_uphill() const { return std::min(facts_.steepest, deepest_ /
 
 std::optional<Violation> Watch::energy(const Snapshot& state) {
     if (!facts_.energy_law || (facts_.linear && !facts_.claims.resolved)) return std::nullopt;
-    if (facts_.turn * facts_.turn > kEnergyShare) return std::nullopt;
+    if (facts_.turn * facts_.turn > kEnergyShare || facts_.virtual_mass) return std::nullopt;
     const Status &first = start_.now, &now = state.now;
     const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
-                          (now.energy_left - first.energy_left);
+                          (now.stored - first.stored) + (now.energy_left - first.energy_left);
     // What leaves is booked with the bed of the nearest node, half a cell away at most.
     const double held_back = beside_open_sides(facts_, start_.points) + beside_open_sides(facts_, state.points);
-    const double booked = facts_.gravity * (now.mass_left * (facts_.one_cell_drop + deepest_) +
+    const double booked = facts_.gravity * (std::abs(now.mass_left) * (facts_.one_cell_drop + deepest_) +
                                             held_back * facts_.one_cell_drop);
-    const double round_off = kEps * static_cast<double>(points_) * std::abs(first.potential);
+    const double round_off = kEps * static_cast<double>(points_ + most_nodes_) * std::abs(first.potential);
     const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
     const double slope = slope_uphill();
     const double gone = now.energy_left - first.energy_left - now.mass_left * facts_.gravity * lowest_;
     const double uphill = slope * slope / (1.0 + slope * slope) * (now.kinetic + std::max(0.0, gone));
+    const double lifted = facts_.displaces * (facts_.one_cell_drop + (1.0 - facts_.bears) * (highest_ - lowest_));
     const double share = kEnergyShare * (at_hand_ + turned_over_);
-    return judged("energy", growth, facts_.hidden_energy + share + uphill + booked + bends + round_off, state,
+    return judged("energy", growth, facts_.hidden_energy + share + uphill + booked + bends + lifted + round_off, state,
                   "mechanical energy gained beyond the work of gravity [J]");
 }
 
@@ -262,22 +179,36 @@ double Watch::beyond(double bound) const {
 }
 
 std::optional<Violation> Watch::speed(const Snapshot& state) {
+    if (facts_.virtual_mass) return std::nullopt;
     const double uphill = facts_.energy_law ? std::hypot(1.0, slope_uphill()) : 1.0;  // otherwise in `stretch`
-    const double wave = start_.max_speed + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
+    const double wave = start_.fastest() + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
     const double drop = std::max(0.0, highest_ - lowest_);
     const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
     return judged("speed", state.max_speed, (1.0 + beyond(bound)) * bound, state, "speed beyond the energy line [m/s]");
 }
 
+/// The point that is farthest beyond; in units of what its place allows.
+std::optional<Violation> Watch::head(const Snapshot& state) {
+    if (!facts_.space) return std::nullopt;
+    const double wave = (1.0 + kConvergence) * (start_.fastest() + 2.0 * std::sqrt(facts_.gravity * deepest_));
+    double worst = 0.0, found = 0.0, allowed = 1.0;
+    for (std::size_t p = 0; p < state.points.mass.size(); ++p) {
+        if (!state.points.in_space[p]) continue;
+        const double z = state.points.z[p], fall = std::max(0.0, highest_ - z);
+        const double above = z - highest_ + 0.5 * state.points.speed[p] * state.points.speed[p] / facts_.gravity;
+        const double most = 0.5 * wave * wave / facts_.gravity + kEnergyShare * fall + facts_.space_cell;
+        if (above <= worst * most) continue;
+        worst = above / most, found = above, allowed = most;
+    }
+    return judged("head", found, allowed, state, "z + v^2 / 2g of a point in space above the start's surface [m]");
+}
+
 std::optional<Violation> Watch::rest(const Snapshot& state) {
     if (!facts_.claims.rests) return std::nullopt;
-    const Columns &a = start_.points, &b = state.points;
+    const PointStates &a = start_.points, &b = state.points;
     double fastest = 0.0;
-    b.with_real([&](auto real) {
-        const auto& held = b.carried<decltype(real)>();
-        for (const auto* component : {&held.vx, &held.vy})
-            for (const double v : *component) fastest = std::max(fastest, std::abs(v));
-    });
+    for (const auto* component : {&b.vx, &b.vy})
+        for (const double v : *component) fastest = std::max(fastest, std::abs(v));
     if (facts_.lake) {
         const bool level = facts_.level_error <= facts_.level_round_off;
         const double factor = level ? 1.0 : (1.0 + kConvergence) * facts_.stretch * facts_.stretch;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "stress/draft.h"
+#include "stress/facts.h"
 #include "stress/snapshot.h"
 
 namespace frana::stress {
@@ -20,50 +20,22 @@ struct Violation {
 
 const std::vector<std::string>& invariant_names();
 
-/// What of a scene decides on which invariants hold, and how well.
-struct Facts {
-    Claims claims;
-    double gravity = 9.81;       ///< [m/s^2]
-    Index nodes_x = 0, nodes_y = 0;
-    bool walls = false;
-    bool steep = true;
-    /// The model itself keeps V^2/2 + g z along a path: shallow terrain always (speeds along the map); steep terrain
-    /// where the Hessian that the scheme uses bends the path as the slopes do, and the flow is thin against the radius
-    /// of curvature (whose pressure is none of gravity). Elsewhere a path along a bent bed changes its speed along the
-    /// bed, by the factor `stretch` = sqrt(1 + B^2) between level and steepest.
-    bool energy_law = true;
-    double stretch = 1.0;
-    double release_depth = 0.0;  ///< largest of the release; nodes see it averaged over a cell and more [m]
-    double release_energy = 0.0; ///< that its depth alone could set free [J]
-    /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
-    double hidden_energy = 0.0;
-    bool linear = false;         ///< linear shape functions
-    double turn = 0.0;           ///< largest change of the slope across a cell that turns velocities [1]
-    bool affine = false;         ///< points bring the nodes a velocity that changes along the gradient they carry
-    bool carried_depth = false;  ///< pressure is that of the depth which points carry, not of the nodes' (paper preset)
-    double one_cell_drop = 0.0;  ///< largest difference of the bed between neighbouring nodes [m]
-    double cell = 1.0;           ///< [m]
-    double steepest = 0.0;       ///< largest slope of the bed that a velocity follows; none on shallow terrain [1]
-    bool lake = false;
-    double level_error = 0.0;    ///< of a lake: how far its surface is off the level at the start [m]
-    double level_round_off = 0.0; ///< of elevations, depths and their sum in a lake [m]
-    double one_cell_bend = 0.0;  ///< largest second difference of the bed between neighbouring nodes [m]
-};
-Facts facts_of(const Scene& scene, const Flow& flow, const Claims& claims);
-
 /// What differences between mirrored nodes are measured by.
 struct Scale { double depth = 0.0, speed = 0.0; };  ///< [m], [m/s]
 /// Largest difference of mirrored nodes, of depth over the scale's, of momentum over the product of both [1].
 double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const Scale& scale);
 
-/// Watches one run. Bounds (all from the start of the run):
-/// finite: every number of points, nodes and status.
-/// mass: sum of points and what left is the start's, to eps (points + steps) / 2, each sum and merger rounding once.
+/// Watches one run, of any model. Bounds (all from the start of the run):
+/// finite: every number of a frame, of points and nodes that have ground, and of the status.
+/// mass: sum of points and what left is the start's, to eps (points + steps) / 2, each sum and merger rounding once. Where
+///   there is water as well, or two models pass material on, it is the status' sum, to `kMassShare` at least: each cell
+///   of water rounds once a step. Rain and infiltration count as what came and left.
 /// positive: depth > 0 on wet nodes and >= 0 on all, mass > 0 of each point.
 /// momentum: points' momentum changes by the impulse booked, to round-off of mass times the largest speed so far a
 ///   step, and of the two sums over points, each of which rounds once a point. Between walls it holds by definition
-///   (Status::impulse).
-/// energy: K + E_p + E_left <= start + `kEnergyShare` of the energy at hand (start's kinetic, that of its depth) and
+///   for the depth-averaged flow (Status::impulse). Other models book weight and pressure each; where material rests they
+///   cancel, so that what rounds is mass times g t and the speed of waves, and once a node besides.
+/// energy: K + E_p + E_stored + E_left <= start + `kEnergyShare` of the energy at hand (start's kinetic, that of its depth) and
 ///   turned over, where the model has an energy law. Truncation errs by a share of what is there, most at steps of the
 ///   depth that no grid resolves; what is unstable grows by a factor a step and passes any share. The start is that of
 ///   the release: a column of one pixel has on nodes, which average its depth, a fraction of its energy, and the nodes see
@@ -81,7 +53,12 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   and keeps the energy of the horizontal velocity: what the vertical one adds, B^2 / (1 + B^2) of K, is the model's own,
 ///   of what is there and of what left with it. That takes a depth that changes by more than the bed, so B there is at most
 ///   the largest depth over a cell. Not for the paper preset, whose explicit forces act on nodes of vanishing mass.
-/// speed: V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
+///   Structured columns and water bend with no Hessian: their energy is looked at on ground that does not bend. Columns
+///   that go under a lake lift the water over them; a shore within a cell, and cells of water that reach half a cell behind a
+///   wall, do not take that back by up to the displaced weight over the drop of a cell, nor, where only a share of the
+///   pores' pressure bears columns (water.pore_pressure), the rest of it over the whole fall. Points in
+///   space have an energy law anywhere, and none of the excuses above; a run with columns as well has those of columns.
+/// speed (columns and water): V^2 <= (1 + kConvergence)^2 stretch^4 ((v0 + 2 s sqrt(g h))^2 + 2 g drop) with v0 and highest surface of the
 ///   start, h the largest depth (which pushes: of nodes, or what points carry) and drop to the lowest bed so far.
 ///   stretch is 1 where the model has an energy law; elsewhere a bend may turn a speed along the map into `stretch`
 ///   times that along the bed, which carries it up by stretch^2 of the height, to fall again. The energy line's v0^2 + 2
@@ -93,7 +70,12 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   transfer of second order keeps extremes (Godunov 1959), and these bring nodes a cell away from a point its velocity
 ///   and the change across a cell besides. Where the largest such change so far is more than kConvergence of the bound
 ///   it takes its place, up to the bound itself; so it does in the paper preset, which no energy line binds (see `energy`;
-///   seed 888, scene 8148: a column of 138 m whose outer points run 1.48 times as fast as the bound in four steps).
+///   seed 888, scene 8148: a column of 138 m whose outer points run 1.48 times as fast as the bound in four steps). Neither
+///   energy nor speed is looked at with water's virtual mass, which a step takes from an estimate of what drives the water,
+///   so that columns part from it by what that gets wrong (speeds of up to three times the bound have been seen).
+/// head (points in space): z + V^2 / 2g of each point is no higher than the highest surface of the start, and above it the
+///   head of a front, (1 + kConvergence)^2 (v0 + 2 sqrt(g h))^2 / 2g with v0 and h of `speed`, `kEnergyShare` of what the
+///   point has fallen, and a cell of the grid in space, within which the ground's height is not told apart.
 /// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
 ///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
 ///   as high as round-off, 2 sqrt(g e) (Ritter 1892), where the fit met the level; otherwise than one as high as its
@@ -102,11 +84,14 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   besides to the round-off of what cancels: a step's pressure pulls each way by up to sqrt(g h), which rounds some
 ///   sixteen times; where nothing else moves, all that moves is that. Round-off that the flow makes grow is no defect of
 ///   the images: see has_grown() in trial.h, and part().
+/// threads, resume (claimed scenes; trial.cpp): all that a simulation keeps, but for its clock, has the same bits after one
+///   thread and two, and after a run that was kept half way and taken up again.
 class Watch {
 public:
     static constexpr double kEnergyShare = 0.1;
     static constexpr double kConvergence = 0.25;
     static constexpr double kMirrorError = 1e-8;
+    static constexpr double kMassShare = 1e-13;
 
     Watch(const Facts& facts, const Snapshot& start);
     /// The first invariant that the state breaks.
@@ -125,6 +110,7 @@ private:
     std::optional<Violation> momentum(const Snapshot& state);
     std::optional<Violation> energy(const Snapshot& state);
     std::optional<Violation> speed(const Snapshot& state);
+    std::optional<Violation> head(const Snapshot& state);
     std::optional<Violation> rest(const Snapshot& state);
     std::optional<Violation> symmetry(const Snapshot& state);
     void note_extremes(const Snapshot& state);
@@ -138,6 +124,7 @@ private:
     Facts facts_;
     Snapshot start_;
     double mass_ = 0.0;            ///< of the start, compensated [kg]
+    double most_mass_ = 0.0;       ///< at a time so far; rain adds to it [kg]
     double highest_ = 0.0, lowest_ = 0.0;  ///< surface of the start, bed so far [m]
     double deepest_ = 0.0;         ///< so far [m]
     double fastest_ = 0.0;         ///< point or node so far [m/s]
@@ -145,6 +132,7 @@ private:
     double at_hand_ = 0.0;         ///< kinetic energy of the start, and what its depth alone could set free [J]
     double turned_over_ = 0.0;     ///< largest kinetic and dissipated energy and change of potential so far [J]
     Index points_ = 0;             ///< most so far
+    Index most_nodes_ = 0;         ///< with material, where it is not all in points
     std::map<std::string, double> worst_;
 };
 

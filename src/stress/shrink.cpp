@@ -98,7 +98,7 @@ void add_defaults(const Draft& draft, std::vector<Change>& changes) {
         const std::string name = key;
         changes.push_back([name](Draft& d) { d.keys.erase(name); });
     }
-    for (const char* table : {"scheme.", "material.rheology.", "material.bed.", "release.velocity"}) {
+    for (const char* table : {"scheme.", "material.rheology.", "material.bed.", "release.velocity", "barrier#0.", "water."}) {
         const std::string prefix = table;
         if (is_pile(draft) && holds_pile(prefix)) continue;
         changes.push_back([prefix](Draft& d) {  // all of a table, since a law's keys need one another

@@ -1,8 +1,9 @@
 #pragma once
 // All that the invariants look at, copied out of a simulation after a step: plain data, which a test can falsify.
+#include <cstdint>
 #include <vector>
 
-#include "solver/depth_averaged.h"
+#include "solver/simulation.h"
 
 namespace frana::stress {
 
@@ -14,15 +15,34 @@ struct NodeState {
     double vx = 0.0, vy = 0.0, speed = 0.0;        ///< along the map, and along the bed on steep terrain [m/s]
 };
 
+/// Points of any model, equal lengths.
+struct PointStates {
+    std::vector<double> x, y;      ///< from the terrain's first node [cells]
+    std::vector<double> z;         ///< of points in space their height, of columns that of their surface [m]
+    std::vector<double> vx, vy;    ///< along the map; of the depth-averaged flow half a step behind [m/s]
+    std::vector<double> speed;     ///< along the bed or in space [m/s]
+    std::vector<double> mass;      ///< [kg]
+    std::vector<double> depth;     ///< [m]
+    std::vector<double> change;    ///< of the velocity across a cell, of columns; else empty [m/s]
+    std::vector<double> id;
+    std::vector<std::uint8_t> in_space;  ///< 1: a point in space, 0: a column
+
+    Index count() const { return static_cast<Index>(mass.size()); }
+};
+
 struct Snapshot {
     Status between;   ///< as it stands between frames: momentum and impulse half a step behind
     Status now;       ///< as in a frame: all at its time
-    Columns points;
-    double max_speed = 0.0;  ///< of points at `now`, along the bed on steep terrain [m/s]
+    PointStates points;
+    double max_speed = 0.0;  ///< of columns and of water at `now`, along the bed on steep terrain [m/s]
     std::vector<NodeState> nodes;
+    Index not_finite = 0;    ///< numbers of the frame that are not, but for nodes without ground
+
+    /// Of all material, in space too [m/s].
+    double fastest() const;
 };
 
 /// The present state. Looking does not change the run (tests/conserve_runs.cpp).
-Snapshot snapshot_of(DepthAveraged& simulation, bool steep);
+Snapshot snapshot_of(Simulation& simulation, bool steep);
 
 }  // namespace frana::stress

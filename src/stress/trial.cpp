@@ -1,5 +1,6 @@
 #include "stress/trial.h"
 
+#include <fmt/core.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 #include <limits>
 
 #include "base/error.h"
+#include "observe/memory_archive.h"
+#include "solver/depth_averaged.h"
 #include "stress/dice.h"
 
 namespace frana::stress {
@@ -14,28 +17,62 @@ namespace {
 
 constexpr double kNever = 1e300;  ///< [s]
 
-/// Whether the points differ by a bit.
-bool differ(const Columns& a, const Columns& b) {
-    return a.x != b.x || a.y != b.y || a.mass != b.mass || a.vx != b.vx || a.vy != b.vy ||
-           a.narrow.vx != b.narrow.vx || a.narrow.vy != b.narrow.vy || a.id != b.id;
+/// All bits of a state.
+using Bits = std::map<std::string, MemoryArchive::Entry>;
+
+/// The first array that differs, or nothing.
+std::string difference(const Bits& a, const Bits& b) {
+    for (const auto& [name, entry] : a)
+        if (b.count(name) == 0 || !(b.at(name) == entry)) return name;
+    return a.size() == b.size() ? "" : "their number";
 }
 
-/// The points after `steps` steps by `threads` threads.
-Columns run_with(const Scene& scene, int threads, Index steps) {
+void go_on(Simulation& simulation, Index steps) {
+    while (simulation.status().step < steps) simulation.advance(kNever);
+}
+
+/// The state after `steps` steps by `threads` threads.
+Bits run_with(const Scene& scene, int threads, Index steps) {
     const int before = omp_get_max_threads();
     omp_set_num_threads(threads);
-    DepthAveraged simulation(scene);
-    while (simulation.status().step < steps) simulation.advance(kNever);
+    const std::unique_ptr<Simulation> simulation = make_simulation(scene);
+    go_on(*simulation, steps);
     omp_set_num_threads(before);
-    return simulation.flow().columns;
+    return kept_bits(*simulation);
 }
 
-void compare_threads(const Scene& scene, Verdict& verdict) {
-    verdict.worst["threads"] = 0.0;
-    if (!differ(run_with(scene, 1, verdict.steps), run_with(scene, 2, verdict.steps))) return;
-    verdict.worst["threads"] = std::numeric_limits<double>::infinity();
-    verdict.broken = Violation{"threads", verdict.worst["threads"], verdict.steps, verdict.time,
-                               "one thread and two end with different bits"};
+/// The same, kept half way and taken up again.
+Bits run_with_pause(const Scene& scene, Index steps) {
+    MemoryArchive kept;
+    {
+        const std::unique_ptr<Simulation> first = make_simulation(scene);
+        go_on(*first, steps / 2);
+        first->keep(kept);
+    }
+    const std::unique_ptr<Simulation> second = make_simulation(scene, Start::kept);
+    second->keep(kept.rewind());
+    go_on(*second, steps);
+    return kept_bits(*second);
+}
+
+void compare(const char* invariant, const Bits& a, const Bits& b, const char* what, Verdict& verdict) {
+    verdict.worst[invariant] = 0.0;
+    const std::string name = difference(a, b);
+    if (name.empty()) return;
+    verdict.worst[invariant] = std::numeric_limits<double>::infinity();
+    verdict.broken = Violation{invariant, verdict.worst[invariant], verdict.steps, verdict.time,
+                               fmt::format("{}, first in \"{}\"", what, name)};
+}
+
+/// Runs the scene once or twice more, where that is claimed.
+void compare_bits(const Scene& scene, const Claims& claims, Verdict& verdict) {
+    if (!claims.threads && !claims.resumes) return;
+    const Bits bits = run_with(scene, 1, verdict.steps);
+    if (claims.threads)
+        compare("threads", bits, run_with(scene, 2, verdict.steps), "one thread and two end with different bits", verdict);
+    if (claims.resumes && !verdict.broken)
+        compare("resume", bits, run_with_pause(scene, verdict.steps),
+                "a run that was kept half way and taken up again ends with different bits", verdict);
 }
 
 /// kDisturbed times the round-off of the surface over the depth, but no more than what decides a tie (solver/merge.cpp).
@@ -68,11 +105,11 @@ void excuse_growth(const Scene& scene, const Facts& facts, Watch& watch, Verdict
 }
 
 void run(const Scene& scene, const Claims& claims, Index steps, const Falsify& falsify, Verdict& verdict) {
-    DepthAveraged simulation(scene);
-    const Facts facts = facts_of(scene, simulation.flow(), claims);
-    Snapshot state = snapshot_of(simulation, facts.steep);
+    const std::unique_ptr<Simulation> simulation = make_simulation(scene);
+    const Facts facts = facts_of(scene, *simulation, claims);
+    Snapshot state = snapshot_of(*simulation, facts.steep);
     Watch watch(facts, state);
-    const Status& status = simulation.status();
+    const Status& status = simulation->status();
     const auto see = [&] {
         if (falsify) falsify(state);
         verdict.steps = status.step;
@@ -83,9 +120,9 @@ void run(const Scene& scene, const Claims& claims, Index steps, const Falsify& f
         verdict.worst = watch.worst();
     };
     see();
-    while (!verdict.broken && status.step < steps && status.particles > 0 && status.particles < kMostPoints) {
-        simulation.advance(kNever);
-        state = snapshot_of(simulation, facts.steep);
+    while (!verdict.broken && status.step < steps && status.mass > 0.0 && status.particles < kMostPoints) {
+        simulation->advance(kNever);
+        state = snapshot_of(*simulation, facts.steep);
         see();
     }
 }
@@ -110,7 +147,7 @@ Verdict examine(const Scene& scene, const Claims& claims, Index steps, const Fal
     };
     try {
         run(scene, claims, steps, falsify, verdict);
-        if (claims.threads && !verdict.broken) compare_threads(scene, verdict);
+        if (!verdict.broken) compare_bits(scene, claims, verdict);
     } catch (const NumericsError& error) {
         broke("numerics", error.what());
     } catch (const InternalError& error) {

@@ -90,10 +90,13 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     if (water.viscosity.solid_gradient) {
         const double rate = spread_rate(water.viscosity, mixture, whole), reduced = c.mass * u.mass / (c.mass + u.mass);
         const double holds = by.drag * (by.power == 2 ? slip.norm() : 1.0) / reduced;
+        // It is a part of the viscous stress at the bed, which slows the water and does not drive it; and what that stops
+        // within a step slips no more.
+        const double brakes = linear_drag(water.viscosity, whole), length = slip.norm();
         if (rate > holds)
             ++tally.outrun;
-        else
-            u.force = -u.mass * rate * slip;
+        else if (length > 0.0 && brakes * dt <= 1.0)
+            u.force = -u.mass * std::min(rate, brakes * u.velocity.norm() / length) * slip;
     }
     exchange(by, dt, c, u);
     tally.drag += met.mass * along_ground(body.pull[k], driven - c.velocity, 0.5 * (slip + c.velocity - u.velocity));

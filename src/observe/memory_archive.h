@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "catch.h"
+#include "base/error.h"
 #include "observe/archive.h"
 
-/// Saves, and after rewind() loads.
-class MemoryArchive final : public frana::Archive {
+namespace frana {
+
+/// Saves, and after rewind() loads. Throws InternalError when what is asked for is not there, or is there twice.
+class MemoryArchive final : public Archive {
 public:
     struct Entry {
         Kind kind;
@@ -25,18 +27,16 @@ public:
 
 protected:
     std::size_t stored(const std::string& name, Kind kind) override {
-        INFO(name);
-        REQUIRE(entries_.count(name) == 1);
-        REQUIRE(entries_.at(name).kind == kind);
-        return entries_.at(name).bytes.size() / size_of(kind);
+        const auto found = entries_.find(name);
+        expect(found != entries_.end() && found->second.kind == kind, ("a state that was kept has " + name).c_str());
+        return found->second.bytes.size() / size_of(kind);
     }
     void exchange(const std::string& name, Kind kind, void* data, std::size_t count) override {
         const std::size_t bytes = count * size_of(kind);
         if (!loading_) {
-            INFO(name);
-            REQUIRE(entries_.count(name) == 0);
             const char* from = static_cast<const char*>(data);
-            entries_[name] = {kind, std::vector<char>(from, from + bytes)};
+            const bool is_new = entries_.emplace(name, Entry{kind, std::vector<char>(from, from + bytes)}).second;
+            expect(is_new, ("a state has one " + name).c_str());
         } else if (bytes > 0) {
             std::memcpy(data, entries_.at(name).bytes.data(), bytes);
         }
@@ -53,8 +53,10 @@ template <class Simulation>
 std::map<std::string, MemoryArchive::Entry> kept_bits(Simulation& run) {
     MemoryArchive archive;
     run.keep(archive);
-    std::map<std::string, MemoryArchive::Entry> entries = archive.entries();
-    for (auto entry = entries.begin(); entry != entries.end();)
-        entry = entry->first.find("clock/") != std::string::npos ? entries.erase(entry) : std::next(entry);
+    std::map<std::string, MemoryArchive::Entry> entries;
+    for (const auto& [name, entry] : archive.entries())
+        if (name.find("clock/") == std::string::npos) entries.emplace(name, entry);
     return entries;
 }
+
+}  // namespace frana
