@@ -143,6 +143,15 @@ TEST_CASE("Sand is as strong as its angle says in triaxial compression, or where
     CHECK(has(problem_of(two + west + "cone = \"plane_strain\"\n"), "stage.1.cone: found, but"));
 }
 
+TEST_CASE("Cohesion without an angle of friction has no cone, and is refused by its key", "[case]") {
+    const std::string clay = two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\ncohesion = 5000\n";
+    const std::string problem = problem_of(clay + "friction_angle_deg = 0\n");
+    CHECK(has(problem, "stage.1.friction_angle_deg: found 0 with stage.cohesion = 5000 Pa; expected an angle above 0"));
+    CHECK(has(problem, "give an angle"));
+    CHECK(std::get<solid::DruckerPrager>(scene_of(clay + "friction_angle_deg = 1\n").solid->law).tension ==
+          Approx(5000.0 / std::tan(M_PI / 180.0)));
+}
+
 TEST_CASE("Sand keeps its velocities unless it is told not to, fluids do not", "[case]") {
     const std::string sand = two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\nfriction_angle_deg = 30\n";
     const SolidStage stage = scene_of(sand).solid.value();

@@ -198,9 +198,7 @@ private:
             const solid::Elastic elastic =
                 solid::Elastic::of(number("young_modulus"), number("poisson_ratio"));
             if (law == "elastic") return elastic;
-            const bool plane = case_.word(prefix_ + "cone") == "plane_strain";
-            return solid::DruckerPrager::of(elastic, number("friction_angle_deg") * kDegree, number("cohesion"),
-                                            plane ? solid::Cone::plane_strain : solid::Cone::compression);
+            return drucker_prager(elastic);
         }
         for (const char* name : {"friction_angle_deg", "cohesion", "cone", "young_modulus", "poisson_ratio"})
             if (given(name)) unused(name, law);
@@ -227,6 +225,21 @@ private:
         if (law == "bingham") return solid::Bingham{0.0, shear, viscosity, yield_stress};
         if (given("viscosity")) unused("viscosity", law);
         return solid::HerschelBulkley{0.0, shear, number("consistency"), number("exponent"), yield_stress};
+    }
+
+    /// The cone's apex lies at the tension cohesion / tan(angle): without an angle there is none.
+    SolidLaw drucker_prager(const solid::Elastic& elastic) {
+        const double angle = number("friction_angle_deg"), cohesion = number("cohesion");
+        if (cohesion > 0.0 && !(angle > 0.0)) {
+            problems_.add(case_.place(prefix_ + "friction_angle_deg"),
+                          fmt::format("found {:.6g} with stage.cohesion = {:.6g} Pa", angle, cohesion),
+                          "expected an angle above 0: the cone of a cohesive material has an apex",
+                          "give an angle, a small one for clay that does not drain, or leave out the cohesion");
+            return elastic;
+        }
+        const bool plane = case_.word(prefix_ + "cone") == "plane_strain";
+        return solid::DruckerPrager::of(elastic, angle * kDegree, cohesion,
+                                        plane ? solid::Cone::plane_strain : solid::Cone::compression);
     }
 
     void unused(const char* name, const std::string& law) {
