@@ -1,4 +1,5 @@
 // Runs of structured solids: what goes in comes out, budgets close, and a kept run goes on with the same bits.
+#include <algorithm>
 #include <sstream>
 
 #include "analytic_scene.h"
@@ -160,6 +161,34 @@ TEST_CASE("Frames of structured columns have finite fields, of stress, damage an
     CHECK(volume * scene.density == Approx(run.status().mass).epsilon(1e-12));
     const Sample middle = run.at({frame.particle("position")->data[0], frame.particle("position")->data[1]});
     CHECK(middle.depth > 0.0);
+}
+
+TEST_CASE("Speeds of structured columns are along the bed smoothed to the curvature's length", "[structured]") {
+    Scene scene = scene_on(81, 31, 0.5, [](double x, double) { return 20.0 - x / 3.0 + 0.1 * std::cos(M_PI * x); });
+    scene.scheme.curvature_length = 1.5;  // 18 passes, each of which halves a wave of four cells
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return x > 14 && x < 19 && y > 5 && y < 10 ? 0.8 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 2.0);
+    scene.bed_law = bed::Coulomb{0.2};
+    scene.structure = solid_of(0.0);
+    const std::unique_ptr<Simulation> run = make_simulation(scene);
+    go_to(*run, 0.5);
+    const Frame frame = run->frame();
+    const double left = 0.1 * M_PI * std::pow(0.5, 18);  // of the wave's slope
+    double fastest = 0.0;
+    for (const auto* fields : {&frame.nodes, &frame.particles}) {
+        const auto of = [&](const std::string& name) {
+            return std::find_if(fields->begin(), fields->end(), [&](const Field& f) { return f.name == name; });
+        };
+        const Field &velocity = *of("velocity"), &speed = *of("speed");
+        for (Index n = 0; n < speed.count; ++n) {
+            const double vx = velocity.data[3 * n], vy = velocity.data[3 * n + 1], vz = velocity.data[3 * n + 2];
+            CHECK(std::abs(vz + vx / 3.0) <= 2.0 * left * std::hypot(vx, vy) + 1e-12);
+            CHECK(speed.data[n] == Approx(std::sqrt(vx * vx + vy * vy + vz * vz)));
+            fastest = std::max(fastest, speed.data[n]);
+        }
+    }
+    CHECK(fastest > 2.0);
 }
 
 TEST_CASE("A kept run of structured columns goes on with the same bits", "[structured]") {

@@ -140,14 +140,14 @@ LazyArray<double> smoothed_bed(const Scene& scene, const TileGrid& grid, const s
     return smoothed;
 }
 
-void fill_smooth_slopes(const TileGrid& grid, const LazyArray<double>& smoothed, BedGeometry& bed) {
-    bed.smooth_x = LazyArray<double>(grid.size());
-    bed.smooth_y = LazyArray<double>(grid.size());
+SmoothSlopes slopes_of(const TileGrid& grid, const LazyArray<double>& smoothed) {
+    SmoothSlopes slopes{LazyArray<double>(grid.size()), LazyArray<double>(grid.size())};
     for_each_node(grid, 3, [&](Index, Index, Index k) {
         const double* c = smoothed.data() + k;
-        bed.smooth_x[k] = slope_at(c, 1, grid.cell());
-        bed.smooth_y[k] = slope_at(c, grid.stride(), grid.cell());
+        slopes.x[k] = slope_at(c, 1, grid.cell());
+        slopes.y[k] = slope_at(c, grid.stride(), grid.cell());
     });
+    return slopes;
 }
 
 void fill_curvature(const TileGrid& grid, const LazyArray<double>& smoothed, BedGeometry& bed) {
@@ -166,6 +166,10 @@ void fill_curvature(const TileGrid& grid, const LazyArray<double>& smoothed, Bed
 }
 
 }  // namespace
+
+SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid) {
+    return slopes_of(grid, smoothed_bed(scene, grid, filled(scene.bed)));
+}
 
 BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     BedGeometry bed;
@@ -199,7 +203,8 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     });
     if (scene.terrain == TerrainModel::shallow) return bed;
     const LazyArray<double> smoothed = smoothed_bed(scene, grid, z);
-    fill_smooth_slopes(grid, smoothed, bed);
+    SmoothSlopes slopes = slopes_of(grid, smoothed);
+    bed.smooth_x = std::move(slopes.x), bed.smooth_y = std::move(slopes.y);
     if (scene.curvature != Curvature::none) fill_curvature(grid, smoothed, bed);
     return bed;
 }

@@ -25,6 +25,10 @@ struct BedGeometry {
     bool has_exits = false;           ///< any of them
 };
 
+/// Slopes of the bed smoothed to `curvature_length`, which velocities along the bed follow [1].
+struct SmoothSlopes { LazyArray<double> x, y; };
+SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid);
+
 /// Fills the geometry of scene.bed for the scheme's shape function (quadratic: the elevation model is taken
 /// bilinear between nodes, and its average with the B-spline is exact: weights (1, 76, 230, 76, 1)/384 in each
 /// direction; cubic: (1, 26, 66, 26, 1)/120; linear: z is the nodal elevation itself, as Fois et al. 2024 have it).

@@ -80,7 +80,8 @@ void StructuredRun::particle_fields(Frame& frame) {
         const double z = bed_below(bed_, x.x(), x.y()), h = q.layer[p];
         const double bx = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_x; }),
                      by = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_y; });
-        const double up = q.vx[p] * bx + q.vy[p] * by, steep = std::sqrt(1.0 + bx * bx + by * by);
+        const double up = from_nodes(body, p, [&](Index k) { return map_.climb(k, q.vx[p], q.vy[p]); });
+        const double steep = std::sqrt(1.0 + bx * bx + by * by);
         const double holds = body.share * (1.0 - q.damage[p]);
         position[3 * p] = x.x(), position[3 * p + 1] = x.y(), position[3 * p + 2] = z + h;
         depth[p] = h, thickness[p] = h / steep;
@@ -124,7 +125,7 @@ void StructuredRun::node_fields(Frame& frame) {
     for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
         const StructuredBody::Moved& node = body.moved[k];
         const StructuredBody::Pull& ground = body.pull[k];
-        const double h = StructuredMap::depth_of(body, k), up = node.vx * ground.slope_x + node.vy * ground.slope_y;
+        const double h = StructuredMap::depth_of(body, k), up = map_.climb(k, node.vx, node.vy);
         if (!(h > 0.0)) return;
         depth[n] = h, surface[n] += h;
         thickness[n] = h / std::sqrt(1.0 + ground.slope_x * ground.slope_x + ground.slope_y * ground.slope_y);

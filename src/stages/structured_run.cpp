@@ -41,6 +41,12 @@ double reach_of_neighbours(const Seeds& seeds) {
 constexpr double kTorn = 1.5, kLink = 1.25;
 constexpr PieceRule kPieces{kLink, 0.9, 0.02};  // of the damage; of the mass
 
+/// Coordinates along the ground have no slope left for velocities to follow.
+SmoothSlopes path_of(const Scene& scene, const TileGrid& grid) {
+    if (scene.structure->unrolled) return {LazyArray<double>(grid.size()), LazyArray<double>(grid.size())};
+    return smooth_slopes(scene, grid);
+}
+
 }  // namespace
 
 StructuredRun::StructuredRun(const Scene& scene, Start start)
@@ -48,7 +54,8 @@ StructuredRun::StructuredRun(const Scene& scene, Start start)
       water_density_(scene.water ? scene.water->exchange.material.fluid_density : 0.0),
       alone_(scene.water ? nullptr : std::make_unique<StructuredFlow>(started(scene, start))),
       both_(scene.water ? std::make_unique<TwoPhaseFlow>(wet(scene, start)) : nullptr),
-      map_(flow().body().grid, centre_of(scene.particles), scene.output.footprint_depth),
+      map_(flow().body().grid, centre_of(scene.particles), scene.output.footprint_depth,
+           path_of(scene, flow().body().grid)),
       neighbours_(flow(), reach_of_neighbours(scene.particles)),
       rest_fraction_(scene.rest_fraction) {
     if (start == Start::kept) return;

@@ -6,8 +6,9 @@
 
 namespace frana {
 
-StructuredMap::StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth)
-    : peaks_(grid.size()),
+StructuredMap::StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, SmoothSlopes path)
+    : path_(std::move(path)),
+      peaks_(grid.size()),
       nx_(grid.nx()),
       ny_(grid.ny()),
       stride_(grid.stride()),
@@ -19,27 +20,24 @@ namespace {
 /// What stands on a node.
 struct Standing {
     double depth = 0.0, pressure = 0.0, inertia = 0.0;  ///< [m], [Pa], density * depth [kg/m^2]
-    Vec2 velocity{0, 0}, slope{0, 0};
+    Vec2 velocity{0, 0};
 };
 
 Standing columns_on(const StructuredBody& body, Index k) {
     const StructuredBody::Moved& node = body.moved[k];
     const double depth = StructuredMap::depth_of(body, k);
     if (!(depth > 0.0)) return {};
-    return {depth, body.density * body.pull[k].across * depth, body.density * depth, Vec2(node.vx, node.vy),
-            Vec2(body.pull[k].slope_x, body.pull[k].slope_y)};
+    return {depth, body.density * body.pull[k].across * depth, body.density * depth, Vec2(node.vx, node.vy)};
 }
 
 /// With the water: velocities are those of both masses together.
 Standing with_water(const Standing& columns, const WaterBody& water, double density, Index k) {
     const double h = water.now.h[k];
     if (!(h > 0.0)) return columns;
-    const double per = 0.5 / water.grid.cell(), inertia = density * h;
+    const double inertia = density * h;
     const Vec2 v = h > water.film ? Vec2(Vec2(water.now.qx[k], water.now.qy[k]) / h) : Vec2(0, 0);
-    const Vec2 slope = per * Vec2(water.bed[k + 1] - water.bed[k - 1],
-                                  water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
     return {columns.depth + h, columns.pressure + density * water.pull[k] * h, columns.inertia + inertia,
-            (columns.inertia * columns.velocity + inertia * v) / (columns.inertia + inertia), slope};
+            (columns.inertia * columns.velocity + inertia * v) / (columns.inertia + inertia)};
 }
 
 Standing on_node(const StructuredBody& body, const WaterFlow* water, Index i, Index j) {
@@ -69,12 +67,13 @@ void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, dou
             for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, nx_); ++i) {
                 const Standing node = on_node(body, water, i, j);
                 if (!(node.depth > 0.0)) continue;
-                Peak& peak = peaks_[body.grid.at(i, j)];
+                const Index k = body.grid.at(i, j);
+                Peak& peak = peaks_[k];
                 if (node.depth > footprint_depth_ && !(peak.depth > footprint_depth_)) peak.arrival = time;
                 peak.depth = std::max(peak.depth, node.depth);
                 peak.pressure = std::max(peak.pressure, node.pressure);
                 if (node.depth >= 0.1 * footprint_depth_) {
-                    const double up = node.slope.dot(node.velocity);
+                    const double up = climb(k, node.velocity.x(), node.velocity.y());
                     const double speed = std::sqrt(node.velocity.squaredNorm() + up * up);
                     peak.speed = std::max(peak.speed, speed), sums.max_speed = std::max(sums.max_speed, speed);
                     peak.dynamic_pressure = std::max(peak.dynamic_pressure, node.inertia / node.depth * speed * speed);

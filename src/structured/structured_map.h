@@ -2,6 +2,7 @@
 // Structured solids and their free water seen from above: depth and velocity on the nodes, and what each node ever saw.
 #include "observe/archive.h"
 #include "structured/structured_flow.h"
+#include "solver/bed_geometry.h"
 #include "water/water_flow.h"
 
 namespace frana {
@@ -20,14 +21,16 @@ public:
         double front = 0.0;         ///< farthest of these nodes from `centre` [m]
     };
 
-    /// `centre` of the release [m], from which the front is measured.
-    StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth);
+    /// `centre` of the release [m], from which the front is measured; `path`: slopes that velocities follow, on the grid.
+    StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, SmoothSlopes path);
 
     /// Takes what the nodes are now into the peaks; visits tiles near material only. Same bits for any number of
     /// threads.
     void note(const StructuredBody& body, const WaterFlow* water, double time);
     const Sums& sums() const { return sums_; }
     double footprint_depth() const { return footprint_depth_; }
+    /// How fast what moves along the map with (vx, vy) at a node climbs [m/s].
+    double climb(Index node, double vx, double vy) const { return vx * path_.x[node] + vy * path_.y[node]; }
     const Peak& peak(Index node) const { return peaks_[node]; }
     /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. Beside water it
     /// is spread by shape functions, and nothing lies beyond them.
@@ -43,6 +46,7 @@ public:
     void keep(Archive& archive);
 
 private:
+    SmoothSlopes path_;
     LazyArray<Peak> peaks_;
     std::vector<Index> tiles_;  ///< with columns or water near
     std::vector<Sums> of_tile_;
