@@ -409,3 +409,15 @@ TEST_CASE("Each polygon of an outline has the depth of its attribute", "[scene]"
     CHECK(refusal(keys).find("release.0.depth: found a depth of 0 m in ") != std::string::npos);
     CHECK(refusal("depth = \"field:thickness_m\"").find("an attribute without an outline") != std::string::npos);
 }
+
+TEST_CASE("A thickness normal to the slope needs no elevations far from its outline", "[scene]") {
+    FakeGis gis = slope_gis();
+    gis.rasters["dem.tif"].at(1, 1) = Raster::nodata;  // 45 m west of the release
+    const std::string keys = "outline = \"release.geojson\"\ndepth = 2.0\nthickness = \"normal\"";
+    CHECK(sum(built(with_release(keys), gis).scene.particles.volume) ==
+          Approx(50 * 30 * 2.0 * std::sqrt(1.25)).epsilon(round_off));
+    gis.rasters["dem.tif"].at(12, 12) = Raster::nodata;  // under it
+    const auto problems = problems_of(with_release(keys), gis);
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].find("found nodata under or within 3 cells") != std::string::npos);
+}
