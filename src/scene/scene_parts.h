@@ -53,6 +53,10 @@ std::optional<SolidStage> read_solid_stage(const CaseFile& file, const Scene& sc
 /// All [[insitu]], with their cameras. What does not fit together, the terrain or the rheology goes to `problems`.
 std::vector<Insitu> read_insitu(const CaseFile& file, const Scene& scene, Problems& problems);
 
+/// A depth field whose pixels are larger than `cell` on pixels that are not: bilinear between their middles, each
+/// pixel's volume and the material's edge as they were.
+Raster finer_field(const Raster& field, double cell);
+
 /// Nodes under a release: those inside the outline or next to its edge, where the depth field has material.
 NodeMarks nodes_under(const Release& release, const GridGeometry& grid);
 

@@ -147,6 +147,7 @@ private:
         } else if (!depth_of_features_ && is_file("depth")) {
             release.depth_field = raster(case_.path(key("depth")));
             remark_on_gaps(*release.depth_field, claimed(release, release.depth_field->geometry), place("depth"), log_);
+            *release.depth_field = finer_field(*release.depth_field, bed_.geometry.cell);
         } else if (given("surface") || normal) {
             release.depth_field = depth_on(bed_.geometry, given("outline"), claimed(release, bed_.geometry));
         } else {
