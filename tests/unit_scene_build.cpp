@@ -409,3 +409,40 @@ TEST_CASE("Each polygon of an outline has the depth of its attribute", "[scene]"
     CHECK(refusal(keys).find("release.0.depth: found a depth of 0 m in ") != std::string::npos);
     CHECK(refusal("depth = \"field:thickness_m\"").find("an attribute without an outline") != std::string::npos);
 }
+
+TEST_CASE("A thickness normal to the slope needs no elevations far from its outline", "[scene]") {
+    FakeGis gis = slope_gis();
+    gis.rasters["dem.tif"].at(1, 1) = Raster::nodata;  // 45 m west of the release
+    const std::string keys = "outline = \"release.geojson\"\ndepth = 2.0\nthickness = \"normal\"";
+    CHECK(sum(built(with_release(keys), gis).scene.particles.volume) ==
+          Approx(50 * 30 * 2.0 * std::sqrt(1.25)).epsilon(round_off));
+    gis.rasters["dem.tif"].at(12, 12) = Raster::nodata;  // under it
+    const auto problems = problems_of(with_release(keys), gis);
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].find("found nodata under or within 3 cells") != std::string::npos);
+}
+
+TEST_CASE("A depth raster is interpolated on finer cells: no steps, each pixel's volume as it was", "[scene]") {
+    FakeGis gis = slope_gis();
+    const GridGeometry pixels{5, 4, 1060, 2050, 20};  // of four cells each: x 1050 to 1150, y 2040 to 2120
+    const auto depth = [](double x, double y) { return 1.0 + 0.01 * (x - 1050) + 0.02 * (y - 2040); };
+    gis.rasters["depth.tif"] = sampled(pixels, depth);
+    const Seeds seeds = built(with_release("depth = \"depth.tif\""), gis).scene.particles;
+    // two columns a cell, and between the outer middles of the pixels the depth is linear: so is each patch's mean
+    Index inside = 0;
+    for (Index p = 0; p < seeds.count(); ++p) {
+        if (seeds.x[p] < 1075 || seeds.x[p] > 1125 || seeds.y[p] < 2065 || seeds.y[p] > 2095) continue;
+        ++inside;  // the field is constant within a cell, so a column is at most a quarter of a cell off its middle
+        CHECK(std::abs(seeds.depth[p] - depth(seeds.x[p], seeds.y[p])) <= 1.25 * (0.01 + 0.02) + 1e-9);
+    }
+    CHECK(inside > 100);
+    std::vector<double> volume(20, 0.0);
+    for (Index p = 0; p < seeds.count(); ++p) {
+        const auto i = static_cast<std::size_t>((seeds.x[p] - 1050) / 20);
+        const auto j = static_cast<std::size_t>((seeds.y[p] - 2040) / 20);
+        volume[i + 5 * j] += seeds.volume[p];
+    }
+    for (Index k = 0; k < 20; ++k)
+        CHECK(volume[static_cast<std::size_t>(k)] ==
+              Approx(400.0 * gis.rasters["depth.tif"].values[static_cast<std::size_t>(k)]).epsilon(round_off));
+}

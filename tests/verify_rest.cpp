@@ -1,6 +1,8 @@
 // What must not move: lakes (to round-off) and piles below their friction angle (to the last bit).
 #include "analytic_scene.h"
 #include "catch.h"
+#include "fake_gis.h"
+#include "scene/build_scene.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -102,4 +104,22 @@ TEST_CASE("A slab holds at tan(th) = mu and slides just below it", "[rest]") {
         if (factor > 1.0) CHECK(fastest < 1e-5);  // the rim's own slope, 1e-6 m over a cell, may creep below mu's margin
         else CHECK(fastest > 0.5 * 1e-4 * slope * 9.81 * 0.75 * 2.0);
     }
+}
+
+TEST_CASE("A lake within an outline that holds its shore rests to the last bit, one cut through moves", "[lake]") {
+    FakeGis gis;
+    const auto bowl = [](double x, double y) { return 0.002 * ((x - 150) * (x - 150) + (y - 150) * (y - 150)); };
+    gis.rasters["dem.tif"] = sampled({61, 61, 0.0, 0.0, 5.0}, bowl);
+    gis.polygons["wide.geojson"] = rectangle(60, 60, 240, 240);  // the shore is a circle of radius 70.7 m
+    gis.polygons["narrow.geojson"] = rectangle(60, 60, 170, 240);
+    const auto fastest = [&](const std::string& outline) {
+        const std::string text = "[terrain]\ndem = \"dem.tif\"\n[[release]]\n" + outline +
+                                 "surface = 10.0\n[material]\ndensity = 1000.0\n[time]\nend = 1.0\n";
+        DepthAveraged simulation(build_scene(CaseFile::parse(text, "lake/case.toml"), gis));
+        run_to(simulation, 0.5);
+        return simulation.status().max_speed;
+    };
+    CHECK(fastest("") == 0.0);
+    CHECK(fastest("outline = \"wide.geojson\"\n") == 0.0);
+    CHECK(fastest("outline = \"narrow.geojson\"\n") > 1.0);
 }

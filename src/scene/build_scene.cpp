@@ -150,13 +150,15 @@ private:
         }
     }
 
-    /// One release, over the whole window, up to one level, at rest: a lake, which the solver starts at exact
-    /// rest.
+    /// One release up to one level, at rest, over the whole window or within an outline that holds its shore: a lake,
+    /// which the solver starts at exact rest.
     void note_lake() {
         const auto given = [&](const char* key) { return case_.given(std::string("release.0.") + key); };
         if (case_.count("release") != 1 || !given("surface") || case_.is_text("release.0.surface")) return;
-        if (given("outline") || given("mask") || given("velocity")) return;
-        scene_.still_surface = case_.number("release.0.surface");
+        const double level = case_.number("release.0.surface");
+        if (given("mask") || given("velocity")) return;
+        if (given("outline") && !holds_shore(releases_[0], scene_.bed, level)) return;
+        scene_.still_surface = level;
     }
 
     void check_volume(std::size_t i, const ReleaseReport& report) {

@@ -104,6 +104,19 @@ NodeMarks nodes_under(const Release& release, const GridGeometry& grid) {
     return marks;
 }
 
+bool holds_shore(const Release& release, const Raster& bed, double level) {
+    Release bare;
+    bare.outline = release.outline;
+    const GridGeometry& grid = bed.geometry;
+    const NodeMarks inside = nodes_under(bare, grid), around = widened(inside, grid, 1);
+    NodeMarks outside(inside.size(), 0);
+    for (std::size_t k = 0; k < inside.size(); ++k) outside[k] = !inside[k];
+    const NodeMarks within = widened(outside, grid, 1);
+    for (std::size_t k = 0; k < inside.size(); ++k)  // the rim: nodes of either side that have a neighbour on the other
+        if (around[k] && within[k] && !(bed.values[k] >= level)) return false;
+    return true;
+}
+
 void refuse_nodata(const NodeMarks& marks, const Raster& bed, Index reach) {
     const GridGeometry& grid = bed.geometry;
     const NodeMarks near = widened(marks, grid, reach);

@@ -53,8 +53,15 @@ std::optional<SolidStage> read_solid_stage(const CaseFile& file, const Scene& sc
 /// All [[insitu]], with their cameras. What does not fit together, the terrain or the rheology goes to `problems`.
 std::vector<Insitu> read_insitu(const CaseFile& file, const Scene& scene, Problems& problems);
 
+/// A depth field whose pixels are larger than `cell` on pixels that are not: bilinear between their middles, each
+/// pixel's volume and the material's edge as they were.
+Raster finer_field(const Raster& field, double cell);
+
 /// Nodes under a release: those inside the outline or next to its edge, where the depth field has material.
 NodeMarks nodes_under(const Release& release, const GridGeometry& grid);
+
+/// Whether the ground stands at `level` or higher along the whole outline: it cuts through no lake of that level.
+bool holds_shore(const Release& release, const Raster& bed, double level);
 
 /// Throws UserError, naming the pixel, when the bed has nodata within `reach` cells of a marked node.
 void refuse_nodata(const NodeMarks& marks, const Raster& bed, Index reach);

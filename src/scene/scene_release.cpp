@@ -147,12 +147,13 @@ private:
         } else if (!depth_of_features_ && is_file("depth")) {
             release.depth_field = raster(case_.path(key("depth")));
             remark_on_gaps(*release.depth_field, claimed(release, release.depth_field->geometry), place("depth"), log_);
+            *release.depth_field = finer_field(*release.depth_field, bed_.geometry.cell);
         } else if (given("surface") || normal) {
             release.depth_field = depth_on(bed_.geometry, given("outline"), claimed(release, bed_.geometry));
         } else {
             release.depth = depth_number("depth");
         }
-        if (normal) make_vertical(*release.depth_field);
+        if (normal) make_vertical(*release.depth_field, claimed(release, release.depth_field->geometry));
     }
 
     /// Depth, or surface minus bed, at the pixels of `grid`. Over nodata of the bed the depth is unknown when
@@ -189,8 +190,9 @@ private:
         return {std::clamp(point.x(), extent[0], extent[2]), std::clamp(point.y(), extent[1], extent[3])};
     }
 
-    /// depth = thickness / cos(slope) = thickness sqrt(1 + |grad Z|^2)
-    void make_vertical(Raster& field) const {
+    /// depth = thickness / cos(slope) = thickness sqrt(1 + |grad Z|^2); outside of the claimed pixels none where the
+    /// bed is not known
+    void make_vertical(Raster& field, const NodeMarks& places) const {
         Raster stretch = bed_;
         for (Index j = 0; j < bed_.geometry.ny; ++j)
             for (Index i = 0; i < bed_.geometry.nx; ++i)
@@ -204,7 +206,9 @@ private:
                 if (!(value > 0.0)) continue;
                 const Vec2 centre(field.geometry.x(i), field.geometry.y(j));
                 const double factor = same ? stretch.at(i, j) : bilinear(stretch, within_terrain(centre));
-                value = std::isnan(factor) ? unknown_depth : value * factor;
+                const bool wanted = places[static_cast<std::size_t>(j * field.geometry.nx + i)] != 0;
+                if (!std::isnan(factor)) value *= factor;
+                else value = wanted ? unknown_depth : Raster::nodata;
             }
         }
     }
