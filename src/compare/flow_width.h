@@ -6,8 +6,8 @@
 
 namespace frana {
 
-/// Cells across a flow below which it is not resolved: of six, two are its margins, and an outline that is one cell
-/// coarser differs by a twelfth of the area on either side.
+/// Cells across a flow below which it is not resolved: of six, two are its margins. Pixels draw either bank a quarter
+/// of a cell off, on average: together a twelfth of the width, so that two footprints agree to an IoU of about 0.9.
 constexpr double least_cells_across = 6.0;
 
 /// Median width of the footprint across the flow [m]; NaN when nothing is deeper than `limit` [m]. The footprint is
