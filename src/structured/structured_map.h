@@ -26,6 +26,8 @@ public:
     /// threads.
     void note(const StructuredBody& body, const WaterFlow* water, double time);
     const Sums& sums() const { return sums_; }
+    /// Nodes that are covered since a time at most, and where material is faster than `speed` (MovingMass::fronts).
+    Index fronts(const StructuredBody& body, const WaterFlow* water, double since, double speed) const;
     double footprint_depth() const { return footprint_depth_; }
     const Peak& peak(Index node) const { return peaks_[node]; }
     /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. Beside water it
