@@ -149,7 +149,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 
-    const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest, record.end < record.whole_end};
+    const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest, record.end < record.whole_end,
+                       scene.bed.geometry.cell, scene.rest_fraction};
     record.summary = run(simulation, plan, observers, interrupt, progress, keeper);
     record.breakage = simulation.breakage();
     record.points_apart = simulation.points_apart();

@@ -150,12 +150,38 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     return record;
 }
 
+/// "1.2 % of the mass still moves, the fastest at 3.4 m/s".
+std::string motion_text(const RunSummary& s) {
+    return fmt::format("{:.3g} % of the mass {} faster than {:.2g} m/s, the fastest has {:.3g} m/s",
+                       100.0 * s.motion.share(), s.motion.share() > 0.0 ? "is still" : "is", s.slow, s.motion.fastest);
+}
+
+/// Whether a rule, or the end of the time, stopped what was still in motion.
+bool stopped_in_motion(const RunSummary& s) {
+    return (s.reason == "end" || s.reason == "rest") && s.motion.fastest > 0.0;
+}
+
 std::string reason_text(const RunSummary& summary) {
-    if (summary.reason == "end") return "the simulated time is over";
-    if (summary.reason == "rest") return "the mass came to rest";
+    const bool moves = stopped_in_motion(summary);
+    if (summary.reason == "end")
+        return moves ? "stopped by the rule time.end, the simulated time is over: " + motion_text(summary)
+                     : "the simulated time is over, and nothing moves any more";
+    if (summary.reason == "rest")
+        return moves ? "stopped by the rule time.stop_at_rest, what still moves can change the deposit no more: " +
+                           motion_text(summary)
+                     : "the mass came to rest";
     if (summary.reason == "left") return "no material is left in the domain";
     if (summary.reason == "interrupted") return "interrupted; everything up to here is valid";
     return "numerics: " + summary.failure_text;
+}
+
+/// Why the run ended, and what was in motion then.
+Json rest_json(const RunSummary& s) {
+    const bool by_itself = s.reason == "interrupted" || s.reason == "numerics" || s.reason == "left";
+    return {{"reason", by_itself ? s.reason : stopped_in_motion(s) ? "stopped by the rule" : "at rest"},
+            {"moving_mass_share", s.motion.share()},
+            {"faster_than", s.slow},
+            {"fastest", s.motion.fastest}};
 }
 
 Json barriers_json(const std::vector<BarrierSummary>& barriers) {
@@ -224,6 +250,7 @@ std::string run_json(const RunRecord& record) {
         {"host_threads", std::thread::hardware_concurrency()},
         {"threads", record.threads},
         {"exit_reason", s.reason},
+        {"rest", rest_json(s)},
         {"failure", s.failure_text},
         {"simulated_time", s.last.time},
         {"steps", s.steps},

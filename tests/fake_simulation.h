@@ -12,7 +12,7 @@ namespace frana {
 
 struct FakeScript {
     double dt = 0.03;                                             ///< longest step [s]
-    double rest_time = std::numeric_limits<double>::infinity();   ///< at_rest() from here on [s]
+    double rest_time = std::numeric_limits<double>::infinity();   ///< nothing moves from here on [s]
     double leave_time = std::numeric_limits<double>::infinity();  ///< no particles from here on [s]
     double fail_time = std::numeric_limits<double>::infinity();   ///< NumericsError past here [s]
     bool fail_with_nan = false;                                   ///< ... and the state is not finite
@@ -54,7 +54,10 @@ public:
         if (script_.on_step) script_.on_step(status_.step);
     }
     const Status& status() const override { return status_; }
-    bool at_rest() const override { return status_.time >= script_.rest_time; }
+    MovingMass motion(const MotionQuery& query) const override {
+        const bool moving = status_.max_speed > query.faster_than;
+        return {status_.mass, moving ? status_.mass : 0.0, status_.max_speed, 0};
+    }
     std::vector<PhaseTime> timings() const override { return {{"deposit", 0.25}, {"kick", 0.5}}; }
     void keep(Archive& archive) override {
         frana::keep(archive, "status", status_);
@@ -109,7 +112,7 @@ private:
         status_.dissipated = 30.0 * t;
         status_.energy_left = 6.0 * t;
         status_.max_depth = height;
-        status_.max_speed = std::hypot(u, v) + 0.1 * t;
+        status_.max_speed = status_.max_speed_on_map = t >= script_.rest_time ? 0.0 : std::hypot(u, v) + 0.1 * t;
         status_.mean_speed = std::hypot(u, v);
         status_.covered_area = 100.0 + t;
         status_.front = 7.0 + u * t;

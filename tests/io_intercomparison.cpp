@@ -74,8 +74,11 @@ Figures run(const std::filesystem::path& folder, const std::string& law, const s
     )", folder.string(), law, curvature, rest_fraction);
     const Scene scene = build_scene(CaseFile::parse(text, folder / "case.toml", {}), GdalReader());
     const auto simulation = make_simulation(scene);
-    while (simulation->status().time < scene.end && !simulation->at_rest()) simulation->advance(scene.end);
-    CHECK(simulation->at_rest());
+    RestRule rest(scene.bed.geometry.cell, scene.rest_fraction);
+    while (simulation->status().time < scene.end && !rest.at_rest()) {
+        simulation->advance(scene.end);
+        rest.note(*simulation);
+    }
     return figures_of(simulation->frame(), scene);
 }
 

@@ -111,6 +111,12 @@ TEST_CASE("run.json has the contract's keys with the simulation's numbers") {
     const Json json = run.json();
     const Status &first = run.record.summary.first, &last = run.record.summary.last;
     CHECK(json["exit_reason"] == "end");
+    CHECK(json["rest"]["reason"] == "stopped by the rule");  // the time was over while it moved
+    CHECK(json["rest"]["moving_mass_share"] == 1.0);
+    CHECK(json["rest"]["faster_than"].get<double>() == Approx(1.0));  // two cells of 1 m in 2 s
+    CHECK(json["rest"]["fastest"] == last.max_speed);
+    CHECK(text_of(run.dir() / "report.md").find("stopped by the rule time.end, the simulated time is over: "
+                                                "100 % of the mass is still faster than 1 m/s") != std::string::npos);
     CHECK(json["case"] == "hill");
     CHECK(json["title"] == "A hill that slides");
     CHECK(json["steps"] == run.record.summary.steps);

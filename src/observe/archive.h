@@ -22,6 +22,9 @@ public:
 
     virtual ~Archive() = default;
     virtual bool loading() const = 0;
+    /// Whether the same simulation comes back to this state after a step of ordinary length at most: what that leaves as it
+    /// is need not be kept.
+    virtual bool aside() const { return false; }
 
     /// A vector of double, std::int64_t, Index or std::uint8_t; resized when loading.
     template <class Array>

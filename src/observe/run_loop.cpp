@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "observe/memory_state.h"
 #include "solver/simulation.h"
 
 namespace frana {
@@ -51,7 +52,8 @@ public:
           observers_(observers),
           interrupt_(interrupt),
           progress_(progress),
-          keeper_(keeper) {
+          keeper_(keeper),
+          rest_(plan.cell, plan.rest_fraction) {
         summary_.first = summary_.last = simulation.status();
         summary_.started = utc_now();
         for (const auto& observer : observers) summary_.output.push_back({observer->name(), 0.0});
@@ -63,7 +65,11 @@ public:
     RunSummary run();
 
 private:
+    void step(double until);
     void advance(double until);
+    bool own_steps() const { return simulation_.longest_step() > 0.0; }
+    void step_past_outputs();
+    double show_outputs_aside();
     std::string reason_to_stop() const;
     double next_output_time() const;
     void show_step();
@@ -74,6 +80,7 @@ private:
     bool resume();
     void save_state();
     bool heads_for_the_cut() const;
+    double time() const { return simulation_.status().time; }
     bool last_before_the_cut() const;
     void keep(Archive& archive);
     double wall_seconds() const { return wall_before_ + seconds_since(start_); }
@@ -85,12 +92,15 @@ private:
     const Interrupt& interrupt_;
     Progress& progress_;
     StateKeeper* keeper_;
+    RestRule rest_;
     RunSummary summary_;
     std::size_t frame_phase_ = 0;  ///< of summary_.output
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     double wall_before_ = 0.0;  ///< of the runs that this one goes on from [s]
     Index outputs_ = 0;      ///< multiples of plan_.every passed
     Index shown_step_ = -1;  ///< step of the last frame that was shown
+    MemoryState aside_;      ///< the simulation, while outputs are shown between two of its steps
+    bool kept_before_the_cut_ = false;
 };
 
 RunSummary Loop::run() {
@@ -100,21 +110,16 @@ RunSummary Loop::run() {
         if (resumed) {
             progress_.resumed(simulation_.status());
         } else {
+            if (plan_.stop_at_rest) rest_.note(simulation_);
             show_step();
             show_frame();
         }
         while ((summary_.reason = reason_to_stop()).empty()) {
             if (keeper_ && (keeper_->due() || last_before_the_cut())) save_state();
-            const double output_time = next_output_time();
-            advance(output_time);
-            show_step();
-            if (simulation_.status().time < output_time) {
-                show_glance();
-                continue;
-            }
-            ++outputs_;
-            show_frame();
+            step_past_outputs();
         }
+        summary_.slow = rest_.slow_at(simulation_.status().time);
+        summary_.motion = simulation_.motion({summary_.slow, simulation_.status().time});
         save_state();
         show_end();
     } catch (const NumericsError& error) {
@@ -126,6 +131,41 @@ RunSummary Loop::run() {
         if (phase.name != "frame") summary_.solver.push_back(phase);  // counted as output above
     progress_.end(summary_.last, summary_.reason);
     return summary_;
+}
+
+/// One step, and the outputs on the way. Where the simulation knows its step it is shortened for the end only, never for an
+/// output: what is looked at would change what happens.
+void Loop::step_past_outputs() {
+    const double shown = own_steps() ? show_outputs_aside() : time();
+    const double output_time = next_output_time();
+    do {  // a step may turn out shorter than it was said to be
+        advance(own_steps() ? plan_.end : output_time);
+        show_step();
+        if (time() < output_time) show_glance();
+    } while (time() < shown);
+    if (time() < output_time) return;
+    ++outputs_;
+    show_frame();
+}
+
+/// Goes to the outputs that the next step would pass, hits and shows them, and comes back to where it was. Returns the time
+/// of the last frame shown, or the present time.
+double Loop::show_outputs_aside() {
+    const double past = std::min(time() + simulation_.longest_step(), plan_.end);
+    if (!(next_output_time() < past)) return time();
+    PhaseTime& cost = summary_.output[frame_phase_];
+    timed(cost, [&] { aside_.save(simulation_); });
+    for (double next = next_output_time(); next < past; next = next_output_time()) {
+        timed(cost, [&] {
+            while (time() < next) step(next);
+        });
+        ++outputs_;
+        show_frame();
+    }
+    const double shown = time();
+    timed(cost, [&] { aside_.load(simulation_); });
+    shown_step_ = -1;
+    return shown;
 }
 
 bool Loop::resume() {
@@ -141,15 +181,18 @@ bool Loop::resume() {
 
 /// The next steps, or the last ones, are shortened for an end that the whole run does not have.
 bool Loop::heads_for_the_cut() const {
+    if (plan_.cut_short && own_steps()) return plan_.end - time() < 2.0 * simulation_.longest_step();
     return plan_.cut_short && next_output_time() != static_cast<double>(outputs_ + 1) * plan_.every;
 }
 
 bool Loop::last_before_the_cut() const {
+    if (own_steps()) return heads_for_the_cut() && !kept_before_the_cut_;
     return heads_for_the_cut() && static_cast<double>(outputs_) * plan_.every == simulation_.status().time;
 }
 
 void Loop::save_state() {
     if (!keeper_ || (heads_for_the_cut() && !last_before_the_cut())) return;
+    kept_before_the_cut_ = heads_for_the_cut();
     timed(summary_.output.back(), [&] {
         keeper_->save(simulation_.status().time, [&](Archive& archive) { keep(archive); });
     });
@@ -172,6 +215,7 @@ void Loop::keep(Archive& archive) {
         archive.number("outputs", outputs_);
         archive.number("shown_step", shown_step_);
         archive.text("started", summary_.started);
+        rest_.keep(archive);
         if (archive.loading()) wall_before_ = wall;
         if (summary_.output.size() != observers_.size() + 2)
             throw UserError("the kept state is of other observers; run without --resume");
@@ -186,8 +230,9 @@ void Loop::keep(Archive& archive) {
     }
 }
 
-void Loop::advance(double until) {
-    const double before = simulation_.status().time;
+/// Throws when the clock does not move.
+void Loop::step(double until) {
+    const double before = time();
     simulation_.advance(until);
     const Status& now = simulation_.status();
     if (!(now.time > before))
@@ -195,6 +240,12 @@ void Loop::advance(double until) {
             fmt::format("step {}: the time step at t = {} s is too small to move the clock (dt = {} s); "
                         "look at the last frame for a lone fast particle",
                         now.step, before, now.dt));
+}
+
+void Loop::advance(double until) {
+    step(until);
+    const Status& now = simulation_.status();
+    if (plan_.stop_at_rest) rest_.note(simulation_);
     summary_.steps = now.step - summary_.first.step;
     summary_.particle_steps += static_cast<double>(now.particles);
 }
@@ -204,7 +255,7 @@ std::string Loop::reason_to_stop() const {
     const bool moved = now.step > summary_.first.step;  // a release that has not yet started is not at rest
     if (now.time >= plan_.end) return "end";
     if (now.particles == 0 && !(now.mass > 0.0)) return "left";  // free water may flow on alone
-    if (plan_.stop_at_rest && moved && simulation_.at_rest()) return "rest";
+    if (plan_.stop_at_rest && moved && rest_.at_rest()) return "rest";
     if (interrupt_.requested()) return "interrupted";
     return "";
 }

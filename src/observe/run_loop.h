@@ -9,6 +9,7 @@
 #include "observe/interrupt.h"
 #include "observe/observer.h"
 #include "observe/progress.h"
+#include "observe/rest_rule.h"
 #include "observe/state_keeper.h"
 
 namespace frana {
@@ -24,6 +25,8 @@ struct RunPlan {
     /// The case itself ends later. Steps that were shortened to hit this end are then not those of the whole run, so no
     /// state is kept on the way from the last multiple of `every` to an end that is none.
     bool cut_short = false;
+    double cell = 1.0;            ///< of the terrain, for the rule of rest [m]
+    double rest_fraction = 0.05;  ///< of the scene
 };
 
 /// What happened, for run.json and the report.
@@ -34,6 +37,8 @@ struct RunSummary {
     std::string failure_text;    ///< its message; says also when no last frame could be written
     Status first, last;          ///< of the first and the last frame; without a last frame, of the last step
     Extremes extremes;
+    MovingMass motion;             ///< at the end; moving is what the rule of rest takes for it
+    double slow = 0.0;         ///< speed below which it does not [m/s]
     Index steps = 0;
     Index frames = 0;
     double particle_steps = 0.0;  ///< sum of the particles over the steps

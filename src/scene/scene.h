@@ -182,7 +182,7 @@ struct Scene {
 
     double end = 10.0;                 ///< [s]
     bool stop_at_rest = false;
-    double rest_fraction = 0.05;       ///< mean speed, as a fraction of its peak, that counts as rest [1]
+    double rest_fraction = 0.05;       ///< mean speed, as a fraction of its peak, above which nothing is at rest [1]
     Output output;
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;

@@ -35,8 +35,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
       peaks_(flow_.grid), rheology_(scene.rheology), steep_(scene.terrain != TerrainModel::shallow),
       curved_(steep_ && scene.curvature == Curvature::full), sleeps_(scene.scheme.sleep),
-      footprint_depth_(scene.output.footprint_depth),
-      rest_fraction_(scene.rest_fraction) {
+      footprint_depth_(scene.output.footprint_depth) {
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
     flow_.columns.single = scene.scheme.precision == Precision::single;
@@ -174,7 +173,6 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.max_depth = sums.max_depth;
     status_.covered_area = sums.covered_area;
     status_.front = std::sqrt(sums.front2);
-    peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
 }
 
 /// All that nodes have besides what was deposited on them.
@@ -253,11 +251,6 @@ void DepthAveraged::require_sound(const PointSums& sums) const {
         status_.step, status_.time, status_.dt, g.x0 + flow_.columns.x[p] * g.cell, g.y0 + flow_.columns.y[p] * g.cell,
         flow_.columns.with_real([&](auto real) { return double{flow_.columns.carried<decltype(real)>().depth[p]}; }),
         flow_.scheme.cfl));
-}
-
-bool DepthAveraged::at_rest() const {
-    if (status_.step == 0) return false;
-    return status_.max_speed_on_map == 0.0 || status_.mean_speed < rest_fraction_ * peak_mean_speed_;
 }
 
 Sample DepthAveraged::at(const Vec2& point) const {

@@ -21,7 +21,8 @@ public:
 
     void advance(double until) override;
     const Status& status() const override { return status_; }
-    bool at_rest() const override;
+    double longest_step() const override;
+    MovingMass motion(const MotionQuery& query) const override;
     Frame frame() override;
     std::vector<PhaseTime> timings() const override { return timed_.times(); }
     Sample at(const Vec2& point) const override;
@@ -81,7 +82,6 @@ private:
     void keep_nodes(Archive& archive);
     void keep_peaks(Archive& archive);
     void adapt_points(bool deposit_follows, bool points_left);
-    double longest_step() const;
     double step_length(double until) const;
     double kick_nodes(double dt);
     void book_kick(const KickSums& sums, double kick);
@@ -111,11 +111,10 @@ private:
 
     Rheology rheology_;
     bool steep_, curved_, sleeps_;
-    double footprint_depth_, rest_fraction_;
+    double footprint_depth_;
     std::array<double, 2> start_momentum_{};  ///< [kg m/s]
     double signal_ = 0.0;       ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]
     double drift_ = 0.0;        ///< largest distance since the last sort [cells]
-    double peak_mean_speed_ = 0.0;
     double stress_power_ = 0.0; ///< of the present deposit [W]
     Vec2 centre_{0, 0};         ///< of the release [cells]
 

@@ -59,7 +59,8 @@ void DepthAveraged::keep(Archive& archive) {
     keep_peaks(archive);
     timed_.keep(archive);
     if (!archive.loading()) return;
-    stir_all(flow_);  // what sleeps is found again; it changes no bit
+    flow_.rest.some_asleep = false;  // what sleeps is found again; it changes no bit
+    stir_all(flow_);
     raise_surface();
 }
 
@@ -77,11 +78,12 @@ void DepthAveraged::keep_points(Archive& archive) {
     });
     require_whole(flow_.active, flow_.grid.tiles(), c.count());
     sorter_.list_tiles(flow_.grid, flow_.active);
+    for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
 }
 
 void DepthAveraged::keep_sums(Archive& archive) {
     frana::keep(archive, "status", status_);
-    archive.numbers("sums", {&signal_, &drift_, &peak_mean_speed_, &stress_power_, &start_momentum_[0],
+    archive.numbers("sums", {&signal_, &drift_, &stress_power_, &start_momentum_[0],
                              &start_momentum_[1], &centre_.x(), &centre_.y()});
     Index next_id = splitter_.next_id(), most = merger_ ? merger_->most() : 0, fitted = fit_ ? 1 : 0;
     archive.number("next_id", next_id);
@@ -115,11 +117,12 @@ void DepthAveraged::keep_nodes(Archive& archive) {
     if (nodes.forced) keep_tiles(archive, "force", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].fx; });
 }
 
-/// Where nothing ever was, peaks are zero and are not kept.
+/// Where nothing ever was, peaks are zero and are not kept. A step changes those of the work list.
 void DepthAveraged::keep_peaks(Archive& archive) {
     const Archive::Part part(archive, "peaks");
     std::vector<Index> tiles;
-    for (Index tile = 0; !archive.loading() && tile < flow_.grid.tiles(); ++tile) {
+    if (archive.aside() && !archive.loading()) tiles = flow_.active.work;
+    for (Index tile = 0; !archive.aside() && !archive.loading() && tile < flow_.grid.tiles(); ++tile) {
         bool reached = false;
         for_each_node_of(flow_.grid, tile, [&](Index k, Index, Index) { reached |= peaks_.depth[k] > 0.0; });
         if (reached) tiles.push_back(tile);

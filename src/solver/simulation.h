@@ -7,6 +7,7 @@
 #include "observe/archive.h"
 #include "observe/frame.h"
 #include "observe/observer.h"
+#include "observe/rest_rule.h"
 
 namespace frana {
 
@@ -17,8 +18,12 @@ public:
     /// One time step, never past `until` [s]. Throws NumericsError when a number stops being finite.
     virtual void advance(double until) = 0;
     virtual const Status& status() const = 0;
-    /// Every particle stands still, or the mean speed fell below the scene's fraction of its peak.
-    virtual bool at_rest() const = 0;
+    /// Length at most of the next step, if it may be as long as it likes [s]; 0 where that is not known beforehand.
+    virtual double longest_step() const { return 0.0; }
+    /// What moves now: the same bits for any number of threads. `fastest` is the status's.
+    virtual MovingMass motion(const MotionQuery& query) const = 0;
+    /// Whether what stands still may be taken for rest: not while something is still to begin.
+    virtual bool may_rest() const { return true; }
     /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
     virtual Frame frame() = 0;
     /// What the user should know of how the run was set up.

@@ -108,6 +108,15 @@ void FlowMap::note_peaks(double time) {
     }
 }
 
+Index FlowMap::fronts(double since, double speed) const {
+    Index count = 0;
+    for (Index k = 0; k < grid_.size(); ++k) {
+        const Peak& peak = peaks_[static_cast<std::size_t>(k)];
+        count += peak.arrival >= since && velocity(k).norm() > speed;
+    }
+    return count;
+}
+
 void FlowMap::keep(Archive& archive) {
     const Archive::Part part(archive, "map");
     constexpr std::size_t kNumbers = 9;  // of a node and its peak

@@ -51,6 +51,8 @@ public:
     double max_depth() const { return max_depth_; }        ///< [m]
     double covered_area() const { return covered_area_; }  ///< deeper than the footprint depth [m2]
     double front() const { return front_; }  ///< of these nodes the farthest from the release's centre [m]
+    /// Nodes that are covered since a time at most, and where material is faster than `speed` (MovingMass::fronts).
+    Index fronts(double since, double speed) const;
     void keep(Archive& archive);
 
 private:

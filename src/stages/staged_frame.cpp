@@ -31,11 +31,11 @@ Frame StagedRun::frame() {
     frame_used_ = 0;
     timed_("frame", [&] {
         const Status now = status_;
-        const double mean_speed = peak_mean_speed_, mach = largest_mach_;
+        const double mach = largest_mach_;
         book(frame.status);  // of the columns at the points' time
         frame.status = status_;
         frame.status.step = now.step;
-        status_ = now, peak_mean_speed_ = mean_speed, largest_mach_ = mach;
+        status_ = now, largest_mach_ = mach;
         particle_fields(frame);
         node_fields(frame);
         if (watch_) frame.faces = watch_->patched(*points_);

@@ -38,8 +38,7 @@ void StagedRun::advance(double until) {
     if (!points_) {
         columns_->advance(std::min(until, scene_.solid->from));
         status_ = columns_->status();
-        peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
-        if (status_.time < scene_.solid->from) return;
+            if (status_.time < scene_.solid->from) return;
         begin_space([&](const Marks& marks) { return columns_of(columns_->frame(), scene_.bed, marks); });
         return;
     }
@@ -209,14 +208,26 @@ void StagedRun::book(const Status& columns) {
         status_.mass > 0.0 ? (columns.mean_speed * columns.mass + s.speeds) / status_.mass : 0.0;
     status_.covered_area += map_.covered_area();
     status_.front = std::max(columns.front, map_.front());
-    peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
     if (start_.sound_speed > 0.0) largest_mach_ = std::max(largest_mach_, s.max_speed / start_.sound_speed);
 }
 
-bool StagedRun::at_rest() const {
-    // What rests as columns may flow as points, and the other way round.
-    if (!points_ || (scene_.solid->until && (!ended_ || columns_->status().dt == 0.0))) return false;
-    return status_.max_speed_on_map == 0.0 || status_.mean_speed < scene_.rest_fraction * peak_mean_speed_;
+/// Columns and points on their way from one model to the other move.
+MovingMass StagedRun::motion(const MotionQuery& query) const {
+    MovingMass motion = columns_->motion(query);
+    if (!points_) return motion;
+    motion.mass = status_.mass, motion.fastest = status_.max_speed_on_map;
+    for (const Departed& column : pending_) motion.moving += column.mass;
+    for (const DepartedPoint& point : returning_) motion.moving += point.mass;
+    for (Index p = 0; p < points_->body().points.count(); ++p)
+        if (points_->velocity(p).norm() > query.faster_than)
+            motion.moving += points_->body().points.mass[static_cast<std::size_t>(p)];
+    motion.fronts += map_.fronts(query.since, query.faster_than);
+    return motion;
+}
+
+/// What rests as columns may flow as points, and the other way round.
+bool StagedRun::may_rest() const {
+    return points_ && (!scene_.solid->until || (ended_ && columns_->status().dt > 0.0));
 }
 
 Sample StagedRun::at(const Vec2& point) const {
@@ -283,7 +294,7 @@ void StagedRun::keep(Archive& archive) {
     frana::keep(archive, "status", status_);
     archive.numbers("sums",
                     {&handed_.mass, &handed_.energy, &handed_.mass_later, &handed_.momentum[0], &handed_.momentum[1],
-                     &returned_.mass, &returned_.lost, &moved_, &peak_mean_speed_, &largest_mach_});
+                     &returned_.mass, &returned_.lost, &moved_, &largest_mach_});
     archive.number("pieces", apart_.pieces);
     archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
     timed_.keep(archive);

@@ -21,7 +21,8 @@ public:
 
     void advance(double until) override;
     const Status& status() const override { return status_; }
-    bool at_rest() const override;
+    MovingMass motion(const MotionQuery& query) const override;
+    bool may_rest() const override;
     /// In space: columns first, then points; "model" is 0 and 1. A point's depth, elevation and surface are
     /// those of the map at its place. Between outputs columns and map may be ahead or behind by a step of the
     /// columns.
@@ -94,7 +95,6 @@ private:
     StepClock timed_;
     double moved_ = 0.0;  ///< farthest way of a point since the last look at the map [m]
     PointsApart apart_;
-    double peak_mean_speed_ = 0.0;
     double largest_mach_ = 0.0;  ///< fastest point over the speed of sound [1]
     std::vector<std::vector<double>> frame_storage_;
     std::size_t frame_used_ = 0;

@@ -56,8 +56,7 @@ StructuredRun::StructuredRun(const Scene& scene, Start start)
       both_(scene.water ? std::make_unique<TwoPhaseFlow>(wet(scene, start)) : nullptr),
       map_(flow().body().grid, centre_of(scene.particles), scene.output.footprint_depth,
            path_of(scene, flow().body().grid)),
-      neighbours_(flow(), reach_of_neighbours(scene.particles)),
-      rest_fraction_(scene.rest_fraction) {
+      neighbours_(flow(), reach_of_neighbours(scene.particles)) {
     if (start == Start::kept) return;
     map_.note(flow().body(), water(), 0.0);
     book();
@@ -94,7 +93,6 @@ void StructuredRun::book() {
     status_.covered_area = map_.sums().covered_area;
     status_.front = map_.sums().front;
     if (both_) book_water();
-    peak_mean_speed_ = std::max(peak_mean_speed_, status_.mean_speed);
 }
 
 /// The water's part. Rain and what the ground takes count as gone through the sides. Of its energy friction, viscosity and
@@ -125,9 +123,15 @@ void StructuredRun::book_water() {
     status_.mean_speed = mass > 0.0 ? (status_.mean_speed * solids + speeds) / mass : 0.0;
 }
 
-bool StructuredRun::at_rest() const {
-    return status_.step > 0 &&
-           (status_.max_speed_on_map == 0.0 || status_.mean_speed < rest_fraction_ * peak_mean_speed_);
+/// Free water counts as material; below the film's depth it stands still.
+MovingMass StructuredRun::motion(const MotionQuery& query) const {
+    MovingMass motion{status_.mass, 0.0, status_.max_speed_on_map, 0};
+    const StructuredPoints& p = flow().body().points;
+    for (std::size_t n = 0; n < p.mass.size(); ++n)
+        if (std::hypot(p.vx[n], p.vy[n]) > query.faster_than) motion.moving += p.mass[n];
+    if (both_) motion.moving += water_density_ * water()->volume_faster_than(query.faster_than);
+    motion.fronts = map_.fronts(flow().body(), water(), query.since, query.faster_than);
+    return motion;
 }
 
 Sample StructuredRun::at(const Vec2& point) const {
@@ -196,7 +200,6 @@ void StructuredRun::keep(Archive& archive) {
     neighbours_.keep(archive);
     map_.keep(archive);
     frana::keep(archive, "status", status_);
-    archive.numbers("peak_mean_speed", {&peak_mean_speed_});
     timed_.keep(archive);
 }
 

@@ -24,7 +24,7 @@ public:
 
     void advance(double until) override;
     const Status& status() const override { return status_; }
-    bool at_rest() const override;
+    MovingMass motion(const MotionQuery& query) const override;
     /// "stress" is what the structure passes on, its undamaged share, "effective_stress" that and the earth pressure
     /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it; with water "depth" of nodes
     /// is that of both, "water_depth" its part.
@@ -57,7 +57,6 @@ private:
     Neighbours neighbours_;  ///< of the start
     StepClock timed_;
     Status status_;
-    double rest_fraction_, peak_mean_speed_ = 0.0;
     /// Per node, sums of what columns show times their mass, and of mass.
     struct Inner {
         double stress[3], effective[3], damage, cohesion, mass;

@@ -11,7 +11,8 @@ public:
 
     void advance(double until) override;
     const Status& status() const override { return columns_->status(); }
-    bool at_rest() const override { return columns_->at_rest(); }
+    double longest_step() const override { return columns_->longest_step(); }
+    MovingMass motion(const MotionQuery& query) const override { return columns_->motion(query); }
     Frame frame() override { return columns_->frame(); }
     Sample at(const Vec2& point) const override { return columns_->at(point); }
     /// Without faces: no force is known.

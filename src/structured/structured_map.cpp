@@ -94,6 +94,20 @@ void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, dou
     }
 }
 
+Index StructuredMap::fronts(const StructuredBody& body, const WaterFlow* water, double since, double speed) const {
+    Index count = 0;
+    for (const Index tile : tiles_) {
+        const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
+        for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, ny_); ++j)
+            for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, nx_); ++i) {
+                const Peak& peak = peaks_[body.grid.at(i, j)];
+                if (!(peak.depth > footprint_depth_) || peak.arrival < since) continue;
+                count += on_node(body, water, i, j).velocity.norm() > speed;
+            }
+    }
+    return count;
+}
+
 bool StructuredMap::touches(const StructuredBody& body, Index i, Index j) {
     const Index tile = (j + kTile) / kTile * body.grid.tiles_x() + (i + kTile) / kTile;
     return body.active.in_work[static_cast<std::size_t>(tile)] != 0;

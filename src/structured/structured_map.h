@@ -28,6 +28,8 @@ public:
     /// threads.
     void note(const StructuredBody& body, const WaterFlow* water, double time);
     const Sums& sums() const { return sums_; }
+    /// Nodes that are covered since a time at most, and where material is faster than `speed` (MovingMass::fronts).
+    Index fronts(const StructuredBody& body, const WaterFlow* water, double since, double speed) const;
     double footprint_depth() const { return footprint_depth_; }
     /// How fast what moves along the map with (vx, vy) at a node climbs [m/s].
     double climb(Index node, double vx, double vy) const { return vx * path_.x[node] + vy * path_.y[node]; }

@@ -249,6 +249,20 @@ double WaterFlow::surface(Index i, Index j) const {
     return body_.datum + body_.bed[k] + body_.confined[k] + body_.now.h[k];
 }
 
+double WaterFlow::volume_faster_than(double speed) const {
+    double depths = 0.0;
+    const TileGrid& grid = body_.grid;
+    for (const Index tile : body_.work) {
+        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+        for (Index j = j0; j < std::min(j0 + kTile, grid.ny()); ++j)
+            for (Index i = i0; i < std::min(i0 + kTile, grid.nx()); ++i) {
+                const WaterState here = at(i, j);
+                if (std::hypot(here.u, here.v) > speed) depths += here.depth;
+            }
+    }
+    return grid.cell() * grid.cell() * depths;
+}
+
 double WaterFlow::volume_residual() const {
     const WaterLedger& l = status_.ledger;
     return status_.volume + l.left + l.infiltrated - l.rained - l.released - status_.volume_given;

@@ -122,6 +122,8 @@ public:
     void advance(double until);
     const WaterStatus& status() const { return status_; }
     const WaterBody& body() const { return body_; }
+    /// Of water that is deeper than a film [m^3].
+    double volume_faster_than(double speed) const;
     /// Depth of confined mass at a node, from the next step on [m]
     void confine(Index i, Index j, double depth) { body_.confined[body_.grid.at(i, j)] = depth; }
     /// The same of its share in the volume and its velocity, for WaterViscosity::solid_gradient.

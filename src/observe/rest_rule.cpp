@@ -1,0 +1,47 @@
+#include "observe/rest_rule.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "solver/simulation.h"
+
+namespace frana {
+namespace {
+
+constexpr double kMovingShare = 0.01;  ///< of the mass: what a deposit may change by
+constexpr double kHold = 0.05;         ///< of the time so far: how long all must be calm
+constexpr double kLook = 0.1 * kHold;  ///< the same between looks
+
+}  // namespace
+
+double RestRule::slow_at(double time) const {
+    return time > 0.0 ? 2.0 * cell_ / time : std::numeric_limits<double>::infinity();
+}
+
+void RestRule::note(const Simulation& simulation) {
+    const Status& now = simulation.status();
+    peak_mean_speed_ = std::max(peak_mean_speed_, now.mean_speed);
+    const bool may_rest = simulation.may_rest();
+    nothing_moves_ = may_rest && now.max_speed_on_map == 0.0;
+    if (now.time < next_look_) return;
+    next_look_ = (1.0 + kLook) * now.time;
+    if (!may_rest || !looks_at_rest(simulation)) calm_since_ = now.time;
+    rests_ = now.time > 0.0 && now.time - calm_since_ >= kHold * now.time;
+}
+
+bool RestRule::looks_at_rest(const Simulation& simulation) const {
+    const Status& now = simulation.status();
+    if (!(now.mean_speed < fraction_ * peak_mean_speed_)) return false;
+    const MovingMass motion = simulation.motion({slow_at(now.time), (1.0 - kHold) * now.time});
+    return motion.share() <= kMovingShare && motion.fronts == 0;
+}
+
+void RestRule::keep(Archive& archive) {
+    Index nothing_moves = nothing_moves_, rests = rests_;
+    archive.numbers("rest", {&peak_mean_speed_, &calm_since_, &next_look_});
+    archive.number("nothing_moves", nothing_moves);
+    archive.number("rests", rests);
+    nothing_moves_ = nothing_moves != 0, rests_ = rests != 0;
+}
+
+}  // namespace frana

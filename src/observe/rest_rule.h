@@ -1,0 +1,55 @@
+#pragma once
+// When a run is over: what still moves can change the deposit no more. One rule for every model.
+//
+// As a run is judged by its deposit on cells, the question is what would change in as much time again. Material that is
+// braked evenly and stops then goes v t / 2: less than a cell when v < 2 cells / t, t being the time so far. So
+// - the mean speed is below a share of its peak (time.rest_fraction): the flow has been, and is not about to begin;
+// - no more than a hundredth of the mass is faster than 2 cells / t;
+// - where material lately came for the first time it is slower than that too: no front runs on, however thin;
+// - and all this for a twentieth of t, since friction may hold for a moment what goes on.
+// Nothing at all in motion is rest at once.
+#include "base/types.h"
+#include "observe/archive.h"
+
+namespace frana {
+
+class Simulation;
+
+/// What moves at one moment.
+struct MovingMass {
+    double mass = 0.0;     ///< of all material [kg]
+    double moving = 0.0;   ///< of that which is faster than was asked for [kg]
+    double fastest = 0.0;  ///< of all, along the map [m/s]
+    Index fronts = 0;      ///< nodes deeper than the footprint depth that were so never before `since`, and are faster too
+
+    double share() const { return mass > 0.0 ? moving / mass : 0.0; }
+};
+
+struct MotionQuery {
+    double faster_than = 0.0;  ///< speed along the map [m/s]
+    double since = 0.0;        ///< [s]
+};
+
+class RestRule {
+public:
+    /// `cell` of the terrain [m]; `fraction` is time.rest_fraction.
+    RestRule(double cell, double fraction) : cell_(cell), fraction_(fraction) {}
+
+    /// At the start and after every step. Looks at the material only when its mean speed is low, and then a few hundred times
+    /// while the time doubles: the answer depends on the steps alone, not on when a frame is wanted.
+    void note(const Simulation& simulation);
+    bool at_rest() const { return nothing_moves_ || rests_; }
+    /// What is slower does not count as moving, at a time [s] of the run [m/s].
+    double slow_at(double time) const;
+    void keep(Archive& archive);
+
+private:
+    bool looks_at_rest(const Simulation& simulation) const;
+
+    double cell_, fraction_;
+    double peak_mean_speed_ = 0.0;  ///< [m/s]
+    double calm_since_ = 0.0, next_look_ = 0.0;  ///< [s]
+    bool nothing_moves_ = false, rests_ = false;
+};
+
+}  // namespace frana

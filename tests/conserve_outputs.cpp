@@ -1,0 +1,91 @@
+// What is looked at does not change what happens: a run has the same bits whatever the time between its frames.
+#include <sstream>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "memory_archive.h"
+#include "observe/run_loop.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+/// A slab in a gully three cells wide that comes to rest in part: points split, merge, leave, and sleep.
+Scene gully() {
+    Scene scene = scene_on(61, 25, 5.0, [](double x, double y) {
+        const double rest = std::max(0.0, 230.0 - x), across = std::min(15.0, std::abs(y - 60.0));
+        return 1.1e-3 * rest * rest + 0.02 * across * across;
+    });
+    scene.bed_law = bed::Voellmy{0.2, 400.0};
+    scene.rheology = rheology::Bingham{200.0, 50.0};
+    fill(scene, [](double x, double y) { return x > 20 && x < 90 && y > 40 && y < 80 ? 1.5 : 0.0; });
+    return scene;
+}
+
+/// Notes down when frames are, and whether they are whole.
+class Times final : public Observer {
+public:
+    explicit Times(std::vector<double>& times) : times_(times) {}
+    std::string name() const override { return "times"; }
+    void see(const Frame& frame) override {
+        times_.push_back(frame.status.time);
+        double mass = 0.0;
+        const Field& masses = *frame.particle("mass");
+        for (Index p = 0; p < masses.count; ++p) mass += masses.data[p];
+        if (times_.size() == 1) whole_ = mass;
+        CHECK(mass + frame.status.mass_left == Approx(whole_).epsilon(1e-12));
+    }
+
+private:
+    std::vector<double>& times_;
+    double whole_ = 0.0;
+};
+
+struct Outcome {
+    std::map<std::string, MemoryArchive::Entry> state;
+    std::vector<double> frames;
+    RunSummary summary;
+};
+
+Outcome run_with(const Scene& scene, double every, double end) {
+    Outcome outcome;
+    DepthAveraged simulation(scene);
+    Observers observers;
+    observers.push_back(std::make_unique<Times>(outcome.frames));
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::silent, scene.density);
+    outcome.summary = run(simulation, {end, every, false}, observers, Interrupt(), progress);
+    MemoryArchive archive;
+    simulation.keep(archive);
+    outcome.state = archive.entries();
+    return outcome;
+}
+
+}  // namespace
+
+TEST_CASE("A run has the same bits whatever the time between its frames, which are hit exactly", "[conserve]") {
+    constexpr double kEnd = 40.0;
+    for (const Scheme& scheme : {Scheme{}, [] { Scheme s; s.precision = Precision::single; return s; }()}) {
+        Scene scene = gully();
+        scene.scheme = scheme;
+        const Outcome seldom = run_with(scene, 1000.0, kEnd);
+        CHECK(seldom.frames == std::vector<double>{0.0, kEnd});
+        for (const double every : {0.05, 0.7, 5.0}) {  // several in a step, one in a few, rare
+            const Outcome often = run_with(scene, every, kEnd);
+            CAPTURE(every);
+            REQUIRE(often.frames.size() >= 8);
+            for (std::size_t k = 0; k + 1 < often.frames.size(); ++k)
+                REQUIRE(often.frames[k] == static_cast<double>(k) * every);
+            CHECK(often.frames.back() == kEnd);
+            CHECK(often.summary.steps == seldom.summary.steps);
+            CHECK(often.summary.extremes.max_speed == seldom.summary.extremes.max_speed);
+            REQUIRE(often.state.size() == seldom.state.size());
+            for (const auto& [name, entry] : seldom.state) {
+                if (name.rfind("clock", 0) == 0) continue;  // wall time
+                INFO(name);
+                CHECK((often.state.at(name) == entry));
+            }
+        }
+    }
+}
