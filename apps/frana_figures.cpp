@@ -50,6 +50,14 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
     }
 }
 
+/// How many barriers a table of the case has made: one, or with `each` one for each polygon of its outline.
+std::size_t made_by(const CaseFile& run_case, const std::string& table, const FigureSource& source) {
+    if (!run_case.flag(table + "each") || source.bed.values.empty()) return 1;
+    std::vector<std::string> said_by_the_run;
+    const fs::path outline = run_case.path(table + "outline");
+    return GdalReader().read_polygons(outline, source.bed.crs_wkt, said_by_the_run).parts.size();
+}
+
 /// Lines, points and the survey, from the case in full. Files that it names may have gone; a survey that has
 /// is left out.
 void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::string>& warnings) {
@@ -70,7 +78,7 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         BarrierTop top;
         if (run_case.has(table + "top")) top.level = run_case.number(table + "top");
         else if (run_case.has(table + "height")) top.height = run_case.number(table + "height");
-        source.barrier_tops.push_back(top);
+        source.barrier_tops.resize(source.barrier_tops.size() + made_by(run_case, table, source), top);
     }
     if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;
     const fs::path survey = run_case.path("survey.footprint");

@@ -47,15 +47,18 @@ void keep_case(const CaseFile& file, const fs::path& run_dir) {
     write_text(run_dir / "resolved.toml", resolved_toml(file));
 }
 
-/// For pictures, which are drawn again when the files that the case names may have gone.
-void keep_meshes(const CaseFile& file, const fs::path& run_dir) {
-    BarrierMeshes meshes(static_cast<std::size_t>(file.count("barrier")));
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const std::string prefix = fmt::format("barrier.{}.", i);
+/// For pictures, which are drawn again when the files that the case names may have gone. A table of the case may have
+/// made several barriers, but then it is no mesh: those with a mesh come in the same order here and there.
+void keep_meshes(const CaseFile& file, const Scene& scene, const fs::path& run_dir) {
+    BarrierMeshes meshes(scene.barriers.size());
+    std::size_t i = 0;
+    for (Index table = 0; table < file.count("barrier"); ++table) {
+        const std::string prefix = fmt::format("barrier.{}.", table);
         if (!file.given(prefix + "mesh")) continue;
+        while (!scene.barriers.at(i).shape) ++i;
         Vec3 origin(0, 0, 0);
         if (file.given(prefix + "origin")) origin = Vec3(file.numbers(prefix + "origin").data());
-        meshes[i] = std::make_shared<TriangleMesh>(barrier_triangles(file.path(prefix + "mesh"), origin));
+        meshes[i++] = std::make_shared<TriangleMesh>(barrier_triangles(file.path(prefix + "mesh"), origin));
     }
     write_barrier_meshes(run_dir, meshes);
 }
@@ -98,7 +101,7 @@ int run_command(const RunOptions& options) {
         prepare_run_folder(run_dir, inputs, overwrite);
     }
     keep_case(file, run_dir);
-    if (scene.output.vtk) keep_meshes(file, run_dir);
+    if (scene.output.vtk) keep_meshes(file, scene, run_dir);
     CheckpointKeeper keeper(run_dir, labels, std::chrono::duration<double>(60.0 * scene.output.checkpoint_minutes),
                             std::move(kept));
 

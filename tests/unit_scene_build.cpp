@@ -446,3 +446,35 @@ TEST_CASE("A depth raster is interpolated on finer cells: no steps, each pixel's
         CHECK(volume[static_cast<std::size_t>(k)] ==
               Approx(400.0 * gis.rasters["depth.tif"].values[static_cast<std::size_t>(k)]).epsilon(round_off));
 }
+
+TEST_CASE("Each polygon of a barrier's outline can be its own barrier", "[scene]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["dams.gpkg"] = rectangle(1120, 2050, 1125, 2060);
+    gis.polygons["dams.gpkg"].parts.push_back(rectangle(1120, 2070, 1125, 2080).parts[0]);
+    const auto barriers = [&](const std::string& keys) {
+        return built(with_release("outline = \"release.geojson\"\ndepth = 2.0",
+                                  "[[barrier]]\noutline = \"dams.gpkg\"\nheight = 4\n" + keys),
+                     gis).scene.barriers;
+    };
+    REQUIRE(barriers("").size() == 1);
+    CHECK(barriers("")[0].outline.parts.size() == 2);
+    const std::vector<Barrier> each = barriers("name = \"dam\"\neach = true");
+    REQUIRE(each.size() == 2);
+    CHECK(each[0].name == "dam_1");
+    CHECK(each[1].name == "dam_2");
+    REQUIRE(each[1].outline.parts.size() == 1);
+    CHECK(each[1].outline.parts[0].rings[0][0] == Vec2(1120, 2070));
+    CHECK(each[1].height == 4.0);
+    const std::string release = "outline = \"release.geojson\"\ndepth = 2.0";
+    const auto line = problems_of(
+        with_release(release, "[[barrier]]\nline = [[1120, 2050], [1120, 2060]]\nheight = 4\neach = true\n"), gis);
+    REQUIRE(line.size() == 1);
+    CHECK(line[0].find("each: found without outline") != std::string::npos);
+    const auto same = problems_of(with_release(release,
+                                               "[[barrier]]\noutline = \"dams.gpkg\"\nname = \"dam\"\nheight = 4\n"
+                                               "each = true\n[[barrier]]\noutline = \"dams.gpkg\"\n"
+                                               "name = \"dam_2\"\nheight = 4\n"),
+                                  gis);
+    REQUIRE(same.size() == 1);
+    CHECK(same[0].find("found a barrier \"dam_2\", which barrier.0 has made as well") != std::string::npos);
+}

@@ -163,6 +163,8 @@ void CaseReader::check_barrier(const std::string& prefix) {
     // "left" is what resolved.toml writes for a case that says nothing
     const bool right = case_.given(prefix + "wet") && case_.word(prefix + "wet") == "right";
     const auto said = [&](const std::string& name) { return case_.given(prefix + name) && (name != "wet" || right); };
+    if (case_.given(prefix + "each") && case_.flag(prefix + "each") && !there("outline"))
+        wrong(prefix + "each", "found without outline", "expected it with outline only", "remove it");
     if (there("mesh")) {
         for (const char* name : {"outline", "line", "wet", "thickness", "height", "top"})
             if (said(name))

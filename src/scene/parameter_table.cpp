@@ -54,8 +54,8 @@ void add_release(Table& table) {
         "the outline, or the whole terrain"));
     Parameter depth =
         make("release.depth", Kind::number_or_path, "m",
-             "depth of the release, or a raster of it (interpolated on finer cells), or \"field:NAME\": an attribute of "
-             "the outline's features");
+             "depth of the release, or a raster of it (interpolated on finer cells), or \"field:NAME\": an attribute "
+             "of the outline's features");
     depth.range = positive;
     table.push_back(absent(instead(depth, "release.surface"), "surface is needed"));
     table.push_back(absent(

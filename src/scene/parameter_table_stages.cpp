@@ -70,6 +70,9 @@ void add_barriers(Table& table) {
                             "polygons on which the barrier stands with vertical walls: any OGR vector file"),
                        "barrier.line"),
                "line is needed"));
+    table.push_back(flag("barrier.each", false,
+                         "every polygon of the outline is a barrier of its own, NAME_1, NAME_2, ...; otherwise all are "
+                         "one"));
     Parameter line = make("barrier.line", Kind::points, "m",
                           "foot of a wall's face that material comes to: [[x, y], [x, y], ...]");
     line.length = 2;

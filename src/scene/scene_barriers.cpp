@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
 #include "scene/scene_parts.h"
@@ -56,7 +57,12 @@ public:
         if (given("height")) barrier.height = case_.number(prefix_ + "height");
         barrier.friction = case_.number(prefix_ + "friction");
         barrier.stuck = case_.flag(prefix_ + "stuck");
-        scene_.barriers.push_back(std::move(barrier));
+        if (!case_.flag(prefix_ + "each")) return scene_.barriers.push_back(std::move(barrier));
+        for (std::size_t n = 0; n < barrier.outline.parts.size(); ++n) {
+            scene_.barriers.push_back(barrier);
+            scene_.barriers.back().name = fmt::format("{}_{}", barrier.name, n + 1);
+            scene_.barriers.back().outline.parts = {barrier.outline.parts[n]};
+        }
     }
 
 private:
@@ -131,13 +137,23 @@ private:
 
 void read_barriers(const CaseFile& file, const GisReader& reader, const MeshReader& meshes, Scene& scene,
                    Problems& problems) {
-    constexpr Index kMost = 24;  // with the ground and the sides, within the surfaces that points can tell apart
-    if (file.count("barrier") > kMost)
-        problems.add(file.table_place(fmt::format("barrier.{}", kMost)),
-                     fmt::format("found {} barriers", file.count("barrier")),
-                     fmt::format("expected {} at most", kMost), "put several polygons into one outline");
+    constexpr std::size_t kMost = 24;  // with the ground and the sides, within the surfaces that points can tell apart
     BarrierReader barriers(file, reader, meshes, scene, problems);
-    for (Index i = 0; i < file.count("barrier"); ++i) barriers.read(i);
+    std::map<std::string, Index> tables;
+    for (Index i = 0; i < file.count("barrier"); ++i) {
+        const std::size_t before = scene.barriers.size();
+        barriers.read(i);
+        const std::string place = file.table_place(fmt::format("barrier.{}", i));
+        if (before <= kMost && scene.barriers.size() > kMost)
+            problems.add(place, fmt::format("found {} barriers up to here", scene.barriers.size()),
+                         fmt::format("expected {} at most", kMost),
+                         "put several polygons into one barrier, without each");
+        for (std::size_t n = before; n < scene.barriers.size(); ++n)
+            if (const auto [first, is_new] = tables.emplace(scene.barriers[n].name, i); !is_new && first->second != i)
+                problems.add(place, fmt::format("found a barrier \"{}\", which barrier.{} has made as well",
+                                                scene.barriers[n].name, first->second),
+                             "expected names that differ", "give another name");
+    }
 }
 
 }  // namespace frana
