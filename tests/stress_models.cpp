@@ -185,6 +185,10 @@ TEST_CASE("Scenes of other models that once broke an invariant break none", "[st
         {Model::mixture, 2, 362, "water.profile_factor", "3.0"},
         // Affine transfers where streams of columns meet.
         {Model::structured, 2, 97, "material.structure.young_modulus", "165676880.48915252"},
+        // Points that began inside a barrier were pushed onto it.
+        {Model::solid_flow, 2, 156, "stage#0.transfer", "\"flip\""},
+        {Model::solid_flow, 2, 523, "barrier#0.height", "43.16820509186893"},
+        {Model::staged, 2, 400, "barrier#0.height", "36.71209067597749"},
         // A block that goes under a lake.
         {Model::water, 2, 623, "water.level", "270.26186061017535"},
         {Model::water, 2, 1169, "water.level", "250.85933892752848"},

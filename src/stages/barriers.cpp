@@ -98,6 +98,14 @@ double top_of(const Surface& barrier, const Vec2& place) {
     return barrier.prism->inside({place.x(), place.y(), top - 1.0}) ? top : -std::numeric_limits<double>::infinity();
 }
 
+void stand_on_barriers(FlowColumns& columns, const std::vector<Surface>& surfaces) {
+    for (const Surface& surface : surfaces) {
+        if (!surface.is_barrier()) continue;
+        for (std::size_t k = 0; k < columns.count(); ++k)
+            columns.bed[k] = std::max(columns.bed[k], top_of(surface, {columns.x[k], columns.y[k]}));
+    }
+}
+
 Prism solid_of(const Barrier& barrier, const Raster& bed, double cell) {
     Polygons outline = barrier.outline;
     if (!barrier.line.empty()) {

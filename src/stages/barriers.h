@@ -2,6 +2,7 @@
 // Barriers as both models see them.
 #include <vector>
 
+#include "convert/flow_columns.h"
 #include "observe/observer.h"
 #include "scene/scene.h"
 #include "solid/solid_flow.h"
@@ -22,6 +23,10 @@ Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);
 
 /// Elevation of a barrier's top at a place of the map; minus infinity beside it [m].
 double top_of(const Surface& barrier, const Vec2& place);
+
+/// Columns within a barrier's outline stand on it, which is ground to them: points inside it would be pushed out and gain
+/// what that lifts them.
+void stand_on_barriers(FlowColumns& columns, const std::vector<Surface>& surfaces);
 
 /// A column's place in the map [m], and what it reaches up to and holds there.
 struct ColumnAt {

@@ -77,7 +77,7 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
         SolidScene space = solid_scene(scene_, start_);
         FlowColumns columns = columns_at(inside);
         take_start_pressure(columns, scene_);
-        space.points = seeds_of_window(columns);
+        space.points = seeds_of_window(columns, space.surfaces);
         points_ = std::make_unique<SolidFlow>(space);
         points_->start_at(scene_.solid->from);
         points_->note_departed();
@@ -115,9 +115,10 @@ void StagedRun::require_room(const FlowColumns& columns) const {
                     scene_.solid->spacing, points, points * bytes / 1e9, free / 1e9));
 }
 
-SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns) const {
-    const FlowColumns parts =
+SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) const {
+    FlowColumns parts =
         in_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell, scene_.bed, reach_of(scene_));
+    stand_on_barriers(parts, surfaces);
     require_room(parts);
     return seeds_of(parts, *scene_.solid);
 }
@@ -144,7 +145,7 @@ void StagedRun::hand_over() {
         FlowColumns columns;
         for (std::size_t k = 0; k < pending_.size(); ++k) columns.take(all, k);
         pending_.clear();
-        points_->add(seeds_of_window(columns));
+        points_->add(seeds_of_window(columns, points_->body().surfaces));
     });
 }
 

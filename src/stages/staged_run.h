@@ -66,7 +66,7 @@ private:
     void show_columns();
     FlowColumns columns_at_edge(std::vector<Mat2>& gradients) const;
     MaterialBeside beside_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const;
-    SolidSeeds seeds_of_window(const FlowColumns& columns) const;
+    SolidSeeds seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) const;
     void require_room(const FlowColumns& columns) const;
     void look(double until);
     void look_for_pieces();

@@ -55,6 +55,8 @@ Watch::Watch(const Facts& facts, const Snapshot& start) : facts_(facts), start_(
     highest_ = facts.highest_rain, lowest_ = kInfinite;
     at_hand_ = start.now.kinetic + facts.release_energy;
     deepest_ = facts.release_depth;
+    for (std::size_t p = 0; p < start.points.mass.size(); ++p)
+        if (start.points.in_space[p]) highest_ = std::max(highest_, start.points.z[p]);
     for (const NodeState& node : start.nodes)
         if (node.wet) highest_ = std::max({highest_, node.surface, node.bed + facts.release_depth});
     note_extremes(start);
@@ -190,13 +192,15 @@ std::optional<Violation> Watch::speed(const Snapshot& state) {
 /// The point that is farthest beyond; in units of what its place allows.
 std::optional<Violation> Watch::head(const Snapshot& state) {
     if (!facts_.space) return std::nullopt;
-    const double wave = (1.0 + kConvergence) * (start_.fastest() + 2.0 * std::sqrt(facts_.gravity * deepest_));
+    const double steep = facts_.stretch * facts_.stretch * (1.0 + kConvergence);
+    const double wave = steep * (start_.fastest() + 2.0 * std::sqrt(facts_.gravity * deepest_));
+    const double share = std::max(kEnergyShare, facts_.stretch > 1.0 ? steep * steep - 1.0 : 0.0);
     double worst = 0.0, found = 0.0, allowed = 1.0;
     for (std::size_t p = 0; p < state.points.mass.size(); ++p) {
         if (!state.points.in_space[p]) continue;
         const double z = state.points.z[p], fall = std::max(0.0, highest_ - z);
         const double above = z - highest_ + 0.5 * state.points.speed[p] * state.points.speed[p] / facts_.gravity;
-        const double most = 0.5 * wave * wave / facts_.gravity + kEnergyShare * fall + facts_.space_cell;
+        const double most = 0.5 * wave * wave / facts_.gravity + share * fall + facts_.space_cell + facts_.one_cell_drop;
         if (above <= worst * most) continue;
         worst = above / most, found = above, allowed = most;
     }

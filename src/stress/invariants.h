@@ -75,7 +75,9 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   so that columns part from it by what that gets wrong (speeds of up to three times the bound have been seen).
 /// head (points in space): z + V^2 / 2g of each point is no higher than the highest surface of the start, and above it the
 ///   head of a front, (1 + kConvergence)^2 (v0 + 2 sqrt(g h))^2 / 2g with v0 and h of `speed`, `kEnergyShare` of what the
-///   point has fallen, and a cell of the grid in space, within which the ground's height is not told apart.
+///   point has fallen, and a cell of the grid in space, within which the ground's height is not told apart. In runs that
+///   have columns as well, points begin up to a cell of the terrain up a slope from their column, and with the speed that
+///   its path gave it: the drop of a cell, and the `stretch` of `speed`, come on top.
 /// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
 ///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
 ///   as high as round-off, 2 sqrt(g e) (Ritter 1892), where the fit met the level; otherwise than one as high as its
