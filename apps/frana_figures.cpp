@@ -9,8 +9,10 @@
 
 #include "base/error.h"
 #include "frana_commands.h"
+#include "frana_cutoff.h"
 #include "frana_figures.h"
 #include "frana_run_film.h"
+#include "frana_run_folder.h"
 #include "frana_run_space.h"
 #include "io/gdal_reader.h"
 #include "vtk_io/reader.h"
@@ -201,6 +203,17 @@ FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>
 }
 
 int figures_command(const FiguresOptions& options) {
+    const auto interrupted = [&] {
+        std::cerr << fmt::format("interrupted; the pictures that are there are whole; `frana figures {}` "
+                                 "draws all again\n",
+                                 options.run_dir.string())
+                  << std::flush;
+    };
+    const Cutoff cutoff([&, add = adding_to_files(options.run_dir)] {
+        remove_half_written(options.run_dir);
+        add();
+        interrupted();
+    });
     std::vector<std::string> warnings;
     FigureSource source = read_finished_run(options.run_dir, warnings);
     source.width = options.width;
@@ -216,7 +229,9 @@ int figures_command(const FiguresOptions& options) {
     }
     for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
     for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
-    return 0;
+    if (!Cutoff::asked()) return 0;
+    interrupted();
+    return 130;
 }
 
 }  // namespace frana

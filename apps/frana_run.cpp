@@ -118,6 +118,7 @@ int run_command(const RunOptions& options) {
 
     if (!options.quiet) std::cout << closing_lines(record, run_dir) << std::flush;
     if (record.summary.failure) std::rethrow_exception(record.summary.failure);
+    if (record.pictures_cut_off) throw Interrupted(cutoff_sentence(run_dir));
     return record.summary.reason == "interrupted" ? 130 : 0;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "compare/overlap.h"
+#include "frana_cutoff.h"
 #include "frana_run_charts.h"
 #include "frana_run_film.h"
 #include "frana_run_space.h"
@@ -122,6 +123,7 @@ void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
 
 void attempt(const FigureSource& source, const DrawnFigure& figure, std::vector<DrawnFigure>& figures,
              std::vector<std::string>& warnings, const Draw& draw) {
+    if (Cutoff::asked()) return;
     const fs::path png = source.run_dir / figure.path;
     std::string why_not;
     try {

@@ -48,7 +48,8 @@ void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
 /// Draws into a PNG; false with a reason when that is not possible.
 using Draw = std::function<bool(const std::filesystem::path& png, std::string& why_not)>;
 
-/// Makes one figure and notes it down, or a warning with the reason why there is none.
+/// Makes one figure and notes it down, or a warning with the reason why there is none. Once an end was asked for
+/// (frana_cutoff.h): nothing.
 void attempt(const FigureSource& source, const DrawnFigure& figure, std::vector<DrawnFigure>& figures,
              std::vector<std::string>& warnings, const Draw& draw);
 

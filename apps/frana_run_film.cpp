@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "frana_cutoff.h"
 #include "vtk_io/film.h"
 #include "vtk_io/filmstrip.h"
 #include "vtk_io/reader.h"
@@ -73,8 +74,10 @@ bool make_film(const fs::path& film, Index count, std::string& why_not,
     why_not = no_film_reason();
     if (!why_not.empty()) return false;
     FilmReel reel(film);
-    for (Index k = 0; k < count; ++k)
+    for (Index k = 0; k < count; ++k) {
+        if (Cutoff::asked()) return why_not = "the program was interrupted", false;
         if (!draw(k, reel.next())) return false;
+    }
     constexpr double seconds = 8.0, slowest = 2.0, fastest = 25.0;
     return reel.join(std::clamp(static_cast<double>(count) / seconds, slowest, fastest), why_not);
 }

@@ -142,25 +142,6 @@ bool grows(const ProductKind& kind) {
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);
 }
 
-/// A product that a killed process was writing when it died has a name like ".peak_depth.tmp4711.tif".
-void remove_half_written(const fs::path& run_dir) {
-    static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*)?");
-    std::error_code ignored;
-    for (const ProductKind& kind : product_kinds()) {
-        const std::regex product(kind.pattern);
-        std::vector<fs::path> found;
-        for (const fs::path& folder : folders_of(run_dir, kind))
-            for (const auto& entry : fs::directory_iterator(run_dir / folder, ignored)) {
-                const std::string name = entry.path().filename().string();
-                std::smatch parts;
-                if (std::regex_match(name, parts, half_written) &&
-                    std::regex_match(parts[1].str() + parts[2].str(), product))
-                    found.push_back(entry.path());
-            }
-        for (const fs::path& file : found) fs::remove(file, ignored);
-    }
-}
-
 /// By run.json: what its list lacks or, when the run did not end, what was there before it. Without a run.json
 /// that says so, all files are others'.
 OtherFiles other_files(const fs::path& run_dir) {
@@ -236,6 +217,27 @@ std::string names_of(const fs::path& run_dir, const std::vector<fs::path>& files
 
 }  // namespace
 
+/// A product that a killed process was writing when it died has a name like ".peak_depth.tmp4711.tif".
+void remove_half_written(const fs::path& run_dir) {
+    static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*)?");
+    std::error_code ignored;
+    for (const ProductKind& kind : product_kinds()) {
+        const std::regex product(kind.pattern);
+        std::vector<fs::path> found;
+        for (const fs::path& folder : folders_of(run_dir, kind))
+            for (const auto& entry : fs::directory_iterator(run_dir / folder, ignored)) {
+                const std::string name = entry.path().filename().string();
+                std::smatch parts;
+                if (std::regex_match(name, parts, half_written) &&
+                    std::regex_match(parts[1].str() + parts[2].str(), product))
+                    found.push_back(entry.path());
+            }
+        for (const fs::path& file : found) fs::remove(file, ignored);
+    }
+    for (const char* film : {"film_depth.mp4", "film_depth.gif", "film_points.mp4", "film_points.gif"})
+        fs::remove_all(run_dir / "figures" / (std::string(film) + ".part"), ignored);
+}
+
 std::vector<Product> products_in(const fs::path& run_dir) {
     const OtherFiles others = other_files(run_dir);
     std::vector<Product> products;
@@ -303,19 +305,25 @@ void prepare_run_folder(const fs::path& run_dir, const std::vector<fs::path>& in
 
 void clear_for_resume(const fs::path& run_dir) { clear(run_dir, other_files(run_dir), grows); }
 
+std::function<void()> adding_to_files(const fs::path& run_dir) {
+    return [run_dir, others = other_files(run_dir)] {
+        Json record = read_record(run_dir);
+        if (!has_list(record)) return;
+        std::vector<std::string> made = record["files"];
+        for (const fs::path& file : files_named_like_products(run_dir))
+            if (!is_others(others, run_dir, file)) made.push_back(relative_to(run_dir, file));
+        std::sort(made.begin(), made.end());
+        made.erase(std::unique(made.begin(), made.end()), made.end());
+        if (record["files"] == Json(made)) return;
+        record["files"] = made;
+        write_text(run_dir / "run.json", record.dump(2) + "\n");
+    };
+}
+
 void add_to_files(const fs::path& run_dir, const std::function<void()>& work) {
-    const OtherFiles others = other_files(run_dir);
+    const std::function<void()> add = adding_to_files(run_dir);
     work();
-    Json record = read_record(run_dir);
-    if (!has_list(record)) return;
-    std::vector<std::string> made = record["files"];
-    for (const fs::path& file : files_named_like_products(run_dir))
-        if (!is_others(others, run_dir, file)) made.push_back(relative_to(run_dir, file));
-    std::sort(made.begin(), made.end());
-    made.erase(std::unique(made.begin(), made.end()), made.end());
-    if (record["files"] == Json(made)) return;
-    record["files"] = made;
-    write_text(run_dir / "run.json", record.dump(2) + "\n");
+    add();
 }
 
 }  // namespace frana

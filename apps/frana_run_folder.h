@@ -53,8 +53,14 @@ void prepare_run_folder(const std::filesystem::path& run_dir,
 /// killed; series and tables stay, for the run to go on with. Throws UserError as above.
 void clear_for_resume(const std::filesystem::path& run_dir);
 
-/// Does `work`, then adds what it made in the folder of a finished run to the list in its run.json. A run.json
-/// without such a list is left as it is.
+/// Removes what a process was writing when it was cut off: half-written files and the pictures of unfinished films.
+void remove_half_written(const std::filesystem::path& run_dir);
+
+/// To call once work on the folder of a finished run is done: adds what has come since to the list in its run.json. A
+/// run.json without such a list is left as it is.
+std::function<void()> adding_to_files(const std::filesystem::path& run_dir);
+
+/// Does `work`, then that.
 void add_to_files(const std::filesystem::path& run_dir, const std::function<void()>& work);
 
 }  // namespace frana

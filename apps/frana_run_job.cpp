@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iostream>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compare/flow_width.h"
 #include "frana_comparison.h"
+#include "frana_cutoff.h"
 #include "frana_run_figures.h"
 #include "frana_run_film.h"
 #include "frana_run_folder.h"
@@ -114,7 +116,42 @@ FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const Ru
     return source;
 }
 
+void close_record(RunRecord& record, const fs::path& run_dir) {
+    write_text(run_dir / "report.md", report_markdown(record, run_dir));
+    record.files = files_made(run_dir);
+    write_text(run_dir / "run.json", run_json(record));  // last: until then it says which files are not the run's
+}
+
+void note_cutoff(RunRecord& record, const fs::path& run_dir) {
+    record.pictures_cut_off = true;
+    record.warnings.push_back(fmt::format("interrupted while pictures were drawn; `frana figures {}` draws all of them",
+                                          run_dir.string()));
+}
+
+/// The pictures that the case asks for. An end that is asked for meanwhile leaves a whole run with fewer of them.
+void draw(const FigureSource& source, const Output& output, RunRecord& record) {
+    const fs::path& run_dir = source.run_dir;
+    const Cutoff cutoff([&run_dir, without = record]() mutable {
+        remove_half_written(run_dir);
+        note_cutoff(without, run_dir);
+        close_record(without, run_dir);
+        std::cerr << cutoff_sentence(run_dir) << std::endl;
+    });
+    if (output.png) record.figures = draw_figures(source, record.warnings);
+    if (!output.film.empty()) {
+        draw_film(source, output.film, record.figures, record.warnings);
+        draw_space_film(source, output.film, record.figures, record.warnings);
+    }
+    if (Cutoff::asked()) note_cutoff(record, run_dir);
+}
+
 }  // namespace
+
+std::string cutoff_sentence(const fs::path& run_dir) {
+    return fmt::format("interrupted while pictures were drawn; all else of the run is in {0}; `frana figures {0}` "
+                       "draws the pictures",
+                       run_dir.string());
+}
 
 Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vector<BarrierSummary>& barriers,
                          std::vector<ProductRaster>& rasters) {
@@ -172,16 +209,10 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     timed(record.summary, "survey", [&] { compare_with_survey(scene, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {
         if (!scene.output.png && scene.output.film.empty()) return;
-        const FigureSource source = figure_source(scene, run_dir, record, rasters);
-        if (scene.output.png) record.figures = draw_figures(source, record.warnings);
-        if (scene.output.film.empty()) return;
-        draw_film(source, scene.output.film, record.figures, record.warnings);
-        draw_space_film(source, scene.output.film, record.figures, record.warnings);
+        draw(figure_source(scene, run_dir, record, rasters), scene.output, record);
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
-    write_text(run_dir / "report.md", report_markdown(record, run_dir));
-    record.files = files_made(run_dir);
-    write_text(run_dir / "run.json", run_json(record));  // last: until then it says which files are not the run's
+    close_record(record, run_dir);
     return record;
 }
 

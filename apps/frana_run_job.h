@@ -1,6 +1,7 @@
 #pragma once
 // A run once the scene stands and the folder is ready: look on, run, and leave products, figures and report.
 #include <filesystem>
+#include <string>
 
 #include "frana_checkpoint.h"
 #include "frana_products.h"
@@ -13,6 +14,9 @@ namespace frana {
 /// The observers that the scene's output asks for, writing into `run_dir`. `rasters` is filled at the end.
 Observers make_observers(const Scene& scene, const std::filesystem::path& run_dir, std::vector<BarrierSummary>& barriers,
                          std::vector<ProductRaster>& rasters);
+
+/// What is said of a run whose pictures were cut off.
+std::string cutoff_sentence(const std::filesystem::path& run_dir);
 
 /// Runs `simulation` to the scene's end in a prepared folder and leaves everything a run leaves there;
 /// `record` comes from begin_record(). The returned record has the summary, figures and warnings. A
