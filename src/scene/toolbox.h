@@ -48,9 +48,9 @@ public:
     virtual Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                    std::vector<std::string>& log) const = 0;
     /// The same with a number for each polygon, from the attribute of that name.
-    virtual ValuedPolygons read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
-                                                const std::string& crs_wkt, std::vector<std::string>& log) const {
-        static_cast<void>(attribute), static_cast<void>(crs_wkt), static_cast<void>(log);
+    virtual ValuedPolygons read_valued_polygons(const std::filesystem::path& file, const std::string& /*attribute*/,
+                                                const std::string& /*crs_wkt*/,
+                                                std::vector<std::string>& /*log*/) const {
         throw UserError(file.string() + ": attributes cannot be read here");
     }
     /// A surveyed extent on the terrain of `extent` (xmin, ymin, xmax, ymax). Polygons that do not overlap one
