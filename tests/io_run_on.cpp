@@ -1,4 +1,4 @@
-// Real terrain: running on after rest leaves deposit and toe where they are (data read where it lies, skipped when absent).
+// Real terrain: running on after rest leaves deposit and toe where they are (data read where it lies, or skipped).
 #include <fmt/core.h>
 
 #include <fstream>
@@ -19,8 +19,8 @@ Scene scene_of(const std::string& text, const std::filesystem::path& folder) {
     return build_scene(CaseFile::parse(text, folder / "case.toml", {}), GdalReader());
 }
 
-/// What the rule promises: in as much time again less than a hundredth of the volume goes a cell or more, and no node is
-/// covered that has no covered neighbour.
+/// What the rule promises: in as much time again less than a hundredth of the volume goes a cell or more, and no node
+/// is covered that has no covered neighbour.
 void check_rests(const Scene& scene, double latest) {
     const RunOn on = run_on(scene, latest);
     CAPTURE(on.rested, on.moved, on.known, on.toe);
@@ -60,7 +60,7 @@ TEST_CASE("Frank's rock avalanche is at rest when the rule says so", "[real][run
     )", folder->string()), *folder), 400.0);
 }
 
-// Debris in gullies of two to four cells; a disc of 40 m and 4 m at each mapped source but the one at the terrain's edge.
+// Debris in gullies of two to four cells: a disc of 40 m and 4 m at each mapped source but that at the terrain's edge.
 TEST_CASE("Debris flows of Olivares are at rest when the rule says so", "[real][run_on]") {
     const auto folder = shared_data("olivares_east");
     if (!folder) return;
