@@ -3,7 +3,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "memory_archive.h"
+#include "observe/memory_archive.h"
 #include "observe/run_loop.h"
 
 using namespace frana;

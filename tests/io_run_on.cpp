@@ -1,10 +1,7 @@
-// Real terrain: running on after rest leaves deposit and toe where they are (data read where it lies, skipped when absent).
+// Real terrain: running on after rest leaves deposit and toe where they are (data read where it lies, or skipped).
 #include <fmt/core.h>
 
-#include <fstream>
-
 #include "catch.h"
-#include "fresh_folder.h"
 #include "io/gdal_reader.h"
 #include "run_on.h"
 #include "scene/build_scene.h"
@@ -19,8 +16,8 @@ Scene scene_of(const std::string& text, const std::filesystem::path& folder) {
     return build_scene(CaseFile::parse(text, folder / "case.toml", {}), GdalReader());
 }
 
-/// What the rule promises: in as much time again less than a hundredth of the volume goes a cell or more, and no node is
-/// covered that has no covered neighbour.
+/// What the rule promises: in as much time again less than a hundredth of the volume goes a cell or more, and no node
+/// is covered that has no covered neighbour.
 void check_rests(const Scene& scene, double latest) {
     const RunOn on = run_on(scene, latest);
     CAPTURE(on.rested, on.moved, on.known, on.toe);
@@ -58,32 +55,4 @@ TEST_CASE("Frank's rock avalanche is at rest when the rule says so", "[real][run
         outline = "{0}/release.geojson"
         depth = "{0}/release.tif"
     )", folder->string()), *folder), 400.0);
-}
-
-// Debris in gullies of two to four cells; a disc of 40 m and 4 m at each mapped source but the one at the terrain's edge.
-TEST_CASE("Debris flows of Olivares are at rest when the rule says so", "[real][run_on]") {
-    const auto folder = shared_data("olivares_east");
-    if (!folder) return;
-    const FreshFolder own;
-    std::string discs;
-    for (const auto& [x, y] : {std::pair{397138.16, 6306817.61}, {397575.72, 6306418.83}, {396512.29, 6305665.56}}) {
-        std::string ring;
-        for (int n = 0; n <= 48; ++n)
-            ring += fmt::format("{}[{:.3f}, {:.3f}]", n > 0 ? ", " : "", x + 40.0 * std::cos(n % 48 * M_PI / 24.0),
-                                y + 40.0 * std::sin(n % 48 * M_PI / 24.0));
-        discs += fmt::format(R"({}{{"type": "Feature", "properties": {{}}, "geometry": {{"type": "Polygon",
-            "coordinates": [[{}]]}}}})", discs.empty() ? "" : ", ", ring);
-    }
-    const std::filesystem::path outline = own.path() / "sources.geojson";
-    std::ofstream(outline) << R"({"type": "FeatureCollection", "crs": {"type": "name",
-        "properties": {"name": "urn:ogc:def:crs:EPSG::32719"}}, "features": [)" << discs << "]}";
-    check_rests(scene_of(fmt::format(R"(
-        terrain.dem = "{0}/dem.tif"
-        material.density = 2000.0
-        material.bed = {{ law = "voellmy", mu = 0.4, xi = 500.0 }}
-        time.end = 1.0
-        [[release]]
-        outline = "{1}"
-        depth = 4.0
-    )", folder->string(), outline.string()), *folder), 1500.0);
 }

@@ -4,7 +4,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "fake_simulation.h"
-#include "memory_archive.h"
+#include "observe/memory_archive.h"
 #include "observe/run_loop.h"
 #include "run_on.h"
 

@@ -20,7 +20,7 @@ struct MovingMass {
     double mass = 0.0;     ///< of all material [kg]
     double moving = 0.0;   ///< of that which is faster than was asked for [kg]
     double fastest = 0.0;  ///< of all, along the map [m/s]
-    Index fronts = 0;      ///< nodes deeper than the footprint depth that were so never before `since`, and are faster too
+    Index fronts = 0;      ///< nodes that are faster too, and were first deeper than the footprint depth after `since`
 
     double share() const { return mass > 0.0 ? moving / mass : 0.0; }
 };
@@ -35,8 +35,8 @@ public:
     /// `cell` of the terrain [m]; `fraction` is time.rest_fraction.
     RestRule(double cell, double fraction) : cell_(cell), fraction_(fraction) {}
 
-    /// At the start and after every step. Looks at the material only when its mean speed is low, and then a few hundred times
-    /// while the time doubles: the answer depends on the steps alone, not on when a frame is wanted.
+    /// At the start and after every step. Looks at the material only when its mean speed is low, and then at most 140
+    /// times while the time doubles. The answer depends on the steps alone, not on when a frame is wanted.
     void note(const Simulation& simulation);
     bool at_rest() const { return nothing_moves_ || rests_; }
     /// What is slower does not count as moving, at a time [s] of the run [m/s].

@@ -133,8 +133,8 @@ RunSummary Loop::run() {
     return summary_;
 }
 
-/// One step, and the outputs on the way. Where the simulation knows its step it is shortened for the end only, never for an
-/// output: what is looked at would change what happens.
+/// One step, and the outputs on the way. Where the simulation knows its step it is shortened for the end only: what is
+/// looked at would change what happens.
 void Loop::step_past_outputs() {
     const double shown = own_steps() ? show_outputs_aside() : time();
     const double output_time = next_output_time();
@@ -148,8 +148,8 @@ void Loop::step_past_outputs() {
     show_frame();
 }
 
-/// Goes to the outputs that the next step would pass, hits and shows them, and comes back to where it was. Returns the time
-/// of the last frame shown, or the present time.
+/// Goes to the outputs that the next step would pass, hits and shows them, and comes back to where it was. Returns the
+/// time of the last frame shown, or the present time.
 double Loop::show_outputs_aside() {
     const double past = std::min(time() + simulation_.longest_step(), plan_.end);
     if (!(next_output_time() < past)) return time();

@@ -196,7 +196,8 @@ void add_run(Table& table) {
     table.push_back(choice("boundary.sides", {"open", "wall"}, "open",
                            "open: mass leaves and is counted; wall: it is held back"));
     table.push_back(required(number("time.end", "s", positive, "simulated time")));
-    table.push_back(flag("time.stop_at_rest", false, "stop when what still moves can change the deposit no more: a hundredth of the mass at most is "
+    table.push_back(flag("time.stop_at_rest", false,
+                         "stop when what still moves can change the deposit no more: a hundredth of the mass at most is "
                          "faster than two cells in the time so far, and no front runs on"));
     table.push_back(number("time.rest_fraction", "1", {0.0, 1.0, true, true}, 0.05,
                            "mean speed, as a share of its peak, above which nothing is taken for rest"));
