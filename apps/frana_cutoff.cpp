@@ -45,9 +45,9 @@ Cutoff::~Cutoff() {
 bool Cutoff::asked() { return signal_arrived != 0; }
 
 void Cutoff::watch() {
-    using namespace std::chrono_literals;
-    constexpr auto kLook = 20ms, kPatience = 1000ms;
-    for (auto waited = 0ms; waited < kPatience; waited += asked() ? kLook : 0ms) {
+    using std::chrono::milliseconds;
+    constexpr milliseconds kNone{0}, kLook{20}, kPatience{1000};
+    for (milliseconds waited = kNone; waited < kPatience; waited += asked() ? kLook : kNone) {
         if (over_) return;
         std::this_thread::sleep_for(kLook);
     }

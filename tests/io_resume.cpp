@@ -187,8 +187,9 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
         sentence = "checkpoint.h5: is damaged, its checksum does not fit";
     }
     SECTION("an earlier end") {
-        arguments += " --until 0.5";
-        sentence = "--until: found 0.5 s; expected at least the 1 s of the state to go on from; give a later time";
+        // The state is that of the last whole step before the end.
+        arguments += " --until 0.01";
+        sentence = "--until: found 0.01 s; expected at least the 0.";
     }
     const Outcome refused = folder.run(arguments);
     CHECK(refused.code == 2);

@@ -78,6 +78,7 @@ private:
     void show_end();
     void give_up(const NumericsError& error);
     bool resume();
+    void require_later_end() const;
     void save_state();
     bool heads_for_the_cut() const;
     double time() const { return simulation_.status().time; }
@@ -170,13 +171,14 @@ double Loop::show_outputs_aside() {
 
 bool Loop::resume() {
     if (!keeper_) return false;
-    return keeper_->load([&](Archive& archive) {
-        keep(archive);
-        if (simulation_.status().time > plan_.end)
-            throw UserError(fmt::format("--until: found {} s; expected at least the {} s of the state to go on from; "
-                                        "give a later time",
-                                        plan_.end, simulation_.status().time));
-    });
+    return keeper_->load([&](Archive& archive) { keep(archive); });
+}
+
+void Loop::require_later_end() const {
+    if (simulation_.status().time > plan_.end)
+        throw UserError(fmt::format("--until: found {} s; expected at least the {} s of the state to go on from; "
+                                    "give a later time",
+                                    plan_.end, simulation_.status().time));
 }
 
 /// The next steps, or the last ones, are shortened for an end that the whole run does not have.
@@ -224,6 +226,7 @@ void Loop::keep(Archive& archive) {
         const Archive::Part part(archive, "simulation");
         simulation_.keep(archive);
     }
+    if (archive.loading()) require_later_end();  // before observers take back what is newer than the state
     for (std::size_t i = 0; i < observers_.size(); ++i) {
         const Archive::Part part(archive, fmt::format("observers/{:03d}", i));
         observers_[i]->keep(archive);
