@@ -82,10 +82,11 @@ void add_check(CLI::App& app, CheckOptions& options, Action& action) {
     command->callback([&] { action = [&] { return check_command(options); }; });
 }
 
-void add_describe(CLI::App& app, std::string& key, Action& action) {
+void add_describe(CLI::App& app, std::string& key, bool& markdown, Action& action) {
     CLI::App* command = app.add_subcommand("describe", "case keys: meaning, unit, range, default");
-    command->add_option("key", key, "a key, a table or the beginning of either; default all");
-    command->callback([&] { action = [&] { return describe_command(key); }; });
+    CLI::Option* wanted = command->add_option("key", key, "a key, a table or the beginning of either; default all");
+    command->add_flag("--markdown", markdown, "the whole table as a page of Markdown (cases/KEYS.md)")->excludes(wanted);
+    command->callback([&] { action = [&] { return describe_command(key, markdown); }; });
 }
 
 void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
@@ -256,6 +257,7 @@ int run_program(int argc, char** argv) {
     ConvergeOptions converge;
     CheckOptions check;
     std::string key;
+    bool markdown = false;
     ParticlesOptions particles;
     ConvertOptions convert;
     FiguresOptions figures;
@@ -269,7 +271,7 @@ int run_program(int argc, char** argv) {
     add_run(app, run, action);
     add_converge(app, converge, action);
     add_check(app, check, action);
-    add_describe(app, key, action);
+    add_describe(app, key, markdown, action);
     add_particles(app, particles, action);
     add_convert(app, convert, action);
     add_figures(app, figures, size, action);

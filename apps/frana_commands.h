@@ -137,7 +137,7 @@ int figures_command(const FiguresOptions& options);      // frana_figures.cpp
 int compare_command(const CompareOptions& options);      // frana_compare.cpp
 int states_command(const StatesOptions& options);        // frana_states_command.cpp
 int check_command(const CheckOptions& options);          // frana_check.cpp
-int describe_command(const std::string& key);            // frana_describe.cpp; empty: every key
+int describe_command(const std::string& key, bool markdown);  // frana_describe.cpp; no key: every key
 int particles_command(const ParticlesOptions& options);  // frana_particles.cpp
 int convert_command(const ConvertOptions& options);      // frana_convert.cpp
 int convert_back(const ConvertOptions& options);         // frana_convert_back.cpp

@@ -5,8 +5,8 @@
 
 namespace frana {
 
-int describe_command(const std::string& key) {
-    std::cout << describe(key);
+int describe_command(const std::string& key, bool markdown) {
+    std::cout << (markdown ? describe_in_markdown() : describe(key));
     return 0;
 }
 

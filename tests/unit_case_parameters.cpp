@@ -1,5 +1,7 @@
 // The parameter table as a whole, and the texts made from it.
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "base/error.h"
 #include "catch.h"
@@ -34,6 +36,28 @@ TEST_CASE("describe selects by key, by table and by beginning", "[case][describe
           std::string::npos);
     CHECK(describe("barrier").find("height above the bed") != std::string::npos);
     CHECK_THROWS_WITH(describe("grid.cel2"), Catch::Contains("did you mean grid.cell?"));
+}
+
+TEST_CASE("cases/KEYS.md is what describe --markdown writes", "[case][describe]") {
+    std::ifstream file(FRANA_SOURCE_DIR "/cases/KEYS.md");
+    std::stringstream kept;
+    kept << file.rdbuf();
+    INFO("frana describe --markdown > cases/KEYS.md");
+    CHECK(kept.str() == describe_in_markdown());
+}
+
+TEST_CASE("Every key is a row of four cells in Markdown", "[case][describe]") {
+    std::istringstream page(describe_in_markdown());
+    std::size_t rows = 0;
+    for (std::string line; std::getline(page, line);) {
+        if (line.compare(0, 3, "| `") != 0) continue;
+        rows += 1;
+        std::size_t bars = 0;
+        for (std::size_t k = 0; k < line.size(); ++k) bars += line[k] == '|' && (k == 0 || line[k - 1] != '\\');
+        CAPTURE(line);
+        CHECK(bars == 5);
+    }
+    CHECK(rows == parameters().size());
 }
 
 TEST_CASE("Every entry of the table is sound", "[case][parameters]") {

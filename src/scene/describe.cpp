@@ -31,21 +31,28 @@ std::string default_text(const Parameter& parameter) {
     return text;
 }
 
+/// When the key counts: the choices that use or need it, and the key that may stand in its place. Empty: always.
+std::vector<std::string> conditions(const Parameter& parameter) {
+    std::vector<std::string> lines;
+    if (!parameter.used_by.empty())
+        lines.push_back(fmt::format("only with {} = {}", parameter.switch_key, listed(parameter.used_by)));
+    if (!parameter.required_by.empty()) {
+        const std::string either =
+            parameter.instead_of.empty() ? "" : " (this or " + parameter.instead_of + ")";
+        lines.push_back(fmt::format("needed by {}{}", listed(parameter.required_by), either));
+    } else if (!parameter.instead_of.empty()) {
+        lines.push_back(fmt::format("not together with {}", parameter.instead_of));
+    }
+    return lines;
+}
+
 std::string entry(const Parameter& parameter) {
     const std::string unit =
         parameter.unit.empty() || parameter.unit == "1" ? "" : " [" + parameter.unit + "]";
     std::string text = fmt::format("{}{}\n    {}\n", parameter.key, unit, parameter.meaning);
     text += fmt::format("    value:   {}\n", parameter.expected());
     text += fmt::format("    default: {}\n", default_text(parameter));
-    if (!parameter.used_by.empty())
-        text += fmt::format("    only with {} = {}\n", parameter.switch_key, listed(parameter.used_by));
-    if (!parameter.required_by.empty()) {
-        const std::string either =
-            parameter.instead_of.empty() ? "" : " (this or " + parameter.instead_of + ")";
-        text += fmt::format("    needed by {}{}\n", listed(parameter.required_by), either);
-    } else if (!parameter.instead_of.empty()) {
-        text += fmt::format("    not together with {}\n", parameter.instead_of);
-    }
+    for (const std::string& condition : conditions(parameter)) text += "    " + condition + "\n";
     return text;
 }
 
@@ -53,6 +60,20 @@ std::string heading(const std::string& table) {
     for (const std::string& repeated : repeated_tables())
         if (table == repeated) return "[[" + table + "]]";
     return "[" + table + "]";
+}
+
+/// A cell of a table in Markdown: a bar would end it, and `<` begins a tag.
+std::string cell(const std::string& text) {
+    std::string safe;
+    for (const char c : text) safe += c == '|' ? "\\|" : c == '<' ? "&lt;" : std::string(1, c);
+    return safe;
+}
+
+std::string row(const Parameter& parameter) {
+    std::string meaning = parameter.meaning;
+    for (const std::string& condition : conditions(parameter)) meaning += "; " + condition;
+    return fmt::format("| `{}` | {} | {} | {} |\n", parameter.name(), cell(meaning), cell(parameter.expected()),
+                       cell(default_text(parameter)));
 }
 
 /// "material" selects material.density and material.bed.law, not materials.x; "material.b" selects both beds.
@@ -85,6 +106,21 @@ std::string describe(const std::string& prefix) {
         near.empty() ? "`frana describe` lists all keys" : "did you mean " + near + "?";
     throw UserError(fmt::format("frana describe: {}: unknown key; a key of the case file is expected; {}",
                                 prefix, way_out));
+}
+
+std::string describe_in_markdown() {
+    std::string text =
+        "# Keys of a case file\n\nWritten by `frana describe --markdown`; the program reads the same table. Numbers are in SI "
+        "units, angles\nin degrees where the key ends in `_deg`. Tables in double brackets may stand several times.\n";
+    std::string table;
+    for (const Parameter& parameter : parameters()) {
+        if (parameter.table() != table) {
+            table = parameter.table();
+            text += fmt::format("\n## `{}`\n\n| Key | Meaning | Value | Default |\n|---|---|---|---|\n", heading(table));
+        }
+        text += row(parameter);
+    }
+    return text;
 }
 
 }  // namespace frana

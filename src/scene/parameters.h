@@ -94,4 +94,7 @@ std::string toml_text(const Value& value);
 /// Throws UserError with the closest key when nothing matches.
 std::string describe(const std::string& prefix);
 
+/// All keys as a page of Markdown, a table for each table of the case file: cases/KEYS.md.
+std::string describe_in_markdown();
+
 }  // namespace frana
