@@ -137,8 +137,8 @@ TEST_CASE("Terrain that is as steep or as high as heights in feet is remarked up
           std::string::npos);
 }
 
-TEST_CASE("Every remark of the table is in the README", "[scene][remarks]") {
-    std::ifstream file(FRANA_SOURCE_DIR "/README.md");
+TEST_CASE("Every remark of the table is in the manual of the commands", "[scene][remarks]") {
+    std::ifstream file(FRANA_SOURCE_DIR "/apps/README.md");
     std::stringstream text;
     text << file.rdbuf();
     for (const RemarkRow& row : remark_table()) {
