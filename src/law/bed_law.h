@@ -125,9 +125,9 @@ inline double speed_after(const bed::Manning& law, const BedState& bed, double s
     return riccati_speed(s0, driven, law.mu * bed.normal_gravity, quadratic, dt);
 }
 
-/// Bingham sheet flow on the bed: backward Euler of the exact closure (bingham_sheet with the time step in b), made
-/// second order by relaxed_speed. Yields exactly: no motion while the bed stress is below the yield stress. THEORY (41)
-/// to (44).
+/// Bingham sheet flow on the bed: backward Euler of the exact closure (bingham_sheet with the time step in b), made second
+/// order by relaxed_speed. Yields exactly: no motion while the bed stress is below the yield stress. THEORY (41) to
+/// (44).
 inline double speed_after(const bed::Bingham& law, const BedState& bed, double s0, double driven, double dt) {
     const double h = bed.thickness, coulomb = law.mu * bed.normal_gravity, left = driven - dt * coulomb;
     if (left <= 0.0) return 0.0;

@@ -200,8 +200,8 @@ enum class Cone { compression, plane_strain };
 
 /// THEORY (21), (22): sand, soil: elastic as above within the cone |s| = alpha (p + p_t) of Drucker and Prager, in
 /// Kirchhoff stress, p_t = c cot(phi). Flow keeps the volume (no dilatancy). At the apex the material parts: it carries
-/// the tension p_t and no more, and the volume it gained has to be closed before it carries pressure again (Tampubolon
-/// et al. 2017, sec. 4.3.4).
+/// the tension p_t and no more, and the volume it gained has to be closed before it carries pressure again
+/// (Tampubolon et al. 2017, sec. 4.3.4).
 struct DruckerPrager {
     static constexpr int kStates = 7;  ///< logarithmic elastic strain; volume gained at the apex, ln J [1]
     static constexpr bool kAverages = false;

@@ -106,8 +106,8 @@ struct Exchange {
 
 /// THEORY (24) to (26): a step of dt [s] of both velocities under forces, drag and virtual mass, stable for any step.
 /// What one gets the other loses, to round-off. The slip follows its equation (mu + chi) dD/dt = mu (F_c / m_c - F_u /
-/// m_u) - h C |D|^(j - 1) D, mu = m_c m_u / (m_c + m_u), exactly for j = 1, and for j = 2 when force and slip are
-/// parallel (else to first order).
+/// m_u) - h C |D|^(j - 1) D, mu = m_c m_u / (m_c + m_u), exactly for j = 1, and for j = 2 when force and slip
+/// are parallel (else to first order).
 void exchange(const Exchange& by, double dt, Phase& c, Phase& u);
 
 }  // namespace frana

@@ -1,6 +1,6 @@
 #pragma once
-// Halving points whose domains have grown, of any model that has columns with the names of columns.h (Points; Held:
-// where what they carry lies).
+// Halving points whose domains have grown, of any model that has columns with the names of columns.h (Points; Held: where
+// what they carry lies).
 #include <algorithm>
 #include <vector>
 
@@ -37,9 +37,8 @@ bool clamp_edge(Real& x, Real& y, double longest) {
     return true;
 }
 
-/// Both edges. A point that splits may have edges twice as long as one that does not: drawn in before it is halved, a
-/// high column that falls apart in a few steps would have its mass back in the middle, and energy that it had turned to
-/// motion.
+/// Both edges. A point that splits may have edges twice as long as one that does not: drawn in before it is halved, a high
+/// column that falls apart in a few steps would have its mass back in the middle, and energy that it had turned to motion.
 template <class Held>
 bool clamp_edges(Held& held, Index p, double longest) {
     const bool first = clamp_edge(held.r1x[p], held.r1y[p], longest);
@@ -63,15 +62,14 @@ bool straighten(Held& held, Index p) {
 template <class Held>
 constexpr double kSameLength = sizeof(*Held().r1x.data()) == sizeof(float) ? 1e-5 : 1e-9;
 
-/// How many points a domain becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one,
-/// or mirror images part.
+/// How many points a domain becomes: 1, 2, or 4 where both edges are equally long. Then round-off must not choose one, or
+/// mirror images part.
 template <class Held>
 int parts_of(const Held& held, Index p, double mass, const HalvingRules& rules) {
     constexpr double same = kSameLength<Held>;
     const Edges e = edges_of(held, p);
     const double l1 = e.length1_2(), l2 = e.length2_2();
-    // Edges are cut to the splitting length where that is a cell or more: it must not take more than round-off to reach
-    // it.
+    // Edges are cut to the splitting length where that is a cell or more: it must not take more than round-off to reach it.
     const bool is_long = std::max(l1, l2) >= (1.0 - same) * rules.length * rules.length;
     if (!is_long || std::abs(e.area()) < 0.1 || mass <= rules.least_mass) return 1;
     return std::abs(l1 - l2) <= same * std::max(l1, l2) ? 4 : 2;
@@ -117,9 +115,9 @@ void halve(Points& c, Held& held, Index p, Index q, bool first, double cell) {
     held.vy[p] += dvy;
 }
 
-/// Only after all halving, or its order would tell. Slopes of linear shapes jump at nodes: on the outermost one a
-/// point's gradient would be of a neighbour that it gives no mass, and on the last of the cell beyond. It stays off
-/// them by more than round-off.
+/// Only after all halving, or its order would tell. Slopes of linear shapes jump at nodes: on the outermost one a point's
+/// gradient would be of a neighbour that it gives no mass, and on the last of the cell beyond. It stays off them by more
+/// than round-off.
 template <class Points>
 void hold_inside(Points& c, Index p, const TileGrid& grid, double off) {
     const auto hold = [&](double& u, Index nodes) { u = std::clamp(u, off, static_cast<double>(nodes - 1) - off); };
@@ -137,8 +135,8 @@ void halve_into(Points& c, Held& held, Index p, Index q, int parts, double cell)
     halve(c, held, q, q + 2, other, cell);
 }
 
-/// Cuts and straightens the domains of all points of tiles awake, and halves those that `may(p)` and are long. New
-/// points are appended; returns how many. The same bits for any number of threads.
+/// Cuts and straightens the domains of all points of tiles awake, and halves those that `may(p)` and are long. New points
+/// are appended; returns how many. The same bits for any number of threads.
 template <class Points, class Held, class May>
 Index halve_points(const TileGrid& grid, ActiveTiles& active, const HalvingRules& rules, Points& c, Held& held,
                    Halves& halves, May&& may) {

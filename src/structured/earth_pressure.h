@@ -19,8 +19,8 @@ struct Rankine {
     double active = 1.0, passive = 1.0;
 };
 
-/// exp(-x) of four numbers from 0 to 700, to round-off: 2^n exp(r), |r| <= ln(2) / 2, whose thirteenth power over 13!
-/// is below 2e-16. ln(2) in two parts (fdlibm's), the first short enough for n times it to be exact.
+/// exp(-x) of four numbers from 0 to 700, to round-off: 2^n exp(r), |r| <= ln(2) / 2, whose thirteenth power over 13! is
+/// below 2e-16. ln(2) in two parts (fdlibm's), the first short enough for n times it to be exact.
 [[gnu::always_inline]] inline Double4 exp_of_minus(Double4 x) {
     const Double4 n = floor(0.5 - 1.4426950408889634 * x);
     const Double4 r = (-x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;

@@ -37,8 +37,8 @@ inline double quadratic_drag(const WaterFriction& friction, const WaterBed& bed)
     return 0.0;
 }
 
-/// The deceleration by viscosity at the bed over the speed, on the map as along the bed, below a flow `thickness`
-/// across the bed [1/s].
+/// The deceleration by viscosity at the bed over the speed, on the map as along the bed, below a flow `thickness` across
+/// the bed [1/s].
 inline double linear_drag(const WaterViscosity& viscosity, double thickness) {
     return viscosity.shear * viscosity.kinematic / (thickness * thickness);
 }
