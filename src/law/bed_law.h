@@ -1,6 +1,7 @@
 #pragma once
 // Bed friction: for each law the exact or implicit solution of one time step. A law only ever slows a node down;
 // it may stop it, it never turns it round, and a node at rest stays at rest to the last bit until driven hard enough.
+// Numbers of equations: src/solver/THEORY.md, section 9.
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -41,7 +42,7 @@ template <class Real>
                 x * (2.0 / 15 + x * (-17.0 / 315 + x * (62.0 / 2835 + x * (-1382.0 / 155925 + x * (21844.0 / 6081075))))));
 }
 
-/// One step of  ds/dt = drive - coulomb - quadratic s^2, exactly (Riccati): with net = drive - coulomb and
+/// THEORY (38): one step of  ds/dt = drive - coulomb - quadratic s^2, exactly (Riccati): with net = drive - coulomb and
 /// T = tangent_ratio(net quadratic dt^2), s = (s0 + net dt T) / (1 + quadratic s0 dt T). `s0`: speed at the start along
 /// the driven direction, `driven`: speed that the drive alone would give at the end. Returns the speed after dt >= 0.
 /// The drive is taken constant over the step: terminal speeds are exact, any dt is stable.
@@ -59,12 +60,12 @@ template <class Real>
     return select((s0 + gain <= 0.0) | (ratio <= 0.0), none, speed);
 }
 
-/// One step of  ds/dt = drive - f(s)  from s0 with f linear about the speed that backward Euler found: its change times
-/// (1 + x) (1 - exp(-x)) / x, x = dt f'. Exact for linear friction, third order for any, for stiff friction backward Euler
-/// itself; a steady speed stays, and what backward Euler stopped stays stopped. f' is taken two thirds of the way, where the
-/// line has the mean of f over the step up to its third derivative. (Not the chord from s0: where granular and yielding beds
-/// leave rest f is steep for a moment, and a small change of s0 would come out a thousand times as large.)
-/// `slope`: f'(s) [1/s] at s > 0.
+/// THEORY (40): one step of  ds/dt = drive - f(s)  from s0 with f linear about the speed that backward Euler found: its
+/// change times (1 + x) (1 - exp(-x)) / x, x = dt f'. Exact for linear friction, third order for any, for stiff
+/// friction backward Euler itself; a steady speed stays, and what backward Euler stopped stays stopped. f' is taken two
+/// thirds of the way, where the line has the mean of f over the step up to its third derivative. (Not the chord from
+/// s0: where granular and yielding beds leave rest f is steep for a moment, and a small change of s0 would come out a
+/// thousand times as large.) `slope`: f'(s) [1/s] at s > 0.
 template <class Slope>
 double relaxed_speed(double s0, double euler, double dt, const Slope& slope) {
     const double change = euler - s0;
@@ -78,7 +79,7 @@ double relaxed_speed(double s0, double euler, double dt, const Slope& slope) {
 /// relative precision.
 struct SheetShares { double plug, sheared; };
 
-/// The root z in (0, 1] of z^3 - (3 + b + d) z + 2 + b = 0, b, d >= 0 (Fois et al. 2024, eq. 5, corrected:
+/// THEORY (43): the root z in (0, 1] of z^3 - (3 + b + d) z + 2 + b = 0, b, d >= 0 (Fois et al. 2024, eq. 5, corrected:
 /// |v| = tau_B h / (6 mu) (2 + z)(1 - z)^2, then b = 0 and d = 6 mu |v| / (tau_Y h)). Near z = 1, where two roots meet,
 /// Newton's method is slow and half the digits are lost; there it runs on y = 1 - z, which solves
 /// 3 y^2 - y^3 + (b + d) y = d. Four steps reach round-off from starts that are right to 6 %.
@@ -101,6 +102,7 @@ template <class Real>
     return driven;
 }
 
+/// THEORY (37)
 template <class Real>
 [[gnu::always_inline]] inline Real speed_after(const bed::Coulomb& law, const BedStateOf<Real>& bed, Real, Real driven,
                                                double dt) {
@@ -108,7 +110,7 @@ template <class Real>
     return max(driven - dt * law.mu * bed.normal_gravity, none);
 }
 
-/// tau = mu sigma_n + rho g |V|^2 / xi (Voellmy 1955)
+/// tau = mu sigma_n + rho g |V|^2 / xi (Voellmy 1955), THEORY (39)
 template <class Real>
 [[gnu::always_inline]] inline Real speed_after(const bed::Voellmy& law, const BedStateOf<Real>& bed, Real s0,
                                                Real driven, double dt) {
@@ -116,7 +118,7 @@ template <class Real>
     return riccati_speed<Real>(s0, driven, law.mu * bed.normal_gravity, quadratic, dt);
 }
 
-/// tau = mu sigma_n + rho g n^2 |V|^2 / h^(1/3)
+/// tau = mu sigma_n + rho g n^2 |V|^2 / h^(1/3), THEORY (39)
 inline double speed_after(const bed::Manning& law, const BedState& bed, double s0, double driven, double dt) {
     const double h = bed.thickness;
     const double quadratic = bed.gravity * law.n * law.n * bed.kappa / (h * std::cbrt(h));
@@ -124,7 +126,8 @@ inline double speed_after(const bed::Manning& law, const BedState& bed, double s
 }
 
 /// Bingham sheet flow on the bed: backward Euler of the exact closure (bingham_sheet with the time step in b), made second
-/// order by relaxed_speed. Yields exactly: no motion while the bed stress is below the yield stress.
+/// order by relaxed_speed. Yields exactly: no motion while the bed stress is below the yield stress. THEORY (41) to
+/// (44).
 inline double speed_after(const bed::Bingham& law, const BedState& bed, double s0, double driven, double dt) {
     const double h = bed.thickness, coulomb = law.mu * bed.normal_gravity, left = driven - dt * coulomb;
     if (left <= 0.0) return 0.0;
@@ -145,6 +148,7 @@ inline double speed_after(const bed::Bingham& law, const BedState& bed, double s
 
 /// mu(I) = mu_s + (mu_2 - mu_s) / (I0/I + 1), I = 5 d |V| / (2 h sqrt(phi g cos(th) h)) from Bagnold's profile
 /// (Jop, Forterre and Pouliquen 2006, depth-averaged); backward Euler is the positive root of a quadratic.
+/// THEORY (45) to (47).
 inline double speed_after(const bed::Pouliquen& law, const BedState& bed, double s0, double driven, double dt) {
     const double h = bed.thickness;
     const double slow = law.i0 * 0.4 * h * std::sqrt(law.solid_fraction * bed.gravity * bed.cosine * h) /

@@ -1,5 +1,5 @@
 #pragma once
-// The step in which bed friction ends a motion.
+// The step in which bed friction ends a motion: src/solver/THEORY.md (48).
 #include "law/bed_law.h"
 
 namespace frana {

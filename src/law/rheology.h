@@ -1,5 +1,6 @@
 #pragma once
 // Stress inside the depth-averaged mass, from the strain rate of a point. Pressure is not part of it.
+// Numbers of equations: src/solver/THEORY.md, section 7.
 #include <cmath>
 
 #include "base/simd.h"
@@ -34,9 +35,9 @@ template <class Real>
     return scaled(s.rate, Real{} + std::fmin(2.0 * law.viscosity, s.cap));
 }
 
-/// Plug share of a Bingham sheet whose bed is braked by nothing else (bingham_sheet with b = 0), to absolute round-off:
-/// y = 1 - plug solves 3 y^2 - y^3 + d (y - 1) = 0. Convex and rising for y < 1; two steps of Halley's method from a start
-/// that is right to 5 % leave 2e-17.
+/// THEORY (25): plug share of a Bingham sheet whose bed is braked by nothing else (bingham_sheet with b = 0), to
+/// absolute round-off: y = 1 - plug solves 3 y^2 - y^3 + d (y - 1) = 0. Convex and rising for y < 1; two steps of
+/// Halley's method from a start that is right to 5 % leave 2e-17.
 template <class Real>
 [[gnu::always_inline]] inline Real plug_share(Real d) {
     d = min(d, Real{} + 1e100);  // squares must not overflow
@@ -48,8 +49,9 @@ template <class Real>
     return 1.0 - y;
 }
 
-/// sigma = (2 mu + tau_Y / sqrt(I2 + floor^2)) eps (Fois et al. 2024, eq. 3, corrected). I2 holds the plane strain
-/// rate, its incompressible vertical part, and the vertical shear 3/(2 + zeta) |v|/h of a Bingham sheet (eq. 4).
+/// THEORY (23), (24): sigma = (2 mu + tau_Y / sqrt(I2 + floor^2)) eps (Fois et al. 2024, eq. 3, corrected). I2 holds
+/// the plane strain rate, its incompressible vertical part, and the vertical shear 3/(2 + zeta) |v|/h of a Bingham
+/// sheet (eq. 4).
 template <class Real>
 [[gnu::always_inline]] inline PlaneOf<Real> stress(const rheology::Bingham& law, const StrainState<Real>& s) {
     if (law.yield_stress <= 0.0) return scaled(s.rate, Real{} + std::fmin(2.0 * law.viscosity, s.cap));

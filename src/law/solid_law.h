@@ -1,6 +1,6 @@
 #pragma once
 // Laws of material in space: stress of a point from its own numbers, and how these change with the
-// deformation. A law is a struct of parameters with
+// deformation. Numbers of equations: src/solid/THEORY.md, section 7. A law is a struct of parameters with
 //
 //   kStates      numbers that a point keeps for it
 //
@@ -56,7 +56,7 @@ template <class Real>
 
 namespace solid {
 
-/// Weakly compressible fluid: p = K (1 - J), never tension (J is cut at 1). Newtonian viscosity.
+/// THEORY (16): weakly compressible fluid, p = K (1 - J), never tension (J is cut at 1). Newtonian viscosity.
 struct Fluid {
     static constexpr int kStates = 0;
     static constexpr bool kAverages = true;
@@ -90,8 +90,8 @@ template <class Real>
     return 0.5 * bulk * pressed * pressed + 0.25 / shear * j * contracted(s, s);
 }
 
-/// The same with a yield stress: an elastic solid of shear modulus G below it, Bingham's fluid above. The
-/// viscous flow is solved in the step, so that any viscosity is stable and material at rest really rests.
+/// THEORY (17), (18): the same with a yield stress: an elastic solid of shear modulus G below it, Bingham's fluid
+/// above. The viscous flow is solved in the step, so that any viscosity is stable and material at rest really rests.
 struct Bingham {
     static constexpr int kStates = 6;  ///< deviatoric stress [Pa]
     static constexpr bool kAverages = true;
@@ -124,8 +124,8 @@ struct Bingham {
     double explicit_viscosity() const { return 0.0; }
 };
 
-/// Herschel and Bulkley's fluid, as Bingham's above, but beyond the yield stress tau = tau_Y + K rate^n: mud thins
-/// with shear, n < 1. In pure shear of rate gamma: tau = tau_Y + K gamma^n.
+/// THEORY (19): Herschel and Bulkley's fluid, as Bingham's above, but beyond the yield stress tau = tau_Y + K rate^n:
+/// mud thins with shear, n < 1. In pure shear of rate gamma: tau = tau_Y + K gamma^n.
 struct HerschelBulkley {
     static constexpr int kStates = 6;  ///< deviatoric stress [Pa]
     static constexpr bool kAverages = true;
@@ -163,8 +163,8 @@ struct HerschelBulkley {
     double explicit_viscosity() const { return 0.0; }
 };
 
-/// Hencky's elastic solid: Kirchhoff stress linear in the logarithmic strain, tau = 2 G e + lambda tr(e) I.
-/// Agrees with the linear theory for small strain, and stays objective for any rotation.
+/// THEORY (20): Hencky's elastic solid, Kirchhoff stress linear in the logarithmic strain, tau = 2 G e + lambda tr(e)
+/// I. Agrees with the linear theory for small strain, and stays objective for any rotation.
 struct Elastic {
     static constexpr int kStates = 6;  ///< logarithmic strain [1]
     static constexpr bool kAverages = false;
@@ -198,8 +198,8 @@ struct Elastic {
 /// both laws agree.
 enum class Cone { compression, plane_strain };
 
-/// Sand, soil: elastic as above within the cone |s| = alpha (p + p_t) of Drucker and Prager, in Kirchhoff
-/// stress, p_t = c cot(phi). Flow keeps the volume (no dilatancy). At the apex the material parts: it carries
+/// THEORY (21), (22): sand, soil: elastic as above within the cone |s| = alpha (p + p_t) of Drucker and Prager, in
+/// Kirchhoff stress, p_t = c cot(phi). Flow keeps the volume (no dilatancy). At the apex the material parts: it carries
 /// the tension p_t and no more, and the volume it gained has to be closed before it carries pressure again
 /// (Tampubolon et al. 2017, sec. 4.3.4).
 struct DruckerPrager {

@@ -3,6 +3,7 @@
 // elastic until it yields, and how yielding breaks it (van den Bout et al. 2021,
 // doi:10.5194/gmd-14-1841-2021, sec. 2.2, with the stress across the bed prescribed by the weight). Tension
 // is positive. Functions are for one column (Real is double) or for four at once (Double4).
+// Numbers of equations: src/structured/THEORY.md.
 #include <cmath>
 
 #include "base/simd.h"
@@ -43,7 +44,7 @@ using ColumnState = ColumnStateOf<double>;
 /// a hexagon.
 enum class ColumnYield { compression, plane_strain, hexagon };
 
-/// What breaks bonds while the column yields, in parts of the critical strain: the plastic dilation in the
+/// THEORY (18): what breaks bonds while the column yields, in parts of the critical strain: the plastic dilation in the
 /// plane, as in the paper; the largest principal plastic strain; or any strain at all, behind an onset, with
 /// what is left decaying exponentially, as in the paper's source code.
 enum class DamageBy { dilation, extension, strain };
@@ -99,11 +100,11 @@ public:
     double strength(double cohesion) const { return k_ * cohesion; }  ///< k [Pa]
     double active() const { return active_; }                         ///< Ka, Rankine's
     double passive() const { return 1.0 / active_; }                  ///< Kp
-    /// Of waves in the plane, zz given: sqrt(E / (rho (1 - nu^2))) [m/s]
+    /// Of waves in the plane, zz given, THEORY (19): sqrt(E / (rho (1 - nu^2))) [m/s]
     double sound_speed(double density) const { return std::sqrt(plane_ / density); }
 
-    /// The step with zz = `weight` [Pa, negative] at its end and the undamaged `cohesion` [Pa]: half the
-    /// turn, the strain, half the turn. Damage of this step weakens the next.
+    /// THEORY (11), (12): the step with zz = `weight` [Pa, negative] at its end and the undamaged `cohesion` [Pa]: half
+    /// the turn, the strain, half the turn. Damage of this step weakens the next.
     template <class Real>
     [[gnu::always_inline]] void update(const ColumnStepOf<Real>& step, Real weight, Real cohesion,
                                        ColumnStateOf<Real>& state) const {
@@ -125,8 +126,8 @@ public:
         state.stress = turned<Real>(s, half);
     }
 
-    /// How far a stress lies outside the yield surface [Pa]: sqrt(J2) + alpha I1 - k, or the largest of the
-    /// hexagon's.
+    /// THEORY (13), (17): how far a stress lies outside the yield surface [Pa]: sqrt(J2) + alpha I1 - k, or the largest
+    /// of the hexagon's.
     template <class Real>
     [[gnu::always_inline]] Real excess(const ColumnStressOf<Real>& s, Real cohesion) const {
         return is_hexagon() ? excess_as<true, Real>(s, cohesion) : excess_as<false, Real>(s, cohesion);
@@ -139,7 +140,7 @@ public:
         return sqrt(0.5 * (x * x + y * y + z * z) + s.xy * s.xy) + alpha_ * first - k_ * cohesion;
     }
 
-    /// Closed-form return of a trial stress in space with invariants sqrt(J2) = q and I1 to the cone of
+    /// THEORY (14): closed-form return of a trial stress in space with invariants sqrt(J2) = q and I1 to the cone of
     /// strength k, its apex included; any dilatancy.
     ConeReturn to_cone(double q, double first, double k) const;
     /// Elastic stress `s`, zz as prescribed, to the yield surface with zz as it is.

@@ -3,6 +3,7 @@
 // virtual mass, buoyancy (Pudasaini 2012, doi:10.1029/2011JF002186; van den Bout et al. 2021,
 // doi:10.5194/gmd-14-1841-2021, eqs. 31 to 39), and the step of their velocities, exact for constant
 // coefficients. The printed equations were reconstructed from the prose and from the literature they cite.
+// THEORY: src/water/THEORY.md.
 #include "base/types.h"
 
 namespace frana {
@@ -30,19 +31,19 @@ struct TwoPhaseMaterial {
     double weighting = 1;  ///< m of P = (solid share)^m between solid-like and fluid-like drag
 };
 
-/// rho_c of solids with their confined water [kg/m^3]
+/// rho_c of solids with their confined water [kg/m^3], THEORY (16)
 double bound_density(const TwoPhaseMaterial& material, const Mixture& mixture);
 
 /// Speeds at which a grain of diameter d [m] settles in still fluid [m/s]: Stokes's, and Zanke's (1977),
 /// which tends to 0.9 of Stokes's for small grains and to sqrt((rho_s / rho_f - 1) g d) for large ones.
 double stokes_velocity(const TwoPhaseMaterial& material, double d);
 double zanke_velocity(const TwoPhaseMaterial& material, double d);
-/// Stokes's below 0.1 mm, Zanke's from there on; in water it falls by an eighth there.
+/// THEORY (22): Stokes's below 0.1 mm, Zanke's from there on; in water it falls by an eighth there.
 double terminal_velocity(const TwoPhaseMaterial& material, double d);
 /// M of Richardson and Zaki (1954), by the particle's Reynolds number: 4.65 to 2.39.
 double richardson_zaki(double reynolds);
 
-/// Drag of both kinds of solids: force per volume on c is C |w|^(j - 1) w, w = u_u - u_c.
+/// THEORY (19) to (21): drag of both kinds of solids, force per volume on c is C |w|^(j - 1) w, w = u_u - u_c.
 class TwoPhaseDrag {
 public:
     explicit TwoPhaseDrag(const TwoPhaseMaterial& material);
@@ -70,7 +71,7 @@ private:
 
 /// Virtual mass that c carries when it speeds up against u, as a number C_VM: Pudasaini's (2012) grows
 /// without bound where there is little free water, Pudasaini and Mergili's (2019, doi:10.1029/2019JF005204)
-/// does not.
+/// does not. THEORY (23).
 enum class VirtualMass { none, unbounded, bounded };
 double virtual_mass_number(VirtualMass law, const TwoPhaseMaterial& material, const Mixture& mixture);
 /// Per area, of a mixture `depth` [m] deep: alpha_c rho_f C_VM h [kg/m^2]
@@ -103,8 +104,8 @@ struct Exchange {
     Vec2 carried{0, 0};
 };
 
-/// A step of dt [s] of both velocities under forces, drag and virtual mass, stable for any step. What one
-/// gets the other loses, to round-off. The slip follows its equation (mu + chi) dD/dt = mu (F_c / m_c - F_u /
+/// THEORY (24) to (26): a step of dt [s] of both velocities under forces, drag and virtual mass, stable for any step.
+/// What one gets the other loses, to round-off. The slip follows its equation (mu + chi) dD/dt = mu (F_c / m_c - F_u /
 /// m_u) - h C |D|^(j - 1) D, mu = m_c m_u / (m_c + m_u), exactly for j = 1, and for j = 2 when force and slip
 /// are parallel (else to first order).
 void exchange(const Exchange& by, double dt, Phase& c, Phase& u);

@@ -1,5 +1,5 @@
 #pragma once
-// The bed as the solver sees it: static, computed once, one number per node and quantity.
+// The bed as the solver sees it: static, computed once, one number per node and quantity. THEORY (5) to (7).
 #include <array>
 
 #include "grid/tile_grid.h"

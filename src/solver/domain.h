@@ -1,5 +1,6 @@
 #pragma once
 // A point's domain: the parallelogram of its edges r1, r2, known to the rest of the scheme by its second moments.
+// THEORY (53).
 #include <cmath>
 
 #include "base/types.h"
@@ -63,9 +64,9 @@ inline Edges rectangle_of(const Moments& s) {
 /// A velocity gradient as the point's own domain feels it.
 struct Gradient { double xx, xy, yx, yy; };
 
-/// The gradient without what a domain narrower than a sixteenth of a cell does not span. Points that converge are
-/// squeezed to such domains, but a node, a cell away, would take their gradient times that cell for motion: a kinetic
-/// energy that no matter has, and that carries a block beyond its stop.
+/// THEORY (12): the gradient without what a domain narrower than a sixteenth of a cell does not span. Points that
+/// converge are squeezed to such domains, but a node, a cell away, would take their gradient times that cell for
+/// motion: a kinetic energy that no matter has, and that carries a block beyond its stop.
 Gradient spanned(const Gradient& c, double r1x, double r1y, double r2x, double r2y);
 
 }  // namespace frana

@@ -92,7 +92,7 @@ bool first_is_longer(const Held& held, Index p) {
     return e.length1_2() >= e.length2_2();
 }
 
-/// Halves point p along one of its edges; the second half becomes point q.
+/// THEORY (54): halves point p along one of its edges; the second half becomes point q.
 template <class Points, class Held>
 void halve(Points& c, Held& held, Index p, Index q, bool first, double cell) {
     using Real = typename decltype(held.r1x)::value_type;

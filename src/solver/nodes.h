@@ -74,7 +74,7 @@ struct Nodes {
     LazyArray<std::uint8_t> row_known;  ///< 1: the wave in x is known there
     LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]
     LazyArray<Motion> motion;
-    LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^2/s^2]
+    LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^3/s^2]
     LazyArray<Pair> lateral;         ///< acceleration by the lateral drag; used only when the scheme has one [m/s^2]
     LazyArray<Pair> shock;           ///< sensor of those two faces, 0 (smooth) to 1 (bore) [1]
     LazyArray<std::uint8_t> sensed;  ///< 1 where either of `shock` is above zero

@@ -21,8 +21,8 @@ void deposit_column(Flow& flow, const S& sx, const S& sy, double mass) {
 /// A column's mass [kg] at its place [cells].
 struct ColumnAt { double x, y, mass; };
 
-/// The four sub-points of a domain at +- r1/4 +- r2/4 (scheme.sub_point_reach) carry a quarter of the column each. At
-/// open sides they are held inside the domain, so that no mass waits beyond the edge.
+/// THEORY (13): the four sub-points of a domain at +- r1/4 +- r2/4 (scheme.sub_point_reach) carry a quarter of the
+/// column each. At open sides they are held inside the domain, so that no mass waits beyond the edge.
 template <class S>
 void spread_column(Flow& flow, const ColumnAt& column, const Edges& r) {
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);

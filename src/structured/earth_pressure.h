@@ -42,7 +42,7 @@ struct Rankine {
     return (1.0 - e) / (1.0 + e);
 }
 
-/// K along the principal axes of the strain rate [1/s]: active where the layer extends or rests, passive
+/// THEORY (6): K along the principal axes of the strain rate [1/s]: active where the layer extends or rests, passive
 /// where it is squeezed much faster than its own fall takes, sqrt(depth / pull) [s] / 10.
 template <class Real>
 [[gnu::always_inline]] inline Sym2Of<Real> earth_pressure_of(const Sym2Of<Real>& rate, Real depth, Real pull,

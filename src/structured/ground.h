@@ -17,7 +17,7 @@ struct GroundPull {
 };
 using Ground = std::function<GroundPull(double x, double y)>;
 
-/// Over terrain in map coordinates, given its slope (db/dx, db/dy): what slides without friction has the
+/// THEORY (2): over terrain in map coordinates, given its slope (db/dx, db/dy): what slides without friction has the
 /// horizontal acceleration -g_z grad b, g_z = g / (1 + |grad b|^2). A solid keeps its length on the map over
 /// a break of slope.
 inline Ground terrain_ground(std::function<Vec2(double x, double y)> slope, double g = 9.81) {

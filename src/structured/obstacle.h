@@ -16,7 +16,7 @@ struct Obstacle {
     Vec2 low{-kFar, -kFar}, high{kFar, kFar};  ///< [m]
     double friction = 0.0;                     ///< mu [1]
 
-    /// The velocity v [m/s] of a node at x [m]: inside, and no farther than `slack` [m] from the faces,
+    /// THEORY (9): the velocity v [m/s] of a node at x [m]: inside, and no farther than `slack` [m] from the faces,
     /// nothing goes through the nearest face.
     Vec2 met(const Vec2& x, const Vec2& v, double slack) const {
         const double depth[4] = {x.x() - low.x(), high.x() - x.x(), x.y() - low.y(), high.y() - x.y()};

@@ -1,7 +1,7 @@
 #pragma once
 // Shallow water at a face between two cells: limited slopes, hydrostatic reconstruction (Audusse et al. 2004,
 // doi:10.1137/S1064827503431090), and the flux of Harten, Lax and van Leer with the contact wave (HLLC, Toro
-// 2001). Functions are for one face (Real is double) or for four side by side (Double4).
+// 2001). Functions are for one face (Real is double) or for four side by side (Double4). THEORY (3), (5) to (7).
 #include "base/simd.h"
 
 namespace frana {

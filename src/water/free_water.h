@@ -29,7 +29,7 @@ struct FreeWater {
     WaterFriction friction;
     WaterViscosity viscosity;
 
-    /// Share of its weight that water takes off a column's bed, 1 at most: what floats does not pull.
+    /// THEORY (17): share of its weight that water takes off a column's bed, 1 at most: what floats does not pull.
     double support(double bound_density, double bound_depth, double depth) const {
         const double full = by.void_ratio * bound_depth;
         const double share = depth < full ? depth / full : 1.0;

@@ -6,8 +6,8 @@
 
 namespace frana {
 
-/// One step of  ds/dt = drive - linear s - quadratic s^2  for a constant drive, exactly; as riccati_speed without the
-/// linear term. `driven`: speed that the drive alone would give at the end [m/s].
+/// THEORY (13): one step of  ds/dt = drive - linear s - quadratic s^2  for a constant drive, exactly; as riccati_speed
+/// without the linear term. `driven`: speed that the drive alone would give at the end [m/s].
 inline double braked_speed(double s0, double driven, double linear, double quadratic, double dt) {
     if (linear == 0.0) return riccati_speed(s0, driven, 0.0, quadratic, dt);
     const double gain = driven - s0;

@@ -28,7 +28,7 @@ struct WaterBed {
     double kappa;      ///< |V| over the speed on the map, >= 1 [1]
 };
 
-/// The deceleration on the map over the speed on the map squared [1/m].
+/// THEORY (12): the deceleration on the map over the speed on the map squared [1/m].
 inline double quadratic_drag(const WaterFriction& friction, const WaterBed& bed) {
     const double t = bed.thickness, c = friction.coefficient;
     if (friction.law == WaterFriction::Law::manning)
