@@ -199,7 +199,7 @@ TEST_CASE("What a step costs beside the depth-averaged flow's", "[.cost]") {
     verify::Setup setup;
     setup.cells = 160;
     const verify::Measurement flow = verify::find_problem("radial_dam")->run(setup);
-    const double per = cost("depth-averaged flow, S2 (radial_dam)", 0.0, flow);
+    const double per = cost("depth-averaged flow (radial_dam)", 0.0, flow);
     const auto run = [&](const char* what, const StructuredScene& scene, double end) {
         StructuredFlow body(scene);
         CHECK(cost(what, per, verify::run_structured(body, end)) > 0.0);

@@ -107,7 +107,7 @@ TEST_CASE("Warm steps of a structured solid that breaks allocate nothing", "[spe
     CHECK(flow.status().damage > damage);
 }
 
-TEST_CASE("Warm steps of grains by scheme S2 allocate nothing", "[speed][structured][grains]") {
+TEST_CASE("Warm steps of grains allocate nothing", "[speed][structured][grains]") {
     Scene scene = verify::scene_on(80, 60, 2.0, [](double x, double) { return -0.5 * x; });
     scene.bed_law = bed::Coulomb{0.3};
     scene.curvature = Curvature::none;

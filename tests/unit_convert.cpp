@@ -141,7 +141,7 @@ TEST_CASE("Mass, volume and horizontal momentum are kept in total and per column
                 for (const Kept& kept : c.kept) {
                     INFO(kept.name << " spacing " << spacing << " profile " << static_cast<int>(profile));
                     CHECK(kept.columns != 0.0);
-                    CHECK(kept.relative_error <= 1e-12);  // the issue's gate
+                    CHECK(kept.relative_error <= 1e-12);  // round-off of a sum over all points
                     CHECK(kept.worst_column <= 1e-12);
                 }
                 CHECK(c.outside == 0.0);

@@ -11,7 +11,7 @@ using namespace flow_maker;
 
 namespace {
 
-constexpr double kGate = 1e-12;  // of the issue: mass and momentum there and back
+constexpr double kGate = 1e-12;  // round-off of a sum over all points, there and back
 
 double relative(double a, double b, double scale) { return a == b ? 0.0 : std::abs(a - b) / scale; }
 

@@ -70,7 +70,7 @@ TEST_CASE("V1: a column that turns takes its stress along, in any number of step
     const ColumnStress s = strained(law, steps, {0, 0, 0, angle / steps}, -2e3, 1e9, state).stress;
     const double c = std::cos(angle), d = std::sin(angle);
     CAPTURE(steps);
-    // Round-off of so many turns; the prototype measured 6e-13 after 5000.
+    // Round-off of so many turns.
     const double bound = 6.5e3 * 4e-16 * (steps + 10);
     CHECK(std::abs(s.xx - (c * c * 3e3 - 2 * c * d * 1e3 - d * d * 5e3)) < bound);
     CHECK(std::abs(s.yy - (d * d * 3e3 + 2 * c * d * 1e3 - c * c * 5e3)) < bound);
@@ -106,7 +106,7 @@ TEST_CASE("V3: elastic simple shear: G sin(gamma), G (1 - cos(gamma)), of second
         if (before > 0.0)
             CHECK(before / error == Approx(100.0).epsilon(0.02));
         else
-            CHECK(error < 1e-4);  // the prototype's first order gave 1.4e-2 here
+            CHECK(error < 1e-4);  // a first-order return gives 1.4e-2 here
         before = error;
     }
 }

@@ -54,7 +54,7 @@ struct Bingham { double viscosity = 0.0; double yield_stress = 0.0; };   ///< [P
 }  // namespace rheology
 using Rheology = std::variant<rheology::None, rheology::Newtonian, rheology::Bingham>;
 
-/// How the equations are solved. Defaults: scheme S2 with steep terrain; preset "paper" is Fois et al. (2024).
+/// How the equations are solved (solver/THEORY.md), by default on steep terrain; preset "paper" is Fois et al. (2024).
 struct Scheme {
     std::string preset = "default";
     Shape shape = Shape::quadratic;

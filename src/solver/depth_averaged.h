@@ -1,5 +1,5 @@
 #pragma once
-// The depth-averaged material point method: scheme S2 on steep, curved terrain, or the choices of Fois et al. 2024.
+// The depth-averaged material point method (THEORY.md) on steep, curved terrain, or the choices of Fois et al. 2024.
 #include <memory>
 #include <optional>
 

@@ -5,7 +5,7 @@
 
 namespace frana {
 
-/// P1's terrain: gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.
+/// Terrain of Fois et al. (2024): gentle slopes, no curvature. Driving a = -g grad(eta), normal force g.
 template <class Real>
 struct GentleBed {
     GentleBed(const Flow&, Index) {}

@@ -37,7 +37,7 @@ double reach_of_neighbours(const Seeds& seeds) {
     return 1.1 * widest;
 }
 
-/// Of a cell: neighbours farther apart have no node in common that is near both (structured_prototype's test).
+/// Of a cell: neighbours farther apart have no node in common that is near both.
 constexpr double kTorn = 1.5, kLink = 1.25;
 constexpr PieceRule kPieces{kLink, 0.9, 0.02};  // of the damage; of the mass
 

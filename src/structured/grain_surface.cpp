@@ -1,4 +1,4 @@
-// The free surface of grains, by the phases of scheme S2 (solver/surface.h, shock.h).
+// The free surface of grains, by the phases of the depth-averaged flow (solver/surface.h, shock.h).
 #include "solver/shock.h"
 #include "solver/surface.h"
 #include "structured/structured_flow.h"

@@ -107,8 +107,8 @@ struct GrainsOf {
     return select(depth > 1e-12 * flow.cell, 1.0 / (flow.cell * depth), none) * FlatOf<Double4>{left - right, below - above};
 }
 
-/// What drives grains, by scheme S2: the slope of the free surface instead of the ground's, for their share s of the mass;
-/// the rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes, -g_z h / 2 div(s K); and
+/// What drives grains. As in the depth-averaged flow: the slope of the free surface instead of the ground's, for their
+/// share s of the mass; the rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes, -g_z h / 2 div(s K); and
 /// the artificial viscosity at bores. Besides the share of their weight that the whole node is given. `bears`: share of the
 /// weight on the bed. [m/s^2]
 template <class Real>

@@ -181,7 +181,7 @@ void with_kinds(const StructuredBody& body, Work&& work) {
 // The loops of a step (structured_scatter.cpp, structured_nodes.cpp, structured_gather.cpp).
 void clear_nodes(StructuredBody& body);
 void scatter(StructuredBody& body);
-/// After scatter() where there are grains: depth from sub-points, and the free surface by scheme S2 (grain_surface.cpp).
+/// After scatter() where there are grains: depth from sub-points, and the free surface (grain_surface.cpp).
 void raise_surface(StructuredBody& body);
 void move_nodes(StructuredBody& body, const StepTimes& times);
 void gather(StructuredBody& body, double dt);

@@ -153,13 +153,13 @@ std::vector<Problem> block_problems() {
     const Gate volume{0, "mass_error", 1e-13, "round-off"};
     Problem coulomb{"block_coulomb", "thin block on planes of 10 to 60 degrees turned 0 to 45 degrees: a t^2 / 2",
                     {25, 50, 100}, published_blocks, run_block_coulomb};
-    coulomb.gates = {{0, "travel_error", 1e-8, "issue gate; prototype 1e-9"},
-                     {0, "cross_drift", 1e-7, "1e-8 of the travel; prototype 2e-9"},
+    coulomb.gates = {{0, "travel_error", 1e-8, "goal; an earlier code 1e-9"},
+                     {0, "cross_drift", 1e-7, "1e-8 of the travel; an earlier code 2e-9"},
                      volume};
     Problem voellmy{"block_voellmy",
                     "infinite slab with Voellmy friction, turned 0 and 27 degrees: tanh to its end speed",
                     {12, 25}, voellmy_residuals, run_block_voellmy};
-    voellmy.gates = {{0, "speed_error", 1e-6, "issue gate; prototype 4e-9"},
+    voellmy.gates = {{0, "speed_error", 1e-6, "goal; an earlier code 4e-9"},
                      {0, "travel_error", 1e-3, "canon B5, at the default time step"},
                      volume};
     Problem holds{"block_static",

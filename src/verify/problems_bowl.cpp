@@ -81,21 +81,21 @@ std::vector<Problem> bowl_problems() {
     Problem planar{"thacker_planar", "a tilted plane of water turns in a bowl, 3 periods (Thacker 1981)",
                    {50, 100, 200}, [] { return residuals_of(planar_bowl()); },
                    [](const Setup& s) { return swing(planar_bowl(), s, 3); }};
-    planar.gates = {{100, "l1_depth", 4e-3, "issue gate; prototype 2.4e-3"},
-                    {100, "energy_drift", 1e-3, "issue gate; prototype -1e-4"},
+    planar.gates = {{100, "l1_depth", 4e-3, "goal; an earlier code 2.4e-3"},
+                    {100, "energy_drift", 1e-3, "goal; an earlier code -1e-4"},
                     volume};
     Problem period = planar;
     period.name = "thacker_period";
     period.title = "a tilted plane of water turns in a bowl, one period (Thacker 1981)";
     period.run = [](const Setup& s) { return swing(planar_bowl(), s, 1); };
-    period.gates = {{100, "l1_depth", 5e-3, "issue gate; GeoClaw 2.6e-2 at 100"}, volume};
+    period.gates = {{100, "l1_depth", 5e-3, "goal; GeoClaw 2.6e-2 at 100"}, volume};
     Problem radial{"thacker_radial", "a round mound of water falls and rises in a bowl, 3 periods (Thacker 1981)",
                    {50, 100, 200}, [] { return residuals_of(radial_bowl()); },
                    [](const Setup& s) { return swing(radial_bowl(), s, 3); }};
-    radial.gates = {{100, "l1_depth", 5e-3, "issue gate; prototype 3.5e-3"},
-                    {200, "l1_depth", 2e-3, "issue gate; prototype 1.3e-3"},
-                    {100, "energy_drift", 2e-2, "issue gate; prototype -0.3 %"},
-                    {200, "energy_drift", 2e-2, "issue gate; prototype -0.6 %"},
+    radial.gates = {{100, "l1_depth", 5e-3, "goal; an earlier code 3.5e-3"},
+                    {200, "l1_depth", 2e-3, "goal; an earlier code 1.3e-3"},
+                    {100, "energy_drift", 2e-2, "goal; an earlier code -0.3 %"},
+                    {200, "energy_drift", 2e-2, "goal; an earlier code -0.6 %"},
                     {0, "mirror_error", 1e-12, "the canon's radial symmetry: round-off"},
                     {0, "exchange_error", 1e-12, "the canon's radial symmetry: round-off"},
                     volume};

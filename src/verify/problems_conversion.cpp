@@ -119,8 +119,8 @@ std::vector<Problem> conversion_problems() {
                        run_conversion};
     conversion.order_of = "mass_measure";
     conversion.gates = {
-        {0, "mass_error", 1e-12, "issue gate, in total and per column"},
-        {0, "momentum_error", 1e-12, "issue gate, in total and per column"},
+        {0, "mass_error", 1e-12, "goal, in total and per column"},
+        {0, "momentum_error", 1e-12, "goal, in total and per column"},
         {0, "order_gap", 0.05, "first order in h_z, second in h_x: eqs. 7, 8 and figure 12 of the paper"}};
     return {conversion};
 }

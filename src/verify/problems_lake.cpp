@@ -101,7 +101,7 @@ Problem problem_of(const std::string& name, const std::string& title, const std:
     Problem problem{name, title, grids, {}, [lake, first = grids.front()](const Setup& setup) {
                         return rest(lake(), setup, setup.cells == first);
                     }};
-    problem.gates = {{0, "max_speed", 1e-12, "issue gate: round-off of 1 to 60 s"},
+    problem.gates = {{0, "max_speed", 1e-12, "goal: round-off of 1 to 60 s"},
                      {0, "surface_error", 1e-12, "round-off after 1 s, goal of the scheme study"},
                      {0, "mass_error", 1e-13, "round-off"}};
     problem.needs_level = true;

@@ -119,7 +119,7 @@ std::vector<Problem> paper_problems() {
     Problem table{"lake_paper", "lakes Z1 and Z2 of known level in the paper's own preset (Fois et al. 2024, table 1)",
                   {50}, {}, run_table};
     const std::string source = "table 1 of the paper";
-    table.gates = {{0, "max_speed", 1e-12, "issue gate"}, {0, "l1_h", 2e-12, source}, {0, "max_h", 3e-13, source},
+    table.gates = {{0, "max_speed", 1e-12, "goal"}, {0, "l1_h", 2e-12, source}, {0, "max_h", 3e-13, source},
                    {0, "l1_hu", 2e-13, source},           {0, "max_hu", 3e-14, source}};
     Problem mud{"obstacle", "mud splits around a bump and joins again (Fois et al. 2024, section 4.2)", {150}, {},
                 run_obstacle};

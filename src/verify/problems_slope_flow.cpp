@@ -113,8 +113,8 @@ std::vector<Problem> slope_flow_problems() {
     Problem slope{"coulomb_slope",
                   "dry dam break on a slope of 0.4 with friction 0.2, shallow form (Mangeney et al. 2000)",
                   {100, 200, 400, 800}, [] { return SlopeDam{1.0, 9.81, 9.81 * 0.2}.residuals(); }, run_coulomb_slope};
-    slope.gates = {{200, "l1_depth", 3.3e-2, "issue gate; prototype 2.7e-2"},
-                   {800, "l1_depth", 9e-3, "issue gate; prototype 7.4e-3"},
+    slope.gates = {{200, "l1_depth", 3.3e-2, "goal; an earlier code 2.7e-2"},
+                   {800, "l1_depth", 9e-3, "goal; an earlier code 7.4e-3"},
                    volume};
     Problem dam{"slope_dam", "dam break on 22 degrees, friction 21 degrees, steep terrain (Mangeney et al. 2000)",
                 {25, 50, 100, 200},
@@ -123,18 +123,18 @@ std::vector<Problem> slope_flow_problems() {
                 },
                 run_slope_dam};
     dam.order_of = "l2_depth";
-    dam.gates = {{100, "l2_depth", 1.5e-2, "issue gate; AvaFrame 1.6e-2, D-Claw 2.6e-2, prototype 1.6e-2"},
-                 {100, "l2_momentum", 3e-2, "issue gate; AvaFrame 5.5e-2, D-Claw 3.2e-2"},
+    dam.gates = {{100, "l2_depth", 1.5e-2, "goal; AvaFrame 1.6e-2, D-Claw 2.6e-2, an earlier code 1.6e-2"},
+                 {100, "l2_momentum", 3e-2, "goal; AvaFrame 5.5e-2, D-Claw 3.2e-2"},
                  {200, "full_l2_depth", 7.6e-3, "where the error against the linearised theory stays on any grid"},
                  {200, "full_l2_momentum", 2.5e-2, "where the error against the linearised theory stays on any grid"},
                  volume};
     Problem cap{"sliding_cap",
                 "cap that slides and spreads on a slope of 0.6, friction 0.3, shallow form (Savage and Hutter 1989)",
                 {100, 200, 400, 800}, [] { return kCap.residuals(); }, run_sliding_cap};
-    cap.gates = {{200, "l1_depth", 6e-3, "issue gate; prototype 3.9e-3"},
-                 {800, "l1_depth", 1.5e-3, "issue gate; prototype 9.2e-4; order 1 from the gate at 200"},
-                 {200, "centre_error", 3e-4, "scheme study, goals; prototype 1.3e-4"},
-                 {800, "centre_error", 3e-5, "scheme study, goals; prototype 1.2e-5"},
+    cap.gates = {{200, "l1_depth", 6e-3, "goal; an earlier code 3.9e-3"},
+                 {800, "l1_depth", 1.5e-3, "goal; an earlier code 9.2e-4; order 1 from the gate at 200"},
+                 {200, "centre_error", 3e-4, "goal; an earlier code 1.3e-4"},
+                 {800, "centre_error", 3e-5, "goal; an earlier code 1.2e-5"},
                  volume};
     return {slope, dam, cap};
 }

@@ -224,9 +224,9 @@ std::vector<Problem> structured_problems() {
     Problem spin{
         "structured_spin", "V1: an elastic block turns once: spin, energy, angle", {12, 24}, {}, run_spin};
     spin.order_of = "kinetic_lost";
-    spin.gates = {{24, "spin_error", 1e-3, "prototype 2e-5"},
-                  {24, "kinetic_lost", 5e-3, "prototype 3.4e-3"},
-                  {24, "angle_error", 0.03, "prototype 0.0135"},
+    spin.gates = {{24, "spin_error", 1e-3, "an earlier code 2e-5"},
+                  {24, "kinetic_lost", 5e-3, "an earlier code 3.4e-3"},
+                  {24, "angle_error", 0.03, "an earlier code 0.0135"},
                   closed,
                   mass};
     Problem bar{"structured_bar",
@@ -235,9 +235,9 @@ std::vector<Problem> structured_problems() {
                 {},
                 run_structured_bar};
     bar.order_of = "plateau_error";
-    bar.gates = {{100, "plateau_error", 0.07, "prototype 0.961 +- 0.03, first order"},
-                 {100, "rebound_error", 0.05, "prototype 0.967"},
-                 {100, "contact_error", 0.05, "prototype 1.019"},
+    bar.gates = {{100, "plateau_error", 0.07, "an earlier code 0.961 +- 0.03, first order"},
+                 {100, "rebound_error", 0.05, "an earlier code 0.967"},
+                 {100, "contact_error", 0.05, "an earlier code 1.019"},
                  closed,
                  mass};
     Problem slide{"structured_slide",
@@ -261,14 +261,14 @@ std::vector<Problem> structured_problems() {
                   run_structured_stand};
     stand.order_of = "spread";
     stand.gates = {{0, "moved", 0.0, "a free face carries no traction"},
-                   {0, "whole", 0.01, "prototype: broken everywhere"},
+                   {0, "whole", 0.01, "an earlier code: broken everywhere"},
                    closed,
                    mass};
     Problem dam{
         "structured_dam", "V16: grains behind a dam: Ritter with Ka g", {100, 200}, {}, run_structured_dam};
     dam.gates = {
-        {100, "l1_depth", 2.4e-2, "a fifth above S2's 1.98e-2; the form without it had 4.4e-2"},
-        {200, "l1_depth", 1.45e-2, "a fifth above S2's 1.21e-2; the form without it had 4.3e-2"},
+        {100, "l1_depth", 2.4e-2, "a fifth above 1.98e-2; the form without it had 4.4e-2"},
+        {200, "l1_depth", 1.45e-2, "a fifth above 1.21e-2; the form without it had 4.3e-2"},
         closed,
         mass};
     std::vector<Problem> all = {spin, bar, slide, stand, dam};

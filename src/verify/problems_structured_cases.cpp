@@ -122,7 +122,7 @@ std::vector<Problem> structured_case_problems() {
     flume.order_of = "soft_coverage";
     flume.gates = {{0, "soft_off", 0.15, "calibrated: 0.40 to 0.70 of the length"},
                    {24, "stiff_coverage", 0.25, "calibrated"},
-                   {36, "stiff_coverage", 0.30, "prototype, critical strain times cell as at 24"},
+                   {36, "stiff_coverage", 0.30, "an earlier code, critical strain times cell as at 24"},
                    {0, "stiff_missing", 0.0, "one piece of 0.9 of the mass"},
                    torn,
                    closed,
@@ -134,7 +134,7 @@ std::vector<Problem> structured_case_problems() {
         {0, "damage_2a", 0.0, "a quarter above what bends it: 144 kPa of tension, 97 kPa of cohesion"},
         {0, "held_missing", 0.0, "threshold between 80 and 140 kPa"},
         {0, "parted_missing", 0.0, "threshold between 80 and 140 kPa"},
-        {0, "missing_2b", 0.0, "prototype: 0.45 and 0.44"},
+        {0, "missing_2b", 0.0, "an earlier code: 0.45 and 0.44"},
         torn,
         closed,
         mass};
@@ -146,8 +146,8 @@ std::vector<Problem> structured_case_problems() {
     valley.order_of = "damage_3b";
     valley.gates = {{0, "damage_3a", 0.0, "yields nowhere"},
                     {0, "slope_3b", 0.0, "12.7 m of Bell's height, 12 m of block"},
-                    {0, "damage_3b_off", 0.1, "prototype 0.67, and 0.66 on finer cells"},
-                    {0, "whole_3c", 0.0, "prototype: no piece left"},
+                    {0, "damage_3b_off", 0.1, "an earlier code 0.67, and 0.66 on finer cells"},
+                    {0, "whole_3c", 0.0, "an earlier code: no piece left"},
                     torn,
                     closed,
                     mass};

@@ -130,17 +130,17 @@ std::vector<Problem> track_problems() {
     Problem bowl{"bowl", "thin blob swinging in a spherical bowl of 100 m from 35 degrees, against the pendulum",
                  {25, 50, 100}, [] { return pendulum_residuals(kRadius, kAngle); }, run_bowl};
     bowl.order_of = "stop_error";
-    const std::string prototype = "the prototype's figure";
-    bowl.gates = {{0, "mass_error", 1e-13, "round-off"}, {100, "stop_error", 0.077, prototype}};
+    const std::string earlier = "what an earlier code had";
+    bowl.gates = {{0, "mass_error", 1e-13, "round-off"}, {100, "stop_error", 0.077, earlier}};
     for (const std::string turned : {"", "_turned"}) {
-        bowl.gates.push_back({100, "energy_20" + turned, 2.7e-3, prototype});
-        bowl.gates.push_back({100, "energy_40" + turned, 4.5e-3, prototype});
-        bowl.gates.push_back({100, "place_40" + turned, 0.09, prototype});
+        bowl.gates.push_back({100, "energy_20" + turned, 2.7e-3, earlier});
+        bowl.gates.push_back({100, "energy_40" + turned, 4.5e-3, earlier});
+        bowl.gates.push_back({100, "place_40" + turned, 0.09, earlier});
     }
     return {energy_problem("energy_parabola", "energy line of a thin blob on a parabola from 40 to 0 degrees",
-                           parabola_660, 0.1, "issue gate; prototype 0.06 m"),
+                           parabola_660, 0.1, "goal; an earlier code 0.06 m"),
             energy_problem("energy_hockey", "energy line of a thin blob on 34 degrees, an arc of 100 m and a flat",
-                           hockey, 0.5, "issue gate; prototype 0.41 m"),
+                           hockey, 0.5, "goal; an earlier code 0.41 m"),
             energy_problem("energy_avaframe", "energy line on AvaFrame's avaParabola (its single points: 0.006 m)",
                            avaframe, 0.1, "as the other parabola"),
             bowl};
