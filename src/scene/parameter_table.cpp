@@ -179,13 +179,13 @@ void add_scheme(Table& table) {
     table.push_back(number("scheme.split_min_mass", "1", fraction, 0.02,
                            "no split below this share of the largest mass at the start"));
     table.push_back(paper(
-        flag("scheme.mass_fit", true, "fit the masses so that a smooth release starts at rest"), false));
+        flag("scheme.mass_fit", true, "fit the masses so that a lake, released below one still level, starts at exact rest"), false));
     table.push_back(number("scheme.curvature_length", "m", not_negative, 10.0,
                            "smoothing of the bed for its curvature and for speeds along it; 0: none"));
     table.push_back(number("scheme.strain_rate_floor", "1/s", positive, 1e-3,
                            "strain rate below which the yield stress is regularised"));
     table.push_back(number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
-                           "largest diffusion number of the rheology in one step; with linear shapes, pic or flip 0.25 at most"));
+                           "largest 2 viscosity dt / (density cell^2) in one step; with linear shapes, pic or flip 0.25 at most"));
     table.push_back(
         absent(with(number("scheme.still_level", "m", any, "known level of a lake at rest (eq. 33)"),
                     "scheme.preset", {"paper"}),

@@ -77,7 +77,7 @@ struct Scheme {
     bool merge = true;                 ///< merge points where convergence crowds them
     bool reset_domains = true;         ///< replace strongly sheared domains by rectangles
     bool sleep = true;                 ///< material at rest is not computed again (same bits)
-    bool mass_fit = true;              ///< fit initial masses to the nodal release depth
+    bool mass_fit = true;              ///< fit the masses of a lake so that it starts at exact rest
     double curvature_length = 10.0;    ///< smoothing length of the bed's Hessian, 0 = none [m]
     double strain_rate_floor = 1e-3;   ///< regularisation of the yield stress [1/s]
     double stress_cap = 0.25;          ///< nu: largest 2 mu_eff dt / (rho cell^2) [1]

@@ -194,7 +194,7 @@ void StructuredRun::water_fields(Frame& frame) {
         const double bx = per * (water.bed[k + 1] - water.bed[k - 1]),
                      by = per * (water.bed[k + water.grid.stride()] - water.bed[k - water.grid.stride()]);
         const double u = h > water.film ? water.now.qx[k] / h : 0.0, v = h > water.film ? water.now.qy[k] / h : 0.0;
-        const double own[3] = {u, v, u * bx + v * by}, before = depth[n], all = before + h;
+        const double own[3] = {u, v, map_.climb(k, u, v)}, before = depth[n], all = before + h;
         for (int c = 0; c < 3; ++c) {
             water_velocity[3 * n + c] = own[c];
             velocity[3 * n + c] = (before * velocity[3 * n + c] + h * own[c]) / all;
