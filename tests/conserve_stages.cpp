@@ -3,10 +3,12 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "analytic_scene.h"
 #include "catch.h"
 #include "observe/memory_archive.h"
+#include "observe/run_loop.h"
 #include "stages/staged_run.h"
 
 using namespace frana;
@@ -208,4 +210,20 @@ TEST_CASE("So have runs whose points become columns, on their way when it stops,
     scene.solid->window = {12, 0, 18, 12};
     scene.solid->until = 0.95;
     take_up_again(scene, {0.85, 0.9, 0.97}, 1.0, true);
+}
+
+TEST_CASE("Points in space begin with the same bits whatever the time between the frames before", "[stages]") {
+    const Scene scene = slide();
+    const auto begun = [&](double every) {
+        StagedRun staged(scene);
+        Observers nobody;
+        std::ostringstream stream;
+        Progress progress(stream, Progress::Style::silent, scene.density);
+        const RunSummary summary = run(staged, {scene.solid->from, every, false}, nobody, Interrupt(), progress);
+        CHECK(summary.frames == 1 + static_cast<Index>(std::ceil(scene.solid->from / every)));
+        REQUIRE(staged.points() != nullptr);
+        return kept_bits(staged);
+    };
+    const auto seldom = begun(1000.0);
+    for (const double every : {0.0031, 0.07}) CHECK((begun(every) == seldom));
 }

@@ -468,3 +468,62 @@ TEST_CASE("Wet grains flow farther than dry ones: water bears them", "[structure
     };
     CHECK(front(1.0) > 1.05 * front(0.0));
 }
+
+namespace {
+
+/// Notes down when frames are, and whether they are whole.
+class WholeFrames final : public Observer {
+public:
+    explicit WholeFrames(std::vector<double>& times) : times_(times) {}
+    std::string name() const override { return "whole frames"; }
+    void see(const Frame& frame) override {
+        times_.push_back(frame.status.time);
+        const double mass = frame.status.mass + frame.status.mass_left;
+        if (times_.size() == 1) whole_ = mass;
+        CHECK(mass == Approx(whole_).epsilon(1e-12));
+    }
+
+private:
+    std::vector<double>& times_;
+    double whole_ = 0.0;
+};
+
+struct Watched {
+    std::map<std::string, MemoryArchive::Entry> bits;
+    std::vector<double> frames;
+    RunSummary summary;
+};
+
+Watched watched(const Scene& scene, double every) {
+    Watched result;
+    StructuredRun simulation(scene);
+    Observers observers;
+    observers.push_back(std::make_unique<WholeFrames>(result.frames));
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::silent, scene.density);
+    result.summary = run(simulation, {scene.end, every, false}, observers, Interrupt(), progress);
+    result.bits = kept_bits(simulation);
+    return result;
+}
+
+}  // namespace
+
+// Whole, broken, both, and with water that runs on and off tiles; grains begin while a frame is shown, too.
+TEST_CASE("Structured and two-phase runs have the same bits whatever the time between their frames",
+          "[structured][mixture]") {
+    Scene scene = GENERATE(false, true) ? wet_slide() : sliding(600.0);
+    if (!scene.water) scene.structure->share = 0.5;
+    const Watched seldom = watched(scene, 1000.0);
+    CHECK(seldom.frames == std::vector<double>{0.0, scene.end});
+    for (const double every : {0.0011, 0.0371, 0.4}) {  // several in a step, one in a few, rare
+        const Watched often = watched(scene, every);
+        CAPTURE(every);
+        REQUIRE(often.frames.size() >= 5);
+        for (std::size_t k = 0; k + 1 < often.frames.size(); ++k)
+            REQUIRE(often.frames[k] == static_cast<double>(k) * every);
+        CHECK(often.frames.back() == scene.end);
+        CHECK(often.summary.steps == seldom.summary.steps);
+        CHECK(often.summary.extremes.max_speed == seldom.summary.extremes.max_speed);
+        CHECK((often.bits == seldom.bits));
+    }
+}

@@ -95,7 +95,9 @@ void set_motion(Flow& flow) {
     for_each_work_tile(flow.active, [&](Index, Index tile) {
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
             const double x = static_cast<double>(i), y = static_cast<double>(j);
-            flow.nodes.motions()[k] = {3.0 * std::sin(0.1 * x + 0.2 * y), 2.0 * std::cos(0.3 * x), 1.0 + 0.01 * x, 0.0};
+            flow.nodes.motions()[k] = {3.0 * std::sin(0.1 * x + 0.2 * y), 2.0 * std::cos(0.3 * x), 1.0 + 0.01 * x,
+                                       0.5 + 0.5 * std::cos(0.7 * x - 0.2 * y)};
+            flow.nodes.before[k] = {2.0 * std::sin(0.2 * x), 1.0 + 0.1 * std::cos(0.4 * y)};
         });
     });
 }
@@ -113,6 +115,7 @@ TEST_CASE("Four points at a time transfer what one at a time does", "[transfer]"
     compare_sums(packed->deposit(a.flow, 0.01), plain->deposit(b.flow, 0.01));
     compare_nodes(a.flow, b.flow);
     set_motion(a.flow), set_motion(b.flow);
+    a.flow.carried_share = b.flow.carried_share = GENERATE(0.0, 0.7);
     TransferKernel::Probe seen_a, seen_b;
     packed->probe(a.flow, seen_a), plain->probe(b.flow, seen_b);
     for (std::size_t p = 0; p < seen_b.vx.size(); ++p) {
@@ -131,6 +134,7 @@ TEST_CASE("Gathering and depositing in one sweep gives the bits of two", "[trans
     const auto one = make_packed_transfer(scene), two = make_packed_transfer(scene);
     Crowd a(scene, 3), b(scene, 3);
     set_motion(a.flow), set_motion(b.flow);
+    a.flow.carried_share = b.flow.carried_share = GENERATE(0.0, 0.7);
     const PointSums swept = one->carry(a.flow, 0.3, 0.01);
     two->gather(b.flow, 0.3);
     CHECK(swept.stress_power == two->deposit(b.flow, 0.01).stress_power);

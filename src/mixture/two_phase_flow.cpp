@@ -64,11 +64,21 @@ void TwoPhaseFlow::mix() {
     });
 }
 
-void TwoPhaseFlow::advance(double until) {
-    // Columns that outrun the water's waves, or that there is no water beside yet, bound its step as well.
+/// Columns that outrun the water's waves, or that there is no water beside yet, bound its step as well; 0: they do not.
+double TwoPhaseFlow::step_of_columns() const {
     constexpr double kPart = 0.45;
     const double reach = kPart * columns_.body().grid.cell(), wave = columns_.wave();
-    water_.advance(wave > 0.0 ? std::min(until, time() + reach / wave) : until);
+    return wave > 0.0 ? reach / wave : 0.0;
+}
+
+double TwoPhaseFlow::longest_step() const {
+    const double water = water_.longest_step(), columns = step_of_columns();
+    return water > 0.0 && columns > 0.0 ? std::min(water, columns) : std::max(water, columns);
+}
+
+void TwoPhaseFlow::advance(double until) {
+    const double longest = step_of_columns();
+    water_.advance(longest > 0.0 ? std::min(until, time() + longest) : until);
     const double end = water_.status().time;
     touched_ = columns_.body().active.work;
     while (columns_.status().time < end) {

@@ -19,6 +19,8 @@ public:
 
     /// One step of the water and those of the columns, never past `until` [s].
     void advance(double until);
+    /// Length at most of the next step; 0 where nothing bounds it [s].
+    double longest_step() const;
     const StructuredFlow& columns() const { return columns_; }
     /// The columns' timings() tell CPU time too from now on.
     void count_cpu_time() { columns_.count_cpu_time(); }
@@ -44,6 +46,7 @@ private:
     void mix();
     void touch(const std::vector<Index>& tiles);
     void weigh();
+    double step_of_columns() const;
 
     StructuredFlow columns_;
     WaterFlow water_;

@@ -137,9 +137,10 @@ RunSummary Loop::run() {
 /// One step, and the outputs on the way. Where the simulation knows its step it is shortened for the end only: what is
 /// looked at would change what happens.
 void Loop::step_past_outputs() {
-    const double shown = own_steps() ? show_outputs_aside() : time();
-    const double output_time = next_output_time();
-    do {  // a step may turn out shorter than it was said to be
+    double shown = time(), output_time = 0.0;
+    do {  // a step may turn out shorter than it was said to be, and the next one pass more outputs
+        if (own_steps()) shown = std::max(shown, show_outputs_aside());
+        output_time = next_output_time();
         advance(own_steps() ? plan_.end : output_time);
         show_step();
         if (time() < output_time) show_glance();

@@ -13,7 +13,10 @@
 namespace frana {
 namespace {
 
-constexpr Index kStepsBetweenSplits = 3;
+/// What a step does once, however short it is, adds up with the number of steps: affine points lose of their motion what
+/// the nodes cannot hold, and crowded points merge. So shorter steps than scheme.cfl's default do less of it.
+constexpr double kOrdinaryCfl = 0.5;
+constexpr double kStepsBetweenSplits = 3.0;  ///< ordinary ones
 /// Cells a point may have moved since the last sort: same-colour tiles then still share no node, as long as the drift d
 /// keeps 16 + d + 2 < 32 - d - 1 (sub-points reach from one node before the quadratic stencil to one behind it), d <= 6;
 /// cubic: d <= 5. A step that moves a point by more than 4 cells is refused.
@@ -115,10 +118,14 @@ void DepthAveraged::level_points(double level) {
 
 /// One step: the nodes are kicked and braked, the points are carried and deposit where they arrive.
 void DepthAveraged::advance(double until) {
+    const double share = share_of_ordinary_step();
     const double dt = timed_("kick and friction", [&] { return kick_nodes(step_length(until)); });
+    flow_.carried_share = 1.0 - share;
+    since_split_ += share;
+    const bool due = since_split_ >= (1.0 - 1e-9) * kStepsBetweenSplits;
     timed_("kick and friction", [&] { mirror_motion(flow_); });
     const double next_kick = 0.5 * (dt + longest_step());
-    const bool adapts = (status_.step + 1) % kStepsBetweenSplits == 0 || drift_ > drift_before_carry(flow_.scheme);
+    const bool adapts = due || drift_ > drift_before_carry(flow_.scheme);
     PointSums points = adapts ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
                               : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_kick); });
     require_sound(points);
@@ -126,7 +133,7 @@ void DepthAveraged::advance(double until) {
     status_.step += 1;
     status_.time = dt >= until - status_.time ? until : status_.time + dt;
     status_.dt = dt;
-    if (adapts || points.left_count > 0) adapt_points(adapts, points.left_count > 0);
+    if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0);
     if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_kick); });
     arrive(points);
 }
@@ -189,9 +196,9 @@ NodeSums DepthAveraged::raise_surface() {
 }
 
 /// Every few steps points split where they spread; points that left are dropped; tiles are kept up to date.
-void DepthAveraged::adapt_points(bool deposit_follows, bool points_left) {
+void DepthAveraged::adapt_points(bool deposit_follows, bool due, bool points_left) {
     const bool has_domains = !flow_.scheme.paper_pressure;
-    const bool due = status_.step % kStepsBetweenSplits == 0;
+    if (due) since_split_ = 0.0;
     const std::vector<std::uint8_t> none;
     // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
     if (points_left) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
@@ -208,9 +215,15 @@ void DepthAveraged::adapt_points(bool deposit_follows, bool points_left) {
 
 /// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs
 /// to cross the fraction C of a cell. A film at rest (S = 0) gets a step too.
-double DepthAveraged::longest_step() const {
-    const double reach = flow_.scheme.cfl * flow_.cell;
-    return 2.0 * reach / (signal_ + std::sqrt(signal_ * signal_ + 2.0 * flow_.gravity * reach));
+double DepthAveraged::longest_step(double cfl, double signal) const {
+    const double reach = cfl * flow_.cell;
+    return 2.0 * reach / (signal + std::sqrt(signal * signal + 2.0 * flow_.gravity * reach));
+}
+double DepthAveraged::longest_step() const { return longest_step(flow_.scheme.cfl, signal_); }
+
+/// How much of an ordinary step the scheme's steps are now, 1 at most. Those that an end shortens count as whole ones.
+double DepthAveraged::share_of_ordinary_step() const {
+    return std::min(1.0, longest_step() / longest_step(kOrdinaryCfl, signal_));
 }
 
 /// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.

@@ -81,8 +81,10 @@ private:
     void keep_sums(Archive& archive);
     void keep_nodes(Archive& archive);
     void keep_peaks(Archive& archive);
-    void adapt_points(bool deposit_follows, bool points_left);
+    void adapt_points(bool deposit_follows, bool due, bool points_left);
     double step_length(double until) const;
+    double longest_step(double cfl, double signal) const;
+    double share_of_ordinary_step() const;
     double kick_nodes(double dt);
     void book_kick(const KickSums& sums, double kick);
     void book_points(const PointSums& sums);
@@ -114,6 +116,7 @@ private:
     double footprint_depth_;
     std::array<double, 2> start_momentum_{};  ///< [kg m/s]
     double signal_ = 0.0;       ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]
+    double since_split_ = 0.0;  ///< ordinary steps since points were last split
     double drift_ = 0.0;        ///< largest distance since the last sort [cells]
     double stress_power_ = 0.0; ///< of the present deposit [W]
     Vec2 centre_{0, 0};         ///< of the release [cells]

@@ -50,6 +50,8 @@ struct Flow {
     bool walls;      ///< sides are mirrors; otherwise open
     bool steep;      ///< velocities follow the bed; otherwise they are horizontal
     Scheme scheme;
+    /// Of what affine points carry beyond the nodes' motion, the share that the next gather leaves them; less of flip [1].
+    double carried_share = 0.0;
     /// Per tile of the domain, good for tiles of the work list: what the points of the last deposit touched, the only nodes
     /// with material. Stale elsewhere; deposits are cleared by it.
     LazyArray<NodeGroups> touched;

@@ -125,6 +125,39 @@ public:
 private:
     struct Gathered { double vx, vy, cxx, cxy, cyx, cyy, depth, kept, old_x, old_y; };
 
+    /// APIC: C = D^-1 sum N v (x) d, D = cell^2/4 (quadratic) or cell^2/3 (cubic; Jiang et al. 2015);
+    /// TPIC: C = sum v (x) grad N.
+    static constexpr double gradient_scale() {
+        constexpr double inertia = std::is_same_v<S, Cubic> ? 3.0 : 4.0;
+        return kTransfer == Transfer::apic ? inertia : 1.0;
+    }
+
+    /// What an affine point keeps of its own motion beyond the nodes': of what it brought each node more than that had, as
+    /// far as friction there left it. In sum over the points of a node that is nothing.
+    Gathered own(const Flow& flow, Index p) const {
+        const Columns& c = flow.columns;
+        const S sx(c.x[p]), sy(c.y[p]);
+        const Gradient g = spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
+        Gathered sum{};
+        for (int j = 0; j < S::kNodes; ++j)
+            for (int i = 0; i < S::kNodes; ++i) {
+                const Index k = flow.grid.at(sx.base + i, sy.base + j);
+                const double di = static_cast<double>(i) - sx.offset, dj = static_cast<double>(j) - sy.offset;
+                const double share = flow.carried_share * flow.nodes.motions()[k].kept;
+                const double x = share * (c.vx[p] + flow.cell * (g.xx * di + g.xy * dj) - flow.nodes.before[k].x);
+                const double y = share * (c.vy[p] + flow.cell * (g.yx * di + g.yy * dj) - flow.nodes.before[k].y);
+                const double w = sx.w[i] * sy.w[j];
+                sum.vx += w * x, sum.vy += w * y;
+                constexpr bool apic = kTransfer == Transfer::apic;
+                const double by_x = apic ? w * di : sx.slope(i) * sy.w[j], by_y = apic ? w * dj : sx.w[i] * sy.slope(j);
+                sum.cxx += by_x * x, sum.cxy += by_y * x;
+                sum.cyx += by_x * y, sum.cyy += by_y * y;
+            }
+        const double scale = gradient_scale() / flow.cell;
+        for (double* c_kl : {&sum.cxx, &sum.cxy, &sum.cyx, &sum.cyy}) *c_kl *= scale;
+        return sum;
+    }
+
     void deposit_point(Flow& flow, Index p, double cap, PointSums& sums) {
         const Columns& c = flow.columns;
         const S sx(c.x[p]), sy(c.y[p]);
@@ -193,10 +226,7 @@ private:
                 by_y += (sy.w[j] * (static_cast<double>(j) - sy.offset)) * row;
             else by_y += sy.slope(j) * row;
         }
-        // APIC: C = D^-1 sum N v (x) d, D = cell^2/4 (quadratic) or cell^2/3 (cubic; Jiang et al. 2015);
-        // TPIC: C = sum v (x) grad N.
-        constexpr double inertia = std::is_same_v<S, Cubic> ? 3.0 : 4.0;
-        const double scale = (kTransfer == Transfer::apic ? inertia : 1.0) / flow.cell;
+        const double scale = gradient_scale() / flow.cell;
         return {value[0], value[1], scale * by_x[0], scale * by_y[0], scale * by_x[1], scale * by_y[1],
                 value[2], value[3], old_x, old_y};
     }
@@ -206,7 +236,7 @@ private:
     /// fast the other way.) The points' momentum is that of the nodes: sum m_p N_i kept_i (v_p + change_i).
     std::pair<double, double> velocity_of(const Flow& flow, Index p, const Gathered& g) const {
         if constexpr (kTransfer == Transfer::flip) {
-            const double keep = flow.scheme.flip_ratio;
+            const double keep = 1.0 - (1.0 - flow.scheme.flip_ratio) * (1.0 - flow.carried_share);
             return {keep * (g.kept * flow.columns.vx[p] + g.vx - g.old_x) + (1.0 - keep) * g.vx,
                     keep * (g.kept * flow.columns.vy[p] + g.vy - g.old_y) + (1.0 - keep) * g.vy};
         } else {
@@ -217,7 +247,13 @@ private:
     void gather_point(Flow& flow, Index p, double dt, PointSums& sums) {
         Columns& c = flow.columns;
         const Gathered g = gathered(flow, p);
-        const auto [vx, vy] = velocity_of(flow, p, g);
+        auto [vx, vy] = velocity_of(flow, p, g);
+        Gathered more{};
+        if constexpr (kAffine)
+            if (flow.carried_share > 0.0) {
+                more = own(flow, p);
+                vx += more.vx, vy += more.vy;
+            }
         const double shift_x = dt * g.vx / flow.cell, shift_y = dt * g.vy / flow.cell;
         const double shift = std::max(std::abs(shift_x), std::abs(shift_y));
         if (!(shift <= 4.0)) {  // also catches what is not finite
@@ -226,10 +262,10 @@ private:
         }
         c.vx[p] = vx;
         c.vy[p] = vy;
-        c.cxx[p] = g.cxx;
-        c.cxy[p] = g.cxy;
-        c.cyx[p] = g.cyx;
-        c.cyy[p] = g.cyy;
+        c.cxx[p] = g.cxx + more.cxx;
+        c.cxy[p] = g.cxy + more.cxy;
+        c.cyx[p] = g.cyx + more.cyx;
+        c.cyy[p] = g.cyy + more.cyy;
         c.x[p] += shift_x;
         c.y[p] += shift_y;
         if constexpr (kPaper) {
@@ -242,7 +278,7 @@ private:
         meet_side<double>(flow, p, gone_, sums);
         const double speed = std::hypot(vx, vy), m = c.mass[p];
         sums.max_shift = std::max(sums.max_shift, shift);
-        for (const double part : {vx, vy, g.vx, g.vy, g.cxx, g.cxy, g.cyx, g.cyy})
+        for (const double part : {vx, vy, g.vx, g.vy, c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p], g.cxx, g.cxy, g.cyx, g.cyy})
             sums.max_motion = std::max(sums.max_motion, std::abs(part));
         sums.max_speed = std::max(sums.max_speed, speed);
         sums.max_signal = std::max(sums.max_signal, speed + std::sqrt(flow.gravity * std::max(c.depth[p], 0.0)));

@@ -263,6 +263,74 @@ private:
         }
     };
 
+    /// What four points keep of their own motion beyond the nodes': see transfer.cpp.
+    struct Own {
+        Double4 vx, vy, cxx, cxy, cyx, cyy;
+        Double4 largest_part() const {
+            return max(max(abs(vx), abs(vy)), max(max(abs(cxx), abs(cxy)), max(abs(cyx), abs(cyy))));
+        }
+        [[gnu::noinline]] Own(const Flow& flow, Index p, int lanes) {
+            const Columns& c = flow.columns;
+            const Carried<Real>& held = c.carried<Real>();
+            const Stencils sx(load(&c.x[p], lanes)), sy(load(&c.y[p], lanes));
+            Double4 gxx = load(&held.cxx[p], lanes), gxy = load(&held.cxy[p], lanes);
+            Double4 gyx = load(&held.cyx[p], lanes), gyy = load(&held.cyy[p], lanes);
+            limit_gradients({load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
+                             load(&held.r2y[p], lanes)}, gxx, gxy, gyx, gyy);
+            const Double4 first_x = load(&held.vx[p], lanes) - flow.cell * (sx.offset * gxx + sy.offset * gxy);
+            const Double4 first_y = load(&held.vy[p], lanes) - flow.cell * (sx.offset * gyx + sy.offset * gyy);
+            const Index stride = flow.grid.stride();
+            Double4 value[4], by_x[4], by_y[4];
+            for (int lane = 0; lane < 4; ++lane) {
+                Double4 v = {}, slope_x = {}, slope_y = {};
+                if (lane < lanes) {
+                    const Reach reach(sx, sy, stride, lane);
+                    const Double4 along_x = flow.cell * Double4{gxx[lane], gyx[lane], 0.0, 0.0};
+                    const Double4 along_y = flow.cell * Double4{gxy[lane], gyy[lane], 0.0, 0.0};
+                    Double4 row = {first_x[lane], first_y[lane], 0.0, 0.0};
+                    Index k = reach.node;
+                    for (int j = 0; j < 3; ++j, k += stride, row += along_y) {
+                        const auto more = [&](int i) {
+                            const Pair& before = flow.nodes.before[k + i];
+                            const double share = flow.carried_share * flow.nodes.motions()[k + i].kept;
+                            return share * (row + static_cast<double>(i) * along_x - Double4{before.x, before.y, 0.0, 0.0});
+                        };
+                        const Double4 a = more(0), b = more(1), d = more(2);
+                        const Double4 along = reach.wx[0] * a + reach.wx[1] * b + reach.wx[2] * d;
+                        v += reach.wy[j] * along;
+                        slope_x += reach.wy[j] * (reach.sx[0] * a + reach.sx[1] * b + reach.sx[2] * d);
+                        slope_y += reach.sy[j] * along;
+                    }
+                }
+                value[lane] = v, by_x[lane] = slope_x, by_y[lane] = slope_y;
+            }
+            const double scale = 1.0 / flow.cell;
+            Double4 of[4];
+            transpose(value[0], value[1], value[2], value[3], of);
+            vx = of[0], vy = of[1];
+            transpose(by_x[0], by_x[1], by_x[2], by_x[3], of);
+            cxx = scale * of[0], cyx = scale * of[1];
+            transpose(by_y[0], by_y[1], by_y[2], by_y[3], of);
+            cxy = scale * of[0], cyy = scale * of[1];
+        }
+    };
+
+    [[gnu::always_inline]] static void take_motion(Carried<Real>& held, Index p, int lanes, const Gathered& g) {
+        store(&held.vx[p], g.vx, lanes), store(&held.vy[p], g.vy, lanes);
+        store(&held.cxx[p], g.cxx, lanes), store(&held.cxy[p], g.cxy, lanes);
+        store(&held.cyx[p], g.cyx, lanes), store(&held.cyy[p], g.cyy, lanes);
+    }
+    static void take_motion(Carried<Real>& held, Index p, int lanes, const Gathered& g, const Own& own, Sums& sums) {
+        store(&held.vx[p], g.vx + own.vx, lanes), store(&held.vy[p], g.vy + own.vy, lanes);
+        store(&held.cxx[p], g.cxx + own.cxx, lanes), store(&held.cxy[p], g.cxy + own.cxy, lanes);
+        store(&held.cyx[p], g.cyx + own.cyx, lanes), store(&held.cyy[p], g.cyy + own.cyy, lanes);
+        sums.motion = max(sums.motion, own.largest_part());
+    }
+    static Double4 speed_of(const Carried<Real>& held, Index p, int lanes) {
+        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes);
+        return sqrt(vx * vx + vy * vy);
+    }
+
     [[gnu::always_inline]] void gather_four(Flow& flow, Index p, int lanes, double dt, Sums& sums) {
         Columns& c = flow.columns;
         Carried<Real>& held = c.carried<Real>();
@@ -275,16 +343,16 @@ private:
                 if (!sound[lane] && sums.rare.bad < 0) sums.rare.bad = p + lane;
             return;
         }
+        const bool keeps = flow.carried_share > 0.0;
+        if (keeps) take_motion(held, p, lanes, g, Own(flow, p, lanes), sums);
+        else take_motion(held, p, lanes, g);
         const Double4 x = load(&c.x[p], lanes) + shift_x, y = load(&c.y[p], lanes) + shift_y;
-        store(&held.vx[p], g.vx, lanes), store(&held.vy[p], g.vy, lanes);
-        store(&held.cxx[p], g.cxx, lanes), store(&held.cxy[p], g.cxy, lanes);
-        store(&held.cyx[p], g.cyx, lanes), store(&held.cyy[p], g.cyy, lanes);
         store(&c.x[p], x, lanes), store(&c.y[p], y, lanes);
         store(&held.depth[p], g.depth, lanes);
         stretch(&held.r1x[p], &held.r1y[p], g, dt, lanes);
         stretch(&held.r2x[p], &held.r2y[p], g, dt, lanes);
 
-        const Double4 speed = sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
+        const Double4 speed = keeps ? speed_of(held, p, lanes) : sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
         sums.shift = max(sums.shift, shift);
         sums.motion = max(sums.motion, max(max(abs(g.vx), abs(g.vy)),
                                            max(max(abs(g.cxx), abs(g.cxy)), max(abs(g.cyx), abs(g.cyy)))));

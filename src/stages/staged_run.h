@@ -2,6 +2,7 @@
 // A run in stages: columns, from a time on points in space in a window of the map (Fois, de Falco, Formaggia 2025, with
 // the tail that still flows into the window handed over column by column, and what flows out made columns), and where the
 // case asks for it columns alone again.
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,6 +22,10 @@ public:
 
     void advance(double until) override;
     const Status& status() const override { return status_; }
+    /// Known before the points' stage only: later steps end where columns and points meet, and at output times.
+    double longest_step() const override {
+        return points_ ? 0.0 : std::min(columns_->longest_step(), scene_.solid->from - status_.time);
+    }
     MovingMass motion(const MotionQuery& query) const override;
     bool may_rest() const override;
     /// In space: columns first, then points; "model" is 0 and 1. A point's depth, elevation and surface are

@@ -24,6 +24,7 @@ public:
 
     void advance(double until) override;
     const Status& status() const override { return status_; }
+    double longest_step() const override { return both_ ? both_->longest_step() : alone_->longest_step(); }
     MovingMass motion(const MotionQuery& query) const override;
     /// "stress" is what the structure passes on, its undamaged share, "effective_stress" that and the earth pressure
     /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it; with water "depth" of nodes

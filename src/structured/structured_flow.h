@@ -197,6 +197,8 @@ public:
 
     /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
     void advance(double until);
+    /// Length at most of the next step [s].
+    double longest_step() const;
     /// From now on the columns exchange momentum with free water at their nodes, and what breaks releases its own.
     /// Before the first step.
     void meet(const FreeWater& water);
@@ -229,7 +231,6 @@ private:
     void split();
     double step_length(double until) const;
     double flow_step() const;
-    double longest_step() const;
     void book(double dt);
     void weigh();
 

@@ -34,7 +34,8 @@ void StructuredFlow::keep(Archive& archive) {
     archive.array("begin", body_.active.begin);
     timed_.keep(archive);
     if (!archive.loading()) return;
-    if (grains != 0) begin_grains();
+    if (grains != 0 && !body_.grains) begin_grains();
+    body_.grains = grains != 0;  // they may have begun since the state that is taken up again
     require_whole(body_.active, body_.grid.tiles(), body_.points.count());
     take_tiles();
     const StructuredStatus kept = status_;

@@ -163,14 +163,18 @@ void WaterFlow::list_tiles() {
 /// What runs at the signal's speed, and falls by half of g at most (g_z times the slope), passes part of a cell.
 /// Viscosity is explicit: a thin cell beside deep ones has four faces twice as thick as itself, two with twice the
 /// viscosity, so that its rates are 24 nu / cell^2 at most, half that in water of one depth.
-double WaterFlow::step_length(double until) const {
+double WaterFlow::longest_step() const {
     constexpr double kViscous = 0.9 * 2.0 / 24.0;
-    const double left = until - status_.time;
-    if (body_.work.empty()) return left;
+    if (body_.work.empty()) return 0.0;
     const double reach = cfl_ * body_.grid.cell(), nu = body_.viscosity.kinematic;
     double dt = 2.0 * reach / (signal_ + std::sqrt(signal_ * signal_ + body_.gravity * reach));
     if (nu > 0.0) dt = std::min(dt, kViscous * body_.grid.cell() * body_.grid.cell() / nu);
-    return step_towards(left, dt);
+    return dt;
+}
+
+double WaterFlow::step_length(double until) const {
+    const double left = until - status_.time, longest = longest_step();
+    return longest > 0.0 ? step_towards(left, longest) : left;
 }
 
 void WaterFlow::advance(double until) {

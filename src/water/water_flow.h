@@ -120,6 +120,8 @@ public:
 
     /// One step, never past `until` [s]. Throws NumericsError when a number stops being finite.
     void advance(double until);
+    /// Length at most of the next step; 0 where there is no water, which has any [s].
+    double longest_step() const;
     const WaterStatus& status() const { return status_; }
     const WaterBody& body() const { return body_; }
     /// Of water that is deeper than a film [m^3].
@@ -153,6 +155,7 @@ public:
 private:
     void place(const WaterScene& scene);
     void list_tiles();
+    void clear_tiles();
     double step_length(double until) const;
     void book(double dt);
     WaterSums summed(double dt) const;

@@ -1,5 +1,7 @@
 // The state of free water between two steps, as it is kept and taken up again: the tiles of the next step with what is
 // in them, and the sums of the run.
+#include <algorithm>
+
 #include "base/error.h"
 #include "water/water_flow.h"
 
@@ -14,7 +16,19 @@ void keep_ledger(WaterLedger& l, std::vector<double*>& numbers) {
 
 }  // namespace
 
+/// No water on the tiles of the list: what is taken up again may lie on others.
+void WaterFlow::clear_tiles() {
+    for (const Index tile : body_.work) {
+        const Index first = body_.grid.at(body_.grid.tile_i(tile), body_.grid.tile_j(tile));
+        for (Index j = 0; j < kTile; ++j)
+            for (WaterFields* fields : {&body_.now, &body_.half})
+                for (LazyArray<double>* field : {&fields->h, &fields->qx, &fields->qy})
+                    std::fill_n(&(*field)[first + j * body_.grid.stride()], kTile, 0.0);
+    }
+}
+
 void WaterFlow::keep(Archive& archive) {
+    if (archive.loading()) clear_tiles();
     archive.number("step", status_.step);
     std::vector<double*> numbers = {&status_.time,    &status_.dt,        &status_.volume, &status_.volume_given,
                                     &status_.kinetic, &status_.max_speed, &signal_};
