@@ -6,13 +6,13 @@
 #include <iostream>
 #include <type_traits>
 
-#include "base/free_memory.h"
 #include "compare/expected_width.h"
 #include "compare/flow_width.h"
 #include "frana_commands.h"
 #include "frana_run_insitu.h"
 #include "io/gdal_reader.h"
 #include "scene/build_scene.h"
+#include "scene/memory_need.h"
 #include "vtk_io/barrier_mesh.h"
 
 namespace frana {
@@ -21,16 +21,7 @@ namespace {
 /// Assumptions of the forecast, said in its text.
 constexpr double seconds_per_particle_step = 150e-9;  ///< whole step on one core
 
-/// What a run needs at its peak: of libraries, and for each node and particle.
-struct Needs {
-    double base, node, particle;
-};
-/// From 36 runs of the case `bindo` (cells of 1.5 to 4 m, 20 000 to 400 000 particles).
-constexpr Needs solver_needs{85e6, 315.0, 431.0};
-constexpr Needs vtk_needs{4e6, 240.0,
-                          388.0};  ///< besides, for frames that VTK writes: the grid or the particles
-constexpr double seconds_per_point_step = 300e-9, bytes_per_point = 450.0;  ///< of points in space
-constexpr double graphics_need = 350e6;  ///< besides, for pictures: software OpenGL, 290 to 420 MB [bytes]
+constexpr double seconds_per_point_step = 300e-9;  ///< of points in space
 
 std::string crs_name(const std::string& wkt) {
     const std::size_t begin = wkt.find('"');
@@ -39,7 +30,8 @@ std::string crs_name(const std::string& wkt) {
 }
 
 std::string grid_text(const Scene& scene) {
-    const GridGeometry& grid = scene.bed.geometry;
+    const GridGeometry& part = scene.bed.geometry;
+    const GridGeometry& grid = scene.wider ? scene.wider->grid : part;
     const auto e = grid.pixel_extent();
     double low = INFINITY;
     double high = -INFINITY;
@@ -49,9 +41,10 @@ std::string grid_text(const Scene& scene) {
         high = std::max(high, z);
     }
     std::string text = fmt::format("grid        {} x {} nodes, {} m apart\n", grid.nx, grid.ny, grid.cell);
-    text +=
-        fmt::format("            x {:.10g} to {:.10g}, y {:.10g} to {:.10g}, elevation {:.6g} to {:.6g} m\n",
-                    e[0], e[2], e[1], e[3], low, high);
+    text += fmt::format("            x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1], e[3]);
+    if (scene.wider)
+        text += fmt::format("\n            of them {} x {} around the releases to begin with", part.nx, part.ny);
+    text += fmt::format(", elevation {:.6g} to {:.6g} m\n", low, high);
     return text + fmt::format("            CRS {}\n", crs_name(scene.bed.crs_wkt));
 }
 
@@ -86,39 +79,7 @@ struct Forecast {
     double fewest_steps = 0.0;  ///< at the speeds of the start
     double most_steps = 0.0;    ///< at free-fall speed all the time
     double fall_speed = 0.0;    ///< [m/s]
-    double bytes = 0.0;
 };
-
-/// Points if all of the release were in the window, 8 a cell of (2 spacing)^3.
-double most_points(const Scene& scene) {
-    double volume = 0.0;
-    for (const double part : scene.particles.volume) volume += part;
-    return std::ceil(volume / std::pow(scene.solid->spacing, 3));
-}
-
-double memory_of(const Scene& scene) {
-    const double nodes = double(scene.bed.geometry.size()), particles = double(scene.particles.count());
-    const double solver = solver_needs.base + solver_needs.node * nodes + solver_needs.particle * particles;
-    const double vtk = vtk_needs.base + std::max(vtk_needs.node * nodes, vtk_needs.particle * particles);
-    const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(), [](const Insitu& entry) {
-        return kind_word(entry.kind) == std::string("figure");
-    });
-    const double space = scene.solid ? bytes_per_point * most_points(scene) : 0.0;
-    return solver + space + (scene.output.vtk ? vtk : 0.0) +
-           (scene.output.png || draws ? graphics_need : 0.0);
-}
-
-/// A remark when the scene may not fit into memory. What points in space need is not known before their stage begins.
-std::string memory_remark(const Scene& scene) {
-    const double bytes = memory_of(scene), free = free_memory();
-    if (bytes <= free) return {};
-    const bool space = scene.solid && bytes_per_point * most_points(scene) > 0.5 * bytes;
-    return fmt::format("remark      {}: found a need of {:.3g} GB{}; expected what fits into the {:.3g} GB that are "
-                       "free; {}\n",
-                       space ? "stage.spacing" : "memory", bytes / 1e9,
-                       space ? " once all of the release is in the window" : "", free / 1e9,
-                       space ? "give a larger spacing or a smaller window" : "use fewer particles or a coarser grid");
-}
 
 Forecast forecast(const Scene& scene) {
     const Seeds& seeds = scene.particles;
@@ -145,7 +106,6 @@ Forecast forecast(const Scene& scene) {
     const double reach = (scene.structure ? scene.structure->cfl : scene.scheme.cfl) * bed.geometry.cell;
     result.fewest_steps = std::ceil(scene.end * (speed + wave) / reach);
     result.most_steps = std::ceil(scene.end * (result.fall_speed + wave) / reach);
-    result.bytes = memory_of(scene);
     return result;
 }
 
@@ -202,7 +162,7 @@ std::string forecast_text(const Scene& scene) {
     std::string text = fmt::format(
         "steps       {:.0f} (as fast as at the start) to {:.0f} (in free fall, {:.3g} m/s), for {} s\n",
         f.fewest_steps, f.most_steps, f.fall_speed, scene.end);
-    text += fmt::format("memory      about {:.3g} MB, as long as particles do not split\n", f.bytes / 1e6);
+    text += fmt::format("memory      about {:.3g} MB, as long as particles do not split\n", memory_need(scene).total() / 1e6);
     return text +
            fmt::format(
                "time        {} to {} on one core, assuming {:.0f} ns per particle and step, output apart\n",
@@ -229,7 +189,7 @@ int check_command(const CheckOptions& options) {
     for (const Insitu& entry : built.scene.insitu)
         std::cout << fmt::format("in situ     {} \"{}\"\n", kind_word(entry.kind), entry.name);
     for (const std::string& remark : built.scene.log) std::cout << "remark      " << remark << '\n';
-    std::cout << memory_remark(built.scene) << "ready to run\n";
+    std::cout << "ready to run\n";
     return 0;
 }
 

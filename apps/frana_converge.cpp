@@ -15,11 +15,14 @@
 #include "frana_checkpoint.h"
 #include "frana_commands.h"
 #include "frana_converge_study.h"
+#include "frana_products.h"
 #include "frana_run_folder.h"
 #include "frana_run_lock.h"
 #include "io/gdal_reader.h"
 #include "observe/interrupt.h"
 #include "scene/build_scene.h"
+#include "scene/terrain_part.h"
+#include "terrain/part_of.h"
 #include "vtk_io/barrier_mesh.h"
 
 namespace frana {
@@ -130,10 +133,23 @@ void require_room_for_tables(const fs::path& out, const ConvergeOptions& options
     }
 }
 
-/// Every scene is built before the first run: what is wrong with the finest must not show after hours on the others.
-/// Finished runs must be of this very case. Returns the finest bed.
-Raster check_scenes(const std::vector<PlannedRun>& runs) {
+struct FinestTerrain {
     Raster bed;
+    std::shared_ptr<const WiderTerrain> wider;  ///< of which the bed may be a part
+};
+
+/// The finest run's terrain, as far as its rasters go.
+Raster bed_of_finest(const FinestTerrain& finest, const fs::path& run_dir) {
+    const std::vector<ProductRaster> rasters = finest.wider ? read_rasters(run_dir) : std::vector<ProductRaster>();
+    if (rasters.empty()) return finest.bed;
+    const auto shown = box_of(rasters.front().raster.geometry, finest.wider->grid);
+    return shown ? finest.wider->read(united(*shown, finest.wider->held)) : finest.bed;
+}
+
+/// Every scene is built before the first run: what is wrong with the finest must not show after hours on the others.
+/// Finished runs must be of this very case. Returns the finest terrain.
+FinestTerrain check_scenes(const std::vector<PlannedRun>& runs) {
+    FinestTerrain finest;
     for (const PlannedRun& run : runs) {
         const CaseFile file = CaseFile::read(run.options.case_file, run.options.sets);
         const Overwrite overwrite = run.options.overwrite ? Overwrite::yes : Overwrite::no;
@@ -141,9 +157,9 @@ Raster check_scenes(const std::vector<PlannedRun>& runs) {
             require_room_for_run(run.options.out, file.inputs(), overwrite);
         Scene scene = build_scene(file, GdalReader(), barrier_mesh_of);
         if (run.standing == Standing::finished) open_checkpoint(run.options.out, checkpoint_labels(scene, file));
-        bed = std::move(scene.bed);
+        finest = {std::move(scene.bed), std::move(scene.wider)};
     }
-    return bed;
+    return finest;
 }
 
 /// Tables of an earlier study do not stand beside runs that replace its own.
@@ -197,7 +213,7 @@ int converge_command(const ConvergeOptions& options) {
     require_room_for_tables(out, options);
     if (options.threads > 0) omp_set_num_threads(options.threads);
     const std::vector<PlannedRun> runs = plan_runs(options, cells, out);
-    const Raster bed = check_scenes(runs);
+    const FinestTerrain finest = check_scenes(runs);
     if (!lock) lock.emplace(out);
     if (options.overwrite) remove_tables(out);
     if (const int code = carry_out(runs, options.quiet)) return code;
@@ -208,7 +224,7 @@ int converge_command(const ConvergeOptions& options) {
     study.overrides = overrides(options);
     for (const PlannedRun& run : runs) study.runs.push_back({run.cell, run.options.out});
     if (const std::string remark = remark_on_count(file); !remark.empty()) study.remarks.push_back(remark);
-    measure_runs(study, bed);
+    measure_runs(study, bed_of_finest(finest, runs.back().options.out));
     write_study(study);
     std::cout << '\n' << study_section(study);
     for (const std::string& name : study.files) std::cout << (out / name).string() << '\n';

@@ -15,6 +15,8 @@
 #include "frana_run_folder.h"
 #include "frana_run_space.h"
 #include "io/gdal_reader.h"
+#include "scene/terrain_part.h"
+#include "terrain/part_of.h"
 #include "vtk_io/reader.h"
 
 namespace frana {
@@ -104,8 +106,8 @@ ProductRaster from_frame(const LoadedFrame& frame, const std::string& field, con
     return product;
 }
 
-/// The elevation model that the case names, for runs that wrote no VTK files.
-Raster bed_of_case(const fs::path& run_dir) {
+/// The elevation model that the case names, where the run's rasters show it, for runs that wrote no VTK files.
+Raster bed_of_case(const fs::path& run_dir, const std::vector<ProductRaster>& rasters) {
     const CaseFile run_case = case_of_run(run_dir);
     DemRequest request;
     if (run_case.has("terrain.window")) {
@@ -113,6 +115,12 @@ Raster bed_of_case(const fs::path& run_dir) {
         request.window = {w[0], w[1], w[2], w[3]};
     }
     if (run_case.has("grid.cell")) request.cell = run_case.number("grid.cell");
+    request.choose = [&](const Raster& whole) {
+        const NodeBox all = NodeBox::all(whole.geometry);
+        if (rasters.empty()) return all;
+        const auto shown = box_of(rasters.front().raster.geometry, whole.geometry);
+        return shown && common(*shown, all) == *shown ? *shown : all;
+    };
     std::vector<std::string> said_by_the_run;
     return GdalReader().read_dem(run_case.path("terrain.dem"), request, said_by_the_run);
 }
@@ -135,7 +143,7 @@ void read_bed(FigureSource& source, std::vector<std::string>& warnings) {
         return;
     }
     try {
-        Raster bed = bed_of_case(source.run_dir);
+        Raster bed = bed_of_case(source.run_dir, source.rasters);
         const bool fits = source.rasters.empty() || brought_onto(bed, source.rasters.front().raster.geometry);
         if (fits) source.bed = std::move(bed);
     } catch (const UserError&) {

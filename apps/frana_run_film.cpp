@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "frana_cutoff.h"
+#include "terrain/part_of.h"
 #include "vtk_io/film.h"
 #include "vtk_io/filmstrip.h"
 #include "vtk_io/reader.h"
@@ -24,14 +25,15 @@ std::vector<Index> spread_frames(Index count, Index most) {
     return chosen;
 }
 
-/// The depth of an output with the survey, without a title. UserError when the frame has none on the terrain's grid.
+/// The depth of an output with the survey, without a title. Frames may show a smaller part of the terrain than the last
+/// one. UserError when the frame has none on the terrain's nodes.
 MapFigure depth_map(const FigureSource& source, Index number) {
     LoadedFrame frame = read_frame(source.run_dir, number);
-    if (!frame.has("depth") || frame.nodes.at("depth").size() != source.bed.values.size())
-        throw UserError("the frames hold no depth on the terrain's grid");
+    const auto box = box_of(source.bed.geometry, frame.grid);
+    if (!frame.has("depth") || !box) throw UserError("the frames hold no depth on the terrain's nodes");
     MapFigure map;
     map.bed = source.bed;
-    map.field = std::move(frame.nodes.at("depth"));
+    map.field = part_of(Raster{frame.grid, std::move(frame.nodes.at("depth")), "", ""}, *box).values;
     map.shown_above = source.footprint_depth;
     map.field_label = "depth [m]";
     map.survey = source.survey;

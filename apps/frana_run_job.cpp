@@ -24,6 +24,7 @@
 #include "observe/only_fields.h"
 #include "observe/profiles.h"
 #include "solver/simulation.h"
+#include "terrain/part_of.h"
 #include "vtk_io/survey_vtp.h"
 #include "vtk_io/writers.h"
 
@@ -71,16 +72,16 @@ void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) 
 }
 
 /// compare.json, when the case gives a survey. The run is worth more than its scores: trouble is a warning.
-void compare_with_survey(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
-                         RunRecord& record) {
+void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& run_dir,
+                         const std::vector<ProductRaster>& rasters, RunRecord& record) {
     if (!scene.survey || find_product(rasters, "peak_depth") == nullptr) return;
     try {
         Survey survey;
         survey.footprint = *scene.survey;
-        Comparison comparison = compare_rasters(rasters, &scene.bed, scene.output.footprint_depth, survey);
+        Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey);
         write_text(run_dir / "compare.json", comparison_json(comparison));
         if (scene.output.vtk)
-            write_survey(run_dir, scene.bed, find_product(rasters, "peak_depth")->raster, comparison.limit,
+            write_survey(run_dir, bed, find_product(rasters, "peak_depth")->raster, comparison.limit,
                          rings_of(survey.footprint));
         record.comparison = std::move(comparison);
     } catch (const UserError& error) {
@@ -98,13 +99,13 @@ void leave_states(const Scene& scene, const fs::path& run_dir, RunRecord& record
     }
 }
 
-FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const RunRecord& record,
+FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path& run_dir, const RunRecord& record,
                            const std::vector<ProductRaster>& rasters) {
     FigureSource source;
     source.run_dir = run_dir;
     source.title = record.title;
     source.footer = record.caption;
-    source.bed = scene.bed;
+    source.bed = bed;
     source.rasters = rasters;
     source.footprint_depth = scene.output.footprint_depth;
     source.survey = scene.survey;
@@ -114,6 +115,13 @@ FigureSource figure_source(const Scene& scene, const fs::path& run_dir, const Ru
     source.in_space = scene.solid.has_value();
     for (const Barrier& barrier : scene.barriers) source.barrier_tops.push_back({barrier.top, barrier.height});
     return source;
+}
+
+/// The terrain that rasters and frames show: the scene's, or the part of it that the flow has reached.
+Raster shown_bed(const Scene& scene, const Simulation& simulation, const std::vector<ProductRaster>& rasters) {
+    const Raster* const ground = simulation.ground();
+    if (ground == nullptr || rasters.empty()) return scene.bed;
+    return part_of(*ground, box_of(rasters.front().raster.geometry, ground->geometry).value());
 }
 
 void close_record(RunRecord& record, const fs::path& run_dir) {
@@ -200,16 +208,18 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     }
     for (const std::string& warning : insitu_warnings(record.insitu)) record.warnings.push_back(warning);
     note_results(record, rasters);
+    const Raster bed = shown_bed(scene, simulation, rasters);
+    if (scene.output.vtk && scene.wider) write_terrain(run_dir, bed);
 
     timed(record.summary, "rasters", [&] {
         if (scene.output.geotiff) write_rasters(run_dir, rasters);
         if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
             write_outline(run_dir, peak->raster, scene.output.footprint_depth);
     });
-    timed(record.summary, "survey", [&] { compare_with_survey(scene, run_dir, rasters, record); });
+    timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {
         if (!scene.output.png && scene.output.film.empty()) return;
-        draw(figure_source(scene, run_dir, record, rasters), scene.output, record);
+        draw(figure_source(scene, bed, run_dir, record, rasters), scene.output, record);
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
     close_record(record, run_dir);

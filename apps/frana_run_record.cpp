@@ -138,7 +138,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.case_file = scene.case_file.string();
     record.given = given_keys(file);
     record.caption = caption_of(scene, record.given);
-    record.grid = scene.bed.geometry;
+    record.grid = scene.wider ? scene.wider->grid : scene.bed.geometry;
     record.has_crs = !scene.bed.crs_wkt.empty();
     record.density = scene.density;
     record.particles = scene.particles.count();

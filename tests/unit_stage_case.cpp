@@ -119,6 +119,12 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "stage.1.until: found 15 s; expected none in the last stage"));
     CHECK(has(problem_of(two + west + "spacing = 3\n"),
               "stage.1.spacing: found 3 m; expected at most the stage's cell"));
+    CHECK(has(problem_of(two + west + "cell = 1000\n"),
+              "stage.1.cell: found 1000 m; expected at most the window's shorter side, 55 m"));
+    CHECK(has(problem_of(two + west + "top = 1e9\n"),
+              "stage.1.top: found 1e+09 m; expected at most 10128.8 m, 10 km above the window's ground"));
+    CHECK(has(problem_of(two + west + "spacing = 1e-5\n"),
+              "stage.spacing: found 3e+18 points in space once all of the release is in the window, which need "));
     CHECK(has(problem_of(two + west + "yield_stress = 3\n"),
               "stage.1.yield_stress: found, but the law \"fluid\" does not"));
     CHECK(has(problem_of(two + west + "cohesion = 3\n"),

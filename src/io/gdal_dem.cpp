@@ -47,17 +47,24 @@ void check_size(const RasterFile& raster, double nx, double ny) {
                     raster.file().string(), nx, ny, most_nodes));
 }
 
+/// The nodes of a grid that the request wants.
+NodeBox chosen(const DemRequest& request, const RasterFile& raster, const GridGeometry& grid) {
+    if (!request.choose) return NodeBox::all(grid);
+    return request.choose(Raster{grid, {}, gdal::horizontal_wkt(raster.crs()), raster.file().string()});
+}
+
 /// The pixels that the window touches, as they are.
-Raster copied(const RasterFile& raster, const std::array<double, 4>& window, bool cut,
+Raster copied(const RasterFile& raster, const std::array<double, 4>& window, const DemRequest& request,
               std::vector<std::string>& log) {
     const auto [i, nx] = gdal::touched(raster.x_axis(), window[0], window[2]);
     const auto [j, ny] = gdal::touched(raster.y_axis(), window[1], window[3]);
     check_size(raster, double(nx), double(ny));
-    Raster dem = raster.read_raster(i, j, nx, ny);
-    const auto extent = dem.geometry.pixel_extent();
+    const NodeBox part = chosen(request, raster, raster.pixels(i, j, nx, ny));
+    Raster dem = raster.read_raster(i + part.i0, j + part.j0, part.nx, part.ny);
+    const auto extent = raster.pixels(i, j, nx, ny).pixel_extent();
     double moved = 0.0;
     for (std::size_t k = 0; k < 4; ++k) moved = std::max(moved, std::abs(extent[k] - window[k]));
-    if (cut && moved > 2.0 * round_off * dem.geometry.cell)
+    if (request.window && moved > 2.0 * round_off * dem.geometry.cell)
         log.push_back(
             fmt::format("{}: window widened to whole pixels: {}", raster.name(), extent_text(extent)));
     return dem;
@@ -65,7 +72,7 @@ Raster copied(const RasterFile& raster, const std::array<double, 4>& window, boo
 
 /// Cells counted from the window's south-west corner.
 Raster resampled(const RasterFile& raster, const std::array<double, 4>& window, double cell,
-                 std::vector<std::string>& log) {
+                 const DemRequest& request, std::vector<std::string>& log) {
     const double width = window[2] - window[0], height = window[3] - window[1];
     const double nx = std::floor(width / cell + round_off), ny = std::floor(height / cell + round_off);
     if (nx < 1.0 || ny < 1.0)
@@ -75,6 +82,7 @@ Raster resampled(const RasterFile& raster, const std::array<double, 4>& window, 
     check_size(raster, nx, ny);
     Raster dem;
     dem.geometry = {Index(nx), Index(ny), window[0] + 0.5 * cell, window[1] + 0.5 * cell, cell};
+    dem.geometry = chosen(request, raster, dem.geometry).of(dem.geometry);
     dem.values = gdal::onto_grid(raster, dem.geometry);
     dem.crs_wkt = gdal::horizontal_wkt(raster.crs());
     dem.source = raster.file().string();
@@ -112,12 +120,22 @@ Raster GdalReader::read_dem(const std::filesystem::path& file, const DemRequest&
         throw UserError(fmt::format("{}: a cell of {:g} m; expected a positive length", file.string(), cell));
     const bool as_is =
         raster.square() && (!request.cell || std::abs(cell - raster.x_axis().size) <= same_cell * cell);
-    Raster dem = as_is ? copied(raster, window, request.window.has_value(), log)
-                       : resampled(raster, window, cell, log);
+    Raster dem = as_is ? copied(raster, window, request, log)
+                       : resampled(raster, window, cell, request, log);
     if (std::all_of(dem.values.begin(), dem.values.end(), [](double z) { return std::isnan(z); }))
         throw UserError(fmt::format("{}: holds no data in {}; expected elevations there; move the window",
                                     file.string(), extent_text(window)));
     return dem;
+}
+
+std::function<Raster(const NodeBox&)> GdalReader::read_dem_later(const std::filesystem::path& file,
+                                                                 const DemRequest& request) const {
+    return [file, request](const NodeBox& box) {
+        DemRequest part = request;
+        part.choose = [&box](const Raster&) { return box; };
+        std::vector<std::string> said_before;
+        return GdalReader().read_dem(file, part, said_before);
+    };
 }
 
 }  // namespace frana

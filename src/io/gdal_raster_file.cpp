@@ -184,10 +184,13 @@ void RasterFile::refuse_sentinels(const std::vector<double>& raw, Index i, Index
     }
 }
 
+GridGeometry RasterFile::pixels(Index i, Index j, Index nx, Index ny) const {
+    return {nx, ny, x_.start + (double(i) + 0.5) * x_.size, y_.start + (double(j) + 0.5) * y_.size, x_.size};
+}
+
 Raster RasterFile::read_raster(Index i, Index j, Index nx, Index ny) const {
     Raster raster;
-    raster.geometry = {nx, ny, x_.start + (double(i) + 0.5) * x_.size, y_.start + (double(j) + 0.5) * y_.size,
-                       x_.size};
+    raster.geometry = pixels(i, j, nx, ny);
     raster.values = read(i, j, nx, ny);
     raster.crs_wkt = horizontal_wkt(crs_);
     raster.source = file_.string();

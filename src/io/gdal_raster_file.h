@@ -37,7 +37,9 @@ public:
     /// nodata but is not declared as such.
     std::vector<double> read(Index i, Index j, Index nx, Index ny) const;
 
-    /// The same as a raster on its own pixels; they must be square.
+    /// The grid of pixels [i, i + nx) x [j, j + ny), which must be square.
+    GridGeometry pixels(Index i, Index j, Index nx, Index ny) const;
+    /// Their values as a raster.
     Raster read_raster(Index i, Index j, Index nx, Index ny) const;
 
 private:

@@ -16,6 +16,9 @@ public:
     Raster read_dem(const std::filesystem::path& file, const DemRequest& request,
                     std::vector<std::string>& log) const override;
 
+    std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path& file,
+                                                         const DemRequest& request) const override;
+
     /// A reprojected raster comes in square pixels of the mean area of its own, bilinear.
     Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                        const std::string& crs_wkt, std::vector<std::string>& log) const override;

@@ -6,8 +6,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/free_memory.h"
+#include "scene/memory_need.h"
 #include "scene/problems.h"
 #include "scene/scene_parts.h"
+#include "scene/terrain_part.h"
 
 namespace frana {
 namespace {
@@ -37,7 +40,9 @@ public:
         scene_.structure = read_structure(case_, scene_, problems_);
         scene_.water = read_water(case_, reader_, scene_, problems_);
         scene_.insitu = read_insitu(case_, scene_, problems_);
-        if (problems_.empty()) make_particles();
+        if (problems_.empty() && require_room_for_particles()) make_particles();
+        problems_.throw_if_any();
+        require_room_for_all();
         problems_.throw_if_any();
         remark_on_releases(case_, built_.releases, scene_);
         cut_releases();
@@ -53,15 +58,65 @@ private:
         }
         if (case_.given("grid.cell")) request.cell = case_.number("grid.cell");
         const std::string place = case_.place("terrain.dem");
+        const auto later = reader_.read_dem_later(case_.path("terrain.dem"), request);
+        WiderTerrain wider;
+        request.choose = [&](const Raster& whole) {
+            wider = {whole.geometry, NodeBox::all(whole.geometry), later, {}};
+            if (later)
+                if (const auto part = part_to_begin_with(case_, scene_, reader_, whole))
+                    wider.held = part->box, wider.shown = part->shown;
+            require_room(wider.held.of(whole.geometry), wider.held == NodeBox::all(whole.geometry));
+            return wider.held;
+        };
         const bool read = problems_.attempt(
             place, [&] { scene_.bed = reader_.read_dem(case_.path("terrain.dem"), request, scene_.log); });
         if (!read) return;
+        if (later && !(wider.held == NodeBox::all(wider.grid)))
+            scene_.wider = std::make_shared<WiderTerrain>(std::move(wider));
         const GridGeometry& grid = scene_.bed.geometry;
         if (grid.nx < 4 || grid.ny < 4)
             problems_.add(place, fmt::format("found {} x {} nodes", grid.nx, grid.ny),
                           "expected at least 4 x 4", "choose a smaller grid.cell or a larger terrain.window");
         note_nodata();
         remark_on_terrain(case_, scene_);
+    }
+
+    /// Before the elevations are read.
+    void require_room(const GridGeometry& grid, bool whole) const {
+        const double nodes = double(grid.size());
+        require_memory(whole ? memory_need(nodes, 0.0, scene_.output.vtk).total() : memory_of_part(nodes), free_memory(),
+                       {"terrain.window", fmt::format("found {} x {} nodes of {:.6g} m, which", grid.nx, grid.ny, grid.cell),
+                        "give a window around the flow, or a larger grid.cell"});
+    }
+
+    /// Before the particles are made.
+    bool require_room_for_particles() {
+        return problems_.attempt(case_.file().string(), [&] {
+            const bool counted = case_.given("particles.count");
+            double count = 0.0;
+            if (counted) count = double(case_.integer("particles.count"));
+            else
+                for (const double nodes : nodes_of_releases_) count += nodes * case_.number("particles.per_cell");
+            require_memory(memory_need(0.0, count, scene_.output.vtk).total(), free_memory(),
+                           {counted ? "particles.count" : "particles.per_cell",
+                            fmt::format("found {:.3g} particles, which", count), "give fewer of them"});
+        });
+    }
+
+    /// Of all that the scene now holds.
+    void require_room_for_all() {
+        const MemoryNeed need = memory_need(scene_);
+        const bool space = need.space > 0.5 * need.total();
+        problems_.attempt(case_.file().string(), [&] {
+            require_memory(need.total(), free_memory(),
+                           {space ? "stage.spacing" : "memory",
+                            space ? fmt::format("found {:.3g} points in space once all of the release is in the window, which",
+                                                most_points(scene_))
+                                  : fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
+                                                scene_.particles.count()),
+                            space ? "give a larger spacing or a smaller window"
+                                  : "use fewer particles, a larger grid.cell or a smaller terrain.window"});
+        });
     }
 
     void note_nodata() {
@@ -77,12 +132,13 @@ private:
 
     void read_releases() {
         for (Index i = 0; i < case_.count("release"); ++i) {
-            for (Release& release : read_release(case_, i, scene_.bed, reader_, scene_.log, problems_))
+            for (Release& release : read_release(case_, i, scene_, reader_, problems_))
                 problems_.attempt(release.name, [&] {
                     const NodeMarks marks = nodes_under(release, scene_.bed.geometry);
                     if (std::count(marks.begin(), marks.end(), 1) == 0) throw UserError(no_material(release));
                     refuse_nodata(marks, scene_.bed, nodata_reach);
                     releases_.push_back(std::move(release));
+                    nodes_of_releases_.push_back(double(std::count(marks.begin(), marks.end(), 1)));
                     summarise(i, marks);
                 });
         }
@@ -181,19 +237,21 @@ private:
         if (!case_.given("survey.footprint")) return;
         scene_.footprint = case_.path("survey.footprint");
         problems_.attempt(case_.place("survey.footprint"), [&] {
-            scene_.survey = reader_.read_survey(scene_.footprint, scene_.bed.geometry.pixel_extent(),
+            scene_.survey = reader_.read_survey(scene_.footprint, terrain().pixel_extent(),
                                                 scene_.bed.crs_wkt, scene_.log);
         });
     }
 
+    const GridGeometry& terrain() const { return scene_.wider ? scene_.wider->grid : scene_.bed.geometry; }
+
     bool inside(const Vec2& point) const {
-        const auto extent = scene_.bed.geometry.pixel_extent();
+        const auto extent = terrain().pixel_extent();
         return point.x() >= extent[0] && point.x() <= extent[2] && point.y() >= extent[1] &&
                point.y() <= extent[3];
     }
 
     std::string extent_text() const {
-        const auto e = scene_.bed.geometry.pixel_extent();
+        const auto e = terrain().pixel_extent();
         return fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1],
                            e[3]);
     }
@@ -227,6 +285,7 @@ private:
     Scene& scene_;
     Problems problems_;
     std::vector<Release> releases_;
+    std::vector<double> nodes_of_releases_;
 };
 
 }  // namespace

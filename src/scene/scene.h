@@ -3,6 +3,7 @@
 // case file (scene/build_scene.h); `make_simulation` turns it into a solver (solver/simulation.h).
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -157,7 +158,16 @@ struct Output {
     std::vector<std::string> fields;   ///< empty: all
     double footprint_depth = 0.1;      ///< [m]
     bool history_per_step = true;      ///< history.csv: a line a step, or a line an output
+    bool whole_terrain = false;        ///< rasters and frames of all of it, wherever the flow comes
     double checkpoint_minutes = 10.0;  ///< of wall time between checkpoints; 0: one at the end of the run [min]
+};
+
+/// A terrain of which a scene holds a part, and where more of it comes from as the flow goes on.
+struct WiderTerrain {
+    GridGeometry grid;                             ///< all of its nodes
+    NodeBox held;                                  ///< the scene's bed, of these nodes
+    std::function<Raster(const NodeBox&)> read;    ///< elevations of a part of it; throws UserError
+    std::vector<Vec2> shown;                       ///< places that rasters and frames are to reach as well [m]
 };
 
 struct Scene {
@@ -169,6 +179,7 @@ struct Scene {
     double density = 1000.0;           ///< [kg/m^3]
 
     Raster bed;                        ///< bed elevation on the solver's nodes [m]; NaN: outside (an exit)
+    std::shared_ptr<const WiderTerrain> wider;  ///< nothing: the bed is all of the terrain
     TerrainModel terrain = TerrainModel::steep;
     Curvature curvature = Curvature::full;
     Sides sides = Sides::open;

@@ -96,6 +96,7 @@ Output output_of(const CaseFile& file) {
     output.fields = file.words("output.fields");
     output.footprint_depth = file.number("output.footprint_depth");
     output.history_per_step = file.word("output.history") == "step";
+    output.whole_terrain = file.word("output.extent") == "terrain";
     output.checkpoint_minutes = file.number("output.checkpoint_minutes");
     return output;
 }

@@ -18,14 +18,14 @@ constexpr double unknown_depth = std::numeric_limits<double>::infinity();
 
 class ReleaseReader {
 public:
-    ReleaseReader(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
-                  std::vector<std::string>& log)
+    ReleaseReader(const CaseFile& file, Index i, Scene& scene, const GisReader& reader)
         : case_(file),
           table_(fmt::format("release.{}", i)),
           prefix_(table_ + "."),
-          bed_(bed),
+          bed_(scene.bed),
+          terrain_(scene.wider ? scene.wider->grid : scene.bed.geometry),
           reader_(reader),
-          log_(log) {}
+          log_(scene.log) {}
 
     std::vector<Release> read(Problems& problems) {
         Release release;
@@ -95,7 +95,7 @@ private:
         else valued = reader_.read_valued_polygons(name, attribute, bed_.crs_wkt, log_);
         depths_ = valued.values;
         Polygons& polygons = valued.polygons;
-        const auto extent = bed_.geometry.pixel_extent();
+        const auto extent = terrain_.pixel_extent();
         const double slack = 1e-9 * (std::abs(extent[2]) + std::abs(extent[3]) + 1.0);
         Index outside = 0;
         Index vertices = 0;
@@ -227,6 +227,7 @@ private:
     std::string table_;
     std::string prefix_;
     const Raster& bed_;
+    GridGeometry terrain_;  ///< of which the bed may be a part
     const GisReader& reader_;
     std::vector<std::string>& log_;
     std::vector<double> depths_;               ///< of the outline's polygons, when they have their own [m]
@@ -235,9 +236,9 @@ private:
 
 }  // namespace
 
-std::vector<Release> read_release(const CaseFile& file, Index i, const Raster& bed, const GisReader& reader,
-                                  std::vector<std::string>& log, Problems& problems) {
-    return ReleaseReader(file, i, bed, reader, log).read(problems);
+std::vector<Release> read_release(const CaseFile& file, Index i, Scene& scene, const GisReader& reader,
+                                  Problems& problems) {
+    return ReleaseReader(file, i, scene, reader).read(problems);
 }
 
 }  // namespace frana

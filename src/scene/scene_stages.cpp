@@ -64,6 +64,26 @@ private:
         return given(name) ? number(name) : otherwise;
     }
 
+    /// Sizes that no space has: by a slip of the key, and the work or the memory would have no end.
+    void require_size(const SolidStage& stage) {
+        const std::array<Index, 4>& w = stage.window;
+        const double cell = scene_.bed.geometry.cell;
+        const double side = static_cast<double>(std::min(w[2] - w[0], w[3] - w[1]) + 1) * cell;
+        if (stage.cell > side)
+            problems_.add(case_.place(prefix_ + "cell"), fmt::format("found {:.6g} m", stage.cell),
+                          fmt::format("expected at most the window's shorter side, {:.6g} m", side),
+                          "give a smaller cell, or a larger window");
+        if (!stage.top) return;
+        constexpr double kHighest = 10e3;  // above the ground: no avalanche rises so far [m]
+        double high = -INFINITY;
+        for (Index j = w[1]; j <= w[3]; ++j)
+            for (Index i = w[0]; i <= w[2]; ++i) high = std::fmax(high, scene_.bed.at(i, j));
+        if (*stage.top <= high + kHighest) return;
+        problems_.add(case_.place(prefix_ + "top"), fmt::format("found {:.6g} m", *stage.top),
+                      fmt::format("expected at most {:.6g} m, 10 km above the window's ground", high + kHighest),
+                      "give an elevation a little above the highest that material reaches");
+    }
+
     std::optional<SolidStage> solid(double begin, bool last) {
         SolidStage stage;
         stage.from = begin;
@@ -84,6 +104,7 @@ private:
                             stage.cell),
                 "give a smaller spacing, or a larger cell");
         if (given("sound_speed")) stage.sound_speed = number("sound_speed");
+        require_size(stage);
         stage.law = law();
         stage.stuck = case_.flag(prefix_ + "stuck");
         stage.split = case_.flag(prefix_ + "split");

@@ -18,6 +18,8 @@ namespace frana {
 struct DemRequest {
     std::optional<std::array<double, 4>> window;  ///< xmin, ymin, xmax, ymax in map coordinates [m]
     std::optional<double> cell;                   ///< node distance [m]; nothing: the pixel of the file
+    /// Told the grid before any of it is read (a raster without values): the nodes that are wanted. May throw to refuse it.
+    std::function<NodeBox(const Raster& whole)> choose = {};
 };
 
 /// Polygons with a number each.
@@ -36,6 +38,11 @@ public:
     /// or non-metre CRS with the gdalwarp line that cures it.
     virtual Raster read_dem(const std::filesystem::path& file, const DemRequest& request,
                             std::vector<std::string>& log) const = 0;
+    /// Reads parts of that model later on; may outlive this reader. Nothing: parts cannot be read here.
+    virtual std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path& /*file*/,
+                                                                 const DemRequest& /*request*/) const {
+        return {};
+    }
     /// Any raster (depth, mask, velocity, ...) in its own pixels, cut to the pixels that touch `extent`
     /// (xmin, ymin, xmax, ymax), reprojected only when its CRS is known and differs from `crs_wkt`. Pixels
     /// must be square within 1e-6; NaN where nodata.

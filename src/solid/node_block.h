@@ -7,7 +7,7 @@
 namespace frana {
 
 /// Nodes first to first + count - 1 along each axis.
-struct NodeBox {
+struct SpaceBox {
     std::array<Index, 3> first{}, count{};
 };
 
@@ -26,11 +26,11 @@ public:
     Double4 kept[kSide * kPlane];       ///< of transfers that keep velocities (solid_flow.h)
     double mass_j[kSide * kPlane + 1];  ///< rows of three are read as four
 
-    static bool holds(const NodeBox& box) {
+    static bool holds(const SpaceBox& box) {
         return box.count[0] <= kSide && box.count[1] <= kSide && box.count[2] <= kSide;
     }
     template <bool averages, bool keeps>
-    void clear(const NodeBox& box) {
+    void clear(const SpaceBox& box) {
         each_row(box, [&](Index, Index, Index at) {
             std::fill_n(node + at, box.count[0], Double4{});
             if constexpr (keeps) std::fill_n(kept + at, box.count[0], Double4{});
@@ -40,7 +40,7 @@ public:
     }
     /// Adds the block to the grid's nodes, four numbers each.
     template <bool averages, bool keeps, class Node>
-    void add_to(const SpaceGrid& grid, const NodeBox& box, Node* nodes, Node* kept_nodes,
+    void add_to(const SpaceGrid& grid, const SpaceBox& box, Node* nodes, Node* kept_nodes,
                 double* mass_of_j) const {
         static_assert(sizeof(Node) == sizeof(Double4), "a node is four numbers");
         each_row(box, [&](Index j, Index k, Index at) {
@@ -60,7 +60,7 @@ public:
     }
     /// Takes the grid's nodes.
     template <bool keeps, class Node>
-    void take(const SpaceGrid& grid, const NodeBox& box, const Node* nodes, const Node* kept_nodes) {
+    void take(const SpaceGrid& grid, const SpaceBox& box, const Node* nodes, const Node* kept_nodes) {
         static_assert(sizeof(Node) == sizeof(Double4), "a node is four numbers");
         each_row(box, [&](Index j, Index k, Index at) {
             const Index row = *grid.place(1, j) + *grid.place(2, k);
@@ -75,7 +75,7 @@ public:
 private:
     /// visit(j, k, storage index of the row's first node)
     template <class Visit>
-    static void each_row(const NodeBox& box, Visit&& visit) {
+    static void each_row(const SpaceBox& box, Visit&& visit) {
         for (Index k = 0; k < box.count[2]; ++k)
             for (Index j = 0; j < box.count[1]; ++j)
                 visit(box.first[1] + j, box.first[2] + k, k * kPlane + j * kRow);

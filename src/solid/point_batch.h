@@ -20,7 +20,7 @@ struct BatchPlace {
         }
     }
     /// Storage index of the first node in a block.
-    [[gnu::always_inline]] Int4 in_block(const NodeBox& box) const {
+    [[gnu::always_inline]] Int4 in_block(const SpaceBox& box) const {
         const Int4 i = first[0] - static_cast<std::int32_t>(box.first[0]),
                    j = first[1] - static_cast<std::int32_t>(box.first[1]),
                    k = first[2] - static_cast<std::int32_t>(box.first[2]);

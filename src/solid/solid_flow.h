@@ -126,7 +126,7 @@ struct SolidBody {
     std::vector<SurfaceSet> near_nodes;   ///< per tile of the work list
     std::vector<std::uint8_t> gone;       ///< per point: left the grid in this step
 
-    std::vector<NodeBox> boxes;  ///< of the step: nodes that the points of each particle tile touch
+    std::vector<SpaceBox> boxes;  ///< of the step: nodes that the points of each particle tile touch
 
     LazyArray<Node> nodes, real;  ///< real: without images, near surfaces
     /// Material beside the points, which gives to the nodes like them. `real` has it too.

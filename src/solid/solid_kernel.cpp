@@ -74,7 +74,7 @@ public:
     void scatter(SolidBody& body, double dt) const override {
         for_each_tile_coloured(body.active, [&](Index n) {
             const Index begin = body.active.begin[n], end = body.active.begin[n + 1];
-            const NodeBox box = box_of(body.points, begin, end);
+            const SpaceBox box = box_of(body.points, begin, end);
             body.boxes[static_cast<std::size_t>(n)] = box;
             NodeBlock block;
             block.clear<Law::kAverages, keeps>(box);
@@ -179,7 +179,7 @@ public:
             std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
             if (body.near_points[static_cast<std::size_t>(n)] & body.barriers)
                 body.point_pushes[static_cast<std::size_t>(n)].clear();
-            const NodeBox& box = body.boxes[static_cast<std::size_t>(n)];
+            const SpaceBox& box = body.boxes[static_cast<std::size_t>(n)];
             NodeBlock block;
             block.take<keeps>(body.grid, box, body.nodes.data(), body.kept.data());
             body.sums[static_cast<std::size_t>(n)] = gather_points(body, n, dt, block);
@@ -564,8 +564,8 @@ private:
     }
 
     /// The nodes that the points begin to end - 1 touch.
-    static NodeBox box_of(const MaterialPoints& q, Index begin, Index end) {
-        NodeBox box;
+    static SpaceBox box_of(const MaterialPoints& q, Index begin, Index end) {
+        SpaceBox box;
         for (int axis = 0; axis < 3; ++axis) {
             const double* const x = q.x[axis].data();
             Double4 low = all(x[begin]), high = low;
@@ -603,7 +603,7 @@ private:
     /// Not inlined: into the function that holds the block the compiler would find each node's address
     /// anew, two more instructions a node.
     [[gnu::noinline]] void scatter_points(const SolidBody& body, Index begin, Index end, double dt,
-                                          const NodeBox& box, NodeBlock& block) const {
+                                          const SpaceBox& box, NodeBlock& block) const {
         Index p = begin;
         for (; p + 4 <= end; p += 4) {
             read_ahead(body.points, begin, p, end);
@@ -627,7 +627,7 @@ private:
     }
 
     [[gnu::always_inline]] void scatter_batch(const SolidBody& body, Index p, int lanes, double dt,
-                                              const NodeBox& box, NodeBlock& block) const {
+                                              const SpaceBox& box, NodeBlock& block) const {
         const MaterialPoints& q = body.points;
         Double4 x[3], v[3], state[7];
         Mat3x4 gradient;
@@ -750,7 +750,7 @@ private:
         lane_sums.add(now, from, there & inside);
     }
 
-    static void take(const NodeBlock& block, const NodeBox& box, const Double4* x, int lanes, double h,
+    static void take(const NodeBlock& block, const SpaceBox& box, const Double4* x, int lanes, double h,
                      BatchTaken& taken) {
         const BatchPlace place(x);
         const BatchWeights<affine> weights(place, h);

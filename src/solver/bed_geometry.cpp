@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "base/error.h"
+#include "scene/terrain_part.h"
 
 namespace frana {
 namespace {
@@ -124,14 +125,12 @@ double slope_at(const double* z, Index step, double cell) {
 /// The bed averaged over the shape function and smoothed to `curvature_length`, extended linearly whatever the sides: a
 /// slope that meets a wall is mirrored for the pressure, but it has no curvature there.
 LazyArray<double> smoothed_bed(const Scene& scene, const TileGrid& grid, const std::vector<double>& z) {
-    const double cell = grid.cell(), length = scene.scheme.curvature_length;
     LazyArray<double> smoothed(grid.size()), scratch(grid.size());
     for_each_node(grid, 0, [&](Index i, Index j, Index k) {
         smoothed[k] = extended(z, grid.nx(), grid.ny(), i, j, false);
     });
     average(scene, grid, smoothed, scratch);
-    // A pass of the binomial filter adds variance cell^2/2 (scheme: sigma = cell sqrt(passes / 2)).
-    const Index passes = std::min<Index>(static_cast<Index>(std::lround(2.0 * length * length / (cell * cell))), 400);
+    const Index passes = smoothing_passes(scene.scheme, grid.cell());
     const std::array<double, 3> binomial{0.5, 0.25, 0.0};
     for (Index pass = 0; pass < passes; ++pass) {
         smooth(grid, smoothed, scratch, Axis::x, binomial);

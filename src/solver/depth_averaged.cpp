@@ -36,7 +36,7 @@ double least_split_mass(const Scene& scene) {
 
 DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
-      peaks_(flow_.grid), rheology_(scene.rheology), steep_(scene.terrain != TerrainModel::shallow),
+      peaks_(flow_.grid), shown_(NodeBox::all(scene.bed.geometry)), rheology_(scene.rheology), steep_(scene.terrain != TerrainModel::shallow),
       curved_(steep_ && scene.curvature == Curvature::full), sleeps_(scene.scheme.sleep),
       footprint_depth_(scene.output.footprint_depth) {
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");

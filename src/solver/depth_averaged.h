@@ -52,6 +52,14 @@ public:
     /// Nothing sleeps any more. Pressure on points (paper preset) does not feel it.
     void stand_beside(const std::vector<double>& depth);
 
+    /// From now on frames show these nodes only.
+    void show(const NodeBox& box) { shown_ = box; }
+    /// The nodes of all tiles on the work list. Some may lie beyond the grid.
+    NodeBox worked() const;
+    /// The columns, peaks and sums of a run on a part of this grid, which gives them up; this one was made for that
+    /// (Start::kept). Its node (0, 0) is (east, north) here.
+    void take_over(DepthAveraged& from, Index east, Index north);
+
     /// From now on columns that are split are noted.
     void note_parents() { splitter_.note_parents(); }
     /// A column that another one was split into, and that one, by id.
@@ -111,6 +119,7 @@ private:
     Status status_;
     std::optional<MassFit> fit_;
 
+    NodeBox shown_;  ///< in frames
     Rheology rheology_;
     bool steep_, curved_, sleeps_;
     double footprint_depth_;

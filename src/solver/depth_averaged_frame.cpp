@@ -9,22 +9,21 @@
 namespace frana {
 namespace {
 
-/// Calls body(storage index, output index) for all nodes of the domain that points touch.
+/// Calls body(storage index, output index) for all nodes of the box that points touch.
 template <class Body>
-void for_each_output_node(const Flow& flow, Body&& body) {
-    const Index nx = flow.grid.nx(), ny = flow.grid.ny();
+void for_each_output_node(const Flow& flow, const NodeBox& box, Body&& body) {
     for (const Index tile : flow.active.work)
         for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
-            if (i >= 0 && i < nx && j >= 0 && j < ny) body(k, j * nx + i);
+            const Index a = i - box.i0, b = j - box.j0;
+            if (a >= 0 && a < box.nx && b >= 0 && b < box.ny) body(k, b * box.nx + a);
         });
 }
 
 /// The same for all nodes, near material or not.
 template <class Body>
-void for_all_output_nodes(const Flow& flow, Body&& body) {
-    const Index nx = flow.grid.nx(), ny = flow.grid.ny();
-    for (Index j = 0; j < ny; ++j)
-        for (Index i = 0; i < nx; ++i) body(flow.grid.at(i, j), j * nx + i);
+void for_all_output_nodes(const Flow& flow, const NodeBox& box, Body&& body) {
+    for (Index j = 0; j < box.ny; ++j)
+        for (Index i = 0; i < box.nx; ++i) body(flow.grid.at(box.i0 + i, box.j0 + j), j * box.nx + i);
 }
 
 /// Bed at a point: elevation, its own slope, and that of the smoothed bed, which velocities follow (zero on gentle terrain).
@@ -70,7 +69,7 @@ Frame DepthAveraged::frame() {
         const KickSums sums = kick_->kick(flow_, 0.5 * status_.dt, 0.0);
         mirror_motion(flow_);
         transfer_->probe(flow_, probe_);
-        frame.grid = flow_.grid.geometry();
+        frame.grid = shown_.of(flow_.grid.geometry());
         frame.status = status_;
         frame.status.kinetic = sums.kinetic;
         frame.status.dissipated += sums.dissipated + 0.5 * status_.dt * stress_power_;
@@ -138,7 +137,7 @@ void DepthAveraged::particle_fields(Frame& frame) {
 }
 
 void DepthAveraged::node_fields(Frame& frame) {
-    const Index count = flow_.grid.geometry().size();
+    const Index count = shown_.nx * shown_.ny;
     const auto column = [&](const char* name, const char* unit, int components) {
         return add_field(frame.nodes, name, unit, components, count);
     };
@@ -154,7 +153,7 @@ void DepthAveraged::node_fields(Frame& frame) {
     double* peak_pressure = column("peak_pressure", "Pa", 1);
     double* peak_dynamic = column("peak_dynamic_pressure", "Pa", 1);
     double* arrival = column("arrival_time", "s", 1);
-    for_all_output_nodes(flow_, [&](Index k, Index n) {
+    for_all_output_nodes(flow_, shown_, [&](Index k, Index n) {
         elevation[n] = flow_.bed.exit[k] == kNoData ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
         surface[n] = elevation[n];
         peak_depth[n] = peaks_.depth[k];
@@ -165,7 +164,7 @@ void DepthAveraged::node_fields(Frame& frame) {
     });
     const Motion* motions = flow_.nodes.motions();
     double fastest = 0.0;
-    for_each_output_node(flow_, [&](Index k, Index n) {
+    for_each_output_node(flow_, shown_, [&](Index k, Index n) {
         const double h = flow_.nodes.depth[k], vx = motions[k].vx, vy = motions[k].vy;
         if (h <= 0.0) return;
         const double bx = steep_ ? flow_.bed.slope_x[k] : 0.0, by = steep_ ? flow_.bed.slope_y[k] : 0.0;
@@ -186,7 +185,7 @@ void DepthAveraged::node_fields(Frame& frame) {
 /// Stress of the rheology at the points and, mass-weighted, on the nodes; effective_stress adds the depth-averaged
 /// pressure: sigma - rho g h / 2 (Fois et al. 2024, before eq. 10).
 void DepthAveraged::stress_fields(Frame& frame) {
-    const Index count = flow_.columns.count(), nodes = flow_.grid.geometry().size();
+    const Index count = flow_.columns.count(), nodes = shown_.nx * shown_.ny;
     double* at_points = add_column(frame.particles, "stress", "Pa", 3, count);
     double* effective = add_column(frame.particles, "effective_stress", "Pa", 3, count);
     double* at_nodes = add_field(frame.nodes, "stress", "Pa", 3, nodes);
@@ -198,7 +197,7 @@ void DepthAveraged::stress_fields(Frame& frame) {
     for (Index p = 0; p < count; ++p)
         for (int n = 0; n < 3; ++n)
             effective[3 * p + n] = at_points[3 * p + n] - (n < 2 ? half_weight * std::max(probe_.depth[p], 0.0) : 0.0);
-    for_each_output_node(flow_, [&](Index k, Index to) {
+    for_each_output_node(flow_, shown_, [&](Index k, Index to) {
         const StressSum& sum = stress_sums_[k];
         for (int n = 0; n < 3; ++n) {
             if (sum.mass > 0.0) at_nodes[3 * to + n] = sum.stress[n] / sum.mass;

@@ -26,6 +26,8 @@ public:
     virtual bool may_rest() const { return true; }
     /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
     virtual Frame frame() = 0;
+    /// The ground that the run works on now, where that has grown beyond the scene's; frames lie within it.
+    virtual const Raster* ground() const { return nullptr; }
     /// What the user should know of how the run was set up.
     virtual std::vector<std::string> remarks() const { return {}; }
     /// What the material has come apart into; nothing of material that has no structure.

@@ -69,17 +69,36 @@ FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector
     return columns;
 }
 
+namespace {
+
+/// Side of the square that a column stands on, and how many parts lie along it.
+struct Division { double width, count; };
+Division division_of(double volume, double depth, double spacing, double widest) {
+    constexpr double kLeast = 0.125;  // of a full point's volume
+    const double width = depth > 0.0 ? std::min(std::sqrt(volume / depth), widest) : widest;
+    const double layers = static_cast<double>(layer_count(depth, spacing));
+    const double most = std::sqrt(volume / (layers * kLeast * spacing * spacing * spacing));
+    return {width, std::max(1.0, std::min(std::round(width / spacing), std::floor(most)))};
+}
+
+}  // namespace
+
+PartsForecast forecast_parts(const FlowColumns& columns, double spacing, double widest) {
+    PartsForecast sum;
+    for (std::size_t k = 0; k < columns.count(); ++k) {
+        const double n = division_of(columns.volume[k], columns.depth[k], spacing, widest).count;
+        sum.columns += n * n;
+        sum.points += n * n * static_cast<double>(layer_count(columns.depth[k], spacing));
+    }
+    return sum;
+}
+
 FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
                      const std::array<double, 4>& extent) {
-    constexpr double kLeast = 0.125;  // of a full point's volume
     FlowColumns parts;
     for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double volume = columns.volume[k], depth = columns.depth[k];
-        const double width = depth > 0.0 ? std::min(std::sqrt(volume / depth), widest) : widest;
-        const double layers = static_cast<double>(layer_count(depth, spacing));
-        const double most = std::sqrt(volume / (layers * kLeast * spacing * spacing * spacing));
-        const auto n =
-            static_cast<Index>(std::max(1.0, std::min(std::round(width / spacing), std::floor(most))));
+        const auto [width, along] = division_of(columns.volume[k], columns.depth[k], spacing, widest);
+        const auto n = static_cast<Index>(along);
         const double share = 1.0 / static_cast<double>(n * n);
         for (Index j = 0; j < n; ++j)
             for (Index i = 0; i < n; ++i) {

@@ -22,6 +22,10 @@ FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector
 FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
                      const std::array<double, 4>& extent);
 
+/// How many parts in_parts() makes, and how many points in space they become: asked before either takes memory.
+struct PartsForecast { double columns = 0.0, points = 0.0; };
+PartsForecast forecast_parts(const FlowColumns& columns, double spacing, double widest);
+
 /// When points become columns, and what is there. Places are on the map [m].
 struct ColumnsAt {
     double time;                                                        ///< [s]

@@ -94,10 +94,22 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
     book(columns_->status());
 }
 
-/// Refuses what does not fit below the top of the space, or into memory before it is asked for.
+/// Refuses what does not fit into memory before it is asked for.
 void StagedRun::require_room(const FlowColumns& columns) const {
     // Of a point: its numbers, room to sort, and both forms while it is handed over, at the end back as well.
-    const double bytes = scene_.solid->until ? 600.0 : 450.0;
+    const double per_point = scene_.solid->until ? 600.0 : 450.0, per_column = 128.0;
+    const PartsForecast parts = forecast_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell);
+    const double bytes = parts.columns * per_column + parts.points * per_point, free = free_memory();
+    if (bytes <= free) return;
+    throw UserError(
+        fmt::format("stage.spacing = {:.6g}: makes {:.3g} points, about {:.3g} GB; expected what fits into "
+                    "the {:.3g} GB that are free; "
+                    "give a larger spacing or a smaller window",
+                    scene_.solid->spacing, parts.points, bytes / 1e9, free / 1e9));
+}
+
+/// Refuses what does not fit below the top of the space.
+void StagedRun::require_below_top(const FlowColumns& columns) const {
     for (std::size_t k = 0; k < columns.count(); ++k)
         if (columns.bed[k] + columns.depth[k] > start_.top)
             throw UserError(
@@ -106,20 +118,14 @@ void StagedRun::require_room(const FlowColumns& columns) const {
                             "t = {:.6g} s; give a higher top",
                             start_.top, columns.bed[k] + columns.depth[k], columns.x[k], columns.y[k],
                             std::max(columns_->status().time, scene_.solid->from)));
-    const double points = forecast_points(columns, scene_.solid->spacing), free = free_memory();
-    if (points * bytes <= free) return;
-    throw UserError(
-        fmt::format("stage.spacing = {:.6g}: makes {:.3g} points, about {:.3g} GB; expected what fits into "
-                    "the {:.3g} GB that are free; "
-                    "give a larger spacing or a smaller window",
-                    scene_.solid->spacing, points, points * bytes / 1e9, free / 1e9));
 }
 
 SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) const {
+    require_room(columns);
     FlowColumns parts =
         in_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell, scene_.bed, reach_of(scene_));
     stand_on_barriers(parts, surfaces);
-    require_room(parts);
+    require_below_top(parts);
     return seeds_of(parts, *scene_.solid);
 }
 

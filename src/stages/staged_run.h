@@ -73,6 +73,7 @@ private:
     MaterialBeside beside_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const;
     SolidSeeds seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) const;
     void require_room(const FlowColumns& columns) const;
+    void require_below_top(const FlowColumns& columns) const;
     void look(double until);
     void look_for_pieces();
     void remark_pieces(std::vector<std::string>& remarks) const;

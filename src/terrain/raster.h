@@ -34,6 +34,17 @@ struct GridGeometry {
     }
 };
 
+/// A rectangle of nodes of a grid.
+struct NodeBox {
+    Index i0 = 0, j0 = 0;  ///< its south-west node
+    Index nx = 0, ny = 0;
+
+    static NodeBox all(const GridGeometry& g) { return {0, 0, g.nx, g.ny}; }
+    /// The grid of these nodes alone.
+    GridGeometry of(const GridGeometry& g) const { return {nx, ny, g.x(i0), g.y(j0), g.cell}; }
+    bool operator==(const NodeBox& o) const { return i0 == o.i0 && j0 == o.j0 && nx == o.nx && ny == o.ny; }
+};
+
 /// A scalar field on the nodes; NaN marks nodata.
 struct Raster {
     GridGeometry geometry;

@@ -1,0 +1,83 @@
+#include "scene/memory_need.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace frana {
+namespace {
+
+/// What a run needs at its peak: of libraries, and for each node and particle.
+struct Rates {
+    double base, node, particle;
+};
+/// From 36 runs of the case `bindo` (cells of 1.5 to 4 m, 20 000 to 400 000 particles).
+constexpr Rates solver_rates{85e6, 315.0, 431.0};
+constexpr Rates vtk_rates{4e6, 240.0, 388.0};  ///< besides, for frames that VTK writes: the grid or the particles
+/// Of columns on a part of a terrain: most of its nodes are never reached or shown, and have a bed only. From two runs on
+/// parts of 2.7 and 34 million nodes.
+constexpr double part_node_rate = 160.0;
+constexpr double graphics_need = 350e6;        ///< besides, for pictures: software OpenGL, 290 to 420 MB
+
+/// A grid in space has an entry for each of its tiles, and storage of those that are reached only.
+constexpr double space_tile_nodes = 512.0, bytes_per_space_tile = 16.0;
+
+double space_tiles(const Scene& scene) {
+    const SolidStage& stage = *scene.solid;
+    const double cell = scene.bed.geometry.cell;
+    const double across = static_cast<double>(stage.window[2] - stage.window[0] + 1) * cell / stage.cell;
+    const double along = static_cast<double>(stage.window[3] - stage.window[1] + 1) * cell / stage.cell;
+    double low = INFINITY, high = -INFINITY;
+    for (Index j = stage.window[1]; j <= stage.window[3]; ++j)
+        for (Index i = stage.window[0]; i <= stage.window[2]; ++i) {
+            low = std::fmin(low, scene.bed.at(i, j));
+            high = std::fmax(high, scene.bed.at(i, j));
+        }
+    const double up = std::max(0.0, stage.top.value_or(high) - low) / stage.cell;
+    return (across + 1.0) * (along + 1.0) * (up + 1.0) / space_tile_nodes;
+}
+
+}  // namespace
+
+MemoryNeed memory_need(double nodes, double particles, bool vtk) {
+    MemoryNeed need;
+    need.base = solver_rates.base;
+    need.nodes = solver_rates.node * nodes;
+    need.particles = solver_rates.particle * particles;
+    if (!vtk) return need;
+    need.base += vtk_rates.base;
+    double& larger = nodes * vtk_rates.node > particles * vtk_rates.particle ? need.nodes : need.particles;
+    larger += std::max(nodes * vtk_rates.node, particles * vtk_rates.particle);
+    return need;
+}
+
+double memory_of_part(double nodes) { return part_node_rate * nodes; }
+
+double most_points(const Scene& scene) {
+    double volume = 0.0;
+    for (const double part : scene.particles.volume) volume += part;
+    return std::ceil(volume / std::pow(scene.solid->spacing, 3));
+}
+
+MemoryNeed memory_need(const Scene& scene) {
+    const double nodes = double(scene.bed.geometry.size()), particles = double(scene.particles.count());
+    MemoryNeed need = memory_need(scene.wider ? 0.0 : nodes, particles, scene.output.vtk);
+    if (scene.wider) need.nodes = memory_of_part(nodes);
+    const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(), [](const Insitu& entry) {
+        return kind_word(entry.kind) == std::string("figure");
+    });
+    if (scene.output.png || draws) need.base += graphics_need;
+    if (scene.solid) need.space = bytes_per_point * most_points(scene) + bytes_per_space_tile * space_tiles(scene);
+    return need;
+}
+
+void require_memory(double needed, double free, const MemoryUse& use) {
+    if (needed <= free) return;
+    throw UserError(fmt::format("{}: {} need {:.3g} GB; expected what fits into the {:.3g} GB that are free; {}", use.place,
+                                use.what, needed / 1e9, free / 1e9, use.way_out));
+}
+
+}  // namespace frana

@@ -1,0 +1,36 @@
+#pragma once
+// What a run asks of the system's memory, told before it is asked for.
+#include <string>
+
+#include "scene/scene.h"
+
+namespace frana {
+
+/// Where the memory of a run goes [bytes].
+struct MemoryNeed {
+    double base = 0.0;       ///< libraries, and of pictures what draws them
+    double nodes = 0.0;      ///< grows with the terrain's nodes
+    double particles = 0.0;  ///< grows with the particles at the start
+    double space = 0.0;      ///< points in space if all of the release is in the window, and their grid's tiles
+    double total() const { return base + nodes + particles + space; }
+};
+
+/// Of a run with so many nodes and particles; with `vtk` VTK writes its frames.
+MemoryNeed memory_need(double nodes, double particles, bool vtk);
+/// Of the nodes of a part of a terrain (scene/terrain_part.h), most of which are never reached [bytes].
+double memory_of_part(double nodes);
+/// Of a scene that is built.
+MemoryNeed memory_need(const Scene& scene);
+
+/// Points in space if all of the release were in the window, 8 a cell of (2 spacing)^3.
+double most_points(const Scene& scene);
+constexpr double bytes_per_point = 450.0;  ///< of points in space
+
+/// A key of the case with what it asks for, and what would ask for less.
+struct MemoryUse {
+    std::string place, what, way_out;
+};
+/// Throws UserError when more bytes are needed than are free: "place: what needs 56 GB; expected ...; way out".
+void require_memory(double needed, double free, const MemoryUse& use);
+
+}  // namespace frana

@@ -1,0 +1,36 @@
+#pragma once
+// The part of a large terrain that a run begins with. Columns on it grow it before they come near its edge
+// (stages/growing_columns.h), so no result depends on where the terrain ends beyond it.
+#include <optional>
+
+#include "scene/case_file.h"
+#include "scene/scene.h"
+#include "scene/toolbox.h"
+
+namespace frana {
+
+/// Passes of the binomial filter that smooth a bed to `curvature_length`. Each adds variance cell^2/2 (scheme: sigma =
+/// cell sqrt(passes / 2)).
+Index smoothing_passes(const Scheme& scheme, double cell);
+
+/// Nodes around material that its steps depend on, and a step's way: so far it stays from the edge of a part.
+Index clear_of_edge(const Scene& scene, double cell);
+
+struct TerrainPart {
+    NodeBox box;
+    std::vector<Vec2> shown;  ///< places of profiles and the survey [m]
+};
+/// The nodes around the releases, and those of gauges, profiles and the survey. Nothing where the run needs all of
+/// `whole`, which is a raster without values: with other models than columns, with walls at the sides, barriers, looks
+/// in situ or output.extent = "terrain"; with a release without an outline; and where the part would be all of it.
+std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene& scene, const GisReader& reader,
+                                              const Raster& whole);
+
+/// The smallest box that holds both; a box without nodes holds nothing.
+NodeBox united(const NodeBox& a, const NodeBox& b);
+NodeBox common(const NodeBox& a, const NodeBox& b);
+NodeBox widened(const NodeBox& box, Index more);
+/// The cells of a grid that hold the points; some may lie beyond it.
+NodeBox cells_of(const std::vector<Vec2>& points, const GridGeometry& grid);
+
+}  // namespace frana

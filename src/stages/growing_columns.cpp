@@ -1,0 +1,125 @@
+#include "stages/growing_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/free_memory.h"
+#include "scene/memory_need.h"
+#include "scene/terrain_part.h"
+#include "solver/stored_points.h"
+
+namespace frana {
+namespace {
+
+constexpr Index kShownAround = 8;  ///< nodes that frames show around those that material has come near to
+constexpr Index kGrowAtLeast = 256;
+
+/// Values of the part that was held already stay: a release may have been cut out of them.
+void lay_over(Raster& bed, const Raster& part, Index i0, Index j0) {
+    for (Index j = 0; j < part.geometry.ny; ++j)
+        for (Index i = 0; i < part.geometry.nx; ++i) bed.at(i0 + i, j0 + j) = part.at(i, j);
+}
+
+}  // namespace
+
+GrowingColumns::GrowingColumns(const Scene& scene, Start start) : scene_(scene), held_(scene.wider->held) {
+    columns_ = std::make_unique<DepthAveraged>(scene_, start);
+    shown_ = cells_of(scene.wider->shown, scene.wider->grid);
+    scene_.particles = {};
+    if (start == Start::placed) look();
+}
+
+void GrowingColumns::advance(double until) {
+    columns_->advance(until);
+    look();
+}
+
+/// Notes where material is, and grows where it comes near an edge that is none of the terrain.
+void GrowingColumns::look() {
+    NodeBox worked = columns_->worked();
+    if (worked.nx == 0) return;
+    worked.i0 += held_.i0, worked.j0 += held_.j0;
+    shown_ = united(shown_, worked);
+    const Index clear = clear_of_edge(scene_, scene_.bed.geometry.cell);
+    const NodeBox room = room_for(worked, clear);
+    if (aside_) {
+        expect(room_for(worked, clear - kTile) == held_, "a step aside stays clear of the part's edge");
+        return;
+    }
+    if (!(room == held_)) grow(room);
+}
+
+/// The part that material needs: as it is while material is so many nodes clear of the edges, half as large again beyond those it is not.
+NodeBox GrowingColumns::room_for(const NodeBox& worked, Index clear) const {
+    const NodeBox needed = common(widened(worked, clear), NodeBox::all(scene_.wider->grid));
+    const Index more_x = std::max(kGrowAtLeast, held_.nx / 2), more_y = std::max(kGrowAtLeast, held_.ny / 2);
+    NodeBox room = held_;
+    if (needed.i0 < held_.i0) room.i0 -= more_x, room.nx += more_x;
+    if (needed.j0 < held_.j0) room.j0 -= more_y, room.ny += more_y;
+    if (needed.i0 + needed.nx > held_.i0 + held_.nx) room.nx += more_x;
+    if (needed.j0 + needed.ny > held_.j0 + held_.ny) room.ny += more_y;
+    return common(room, NodeBox::all(scene_.wider->grid));
+}
+
+/// Elevations of another part of the terrain, that held now among them.
+void GrowingColumns::hold(const NodeBox& box) {
+    require_memory(memory_of_part(double(box.nx * box.ny)), free_memory(),
+                   {"terrain.window",
+                    fmt::format("at {:.6g} s the flow has come so far that {} x {} nodes", columns_->status().time, box.nx,
+                                box.ny),
+                    "give a window around the flow, or a larger grid.cell"});
+    Raster bed = scene_.wider->read(box);
+    lay_over(bed, scene_.bed, held_.i0 - box.i0, held_.j0 - box.j0);
+    scene_.bed = std::move(bed);
+    held_ = box;
+}
+
+void GrowingColumns::grow(const NodeBox& box) {
+    const Index east = held_.i0 - box.i0, north = held_.j0 - box.j0;
+    hold(box);
+    auto larger = std::make_unique<DepthAveraged>(scene_, Start::kept);
+    larger->take_over(*columns_, east, north);
+    columns_ = std::move(larger);
+    ++times_grown_;
+}
+
+Frame GrowingColumns::frame() {
+    NodeBox box = common(widened(shown_, kShownAround), held_);
+    box.i0 -= held_.i0, box.j0 -= held_.j0;
+    columns_->show(box);
+    return columns_->frame();
+}
+
+std::vector<std::string> GrowingColumns::remarks() const {
+    std::vector<std::string> all = columns_->remarks();
+    const GridGeometry& g = scene_.wider->grid;
+    const auto extent = scene_.bed.geometry.pixel_extent();
+    all.push_back(fmt::format("terrain: {} x {} of {} x {} nodes were needed, x {:.10g} to {:.10g}, y {:.10g} to {:.10g}; "
+                              "files show the part that the flow has reached (output.extent)",
+                              held_.nx, held_.ny, g.nx, g.ny, extent[0], extent[2], extent[1], extent[3]));
+    return all;
+}
+
+void GrowingColumns::keep(Archive& archive) {
+    aside_ = archive.aside() && !archive.loading();
+    {
+        const Archive::Part part(archive, "part");
+        NodeBox box = held_;
+        archive.number("i0", box.i0), archive.number("j0", box.j0);
+        archive.number("nx", box.nx), archive.number("ny", box.ny);
+        archive.number("shown_i0", shown_.i0), archive.number("shown_j0", shown_.j0);
+        archive.number("shown_nx", shown_.nx), archive.number("shown_ny", shown_.ny);
+        archive.number("times_grown", times_grown_);
+        if (archive.loading() && !(box == held_)) {
+            if (!(common(held_, box) == held_) || !(common(box, NodeBox::all(scene_.wider->grid)) == box))
+                throw misfit("its part of the terrain is not one of this terrain");
+            hold(box);
+            columns_ = std::make_unique<DepthAveraged>(scene_, Start::kept);
+        }
+    }
+    columns_->keep(archive);
+}
+
+}  // namespace frana

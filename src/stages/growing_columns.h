@@ -1,0 +1,40 @@
+#pragma once
+// Columns on a part of a large terrain, which grows before they come near its edge.
+#include "solver/depth_averaged.h"
+
+namespace frana {
+
+class GrowingColumns final : public Simulation {
+public:
+    /// Of a scene that holds a part of its terrain (Scene::wider).
+    explicit GrowingColumns(const Scene& scene, Start start = Start::placed);
+
+    void advance(double until) override;
+    const Status& status() const override { return columns_->status(); }
+    double longest_step() const override { return columns_->longest_step(); }
+    MovingMass motion(const MotionQuery& query) const override { return columns_->motion(query); }
+    /// Of the nodes that material has come near to, and of places that are always shown.
+    Frame frame() override;
+    Sample at(const Vec2& point) const override { return columns_->at(point); }
+    std::vector<std::string> remarks() const override;
+    std::vector<PhaseTime> timings() const override { return columns_->timings(); }
+    const Raster* ground() const override { return &scene_.bed; }
+    void keep(Archive& archive) override;
+
+    const NodeBox& held() const { return held_; }  ///< nodes of the whole terrain that it works on
+
+private:
+    void look();
+    NodeBox room_for(const NodeBox& worked, Index clear) const;
+    void grow(const NodeBox& box);
+    void hold(const NodeBox& box);
+
+    Scene scene_;
+    NodeBox held_;   ///< the scene's bed, of the whole terrain
+    NodeBox shown_;  ///< nodes of the whole terrain that frames show
+    std::unique_ptr<DepthAveraged> columns_;
+    Index times_grown_ = 0;
+    bool aside_ = false;  ///< it comes back to a state that was put aside: until then there is room enough
+};
+
+}  // namespace frana

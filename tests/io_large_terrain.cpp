@@ -1,0 +1,175 @@
+// Terrains that are much larger than the flow: what a run takes of memory, what it shows, and what it refuses.
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/atomic_file.h"
+#include "base/free_memory.h"
+#include "catch.h"
+#include "io_gdal_make.h"
+#include "program.h"
+
+namespace fs = std::filesystem;
+using Catch::Contains;
+
+namespace {
+
+constexpr int kPixels = 6000;
+constexpr double kCell = 5.0, kWest = 600000.0, kSouth = 5200000.0;
+
+/// Down to the south-east at 14 degrees, with bumps and a roughness of eighths of a metre.
+double ground(double x, double y) {
+    return 9000.0 - 0.25 * (x - kWest) - 0.1 * (kSouth - y) +
+           std::round(8.0 * (4.0 * std::sin(0.01 * x) * std::cos(0.013 * y))) / 8.0;
+}
+
+/// A terrain of 6000 x 6000 pixels of 5 m, made once, with a release of 50 m x 50 m in its middle.
+class LargeTerrain {
+public:
+    LargeTerrain() {
+        RasterSpec spec;
+        spec.columns = spec.rows = kPixels;
+        spec.transform = {kWest, kCell, 0.0, kSouth + kPixels * kCell, 0.0, -kCell};
+        spec.options = {"TILED=YES", "COMPRESS=DEFLATE", "ZLEVEL=1"};
+        spec.value = [](int column, int row) {
+            return ground(kWest + (column + 0.5) * kCell, kSouth + (kPixels - row - 0.5) * kCell);
+        };
+        make_raster(folder_.path() / "dem.tif", spec);
+        std::ostringstream outline;
+        const double x = kWest + 15000.0, y = kSouth + 15000.0;
+        outline.precision(12);
+        outline << R"({"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name":
+                   "urn:ogc:def:crs:EPSG::32632"}}, "features": [{"type": "Feature", "properties": {}, "geometry":
+                   {"type": "Polygon", "coordinates": [[)"
+                << "[" << x << "," << y << "],[" << x + 50 << "," << y << "],[" << x + 50 << "," << y + 50 << "],[" << x << ","
+                << y + 50 << "],[" << x << "," << y << "]]]}}]}";
+        frana::write_text(folder_.path() / "release.geojson", outline.str());
+        frana::write_text(folder_.path() / "case.toml",
+                          "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
+                          "[material.bed]\nlaw = \"coulomb\"\nmu = 0.1\n[time]\nend = 4\n[output]\nevery = 2\n"
+                          "formats = [\"vtk\", \"geotiff\", \"xdmf\"]\n");
+    }
+    const fs::path& path() const { return folder_.path(); }
+
+private:
+    FreshFolder folder_;
+};
+
+const LargeTerrain& large_terrain() {
+    static const LargeTerrain terrain;
+    return terrain;
+}
+
+/// Largest memory that `frana ARGUMENTS` had in the folder [bytes]; fails the test when it does not leave with 0.
+double peak_memory(const fs::path& folder, const std::vector<std::string>& arguments) {
+    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
+    REQUIRE(fs::exists(program));
+    const pid_t child = fork();
+    if (child == 0) {
+        std::vector<char*> argv{const_cast<char*>(program.c_str())};
+        for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+        argv.push_back(nullptr);
+        if (chdir(folder.c_str()) == 0) execv(program.c_str(), argv.data());
+        _exit(127);
+    }
+    int status = 0;
+    rusage used{};
+    REQUIRE(wait4(child, &status, 0, &used) == child);
+    REQUIRE(WIFEXITED(status));
+    REQUIRE(WEXITSTATUS(status) == 0);
+    return 1024.0 * static_cast<double>(used.ru_maxrss);
+}
+
+}  // namespace
+
+TEST_CASE("A run on a large terrain takes memory by what the flow reaches", "[terrain]") {
+    const fs::path folder = large_terrain().path();
+    const double bytes = peak_memory(folder, {"run", "case.toml", "--quiet", "--out", "large"});
+    // The elevations of all of the terrain, as doubles, with their slopes alone would be 36e6 x 24 bytes. The part that
+    // the flow needs has 1250 x 1250 nodes of 160 bytes; the program itself takes 85 MB, before it draws anything.
+    CHECK(bytes < 24.0 * kPixels * kPixels);
+    CHECK(bytes < 0.5e9);
+    const auto record = nlohmann::json::parse(std::ifstream(folder / "large" / "run.json"));
+    CHECK(record["grid"]["nx"] == kPixels);
+    const Outcome check = call_frana(folder, "check case.toml");
+    CHECK(check.code == 0);
+    CHECK_THAT(check.out, Contains("6000 x 6000 nodes, 5 m apart") && Contains("around the releases to begin with") &&
+                              Contains("ready to run"));
+}
+
+TEST_CASE("A run on a large terrain has the bits of a run on a window of it", "[terrain]") {
+    const fs::path folder = large_terrain().path();
+    REQUIRE(call_frana(folder, "run case.toml --quiet --out whole --overwrite").code == 0);
+    // 2001 pixels from the west, 1903 from the south: no multiple of a tile.
+    std::ostringstream window;
+    window.precision(12);
+    window << "[" << kWest + 2001 * kCell << "," << kSouth + 1903 * kCell << "," << kWest + 4000 * kCell << ","
+           << kSouth + 4100 * kCell << "]";
+    REQUIRE(call_frana(folder, "run case.toml --quiet --out window --set terrain.window=" + window.str()).code == 0);
+    CHECK(text_of(folder / "whole" / "history.csv") == text_of(folder / "window" / "history.csv"));
+    for (const char* file : {"rasters/peak_depth.tif", "rasters/peak_speed.tif", "rasters/arrival_time.tif",
+                             "grid/grid_000002.vti", "particles/particles_000002.vtp"}) {
+        INFO(file);
+        REQUIRE(fs::exists(folder / "whole" / file));
+        CHECK(text_of(folder / "whole" / file) == text_of(folder / "window" / file));
+    }
+}
+
+TEST_CASE("Rasters of a large terrain show where the flow was, on the terrain's pixels", "[terrain]") {
+    const fs::path folder = large_terrain().path();
+    REQUIRE(call_frana(folder, "run case.toml --quiet --out shown --overwrite").code == 0);
+    std::unique_ptr<GDALDataset> raster(GDALDataset::Open((folder / "shown/rasters/peak_depth.tif").c_str()));
+    REQUIRE(raster);
+    double transform[6];
+    raster->GetGeoTransform(transform);
+    CHECK(raster->GetRasterXSize() < 200);
+    CHECK(raster->GetRasterYSize() < 200);
+    CHECK(transform[1] == kCell);
+    CHECK(std::fmod(transform[0] - kWest, kCell) == 0.0);
+    CHECK(std::fmod(transform[3] - kSouth, kCell) == 0.0);
+    CHECK(transform[0] < kWest + 15000.0);
+    CHECK(transform[0] + kCell * raster->GetRasterXSize() > kWest + 15050.0);
+    // What is made after the run finds its way: pictures, points, a state that goes on.
+    CHECK(call_frana(folder, "figures shown").code == 0);
+    CHECK(call_frana(folder, "convert shown --spacing 1 --time 2 --out points.vtp").code == 0);
+    const Outcome on = call_frana(folder, "run case.toml --quiet --out shown --resume");
+    CHECK(on.code == 0);
+}
+
+TEST_CASE("A terrain that does not fit into memory is refused by all commands before it is read", "[terrain]") {
+    const FreshFolder folder;
+    RasterSpec spec;
+    spec.columns = spec.rows = 22000;  // 4.8e8 nodes of 315 bytes and more
+    spec.transform = {kWest, 1.0, 0.0, kSouth + 22000.0, 0.0, -1.0};
+    constexpr double kNeeded = 315.0 * 22000.0 * 22000.0;
+    if (frana::free_memory() > kNeeded) {
+        WARN("skipped: this system has more than 150 GB of free memory");
+        return;
+    }
+    fs::copy(large_terrain().path() / "release.geojson", folder.path() / "release.geojson");
+    CPLStringList options;
+    options.SetNameValue("SPARSE_OK", "TRUE");
+    options.SetNameValue("TILED", "YES");
+    std::unique_ptr<GDALDataset> file(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+        (folder.path() / "dem.tif").c_str(), spec.columns, spec.rows, 1, GDT_Float32, options));
+    REQUIRE(file);
+    file->SetGeoTransform(spec.transform.data());
+    file->SetProjection(wkt_of("EPSG:32632").c_str());
+    file.reset();
+    frana::write_text(folder.path() / "case.toml",
+                      "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
+                      "[material.bed]\nlaw = \"coulomb\"\nmu = 0.1\n[time]\nend = 4\n[output]\nextent = \"terrain\"\n");
+    for (const char* command : {"check case.toml", "run case.toml --out run", "converge case.toml --cells 1,2 --out study"}) {
+        INFO(command);
+        const Outcome outcome = call_frana(folder.path(), command);
+        CHECK(outcome.code == 2);
+        CHECK_THAT(outcome.err, Contains("terrain.window: found ") && Contains(" nodes of ") && Contains(" GB that are free"));
+        CHECK_THAT(outcome.out, !Contains("ready to run"));
+        CHECK_FALSE(fs::exists(folder.path() / "run"));
+    }
+}

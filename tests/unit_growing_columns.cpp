@@ -1,0 +1,174 @@
+// Columns on a part of a large terrain: no result depends on what else of the terrain there is.
+#include <cstring>
+#include <memory>
+
+#include "analytic_scene.h"
+#include "base/error.h"
+#include "catch.h"
+#include "observe/memory_archive.h"
+#include "observe/memory_state.h"
+#include "stages/growing_columns.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+/// Down to the west, with bumps, and rough at the node: whole metres and eighths, which every grid has alike.
+double ground(double x, double y) {
+    const double bumps = 3.0 * std::sin(0.01 * x) * std::cos(0.013 * y);
+    const auto i = static_cast<std::int64_t>(x), j = static_cast<std::int64_t>(y);
+    return 0.5 * x + bumps + 0.125 * static_cast<double>((7 * i + 13 * j) % 5);
+}
+
+Raster ground_on(const GridGeometry& grid) {
+    Raster bed = Raster::filled(grid, 0.0);
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 0; i < grid.nx; ++i) bed.at(i, j) = ground(grid.x(i), grid.y(j));
+    return bed;
+}
+
+/// A flow that begins at 4000, 1000 on nodes of 5 m; `held` are nodes of the terrain.
+Scene slide_on(const GridGeometry& terrain, const NodeBox& held) {
+    Scene scene;
+    scene.bed = ground_on(held.of(terrain));
+    scene.wider = std::make_shared<WiderTerrain>(
+        WiderTerrain{terrain, held, [terrain](const NodeBox& box) { return ground_on(box.of(terrain)); }, {}});
+    scene.bed_law = bed::Coulomb{0.1};
+    for (int j = -4; j < 4; ++j)
+        for (int i = -4; i < 4; ++i) {
+            Seeds& s = scene.particles;
+            s.x.push_back(4000.0 + 2.5 * i), s.y.push_back(1000.0 + 2.5 * j);
+            s.vx.push_back(0.0), s.vy.push_back(0.0);
+            s.volume.push_back(6.25), s.depth.push_back(1.0), s.size.push_back(2.5);
+        }
+    scene.end = 1e9;
+    return scene;
+}
+
+constexpr GridGeometry kLarge{1000, 400, 0.0, 0.0, 5.0};
+/// A part of the large terrain's nodes that holds all that the run ever needs, and no multiple of a tile away.
+constexpr NodeBox kCut{397, 93, 520, 230};
+constexpr NodeBox kBegin{720, 120, 160, 160};  ///< nodes of the large terrain around the start
+
+Scene slide_on_large() { return slide_on(kLarge, kBegin); }
+Scene slide_on_cut() {
+    return slide_on(kCut.of(kLarge), {kBegin.i0 - kCut.i0, kBegin.j0 - kCut.j0, kBegin.nx, kBegin.ny});
+}
+
+bool same_bits(const Field& a, const Field& b) {
+    return a.name == b.name && a.count == b.count && a.components == b.components &&
+           std::memcmp(a.data, b.data, static_cast<std::size_t>(a.count * a.components) * sizeof(double)) == 0;
+}
+
+void require_same(Simulation& a, Simulation& b) {
+    const Frame one = a.frame(), other = b.frame();
+    REQUIRE(one.grid == other.grid);
+    REQUIRE(one.status.step == other.status.step);
+    REQUIRE(one.status.time == other.status.time);
+    REQUIRE(one.particles.size() == other.particles.size());
+    for (std::size_t n = 0; n < one.particles.size(); ++n) REQUIRE(same_bits(one.particles[n], other.particles[n]));
+    REQUIRE(one.nodes.size() == other.nodes.size());
+    for (std::size_t n = 0; n < one.nodes.size(); ++n) REQUIRE(same_bits(one.nodes[n], other.nodes[n]));
+}
+
+}  // namespace
+
+TEST_CASE("A run on a part of a terrain has the same bits whatever lies beyond", "[terrain]") {
+    GrowingColumns large(slide_on_large()), cut(slide_on_cut());
+    const NodeBox begin = large.held();
+    for (double time = 2.0, after = 0.0; after < 4.0; time += 2.0, after += large.held() == begin ? 0.0 : 1.0) {
+        REQUIRE(time < 30.0);
+        run_to(large, time), run_to(cut, time);
+        require_same(large, cut);
+    }
+    // It went farther than the part that it began with, to the west, and the part grew before.
+    CHECK(large.held().i0 < begin.i0);
+    const Frame frame = large.frame();
+    const Field& peak = *frame.node("peak_depth");
+    Index west = frame.grid.nx;
+    for (Index k = 0; k < peak.count; ++k)
+        if (peak.data[k] > 0.0) west = std::min(west, k % frame.grid.nx);
+    CHECK(frame.grid.x(west) < kLarge.x(begin.i0));
+    CHECK(mass_error(large.status(), 400e3) < 1e-13);
+    CHECK(large.status().mass_left == 0.0);
+}
+
+TEST_CASE("Growing changes a run by round-off only", "[terrain]") {
+    Scene whole = slide_on_large();
+    whole.bed = ground_on(kLarge);
+    whole.wider.reset();
+    DepthAveraged all(whole);
+    GrowingColumns part(slide_on_large());
+    const NodeBox begin = part.held();
+    while (part.held() == begin) {
+        all.advance(1e9), part.advance(1e9);
+        REQUIRE(all.status().time < 24.0);
+    }
+    for (int step = 0; step < 20; ++step) all.advance(1e9), part.advance(1e9);
+    // Places in cells are counted from other nodes: they differ in their last bits, at most 1000 x 2^-53 cells each step,
+    // and so do sums that follow. A thousand such steps stay below 1e-9 of what the flow has.
+    CHECK(part.status().step == all.status().step);
+    CHECK(std::abs(part.status().time - all.status().time) < 1e-9 * all.status().time);
+    CHECK(std::abs(part.status().kinetic - all.status().kinetic) < 1e-9 * all.status().kinetic);
+    CHECK(std::abs(part.status().dissipated - all.status().dissipated) < 1e-9 * all.status().dissipated);
+    CHECK(part.status().mass == Approx(all.status().mass).epsilon(1e-13));
+}
+
+TEST_CASE("Frames of a part show what the flow has reached, and places that are always shown", "[terrain]") {
+    GrowingColumns part(slide_on_large());
+    const Frame start = part.frame();
+    CHECK(start.grid.nx * start.grid.ny < 100 * 100);
+    CHECK(start.grid.x0 < 4000.0 - 10.0);
+    CHECK(start.grid.x_max() > 4000.0 + 10.0);
+    // Nodes are those of the terrain.
+    CHECK(std::fmod(start.grid.x0, 5.0) == 0.0);
+    const GridGeometry before = start.grid;
+    run_to(part, 12.0);  // some 200 m on
+    const Frame later = part.frame();
+    CHECK(later.grid.x0 < before.x0);
+    CHECK(later.grid.x_max() >= before.x_max());
+    const Field& peak = *later.node("peak_depth");
+    for (Index k = 0; k < peak.count; ++k) {
+        const Index i = k % later.grid.nx, j = k / later.grid.nx;
+        if (i == 0 || j == 0 || i == later.grid.nx - 1 || j == later.grid.ny - 1) REQUIRE(peak.data[k] == 0.0);
+    }
+    Scene scene = slide_on_large();
+    auto wider = std::make_shared<WiderTerrain>(*scene.wider);
+    wider->shown = {{3700.0, 900.0}, {3800.0, 950.0}};
+    scene.wider = wider;
+    GrowingColumns with_places(scene);
+    const Frame shown = with_places.frame();
+    CHECK(shown.grid.x0 <= 3700.0);
+    CHECK(shown.grid.y0 <= 900.0);
+}
+
+TEST_CASE("A run on a part goes on from a kept state with the same bits, before and after it has grown", "[terrain]") {
+    GrowingColumns run(slide_on_large());
+    const NodeBox begin = run.held();
+    for (const bool grown : {false, true}) {
+        while ((run.held() == begin) == grown || run.status().time < 3.0) run.advance(1e9);
+        MemoryArchive archive;
+        run.keep(archive);
+        GrowingColumns again(slide_on_large(), Start::kept);
+        again.keep(archive.rewind());
+        CHECK(again.held() == run.held());
+        for (int step = 0; step < 50; ++step) run.advance(1e9), again.advance(1e9);
+        require_same(run, again);
+    }
+}
+
+TEST_CASE("A run on a part comes back to a state that was put aside, also just before it grows", "[terrain]") {
+    GrowingColumns run(slide_on_large()), other(slide_on_large());
+    const NodeBox begin = run.held();
+    MemoryState aside;
+    while (other.held() == begin) {
+        aside.save(run);
+        run.advance(1e9);
+        run.frame();
+        aside.load(run);
+        run.advance(1e9);
+        other.advance(1e9);
+    }
+    require_same(run, other);
+}
