@@ -178,6 +178,18 @@ TEST_CASE("The top of a barrier may follow the ground", "[solid]") {
     CHECK(contact(dam, {-4, -3, 3.8}).distance > 2.0);          // far above it here
 }
 
+TEST_CASE("A barrier that follows the ground is drawn no higher than the ground beside it is", "[solid]") {
+    Raster top = Raster::filled({21, 21, -10.0, -10.0, 1.0}, 6.0);
+    top.at(20, 20) = 470.0;
+    top.at(10, 12) = 6.5;
+    const Prism wall(box(-5.5, -2, 5.5, 2), top);
+    CHECK(wall.box().second == Vec3(5.5, 2, 6.5));
+    CHECK(Prism(box(8.5, 8.5, 9.5, 9.5), top).box().second.z() == 470.0);  // a part of that cell is in it
+    const FaceLedger ledger({Surface::barrier(wall)}, {-9, -9, 0}, {9, 9, 500}, 1.0);
+    CHECK(ledger.face(0, 0).patches.count[1] == 7);
+    CHECK(Prism(box(-50, -50, -40, -40), top).box().second.z() == 6.0);  // beyond the field it is as at its edge
+}
+
 TEST_CASE("A wall along a line keeps its wet face on the line", "[solid]") {
     const Polyline line = {{0, 0}, {10, 0}, {10, 10}};
     for (const WetSide wet : {WetSide::left, WetSide::right}) {

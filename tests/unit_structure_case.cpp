@@ -111,6 +111,14 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(has(problem_of(structure + "bulk_modulus = 1e7\n"), "which no solid can have"));
     CHECK(has(problem_of(structure + "bulk_modulus = 3e7\n"), "a negative Poisson ratio"));
     CHECK(has(problem_of(structure + "dilatancy_angle_deg = 31\n"), "expected at most friction_angle_deg = 30"));
+    const auto steep = [](const char* angle) {
+        return "[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 2e4\nyoung_modulus = 1e8\nfriction_angle_deg = " +
+               std::string(angle) + "\n";
+    };
+    CHECK(has(problem_of(steep("60.5")),
+              "material.structure.friction_angle_deg: found 60.5; expected at most 60 with earth_pressure = \"rankine\""));
+    CHECK(scene_of(steep("60")).structure.has_value());
+    CHECK(scene_of(steep("75") + "earth_pressure = \"hydrostatic\"\n").structure.has_value());
     CHECK(has(problem_of(structure + "onset = 0.1\n"), "material.structure.onset: found, but"));
     CHECK(has(problem_of(structure + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = 1\n"),
               "material.rheology.law: found \"newtonian\" with material.structure.law"));

@@ -14,7 +14,8 @@ void add_structure(Table& table) {
                            "the stress across the bed being given by the weight"));
     table.push_back(needed(number("material.structure.cohesion", "Pa", not_negative, "cohesion of the undamaged structure")));
     table.push_back(needed(number("material.structure.friction_angle_deg", "degree", {0.0, 90.0, true, true},
-                                  "internal friction angle of the structure, and of the grains it falls to")));
+                                  "internal friction angle of the structure, and of the grains it falls to; at most 60 where "
+                                  "they push by Rankine's coefficients")));
     table.push_back(used(number("material.structure.dilatancy_angle_deg", "degree", {0.0, 90.0, false, true}, 0.0,
                                 "angle by which yielding makes room")));
     table.push_back(with(choice("material.structure.cone", {"triaxial", "plane_strain"}, "triaxial",

@@ -37,6 +37,7 @@ public:
         m.young = number("young_modulus");
         m.poisson = poisson(m.young);
         m.friction = number("friction_angle_deg") * kDegree;
+        if (!structure.hydrostatic) refuse_steep_friction();
         m.dilatancy = number("dilatancy_angle_deg") * kDegree;
         m.yield = yield();
         m.damage_by = damage_by();
@@ -65,6 +66,19 @@ private:
     static std::string key(const char* name) { return std::string("material.structure.") + name; }
     bool given(const char* name) const { return case_.given(key(name)); }
     double number(const char* name) const { return case_.number(key(name)); }
+
+    /// Squeezed grains push sideways by Kp = tan(45 + angle / 2)^2 times their weight: 14 times at 60 degrees, 58 at 75.
+    /// Their push then grows within a step, and they run away. Grains have 25 to 50 degrees; what stands steeper coheres.
+    void refuse_steep_friction() {
+        constexpr double kSteepest = 60.0;
+        const double angle = number("friction_angle_deg");
+        if (angle <= kSteepest) return;
+        problems_.add(case_.place(key("friction_angle_deg")), fmt::format("found {:.6g}", angle),
+                      fmt::format("expected at most {:g} with earth_pressure = \"rankine\": grains have 25 to 50 degrees, and "
+                                  "beyond {:g} their passive pressure makes squeezed ones run away",
+                                  kSteepest, kSteepest),
+                      "give a smaller angle and the rest of the strength as cohesion, or earth_pressure = \"hydrostatic\"");
+    }
 
     double poisson(double young) {
         if (!given("bulk_modulus")) return number("poisson_ratio");

@@ -104,7 +104,24 @@ void Prism::find_box() {
         high_.head<2>() = high_.head<2>().cwiseMax(edge.from);
     }
     low_.z() = -kInfinity;
-    high_.z() = top_.values.empty() ? level_ : *std::max_element(top_.values.begin(), top_.values.end());
+    high_.z() = top_.values.empty() ? level_ : highest_top();
+}
+
+/// Of the nodes around the outline's box: between nodes a top is no higher than they.
+double Prism::highest_top() const {
+    const GridGeometry& g = top_.geometry;
+    const auto nodes = [&](double least, double most, double start, Index count) {
+        const auto node = [&](double at) {
+            return static_cast<Index>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
+        };
+        return std::pair(node(std::floor((least - start) / g.cell)), node(std::ceil((most - start) / g.cell)));
+    };
+    const auto [i0, i1] = nodes(low_.x(), high_.x(), g.x0, g.nx);
+    const auto [j0, j1] = nodes(low_.y(), high_.y(), g.y0, g.ny);
+    double highest = -kInfinity;
+    for (Index j = j0; j <= j1; ++j)
+        for (Index i = i0; i <= i1; ++i) highest = std::max(highest, top_.at(i, j));
+    return highest;
 }
 
 double Prism::top_at(const Vec2& p) const {

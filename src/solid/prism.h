@@ -46,6 +46,7 @@ public:
 private:
     void add_ring(std::vector<Vec2> ring, bool hole);
     void find_box();
+    double highest_top() const;
     bool within(const Vec2& p) const;
     Contact top_contact(const Vec3& x) const;
     Contact lifted(const Vec3& x, double distance, const Vec2& normal, int face) const;

@@ -159,10 +159,11 @@ public:
                     if constexpr (keeps) body.kept[k] = {};
                     continue;
                 }
-                Vec3 v = Vec3(node.x, node.y, node.z) / node.m;
-                if (near) v = meet(body, near, place_of(body.grid, tile, k - first), body.real[k], v, given);
                 double mean_j = 0.0;
                 if constexpr (Law::kAverages) mean_j = (keeps ? body.kept[k].m : body.mass_j[k]) / real;
+                Vec3 v = Vec3(node.x, node.y, node.z) / node.m;
+                if (near)
+                    v = meet(body, near, place_of(body.grid, tile, k - first), body.real[k], v, had2(body, k), given);
                 node = {mean_j, v[0], v[1], v[2]};
                 if constexpr (keeps) {
                     SolidBody::Node& had = body.kept[k];
@@ -421,6 +422,28 @@ private:
             }
     }
 
+    /// Surfaces at rest do no work: no push gives a node more energy than it had. What images ask for beyond that is
+    /// not the material's: in corners, and where few points shear, they show motion that is not there. The answer lies
+    /// between v and what is left where no push makes anything leave a surface, which is no faster than what came.
+    /// Behind a surface, but in oblique corners, what spreads along it leaves it on: there it may.
+    [[gnu::noinline]] static Vec3 without_gain(Touch* list, int count, const Vec3& came, const Vec3& v, double most2) {
+        if (spreads_behind(list, count)) return v;
+        Touch soft[kMostTouched];
+        for (int n = 0; n < count; ++n) {
+            soft[n] = list[n];
+            soft[n].push = 0.0;
+            soft[n].least = std::min(soft[n].least, 0.0);
+        }
+        Vec3 slow = came;
+        push_away(soft, count, slow);
+        // |slow + s (v - slow)|^2 = most2
+        const Vec3 more = v - slow;
+        const double a = more.squaredNorm(), b = slow.dot(more), c = most2 - slow.squaredNorm();
+        const double s = c > 0.0 && a > 0.0 ? std::min(1.0, c / (b + std::sqrt(b * b + a * c))) : 0.0;
+        for (int n = 0; n < count; ++n) list[n].push = soft[n].push + s * (list[n].push - soft[n].push);
+        return slow + s * more;
+    }
+
     struct Touches {
         const Touch *begin, *end;
     };
@@ -436,6 +459,32 @@ private:
         return kept;
     }
 
+    /// Whether a surface pushes a node that lies behind it, and all surfaces there are perpendicular to each other.
+    static bool spreads_behind(const Touch* list, int count) {
+        constexpr double kSquare = 1e-9;  // round-off of normals
+        bool behind = false;
+        for (int n = 0; n < count; ++n) {
+            behind = behind || (list[n].push > 0.0 && list[n].contact.distance <= 0.0);
+            for (int m = 0; m < n; ++m)
+                if (std::abs(list[n].contact.normal.dot(list[m].contact.normal)) > kSquare) return false;
+        }
+        return behind;
+    }
+
+    /// v, or as much of it as has no more than that square of the speed.
+    static Vec3 no_faster(const Vec3& v, double most2) {
+        const double speed2 = v.squaredNorm();
+        return speed2 > most2 ? Vec3(std::sqrt(most2 / speed2) * v) : v;
+    }
+
+    /// Square of a node's speed before the step's impulses, where points that keep their velocities tell it; else zero.
+    /// Stress beside a surface presses a node into it in the step, and the surface takes that back.
+    static double had2(const SolidBody& body, Index k) {
+        if constexpr (!keeps) return 0.0;
+        const SolidBody::Node& had = body.kept[k];
+        return Vec3(had.x, had.y, had.z).squaredNorm() / (body.real[k].m * body.real[k].m);
+    }
+
     /// Where impulses on the nodes of a tile are booked.
     struct Given {
         Vec3* impulse;                 ///< per surface
@@ -448,12 +497,14 @@ private:
     /// shears), and only as a push: surfaces never pull. Friction follows from the push. Books each surface's
     /// impulse on the real material.
     static Vec3 meet(const SolidBody& body, SurfaceSet near, const Vec3& x, const SolidBody::Node& real,
-                     const Vec3& mixed, const Given& given) {
+                     const Vec3& mixed, double had2, const Given& given) {
         Touch list[kMostTouched];
         const int count = touched(body, near, x, mixed, list);
         Vec3 v = Vec3(real.x, real.y, real.z) / real.m;
         const Vec3 came = v;
+        const double most2 = std::max(came.squaredNorm(), had2);
         push_away(list, count, v);
+        if (v.squaredNorm() > most2) v = without_gain(list, count, came, v, most2);
         const Vec3 pushed = v;
         for (Touch* t = list; t < list + count; ++t) {
             const Surface& surface = body.surfaces[static_cast<std::size_t>(t->surface)];
@@ -461,7 +512,7 @@ private:
             if (t->push > 0.0) {
                 const Vec3 before = v;
                 if (surface.hold == Hold::stuck)
-                    v = held(body, mixed, v, t, {list, list + count});
+                    v = no_faster(held(body, mixed, v, t, {list, list + count}), most2);
                 else if (surface.friction > 0.0)
                     v = braked(v, normal, surface.friction * t->push);
                 t->brake = v - before;
@@ -538,7 +589,7 @@ private:
         impulse.fill(Vec3::Zero());
         SurfaceWork work{};
         const std::size_t before = given.faces ? given.faces->size() : 0;
-        Vec3 v = meet(body, near, x, real, mixed, {impulse.data(), given.faces, &work});
+        Vec3 v = meet(body, near, x, real, mixed, 0.0, {impulse.data(), given.faces, &work});
         for (std::size_t s = 0; s < body.surfaces.size(); ++s) given.impulse[s] += share * impulse[s];
         given.work->pushed += share * work.pushed, given.work->friction += share * work.friction;
         if (given.faces)
