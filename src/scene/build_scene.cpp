@@ -38,6 +38,7 @@ public:
         scene_.water = read_water(case_, reader_, scene_, problems_);
         scene_.insitu = read_insitu(case_, scene_, problems_);
         if (problems_.empty()) make_particles();
+        wall_holes(case_, scene_, problems_);
         problems_.throw_if_any();
         remark_on_releases(case_, built_.releases, scene_);
         cut_releases();
@@ -66,13 +67,13 @@ private:
 
     void note_nodata() {
         const auto& values = scene_.bed.values;
-        const auto holes =
-            std::count_if(values.begin(), values.end(), [](double z) { return std::isnan(z); });
-        if (holes > 0)
-            scene_.log.push_back(
-                fmt::format("{} of {} nodes have no elevation: an exit, mass that enters is counted "
-                            "as left",
-                            holes, values.size()));
+        const auto missing = std::count_if(values.begin(), values.end(), [](double z) { return std::isnan(z); });
+        find_holes(case_, scene_);
+        const Index outside = missing - static_cast<Index>(scene_.holes.nodes.size());
+        if (outside > 0)
+            scene_.log.push_back(fmt::format("{} of {} nodes lie outside of the terrain, without elevation: an exit, mass that "
+                                             "enters is counted as left",
+                                             outside, values.size()));
     }
 
     void read_releases() {

@@ -116,6 +116,7 @@ private:
     double signal_ = 0.0;       ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]
     double drift_ = 0.0;        ///< largest distance since the last sort [cells]
     double stress_power_ = 0.0; ///< of the present deposit [W]
+    double lost_in_holes_ = 0.0;  ///< of the mass that left [kg]
     Vec2 centre_{0, 0};         ///< of the release [cells]
 
     struct StressSum { double stress[3], mass; };
