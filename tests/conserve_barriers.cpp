@@ -323,3 +323,47 @@ TEST_CASE("A barrier's mean force knows nothing of a short blow", "[barrier]") {
     CHECK(read.column("mean_force").back() == Approx(2.0));
     CHECK(read.column("f0x").back() == Approx(2.0));
 }
+
+TEST_CASE("A barrier's mean force begins within a step, and its raw peak is horizontal", "[barrier]") {
+    const FreshFolder scratch;
+    std::vector<BarrierSummary> summaries;
+    Barriers table(scratch.path(), {"dam"}, summaries);
+    Pushed probe;
+    Status now;
+    table.step(now, probe);
+    // 3 N and 4 N along the axes for 0.4 s, beside a weight of 100 N; then nothing.
+    for (const double time : {0.4, 0.8, 1.2}) {
+        if (time < 0.5) probe.state.barriers[0].faces[0].impulse += 0.4 * Vec3(3.0, 4.0, -100.0);
+        now.time = time;
+        table.step(now, probe);
+    }
+    table.see({});
+    CHECK(summaries.at(0).raw_peak_force == Approx(5.0));
+    // Of the second up to 1.2 s the push has 0.2 s: half of the step that it begins in.
+    CHECK(read_table(scratch.path() / "barriers" / "dam.csv").column("mean_force").back() == Approx(1.0));
+}
+
+TEST_CASE("A barrier's mean force goes on from what was measured before the run was taken up again", "[barrier][resume]") {
+    const FreshFolder scratch;
+    std::vector<BarrierSummary> summaries, summaries_after;
+    Barriers whole(scratch.path() / "whole", {"dam"}, summaries), cut(scratch.path() / "cut", {"dam"}, summaries_after);
+    Pushed probe;
+    Status now;
+    std::vector<BarrierSummary> resumed_summaries;
+    Barriers resumed(scratch.path() / "cut", {"dam"}, resumed_summaries);
+    for (int step = 0; step <= 20; ++step) {
+        now.time = 0.1 * step;
+        probe.state.barriers[0].faces[0].impulse.x() += 0.1 * step;
+        whole.step(now, probe);
+        (step <= 12 ? cut : resumed).step(now, probe);
+        if (step != 12) continue;
+        cut.see({});
+        MemoryArchive kept;
+        cut.keep(kept);
+        resumed.keep(kept.rewind());
+    }
+    whole.see({}), resumed.see({});
+    CHECK(resumed_summaries.at(0).peak_force == summaries.at(0).peak_force);
+    CHECK(read_table(scratch.path() / "cut" / "barriers" / "dam.csv").column("mean_force") ==
+          read_table(scratch.path() / "whole" / "barriers" / "dam.csv").column("mean_force"));
+}

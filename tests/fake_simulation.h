@@ -15,6 +15,7 @@ struct FakeScript {
     double rest_time = std::numeric_limits<double>::infinity();   ///< nothing moves from here on [s]
     double leave_time = std::numeric_limits<double>::infinity();  ///< no particles from here on [s]
     double fail_time = std::numeric_limits<double>::infinity();   ///< NumericsError past here [s]
+    double front_turns = std::numeric_limits<double>::max();      ///< the front draws back from here on [s]
     bool fail_with_nan = false;                                   ///< ... and the state is not finite
     std::function<void(Index)> on_step;                           ///< called with each new step's number
 };
@@ -115,7 +116,7 @@ private:
         status_.max_speed = status_.max_speed_on_map = t >= script_.rest_time ? 0.0 : std::hypot(u, v) + 0.1 * t;
         status_.mean_speed = std::hypot(u, v);
         status_.covered_area = 100.0 + t;
-        status_.front = 7.0 + u * t;
+        status_.front = 7.0 + u * std::min(t, script_.front_turns - (t - script_.front_turns));
         status_.p2g_mass_error = 1e-16;
         status_.p2g_momentum_error = 2e-16;
     }

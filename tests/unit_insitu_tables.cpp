@@ -194,11 +194,13 @@ TEST_CASE("A reduction has extremes, mean, area and volume of what is deep enoug
     CHECK(first("depth_max_x") == 106.0);
     CHECK(first("depth_max_y") == 202.0);
     CHECK(first("depth_mean") == 3.0);
+    CHECK(first("velocity_y_min") == -14.0);  // at the last of them
     CHECK(first("velocity_y_max") == -10.0);
     CHECK(first("velocity_y_max_x") == 102.0);
     CHECK(first("velocity_y_mean") == -12.0);
     CHECK(table.column("area")[1] == 0.0);
     CHECK(table.column("volume")[1] == 0.0);
+    CHECK(std::isnan(table.column("depth_min")[1]));
     CHECK(std::isnan(table.column("depth_max")[1]));
     CHECK(std::isnan(table.column("depth_mean")[1]));
 }

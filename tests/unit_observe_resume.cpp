@@ -74,6 +74,8 @@ void check_same(const Run& found, const Run& expected) {
     CHECK(a.last.mass == b.last.mass);
     CHECK(a.extremes.max_speed == b.extremes.max_speed);
     CHECK(a.extremes.max_speed_time == b.extremes.max_speed_time);
+    CHECK(a.extremes.max_front == b.extremes.max_front);
+    CHECK(a.extremes.max_covered_area == b.extremes.max_covered_area);
 }
 
 }  // namespace
@@ -95,6 +97,19 @@ TEST_CASE("a run that goes on from any of its states leaves what the whole run l
         CHECK(resumed.summary.wall_seconds > 0.0);
         CHECK(later.states.size() == 1);  // the last one
     }
+}
+
+TEST_CASE("a run that goes on knows how far the front once was", "[resume]") {
+    const RunPlan plan{1.05, 0.25, false};
+    const FreshFolder whole_folder, folder;
+    FakeScript script;
+    script.front_turns = 0.3;
+    MemoryKeeper unused, keeper(false), later(false);
+    const Run whole = run_in(whole_folder, plan, unused, script);
+    CHECK(whole.summary.extremes.max_front == Approx(7.0 + FakeSimulation::u * 0.3));
+    run_in(folder, {0.5, 0.25, false, true}, keeper, script);
+    later.from = keeper.states.back();
+    check_same(run_in(folder, plan, later, script), whole);
 }
 
 TEST_CASE("an interrupted run keeps its state before its last frame, and goes on without that frame", "[resume]") {

@@ -137,11 +137,12 @@ TEST_CASE("A mass that stands in the DEM is cut out of the bed with its whole vo
 TEST_CASE("Nodata near the material is an error that names the pixel; elsewhere it is an exit", "[scene]") {
     FakeGis gis = slope_gis();
     const std::string text = with_release("outline = \"release.geojson\"\ndepth = 2.0");
-    gis.rasters["dem.tif"].at(1, 1) = Raster::nodata;
+    gis.rasters["dem.tif"].at(0, 1) = Raster::nodata;
     const Scene scene = built(text, gis).scene;
-    CHECK(std::isnan(scene.bed.at(1, 1)));
+    CHECK(std::isnan(scene.bed.at(0, 1)));
     CHECK(scene.log.front().find("material.bed.law is not given") == 0);
-    CHECK(scene.log[2] == "1 of 1200 nodes have no elevation: an exit, mass that enters is counted as left");
+    CHECK(scene.log[2] == "1 of 1200 nodes lie outside of the terrain, without elevation: an exit, mass that enters is "
+                          "counted as left");
 
     gis.rasters["dem.tif"].at(12, 18) =
         Raster::nodata;  // 2 cells north of the edge at y = 2080 (node row 15)

@@ -11,6 +11,8 @@ namespace {
 
 FakeGis gis() {
     FakeGis files = slope_gis();
+    files.rasters["holed.tif"] = files.rasters["dem.tif"];
+    files.rasters["holed.tif"].at(3, 3) = Raster::nodata;
     files.polygons["wall.geojson"] = rectangle(1030, 2040, 1035, 2090);
     Polygons turned = files.polygons["wall.geojson"];
     turned.parts.front().rings.front().front().x() -= 2.0;
@@ -129,6 +131,13 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(has(problem_of(structure + "[[barrier]]\noutline = \"askew.geojson\"\nheight = 3\n"),
               "expected an outline that is one rectangle along x and y"));
     CHECK(scene_of(structure + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n").barriers.size() == 1);
+    const auto holed = [](const std::string& rest) {
+        return build_scene(CaseFile::parse("[terrain]\ndem = \"holed.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
+                                           "[time]\nend = 20\n" + structure + rest, "slide/case.toml"), gis());
+    };
+    CHECK(has(only_problem([&] { holed(""); }),
+              "boundary.holes: found \"wall\" beside material.structure with 1 node without elevation inside the terrain"));
+    CHECK_FALSE(holed("[boundary]\nholes = \"open\"\n").hole_top.has_value());
     CHECK(has(problem_of("[[insitu]]\nname = \"a\"\nkind = \"figure\"\nfield = \"damage\"\n"),
               "in a case without structure"));
 }

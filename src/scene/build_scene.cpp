@@ -11,6 +11,7 @@
 #include "scene/problems.h"
 #include "scene/scene_parts.h"
 #include "scene/terrain_part.h"
+#include "terrain/holes.h"
 
 namespace frana {
 namespace {
@@ -41,9 +42,9 @@ public:
         scene_.water = read_water(case_, reader_, scene_, problems_);
         scene_.insitu = read_insitu(case_, scene_, problems_);
         if (problems_.empty() && require_room_for_particles()) make_particles();
+        wall_holes(case_, scene_, problems_);
         problems_.throw_if_any();
         require_room_for_all();
-        problems_.throw_if_any();
         remark_on_releases(case_, built_.releases, scene_);
         cut_releases();
         return std::move(built_);
@@ -71,14 +72,25 @@ private:
         const bool read = problems_.attempt(
             place, [&] { scene_.bed = reader_.read_dem(case_.path("terrain.dem"), request, scene_.log); });
         if (!read) return;
-        if (later && !(wider.held == NodeBox::all(wider.grid)))
-            scene_.wider = std::make_shared<WiderTerrain>(std::move(wider));
+        if (later && !(wider.held == NodeBox::all(wider.grid)) && !problems_.attempt(place, [&] { hold_part(wider); })) return;
         const GridGeometry& grid = scene_.bed.geometry;
         if (grid.nx < 4 || grid.ny < 4)
             problems_.add(place, fmt::format("found {} x {} nodes", grid.nx, grid.ny),
                           "expected at least 4 x 4", "choose a smaller grid.cell or a larger terrain.window");
         note_nodata();
         remark_on_terrain(case_, scene_);
+    }
+
+    /// The bed is a part of the terrain. Where elevations are missing it has to be all of it: what is outside of the terrain,
+    /// and what is a hole in it, is known of the whole only.
+    void hold_part(WiderTerrain& wider) {
+        if (!has_nodata(scene_.bed)) {
+            scene_.wider = std::make_shared<WiderTerrain>(std::move(wider));
+            return;
+        }
+        const NodeBox all = NodeBox::all(wider.grid);
+        require_room(all.of(wider.grid), true);
+        scene_.bed = wider.read(all);
     }
 
     /// Before the elevations are read.
@@ -121,13 +133,13 @@ private:
 
     void note_nodata() {
         const auto& values = scene_.bed.values;
-        const auto holes =
-            std::count_if(values.begin(), values.end(), [](double z) { return std::isnan(z); });
-        if (holes > 0)
-            scene_.log.push_back(
-                fmt::format("{} of {} nodes have no elevation: an exit, mass that enters is counted "
-                            "as left",
-                            holes, values.size()));
+        const auto missing = std::count_if(values.begin(), values.end(), [](double z) { return std::isnan(z); });
+        find_holes(case_, scene_);
+        const Index outside = missing - static_cast<Index>(scene_.holes.nodes.size());
+        if (outside > 0)
+            scene_.log.push_back(fmt::format("{} of {} nodes lie outside of the terrain, without elevation: an exit, mass that "
+                                             "enters is counted as left",
+                                             outside, values.size()));
     }
 
     void read_releases() {

@@ -195,6 +195,8 @@ void add_scheme(Table& table) {
 void add_run(Table& table) {
     table.push_back(choice("boundary.sides", {"open", "wall"}, "open",
                            "open: mass leaves and is counted; wall: it is held back"));
+    table.push_back(choice("boundary.holes", {"wall", "open"}, "wall",
+                           "nodata inside the terrain: wall: mass is held back; open: it leaves and is counted"));
     table.push_back(required(number("time.end", "s", positive, "simulated time")));
     table.push_back(flag("time.stop_at_rest", false,
                          "stop when what still moves can change the deposit no more: a hundredth of the mass at most is "

@@ -20,6 +20,8 @@ enum class Remark {
     steep_as_in_feet,
     high_as_in_feet,
     named_feet,
+    walled_holes,
+    open_holes,
 };
 
 /// A row of the table. The text may name {value}, {low}, {high}, {other} and {what}.

@@ -15,6 +15,7 @@
 #include "law/structured_law.h"
 #include "particles/seeds.h"
 #include "scene/insitu.h"
+#include "terrain/holes.h"
 #include "terrain/raster.h"
 #include "water/free_water.h"
 #include "water/water_friction.h"
@@ -183,6 +184,8 @@ struct Scene {
     TerrainModel terrain = TerrainModel::steep;
     Curvature curvature = Curvature::full;
     Sides sides = Sides::open;
+    Holes holes;                       ///< of the bed, surrounded by terrain
+    std::optional<double> hole_top;    ///< of walls there, above the ground beside them [m]; nothing: material leaves there
 
     Seeds particles;                   ///< material at the start
     std::optional<double> still_surface;  ///< level of a release given as one horizontal surface at rest [m]: the

@@ -69,6 +69,15 @@ void refuse_nodata(const NodeMarks& marks, const Raster& bed, Index reach);
 /// Lowers the bed by the release's depth (mean over each node's pixel). Returns the volume cut out [m^3].
 double cut_release(const Release& release, Raster& bed);
 
+/// Finds the holes inside the terrain, with a remark on what they are (boundary.holes).
+void find_holes(const CaseFile& file, Scene& scene);
+/// How high walls in holes stand above the ground beside them [m]: so that the surface does not fall towards them. What
+/// comes onto them is stopped (solver/sides.cpp). On flanks that rise by six cells in one a flow gains energy of nothing.
+double hole_wall_height(const Scene& scene);
+/// Makes them walls, when they are to be; of a scene that has its particles. Where the model knows
+/// no such walls that goes to `problems`.
+void wall_holes(const CaseFile& file, Scene& scene, Problems& problems);
+
 /// Value between the nodes, bilinear; NaN where a node with weight is NaN or the point lies beyond the
 /// pixels.
 double bilinear(const Raster& raster, const Vec2& point);

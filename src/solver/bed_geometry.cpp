@@ -164,6 +164,23 @@ void fill_curvature(const TileGrid& grid, const LazyArray<double>& smoothed, Bed
     });
 }
 
+/// The bed with walls in its holes; as it is where there are none.
+std::vector<double> walled(const Scene& scene, std::vector<double> z) {
+    if (scene.hole_top)
+        for (const Index node : scene.holes.nodes) z[static_cast<std::size_t>(node)] += *scene.hole_top;
+    return z;
+}
+
+/// Says of every node what kind it is.
+void mark_exits(const Scene& scene, const TileGrid& grid, BedGeometry& bed) {
+    const Index nx = grid.nx(), ny = grid.ny();
+    bed.exit = LazyArray<std::uint8_t>(grid.size());
+    const std::vector<double>& z = scene.bed.values;
+    for (Index n = 0; n < nx * ny; ++n)
+        if (std::isnan(z[static_cast<std::size_t>(n)])) bed.exit[grid.at(n % nx, n / nx)] = kNoData, bed.has_exits = true;
+    for (const Index n : scene.holes.nodes) bed.exit[grid.at(n % nx, n / nx)] = scene.hole_top ? kWall : kHole;
+}
+
 }  // namespace
 
 SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid) {
@@ -174,18 +191,15 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     BedGeometry bed;
     const Index nx = grid.nx(), ny = grid.ny(), up = grid.stride();
     const bool wall = scene.sides == Sides::wall;
-    const std::vector<double> z = filled(scene.bed);
+    const std::vector<double> z = filled(scene.bed), raised = walled(scene, z);
     bed.averaging = averaging(scene);
     bed.z = LazyArray<double>(grid.size());
     bed.ground = LazyArray<double>(grid.size());
-    bed.exit = LazyArray<std::uint8_t>(grid.size());
     for_each_node(grid, 0, [&](Index i, Index j, Index k) {
-        bed.z[k] = bed.ground[k] = extended(z, nx, ny, i, j, wall);
-        const bool inside = i >= 0 && i < nx && j >= 0 && j < ny;
-        bed.exit[k] = inside && std::isnan(scene.bed.at(i, j)) ? kNoData : 0;
+        const bool inside = i >= 0 && i < nx && j >= 0 && j < ny;  // an open side goes on as if no wall were near
+        bed.z[k] = bed.ground[k] = extended(inside || wall ? raised : z, nx, ny, i, j, wall);
     });
-    for (Index j = 0; j < ny; ++j)
-        for (Index i = 0; i < nx; ++i) bed.has_exits = bed.has_exits || std::isnan(scene.bed.at(i, j));
+    mark_exits(scene, grid, bed);
     LazyArray<double> scratch(grid.size());
     average(scene, grid, bed.z, scratch);
     bed.z_min = LazyArray<double>(grid.size());

@@ -7,11 +7,14 @@
 
 namespace frana {
 
-/// Kinds of exits: the elevation model has no data; or points that leave are noted, for another model to take them up.
-constexpr std::uint8_t kNoData = 1, kNoted = 2;
+/// Nodes that are no ground like others. Exits: the elevation model has no data, outside of the terrain or in a hole of it;
+/// or points that leave are noted, for another model to take them up. And holes that are walls, where nothing leaves.
+constexpr std::uint8_t kNoData = 1, kNoted = 2, kHole = 3, kWall = 4;
+inline bool leads_out(std::uint8_t kind) { return kind != 0 && kind != kWall; }
+inline bool has_no_data(std::uint8_t kind) { return kind == kNoData || kind == kHole || kind == kWall; }
 
 /// Node values on the storage of a TileGrid, filled on all of it (beyond walls mirrored, beyond open sides
-/// extended linearly, over nodata by the nearest known value).
+/// extended linearly, over nodata by the nearest known value, to which a wall in a hole adds its height in z and ground).
 struct BedGeometry {
     LazyArray<double> z;        ///< bed averaged with the node's own shape function, (1/A) int N_i Z dx [m]
     LazyArray<double> ground;   ///< the elevation model's own elevation at the node [m]
@@ -21,8 +24,8 @@ struct BedGeometry {
     LazyArray<double> slope_y;  ///< [1]
     LazyArray<double> hxx, hxy, hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
     LazyArray<double> smooth_x, smooth_y;  ///< slopes of that smoothed bed, which the flow's path has [1]; empty on gentle terrain
-    LazyArray<std::uint8_t> exit;     ///< kNoData or kNoted where material leaves
-    bool has_exits = false;           ///< any of them
+    LazyArray<std::uint8_t> exit;     ///< 0, or what kind of node it is
+    bool has_exits = false;           ///< some node is of such a kind
 };
 
 /// Slopes of the bed smoothed to `curvature_length`, which velocities along the bed follow [1].

@@ -243,12 +243,15 @@ void DepthAveraged::book_points(const PointSums& sums) {
     signal_ = std::max(signal_, sums.max_signal);
     drift_ += sums.max_shift;
     status_.max_speed_on_map = sums.max_speed;
+    status_.impulse[0] += sums.pushed_x;
+    status_.impulse[1] += sums.pushed_y;
     if (flow_.walls)  // what walls push is not seen on the nodes: it is what else the points gained
         for (int axis = 0; axis < 2; ++axis) {
             const double gathered = axis == 0 ? sums.px + sums.left_px : sums.py + sums.left_py;
             status_.impulse[axis] = gathered + status_.momentum_left[axis] - start_momentum_[axis];
         }
     status_.mass_left += sums.left_mass;
+    lost_in_holes_ += sums.lost_in_holes;
     status_.momentum_left[0] += sums.left_px;
     status_.momentum_left[1] += sums.left_py;
     status_.energy_left += sums.left_energy;
@@ -291,14 +294,16 @@ Index DepthAveraged::particle_bytes() const {
 }
 
 std::vector<std::string> DepthAveraged::remarks() const {
-    if (!fit_) return {};
+    std::vector<std::string> remarks = remarks_on_lost(lost_in_holes_, status_.mass + status_.mass_left);
+    if (!fit_) return remarks;
     constexpr double kLevel = 1e-6;  // [cells]; far above round-off, and currents of it are slow
     const bool rests = fit_->level_error <= kLevel * flow_.cell;
-    return {fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
+    remarks.push_back(fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
                         "{} points at their limits; level within {:.2g} m{}",
                         fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped, fit_->level_error,
                         rests ? "" : ", so the lake does not rest; give more points (particles.per_cell) or a finer "
-                                     "grid.cell")};
+                                     "grid.cell"));
+    return remarks;
 }
 
 }  // namespace frana

@@ -128,6 +128,7 @@ private:
     double since_split_ = 0.0;  ///< ordinary steps since points were last split
     double drift_ = 0.0;        ///< largest distance since the last sort [cells]
     double stress_power_ = 0.0; ///< of the present deposit [W]
+    double lost_in_holes_ = 0.0;  ///< of the mass that left [kg]
     Vec2 centre_{0, 0};         ///< of the release [cells]
 
     struct StressSum { double stress[3], mass; };

@@ -109,7 +109,7 @@ void DepthAveraged::leave_at_exits() {
     double kinetic = 0.0;
     for (Index p = 0; p < c.count(); ++p) {
         const Index k = flow_.grid.nearest(c.x[p], c.y[p]);
-        if (flow_.bed.exit[k] == 0) continue;
+        if (!leads_out(flow_.bed.exit[k])) continue;
         gone[static_cast<std::size_t>(p)] = 1;
         flow_.columns.with_real([&](auto real) {
             kinetic += kinetic_of<decltype(real)>(flow_, p, k);

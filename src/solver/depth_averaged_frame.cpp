@@ -154,7 +154,7 @@ void DepthAveraged::node_fields(Frame& frame) {
     double* peak_dynamic = column("peak_dynamic_pressure", "Pa", 1);
     double* arrival = column("arrival_time", "s", 1);
     for_all_output_nodes(flow_, shown_, [&](Index k, Index n) {
-        elevation[n] = flow_.bed.exit[k] == kNoData ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
+        elevation[n] = has_no_data(flow_.bed.exit[k]) ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
         surface[n] = elevation[n];
         peak_depth[n] = peaks_.depth[k];
         peak_speed[n] = peaks_.speed[k];

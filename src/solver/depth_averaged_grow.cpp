@@ -39,6 +39,7 @@ void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
     splitter_ = std::move(from.splitter_), merger_ = std::move(from.merger_), timed_ = std::move(from.timed_);
     frame_storage_ = std::move(from.frame_storage_);
     status_ = from.status_, fit_ = from.fit_, start_momentum_ = from.start_momentum_;
+    lost_in_holes_ = from.lost_in_holes_;
     signal_ = from.signal_, since_split_ = from.since_split_, stress_power_ = from.stress_power_;
     centre_ = from.centre_ + Vec2(static_cast<double>(east), static_cast<double>(north));
     sorter_.sort(c, flow_.grid, {}, flow_.active);

@@ -83,7 +83,7 @@ void DepthAveraged::keep_points(Archive& archive) {
 
 void DepthAveraged::keep_sums(Archive& archive) {
     frana::keep(archive, "status", status_);
-    archive.numbers("sums", {&signal_, &since_split_, &drift_, &stress_power_, &start_momentum_[0],
+    archive.numbers("sums", {&signal_, &since_split_, &drift_, &stress_power_, &lost_in_holes_, &start_momentum_[0],
                              &start_momentum_[1], &centre_.x(), &centre_.y()});
     Index next_id = splitter_.next_id(), most = merger_ ? merger_->most() : 0, fitted = fit_ ? 1 : 0;
     archive.number("next_id", next_id);

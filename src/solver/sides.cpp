@@ -48,6 +48,35 @@ void settle_on_walls(Flow& flow, Index p, double x_max, double y_max) {
     set_edges(held, p, rectangle_of(moments));
 }
 
+/// A point that comes to node (i, j) of a wall in a hole goes back over the nearest edge of the node's pixel beyond which there
+/// is no wall, as far as it came, and keeps no speed against that edge. The wall's height alone would not hold the foremost.
+template <class Real>
+void stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
+    Columns& c = flow.columns;
+    Carried<Real>& held = c.carried<Real>();
+    const double dx = c.x[p] - static_cast<double>(i), dy = c.y[p] - static_cast<double>(j);
+    double least = 4.0;
+    Index to_x = 0, to_y = 0;
+    for (const auto& [a, b] : {std::pair<Index, Index>{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}) {
+        const double to_edge = 0.5 - static_cast<double>(a) * dx - static_cast<double>(b) * dy;
+        const double way = a != 0 && b != 0 ? 1.5 + to_edge : to_edge;  // over corners only where no edge is free
+        if (flow.bed.exit[flow.grid.at(i + a, j + b)] == kWall || way >= least) continue;
+        least = way, to_x = a, to_y = b;
+    }
+    const auto turn = [&](Index to, double node, Column& place, ColumnOf<Real>& v, std::array<ColumnOf<Real>*, 2> gradient) {
+        if (to == 0) return 0.0;
+        const double side = static_cast<double>(to), behind = 0.5 - side * (place[p] - node);
+        place[p] = node + side * (0.5 + std::clamp(behind, 1e-9, 0.49));
+        const double speed = v[p];
+        for (ColumnOf<Real>* g : gradient) (*g)[p] = Real{0};
+        if (side * speed >= 0.0) return 0.0;
+        v[p] = Real{0};
+        return -c.mass[p] * speed;
+    };
+    sums.pushed_x += turn(to_x, static_cast<double>(i), c.x, held.vx, {&held.cxx, &held.cxy});
+    sums.pushed_y += turn(to_y, static_cast<double>(j), c.y, held.vy, {&held.cyx, &held.cyy});
+}
+
 }  // namespace
 
 template <class Real>
@@ -68,14 +97,17 @@ void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& 
         settle_on_walls<Real>(flow, p, x_max, y_max);
     }
     const Index k = flow.grid.nearest(c.x[p], c.y[p]);
-    if ((!flow.walls && (outside_x || outside_y)) || flow.bed.exit[k]) {
+    if ((!flow.walls && (outside_x || outside_y)) || leads_out(flow.bed.exit[k])) {
         gone[p] = 1;
+        if (flow.bed.exit[k] == kHole) sums.lost_in_holes += c.mass[p];
         const double energy = leave<Real>(flow, p, k, sums);
         if (flow.bed.exit[k] == kNoted)
             flow.departed[static_cast<std::size_t>(omp_get_thread_num())].push_back(
                 {c.id[p], c.x[p], c.y[p], held.vx[p], held.vy[p], held.depth[p], c.mass[p], energy,
                  {held.cxx[p], held.cyx[p], held.cxy[p], held.cyy[p]}});
         c.mass[p] = 0.0;
+    } else if (flow.bed.exit[k] == kWall) {
+        stay_out<Real>(flow, p, static_cast<Index>(std::floor(c.x[p] + 0.5)), static_cast<Index>(std::floor(c.y[p] + 0.5)), sums);
     }
 }
 

@@ -19,6 +19,8 @@ struct PointSums {
     double max_motion = 0.0;         ///< largest part of v [m/s] or grad v [1/s]; 0: all at rest
     double stress_power = 0.0;       ///< sum of V sigma : eps [W]
     double left_mass = 0.0, left_px = 0.0, left_py = 0.0, left_energy = 0.0;  ///< removed in this step
+    double lost_in_holes = 0.0;      ///< of left_mass [kg]
+    double pushed_x = 0.0, pushed_y = 0.0;  ///< by walls in holes of the terrain [kg m/s]
     Index left_count = 0;
     Index bad = -1;                  ///< a point whose state is not finite, or that jumped more than 4 cells
 

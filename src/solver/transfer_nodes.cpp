@@ -19,6 +19,9 @@ void PointSums::add(const PointSums& o) {
     left_px += o.left_px;
     left_py += o.left_py;
     left_energy += o.left_energy;
+    lost_in_holes += o.lost_in_holes;
+    pushed_x += o.pushed_x;
+    pushed_y += o.pushed_y;
     left_count += o.left_count;
     if (bad < 0) bad = o.bad;
 }

@@ -9,6 +9,7 @@
 #include "scene/memory_need.h"
 #include "scene/terrain_part.h"
 #include "solver/stored_points.h"
+#include "terrain/holes.h"
 
 namespace frana {
 namespace {
@@ -63,8 +64,16 @@ NodeBox GrowingColumns::room_for(const NodeBox& worked, Index clear) const {
     return common(room, NodeBox::all(scene_.wider->grid));
 }
 
-/// Elevations of another part of the terrain, that held now among them.
+/// Elevations of another part of the terrain, that held now among them. Where some are missing it is all of the terrain: what
+/// is outside of it, and what is a hole in it, is known of the whole only.
 void GrowingColumns::hold(const NodeBox& box) {
+    read_part(box);
+    const NodeBox all = NodeBox::all(scene_.wider->grid);
+    if (has_nodata(scene_.bed) && !(held_ == all)) read_part(all);
+    scene_.holes = holes_of(scene_.bed);
+}
+
+void GrowingColumns::read_part(const NodeBox& box) {
     require_memory(memory_of_part(double(box.nx * box.ny)), free_memory(),
                    {"terrain.window",
                     fmt::format("at {:.6g} s the flow has come so far that {} x {} nodes", columns_->status().time, box.nx,
@@ -77,8 +86,9 @@ void GrowingColumns::hold(const NodeBox& box) {
 }
 
 void GrowingColumns::grow(const NodeBox& box) {
-    const Index east = held_.i0 - box.i0, north = held_.j0 - box.j0;
+    const NodeBox before = held_;
     hold(box);
+    const Index east = before.i0 - held_.i0, north = before.j0 - held_.j0;
     auto larger = std::make_unique<DepthAveraged>(scene_, Start::kept);
     larger->take_over(*columns_, east, north);
     columns_ = std::move(larger);

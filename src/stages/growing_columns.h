@@ -28,6 +28,7 @@ private:
     NodeBox room_for(const NodeBox& worked, Index clear) const;
     void grow(const NodeBox& box);
     void hold(const NodeBox& box);
+    void read_part(const NodeBox& box);
 
     Scene scene_;
     NodeBox held_;   ///< the scene's bed, of the whole terrain

@@ -166,8 +166,9 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
 
 std::vector<std::string> StructuredRun::remarks() const {
     const Breakage now = *breakage();
-    std::vector<std::string> remarks;
-    if (flow().status().outrun > 0)
+    const StructuredStatus& s = flow().status();
+    std::vector<std::string> remarks = remarks_on_lost(s.lost_in_holes, s.mass + s.mass_left);
+    if (s.outrun > 0)
         remarks.push_back(fmt::format("water.profile_factor: in {} nodes and steps drag was weaker than what it adds to the "
                                       "slip, and it was left out there; a smaller one, or finer grains, may help",
                                       flow().status().outrun));

@@ -15,7 +15,8 @@ namespace {
 /// The bed as columns feel it. Beyond the outer nodes it goes on as it is there.
 class Terrain {
 public:
-    Terrain(const Raster& bed, double gravity, bool unrolled) : bed_(bed), gravity_(gravity), unrolled_(unrolled) {}
+    Terrain(const Scene& scene)
+        : bed_(scene.bed), holes_(scene.holes.nodes), gravity_(scene.gravity), unrolled_(scene.structure->unrolled) {}
 
     GroundPull operator()(double x, double y) const {
         const GridGeometry& g = bed_.geometry;
@@ -33,6 +34,7 @@ public:
                 if (w < 1e-9) continue;  // round-off of a place on a node
                 const double z = bed_.at(i + di, j + dj);
                 pull.exit = pull.exit || !std::isfinite(z);
+                pull.hole = pull.hole || is_hole(i + di, j + dj);
                 pull.elevation += w * z, slope += w * slope_at(i + di, j + dj);
             }
         if (pull.exit) pull.elevation = beside_hole(i, j), slope = Vec2(0, 0);
@@ -45,6 +47,10 @@ public:
     }
 
 private:
+    bool is_hole(Index i, Index j) const {
+        return std::binary_search(holes_.begin(), holes_.end(), j * bed_.geometry.nx + i);
+    }
+
     /// Where there is no ground: the mean elevation of the nearest ring of nodes that has any, as far as columns reach [m].
     /// Nodes there carry a share of the columns beside the hole, and that share has its height.
     double beside_hole(Index i, Index j) const {
@@ -74,6 +80,7 @@ private:
     }
 
     Raster bed_;
+    std::vector<Index> holes_;  ///< nodes inside the terrain that have no ground, growing
     double gravity_;
     bool unrolled_;
 };
@@ -118,7 +125,7 @@ StructuredScene structured_scene(const Scene& scene) {
     const Structure& of = *scene.structure;
     StructuredScene s;
     s.grid = scene.bed.geometry;
-    s.ground = Terrain(scene.bed, scene.gravity, scene.structure->unrolled);
+    s.ground = Terrain(scene);
     s.density = scene.density;
     s.material = of.material;
     s.share = of.share;

@@ -95,6 +95,7 @@ void draw_exits(Dice& dice, Draft& draft, const Raster& depth) {
                     free = free && std::isnan(depth.at(a, b));
             if (free && dice.chance(share)) dem.at(i, j) = Raster::nodata;
         }
+    draft.keys["boundary.holes"] = "\"open\"";
 }
 
 /// The outer row of pixels lies half beyond the domain; a release of nothing but such pixels could be none.

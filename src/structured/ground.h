@@ -13,7 +13,7 @@ struct GroundPull {
     double x = 0.0, y = 0.0, across = 9.81;
     double slope_x = 0.0, slope_y = 0.0;
     double elevation = 0.0;  ///< [m]
-    bool exit = false;
+    bool exit = false, hole = false;  ///< no ground; and that in a hole of the terrain
 };
 using Ground = std::function<GroundPull(double x, double y)>;
 

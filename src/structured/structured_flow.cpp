@@ -173,7 +173,7 @@ void StructuredFlow::learn_ground() {
                 body_.has_exits = body_.has_exits || pull.exit;
                 const double open = open_share(body_.obstacles, {g.x(i), g.y(j)}, g.cell, kLeastOpen);
                 body_.pull[body_.grid.at(i, j)] = {pull.x,       pull.y,         pull.across, pull.slope_x,
-                                                   pull.slope_y, pull.elevation, open,        pull.exit ? 1.0 : 0.0};
+                                                   pull.slope_y, pull.elevation, open,        pull.hole ? 2.0 : pull.exit ? 1.0 : 0.0};
             }
     }
 }
@@ -243,7 +243,7 @@ void StructuredFlow::book(double dt) {
         all.momentum += tile.momentum, all.left_mass += tile.left_mass,
             all.left_momentum += tile.left_momentum;
         all.left_energy += tile.left_energy, all.released += tile.released;
-        all.left_confined += tile.left_confined;
+        all.left_confined += tile.left_confined, all.lost_in_holes += tile.lost_in_holes;
         if (tile.bad >= 0) all.bad = tile.bad;
     }
     for (const StructuredTally& tile : body_.tallies) {
@@ -267,6 +267,7 @@ void StructuredFlow::book(double dt) {
     wave_ = all.max_wave;
     if (all.damaged > 0.0 && !body_.grains) begin_grains();
     status_.released += all.released, status_.confined_left += all.left_confined;
+    status_.lost_in_holes += all.lost_in_holes;
     status_.mass_left += all.left_mass, status_.momentum_left += all.left_momentum;
     drift_ += dt * status_.max_speed / body_.grid.cell();
     if (all.left_mass > 0.0 || drift_ > kDriftLimit - 1.0) sort();

@@ -85,6 +85,7 @@ struct StructuredStatus {
     double time = 0.0, dt = 0.0;  ///< [s]
     Index points = 0;
     double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
+    double lost_in_holes = 0.0;          ///< of what is gone, in holes of the terrain [kg]
     double released = 0.0;               ///< water given to the nodes since the start [m^3]
     double confined_left = 0.0;          ///< water in columns that have left [m^3]
     Vec2 momentum{0, 0}, momentum_left{0, 0},
@@ -109,7 +110,7 @@ struct StructuredSums {
     double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0;
     double speeds = 0.0, stored = 0.0, worked = 0.0;
     Vec2 momentum{0, 0};
-    double left_mass = 0.0, left_energy = 0.0, left_confined = 0.0, released = 0.0;
+    double left_mass = 0.0, left_energy = 0.0, left_confined = 0.0, released = 0.0, lost_in_holes = 0.0;
     Vec2 left_momentum{0, 0};
     Index bad = -1;  ///< a point whose numbers are not finite
 };
@@ -134,7 +135,7 @@ struct StructuredBody {
     struct Pull {
         double x, y, across, slope_x, slope_y, elevation;  ///< of the ground
         double open;  ///< share of the node that is open, 0 where nobody asked yet
-        double exit;  ///< 1 where there is no ground
+        double exit;  ///< 1 where there is no ground, 2 in a hole of the terrain
     };
     LazyArray<Push> push;
     LazyArray<Moved> moved;

@@ -154,6 +154,7 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     const double m = q.mass[p];
     const Vec2 v(q.vx[p], q.vy[p]);
     body.gone[static_cast<std::size_t>(p)] = 1;
+    if (inside && ground_below(body, p).exit > 1.0) sums.lost_in_holes += m;
     sums.left_mass += m, sums.left_momentum += m * v;
     sums.left_confined += q.confined[p] + q.released[p];
     sums.left_energy += energy_of(body, p);

@@ -14,7 +14,7 @@ void keep_status(Archive& archive, StructuredStatus& s) {
     std::vector<double*> numbers = {&s.time,     &s.dt,        &s.mass,      &s.mass_left, &s.kinetic,
                                     &s.damage,   &s.max_speed, &s.speeds,    &s.potential, &s.bed_kinetic,
                                     &s.stored,   &s.friction,  &s.pushed,    &s.worked,    &s.energy_left, &s.released,
-                                    &s.dragged,  &s.confined_left, &s.flow_steps};
+                                    &s.dragged,  &s.confined_left, &s.lost_in_holes, &s.flow_steps};
     StructuredImpulses& i = s.impulse;
     for (Vec2* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &i.weight, &i.pressure, &i.friction, &i.obstacles, &i.water})
         for (int k = 0; k < 2; ++k) numbers.push_back(&(*v)[k]);

@@ -1,0 +1,43 @@
+// Holes of the elevation model: walls, or places where mass leaves (boundary.holes).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/remarks.h"
+#include "scene/scene_parts.h"
+
+namespace frana {
+
+double hole_wall_height(const Scene& scene) {
+    const std::vector<double>& depth = scene.particles.depth;
+    const double two_cells = 2.0 * scene.bed.geometry.cell;
+    return two_cells + std::min(two_cells, depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end()));
+}
+
+void find_holes(const CaseFile& file, Scene& scene) {
+    scene.holes = holes_of(scene.bed);
+    const Holes& holes = scene.holes;
+    if (holes.count == 0) return;
+    const GridGeometry& g = scene.bed.geometry;
+    const bool open = file.word("boundary.holes") == "open";
+    const double x = g.x(holes.first % g.nx), y = g.y(holes.first / g.nx);
+    remark_on(scene.log, open ? Remark::open_holes : Remark::walled_holes, file.place("terrain.dem"),
+              {double(holes.nodes.size()), double(holes.count),
+               fmt::format("{} at x {:.10g}, y {:.10g}", holes.largest, x, y)});
+}
+
+void wall_holes(const CaseFile& file, Scene& scene, Problems& problems) {
+    // A part of a terrain may come to holes later on.
+    if ((scene.holes.count == 0 && !scene.wider) || file.word("boundary.holes") == "open") return;
+    const std::size_t count = scene.holes.nodes.size();
+    if (scene.structure && count > 0)
+        problems.add(file.place("boundary.holes"),
+                     fmt::format("found \"wall\" beside material.structure with {} node{} without elevation inside the "
+                                 "terrain", count, count == 1 ? "" : "s"),
+                     "expected none there, since columns that hold together know walls along x and y only",
+                     "fill the elevation model (gdal_fillnodata.py), or give boundary.holes = \"open\"");
+    scene.hole_top = hole_wall_height(scene);
+}
+
+}  // namespace frana
