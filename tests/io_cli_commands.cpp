@@ -82,13 +82,16 @@ TEST_CASE("check tells grid, particles and volume of a good case without running
     CHECK_FALSE(fs::exists(scene.folder() / "out"));
 }
 
-TEST_CASE("check tells of points in space that memory may not hold", "[cli]") {
+TEST_CASE("check and run refuse points in space that no memory holds", "[cli]") {
     const PlaneCase scene;
     scene.write("[[stage]]\nmodel = \"solid_flow\"\nspacing = 0.001\n");
-    const Outcome check = scene.frana("check CASE");
-    CHECK(check.code == 0);
-    CHECK_THAT(check.out, Contains("remark      stage.spacing: found a need of"));
-    CHECK_THAT(check.out, Contains("GB that are free; give a larger spacing or a smaller window"));
+    for (const char* command : {"check CASE", "run CASE"}) {
+        const Outcome outcome = scene.frana(command);
+        CHECK(outcome.code == 2);
+        CHECK_THAT(outcome.err, Contains("stage.spacing: found 1.8e+12 points in space"));
+        CHECK_THAT(outcome.err, Contains("GB that are free; give a larger spacing or a smaller window"));
+        CHECK_THAT(outcome.out, !Contains("ready to run"));
+    }
 }
 
 TEST_CASE("An in-situ entry that cannot work is refused before the run folder is touched", "[cli][insitu]") {

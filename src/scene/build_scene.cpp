@@ -115,20 +115,27 @@ private:
         });
     }
 
-    /// Of all that the scene now holds.
+    /// Of all that the scene now holds. How much of the release is ever in the window of a stage at once is not known: what
+    /// would not fit with a tenth of it is refused, what would not fit with all of it is a remark.
     void require_room_for_all() {
         const MemoryNeed need = memory_need(scene_);
+        const double free = free_memory(), without = need.total() - need.space;
         const bool space = need.space > 0.5 * need.total();
+        const MemoryUse use =
+            space ? MemoryUse{"stage.spacing",
+                              fmt::format("found {:.3g} points in space once all of the release is in the window, which",
+                                          most_points(scene_)),
+                              "give a larger spacing or a smaller window"}
+                  : MemoryUse{"memory",
+                              fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
+                                          scene_.particles.count()),
+                              "use fewer particles, a larger grid.cell or a smaller terrain.window"};
         problems_.attempt(case_.file().string(), [&] {
-            require_memory(need.total(), free_memory(),
-                           {space ? "stage.spacing" : "memory",
-                            space ? fmt::format("found {:.3g} points in space once all of the release is in the window, which",
-                                                most_points(scene_))
-                                  : fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
-                                                scene_.particles.count()),
-                            space ? "give a larger spacing or a smaller window"
-                                  : "use fewer particles, a larger grid.cell or a smaller terrain.window"});
+            if (without + 0.1 * need.space > free) require_memory(need.total(), free, use);
         });
+        if (need.total() > free && problems_.empty())
+            scene_.log.push_back(fmt::format("{}: {} need {:.3g} GB; expected what fits into the {:.3g} GB that are free; {}",
+                                             use.place, use.what, need.total() / 1e9, free / 1e9, use.way_out));
     }
 
     void note_nodata() {
