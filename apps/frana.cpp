@@ -68,6 +68,8 @@ void add_converge(CLI::App& app, ConvergeOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("converge", "the same case on several cells: has the answer converged?");
     add_case(*command, options.case_file, options.sets);
     command->add_option("--cells", options.cells, "cells [m]: N,N,...; two or more")->required();
+    command->add_option("--per-cell", options.per_cell, "also run the finest cell with each particles.per_cell: N,N,...");
+    command->add_option("--cfl", options.cfl, "also run the finest cell with each scheme.cfl: N,N,...");
     command->add_option("--out", options.out, "folder of the runs and the tables; default out/<case name>_converge");
     command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
     command->add_flag("--resume", options.resume, "take finished runs as they are, go on with the others");

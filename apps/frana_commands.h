@@ -27,6 +27,7 @@ struct RunOptions {
 struct ConvergeOptions {
     std::filesystem::path case_file;
     std::string cells;              ///< as given: "10,5,2.5"
+    std::string per_cell, cfl;      ///< as given, of more runs on the finest cell; empty: none
     std::filesystem::path out;      ///< empty: out/<case name>_converge
     std::vector<std::string> sets;  ///< "key=value" overrides of all runs
     int threads = 0;

@@ -29,28 +29,50 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-/// Coarse to fine, each once.
-std::vector<double> read_cells(const std::string& text) {
+/// A list on the command line: two or more different numbers above 0, from large to small.
+struct NumberList {
+    const char *option, *meaning, *example;
+    std::vector<double> read(const std::string& text) const;
+};
+
+std::vector<double> NumberList::read(const std::string& text) const {
     const auto complain = [&](const std::string& what) {
-        return UserError(fmt::format("--cells: {}; expected two or more different cells in metres, each above 0; write "
-                                     "them like 10,5,2.5",
-                                     what));
+        return UserError(fmt::format("{}: {}; expected two or more different {}, each above 0; write them like {}", option,
+                                     what, meaning, example));
     };
-    std::vector<double> cells;
+    std::vector<double> numbers;
     std::istringstream words(text);
     for (std::string word; std::getline(words, word, ',');) {
         word.erase(std::remove(word.begin(), word.end(), ' '), word.end());
-        double cell = 0.0;
+        double value = 0.0;
         const char* end = word.data() + word.size();
-        const auto read = std::from_chars(word.data(), end, cell);
-        if (read.ec != std::errc() || read.ptr != end || !(cell > 0.0 && cell < 1e300))
+        const auto read = std::from_chars(word.data(), end, value);
+        if (read.ec != std::errc() || read.ptr != end || !(value > 0.0 && value < 1e300))
             throw complain(fmt::format("found \"{}\"", word));
-        cells.push_back(cell);
+        numbers.push_back(value);
     }
-    std::sort(cells.begin(), cells.end(), std::greater<>());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    if (cells.size() < 2) throw complain(fmt::format("found \"{}\"", text));
-    return cells;
+    std::sort(numbers.begin(), numbers.end(), std::greater<>());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    if (numbers.size() < 2) throw complain(fmt::format("found \"{}\"", text));
+    return numbers;
+}
+
+/// A key that is varied on the finest cell, with its values.
+struct Varied {
+    std::string key, folder;  ///< its runs lie in `folder`_VALUE
+    std::vector<double> values;
+};
+
+std::vector<Varied> read_varied(const ConvergeOptions& options) {
+    std::vector<Varied> all;
+    const auto take = [&](const std::string& text, const char* key, const char* folder, const NumberList& list) {
+        if (text.empty()) return;
+        all.push_back({key, folder, list.read(text)});
+        std::reverse(all.back().values.begin(), all.back().values.end());
+    };
+    take(options.per_cell, "particles.per_cell", "per_cell", {"--per-cell", "numbers of particles a cell", "4,9,16"});
+    take(options.cfl, "scheme.cfl", "cfl", {"--cfl", "parts of a cell", "0.5,0.25,0.12"});
+    return all;
 }
 
 /// How the folder of a run is found.
@@ -63,6 +85,7 @@ enum class Standing {
 
 struct PlannedRun {
     double cell = 0.0;
+    std::string name;  ///< for people
     RunOptions options;
     Standing standing = Standing::fresh;
 };
@@ -82,9 +105,10 @@ Standing standing_of(const fs::path& run_dir) {
 }
 
 /// The case's overrides and the cell; rasters are what runs are held against each other by.
-std::vector<std::string> sets_of(const ConvergeOptions& options, double cell) {
+std::vector<std::string> sets_of(const ConvergeOptions& options, double cell, const std::vector<std::string>& more) {
     std::vector<std::string> sets = options.sets;
     sets.push_back(fmt::format("grid.cell={}", cell));
+    sets.insert(sets.end(), more.begin(), more.end());
     const CaseFile file = CaseFile::read(options.case_file, sets);
     std::vector<std::string> formats = file.words("output.formats");
     if (std::find(formats.begin(), formats.end(), "geotiff") != formats.end()) return sets;
@@ -95,22 +119,29 @@ std::vector<std::string> sets_of(const ConvergeOptions& options, double cell) {
     return sets;
 }
 
+/// The cells, coarse to fine, then what is varied on the finest.
 std::vector<PlannedRun> plan_runs(const ConvergeOptions& options, const std::vector<double>& cells,
-                                  const fs::path& out) {
+                                  const std::vector<Varied>& varied, const fs::path& out) {
     std::vector<PlannedRun> runs;
-    for (const double cell : cells) {
+    const auto plan = [&](double cell, const std::string& name, const std::string& folder,
+                          const std::vector<std::string>& sets) {
         PlannedRun run;
-        run.cell = cell;
+        run.cell = cell, run.name = name;
         run.options.case_file = options.case_file;
-        run.options.out = out / fmt::format("cell_{}", cell);
-        run.options.sets = sets_of(options, cell);
+        run.options.out = out / folder;
+        run.options.sets = sets_of(options, cell, sets);
         run.options.threads = options.threads;
         run.options.quiet = options.quiet;
         if (options.resume) run.standing = standing_of(run.options.out);
         run.options.resume = run.standing == Standing::unfinished;
         run.options.overwrite = options.overwrite || run.standing == Standing::broken;
         runs.push_back(run);
-    }
+    };
+    for (const double cell : cells) plan(cell, fmt::format("cells of {:g} m", cell), fmt::format("cell_{}", cell), {});
+    for (const Varied& one : varied)
+        for (const double value : one.values)
+            plan(cells.back(), fmt::format("cells of {:g} m, {} = {:g}", cells.back(), one.key, value),
+                 fmt::format("{}_{:g}", one.folder, value), {fmt::format("{}={}", one.key, value)});
     return runs;
 }
 
@@ -173,7 +204,7 @@ int carry_out(const std::vector<PlannedRun>& runs, bool quiet) {
     for (PlannedRun run : runs) {
         if (run.standing == Standing::finished) {
             if (!quiet)
-                std::cout << fmt::format("cells of {:g} m: finished, in {}\n", run.cell, run.options.out.string());
+                std::cout << fmt::format("{}: finished, in {}\n", run.name, run.options.out.string());
             continue;
         }
         run.options.interrupt = &interrupt;
@@ -201,7 +232,8 @@ std::string remark_on_count(const CaseFile& file) {
 }  // namespace
 
 int converge_command(const ConvergeOptions& options) {
-    const std::vector<double> cells = read_cells(options.cells);
+    const std::vector<double> cells = NumberList{"--cells", "cells in metres", "10,5,2.5"}.read(options.cells);
+    const std::vector<Varied> varied = read_varied(options);
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
     const fs::path out = options.out.empty() ? fs::path("out") / (file.name() + "_converge") : options.out;
     if (fs::exists(out) && !fs::is_directory(out))
@@ -212,7 +244,7 @@ int converge_command(const ConvergeOptions& options) {
     if (fs::is_directory(out)) lock.emplace(out);
     require_room_for_tables(out, options);
     if (options.threads > 0) omp_set_num_threads(options.threads);
-    const std::vector<PlannedRun> runs = plan_runs(options, cells, out);
+    const std::vector<PlannedRun> runs = plan_runs(options, cells, varied, out);
     const FinestTerrain finest = check_scenes(runs);
     if (!lock) lock.emplace(out);
     if (options.overwrite) remove_tables(out);
@@ -222,9 +254,14 @@ int converge_command(const ConvergeOptions& options) {
     study.folder = out;
     study.case_file = options.case_file.string();
     study.overrides = overrides(options);
-    for (const PlannedRun& run : runs) study.runs.push_back({run.cell, run.options.out});
+    auto run = runs.begin();
+    for (; study.runs.size() < cells.size(); ++run) study.runs.push_back({run->cell, run->options.out});
+    for (const Varied& one : varied) {
+        study.variations.push_back({one.key, one.values, {}, {}, ""});
+        for (std::size_t k = 0; k < one.values.size(); ++k, ++run) study.variations.back().folders.push_back(run->options.out);
+    }
     if (const std::string remark = remark_on_count(file); !remark.empty()) study.remarks.push_back(remark);
-    measure_runs(study, bed_of_finest(finest, runs.back().options.out));
+    measure_runs(study, bed_of_finest(finest, runs[cells.size() - 1].options.out));
     write_study(study);
     std::cout << '\n' << study_section(study);
     for (const std::string& name : study.files) std::cout << (out / name).string() << '\n';

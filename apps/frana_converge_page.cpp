@@ -63,6 +63,24 @@ std::optional<double> order_of(const Quantity& quantity, const std::vector<CellF
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+/// What was varied on the finest cell: a list for each of the quantities that tell answers apart.
+Json variations_of(const ConvergenceStudy& study) {
+    Json all = Json::array();
+    for (const Variation& varied : study.variations) {
+        Json one = {{"key", varied.key}, {"values", varied.values}, {"folders", Json::array()}};
+        for (const auto& folder : varied.folders)
+            one["folders"].push_back(folder.lexically_relative(study.folder).generic_string());
+        for (const Quantity& quantity : quantities()) {
+            one[quantity.key] = Json::array();
+            for (const CellFigures& run : varied.figures) one[quantity.key].push_back(number(run.*quantity.value));
+        }
+        one["spread_cells"] = number(runout_spread(varied.figures));
+        one["sentence"] = varied.sentence;
+        all.push_back(one);
+    }
+    return all;
+}
+
 std::string json_of(const ConvergenceStudy& study) {
     Json json = {{"version", FRANA_VERSION}, {"title", study.title}, {"case_file", study.case_file},
                  {"overrides", study.overrides}};
@@ -89,6 +107,7 @@ std::string json_of(const ConvergenceStudy& study) {
     json["converged"] = study.verdict.converged;
     json["enough"] = study.verdict.enough ? Json(*study.verdict.enough) : Json(nullptr);
     json["verdict"] = study.verdict.sentence;
+    json["variations"] = variations_of(study);
     json["remarks"] = study.remarks;
     json["files"] = study.files;
     return json.dump(2) + "\n";
@@ -202,6 +221,11 @@ std::string page_of(const ConvergenceStudy& study, bool drawn) {
         const std::string folder = run.folder.lexically_relative(study.folder).generic_string();
         text += fmt::format("| cells of {:g} m | [{}/report.md]({}/report.md) |\n", run.cell, folder, folder);
     }
+    for (const Variation& varied : study.variations)
+        for (std::size_t k = 0; k < varied.values.size(); ++k) {
+            const std::string folder = varied.folders[k].lexically_relative(study.folder).generic_string();
+            text += fmt::format("| {} = {:g} | [{}/report.md]({}/report.md) |\n", varied.key, varied.values[k], folder, folder);
+        }
     const std::string by = study.overrides.empty() ? "" : fmt::format(", overridden by `{}`", study.overrides);
     return text + fmt::format("\nCase `{}`{}, frana {}.\n", study.case_file, by, FRANA_VERSION);
 }
@@ -214,7 +238,9 @@ const std::vector<std::string>& study_files() {
 }
 
 std::string study_section(const ConvergenceStudy& study) {
-    std::string text = study.verdict.sentence + "\n\n" + table_of(study);
+    std::string text = study.verdict.sentence + "\n\n";
+    for (const Variation& varied : study.variations) text += varied.sentence + "\n\n";
+    text += table_of(study);
     for (const std::string& remark : study.remarks) text += fmt::format("- {}\n", remark);
     return text + (study.remarks.empty() ? "" : "\n");
 }

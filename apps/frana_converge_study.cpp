@@ -129,6 +129,11 @@ void measure_runs(ConvergenceStudy& study, const Raster& bed) {
         study.figures.push_back(figures_of(files, finest, path, study.footprint_depth));
         study.ends.push_back(files.record["exit_reason"].get<std::string>());
     }
+    for (Variation& varied : study.variations) {
+        for (const fs::path& folder : varied.folders)
+            varied.figures.push_back(figures_of(read_run(folder), finest, path, study.footprint_depth));
+        varied.sentence = spread_sentence(varied.key, varied.values, varied.figures, study.rule);
+    }
     const double across = study.figures.back().cells_across, cell = study.figures.back().cell;
     const std::string narrow = width_remark(across * cell, cell);
     if (!narrow.empty()) study.remarks.push_back(fmt::format("on the finest cell of {:g} m {}", cell, narrow));

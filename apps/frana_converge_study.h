@@ -15,12 +15,22 @@ struct StudiedRun {
     std::filesystem::path folder;  ///< of the run
 };
 
+/// A key of the case varied on the finest cell.
+struct Variation {
+    std::string key;
+    std::vector<double> values;
+    std::vector<std::filesystem::path> folders;  ///< of the runs
+    std::vector<CellFigures> figures;
+    std::string sentence;  ///< how far they lie apart
+};
+
 struct ConvergenceStudy {
     std::filesystem::path folder;  ///< of the tables
     std::string title, case_file, overrides;
     std::vector<StudiedRun> runs;  ///< coarse to fine
     std::vector<CellFigures> figures;
     std::vector<std::string> ends;  ///< why each run ended
+    std::vector<Variation> variations;
     double footprint_depth = 0.1;   ///< [m]
     ConvergenceRule rule;
     Verdict verdict;

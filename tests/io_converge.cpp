@@ -139,3 +139,30 @@ TEST_CASE("A run says how many cells lie across the flow, and which cell would d
     CHECK(coarse["flow_width_cells"].get<double>() < 6.0);
     CHECK_THAT(coarse["warnings"].dump(), Contains("cells wide") && Contains("grid.cell = 5 would do"));
 }
+
+TEST_CASE("converge varies particles a cell and the step on the finest cell, and says how far the answers lie apart",
+          "[converge]") {
+    const FreshFolder folder;
+    const std::string command = avalanche + "--cells 40,30 --per-cell 16,4 --cfl 0.25,0.5";
+    REQUIRE(call_frana(folder.path(), command).code == 0);
+    const fs::path study = folder.path() / "study";
+    const Json json = json_in(study / "converge.json");
+    REQUIRE(json["variations"].size() == 2);
+    const Json &points = json["variations"][0], &steps = json["variations"][1];
+    CHECK(points["key"] == "particles.per_cell");
+    CHECK(points["values"] == Json({4.0, 16.0}));
+    CHECK(points["folders"] == Json({"per_cell_4", "per_cell_16"}));
+    CHECK(steps["folders"] == Json({"cfl_0.25", "cfl_0.5"}));
+    // 4 points a cell and half a cell a step are the case's own.
+    for (const auto& [varied, own] : {std::pair(points, 0), std::pair(steps, 1)}) {
+        CHECK(varied["runout"][own] == json["runout"][1]);
+        CHECK(varied["iou_with_finest"][own].get<double>() == Approx(1.0));
+        CHECK(varied["iou_with_finest"][1 - own].get<double>() < 1.0);
+        const double apart = varied["runout"][0].get<double>() - varied["runout"][1].get<double>();
+        CHECK(varied["spread_cells"].get<double>() == Approx(std::abs(apart) / 30.0).margin(1e-12));
+        CHECK_THAT(text_of(study / "converge.md"), Contains(varied["sentence"].get<std::string>()));
+    }
+    const Outcome wrong = call_frana(folder.path(), avalanche + "--cells 40,30 --per-cell 4 --overwrite");
+    CHECK(wrong.code == 2);
+    CHECK_THAT(wrong.err, Contains("--per-cell: found \"4\"; expected two or more different numbers of particles a cell"));
+}

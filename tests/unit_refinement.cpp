@@ -116,3 +116,17 @@ TEST_CASE("Each part of the rule is asked for", "[refinement]") {
     CHECK_FALSE(converged_with(&CellFigures::peak_speed, 18.9));
     CHECK_FALSE(converged_with(&CellFigures::runout, NAN));
 }
+
+TEST_CASE("Runs that differ in one key are said to lie apart by as many cells as their runouts do", "[refinement]") {
+    std::vector<CellFigures> runs = {run_on(5.0), run_on(5.0), run_on(5.0)};
+    runs[1].runout = 504.0, runs[2].iou = 0.93, runs[0].elsewhere = 0.06;
+    CHECK(runout_spread(runs) == exactly(0.8));
+    const std::string agree = spread_sentence("particles.per_cell", {4, 9, 16}, runs);
+    CHECK(agree == "With particles.per_cell of 4, 9 and 16 on cells of 5 m the runouts lie 0.8 cells apart; up to 6 % of the "
+                   "deposit lies elsewhere, and the footprints' IoU is 0.930 or more.");
+    runs[2].runout = 489.5;
+    CHECK(runout_spread(runs) == exactly(2.9));
+    CHECK(spread_sentence("scheme.cfl", {0.1, 0.2, 0.5}, runs).find("2.9 cells apart (expected 1 at most") != std::string::npos);
+    runs[1].runout = std::nan("");
+    CHECK(std::isnan(runout_spread(runs)));
+}

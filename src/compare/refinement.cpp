@@ -151,6 +151,35 @@ std::string ConvergenceRule::text() const {
         runout_cells, iou, 100.0 * elsewhere, 100.0 * peaks);
 }
 
+double runout_spread(const std::vector<CellFigures>& runs) {
+    expect(!runs.empty(), "a spread is of runs");
+    double least = runs.front().runout, most = least;
+    for (const CellFigures& run : runs) {
+        if (std::isnan(run.runout)) return run.runout;
+        least = std::min(least, run.runout), most = std::max(most, run.runout);
+    }
+    return (most - least) / runs.front().cell;
+}
+
+std::string spread_sentence(const std::string& key, const std::vector<double>& values,
+                            const std::vector<CellFigures>& runs, const ConvergenceRule& rule) {
+    expect(values.size() == runs.size() && !runs.empty(), "a run for each value");
+    std::vector<std::string> names;
+    double elsewhere = 0.0, iou = 1.0;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+        names.push_back(fmt::format("{:g}", values[k]));
+        elsewhere = std::max(elsewhere, runs[k].elsewhere), iou = std::min(iou, runs[k].iou);
+    }
+    const double spread = runout_spread(runs);
+    const bool agrees = spread <= rule.runout_cells;
+    return fmt::format("With {} of {} on cells of {:g} m the runouts lie {:.2g} cells apart{}; up to {:.2g} % of the deposit "
+                       "lies elsewhere, and the footprints' IoU is {:.3f} or more.",
+                       key, listed(names), runs.front().cell, spread,
+                       agrees ? "" : fmt::format(" (expected {:g} at most: so far the answer hangs on this choice)",
+                                                 rule.runout_cells),
+                       100.0 * elsewhere, iou);
+}
+
 Verdict judge(const std::vector<CellFigures>& runs, const ConvergenceRule& rule) {
     expect(runs.size() >= 2, "convergence is seen on two cells or more");
     const CellFigures& finest = runs.back();

@@ -50,6 +50,13 @@ struct ConvergenceRule {
     std::string text() const;   ///< for people
 };
 
+/// Difference between the farthest and the shortest runout, in cells; NaN where one is not known.
+double runout_spread(const std::vector<CellFigures>& runs);
+
+/// How far runs on one cell lie apart that differ in the `values` of a key only, against the rule of agreeing cells.
+std::string spread_sentence(const std::string& key, const std::vector<double>& values,
+                            const std::vector<CellFigures>& runs, const ConvergenceRule& rule = {});
+
 struct Verdict {
     bool converged = false;
     std::optional<double> enough;  ///< the coarsest cell that agrees with the finest, as all cells between do [m]
