@@ -459,16 +459,21 @@ private:
         return kept;
     }
 
-    /// Whether a surface pushes a node that lies behind it, and all surfaces there are perpendicular to each other.
-    static bool spreads_behind(const Touch* list, int count) {
+    /// Whether two surfaces there are not perpendicular to each other.
+    static bool oblique(const Touch* list, int count) {
         constexpr double kSquare = 1e-9;  // round-off of normals
-        bool behind = false;
-        for (int n = 0; n < count; ++n) {
-            behind = behind || (list[n].push > 0.0 && list[n].contact.distance <= 0.0);
+        for (int n = 0; n < count; ++n)
             for (int m = 0; m < n; ++m)
-                if (std::abs(list[n].contact.normal.dot(list[m].contact.normal)) > kSquare) return false;
-        }
-        return behind;
+                if (std::abs(list[n].contact.normal.dot(list[m].contact.normal)) > kSquare) return true;
+        return false;
+    }
+
+    /// Whether a surface pushes a node that lies behind it, other than in an oblique corner.
+    static bool spreads_behind(const Touch* list, int count) {
+        bool behind = false;
+        for (const Touch* t = list; t < list + count; ++t)
+            behind = behind || (t->push > 0.0 && t->contact.distance <= 0.0);
+        return behind && !oblique(list, count);
     }
 
     /// v, or as much of it as has no more than that square of the speed.
@@ -512,7 +517,8 @@ private:
             if (t->push > 0.0) {
                 const Vec3 before = v;
                 if (surface.hold == Hold::stuck)
-                    v = no_faster(held(body, mixed, v, t, {list, list + count}), most2);
+                    v = no_faster(held(body, mixed, v, t, {list, list + count}),
+                                  oblique(list, count) ? most2 : std::numeric_limits<double>::infinity());
                 else if (surface.friction > 0.0)
                     v = braked(v, normal, surface.friction * t->push);
                 t->brake = v - before;
