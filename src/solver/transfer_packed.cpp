@@ -311,7 +311,7 @@ private:
             transpose(by_x[0], by_x[1], by_x[2], by_x[3], of);
             cxx = scale * of[0], cyx = scale * of[1];
             transpose(by_y[0], by_y[1], by_y[2], by_y[3], of);
-            cxy = scale * of[0], cyy = scale * of[1];
+            cyy = scale * of[1], cxy = scale * of[0];
         }
     };
 
