@@ -103,10 +103,10 @@ TEST_CASE("a run that goes on knows how far the front once was", "[resume]") {
     const RunPlan plan{1.05, 0.25, false};
     const FreshFolder whole_folder, folder;
     FakeScript script;
-    script.front_turns = 0.3;
+    script.front_turns = 0.25;
     MemoryKeeper unused, keeper(false), later(false);
     const Run whole = run_in(whole_folder, plan, unused, script);
-    CHECK(whole.summary.extremes.max_front == Approx(7.0 + FakeSimulation::u * 0.3));
+    CHECK(whole.summary.extremes.max_front == Approx(7.0 + FakeSimulation::u * 0.25));
     run_in(folder, {0.5, 0.25, false, true}, keeper, script);
     later.from = keeper.states.back();
     check_same(run_in(folder, plan, later, script), whole);
