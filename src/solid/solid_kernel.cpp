@@ -425,9 +425,9 @@ private:
     /// Surfaces at rest do no work: no push gives a node more energy than it had. What images ask for beyond that is
     /// not the material's: in corners, and where few points shear, they show motion that is not there. The answer lies
     /// between v and what is left where no push makes anything leave a surface, which is no faster than what came.
-    /// Behind a surface, but in oblique corners, what spreads along it leaves it on: there it may.
+    /// In oblique corners only: elsewhere the same would take from what rebounds, and from what spreads along a surface.
     [[gnu::noinline]] static Vec3 without_gain(Touch* list, int count, const Vec3& came, const Vec3& v, double most2) {
-        if (spreads_behind(list, count)) return v;
+        if (!oblique(list, count)) return v;
         Touch soft[kMostTouched];
         for (int n = 0; n < count; ++n) {
             soft[n] = list[n];
@@ -466,14 +466,6 @@ private:
             for (int m = 0; m < n; ++m)
                 if (std::abs(list[n].contact.normal.dot(list[m].contact.normal)) > kSquare) return true;
         return false;
-    }
-
-    /// Whether a surface pushes a node that lies behind it, other than in an oblique corner.
-    static bool spreads_behind(const Touch* list, int count) {
-        bool behind = false;
-        for (const Touch* t = list; t < list + count; ++t)
-            behind = behind || (t->push > 0.0 && t->contact.distance <= 0.0);
-        return behind && !oblique(list, count);
     }
 
     /// v, or as much of it as has no more than that square of the speed.
