@@ -30,6 +30,7 @@ private:
     void hold(const NodeBox& box);
 
     Scene scene_;
+    std::shared_ptr<const WiderTerrain> wider_;
     NodeBox held_;   ///< the scene's bed, of the whole terrain
     NodeBox shown_;  ///< nodes of the whole terrain that frames show
     std::unique_ptr<DepthAveraged> columns_;
