@@ -162,7 +162,8 @@ std::string forecast_text(const Scene& scene) {
     std::string text = fmt::format(
         "steps       {:.0f} (as fast as at the start) to {:.0f} (in free fall, {:.3g} m/s), for {} s\n",
         f.fewest_steps, f.most_steps, f.fall_speed, scene.end);
-    text += fmt::format("memory      about {:.3g} MB, as long as particles do not split\n", memory_need(scene).total() / 1e6);
+    text += fmt::format("memory      about {:.3g} MB, as long as particles do not split\n",
+                        memory_need(scene).total() / 1e6);
     return text +
            fmt::format(
                "time        {} to {} on one core, assuming {:.0f} ns per particle and step, output apart\n",

@@ -21,7 +21,6 @@
 #include "io/gdal_reader.h"
 #include "observe/interrupt.h"
 #include "scene/build_scene.h"
-#include "scene/terrain_part.h"
 #include "terrain/part_of.h"
 #include "vtk_io/barrier_mesh.h"
 

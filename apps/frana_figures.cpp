@@ -15,7 +15,6 @@
 #include "frana_run_folder.h"
 #include "frana_run_space.h"
 #include "io/gdal_reader.h"
-#include "scene/terrain_part.h"
 #include "terrain/part_of.h"
 #include "vtk_io/reader.h"
 

@@ -46,8 +46,8 @@ public:
         outline << R"({"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name":
                    "urn:ogc:def:crs:EPSG::32632"}}, "features": [{"type": "Feature", "properties": {}, "geometry":
                    {"type": "Polygon", "coordinates": [[)"
-                << "[" << x << "," << y << "],[" << x + 50 << "," << y << "],[" << x + 50 << "," << y + 50 << "],[" << x << ","
-                << y + 50 << "],[" << x << "," << y << "]]]}}]}";
+                << "[" << x << "," << y << "],[" << x + 50 << "," << y << "],[" << x + 50 << "," << y + 50 << "],["
+                << x << "," << y + 50 << "],[" << x << "," << y << "]]]}}]}";
         frana::write_text(folder_.path() / "release.geojson", outline.str());
         frana::write_text(folder_.path() / "case.toml",
                           "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
@@ -164,11 +164,13 @@ TEST_CASE("A terrain that does not fit into memory is refused by all commands be
     frana::write_text(folder.path() / "case.toml",
                       "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
                       "[material.bed]\nlaw = \"coulomb\"\nmu = 0.1\n[time]\nend = 4\n[output]\nextent = \"terrain\"\n");
-    for (const char* command : {"check case.toml", "run case.toml --out run", "converge case.toml --cells 1,2 --out study"}) {
+    for (const char* command :
+         {"check case.toml", "run case.toml --out run", "converge case.toml --cells 1,2 --out study"}) {
         INFO(command);
         const Outcome outcome = call_frana(folder.path(), command);
         CHECK(outcome.code == 2);
-        CHECK_THAT(outcome.err, Contains("terrain.window: found ") && Contains(" nodes of ") && Contains(" GB that are free"));
+        CHECK_THAT(outcome.err,
+                   Contains("terrain.window: found ") && Contains(" nodes of ") && Contains(" GB that are free"));
         CHECK_THAT(outcome.out, !Contains("ready to run"));
         CHECK_FALSE(fs::exists(folder.path() / "run"));
     }

@@ -78,8 +78,8 @@ void require_same(Simulation& a, Simulation& b) {
 TEST_CASE("A run on a part of a terrain has the same bits whatever lies beyond", "[terrain]") {
     GrowingColumns large(slide_on_large()), cut(slide_on_cut());
     const NodeBox begin = large.held();
-    for (double time = 2.0, after = 0.0; after < 4.0; time += 2.0, after += large.held() == begin ? 0.0 : 1.0) {
-        REQUIRE(time < 30.0);
+    for (double time = 2.0, after = 0.0; after < 8.0; time += 2.0, after += large.held() == begin ? 0.0 : 1.0) {
+        REQUIRE(time < 60.0);
         run_to(large, time), run_to(cut, time);
         require_same(large, cut);
     }
@@ -107,8 +107,8 @@ TEST_CASE("Growing changes a run by round-off only", "[terrain]") {
         REQUIRE(all.status().time < 24.0);
     }
     for (int step = 0; step < 20; ++step) all.advance(1e9), part.advance(1e9);
-    // Places in cells are counted from other nodes: they differ in their last bits, at most 1000 x 2^-53 cells each step,
-    // and so do sums that follow. A thousand such steps stay below 1e-9 of what the flow has.
+    // Places in cells are counted from other nodes: they differ in their last bits, at most 1000 x 2^-53 cells each
+    // step, and so do sums that follow. A thousand such steps stay below 1e-9 of what the flow has.
     CHECK(part.status().step == all.status().step);
     CHECK(std::abs(part.status().time - all.status().time) < 1e-9 * all.status().time);
     CHECK(std::abs(part.status().kinetic - all.status().kinetic) < 1e-9 * all.status().kinetic);

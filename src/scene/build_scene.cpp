@@ -96,8 +96,10 @@ private:
     /// Before the elevations are read.
     void require_room(const GridGeometry& grid, bool whole) const {
         const double nodes = double(grid.size());
-        require_memory(whole ? memory_need(nodes, 0.0, scene_.output.vtk).total() : memory_of_part(nodes), free_memory(),
-                       {"terrain.window", fmt::format("found {} x {} nodes of {:.6g} m, which", grid.nx, grid.ny, grid.cell),
+        const double needed = whole ? memory_need(nodes, 0.0, scene_.output.vtk).total() : memory_of_part(nodes);
+        require_memory(needed, free_memory(),
+                       {"terrain.window",
+                        fmt::format("found {} x {} nodes of {:.6g} m, which", grid.nx, grid.ny, grid.cell),
                         "give a window around the flow, or a larger grid.cell"});
     }
 
@@ -115,16 +117,17 @@ private:
         });
     }
 
-    /// Of all that the scene now holds. How much of the release is ever in the window of a stage at once is not known: what
-    /// would not fit with a tenth of it is refused, what would not fit with all of it is a remark.
+    /// Of all that the scene now holds. How much of the release is ever in the window of a stage at once is not known:
+    /// what would not fit with a tenth of it is refused, what would not fit with all of it is a remark.
     void require_room_for_all() {
         const MemoryNeed need = memory_need(scene_);
         const double free = free_memory(), without = need.total() - need.space;
         const bool space = need.space > 0.5 * need.total();
         const MemoryUse use =
             space ? MemoryUse{"stage.spacing",
-                              fmt::format("found {:.3g} points in space once all of the release is in the window, which",
-                                          most_points(scene_)),
+                              fmt::format(
+                                  "found {:.3g} points in space once all of the release is in the window, which",
+                                  most_points(scene_)),
                               "give a larger spacing or a smaller window"}
                   : MemoryUse{"memory",
                               fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
@@ -134,8 +137,7 @@ private:
             if (without + 0.1 * need.space > free) require_memory(need.total(), free, use);
         });
         if (need.total() > free && problems_.empty())
-            scene_.log.push_back(fmt::format("{}: {} need {:.3g} GB; expected what fits into the {:.3g} GB that are free; {}",
-                                             use.place, use.what, need.total() / 1e9, free / 1e9, use.way_out));
+            scene_.log.push_back(memory_sentence(need.total(), free, use));
     }
 
     void note_nodata() {

@@ -16,10 +16,12 @@ struct Rates {
 };
 /// From 36 runs of the case `bindo` (cells of 1.5 to 4 m, 20 000 to 400 000 particles).
 constexpr Rates solver_rates{85e6, 315.0, 431.0};
-constexpr Rates vtk_rates{4e6, 240.0, 388.0};  ///< besides, for frames that VTK writes: the grid or the particles
-/// Of columns on a part of a terrain: most of its nodes are never reached or shown, and have a bed only. From two runs on
-/// parts of 2.7 and 34 million nodes.
+constexpr Rates vtk_rates{4e6, 240.0, 388.0};  ///< besides, for VTK's frames: the grid or the particles
+/// Of columns on a part of a terrain: most of its nodes are never reached or shown, and have a bed only. From two runs
+/// on parts of 2.7 and 34 million nodes.
 constexpr double part_node_rate = 160.0;
+/// Besides, for each node of solids that hold together, and of free water (4 million nodes).
+constexpr double structure_rate = 35.0, water_rate = 140.0;
 constexpr double graphics_need = 350e6;        ///< besides, for pictures: software OpenGL, 290 to 420 MB
 
 /// A grid in space has an entry for each of its tiles, and storage of those that are reached only.
@@ -66,6 +68,8 @@ MemoryNeed memory_need(const Scene& scene) {
     const double nodes = double(scene.bed.geometry.size()), particles = double(scene.particles.count());
     MemoryNeed need = memory_need(scene.wider ? 0.0 : nodes, particles, scene.output.vtk);
     if (scene.wider) need.nodes = memory_of_part(nodes);
+    if (scene.structure) need.nodes += structure_rate * nodes;
+    if (scene.water) need.nodes += water_rate * nodes;
     const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(), [](const Insitu& entry) {
         return kind_word(entry.kind) == std::string("figure");
     });
@@ -74,10 +78,13 @@ MemoryNeed memory_need(const Scene& scene) {
     return need;
 }
 
+std::string memory_sentence(double needed, double free, const MemoryUse& use) {
+    return fmt::format("{}: {} need {:.3g} GB; expected what fits into the {:.3g} GB that are free; {}", use.place,
+                       use.what, needed / 1e9, free / 1e9, use.way_out);
+}
+
 void require_memory(double needed, double free, const MemoryUse& use) {
-    if (needed <= free) return;
-    throw UserError(fmt::format("{}: {} need {:.3g} GB; expected what fits into the {:.3g} GB that are free; {}", use.place,
-                                use.what, needed / 1e9, free / 1e9, use.way_out));
+    if (needed > free) throw UserError(memory_sentence(needed, free, use));
 }
 
 }  // namespace frana

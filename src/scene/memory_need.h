@@ -30,7 +30,9 @@ constexpr double bytes_per_point = 450.0;  ///< of points in space
 struct MemoryUse {
     std::string place, what, way_out;
 };
-/// Throws UserError when more bytes are needed than are free: "place: what needs 56 GB; expected ...; way out".
+/// "place: what need 56 GB; expected what fits into the 23 GB that are free; way out".
+std::string memory_sentence(double needed, double free, const MemoryUse& use);
+/// Throws UserError, with that sentence, when more bytes are needed than are free.
 void require_memory(double needed, double free, const MemoryUse& use);
 
 }  // namespace frana

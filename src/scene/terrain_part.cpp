@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/error.h"
 #include "base/layer_name.h"
+#include "scene/bed_smoothing.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
-
-constexpr Index kTileNodes = 16;  ///< along a tile's edge: what is near material is listed by tiles
 
 void take_corners(const Polygons& polygons, std::vector<Vec2>& points) {
     for (const Polygon& polygon : polygons.parts)
@@ -57,50 +54,10 @@ std::vector<Vec2> shown_places(const CaseFile& file, const GisReader& reader, co
 
 }  // namespace
 
-Index smoothing_passes(const Scheme& scheme, double cell) {
-    const double length = scheme.curvature_length;
-    return std::min<Index>(static_cast<Index>(std::lround(2.0 * length * length / (cell * cell))), 400);
-}
-
-Index clear_of_edge(const Scene& scene, double cell) {
-    constexpr Index kStencils = 16;       // shape function, slopes, lowest neighbour; what points touch
-    constexpr Index kWay = kTileNodes;    // of a step, and of what moved since tiles were listed
-    const bool smooth = scene.terrain != TerrainModel::shallow;
-    return kStencils + kWay + (smooth ? smoothing_passes(scene.scheme, cell) : 0);
-}
-
-NodeBox united(const NodeBox& a, const NodeBox& b) {
-    if (a.nx <= 0 || a.ny <= 0) return b;
-    if (b.nx <= 0 || b.ny <= 0) return a;
-    const Index i0 = std::min(a.i0, b.i0), j0 = std::min(a.j0, b.j0);
-    return {i0, j0, std::max(a.i0 + a.nx, b.i0 + b.nx) - i0, std::max(a.j0 + a.ny, b.j0 + b.ny) - j0};
-}
-
-NodeBox common(const NodeBox& a, const NodeBox& b) {
-    const Index i0 = std::max(a.i0, b.i0), j0 = std::max(a.j0, b.j0);
-    return {i0, j0, std::max<Index>(0, std::min(a.i0 + a.nx, b.i0 + b.nx) - i0),
-            std::max<Index>(0, std::min(a.j0 + a.ny, b.j0 + b.ny) - j0)};
-}
-
-NodeBox widened(const NodeBox& box, Index more) {
-    if (box.nx <= 0 || box.ny <= 0) return box;
-    return {box.i0 - more, box.j0 - more, box.nx + 2 * more, box.ny + 2 * more};
-}
-
-NodeBox cells_of(const std::vector<Vec2>& points, const GridGeometry& grid) {
-    constexpr double kFar = 1e9;  // nodes: no terrain is so large
-    NodeBox box;
-    for (const Vec2& point : points) {
-        const double x = (point.x() - grid.x0) / grid.cell, y = (point.y() - grid.y0) / grid.cell;
-        if (!(std::abs(x) < kFar && std::abs(y) < kFar)) continue;
-        box = united(box, {static_cast<Index>(std::floor(x)), static_cast<Index>(std::floor(y)), 2, 2});
-    }
-    return box;
-}
-
 std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene& scene, const GisReader& reader,
                                               const Raster& whole) {
     if (!may_begin_with_part(file, scene)) return {};
+    constexpr Index kListed = 48;  // what is near material is listed by tiles of 16 nodes
     constexpr Index kToGo = 512;  // nodes: most flows of a hillslope end within
     const NodeBox all = NodeBox::all(whole.geometry);
     TerrainPart part;
@@ -111,7 +68,7 @@ std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene&
         return {};  // told when it is read for good
     }
     if (part.box.nx == 0 || part.box.ny == 0) return {};
-    part.box = widened(part.box, clear_of_edge(scene, whole.geometry.cell) + 3 * kTileNodes + kToGo);
+    part.box = widened(part.box, clear_of_edge(scene, whole.geometry.cell) + kListed + kToGo);
     std::vector<Vec2> others = part.shown;
     for (Index i = 0; i < file.count("gauge"); ++i) {
         const auto& xy = file.numbers(fmt::format("gauge.{}.point", i));

@@ -9,13 +9,6 @@
 
 namespace frana {
 
-/// Passes of the binomial filter that smooth a bed to `curvature_length`. Each adds variance cell^2/2 (scheme: sigma =
-/// cell sqrt(passes / 2)).
-Index smoothing_passes(const Scheme& scheme, double cell);
-
-/// Nodes around material that its steps depend on, and a step's way: so far it stays from the edge of a part.
-Index clear_of_edge(const Scene& scene, double cell);
-
 struct TerrainPart {
     NodeBox box;
     std::vector<Vec2> shown;  ///< places of profiles and the survey [m]
@@ -25,12 +18,5 @@ struct TerrainPart {
 /// in situ or output.extent = "terrain"; with a release without an outline; and where the part would be all of it.
 std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene& scene, const GisReader& reader,
                                               const Raster& whole);
-
-/// The smallest box that holds both; a box without nodes holds nothing.
-NodeBox united(const NodeBox& a, const NodeBox& b);
-NodeBox common(const NodeBox& a, const NodeBox& b);
-NodeBox widened(const NodeBox& box, Index more);
-/// The cells of a grid that hold the points; some may lie beyond it.
-NodeBox cells_of(const std::vector<Vec2>& points, const GridGeometry& grid);
 
 }  // namespace frana

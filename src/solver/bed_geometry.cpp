@@ -4,7 +4,7 @@
 #include <deque>
 
 #include "base/error.h"
-#include "scene/terrain_part.h"
+#include "scene/bed_smoothing.h"
 
 namespace frana {
 namespace {

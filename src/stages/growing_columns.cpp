@@ -6,10 +6,11 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "scene/bed_smoothing.h"
 #include "scene/memory_need.h"
-#include "scene/terrain_part.h"
 #include "solver/stored_points.h"
 #include "terrain/holes.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -25,9 +26,11 @@ void lay_over(Raster& bed, const Raster& part, Index i0, Index j0) {
 
 }  // namespace
 
-GrowingColumns::GrowingColumns(const Scene& scene, Start start) : scene_(scene), held_(scene.wider->held) {
+GrowingColumns::GrowingColumns(const Scene& scene, Start start)
+    : scene_(scene), wider_(scene.wider), held_(wider_->held) {
+    scene_.wider.reset();  // what the columns have is all that they know of
     columns_ = std::make_unique<DepthAveraged>(scene_, start);
-    shown_ = cells_of(scene.wider->shown, scene.wider->grid);
+    shown_ = cells_of(wider_->shown, wider_->grid);
     scene_.particles = {};
     if (start == Start::placed) look();
 }
@@ -52,23 +55,24 @@ void GrowingColumns::look() {
     if (!(room == held_)) grow(room);
 }
 
-/// The part that material needs: as it is while material is so many nodes clear of the edges, half as large again beyond those it is not.
+/// The part that material needs: as it is while material is so many nodes clear of the edges, half as large again
+/// beyond those it is not.
 NodeBox GrowingColumns::room_for(const NodeBox& worked, Index clear) const {
-    const NodeBox needed = common(widened(worked, clear), NodeBox::all(scene_.wider->grid));
+    const NodeBox needed = common(widened(worked, clear), NodeBox::all(wider_->grid));
     const Index more_x = std::max(kGrowAtLeast, held_.nx / 2), more_y = std::max(kGrowAtLeast, held_.ny / 2);
     NodeBox room = held_;
     if (needed.i0 < held_.i0) room.i0 -= more_x, room.nx += more_x;
     if (needed.j0 < held_.j0) room.j0 -= more_y, room.ny += more_y;
     if (needed.i0 + needed.nx > held_.i0 + held_.nx) room.nx += more_x;
     if (needed.j0 + needed.ny > held_.j0 + held_.ny) room.ny += more_y;
-    return common(room, NodeBox::all(scene_.wider->grid));
+    return common(room, NodeBox::all(wider_->grid));
 }
 
 /// Elevations of another part of the terrain, that held now among them. Where some are missing it is all of the terrain: what
 /// is outside of it, and what is a hole in it, is known of the whole only.
 void GrowingColumns::hold(const NodeBox& box) {
     read_part(box);
-    const NodeBox all = NodeBox::all(scene_.wider->grid);
+    const NodeBox all = NodeBox::all(wider_->grid);
     if (has_nodata(scene_.bed) && !(held_ == all)) read_part(all);
     scene_.holes = holes_of(scene_.bed);
 }
@@ -76,10 +80,10 @@ void GrowingColumns::hold(const NodeBox& box) {
 void GrowingColumns::read_part(const NodeBox& box) {
     require_memory(memory_of_part(double(box.nx * box.ny)), free_memory(),
                    {"terrain.window",
-                    fmt::format("at {:.6g} s the flow has come so far that {} x {} nodes", columns_->status().time, box.nx,
-                                box.ny),
+                    fmt::format("at {:.6g} s the flow has come so far that {} x {} nodes",
+                                columns_->status().time, box.nx, box.ny),
                     "give a window around the flow, or a larger grid.cell"});
-    Raster bed = scene_.wider->read(box);
+    Raster bed = wider_->read(box);
     lay_over(bed, scene_.bed, held_.i0 - box.i0, held_.j0 - box.j0);
     scene_.bed = std::move(bed);
     held_ = box;
@@ -104,11 +108,12 @@ Frame GrowingColumns::frame() {
 
 std::vector<std::string> GrowingColumns::remarks() const {
     std::vector<std::string> all = columns_->remarks();
-    const GridGeometry& g = scene_.wider->grid;
+    const GridGeometry& g = wider_->grid;
     const auto extent = scene_.bed.geometry.pixel_extent();
-    all.push_back(fmt::format("terrain: {} x {} of {} x {} nodes were needed, x {:.10g} to {:.10g}, y {:.10g} to {:.10g}; "
-                              "files show the part that the flow has reached (output.extent)",
-                              held_.nx, held_.ny, g.nx, g.ny, extent[0], extent[2], extent[1], extent[3]));
+    all.push_back(fmt::format(
+        "terrain: {} x {} of {} x {} nodes were needed, x {:.10g} to {:.10g}, y {:.10g} to {:.10g}; files show the part "
+        "that the flow has reached (output.extent)",
+        held_.nx, held_.ny, g.nx, g.ny, extent[0], extent[2], extent[1], extent[3]));
     return all;
 }
 
@@ -123,7 +128,7 @@ void GrowingColumns::keep(Archive& archive) {
         archive.number("shown_nx", shown_.nx), archive.number("shown_ny", shown_.ny);
         archive.number("times_grown", times_grown_);
         if (archive.loading() && !(box == held_)) {
-            if (!(common(held_, box) == held_) || !(common(box, NodeBox::all(scene_.wider->grid)) == box))
+            if (!(common(held_, box) == held_) || !(common(box, NodeBox::all(wider_->grid)) == box))
                 throw misfit("its part of the terrain is not one of this terrain");
             hold(box);
             columns_ = std::make_unique<DepthAveraged>(scene_, Start::kept);

@@ -31,6 +31,7 @@ private:
     void read_part(const NodeBox& box);
 
     Scene scene_;
+    std::shared_ptr<const WiderTerrain> wider_;
     NodeBox held_;   ///< the scene's bed, of the whole terrain
     NodeBox shown_;  ///< nodes of the whole terrain that frames show
     std::unique_ptr<DepthAveraged> columns_;
