@@ -107,6 +107,24 @@ TEST_CASE("A window that nothing has reached yet waits with sound and room for w
     CHECK(run.points()->status().volume == Approx(run.points()->status().mass / scene.density).epsilon(0.02));
 }
 
+TEST_CASE("Points that have more energy than the release could give are remarked upon, with what the others did", "[stages]") {
+    Scene scene = slide(0.0);
+    StagedRun within(scene);
+    run_to(within, 0.2);
+    for (const std::string& remark : within.remarks()) CHECK(remark.find("highest head") == std::string::npos);
+    // What the release is said to have is less than it has: as if its points had gained energy. 8 m/s are 3.26 m of head.
+    Spray less([&] {
+        Scene low = scene;
+        low.particles.vx.assign(low.particles.x.size(), 0.0);
+        return low;
+    }());
+    less.look(*within.points());
+    CHECK(less.available() == Approx(Spray(scene).available() - 8.0 * 8.0 / (2.0 * scene.gravity)));
+    CHECK(less.most_share() > 0.0);
+    REQUIRE(less.remark());
+    CHECK(less.remark()->find("more energy than a fall from the release's highest head") != std::string::npos);
+}
+
 TEST_CASE("A stage in space from the start takes the release as it is", "[stages]") {
     Scene scene = slide(0.0);
     scene.solid->window = {0, 0, 40, 12};

@@ -12,7 +12,7 @@
 namespace frana {
 
 /// First line of a checkpoint. A state that keeps other numbers has another one.
-constexpr const char* kCheckpointFormat = "frana checkpoint 5";
+constexpr const char* kCheckpointFormat = "frana checkpoint 6";
 
 /// What says where a state is from: texts by name.
 using CheckpointLabels = std::map<std::string, std::string>;

@@ -24,7 +24,7 @@ StagedRun::StagedRun(const Scene& scene, Start start)
     : scene_(scene),
       columns_(std::make_unique<DepthAveraged>(
           scene.barriers.empty() ? scene : on_bed(scene, with_barriers(scene)), start)),
-      map_(scene) {
+      map_(scene), spray_(scene) {
     expect(scene.solid.has_value(), "a staged run has a stage in space");
     if (!scene.barriers.empty()) mark_raised(with_barriers(scene));
     scene_.particles = {};
@@ -163,6 +163,7 @@ void StagedRun::look(double until) {
     if (watch_) far = std::min(far, 2.0 * kShare * scene_.solid->cell);
     if (points_->status().time < until && moved_ < far) return;
     if (points_->status().time >= until) look_for_pieces();
+    spray_.look(*points_);
     timed_("map", [&] {
         map_.look(*points_, points_->status().time);
         if (watch_) watch_->look(*points_);
@@ -267,6 +268,7 @@ std::vector<std::string> StagedRun::remarks() const {
             start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
             largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : "", rest > 0.0 ? s.volume / rest : 1.0));
     remark_pieces(remarks);
+    if (const auto spray = spray_.remark()) remarks.push_back(*spray);
     return remarks;
 }
 
@@ -304,6 +306,7 @@ void StagedRun::keep(Archive& archive) {
                      &returned_.mass, &returned_.lost, &moved_, &largest_mach_});
     archive.number("pieces", apart_.pieces);
     archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
+    spray_.keep(archive);
     timed_.keep(archive);
     keep_on_their_way(archive);
     if (!points_) return;

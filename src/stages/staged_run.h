@@ -12,6 +12,7 @@
 #include "stages/flow_map.h"
 #include "stages/hand_over.h"
 #include "stages/solid_scene.h"
+#include "stages/spray.h"
 
 namespace frana {
 
@@ -101,6 +102,7 @@ private:
     StepClock timed_;
     double moved_ = 0.0;  ///< farthest way of a point since the last look at the map [m]
     PointsApart apart_;
+    Spray spray_;
     double largest_mach_ = 0.0;  ///< fastest point over the speed of sound [1]
     std::vector<std::vector<double>> frame_storage_;
     std::size_t frame_used_ = 0;
