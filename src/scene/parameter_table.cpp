@@ -181,7 +181,7 @@ void add_scheme(Table& table) {
     table.push_back(paper(
         flag("scheme.mass_fit", true, "fit the masses so that a lake, released below one still level, starts at exact rest"), false));
     table.push_back(number("scheme.curvature_length", "m", not_negative, 10.0,
-                           "smoothing of the bed for its curvature and for speeds along it; 0: none"));
+                           "smoothing of the bed for its curvature and for speeds along it, 14 cells at most; 0: none"));
     table.push_back(number("scheme.strain_rate_floor", "1/s", positive, 1e-3,
                            "strain rate below which the yield stress is regularised"));
     table.push_back(number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
