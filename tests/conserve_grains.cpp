@@ -1,4 +1,4 @@
-// Grains of structured columns : alone, with K = 1, they are the depth-averaged flow; what rests stays; the same
+// Grains of structured columns: alone, with K = 1, they are the depth-averaged flow; what rests stays; the same
 // bits on any number of threads and after a stop.
 #include <omp.h>
 

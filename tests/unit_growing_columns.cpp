@@ -148,6 +148,18 @@ TEST_CASE("A part that grows onto holes of the terrain holds all of it, and its 
         REQUIRE(part.status().time < 60.0);
     }
     CHECK(part.held() == NodeBox::all(kLarge));
+    CHECK(holes_of(*part.ground()).nodes == whole.holes.nodes);
+    bool told = false;
+    for (const std::string& remark : part.remarks()) told = told || remark.find("hole(s) inside the terrain") != std::string::npos;
+    CHECK(told);
+    {
+        MemoryArchive archive;
+        part.keep(archive);
+        GrowingColumns again(scene, Start::kept);
+        again.keep(archive.rewind());
+        for (int step = 0; step < 50; ++step) part.advance(1e9), again.advance(1e9);
+        require_same(part, again);
+    }
     run_to(part, 60.0), run_to(all, 60.0);
     CHECK(part.status().mass_left == 0.0);
     CHECK(all.status().mass_left == 0.0);
@@ -196,6 +208,25 @@ TEST_CASE("A run on a part goes on from a kept state with the same bits, before 
         for (int step = 0; step < 50; ++step) run.advance(1e9), again.advance(1e9);
         require_same(run, again);
     }
+}
+
+TEST_CASE("What may split is kept with a part that has grown", "[terrain]") {
+    const auto slide = [](double least) {
+        Scene scene = slide_on_large();
+        scene.scheme.split_min_mass = least;
+        return scene;
+    };
+    GrowingColumns run(slide(1.0)), splits(slide(0.02));
+    const NodeBox begin = run.held();
+    while (run.held() == begin) run.advance(1e9);
+    MemoryArchive archive;
+    run.keep(archive);
+    GrowingColumns again(slide(1.0), Start::kept);
+    again.keep(archive.rewind());
+    for (int step = 0; step < 50; ++step) run.advance(1e9), again.advance(1e9);
+    require_same(run, again);
+    run_to(splits, run.status().time);
+    CHECK(splits.status().particles > run.status().particles);  // there is something that must not split
 }
 
 TEST_CASE("A run on a part comes back to a state that was put aside, also just before it grows", "[terrain]") {

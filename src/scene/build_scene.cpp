@@ -45,6 +45,7 @@ public:
         wall_holes(case_, scene_, problems_);
         problems_.throw_if_any();
         require_room_for_all();
+        problems_.throw_if_any();
         remark_on_releases(case_, built_.releases, scene_);
         cut_releases();
         return std::move(built_);

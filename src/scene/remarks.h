@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "terrain/holes.h"
+
 namespace frana {
 
 enum class Remark {
@@ -44,5 +46,8 @@ struct Found {
 /// Appends "place: what was found; what is expected; what to do" to `log`, unless the value lies within the row's
 /// limits.
 void remark_on(std::vector<std::string>& log, Remark remark, const std::string& place, const Found& found);
+/// The same of the holes of a terrain, when it has any: walls, or open.
+void remark_on_holes(std::vector<std::string>& log, const Holes& holes, const GridGeometry& grid, bool open,
+                     const std::string& place);
 
 }  // namespace frana

@@ -15,16 +15,19 @@ double hole_wall_height(const Scene& scene) {
     return two_cells + std::min(two_cells, depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end()));
 }
 
-void find_holes(const CaseFile& file, Scene& scene) {
-    scene.holes = holes_of(scene.bed);
-    const Holes& holes = scene.holes;
+void remark_on_holes(std::vector<std::string>& log, const Holes& holes, const GridGeometry& g, bool open,
+                     const std::string& place) {
     if (holes.count == 0) return;
-    const GridGeometry& g = scene.bed.geometry;
-    const bool open = file.word("boundary.holes") == "open";
     const double x = g.x(holes.first % g.nx), y = g.y(holes.first / g.nx);
-    remark_on(scene.log, open ? Remark::open_holes : Remark::walled_holes, file.place("terrain.dem"),
+    remark_on(log, open ? Remark::open_holes : Remark::walled_holes, place,
               {double(holes.nodes.size()), double(holes.count),
                fmt::format("{} at x {:.10g}, y {:.10g}", holes.largest, x, y)});
+}
+
+void find_holes(const CaseFile& file, Scene& scene) {
+    scene.holes = holes_of(scene.bed);
+    remark_on_holes(scene.log, scene.holes, scene.bed.geometry, file.word("boundary.holes") == "open",
+                    file.place("terrain.dem"));
 }
 
 void wall_holes(const CaseFile& file, Scene& scene, Problems& problems) {

@@ -78,7 +78,7 @@ private:
         double high = -INFINITY;
         for (Index j = w[1]; j <= w[3]; ++j)
             for (Index i = w[0]; i <= w[2]; ++i) high = std::fmax(high, scene_.bed.at(i, j));
-        if (*stage.top <= high + kHighest) return;
+        if (!std::isfinite(high) || *stage.top <= high + kHighest) return;
         problems_.add(case_.place(prefix_ + "top"), fmt::format("found {:.6g} m", *stage.top),
                       fmt::format("expected at most {:.6g} m, 10 km above the window's ground", high + kHighest),
                       "give an elevation a little above the highest that material reaches");

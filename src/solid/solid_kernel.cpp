@@ -439,7 +439,8 @@ private:
         // |slow + s (v - slow)|^2 = most2
         const Vec3 more = v - slow;
         const double a = more.squaredNorm(), b = slow.dot(more), c = most2 - slow.squaredNorm();
-        const double s = c > 0.0 && a > 0.0 ? std::min(1.0, c / (b + std::sqrt(b * b + a * c))) : 0.0;
+        const double root = std::sqrt(b * b + a * std::max(0.0, c));  // both forms are without cancellation
+        const double s = c > 0.0 && a > 0.0 ? std::min(1.0, b > 0.0 ? c / (b + root) : (root - b) / a) : 0.0;
         for (int n = 0; n < count; ++n) list[n].push = soft[n].push + s * (list[n].push - soft[n].push);
         return slow + s * more;
     }

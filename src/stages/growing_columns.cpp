@@ -8,6 +8,7 @@
 #include "base/free_memory.h"
 #include "scene/bed_smoothing.h"
 #include "scene/memory_need.h"
+#include "scene/remarks.h"
 #include "solver/stored_points.h"
 #include "terrain/holes.h"
 #include "terrain/part_of.h"
@@ -31,7 +32,10 @@ GrowingColumns::GrowingColumns(const Scene& scene, Start start)
     scene_.wider.reset();  // what the columns have is all that they know of
     columns_ = std::make_unique<DepthAveraged>(scene_, start);
     shown_ = cells_of(wider_->shown, wider_->grid);
+    const std::vector<double>& volume = scene_.particles.volume;
+    const double largest = volume.empty() ? 0.0 : *std::max_element(volume.begin(), volume.end());
     scene_.particles = {};
+    scene_.particles.volume = {largest};  // what may split hangs on it, also when a kept part is taken up again
     if (start == Start::placed) look();
 }
 
@@ -70,28 +74,32 @@ NodeBox GrowingColumns::room_for(const NodeBox& worked, Index clear) const {
 
 /// Elevations of another part of the terrain, that held now among them. Where some are missing it is all of the terrain: what
 /// is outside of it, and what is a hole in it, is known of the whole only.
-void GrowingColumns::hold(const NodeBox& box) {
-    read_part(box);
+void GrowingColumns::hold(NodeBox box) {
+    Raster bed = read_part(box);
     const NodeBox all = NodeBox::all(wider_->grid);
-    if (has_nodata(scene_.bed) && !(held_ == all)) read_part(all);
-    scene_.holes = holes_of(scene_.bed);
-}
-
-void GrowingColumns::read_part(const NodeBox& box) {
-    require_memory(memory_of_part(double(box.nx * box.ny)), free_memory(),
-                   {"terrain.window",
-                    fmt::format("at {:.6g} s the flow has come so far that {} x {} nodes",
-                                columns_->status().time, box.nx, box.ny),
-                    "give a window around the flow, or a larger grid.cell"});
-    Raster bed = wider_->read(box);
+    if (has_nodata(bed) && !(box == all)) box = all, bed = read_part(all);
     lay_over(bed, scene_.bed, held_.i0 - box.i0, held_.j0 - box.j0);
     scene_.bed = std::move(bed);
+    scene_.holes = holes_of(scene_.bed);
     held_ = box;
 }
 
+Raster GrowingColumns::read_part(const NodeBox& box) const {
+    require_memory(memory_of_part(double(box.nx * box.ny)), free_memory(),
+                   {"terrain.window", fmt::format("the flow has come so far that {} x {} nodes", box.nx, box.ny),
+                    "give a window around the flow, or a larger grid.cell"});
+    return wider_->read(box);
+}
+
+/// A run that cannot grow ends as one whose numbers fail: what it has so far is written.
 void GrowingColumns::grow(const NodeBox& box) {
     const NodeBox before = held_;
-    hold(box);
+    try {
+        hold(box);
+    } catch (const UserError& error) {
+        throw NumericsError(fmt::format("step {}, t = {:.6g} s: more of the terrain is needed: {}", columns_->status().step,
+                                        columns_->status().time, error.what()));
+    }
     const Index east = before.i0 - held_.i0, north = before.j0 - held_.j0;
     auto larger = std::make_unique<DepthAveraged>(scene_, Start::kept);
     larger->take_over(*columns_, east, north);
@@ -114,6 +122,7 @@ std::vector<std::string> GrowingColumns::remarks() const {
         "terrain: {} x {} of {} x {} nodes were needed, x {:.10g} to {:.10g}, y {:.10g} to {:.10g}; files show the part "
         "that the flow has reached (output.extent)",
         held_.nx, held_.ny, g.nx, g.ny, extent[0], extent[2], extent[1], extent[3]));
+    if (times_grown_ > 0) remark_on_holes(all, scene_.holes, scene_.bed.geometry, !scene_.hole_top, "terrain.dem");
     return all;
 }
 

@@ -27,8 +27,8 @@ private:
     void look();
     NodeBox room_for(const NodeBox& worked, Index clear) const;
     void grow(const NodeBox& box);
-    void hold(const NodeBox& box);
-    void read_part(const NodeBox& box);
+    void hold(NodeBox box);
+    Raster read_part(const NodeBox& box) const;
 
     Scene scene_;
     std::shared_ptr<const WiderTerrain> wider_;

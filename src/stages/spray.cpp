@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "convert/flow_columns.h"
 #include "observe/archive.h"
 #include "particles/bed_points.h"
 #include "scene/scene.h"
@@ -17,7 +18,8 @@ Spray::Spray(const Scene& scene) : gravity_(scene.gravity) {
     double highest = -INFINITY;
     for (Index n = 0; n < s.count(); ++n) {
         const auto k = static_cast<std::size_t>(n);
-        const double v2 = s.vx[k] * s.vx[k] + s.vy[k] * s.vy[k];
+        const Vec2 v(s.vx[k], s.vy[k]);
+        const double climb = bed_gradient(scene.bed, s.x[k], s.y[k]).dot(v), v2 = v.squaredNorm() + climb * climb;
         highest = std::fmax(highest, bed_below(scene.bed, s.x[k], s.y[k]) + s.depth[k] + 0.5 * v2 / gravity_);
     }
     available_ = head_ = highest_ = highest;
@@ -45,11 +47,14 @@ void Spray::look(const SolidFlow& flow) {
 
 std::optional<std::string> Spray::remark() const {
     if (!(most_share_ > 0.0)) return {};
-    return fmt::format(
-        "points in space: {:.2g} % of their mass had more energy than a fall from the release's highest head, {:.6g} m, gives "
-        "(most at {:.6g} s; the largest head of one is {:.6g} m). Spray may; the figures of single points, largest speed and "
-        "run-up, are not to be built on. The others were at most {:.4g} m/s fast and came up to {:.6g} m",
-        100.0 * most_share_, available_, time_, head_, fastest_, highest_);
+    std::string text = fmt::format(
+        "points in space: {:.2g} % of their mass had more energy than a fall from the release's highest head gives. That head "
+        "is {:.6g} m, the largest of a point {:.6g} m; most had more at {:.6g} s. Spray may have more; do not build on the "
+        "largest speed and run-up of single points",
+        100.0 * most_share_, available_, head_, time_);
+    if (std::isfinite(highest_))
+        text += fmt::format(". The others had at most {:.4g} m/s and came up to {:.6g} m", fastest_, highest_);
+    return text;
 }
 
 void Spray::keep(Archive& archive) {

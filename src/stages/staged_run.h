@@ -3,6 +3,7 @@
 // the tail that still flows into the window handed over column by column, and what flows out made columns), and where the
 // case asks for it columns alone again.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,7 +26,8 @@ public:
     const Status& status() const override { return status_; }
     /// Known before the points' stage only: later steps end where columns and points meet, and at output times.
     double longest_step() const override {
-        return points_ ? 0.0 : std::min(columns_->longest_step(), scene_.solid->from - status_.time);
+        // A step aside must not begin the stage: a rounding error less than what is left.
+        return points_ ? 0.0 : std::min(columns_->longest_step(), std::nextafter(scene_.solid->from - status_.time, 0.0));
     }
     MovingMass motion(const MotionQuery& query) const override;
     bool may_rest() const override;
