@@ -179,7 +179,8 @@ void add_scheme(Table& table) {
     table.push_back(number("scheme.split_min_mass", "1", fraction, 0.02,
                            "no split below this share of the largest mass at the start"));
     table.push_back(paper(
-        flag("scheme.mass_fit", true, "fit the masses so that a lake, released below one still level, starts at exact rest"), false));
+        flag("scheme.mass_fit", true,
+             "fit the masses so that a lake, released below one still level, starts at exact rest"), false));
     table.push_back(number("scheme.curvature_length", "m", not_negative, 10.0,
                            "smoothing of the bed for its curvature and for speeds along it, 14 cells at most; 0: none"));
     table.push_back(number("scheme.strain_rate_floor", "1/s", positive, 1e-3,

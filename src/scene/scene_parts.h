@@ -28,8 +28,8 @@ void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>&
 void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,
                     std::vector<std::string>& log);
 
-/// [[release]] number `i` of a scene that has its terrain, in the terms of the particle generation: depth vertical, rasters read, outline read
-/// and within the terrain. A pixel that is material by outline or mask, but over nodata of the bed, has
+/// [[release]] number `i` of a scene that has its terrain, in the terms of the particle generation: depth vertical,
+/// rasters read, outline read and within the terrain. A pixel that is material by outline or mask, but over nodata of the bed, has
 /// infinite depth. Outlines with depths of their own (depth = "field:NAME") are a release for each depth; otherwise it
 /// is one. What is wrong with its files goes to `problems`, and nothing comes back; remarks go to the scene's log.
 std::vector<Release> read_release(const CaseFile& file, Index i, Scene& scene, const GisReader& reader,

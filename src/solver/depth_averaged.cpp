@@ -36,7 +36,8 @@ double least_split_mass(const Scene& scene) {
 
 DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
-      peaks_(flow_.grid), shown_(NodeBox::all(scene.bed.geometry)), rheology_(scene.rheology), steep_(scene.terrain != TerrainModel::shallow),
+      peaks_(flow_.grid), shown_(NodeBox::all(scene.bed.geometry)), rheology_(scene.rheology),
+      steep_(scene.terrain != TerrainModel::shallow),
       curved_(steep_ && scene.curvature == Curvature::full), sleeps_(scene.scheme.sleep),
       footprint_depth_(scene.output.footprint_depth) {
     expect(!scene.wider, "on a part of a terrain columns grow it (stages/growing_columns.h)");

@@ -107,7 +107,8 @@ void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& 
                  {held.cxx[p], held.cyx[p], held.cxy[p], held.cyy[p]}});
         c.mass[p] = 0.0;
     } else if (flow.bed.exit[k] == kWall) {
-        stay_out<Real>(flow, p, static_cast<Index>(std::floor(c.x[p] + 0.5)), static_cast<Index>(std::floor(c.y[p] + 0.5)), sums);
+        const auto node = [](double place) { return static_cast<Index>(std::floor(place + 0.5)); };
+        stay_out<Real>(flow, p, node(c.x[p]), node(c.y[p]), sums);
     }
 }
 

@@ -108,9 +108,9 @@ struct GrainsOf {
 }
 
 /// What drives grains. As in the depth-averaged flow: the slope of the free surface instead of the ground's, for their
-/// share s of the mass; the rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes, -g_z h / 2 div(s K); and
-/// the artificial viscosity at bores. Besides the share of their weight that the whole node is given. `bears`: share of the
-/// weight on the bed. [m/s^2]
+/// share s of the mass; the rest of their earth pressure, K - 1, along with it; what either lacks where s or K changes,
+/// -g_z h / 2 div(s K); and the artificial viscosity at bores. Besides the share of their weight that the whole node is
+/// given. `bears`: share of the weight on the bed. [m/s^2]
 template <class Real>
 [[gnu::always_inline]] inline FlatOf<Real> grain_drive(const StructuredBody& body, Index k, const GroundOf<Real>& ground,
                                                        double bears) {

@@ -173,7 +173,8 @@ void StructuredFlow::learn_ground() {
                 body_.has_exits = body_.has_exits || pull.exit;
                 const double open = open_share(body_.obstacles, {g.x(i), g.y(j)}, g.cell, kLeastOpen);
                 body_.pull[body_.grid.at(i, j)] = {pull.x,       pull.y,         pull.across, pull.slope_x,
-                                                   pull.slope_y, pull.elevation, open,        pull.hole ? 2.0 : pull.exit ? 1.0 : 0.0};
+                                                   pull.slope_y, pull.elevation, open,
+                                                   pull.hole ? 2.0 : pull.exit ? 1.0 : 0.0};
             }
     }
 }
