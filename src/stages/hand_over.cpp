@@ -97,8 +97,9 @@ FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, 
                      const std::array<double, 4>& extent) {
     FlowColumns parts;
     for (std::size_t k = 0; k < columns.count(); ++k) {
-        const auto [width, along] = division_of(columns.volume[k], columns.depth[k], spacing, widest);
-        const auto n = static_cast<Index>(along);
+        const auto division = division_of(columns.volume[k], columns.depth[k], spacing, widest);
+        const double width = division.width;
+        const auto n = static_cast<Index>(division.count);
         const double share = 1.0 / static_cast<double>(n * n);
         for (Index j = 0; j < n; ++j)
             for (Index i = 0; i < n; ++i) {
