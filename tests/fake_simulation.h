@@ -15,9 +15,9 @@ struct FakeScript {
     double rest_time = std::numeric_limits<double>::infinity();   ///< nothing moves from here on [s]
     double leave_time = std::numeric_limits<double>::infinity();  ///< no particles from here on [s]
     double fail_time = std::numeric_limits<double>::infinity();   ///< NumericsError past here [s]
-    double front_turns = std::numeric_limits<double>::max();      ///< the front draws back from here on [s]
     bool fail_with_nan = false;                                   ///< ... and the state is not finite
     std::function<void(Index)> on_step;                           ///< called with each new step's number
+    double front_turns = std::numeric_limits<double>::max();      ///< the front draws back from here on [s]
 };
 
 class FakeSimulation : public Simulation {
