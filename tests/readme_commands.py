@@ -64,8 +64,11 @@ def quick(command, number):
             command += f" --out out/readme_{number}"
         command += " --quiet --overwrite"
     if words[1] == "run":
-        # A frame at the start and one at the end, so that what follows on the page finds times to look at.
-        command += " --until 0.01"
+        # A frame at the start and one at the end, so that what follows on the page finds times to look at; no pictures,
+        # which take seconds and which `frana figures` draws.
+        command += f" --until {0.3 if 'conversion' in command else 0.01}"
+        if "output.formats" not in command:
+            command += """ --set 'output.formats=["vtk","geotiff"]'"""
     if words[1] == "converge":
         command += " --set time.end=0.5 --set output.formats=[]"
     return command
