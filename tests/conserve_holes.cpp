@@ -58,7 +58,7 @@ TEST_CASE("Holes are nodes without data that the terrain surrounds, by corners t
 }
 
 // Round-off: mass of 1e4 terms, momentum against the weight's whole impulse. Energy is the scheme's, which never gains.
-TEST_CASE("A stream goes round a hole that is a wall: nothing is lost, no energy is gained", "[holes][slow]") {
+TEST_CASE("A stream goes round a hole that is a wall: nothing is lost, no energy is gained", "[holes]") {
     for (const Outline shape : {Outline::square, Outline::slanted, Outline::lone}) {
         const Scene scene = walled(stream(shape)), open = stream(shape);
         CAPTURE(static_cast<int>(shape), *scene.hole_top);
@@ -101,7 +101,7 @@ TEST_CASE("A run round a hole has the same bits on any number of threads", "[hol
     CHECK(ends[0].mass == ends[1].mass);
 }
 
-TEST_CASE("A run round a hole, or into it, is taken up again with the same bits and the same loss", "[holes][resume][slow]") {
+TEST_CASE("A run round a hole, or into it, is taken up again with the same bits and the same loss", "[holes][resume]") {
     for (const bool wall : {true, false}) {
         const Scene scene = wall ? walled(stream(Outline::square)) : stream(Outline::square);
         DepthAveraged straight(scene), resumed(scene, Start::kept);
@@ -118,7 +118,7 @@ TEST_CASE("A run round a hole, or into it, is taken up again with the same bits 
     }
 }
 
-TEST_CASE("What is lost in open holes is a remark with its number, what leaves the terrain is none of it", "[holes][slow]") {
+TEST_CASE("What is lost in open holes is a remark with its number, what leaves the terrain is none of it", "[holes]") {
     Scene scene = stream(Outline::square);
     for (Index j = 0; j < 41; ++j)
         for (Index i = 80; i < 100; ++i) scene.bed.at(i, j) = Raster::nodata;  // outside of the terrain

@@ -75,7 +75,7 @@ void require_same(Simulation& a, Simulation& b) {
 
 }  // namespace
 
-TEST_CASE("A run on a part of a terrain has the same bits whatever lies beyond", "[terrain][slow]") {
+TEST_CASE("A run on a part of a terrain has the same bits whatever lies beyond", "[terrain]") {
     GrowingColumns large(slide_on_large()), cut(slide_on_cut());
     const NodeBox begin = large.held();
     for (double time = 2.0, after = 0.0; after < 8.0; time += 2.0, after += large.held() == begin ? 0.0 : 1.0) {
@@ -95,7 +95,7 @@ TEST_CASE("A run on a part of a terrain has the same bits whatever lies beyond",
     CHECK(large.status().mass_left == 0.0);
 }
 
-TEST_CASE("Growing changes a run by round-off only", "[terrain][slow]") {
+TEST_CASE("Growing changes a run by round-off only", "[terrain]") {
     Scene whole = slide_on_large();
     whole.bed = ground_on(kLarge);
     whole.wider.reset();
@@ -117,7 +117,7 @@ TEST_CASE("Growing changes a run by round-off only", "[terrain][slow]") {
 }
 
 TEST_CASE("A part that grows onto holes of the terrain holds all of it, and its walls are those of a run on all of it",
-          "[terrain][holes][slow]") {
+          "[terrain][holes]") {
     // A hole across the flow's way, west of the part that it begins with, and one row of outside at the terrain's edge.
     const auto with_holes = [](Raster bed) {
         const GridGeometry& g = bed.geometry;
