@@ -116,7 +116,8 @@ private:
         status_.max_speed = status_.max_speed_on_map = t >= script_.rest_time ? 0.0 : std::hypot(u, v) + 0.1 * t;
         status_.mean_speed = std::hypot(u, v);
         status_.covered_area = 100.0 + t;
-        status_.front = 7.0 + u * std::min(t, script_.front_turns - (t - script_.front_turns));
+        // never 2 * front_turns of a script that does not turn: that overflows, and the checks trap it
+        status_.front = 7.0 + u * (t <= script_.front_turns ? t : 2.0 * script_.front_turns - t);
         status_.p2g_mass_error = 1e-16;
         status_.p2g_momentum_error = 2e-16;
     }
