@@ -172,6 +172,47 @@ TEST_CASE("V10: drag alone brings columns and water together with their momentum
     CHECK(flow.columns().status().dragged == Approx(lost).epsilon(0.02));  // 1.6 % by the rim of the body
 }
 
+TEST_CASE("Drag slows columns beside a wall as it slows those in the open", "[mixture]") {
+    // A body along a wall on a row of nodes, whose shape functions are half open. Half of the water's cell has columns.
+    for (const double share : {1.0, 0.5, 0.0}) {  // blocks, both, grains
+        Basin basin(0.8, 1000.0, 2.0);
+        StructuredScene& s = basin.scene.columns;
+        s.points = {}, s.share = share;
+        Obstacle wall;
+        wall.high.y() = 2.0;
+        s.obstacles = {wall};
+        verify::StructuredBlock block;
+        block.low = {-3.5, 2.0}, block.high = {13.5, 13.5}, block.depth = 0.8, block.cohesion = 1e9;
+        block.velocity = {0.5, 0.0};
+        verify::add_block(s, block);
+        WaterExchange by = basin.scene.exchange;
+        by.material.power = 1;
+        const TwoPhaseDrag law(by.material);
+        StructuredFlow columns(s);
+        const StructuredBody& body = columns.body();
+        const std::size_t nodes = static_cast<std::size_t>(body.grid.size());
+        std::vector<double> h(nodes, 1.2), qx(nodes, 0.0), qy(nodes, 0.0), bed(nodes, 0.0);
+        columns.meet({by, law, h.data(), qx.data(), qy.data(), bed.data(), 1e-3, {}, {}});
+        columns.advance(0.01);
+        // With grains the first kick is half a step.
+        const double kick = columns.status().dt * (share < 1.0 ? 0.5 : 1.0);
+        const double per_speed = 2.0 * law.coefficient({0.8 / 2.0, share, 0.0}, 0.4 * 0.5);  // h_w C, with the flux of the start
+        const auto check_node = [&](double x, double y, double open) {
+            const Index k = body.grid.at(std::lround((x - s.grid.x0) / s.grid.cell), std::lround((y - s.grid.y0) / s.grid.cell));
+            const double m_c = 800.0 * open, m_u = 1200.0, mu = m_c * m_u / (m_c + m_u);
+            const double slip = 0.5 * std::exp(-open * per_speed * kick / mu);
+            CAPTURE(share, y, open, slip);
+            REQUIRE(body.pull[k].open == Approx(open).epsilon(1e-14));
+            CHECK(slip < 0.499);
+            // The step of a linear law is exact: round-off is left.
+            CHECK(body.moved[k].vx == Approx(0.5 - mu / m_c * (0.5 - slip)).epsilon(1e-12));
+            CHECK(qx[static_cast<std::size_t>(k)] / 1.2 == Approx(mu / m_u * (0.5 - slip)).epsilon(1e-11));
+        };
+        check_node(5.0, 5.0, 1.0);
+        check_node(5.0, 2.0, 0.5);
+    }
+}
+
 TEST_CASE("xi feeds the slip at its own rate, and is left out where drag is weaker", "[mixture]") {
     constexpr int steps = 5;
     constexpr double dt = 1e-4;

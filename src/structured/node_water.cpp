@@ -71,8 +71,10 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
           StructuredTally& tally) {
     FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
-    const double area = body.grid.cell() * body.grid.cell();  // the water's: what one gives the other gets
-    const double h = water.h[k], whole = met.depth + h, solids = bound.solids / area;
+    // Columns fill the open share of the water's cell. There they are as deep as elsewhere, and there alone both hold on to
+    // one another; momentum is that of the whole cell, so that what one gives the other gets.
+    const double area = body.grid.cell() * body.grid.cell(), open = body.pull[k].open;
+    const double h = water.h[k], whole = met.depth + h, solids = bound.solids / (open * area);
     const double confined = std::max(0.0, met.depth - solids), fluid = confined + h;
     const Mixture mixture{solids / whole, bound.structured / bound.solids, confined / fluid};
     Phase c{met.mass / area, before, (met.mass / area / dt) * (driven - before)};
@@ -84,8 +86,8 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
                          linear_drag(water.viscosity, whole) * u.velocity.norm();
     const Vec2 carried = drive > brake ? Vec2(falls * (1.0 - brake / drive)) : Vec2(0, 0);
     const double flux = (mixture.bound() * c.velocity + mixture.free() * u.velocity).norm();
-    const Exchange by{whole * water.drag.coefficient(mixture, flux), water.by.material.power,
-                      virtual_mass(water.by.virtual_mass, water.by.material, mixture, whole), carried};
+    const Exchange by{open * whole * water.drag.coefficient(mixture, flux), water.by.material.power,
+                      open * virtual_mass(water.by.virtual_mass, water.by.material, mixture, whole), carried};
     const Vec2 slip = before - u.velocity;
     if (water.viscosity.solid_gradient) {
         const double rate = spread_rate(water.viscosity, mixture, whole), reduced = c.mass * u.mass / (c.mass + u.mass);
@@ -96,7 +98,7 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
         if (rate > holds)
             ++tally.outrun;
         else if (length > 0.0 && brakes * dt <= 1.0)
-            u.force = -u.mass * std::min(rate, brakes * u.velocity.norm() / length) * slip;
+            u.force = -open * u.mass * std::min(rate, brakes * u.velocity.norm() / length) * slip;
     }
     exchange(by, dt, c, u);
     tally.drag += met.mass * along_ground(body.pull[k], driven - c.velocity, 0.5 * (slip + c.velocity - u.velocity));
