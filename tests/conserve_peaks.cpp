@@ -91,3 +91,39 @@ TEST_CASE("Peak speeds on a rough path do not grow with finer cells, nor beyond 
         CHECK(of.fastest == of.raster);  // one speed: what the report names is what the map shows
     }
 }
+
+TEST_CASE("Particles show the pressure of the bed's curvature, as nodes do", "[conserve]") {
+    // A quadric has the same Hessian everywhere, also when smoothed, and its slope is linear: both are exact at any place.
+    constexpr double hxx = 0.012, hyy = -0.03, hxy = 0.01, vx = 6.0, vy = -9.0;
+    for (const Curvature curvature : {Curvature::full, Curvature::none}) {
+        Scene scene = scene_on(61, 61, 2.0, [](double x, double y) {
+            const double a = x - 60, b = y - 60;
+            return 50 + 0.5 * hxx * a * a + hxy * a * b + 0.5 * hyy * b * b;
+        });
+        scene.curvature = curvature;
+        scene.scheme.curvature_length = 4.0;  // the grid's sides are ten of it away
+        fill(scene, [](double x, double y) { return std::hypot(x - 60, y - 60) < 30 ? 1.5 : 0.0; });
+        std::fill(scene.particles.vx.begin(), scene.particles.vx.end(), vx);
+        std::fill(scene.particles.vy.begin(), scene.particles.vy.end(), vy);
+        DepthAveraged simulation(scene);
+        const Frame frame = simulation.frame();
+        const double *position = frame.particle("position")->data, *depth = frame.particle("depth")->data,
+                     *pressure = frame.particle("pressure")->data;
+        const double bend = curvature == Curvature::full ? hxx * vx * vx + 2 * hxy * vx * vy + hyy * vy * vy : 0.0;
+        REQUIRE((bend == 0.0 || bend < -2.0));
+        int inside = 0;
+        for (Index p = 0; p < frame.particle("depth")->count; ++p) {
+            const double a = position[3 * p] - 60, b = position[3 * p + 1] - 60;
+            if (std::hypot(a, b) > 20) continue;
+            const double bx = hxx * a + hxy * b, by = hxy * a + hyy * b;
+            const double exact = scene.density * (scene.gravity + bend) * depth[p] / (1 + bx * bx + by * by);
+            CHECK(pressure[p] == Approx(exact).epsilon(1e-9));  // round-off of second differences of 50 m over 4 m^2
+            ++inside;
+        }
+        CHECK(inside > 1000);
+        const Index middle = 30 * frame.grid.nx + 30;
+        CHECK(frame.grid.nx == 61);
+        CHECK(frame.node("pressure")->data[middle] ==
+              Approx(scene.density * (scene.gravity + bend) * frame.node("depth")->data[middle]).epsilon(1e-9));
+    }
+}

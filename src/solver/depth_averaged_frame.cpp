@@ -26,9 +26,17 @@ void for_all_output_nodes(const Flow& flow, const NodeBox& box, Body&& body) {
         for (Index i = 0; i < box.nx; ++i) body(flow.grid.at(box.i0 + i, box.j0 + j), j * box.nx + i);
 }
 
-/// Bed at a point: elevation, its own slope, and that of the smoothed bed, which velocities follow (zero on gentle terrain).
-struct BedHere { double z = 0.0, slope_x = 0.0, slope_y = 0.0, path_x = 0.0, path_y = 0.0; };
-BedHere bed_at(const Flow& flow, bool steep, double x, double y) {
+/// Bed at a point: elevation, its own slope, and that of the smoothed bed, which velocities follow (zero on gentle terrain),
+/// with its curvature where that counts.
+struct BedHere {
+    double z = 0.0, slope_x = 0.0, slope_y = 0.0, path_x = 0.0, path_y = 0.0, hxx = 0.0, hxy = 0.0, hyy = 0.0;
+
+    /// THEORY (59): g + v'Hv, not below zero [m/s^2].
+    double gravity(double g, double vx, double vy) const {
+        return std::max(0.0, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
+    }
+};
+BedHere bed_at(const Flow& flow, bool steep, bool curved, double x, double y) {
     const Quadratic sx(x), sy(y);
     BedHere here;
     for (int j = 0; j < 3; ++j)
@@ -39,6 +47,10 @@ BedHere bed_at(const Flow& flow, bool steep, double x, double y) {
             here.slope_x += w * flow.bed.slope_x[k];
             here.slope_y += w * flow.bed.slope_y[k];
             if (steep) here.path_x += w * flow.bed.smooth_x[k], here.path_y += w * flow.bed.smooth_y[k];
+            if (!curved) continue;
+            here.hxx += w * flow.bed.hxx[k];
+            here.hxy += w * flow.bed.hxy[k];
+            here.hyy += w * flow.bed.hyy[k];
         }
     return here;
 }
@@ -114,7 +126,7 @@ void DepthAveraged::particle_fields(Frame& frame) {
     double* id = column("id", "1", 1);
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < count; ++p) {
-        const BedHere bed = bed_at(flow_, steep_, c.x[p], c.y[p]);
+        const BedHere bed = bed_at(flow_, steep_, curved_, c.x[p], c.y[p]);
         const double h = std::max(probe_.depth[p], 0.0), vx = probe_.vx[p], vy = probe_.vy[p];
         const double slope2 = steep_ ? bed.slope_x * bed.slope_x + bed.slope_y * bed.slope_y : 0.0;
         const double vz = vx * bed.path_x + vy * bed.path_y, path2 = bed.path_x * bed.path_x + bed.path_y * bed.path_y;
@@ -129,7 +141,7 @@ void DepthAveraged::particle_fields(Frame& frame) {
         speed[p] = std::sqrt(vx * vx + vy * vy + vz * vz);
         elevation[p] = bed.z;
         surface[p] = bed.z + h;
-        pressure[p] = flow_.density * flow_.gravity * h / (1.0 + path2);
+        pressure[p] = flow_.density * bed.gravity(flow_.gravity, vx, vy) * h / (1.0 + path2);
         mass[p] = c.mass[p];
         volume[p] = c.mass[p] / flow_.density;
         id[p] = static_cast<double>(c.id[p]);
