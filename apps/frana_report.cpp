@@ -73,7 +73,7 @@ std::string results(const RunRecord& r) {
                                                b.damage, b.pairs, b.torn, b.numerical));
     }
     if (r.breakage)
-        text += row("steps for each that the flow without elastic waves would need", fmt::format("{:.3g}", r.breakage->sub_cycling));
+        text += row("steps for each that the depth-averaged flow would need", fmt::format("{:.3g}", r.breakage->sub_cycling));
     if (r.points_apart) {
         const PointsApart& a = *r.points_apart;
         text += row("pieces of points in space, more than a cell apart",

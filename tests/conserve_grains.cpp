@@ -105,6 +105,27 @@ TEST_CASE("Grains that streams press to slivers feel gradients as the depth-aver
     CHECK(by.momentum < 1e-13);
 }
 
+TEST_CASE("Steps are counted for each of a flow whose waves run at sqrt(g h)", "[structured][grains]") {
+    Scene scene = box_on(0.4, 0.1);
+    scene.scheme.split = false;  // a step's bound is from before those halves
+    scene.structure = grains(GENERATE(true, false));
+    StructuredFlow flow(structured_scene(scene));
+    const StructuredPoints& q = flow.body().points;
+    const double reach = scene.structure->cfl;  // of cells of 1 m
+    double steps = 0.0;
+    for (int n = 1; n <= 20; ++n) {
+        double signal = 0.0;
+        for (Index p = 0; p < q.count(); ++p)
+            signal = std::max(signal, std::hypot(q.vx[p], q.vy[p]) + std::sqrt(q.pull[p] * q.layer[p]));
+        // THEORY (56) of the depth-averaged flow.
+        steps += flow.longest_step() * (signal + std::sqrt(signal * signal + 2.0 * scene.gravity * reach)) / (2.0 * reach);
+        flow.advance(1e9);
+        CHECK(flow.sub_cycling() == Approx(n / steps).epsilon(1e-13));
+    }
+    CHECK(flow.status().max_speed > 1.0);
+    CHECK(flow.sub_cycling() > 1.05);
+}
+
 TEST_CASE("A pile of grains below its angle of friction does not move by one bit", "[structured][grains]") {
     const bool hydrostatic = GENERATE(true, false);
     const double slope = GENERATE(0.0, 0.1);

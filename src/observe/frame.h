@@ -70,7 +70,7 @@ struct Breakage {
     Index pairs = 0;             ///< of columns that were neighbours at the start
     Index torn = 0;              ///< of these, now apart
     Index numerical = 0;         ///< of these, without damage to either: torn by the scheme
-    double sub_cycling = 1.0;    ///< steps for each that the flow alone would need: what elastic waves cost
+    double sub_cycling = 1.0;    ///< steps for each that the depth-averaged flow would need
 };
 
 /// What points in space have come apart into (solid/pieces.h), at the last output and where it was most.

@@ -93,6 +93,7 @@ void StructuredFlow::place(const StructuredScene& scene) {
         status_.damage += q.mass[p] * q.damage[p];
         status_.max_speed = std::max(status_.max_speed, v.norm());
         wave_ = std::max(wave_, v.norm() + std::sqrt(2.0 * q.pull[p] * q.depth[p]));
+        signal_ = std::max(signal_, v.norm() + std::sqrt(q.pull[p] * q.depth[p]));
         if (q.damage[p] > 0.0 || body_.share < 1.0) body_.grains = true;
     }
     status_.mass = mass.value();
@@ -188,13 +189,13 @@ double StructuredFlow::step_length(double until) const {
 /// Ka) sqrt(g_z h^3)), or is noisy; the elastic step is mostly near that. Hydrostatic grains do not.
 double StructuredFlow::longest_step() const {
     const bool flows = sound_ == 0.0 || (hydrostatic_ && status_.damage >= 1.0);  // all grains, to the last bit
-    return flows ? flow_step() : cfl_ * body_.grid.cell() / (sound_ + wave_);
+    return flows ? flow_step(wave_) : cfl_ * body_.grid.cell() / (sound_ + wave_);
 }
 
 /// The step if nothing were elastic. Grains at rest have no speed to go by, but fall (DepthAveraged::longest_step).
-double StructuredFlow::flow_step() const {
+double StructuredFlow::flow_step(double signal) const {
     const double reach = cfl_ * body_.grid.cell();
-    return 2.0 * reach / (wave_ + std::sqrt(wave_ * wave_ + 2.0 * body_.gravity * reach));
+    return 2.0 * reach / (signal + std::sqrt(signal * signal + 2.0 * body_.gravity * reach));
 }
 
 double StructuredFlow::sub_cycling() const {
@@ -204,7 +205,7 @@ double StructuredFlow::sub_cycling() const {
 void StructuredFlow::advance(double until) {
     expect(until > status_.time, "a step goes forward");
     const double dt = step_length(until);
-    status_.flow_steps += longest_step() / flow_step();
+    status_.flow_steps += longest_step() / flow_step(signal_);
     const StepTimes times = body_.grains ? StepTimes{0.5 * (status_.dt + dt), dt} : StepTimes{dt, 0.0};
     timed_("clear", [&] { clear_nodes(body_); });
     timed_("scatter", [&] { scatter(body_); });
@@ -239,7 +240,7 @@ void StructuredFlow::book(double dt) {
     for (const StructuredSums& tile : body_.sums) {
         all.mass += tile.mass, all.kinetic += tile.kinetic, all.damaged += tile.damaged;
         all.max_speed2 = std::max(all.max_speed2, tile.max_speed2),
-        all.max_wave = std::max(all.max_wave, tile.max_wave);
+        all.max_wave = std::max(all.max_wave, tile.max_wave), all.max_signal = std::max(all.max_signal, tile.max_signal);
         all.speeds += tile.speeds, all.stored += tile.stored, all.worked += tile.worked;
         all.momentum += tile.momentum, all.left_mass += tile.left_mass,
             all.left_momentum += tile.left_momentum;
@@ -265,7 +266,7 @@ void StructuredFlow::book(double dt) {
     status_.energy_left += all.left_energy;
     status_.damage = all.mass > 0.0 ? all.damaged / all.mass : 0.0;
     status_.max_speed = std::sqrt(all.max_speed2);
-    wave_ = all.max_wave;
+    wave_ = all.max_wave, signal_ = all.max_signal;
     if (all.damaged > 0.0 && !body_.grains) begin_grains();
     status_.released += all.released, status_.confined_left += all.left_confined;
     status_.lost_in_holes += all.lost_in_holes;

@@ -102,12 +102,12 @@ struct StructuredStatus {
     Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
     double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
     double energy_left = 0.0;  ///< carried out: motion along the bed, and height above z = 0 [J]
-    double flow_steps = 0.0;   ///< sum of each step's bound over the flow's alone
+    double flow_steps = 0.0;   ///< sum of each step's bound over the depth-averaged flow's
 };
 
 /// Sums of the loops over points, tile by tile.
 struct StructuredSums {
-    double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0;
+    double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0, max_signal = 0.0;
     double speeds = 0.0, stored = 0.0, worked = 0.0;
     Vec2 momentum{0, 0};
     double left_mass = 0.0, left_energy = 0.0, left_confined = 0.0, released = 0.0, lost_in_holes = 0.0;
@@ -214,7 +214,7 @@ public:
     Index particle_bytes() const;
     /// Largest speed of columns and the waves on them [m/s].
     double wave() const { return wave_; }
-    /// Steps taken so far for each that the flow alone would need: what elastic waves cost.
+    /// Steps taken so far for each that the depth-averaged flow would need: what elastic waves cost.
     double sub_cycling() const;
     /// Position of a point [m].
     Vec2 position(Index p) const;
@@ -231,7 +231,7 @@ private:
     void begin_grains();
     void split();
     double step_length(double until) const;
-    double flow_step() const;
+    double flow_step(double signal) const;
     void book(double dt);
     void weigh();
 
@@ -248,7 +248,8 @@ private:
     StructuredStatus status_;
     double cfl_, sound_;
     bool hydrostatic_;
-    double wave_ = 0.0;   ///< largest speed with which surfaces and columns run [m/s]
+    double wave_ = 0.0;   ///< largest speed with which surfaces and columns run, both ways of the grid at once [m/s]
+    double signal_ = 0.0;  ///< the same along one way: what the depth-averaged flow's steps go by [m/s]
     double drift_ = 0.0;  ///< since the last sort [cells]
 };
 

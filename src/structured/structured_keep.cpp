@@ -26,7 +26,7 @@ void keep_status(Archive& archive, StructuredStatus& s) {
 void StructuredFlow::keep(Archive& archive) {
     keep_points(archive, body_.points);
     keep_status(archive, status_);
-    archive.numbers("bounds", {&wave_, &drift_, &rules_.least_mass});
+    archive.numbers("bounds", {&wave_, &signal_, &drift_, &rules_.least_mass});
     Index grains = body_.grains ? 1 : 0;
     archive.number("grains", grains);
     archive.number("next_id", halves_.next_id);
