@@ -48,6 +48,8 @@ TEST_CASE("A structure's keys reach the scene", "[structured]") {
     CHECK(plain.material.friction == Approx(std::acos(-1.0) / 6.0).epsilon(1e-15));
     CHECK(plain.material.poisson == 0.3);
     CHECK(plain.material.critical_strain == 0.1);
+    CHECK(ColumnMaterial{}.critical_strain == 0.1);  // one default, whoever asks for it
+    CHECK(ColumnMaterial{}.poisson == 0.3);
     CHECK(plain.material.yield == ColumnYield::compression);
     CHECK(plain.material.damage_by == DamageBy::dilation);
     CHECK_FALSE(plain.unrolled);
@@ -91,6 +93,8 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK_FALSE(water.exchange.material.split);
     CHECK(scene_of(density + structure + free).water->exchange.material.split);
     CHECK(water.exchange.virtual_mass == VirtualMass::bounded);
+    CHECK(water.exchange.void_ratio == 0.67);
+    CHECK(WaterExchange{}.void_ratio == 0.67);  // one default, whoever asks for it
     CHECK(water.exchange.material.solid_density == Approx((1900.0 - 250.0) / 0.75).epsilon(1e-15));
     CHECK(has(problem_of(density + free), "found \"free\" without material.structure"));
     CHECK(has(problem_of(density + structure + "confined_water = 0.2\n"), "found 0.2 without free water"));

@@ -57,7 +57,7 @@ struct ColumnMaterial {
     double dilatancy = 0.0;  ///< psi [rad], 0 to phi
     ColumnYield yield = ColumnYield::compression;
     DamageBy damage_by = DamageBy::dilation;
-    double critical_strain = 0.07;  ///< eps_c at which no bond is left [1]
+    double critical_strain = 0.1;  ///< eps_c at which no bond is left [1]
     double onset = 0.0;             ///< strain before which DamageBy::strain breaks nothing [1]
 };
 

@@ -1,4 +1,5 @@
 // The keys of [material.structure]: solids that hold together.
+#include "law/structured_law.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -6,6 +7,7 @@ namespace frana {
 void add_structure(Table& table) {
     using namespace rows;
     const char* const law = "material.structure.law";
+    const ColumnMaterial usual;
     const std::vector<std::string> any_law = {"drucker_prager", "mohr_coulomb"};
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), law, any_law); };
     const auto needed = [&](Parameter parameter) { return with(std::move(parameter), law, any_law, any_law); };
@@ -23,7 +25,7 @@ void add_structure(Table& table) {
                          law, {"drucker_prager"}));
     table.push_back(needed(number("material.structure.young_modulus", "Pa", positive,
                                   "stiffness; the stiffer, the more steps: twenty times the strength is enough")));
-    table.push_back(instead(used(number("material.structure.poisson_ratio", "1", {0.0, 0.5, true, true}, 0.3,
+    table.push_back(instead(used(number("material.structure.poisson_ratio", "1", {0.0, 0.5, true, true}, usual.poisson,
                                         "share of a strain that shows across it")),
                             "material.structure.bulk_modulus"));
     table.push_back(absent(instead(used(number("material.structure.bulk_modulus", "Pa", positive,
@@ -42,13 +44,13 @@ void add_structure(Table& table) {
                                 "what breaks bonds while the structure yields: plastic dilation in the plane (van den Bout et "
                                 "al. 2021), the largest plastic strain in the plane, or any strain, exponentially (their "
                                 "program)")));
-    table.push_back(used(number("material.structure.critical_strain", "1", positive, 0.1,
+    table.push_back(used(number("material.structure.critical_strain", "1", positive, usual.critical_strain,
                                 "that strain at which no bond is left")));
     table.push_back(absent(used(number("material.structure.critical_length", "m", positive,
                                        "cell on which critical_strain holds; on others it is taken times "
                                        "critical_length / cell, so that a crack opens by the same way")),
                            "critical_strain holds on any cell"));
-    table.push_back(with(number("material.structure.onset", "1", not_negative, 0.0,
+    table.push_back(with(number("material.structure.onset", "1", not_negative, usual.onset,
                                 "strain before which damage = \"strain\" breaks nothing"),
                          "material.structure.damage", {"strain"}));
     table.push_back(used(number("material.structure.cfl", "1", above_to(0.0, 1.0), 0.4,

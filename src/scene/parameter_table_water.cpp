@@ -1,11 +1,13 @@
 // The keys of [water]: free water beside solids that hold together.
 #include "scene/parameter_makers.h"
+#include "water/free_water.h"
 
 namespace frana {
 
 void add_water(Table& table) {
     using namespace rows;
     const char* const model = "water.model";
+    const WaterExchange usual;
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), model, {"free"}); };
     table.push_back(choice(model, {"none", "free"}, "none",
                            "free: water on the grid that drags, bears and drains the columns of material.structure"));
@@ -27,8 +29,8 @@ void add_water(Table& table) {
                          {"manning"}, {"manning"}));
     table.push_back(with(number("water.darcy_f", "1", positive, "Darcy and Weisbach's factor"), "water.friction",
                          {"darcy_weisbach"}, {"darcy_weisbach"}));
-    table.push_back(used(number("water.density", "kg/m^3", positive, 1000.0, "of the water, confined or free")));
-    table.push_back(used(number("water.viscosity", "Pa s", positive, 1e-3, "of clear water; grains settle in it or in mud")));
+    table.push_back(used(number("water.density", "kg/m^3", positive, usual.material.fluid_density, "of the water, confined or free")));
+    table.push_back(used(number("water.viscosity", "Pa s", positive, usual.material.viscosity, "of clear water; grains settle in it or in mud")));
     table.push_back(used(choice("water.viscous", {"none", "clear", "mud"}, "none",
                                 "viscosity that the flow of the water feels at the bed and inside: none, that of clear water, "
                                 "or mud_alpha exp(mud_beta mud_concentration) (O'Brien and Julien 1988), in which grains then "
@@ -45,8 +47,8 @@ void add_water(Table& table) {
     table.push_back(viscous(number("water.bed_shear", "1", not_negative, 3.0,
                                    "viscous stress at the bed over viscosity times speed over depth; 3: a parabola"),
                             {"clear", "mud"}));
-    table.push_back(used(number("water.grain_diameter", "m", positive, 1e-3, "of grains, for their drag")));
-    table.push_back(used(number("water.block_diameter", "m", positive, 0.1, "of blocks of what has structure, for their drag")));
+    table.push_back(used(number("water.grain_diameter", "m", positive, usual.material.grain, "of grains, for their drag")));
+    table.push_back(used(number("water.block_diameter", "m", positive, usual.material.block, "of blocks of what has structure, for their drag")));
     table.push_back(viscous(flag("water.solid_gradient", false,
                                  "viscous stress of water that slips along a gradient of the columns' share (van den Bout et "
                                  "al. 2021, eq. 30); it takes no energy by itself and may feed slip"),
@@ -60,14 +62,14 @@ void add_water(Table& table) {
                                 "2021, eq. 31); unsplit: all solids drag as grains in all of the water (Pudasaini 2012)")));
     Parameter power = make("water.drag_power", Kind::integer, "1", "drag grows with the slip (1) or with its square (2)");
     power.range = between(1.0, 2.0);
-    power.fallback = 2.0;
+    power.fallback = static_cast<double>(usual.material.power);
     table.push_back(used(power));
     table.push_back(used(choice("water.virtual_mass", {"none", "bounded", "unbounded"}, "none",
                                 "water that solids speed up with them: Pudasaini and Mergili (2019), or Pudasaini (2012), "
                                 "which grows without bound where there is little water")));
-    table.push_back(used(number("water.pore_pressure", "1", fraction, 1.0,
+    table.push_back(used(number("water.pore_pressure", "1", fraction, usual.pore_pressure,
                                 "share of the pores' pressure that bears the columns on the bed where pores are full")));
-    table.push_back(used(number("water.void_ratio", "1", positive, 0.67,
+    table.push_back(used(number("water.void_ratio", "1", positive, usual.void_ratio,
                                 "free water over grains and their confined water that fills the pores")));
 }
 

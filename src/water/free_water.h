@@ -15,8 +15,8 @@ struct WaterExchange {
     /// B, share of the pore pressure that bears the columns where their pores are full [1]
     double pore_pressure = 1.0;
     /// Free water over bound volume that fills the pores [1]; with less, B goes down in proportion: a column that
-    /// stands dry rests on the bed with all its weight. 2/3 is that of loose grains, four tenths of them pores.
-    double void_ratio = 2.0 / 3.0;
+    /// stands dry rests on the bed with all its weight. This is that of loose grains, four tenths of them pores.
+    double void_ratio = 0.67;
 };
 
 /// The water's own numbers, which columns change: depth [m] and discharge [m^2/s], by storage index.
