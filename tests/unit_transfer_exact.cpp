@@ -1,6 +1,7 @@
 // The plain transfers against what they must reproduce exactly: fields linear in x and y, and the forces of one point.
 #include "analytic_scene.h"
 #include "catch.h"
+#include "law/bed_law.h"
 #include "solver/transfer.h"
 
 using namespace frana;
@@ -121,4 +122,39 @@ TEST_CASE("The paper's depth thins by the divergence of the velocity (eq. 30)", 
     transfer->gather(flow, 0.1);
     for (Index p = 0; p < before.count(); ++p)
         CHECK(flow.columns.depth[p] == Approx(before.depth[p] / (1.0 + 0.1 * (0.11 + 0.03))).epsilon(kRoundOff));
+}
+
+TEST_CASE("On 45 degrees a Bingham sheet shears twice as fast as speed and depth of the map say", "[transfer]") {
+    // Straight down the fall line: speed along the bed sqrt(2) of the map's, thickness 1 / sqrt(2) of the depth. Across it
+    // only the thickness counts.
+    const rheology::Bingham law{40.0, 300.0};
+    for (const bool down : {true, false}) {
+        Scene scene = verify::scene_on(61, 61, 1.0, [](double x, double) { return 100.0 - x; });
+        scene.rheology = law;
+        verify::fill(scene, [](double x, double y) { return std::hypot(x - 30, y - 30) < 20 ? 0.8 : 0.0; });
+        const double a = 0.05, b = 0.02;  // [1/s]
+        for (Index p = 0; p < scene.particles.count(); ++p) {
+            const double x = scene.particles.x[p] - 30.0, y = scene.particles.y[p] - 30.0;
+            scene.particles.vx[p] = (down ? 4.0 : 0.0) + a * x + b * y;
+            scene.particles.vy[p] = (down ? 0.0 : 4.0);
+        }
+        DepthAveraged simulation(scene);
+        const Frame frame = simulation.frame();
+        const double *x = frame.particle("position")->data, *v = frame.particle("velocity")->data,
+                     *h = frame.particle("depth")->data, *stress = frame.particle("stress")->data;
+        const double plane = 0.5 * (a * a + a * a) + 0.25 * b * b, floor = scene.scheme.strain_rate_floor;
+        int inside = 0;
+        for (Index p = 0; p < frame.particle("depth")->count; ++p) {
+            if (std::hypot(x[3 * p] - 30.0, x[3 * p + 1] - 30.0) > 10.0) continue;
+            const double along = std::sqrt(2.0 * v[3 * p] * v[3 * p] + v[3 * p + 1] * v[3 * p + 1]);
+            const double across = h[p] / std::sqrt(2.0);
+            const double zeta = bingham_sheet(0.0, 6.0 * law.viscosity * along / (law.yield_stress * across)).plug;
+            const double shear = 3.0 / (2.0 + zeta) * along / across;
+            const double mu2 = 2.0 * law.viscosity + law.yield_stress / std::sqrt(plane + 0.25 * shear * shear + floor * floor);
+            CHECK(stress[3 * p] == Approx(mu2 * a).epsilon(1e-10));
+            CHECK(stress[3 * p + 2] == Approx(mu2 * 0.5 * b).epsilon(1e-10));
+            ++inside;
+        }
+        CHECK(inside > 500);
+    }
 }

@@ -18,8 +18,8 @@ using Plane = PlaneOf<double>;
 template <class Real>
 struct StrainState {
     PlaneOf<Real> rate;  ///< sym grad v [1/s]
-    Real speed;          ///< [m/s]
-    Real depth;          ///< > 0 [m]
+    Real speed;          ///< along the bed [m/s]
+    Real depth;          ///< across the bed, > 0 [m]
     double floor;        ///< regularisation of the yield stress [1/s]
     double cap;          ///< largest 2 mu_eff that is stable explicitly [Pa s]
 };
@@ -50,7 +50,7 @@ template <class Real>
 }
 
 /// THEORY (23), (24): sigma = (2 mu + tau_Y / sqrt(I2 + floor^2)) eps (Fois et al. 2024, eq. 3, corrected). I2 holds
-/// the plane strain rate, its incompressible vertical part, and the vertical shear 3/(2 + zeta) |v|/h of a Bingham
+/// the plane strain rate, its incompressible vertical part, and the shear across the bed, 3/(2 + zeta) V/T, of a Bingham
 /// sheet (eq. 4).
 template <class Real>
 [[gnu::always_inline]] inline PlaneOf<Real> stress(const rheology::Bingham& law, const StrainState<Real>& s) {

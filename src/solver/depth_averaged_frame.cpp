@@ -5,6 +5,7 @@
 #include "grid/stencil.h"
 #include "law/rheology.h"
 #include "solver/depth_averaged.h"
+#include "solver/sheet.h"
 
 namespace frana {
 namespace {
@@ -221,19 +222,21 @@ void DepthAveraged::stress_fields(Frame& frame) {
 template <class Law>
 void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
     if constexpr (!std::is_same_v<Law, rheology::None>) {
-        const Index count = flow_.columns.count();
+        const Columns& c = flow_.columns;
+        const Index count = c.count();
         const double kick = status_.dt > 0.0 ? status_.dt : longest_step();
         const double cap = most_viscosity(flow_, kick);
 #pragma omp parallel for schedule(static)
         for (Index p = 0; p < count; p += 4) {
             const int lanes = static_cast<int>(std::min<Index>(4, count - p));
-            const auto four = [&](const std::vector<double>& column) { return load(&column[p], lanes); };
+            const auto four = [&](const auto& column) { return load(&column[p], lanes); };
             const Double4 vx = four(probe_.vx), vy = four(probe_.vy), depth = four(probe_.depth), none = {};
             const Mask4 wet = depth > flow_.dry_depth();
             const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy), 0.5 * (four(probe_.cxy) + four(probe_.cyx))};
+            const Sheet<Double4> sheet = sheet_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy,
+                                                       max(depth, all(flow_.dry_depth())));
             const PlaneOf<Double4> sigma =
-                stress(law, StrainState<Double4>{rate, sqrt(vx * vx + vy * vy), max(depth, all(flow_.dry_depth())),
-                                                 flow_.scheme.strain_rate_floor, cap});
+                stress(law, StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow_.scheme.strain_rate_floor, cap});
             const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none), xy = select(wet, sigma.xy, none);
             for (int n = 0; n < lanes; ++n)
                 stresses[3 * (p + n)] = xx[n], stresses[3 * (p + n) + 1] = yy[n], stresses[3 * (p + n) + 2] = xy[n];

@@ -7,6 +7,7 @@
 #include "grid/stencil.h"
 #include "law/rheology.h"
 #include "solver/domain.h"
+#include "solver/sheet.h"
 #include "solver/sides.h"
 #include "solver/sub_points.h"
 
@@ -186,7 +187,8 @@ private:
             if (c.depth[p] > flow.dry_depth()) {
                 const double volume = m / flow.density;
                 const Plane rate{c.cxx[p], c.cyy[p], 0.5 * (c.cxy[p] + c.cyx[p])};
-                const StrainState<double> state{rate, std::hypot(vx, vy), c.depth[p], flow.scheme.strain_rate_floor, cap};
+                const Sheet<double> sheet = sheet_at(flow, sx, sy, vx, vy, c.depth[p]);
+                const StrainState<double> state{rate, sheet.speed, sheet.thickness, flow.scheme.strain_rate_floor, cap};
                 const Plane sigma = stress(law_, state);
                 deposit_stress(flow, sx, sy, volume, sigma);
                 sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);

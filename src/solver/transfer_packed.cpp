@@ -9,6 +9,7 @@
 #include "law/rheology.h"
 #include "solver/domain.h"
 #include "solver/scatter_four.h"
+#include "solver/sheet.h"
 #include "solver/sides.h"
 #include "solver/sub_points_of_four.h"
 #include "solver/tile_points.h"
@@ -221,9 +222,10 @@ private:
         const Double4 cxy = load(&held.cxy[p], lanes), cyx = load(&held.cyx[p], lanes), zero = {};
         const double per_density = 1.0 / flow.density, per_cell = 1.0 / flow.cell;
         const PlaneOf<Double4> rate{load(&held.cxx[p], lanes), load(&held.cyy[p], lanes), 0.5 * (cxy + cyx)};
+        const Sheet<Double4> sheet = sheet_of_four(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), lanes, vx, vy,
+                                                   max(depth, all(flow.dry_depth())));
         const PlaneOf<Double4> sigma =
-            stress(law_, StrainState<Double4>{rate, sqrt(vx * vx + vy * vy), max(depth, all(flow.dry_depth())),
-                                              flow.scheme.strain_rate_floor, cap});
+            stress(law_, StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow.scheme.strain_rate_floor, cap});
         const Double4 volume = depth > flow.dry_depth() ? per_density * load(&c.mass[p], lanes) : zero;
         sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
         return scaled(sigma, per_cell * volume);
