@@ -161,6 +161,22 @@ TEST_CASE("a numerics error leaves a last frame and stays in the summary") {
     CHECK(outcome.notes.end_times.size() == 1);
 }
 
+TEST_CASE("a case that is refused on the way leaves a last frame too, and stays the user's error") {
+    FakeScript script;
+    script.dt = 0.03;
+    script.on_step = [](Index step) {
+        if (step == 20) throw UserError("stage.spacing = 0.1: makes too many points");
+    };
+    const Outcome outcome = run_fake(script, {2.0, 0.4, false});
+    CHECK(outcome.summary.reason == "numerics");
+    REQUIRE(outcome.summary.failure);
+    CHECK_THROWS_AS(std::rethrow_exception(outcome.summary.failure), UserError);
+    CHECK(outcome.summary.failure_text == "stage.spacing = 0.1: makes too many points");
+    CHECK(outcome.summary.last.step == 20);
+    CHECK(outcome.notes.frame_times.back() == outcome.summary.last.time);
+    CHECK(outcome.notes.end_times.size() == 1);
+}
+
 TEST_CASE("a state that is not finite is never shown, and the summary says so") {
     const Outcome outcome = run_fake({0.03, 1e9, 1e9, 0.5, true, {}}, {2.0, 0.4, false});
     CHECK(outcome.summary.reason == "numerics");

@@ -102,6 +102,7 @@ private:
     Index shown_step_ = -1;  ///< step of the last frame that was shown
     MemoryState aside_;      ///< the simulation, while outputs are shown between two of its steps
     bool kept_before_the_cut_ = false;
+    std::exception_ptr refusal_;  ///< what the simulation said of the case in a step
 };
 
 RunSummary Loop::run() {
@@ -237,7 +238,12 @@ void Loop::keep(Archive& archive) {
 /// Throws when the clock does not move.
 void Loop::step(double until) {
     const double before = time();
-    simulation_.advance(until);
+    try {
+        simulation_.advance(until);
+    } catch (const UserError& error) {  // of what a stage asks for on the way: what was reached is shown all the same
+        refusal_ = std::current_exception();
+        throw NumericsError(error.what());
+    }
     const Status& now = simulation_.status();
     if (!(now.time > before))
         throw NumericsError(
@@ -318,7 +324,7 @@ void Loop::show_end() {
 
 void Loop::give_up(const NumericsError& error) {
     summary_.reason = "numerics";
-    summary_.failure = std::current_exception();
+    summary_.failure = refusal_ ? refusal_ : std::current_exception();
     summary_.failure_text = error.what();
     try {
         if (const auto why = unfit(frame()))

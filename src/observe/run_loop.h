@@ -31,9 +31,10 @@ struct RunPlan {
 
 /// What happened, for run.json and the report.
 struct RunSummary {
-    /// "end", "rest", "interrupted", "left" (no material remains) or "numerics"
+    /// "end", "rest", "interrupted", "left" (no material remains) or "numerics": numbers that are not
+    /// finite, or a stage that is refused on the way
     std::string reason;
-    std::exception_ptr failure;  ///< the NumericsError, when that is the reason
+    std::exception_ptr failure;  ///< the NumericsError or UserError, when that is the reason
     std::string failure_text;    ///< its message; says also when no last frame could be written
     Status first, last;          ///< of the first and the last frame; without a last frame, of the last step
     Extremes extremes;

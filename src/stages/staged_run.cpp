@@ -150,8 +150,9 @@ void StagedRun::hand_over() {
         const FlowColumns all = columns_at_edge(gradients);
         FlowColumns columns;
         for (std::size_t k = 0; k < pending_.size(); ++k) columns.take(all, k);
+        const SolidSeeds seeds = seeds_of_window(columns, points_->body().surfaces);  // may be refused, with all still here
         pending_.clear();
-        points_->add(seeds_of_window(columns, points_->body().surfaces));
+        points_->add(seeds);
     });
 }
 
