@@ -4,6 +4,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "solver/transfer.h"
+#include "terrain/holes.h"
 
 using namespace frana;
 
@@ -127,6 +128,27 @@ TEST_CASE("Four points at a time transfer what one at a time does", "[transfer]"
     compare_points(a.flow, b.flow);
     CHECK(packed->gone() == plain->gone());
     CHECK((std::count(plain->gone().begin(), plain->gone().end(), 1) > 0) == (sides == Sides::open || hole));
+}
+
+TEST_CASE("What a hole's wall sets back counts in how far points came", "[transfer][holes]") {
+    Scene scene = scene_with(Sides::open, false, true);
+    scene.holes = holes_of(scene.bed);
+    scene.hole_top = 5.0;
+    REQUIRE(scene.holes.nodes.size() == 1);
+    const bool one_by_one = GENERATE(false, true);
+    const auto transfer = one_by_one ? make_plain_transfer(scene) : make_packed_transfer(scene);
+    Crowd crowd(scene, 7);
+    transfer->deposit(crowd.flow, 0.01);
+    set_motion(crowd.flow);
+    const Columns& c = crowd.flow.columns;
+    const std::vector<double> x(c.x.begin(), c.x.end()), y(c.y.begin(), c.y.end());
+    const double longest = transfer->gather(crowd.flow, 1e-3).max_shift;
+    double came = 0.0;
+    for (Index p = 0; p < c.count(); ++p)
+        if (!transfer->gone()[static_cast<std::size_t>(p)])
+            came = std::max({came, std::abs(c.x[p] - x[static_cast<std::size_t>(p)]), std::abs(c.y[p] - y[static_cast<std::size_t>(p)])});
+    CHECK(came > 0.1);  // some lay in the wall's pixel: far more than their speed carries them in a millisecond
+    CHECK(came <= longest);
 }
 
 TEST_CASE("Gathering and depositing in one sweep gives the bits of two", "[transfer]") {

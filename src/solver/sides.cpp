@@ -50,8 +50,9 @@ void settle_on_walls(Flow& flow, Index p, double x_max, double y_max) {
 
 /// A point that comes to node (i, j) of a wall in a hole goes back over the nearest edge of the node's pixel beyond which there
 /// is no wall, as far as it came, and keeps no speed against that edge. The wall's height alone would not hold the foremost.
+/// Returns how far it was set back [cells].
 template <class Real>
-void stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
+double stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
     const double dx = c.x[p] - static_cast<double>(i), dy = c.y[p] - static_cast<double>(j);
@@ -63,6 +64,7 @@ void stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
         if (flow.bed.exit[flow.grid.at(i + a, j + b)] == kWall || way >= least) continue;
         least = way, to_x = a, to_y = b;
     }
+    const double x = c.x[p], y = c.y[p];
     const auto turn = [&](Index to, double node, Column& place, ColumnOf<Real>& v, std::array<ColumnOf<Real>*, 2> gradient) {
         if (to == 0) return 0.0;
         const double side = static_cast<double>(to), behind = 0.5 - side * (place[p] - node);
@@ -75,12 +77,13 @@ void stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
     };
     sums.pushed_x += turn(to_x, static_cast<double>(i), c.x, held.vx, {&held.cxx, &held.cxy});
     sums.pushed_y += turn(to_y, static_cast<double>(j), c.y, held.vy, {&held.cyx, &held.cyy});
+    return std::max(std::abs(c.x[p] - x), std::abs(c.y[p] - y));
 }
 
 }  // namespace
 
 template <class Real>
-void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums) {
+double meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
@@ -108,13 +111,14 @@ void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& 
         c.mass[p] = 0.0;
     } else if (flow.bed.exit[k] == kWall) {
         const auto node = [](double place) { return static_cast<Index>(std::floor(place + 0.5)); };
-        stay_out<Real>(flow, p, node(c.x[p]), node(c.y[p]), sums);
+        return stay_out<Real>(flow, p, node(c.x[p]), node(c.y[p]), sums);
     }
+    return 0.0;
 }
 
 template double leave<double>(const Flow&, Index, Index, PointSums&);
 template double leave<float>(const Flow&, Index, Index, PointSums&);
-template void meet_side<double>(Flow&, Index, std::vector<std::uint8_t>&, PointSums&);
-template void meet_side<float>(Flow&, Index, std::vector<std::uint8_t>&, PointSums&);
+template double meet_side<double>(Flow&, Index, std::vector<std::uint8_t>&, PointSums&);
+template double meet_side<float>(Flow&, Index, std::vector<std::uint8_t>&, PointSums&);
 
 }  // namespace frana

@@ -12,8 +12,9 @@ template <class Real>
 double leave(const Flow& flow, Index p, Index k, PointSums& sums);
 
 /// Walls reflect point p, those in holes of the terrain stop it. Beyond open sides, and where the elevation model has no
-/// data, it leaves: marked in `gone`, booked in `sums`, without mass from then on.
+/// data, it leaves: marked in `gone`, booked in `sums`, without mass from then on. Returns how far a wall in a hole set it
+/// back [cells].
 template <class Real>
-void meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums);
+double meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums);
 
 }  // namespace frana

@@ -277,9 +277,9 @@ private:
             stretch(c.r1x[p], c.r1y[p], g, dt);
             stretch(c.r2x[p], c.r2y[p], g, dt);
         }
-        meet_side<double>(flow, p, gone_, sums);
+        const double set_back = meet_side<double>(flow, p, gone_, sums);
         const double speed = std::hypot(vx, vy), m = c.mass[p];
-        sums.max_shift = std::max(sums.max_shift, shift);
+        sums.max_shift = std::max(sums.max_shift, shift + set_back);
         for (const double part : {vx, vy, g.vx, g.vy, c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p], g.cxx, g.cxy, g.cyx, g.cyy})
             sums.max_motion = std::max(sums.max_motion, std::abs(part));
         sums.max_speed = std::max(sums.max_speed, speed);
