@@ -231,9 +231,24 @@ private:
         return scaled(sigma, per_cell * volume);
     }
 
-    /// Velocity, its gradient (TPIC: sum v (x) grad N) and depth at four points.
-    struct Gathered {
+    /// Velocity, its gradient (TPIC: sum v (x) grad N) and what stands third on nodes, at four points.
+    struct OfFour {
         Double4 vx, vy, depth, cxx, cxy, cyx, cyy;
+        /// From what each of the four has: value, and change over a cell.
+        [[gnu::always_inline]] void take(const Double4 (&value)[4], const Double4 (&by_x)[4], const Double4 (&by_y)[4],
+                                         double cell) {
+            const double scale = 1.0 / cell;
+            Double4 of[4];
+            transpose(value[0], value[1], value[2], value[3], of);
+            vx = of[0], vy = of[1], depth = of[2];
+            transpose(by_x[0], by_x[1], by_x[2], by_x[3], of);
+            cxx = scale * of[0], cyx = scale * of[1];
+            transpose(by_y[0], by_y[1], by_y[2], by_y[3], of);
+            cxy = scale * of[0], cyy = scale * of[1];
+        }
+    };
+
+    struct Gathered : OfFour {
         [[gnu::always_inline]] Gathered(const Flow& flow, Index p, int lanes) {
             const Columns& c = flow.columns;
             const Stencils sx(load(&c.x[p], lanes)), sy(load(&c.y[p], lanes));
@@ -254,22 +269,15 @@ private:
                 }
                 value[lane] = v, by_x[lane] = slope_x, by_y[lane] = slope_y;
             }
-            const double scale = 1.0 / flow.cell;
-            Double4 of[4];
-            transpose(value[0], value[1], value[2], value[3], of);
-            vx = of[0], vy = of[1], depth = of[2];
-            transpose(by_x[0], by_x[1], by_x[2], by_x[3], of);
-            cxx = scale * of[0], cyx = scale * of[1];
-            transpose(by_y[0], by_y[1], by_y[2], by_y[3], of);
-            cxy = scale * of[0], cyy = scale * of[1];
+            this->take(value, by_x, by_y, flow.cell);
         }
     };
 
     /// What four points keep of their own motion beyond the nodes': see transfer.cpp.
-    struct Own {
-        Double4 vx, vy, cxx, cxy, cyx, cyy;
+    struct Own : OfFour {
         Double4 largest_part() const {
-            return max(max(abs(vx), abs(vy)), max(max(abs(cxx), abs(cxy)), max(abs(cyx), abs(cyy))));
+            return max(max(abs(this->vx), abs(this->vy)),
+                       max(max(abs(this->cxx), abs(this->cxy)), max(abs(this->cyx), abs(this->cyy))));
         }
         [[gnu::noinline]] Own(const Flow& flow, Index p, int lanes) {
             const Columns& c = flow.columns;
@@ -306,14 +314,7 @@ private:
                 }
                 value[lane] = v, by_x[lane] = slope_x, by_y[lane] = slope_y;
             }
-            const double scale = 1.0 / flow.cell;
-            Double4 of[4];
-            transpose(value[0], value[1], value[2], value[3], of);
-            vx = of[0], vy = of[1];
-            transpose(by_x[0], by_x[1], by_x[2], by_x[3], of);
-            cxx = scale * of[0], cyx = scale * of[1];
-            transpose(by_y[0], by_y[1], by_y[2], by_y[3], of);
-            cyy = scale * of[1], cxy = scale * of[0];
+            this->take(value, by_x, by_y, flow.cell);
         }
     };
 
