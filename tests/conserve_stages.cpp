@@ -10,6 +10,7 @@
 #include "observe/memory_archive.h"
 #include "observe/run_loop.h"
 #include "stages/staged_run.h"
+#include "terrain/holes.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -245,4 +246,78 @@ TEST_CASE("Points in space begin with the same bits whatever the time between th
     };
     const auto seldom = begun(1000.0);
     for (const double every : {0.0031, 0.07}) CHECK((begun(every) == seldom));
+}
+
+TEST_CASE("Points that leave their window onto a wall in a hole become columns before it", "[stages][holes]") {
+    Scene scene = slide();
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return x > 9 && x < 15 && y > 4 && y < 8 ? 1.0 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 8.0);
+    scene.solid->window = {12, 0, 18, 12};
+    for (const Index i : {19, 20})
+        for (const Index j : {5, 6, 7}) scene.bed.at(i, j) = Raster::nodata;
+    scene.holes = holes_of(scene.bed);
+    scene.hole_top = 3.0;
+    scene.sides = Sides::wall;
+    StagedRun run(scene);
+    const double mass = run.status().mass;
+    double behind = 0.0;
+    Index points = 0;
+    while (run.status().time < 1.6) {
+        run.advance(1.6);
+        if (run.points()) points = std::max(points, run.points()->status().points);
+        const Status& now = run.status();
+        REQUIRE(std::abs(now.mass + now.mass_left - mass) < 1e-12 * mass);
+        REQUIRE(now.mass_left < 1e-12 * mass);
+        const Columns& c = run.columns().flow().columns;
+        for (Index p = 0; p < c.count(); ++p)
+            if (c.x[p] > 20.5) behind = std::max(behind, c.mass[p]);
+    }
+    CHECK(points > 100);
+    CHECK(behind > 0.0);  // some went round it
+}
+
+TEST_CASE("Points that become columns are as deep as what is there, and at least as all that is new", "[stages]") {
+    Scene scene = slide();  // cells of 1 m: quarters of 0.25 m2
+    scene.density = 2000.0;
+    const auto point = [](double x, double y, double mass) {
+        DepartedPoint p{};
+        p.time = 1.0, p.position = {x, y, 0.0}, p.mass = mass;
+        return p;
+    };
+    // Two on one quarter, one on another.
+    const std::vector<DepartedPoint> points = {point(20.1, 5.1, 30.0), point(20.3, 5.2, 70.0), point(22.6, 5.1, 100.0)};
+    const ColumnsAt at{1.0, [](const DepartedPoint&, const Vec2& to) { return to; },
+                       [](const Vec2& x) { return x.x() < 21.0 ? 0.05 : 0.7; }};
+    const Seeds seeds = columns_of(points, scene, at).seeds;
+    REQUIRE(seeds.count() == 2);
+    CHECK(seeds.depth[0] == Approx(100.0 / 2000.0 / 0.25).epsilon(1e-14));  // new material stands higher than 0.05 m
+    CHECK(seeds.depth[1] == 0.7);
+    CHECK(seeds.volume[0] == Approx(0.05).epsilon(1e-14));
+    CHECK(seeds.x[0] == Approx(0.3 * 20.1 + 0.7 * 20.3).epsilon(1e-14));
+}
+
+TEST_CASE("The map of points follows whenever they may have moved by a quarter of its cell", "[stages]") {
+    const Scene scene = slide(0.0);
+    StagedRun run(scene);
+    REQUIRE(run.points() != nullptr);
+    const auto seen = [&] {
+        std::vector<double> depths;
+        for (double x = 12.0; x <= 30.0; x += 1.0) depths.push_back(run.at({x, 6.0}).depth - run.columns().at({x, 6.0}).depth);
+        return depths;
+    };
+    std::vector<double> before = seen();
+    double way = 0.0;
+    int looks = 0;
+    while (run.status().time < 0.3) {
+        run.advance(1e9);  // no time of output
+        const SolidStatus& now = run.points()->status();
+        way += now.max_speed * now.dt;
+        const std::vector<double> after = seen();
+        if (after != before) way = 0.0, ++looks, before = after;
+        REQUIRE(way < 0.25 * scene.bed.geometry.cell);
+    }
+    // Not in every step either: 8 m/s and more, for 0.3 s.
+    CHECK(looks >= 8);
+    CHECK(looks < 40);
 }

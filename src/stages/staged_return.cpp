@@ -6,28 +6,39 @@
 #include "stages/staged_run.h"
 
 namespace frana {
+namespace {
 
-/// Of the points that left, those that left where columns may stand: beyond the window's open sides. Until they are columns
-/// the others go on to feel them.
+/// Whether a wall in a hole of the terrain stands there.
+bool in_hole_wall(const Flow& flow, const Vec2& x) {
+    const GridGeometry& g = flow.grid.geometry();
+    if (!(x.x() >= g.x0 && x.x() <= g.x_max() && x.y() >= g.y0 && x.y() <= g.y_max())) return false;
+    return flow.bed.exit[flow.grid.nearest((x.x() - g.x0) / g.cell, (x.y() - g.y0) / g.cell)] == kWall;
+}
+
+}  // namespace
+
+/// Of the points that left, those that left where columns may stand: beyond the window's open sides, or onto a wall in a
+/// hole there, before which they then stand. Until they are columns the others go on to feel them.
 void StagedRun::note_departed() {
     for (const DepartedPoint& point : points_->take_departed()) {
-        if (!columns_->may_stand(point.position.x(), point.position.y())) continue;
+        const Vec2 x = point.position.head<2>();
+        if (!columns_->may_stand(x.x(), x.y()) && !in_hole_wall(columns_->flow(), x)) continue;
         returning_.push_back(point);
         points_->stand_beside(point);
     }
 }
 
 /// Where a column of a point that has come to `to` stands: there; or where it left; or, where a barrier raises the ground of
-/// columns that the point is not above, before that barrier on its own side: as far behind the edge of the nearest cell as it lay
-/// before it, so that all of them do not stand on that edge.
+/// columns that the point is not above, or a hole has a wall, before them on its own side: as far behind the edge of the nearest
+/// cell as it lay before it, so that all of them do not stand on that edge.
 Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) const {
     const Vec2 left = point.position.head<2>();
     const Vec2 x = columns_->may_stand(to.x(), to.y()) ? to : left;
     const GridGeometry& g = scene_.bed.geometry;
-    const auto raised = [&](Index i, Index j) { return raised_[static_cast<std::size_t>(j * g.nx + i)] != 0; };
+    const auto raised = [&](Index i, Index j) { return !raised_.empty() && raised_[static_cast<std::size_t>(j * g.nx + i)] != 0; };
     const auto i0 = static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
                j0 = static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5));
-    if (raised_.empty() || !raised(i0, j0) || above_barrier(x)) return x;
+    if (!in_hole_wall(columns_->flow(), x) && (raised_.empty() || !raised(i0, j0) || above_barrier(x))) return x;
     constexpr Index kFar = 3;  // cells
     constexpr double kWithin = 0.499;  // of a cell: what belongs to its node for certain
     Vec2 best = x;
