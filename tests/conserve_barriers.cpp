@@ -367,3 +367,31 @@ TEST_CASE("A barrier's mean force goes on from what was measured before the run 
     CHECK(read_table(scratch.path() / "cut" / "barriers" / "dam.csv").column("mean_force") ==
           read_table(scratch.path() / "whole" / "barriers" / "dam.csv").column("mean_force"));
 }
+
+TEST_CASE("Points that leave their window before a wall become columns on their own side of it", "[barrier]") {
+    // The window ends so near to the wall that columns can stand neither in it nor beside the wall: the nearest free node of
+    // theirs lies behind the wall.
+    Scene scene = channel(1.5);
+    scene.particles = {};
+    fill(scene, [](double x, double) { return x > 7 && x < 8 ? 0.3 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 5.0);
+    scene.barriers[0].outline = rectangle_of(10.0, -1.0, 10.6, 5.0);
+    scene.solid->window = {0, 0, 18, 8};
+    scene.solid->closed = {true, true, false, true};
+    scene.solid->cell = 0.2, scene.solid->spacing = 0.1;
+    StagedRun run(scene);
+    const double mass = run.status().mass;
+    double behind = 0.0, most = 0.0;
+    while (run.status().time < 0.6) {
+        run.advance(0.6);
+        const Columns& c = run.columns().flow().columns;
+        double columns = 0.0;
+        for (Index p = 0; p < c.count(); ++p) {
+            columns += c.mass[p];
+            if (0.5 * c.x[p] > 10.6) behind = std::max(behind, c.mass[p]);
+        }
+        most = std::max(most, columns);
+    }
+    CHECK(most > 0.1 * mass);
+    CHECK(behind == 0.0);
+}

@@ -554,3 +554,22 @@ TEST_CASE("What a step of water costs beside the depth-averaged flow's", "[.cost
         column, cell, cell / column);
     CHECK(cell > 0.0);
 }
+
+TEST_CASE("Water that leaves takes the energy of its height, its pressure and its motion up and down along", "[water][conserve]") {
+    // A sheet that slides over a plane: for a moment it is as it was let go, also at the side.
+    for (const double slope : {0.0, 0.75}) {
+        WaterScene s;
+        s.grid = verify::cells_over(40, 12, 1.0);
+        s.bed = [=](double x, double) { return 50.0 - slope * x; };
+        s.start = [](double, double) { return WaterState{0.5, 6.0, 0.0}; };
+        s.sides = {WaterSide::wall, WaterSide::open, WaterSide::wall, WaterSide::wall};
+        WaterFlow flow(s);
+        const double time = 1e-7;  // gravity changes 6 m/s by 1e-6 of itself
+        flow.advance(time);
+        const WaterLedger& l = flow.status().ledger;
+        CAPTURE(slope);
+        REQUIRE(l.left == Approx(0.5 * 6.0 * 12.0 * time).epsilon(1e-5));
+        const double surface = 50.0 - slope * 39.5 + 0.5, motion = 0.5 * 36.0 * (1.0 + slope * slope);  // of the last cell
+        CHECK(l.energy_out / l.left + 9.81 * flow.body().datum == Approx(9.81 * surface + motion).epsilon(1e-5));
+    }
+}

@@ -192,3 +192,40 @@ TEST_CASE("A sheet that a yield stress alone holds on a bent bed is not left alo
     CHECK(slept.most >= 4);
     CHECK(slept.woke);
 }
+
+TEST_CASE("Material asleep at an exit that opens leaves, and what stays has the bits of a run without sleep", "[solver][sleep]") {
+    Scene scene = verify::scene_on(60, 40, 1.0, [](double x, double) { return 10.0 - 0.05 * x; });
+    scene.bed_law = bed::Coulomb{0.45};
+    verify::fill(scene, [](double x, double y) { return x > 12 && x < 48 && y > 8 && y < 32 ? 1.0 : 0.0; }, {2});
+    DepthAveraged sleeper(scene);
+    scene.scheme.sleep = false;
+    DepthAveraged waker(scene);
+    while (tiles_asleep(sleeper.flow()).empty()) {
+        REQUIRE(sleeper.status().step < 3000);
+        sleeper.advance(1e9), waker.advance(1e9);
+    }
+    // A window over the middle of a tile that sleeps, as far as the deposit goes.
+    const Index tile = tiles_asleep(sleeper.flow()).front();
+    const TileGrid& grid = sleeper.flow().grid;
+    const Index i0 = grid.tile_i(tile) + kTile / 2, j0 = grid.tile_j(tile);
+    std::vector<std::uint8_t> marks(static_cast<std::size_t>(scene.bed.geometry.size()), 0);
+    for (Index j = j0; j < std::min(j0 + kTile, grid.ny()); ++j)
+        for (Index i = i0; i < grid.nx(); ++i) marks[static_cast<std::size_t>(j * grid.nx() + i)] = 1;
+    double inside = 0.0;
+    const Columns& c = sleeper.flow().columns;
+    for (Index p = 0; p < c.count(); ++p) {
+        const auto near = [](double u) { return static_cast<Index>(std::floor(u + 0.5)); };
+        if (marks[static_cast<std::size_t>(near(c.y[p]) * grid.nx() + near(c.x[p]))]) inside += c.mass[p];
+    }
+    REQUIRE(inside > 0.0);
+    sleeper.open_exits(marks, true), waker.open_exits(marks, true);
+    CHECK(sleeper.status().mass_left == Approx(inside).epsilon(1e-13));
+    CHECK(same_columns(sleeper.flow().columns, waker.flow().columns));
+    for (int step = 0; step < 30; ++step) {
+        sleeper.advance(1e9), waker.advance(1e9);
+        CAPTURE(step);
+        REQUIRE(same_status(sleeper.status(), waker.status()));
+        REQUIRE(same_columns(sleeper.flow().columns, waker.flow().columns));
+    }
+    CHECK(waker.status().max_speed_on_map > 0.1);  // banks of 1 m fall into the gap
+}

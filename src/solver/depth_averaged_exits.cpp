@@ -20,6 +20,11 @@ double kinetic_of(const Flow& flow, Index p, Index k) {
     return 0.5 * flow.columns.mass[p] * (vx * vx + vy * vy + vz * vz);
 }
 
+/// Tiles that sleep keep what they deposited: not beside what comes or goes.
+void wake_all(Flow& flow) {
+    for (const Index tile : flow.active.tile) flow.active.quiet[tile] = 0;
+}
+
 }  // namespace
 
 void DepthAveraged::open_exits(const std::vector<std::uint8_t>& marks, bool leave_now) {
@@ -70,7 +75,7 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     expect(gradient.size() == seeds.x.size(), "columns that come in have a gradient each");
     expect(before == 0 || time == status_.time, "columns that come in are at the time of the others");
     if (before == 0) status_.time = time, status_.dt = 0.0;
-    for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
+    wake_all(flow_);
     PointSums came;
     double kinetic = 0.0;
     c.with_real([&](auto real) {
@@ -102,7 +107,7 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
 
 /// Drops the points at exits and deposits the others again, booking what left as at other exits.
 void DepthAveraged::leave_at_exits() {
-    for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
+    wake_all(flow_);
     const Columns& c = flow_.columns;
     std::vector<std::uint8_t> gone(static_cast<std::size_t>(c.count()), 0);
     PointSums left;
