@@ -555,7 +555,8 @@ TEST_CASE("What a step of water costs beside the depth-averaged flow's", "[.cost
     CHECK(cell > 0.0);
 }
 
-TEST_CASE("Water that leaves takes the energy of its height, its pressure and its motion up and down along", "[water][conserve]") {
+TEST_CASE("Water that leaves takes the energy of its height, its pressure and all its motion along",
+          "[water][conserve]") {
     // A sheet that slides over a plane: for a moment it is as it was let go, also at the side.
     for (const double slope : {0.0, 0.75}) {
         WaterScene s;

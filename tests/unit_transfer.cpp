@@ -144,9 +144,8 @@ TEST_CASE("What a hole's wall sets back counts in how far points came", "[transf
     const std::vector<double> x(c.x.begin(), c.x.end()), y(c.y.begin(), c.y.end());
     const double longest = transfer->gather(crowd.flow, 1e-3).max_shift;
     double came = 0.0;
-    for (Index p = 0; p < c.count(); ++p)
-        if (!transfer->gone()[static_cast<std::size_t>(p)])
-            came = std::max({came, std::abs(c.x[p] - x[static_cast<std::size_t>(p)]), std::abs(c.y[p] - y[static_cast<std::size_t>(p)])});
+    for (std::size_t p = 0; p < x.size(); ++p)
+        if (!transfer->gone()[p]) came = std::max({came, std::abs(c.x[p] - x[p]), std::abs(c.y[p] - y[p])});
     CHECK(came > 0.1);  // some lay in the wall's pixel: far more than their speed carries them in a millisecond
     CHECK(came <= longest);
 }

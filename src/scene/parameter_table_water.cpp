@@ -29,8 +29,10 @@ void add_water(Table& table) {
                          {"manning"}, {"manning"}));
     table.push_back(with(number("water.darcy_f", "1", positive, "Darcy and Weisbach's factor"), "water.friction",
                          {"darcy_weisbach"}, {"darcy_weisbach"}));
-    table.push_back(used(number("water.density", "kg/m^3", positive, usual.material.fluid_density, "of the water, confined or free")));
-    table.push_back(used(number("water.viscosity", "Pa s", positive, usual.material.viscosity, "of clear water; grains settle in it or in mud")));
+    table.push_back(used(number("water.density", "kg/m^3", positive, usual.material.fluid_density,
+                                "of the water, confined or free")));
+    table.push_back(used(number("water.viscosity", "Pa s", positive, usual.material.viscosity,
+                                "of clear water; grains settle in it or in mud")));
     table.push_back(used(choice("water.viscous", {"none", "clear", "mud"}, "none",
                                 "viscosity that the flow of the water feels at the bed and inside: none, that of clear water, "
                                 "or mud_alpha exp(mud_beta mud_concentration) (O'Brien and Julien 1988), in which grains then "
@@ -48,7 +50,8 @@ void add_water(Table& table) {
                                    "viscous stress at the bed over viscosity times speed over depth; 3: a parabola"),
                             {"clear", "mud"}));
     table.push_back(used(number("water.grain_diameter", "m", positive, usual.material.grain, "of grains, for their drag")));
-    table.push_back(used(number("water.block_diameter", "m", positive, usual.material.block, "of blocks of what has structure, for their drag")));
+    table.push_back(used(number("water.block_diameter", "m", positive, usual.material.block,
+                                "of blocks of what has structure, for their drag")));
     table.push_back(viscous(flag("water.solid_gradient", false,
                                  "viscous stress of water that slips along a gradient of the columns' share (van den Bout et "
                                  "al. 2021, eq. 30); it takes no energy by itself and may feed slip"),

@@ -233,7 +233,7 @@ private:
 
     /// Velocity, its gradient (TPIC: sum v (x) grad N) and what stands third on nodes, at four points.
     struct OfFour {
-        Double4 vx, vy, depth, cxx, cxy, cyx, cyy;
+        Double4 vx{}, vy{}, depth{}, cxx{}, cxy{}, cyx{}, cyy{};
         /// From what each of the four has: value, and change over a cell.
         [[gnu::always_inline]] void take(const Double4 (&value)[4], const Double4 (&by_x)[4], const Double4 (&by_y)[4],
                                          double cell) {

@@ -29,13 +29,15 @@ void StagedRun::note_departed() {
 }
 
 /// Where a column of a point that has come to `to` stands: there; or where it left; or, where a barrier raises the ground of
-/// columns that the point is not above, or a hole has a wall, before them on its own side: as far behind the edge of the nearest
-/// cell as it lay before it, so that all of them do not stand on that edge.
+/// columns that the point is not above, or a hole has a wall, before them on its own side: as far behind the edge of the
+/// nearest cell as it lay before it, so that all of them do not stand on that edge.
 Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) const {
     const Vec2 left = point.position.head<2>();
     const Vec2 x = columns_->may_stand(to.x(), to.y()) ? to : left;
     const GridGeometry& g = scene_.bed.geometry;
-    const auto raised = [&](Index i, Index j) { return !raised_.empty() && raised_[static_cast<std::size_t>(j * g.nx + i)] != 0; };
+    const auto raised = [&](Index i, Index j) {
+        return !raised_.empty() && raised_[static_cast<std::size_t>(j * g.nx + i)] != 0;
+    };
     const auto i0 = static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
                j0 = static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5));
     if (!in_hole_wall(columns_->flow(), x) && (raised_.empty() || !raised(i0, j0) || above_barrier(x))) return x;
