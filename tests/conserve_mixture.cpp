@@ -394,7 +394,7 @@ TEST_CASE("What breaks at a wall and at an open side gives all its water, and no
     s.points = {};
     verify::StructuredBlock block;
     block.low = {s.grid.x0, s.grid.y0}, block.high = {s.grid.x0 + 5.0, s.grid.y0 + 5.0}, block.depth = 0.8, block.cohesion = 300.0;
-    block.velocity = {0.0, -1.0};
+    block.velocity = {0.0, -3.0};
     verify::add_block(s, block);
     s.confined = 0.3;
     s.material.critical_strain = 0.02;

@@ -1,4 +1,4 @@
-// Oblique corners of surfaces give no energy: to a lone point, to pairs, groups and jets.
+// Corners of surfaces give no energy: to a lone point, to pairs, groups and jets.
 #include <random>
 
 #include "catch.h"
@@ -10,23 +10,23 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Two smooth planes that leave an angle between them [degrees], the lower one turned by `tilt` from the level.
-SolidScene corner(double angle, double tilt, Hold hold) {
+/// Two planes that leave an angle between them [degrees], the lower one turned by `tilt` from the level.
+SolidScene corner(double angle, double tilt, Hold hold, double friction) {
     const double low = tilt * kPi / 180.0, high = low + angle * kPi / 180.0;
     SolidScene s;
     s.grid = {{-2, -2, -2}, 0.1, {81, 41, 81}};
     const Vec3 edge(0.03, 0, 0.02);
-    s.surfaces = {Surface::plane(edge, {-std::sin(low), 0, std::cos(low)}, hold),
-                  Surface::plane(edge, {std::sin(high), 0, -std::cos(high)}, hold)};
+    s.surfaces = {Surface::plane(edge, {-std::sin(low), 0, std::cos(low)}, hold, friction),
+                  Surface::plane(edge, {std::sin(high), 0, -std::cos(high)}, hold, friction)};
     s.law = solid::Fluid{1.6e6, 0.0};
     return s;
 }
 
 /// So many points within half of `width` of a place in the corner, on their way into it at about 3 m/s.
-SolidScene thrown(double angle, int many, double width, Hold hold, std::uint32_t seed) {
+SolidScene thrown(double angle, int many, double width, Hold hold, std::uint32_t seed, double friction = 0.0) {
     std::mt19937 dice(seed);
     const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(dice); };
-    SolidScene s = corner(angle, between(-30.0, 30.0), hold);
+    SolidScene s = corner(angle, between(-30.0, 30.0), hold, friction);
     const double tilt = std::atan2(-s.surfaces[0].normal.x(), s.surfaces[0].normal.z());
     const auto way = [&](double share) {
         const double at = tilt + share * angle * kPi / 180.0;
@@ -43,25 +43,26 @@ SolidScene thrown(double angle, int many, double width, Hold hold, std::uint32_t
     return s;
 }
 
-/// The most that energy has risen above the start's, over the kinetic energy of the start.
+/// The most that energy has risen above the start's, over the kinetic energy of the start. The impulses' books balance.
 double gain(const SolidScene& scene) {
     SolidFlow flow(scene);
     const SolidStatus& s = flow.status();
-    const double start = s.energy_given, moves = s.kinetic;
+    const double start = s.energy_given, moves = s.kinetic, momentum = std::sqrt(2.0 * s.mass * moves);
     double most = 0.0;
     while (s.time < 0.5 && s.points > 0) {
         flow.advance(1e9);
         most = std::max(most, s.kinetic + s.potential + s.stored + s.energy_left - start);
     }
+    CHECK(flow.momentum_residual().norm() < 1e-12 * momentum);  // round-off of some 500 steps
     return most / moves;
 }
 
 }  // namespace
 
-TEST_CASE("An oblique corner gives a point that is thrown into it no energy, and so no head above its own", "[solid][corners]") {
+TEST_CASE("A corner gives a point that is thrown into it no energy, and so no head above its own", "[solid][corners]") {
     // A step of velocity first loses m g^2 dt^2 / 2 and gains nothing: what is left is round-off.
     for (const Hold hold : {Hold::free, Hold::stuck})
-        for (const double angle : {30.0, 45.0, 60.0, 75.0, 80.0, 110.0, 135.0, 160.0})
+        for (const double angle : {30.0, 45.0, 60.0, 75.0, 80.0, 90.0, 110.0, 135.0, 160.0})
             for (std::uint32_t seed = 1; seed <= 3; ++seed) {
                 CAPTURE(angle, seed, hold == Hold::stuck);
                 SolidScene scene = thrown(angle, 1, 0.0, hold, seed);
@@ -85,6 +86,29 @@ TEST_CASE("Oblique corners give pairs, groups and jets no energy", "[solid][corn
                 SolidScene scene = thrown(angle, many, width, Hold::free, seed);
                 CHECK(gain(scene) < 0.01);
                 scene.keeps = true, scene.blending = 0.1;
+                scene.law = solid::DruckerPrager::of(solid::Elastic::of(4e5, 0.3), 0.5, 0.0);
+                CHECK(gain(scene) < 0.01);
+            }
+}
+
+TEST_CASE("A square corner gives few points no energy, rough or smooth", "[solid][corners]") {
+    // The same bound as of oblique ones. What shears along one wall is not driven by the other. Images that showed the shear
+    // turned round gave the eight points of seed 4 four times the energy that they came with, and the twenty six times.
+    struct Throw {
+        int many;
+        double width;
+    };
+    for (const auto& [many, width] : {Throw{2, 0.1}, Throw{4, 0.1}, Throw{8, 0.1}, Throw{20, 0.15}})
+        for (const double friction : {0.0, 0.5})
+            for (std::uint32_t seed = 3; seed <= 5; ++seed) {
+                CAPTURE(many, friction, seed);
+                SolidScene scene = thrown(90.0, many, width, Hold::free, seed, friction);
+                CHECK(gain(scene) < 0.01);
+                SolidScene other = scene;
+                other.affine = Affine::apic;
+                CHECK(gain(other) < 0.01);
+                scene.keeps = true, scene.blending = 0.1;
+                CHECK(gain(scene) < 0.01);
                 scene.law = solid::DruckerPrager::of(solid::Elastic::of(4e5, 0.3), 0.5, 0.0);
                 CHECK(gain(scene) < 0.01);
             }

@@ -50,15 +50,18 @@ Draft mound(Model model) {
     return draft;
 }
 
-/// What is found broken when the state at step 9 is falsified.
+/// What is found broken when a state is falsified: that at step 9, or the next where one of water takes several.
 std::string broken_by(Model model, const Falsify& change) {
+    Index falsified = 0;
     const Verdict verdict = examine(mound(model), [&](Snapshot& state) {
-        if (state.now.step == 9) change(state);
+        if (falsified > 0 || state.now.step < 9) return;
+        falsified = state.now.step;
+        change(state);
     });
     CAPTURE(verdict.text);
     REQUIRE_FALSE(verdict.refused);
     if (!verdict.broken) return "";
-    CHECK(verdict.broken->step == 9);
+    CHECK(verdict.broken->step == falsified);
     return verdict.broken->invariant;
 }
 

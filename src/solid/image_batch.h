@@ -22,6 +22,8 @@ struct ImageBatch {
     Mat3x4 turned_back, motion;  ///< the transpose of Image::turn, and Image::motion
     Double4 normal[3], above;    ///< Image::held_normal and Image::held_above [m]
     Double4 shift, steeper;      ///< of held images: 2 d^2 / m^2 and 4 d / m^2 [1/m] (see bend)
+    Double4 slide[3][3];         ///< Image::slide; zero beyond
+    int slides = 0;              ///< most of one image
     int count = 0;
 
     void add(Index p, const Vec3& at, const Image& image, double cell) {
@@ -30,11 +32,13 @@ struct ImageBatch {
         point[count] = p, above[count] = d, shift[count] = 2.0 * d * d / (m * m), steeper[count] = 4.0 * d / (m * m);
         for (int k = 0; k < 3; ++k) {
             place[k][count] = at[k], normal[k][count] = image.held_normal[k];
+            for (int s = 0; s < 3; ++s) slide[s][k][count] = s < image.slides ? image.slide[s][k] : 0.0;
             for (int l = 0; l < 3; ++l) {
                 turned_back(l, k)[count] = image.turn(k, l);
                 motion(k, l)[count] = image.motion(k, l);
             }
         }
+        slides = std::max(slides, image.slides);
         ++count;
     }
     /// Lanes without an image become copies of the first: any finite numbers.
@@ -45,6 +49,8 @@ struct ImageBatch {
             for (Double4& e : turned_back.entry) e[lane] = e[0];
             for (Double4& e : motion.entry) e[lane] = e[0];
             for (Double4& n : normal) n[lane] = n[0];
+            for (auto& s : slide)
+                for (Double4& n : s) n[lane] = n[0];
             above[lane] = above[0], shift[lane] = shift[0], steeper[lane] = steeper[0];
         }
     }
@@ -82,6 +88,20 @@ struct ImageBatch {
     }
 }
 
+/// Image::without_shear.
+[[gnu::noinline]] inline void slide(const ImageBatch& batch, Mat3x4& gradient) {
+    for (int s = 0; s < batch.slides; ++s) {
+        const Double4* const n = batch.slide[s];
+        Double4 across[3], out{};
+        for (int k = 0; k < 3; ++k) {
+            across[k] = gradient(k, 0) * n[0] + gradient(k, 1) * n[1] + gradient(k, 2) * n[2];
+            out += across[k] * n[k];
+        }
+        for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l) gradient(k, l) -= (across[k] - out * n[k]) * n[l];
+    }
+}
+
 /// What the images give: the motion and the stress of their points, mirrored; a point and its image push each other
 /// alike. bends: also in their speeds along stuck surfaces.
 template <bool bends, class Law>
@@ -95,6 +115,7 @@ template <bool bends, class Law>
     const Mat3x4 stress = (law.stress(batch.of(q.j), state, gradient) * push).matrix();
     for (int k = 0; k < 3; ++k) v[k] = batch.of(q.v[k]);
     if (bends && any(batch.above > 0.0)) bend(batch, v, gradient);
+    if (batch.slides > 0) slide(batch, gradient);
     for (int k = 0; k < 3; ++k) v[k] += dt * gravity[k];
     const Mat3x4 affine = product(product(batch.motion, gradient), batch.turned_back),
                  force = product(product(batch.motion, stress), batch.turned_back);

@@ -232,7 +232,7 @@ private:
     static Point mirrored(const Point& p, const Image& image) {
         Point other;
         other.mass = p.mass, other.j = p.j;
-        other.gradient = image.motion * p.gradient * image.turn.transpose();
+        other.gradient = image.motion * image.without_shear(p.gradient) * image.turn.transpose();
         other.stress = image.motion * p.stress * image.turn.transpose();
         return other;
     }
@@ -277,7 +277,7 @@ private:
                 const Vec3 shown = (image.place - origin) / h;
                 if ((shown - place).cwiseAbs().maxCoeff() > kFarthestImage || !felt(body, shown)) continue;
                 beside.images.push_back({shown, seeds.mass[p], image.motion * momentum,
-                                         image.motion * motion * image.turn.transpose(),
+                                         image.motion * image.without_shear(motion) * image.turn.transpose(),
                                          image.motion * force * image.turn.transpose(), image});
             }
         }
@@ -338,7 +338,7 @@ private:
             give(body.grid, nodes,
                  {at.first[0][lane] - kSpaceTile, at.first[1][lane] - kSpaceTile, at.first[2][lane] - kSpaceTile},
                  shares, lane);
-        batch.count = 0;
+        batch.count = 0, batch.slides = 0;
     }
 
     /// Whether any tile that an image's stencil touches is on the work list.

@@ -144,8 +144,22 @@ void Images::cut_off(Image& image, const Near& near, const Vec3& from) {
                                    normal.dot(from) - near.contact.distance - 0.5 * near.thick};
 }
 
+/// Whether two surfaces meet.
+bool Images::corner(const Near* near, int count) {
+    for (int n = 0; n < count; ++n)
+        for (int m = 0; m < n; ++m)
+            if (near[n].contact.normal.dot(near[m].contact.normal) >= kOpposite) return true;
+    return false;
+}
+
+/// The next surface of a corner that an image is mirrored in, after those of `turn`.
+void Images::slide_along(Image& image, const Near& near, const Mat3& turn) {
+    if (!image.held) image.slide[image.slides++] = turn.transpose() * near.contact.normal;
+}
+
 /// Reflects a point in each of the surfaces, and these images in those listed behind; at most three times in a row.
 void Images::reflect(const Near* near, int count, const Vec3& x) {
+    const bool meet = corner(near, count);
     for (int n = 0; n < count && count_ < kMost; ++n) {
         const Vec3& normal = near[n].contact.normal;
         Image& image = list_[static_cast<std::size_t>(count_++)];
@@ -154,7 +168,8 @@ void Images::reflect(const Near* near, int count, const Vec3& x) {
         image.motion = near[n].stuck ? Mat3(-Mat3::Identity()) : image.turn;
         image.held_normal = near[n].bends() ? normal : Vec3(Vec3::Zero());
         image.held_above = near[n].bends() ? near[n].contact.distance : 0.0;
-        image.held = near[n].stuck, image.cuts = 0;
+        image.held = near[n].stuck, image.slides = 0, image.cuts = 0;
+        if (meet) slide_along(image, near[n], Mat3::Identity());
         cut_off(image, near[n], x);
         if (n + 1 < count) reflect_in_others(near, count, n, x, image, 0);
     }
@@ -185,6 +200,8 @@ void Images::reflect(const Near* near, int count, const Image& from, int depth) 
                     Vec3::Zero(),
                     0.0,
                     from.held || near[n].stuck,
+                    from.slides,
+                    {from.slide[0], from.slide[1], from.slide[2]},
                     from.cuts,
                     {from.cut[0], from.cut[1]}};
         const bool square = (from.turn * normal - normal).norm() < kSquare;  // to all mirrors before
@@ -192,6 +209,7 @@ void Images::reflect(const Near* near, int count, const Image& from, int depth) 
             image.held_normal = normal, image.held_above = near[n].contact.distance;
         else if (!near[n].stuck && std::abs(from.held_normal.dot(normal)) < kSquare)
             image.held_normal = from.held_normal, image.held_above = from.held_above;
+        slide_along(image, near[n], from.turn);
         cut_off(image, near[n], from.place);
         list_[static_cast<std::size_t>(count_++)] = image;
         if (depth < 2) reflect_in_others(near, count, n, from.place, image, depth);

@@ -74,6 +74,19 @@ struct Image {
     Vec3 held_normal;
     double held_above;  ///< [m]
     bool held;          ///< in a stuck surface, or more
+    /// In corners of free surfaces: normals of those that it is an image in, as its point sees them (see without_shear).
+    int slides;
+    Vec3 slide[3];
+    /// A free surface turns the shear beside it round: the image shows the speed along the surface with a kink there. The
+    /// surface itself asks for none of that. But the other one of a corner takes it for motion, and would drive what shears.
+    /// So an image in a corner shows its point's speed along the surface everywhere.
+    Mat3 without_shear(Mat3 gradient) const {
+        for (const Vec3* n = slide; n < slide + slides; ++n) {
+            const Vec3 across = gradient * *n;
+            gradient -= (across - n->dot(across) * *n) * n->transpose();
+        }
+        return gradient;
+    }
     /// Places x with normal . x < least do not see it.
     struct Cut {
         double normal[3];
@@ -108,6 +121,8 @@ private:
     static constexpr int kMostNear = 4, kMost = 14;
     static int near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count);
     void reflect(const Near* near, int count, const Vec3& x);
+    static bool corner(const Near* near, int count);
+    static void slide_along(Image& image, const Near& near, const Mat3& turn);
     void reflect(const Near* near, int count, const Image& from, int depth);
     void reflect_in_others(const Near* near, int count, int n, const Vec3& from, const Image& image, int depth);
     static void cut_off(Image& image, const Near& near, const Vec3& from);

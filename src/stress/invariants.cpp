@@ -193,7 +193,9 @@ std::optional<Violation> Watch::speed(const Snapshot& state) {
 std::optional<Violation> Watch::head(const Snapshot& state) {
     if (!facts_.space) return std::nullopt;
     const double steep = facts_.stretch * facts_.stretch * (1.0 + kConvergence);
-    const double wave = steep * (start_.fastest() + 2.0 * std::sqrt(facts_.gravity * deepest_));
+    constexpr double kBlow = 3.0;  // of the speed that heavy and light come with
+    const double front = 2.0 * std::sqrt(facts_.gravity * deepest_), blow = kBlow * start_.fastest() + front;
+    const double wave = std::max(steep * (start_.fastest() + front), blow);
     const double share = std::max(kEnergyShare, facts_.stretch > 1.0 ? steep * steep - 1.0 : 0.0);
     double worst = 0.0, found = 0.0, allowed = 1.0;
     for (std::size_t p = 0; p < state.points.mass.size(); ++p) {

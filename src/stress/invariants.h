@@ -72,12 +72,17 @@ double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const 
 ///   it takes its place, up to the bound itself; so it does in the paper preset, which no energy line binds (see `energy`;
 ///   seed 888, scene 8148: a column of 138 m whose outer points run 1.48 times as fast as the bound in four steps). Neither
 ///   energy nor speed is looked at with water's virtual mass, which a step takes from an estimate of what drives the water,
-///   so that columns part from it by what that gets wrong (speeds of up to three times the bound have been seen).
+///   so that columns part from it by what that gets wrong (speeds of up to three times the bound have been seen). The energy
+///   of the virtual mass, half of it times the slip's square, would not close the book: that estimate does work on the slip
+///   which no term takes back, and the mass changes with the mixture where neither phase is pushed.
 /// head (points in space): z + V^2 / 2g of each point is no higher than the highest surface of the start, and above it the
 ///   head of a front, (1 + kConvergence)^2 (v0 + 2 sqrt(g h))^2 / 2g with v0 and h of `speed`, `kEnergyShare` of what the
-///   point has fallen, and a cell of the grid in space, within which the ground's height is not told apart. In runs that
-///   have columns as well, points begin up to a cell of the terrain up a slope from their column, and with the speed that
-///   its path gave it: the drop of a cell, and the `stretch` of `speed`, come on top.
+///   point has fallen, and a cell of the grid in space, within which the ground's height is not told apart. Or, where that is
+///   more, (kBlow v0 + 2 sqrt(g h))^2 / 2g: what is squeezed between heavy material that comes from opposite sides leaves at
+///   up to three times its speed, by the law of elastic blows, and material that strikes ground or itself spouts. Seed 2's
+///   scene 992 and seed 25112's 149, 370 and 667 do: points leave at 1.6 to 2.4 v0, in one of them at 3.1 v0 in shorter
+///   steps, while all of it loses energy. In runs that have columns as well, points begin up to a cell of the terrain up a
+///   slope from their column, and with the speed that its path gave it: the drop of a cell, and the `stretch` of `speed`, come on top.
 /// rest (claimed scenes): a pile's positions and velocities are those of the start, bit for bit. A lake is level as far
 ///   as points at these places can make it so (MassFit::level_error); it moves no faster than the front of a dam break
 ///   as high as round-off, 2 sqrt(g e) (Ritter 1892), where the fit met the level; otherwise than one as high as its

@@ -54,6 +54,17 @@ struct GroundOf {
     return 1.0 / mass * FlatOf<Double4>{of[0] + dt * of[2], of[1] + dt * of[3]};
 }
 
+/// The same before it acted, and after it acted on `bound` of the node's mass alone.
+[[gnu::always_inline]] inline FlatOf<double> brought(const StructuredBody& body, Index k, double mass) {
+    const Deposit& d = body.nodes[k];
+    return 1.0 / mass * FlatOf<double>{d.px, d.py};
+}
+[[gnu::always_inline]] inline FlatOf<double> stressed_part(const StructuredBody& body, Index k, double mass, double bound,
+                                                           double dt) {
+    const Deposit& d = body.nodes[k];
+    return brought(body, k, mass) + dt / bound * FlatOf<double>{d.fx, d.fy};
+}
+
 /// What is left of grains' pushes at a node once they are shares (share_out): K (1 - f), 1 - f, and 2 cells times
 /// div(K (1 - f)). Beside dry nodes it goes on as it is here.
 template <class Real>

@@ -43,11 +43,12 @@ double spread_rate(const WaterViscosity& viscosity, const Mixture& mixture, doub
     return viscosity.kinematic * viscosity.profile * mixture.grains() / (whole * whole);
 }
 
-/// What the columns of a node released in the last step joins the water at `to`, with the node's velocity.
-void release_to(StructuredBody& body, Index k, Index to, double dt) {
+/// What the columns of a node released in the last step joins the water at `to`, with the velocity that points brought the
+/// node: the structure's stress pushes what stays bound. At the edge of columns it would push thin nodes to any speed.
+void release_to(StructuredBody& body, Index k, Index to) {
     FreeWater& water = *body.water;
     const double depth = body.bound[k].released / (body.grid.cell() * body.grid.cell());
-    const FlatOf<double> velocity = stressed(body, k, body.node_mass[k], dt);
+    const FlatOf<double> velocity = brought(body, k, body.node_mass[k]);
     water.h[to] += depth;
     water.qx[to] += depth * velocity.x, water.qy[to] += depth * velocity.y;
 }
@@ -106,7 +107,7 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     return c.velocity;
 }
 
-void release_to_nodes(StructuredBody& body, double dt) {
+void release_to_nodes(StructuredBody& body) {
     const TileGrid& grid = body.grid;
     const auto each = [&](Index tile, auto&& visit) {
         const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
@@ -117,7 +118,7 @@ void release_to_nodes(StructuredBody& body, double dt) {
     const auto inside = [&](Index i, Index j) { return i >= 0 && j >= 0 && i < grid.nx() && j < grid.ny(); };
     for_each_work_tile(body.active, [&](Index, Index tile) {
         each(tile, [&](Index i, Index j) {
-            if (inside(i, j)) release_to(body, grid.at(i, j), grid.at(i, j), dt);
+            if (inside(i, j)) release_to(body, grid.at(i, j), grid.at(i, j));
         });
     });
     for (const Index tile : body.active.work) {
@@ -126,7 +127,7 @@ void release_to_nodes(StructuredBody& body, double dt) {
         each(tile, [&](Index i, Index j) {
             if (inside(i, j)) return;
             const Index a = std::clamp<Index>(i, 0, grid.nx() - 1), b = std::clamp<Index>(j, 0, grid.ny() - 1);
-            release_to(body, grid.at(i, j), grid.at(a, b), dt);
+            release_to(body, grid.at(i, j), grid.at(a, b));
         });
     }
 }

@@ -27,8 +27,8 @@ Met meet_water(const StructuredBody& body, Index k);
 /// to `driven`; returns their velocity. What both lose is the impulse times the mean slip.
 Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, const Vec2& driven, double dt,
           StructuredTally& tally);
-/// What the columns released in the last step joins the water, with the velocity of their nodes; of nodes beyond the grid's
+/// What the columns released in the last step joins the water, with the velocity that points brought; of nodes beyond the grid's
 /// sides, which have no water, in one order at the nearest that has.
-void release_to_nodes(StructuredBody& body, double dt);
+void release_to_nodes(StructuredBody& body);
 
 }  // namespace frana

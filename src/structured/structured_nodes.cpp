@@ -134,10 +134,11 @@ void move_wet(NodeStep<Law>& step, Index k) {
     StructuredBody& body = step.body;
     const double dt = step.times.kick, mass = body.node_mass[k];
     const GroundOf<double> ground = ground_at(&body.pull[k], 0.0);
-    const FlatOf<double> before = stressed(body, k, mass, dt);
     const Met met = meet_water(body, k);
+    const bool releases = met.mass != mass;
+    const FlatOf<double> before = releases ? stressed_part(body, k, mass, met.mass, dt) : stressed(body, k, mass, dt);
     StructuredImpulses& impulse = step.tally.impulse;
-    impulse.water -= (mass - met.mass) * vec(before);
+    if (releases) impulse.water -= (mass - met.mass) * vec(brought(body, k, mass));
     const FlatOf<double> weight = dt * (ground.pull + flat(met.lift));
     DrivenOf<double> node{met.mass, (1.0 - met.support) * ground.across, met.depth, before, before + weight};
     impulse.weight += met.mass * vec(weight);
@@ -208,7 +209,7 @@ void share_out(StructuredBody& body) {
 }  // namespace
 
 void move_nodes(StructuredBody& body, const StepTimes& times) {
-    if (body.water) release_to_nodes(body, times.kick);
+    if (body.water) release_to_nodes(body);
     if (body.grains) share_out(body);
     std::visit(
         [&](const auto& law) {

@@ -39,16 +39,30 @@ void find_slopes(const WaterBlock& block, const double* along, const double* acr
             load(across + k) + other * load(slopes.across + k)};
 }
 
+/// Water that stands on higher ground than the next cell's surface falls into it, whatever limited slopes make of the
+/// ground at the face between them: on rough ground they put a step there that thin water would not pass. It would go on
+/// to speed up behind that.
+[[gnu::always_inline]] inline void let_fall(const WaterBlock& block, Index before, Index behind, FaceSide<Double4>& low,
+                                            FaceSide<Double4>& high) {
+    const Double4 surface_low = load(block.surface + before), surface_high = load(block.surface + behind);
+    const auto down = surface_high < surface_low - load(block.depth + before),
+               up = surface_low < surface_high - load(block.depth + behind);
+    const Double4 least = min(low.ground, high.ground);
+    high.ground = select(down, least, high.ground), low.ground = select(up, least, low.ground);
+}
+
 /// Fluxes through the faces between the places k - step and k of the groups of four from `first` on.
 void find_fluxes(const WaterBlock& block, const double* along, const double* across,
                  const WaterSlopes& slopes, Index first, Index step, WaterFaces& to) {
     for (Index n = 0; n < kGroups; ++n) {
         const Index k = first + 4 * n;
         FaceFlux<Double4> f{};
-        if (any((load(block.depth + k) > 0.0) | (load(block.depth + k - step) > 0.0)))
-            f = face_flux<Double4>(at_face(block, along, across, slopes, k - step, 1.0),
-                                   at_face(block, along, across, slopes, k, -1.0),
-                                   0.5 * (load(block.pull + k) + load(block.pull + k - step)));
+        if (any((load(block.depth + k) > 0.0) | (load(block.depth + k - step) > 0.0))) {
+            auto low = at_face(block, along, across, slopes, k - step, 1.0);
+            auto high = at_face(block, along, across, slopes, k, -1.0);
+            let_fall(block, k - step, k, low, high);
+            f = face_flux<Double4>(low, high, 0.5 * (load(block.pull + k) + load(block.pull + k - step)));
+        }
         store(to.mass + k, f.mass), store(to.along + k, f.along), store(to.across + k, f.across);
         store(to.low + k, f.low), store(to.high + k, f.high);
     }
