@@ -307,17 +307,19 @@ TEST_CASE("The map of points follows whenever they may have moved by a quarter o
         return depths;
     };
     std::vector<double> before = seen();
+    const double quarter = 0.25 * scene.bed.geometry.cell;
     double way = 0.0;
-    int looks = 0;
+    int looks = 0, steps = 0;
     while (run.status().time < 0.3) {
         run.advance(1e9);  // no time of output
         const SolidStatus& now = run.points()->status();
-        way += now.max_speed * now.dt;
+        way += now.max_speed * now.dt, ++steps;
         const std::vector<double> after = seen();
         if (after != before) way = 0.0, ++looks, before = after;
-        REQUIRE(way < 0.25 * scene.bed.geometry.cell);
+        REQUIRE(way < quarter);
     }
-    // Not in every step either: 8 m/s and more, for 0.3 s.
+    // Not in every step either: a step goes a small part of that way. 8 m/s and more, for 0.3 s.
     CHECK(looks >= 8);
-    CHECK(looks < 40);
+    CAPTURE(steps);
+    CHECK(looks < steps / 2);
 }
