@@ -19,6 +19,7 @@ struct Node {
     Real vx, vy;          ///< before the kick [m/s]
     Real ex, ey;          ///< gradient of the free surface [1]
     Real depth, mass;
+    Real law_depth;       ///< without the 2-cell wave [m]
     Real push_x, push_y;  ///< artificial viscosity and stress [m/s^2]
     Real loss_x, loss_y;  ///< the viscosity's part, whose work is lost [m/s^2]
     Real rim;             ///< 1 at margins, whose surface may be that of what lies behind; otherwise 0
@@ -189,7 +190,7 @@ private:
         const Index up = flow.grid.stride();
         Node<double> node{};
         node.vx = nodes.before[k].x, node.vy = nodes.before[k].y;
-        node.depth = nodes.depth[k], node.mass = nodes.mass[k];
+        node.depth = nodes.depth[k], node.law_depth = nodes.law_depth[k], node.mass = nodes.mass[k];
         // Whoever is wide both ways may also be one of four, where rim is 0.
         node.rim = (nodes.flags[k] & kMargin) && (nodes.flags[k] & (kWideX | kWideY)) != (kWideX | kWideY) ? 1.0 : 0.0;
         if (!pressure_on_points_) {
@@ -222,7 +223,7 @@ private:
         Node<Double4> node;  // set one by one: to clear it first would be a loop of its own
         unzip(&nodes.before[k], node.vx, node.vy);
         node.push_x = node.push_y = node.loss_x = node.loss_y = node.rim = Double4{};
-        node.depth = load(&nodes.depth[k]), node.mass = load(&nodes.mass[k]);
+        node.depth = load(&nodes.depth[k]), node.law_depth = load(&nodes.law_depth[k]), node.mass = load(&nodes.mass[k]);
         node.ex = wide_gradients(flow, k, 1);
         node.ey = wide_gradients(flow, k, up);
         if (has_viscosity(flow.scheme)) {
@@ -256,7 +257,7 @@ private:
         const double g = flow.gravity;
         const Real dx = n.vx + dt * (n.push_x - g * n.ex), dy = n.vy + dt * (n.push_y - g * n.ey);
         const Real one = Real{} + 1.0, level = Real{} + g;
-        const BedStateOf<Real> state{level, max(n.depth, Real{} + 1e-9), one, one, g, flow.density};
+        const BedStateOf<Real> state{level, max(n.law_depth, Real{} + 1e-9), one, one, g, flow.density};
         return braked(state, n, dx, dy, Real{}, Real{}, level, dt);
     }
 
@@ -280,7 +281,7 @@ private:
         const Real along = dx * bed.bx + dy * bed.by, speed2 = dx * dx + dy * dy;
         const Real kappa = sqrt(1.0 + select(speed2 > 0.0, along * along / speed2, Real{}));
         const Real normal = kCurvature == Curvature::full ? gravity : Real{} + g;
-        const BedStateOf<Real> state{normal * cosine / kappa, max(n.depth * cosine, Real{} + 1e-9), kappa, cosine, g,
+        const BedStateOf<Real> state{normal * cosine / kappa, max(n.law_depth * cosine, Real{} + 1e-9), kappa, cosine, g,
                                      flow.density};
         return braked(state, n, dx, dy, bed.bx, bed.by, max(Real{} + g, gravity), dt);
     }

@@ -50,8 +50,8 @@ inline bool eight_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t uns
 
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
-        : deposit(grid.size()), mass(grid.size()), column_mass(grid.size()), forced(with_force), depth(grid.size()),
-          level(grid.size()), surface(grid.size()), wave_x(grid.size()),
+        : deposit(grid.size()), mass(grid.size()), column_mass(grid.size()), forced(with_force),
+          depth(grid.size()), law_depth(grid.size()), level(grid.size()), surface(grid.size()), wave_x(grid.size()),
           row_known(grid.size(), around(grid)), before(grid.size()), motion(grid.size()),
           viscous_flux(grid.size()), lateral(grid.size()), shock(grid.size()), sensed(grid.size(), around(grid)),
           flags(grid.size(), around(grid)) {}
@@ -68,6 +68,7 @@ struct Nodes {
     LazyArray<double> column_mass;
     bool forced;                     ///< points deposit forces
     LazyArray<double> depth;         ///< column_mass / (rho A) [m]
+    LazyArray<double> law_depth;     ///< that the bed law is given: the depth without its 2-cell wave [m]
     LazyArray<double> level;         ///< bed + depth [m]
     LazyArray<double> surface;       ///< free surface: the level, filtered and mended at margins; bed where dry [m]
     LazyArray<double> wave_x;        ///< part of the 2-cell wave in x, scratch of the filter [m]

@@ -6,6 +6,7 @@
 
 #include "base/simd.h"
 #include "solver/shock.h"
+#include "solver/two_cell_wave.h"
 
 namespace frana {
 namespace {
@@ -17,6 +18,7 @@ void mirror_surface(Flow& flow) {
     for (int axis = 0; axis < 2; ++axis)
         for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
             nodes.depth[ghost] = nodes.depth[mirror];
+            nodes.law_depth[ghost] = nodes.law_depth[mirror];
             nodes.surface[ghost] = nodes.surface[mirror];
             nodes.level[ghost] = nodes.level[mirror];
             nodes.flags[ghost] = nodes.flags[mirror];
@@ -156,23 +158,16 @@ bool five_known(const Nodes& nodes, Index k, Index step) {
     return (all & kWet) && !(any & kMargin);
 }
 
-/// Part of the 2-cell wave along one direction, of one node or four: a sixteenth of the fourth difference.
-template <class Real>
-Real wave(const double* e, Index step) {
-    const auto at = [&](Index n) { return read<Real>(e + n * step); };
-    return ((at(-2) + at(2)) - 4.0 * (at(-1) + at(1)) + 6.0 * at(0)) / 16.0;
-}
-
 void wave_along_x(Nodes& nodes, Index k) {
     const double* e = nodes.level.data() + k;
     if (eight_have(nodes.flags.data() + k - 2, kWet, kMargin)) {
         std::memset(nodes.row_known.data() + k, 1, 4);
-        store(&nodes.wave_x[k], wave<Double4>(e, 1));
+        store(&nodes.wave_x[k], wave_along<Double4>(e, 1));
         return;
     }
     for (Index n = 0; n < 4; ++n) {
         nodes.row_known[k + n] = five_known(nodes, k + n, 1);
-        nodes.wave_x[k + n] = nodes.row_known[k + n] ? wave<double>(e + n, 1) : 0.0;
+        nodes.wave_x[k + n] = nodes.row_known[k + n] ? wave_along<double>(e + n, 1) : 0.0;
     }
 }
 
@@ -186,6 +181,16 @@ bool calm(const Nodes& nodes, Index k, Index up) {
     return true;
 }
 
+/// Of the depth that a filter may take or add. A depth that repeats every two cells and is nowhere negative has a mean of
+/// a quarter of its peak at least. Where a filter takes more, it sees no wave but the edge of a film.
+constexpr double kMostOfDepth = 0.75;
+
+/// The depth h without its wave, as the bed law sees it.
+template <class Real>
+Real without_wave(Real h, Real wave) {
+    return h - min(max(wave, -kMostOfDepth * h), kMostOfDepth * h);
+}
+
 /// (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; where the product is not known, two thirds
 /// of each: the waves along one axis and the chequerboard then both keep a third.
 void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool sensed) {
@@ -193,19 +198,27 @@ void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool sensed)
     if (!x && !y) return;
     const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
     const double strength = flow.scheme.filter * held;
-    const double wave_y = y ? wave<double>(nodes.level.data() + k, up) : 0.0;
+    const double wave_y = y ? wave_along<double>(nodes.level.data() + k, up) : 0.0;
     const std::uint8_t* row = nodes.row_known.data() + k;
     const bool all = x && y && row[up] && row[-up] && row[2 * up] && row[-2 * up];
-    const double both = all ? strength * wave<double>(nodes.wave_x.data() + k, up) : 0.0;
+    const double both = all ? strength * wave_along<double>(nodes.wave_x.data() + k, up) : 0.0;
     const double share = x && y && !all ? 2.0 / 3.0 : 1.0;
     nodes.surface[k] -= share * strength * (nodes.wave_x[k] + wave_y - both);
+    const double* h = nodes.depth.data() + k;
+    const double depth_x = x ? wave_along<double>(h, 1) : 0.0, depth_y = y ? wave_along<double>(h, up) : 0.0;
+    const double depth_both = all ? strength * wave_along_both<double>(h, up) : 0.0;
+    nodes.law_depth[k] = without_wave(*h, share * strength * (depth_x + depth_y - depth_both));
 }
 
 void filter_calm(const Flow& flow, Nodes& nodes, Index k, Index up) {
     const double strength = flow.scheme.filter;
-    const Double4 wave_y = wave<Double4>(nodes.level.data() + k, up);
-    const Double4 both = strength * wave<Double4>(nodes.wave_x.data() + k, up);
+    const Double4 wave_y = wave_along<Double4>(nodes.level.data() + k, up);
+    const Double4 both = strength * wave_along<Double4>(nodes.wave_x.data() + k, up);
     store(&nodes.surface[k], load(&nodes.level[k]) - strength * (load(&nodes.wave_x[k]) + wave_y - both));
+    const double* h = nodes.depth.data() + k;
+    const Double4 depth_x = wave_along<Double4>(h, 1), depth_y = wave_along<Double4>(h, up);
+    const Double4 depth_both = strength * wave_along_both<Double4>(h, up);
+    store(&nodes.law_depth[k], without_wave(load(h), strength * (depth_x + depth_y - depth_both)));
 }
 
 /// Mass and momentum of a node vanish together: however little it is, the velocity is right, and points that gather
@@ -217,6 +230,7 @@ void dry_four(Flow& flow, Index k) {
     Nodes& nodes = flow.nodes;
     const Double4 none = {}, z = load(&flow.bed.z[k]);
     store(&nodes.depth[k], none);
+    store(&nodes.law_depth[k], none);
     store(&nodes.level[k], z);
     store(&nodes.surface[k], z);
     for (Index n = 0; n < 4; n += 2)
@@ -243,6 +257,7 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
         nodes.flags[k + n] = static_cast<std::uint8_t>((wet[n] ? kWet : 0) | (moving[n] ? kMoving : 0));
     const Double4 h = select(wet, raw, none), mass = select(moving, deposited, all(1.0));
     store(&nodes.depth[k], h);
+    store(&nodes.law_depth[k], h);
     store(&nodes.level[k], z + h);
     store(&nodes.surface[k], z + h);
     zip(select(moving, px / mass, none), select(moving, py / mass, none), &nodes.before[k]);

@@ -36,6 +36,17 @@ void level_behind_obstacles(StructuredBody& body) {
     });
 }
 
+/// Beside obstacles the depth of blocked nodes is no depth to smooth with.
+void plain_beside_obstacles(StructuredBody& body) {
+    const Index up = body.grid.stride();
+    for_each_touched(body, [&](Index k) {
+        bool beside = false;
+        for (Index row = k - 2 * up; row <= k + 2 * up; row += up)
+            for (Index n = row - 2; n <= row + 2; ++n) beside = beside || blocked(body, n);
+        if (beside) body.flow.nodes.law_depth[k] = body.flow.nodes.depth[k];
+    });
+}
+
 }  // namespace
 
 void raise_surface(StructuredBody& body) {
@@ -47,6 +58,7 @@ void raise_surface(StructuredBody& body) {
     mark_margin(flow);
     shock_pass(flow);
     filter(flow);
+    if (!body.obstacles.empty()) plain_beside_obstacles(body);
     shoreline(flow);
 }
 

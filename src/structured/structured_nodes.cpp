@@ -36,6 +36,7 @@ template <class Real>
 struct DrivenOf {
     Real mass, across, depth;
     FlatOf<Real> before, driven;
+    Real law_depth;  ///< that friction sees: without its 2-cell wave where the surface has none either [m]
 };
 
 /// A tile and its step.
@@ -88,7 +89,7 @@ template <class Real, class Law>
     const StructuredBody& body = step.body;
     TallyOf<Real>& tally = step.of(Real{});
     const FlatOf<Real> free = body.obstacles.empty() ? node.driven : stopped(body, k, node.driven);
-    const FlatOf<Real> left = braked(step.law, body, ground, node.across, node.depth, node.before, free, step.times);
+    const FlatOf<Real> left = braked(step.law, body, ground, node.across, node.law_depth, node.before, free, step.times);
     tally.friction += node.mass * (left - free);
     // By the velocity that is left: what rests under stress and friction loses nothing.
     tally.braked += node.mass * ground.along(free - left, left);
@@ -115,7 +116,9 @@ template <class Real, class Law>
     const Real mass = read<Real>(&body.node_mass[k]), dt = Real{} + step.times.kick;
     const GroundOf<Real> ground = ground_at(&body.pull[k], Real{});
     const FlatOf<Real> weight = dt * ground.pull, before = stressed(body, k, mass, step.times.kick);
-    DrivenOf<Real> node{mass, ground.across, dry_depth(body, k, mass, ground.open), before, before + weight};
+    const Real depth = dry_depth(body, k, mass, ground.open);
+    const Real law_depth = body.grains ? read<Real>(&body.flow.nodes.law_depth[k]) : depth;
+    DrivenOf<Real> node{mass, ground.across, depth, before, before + weight, law_depth};
     TallyOf<Real>& tally = step.of(Real{});
     tally.weight += mass * weight;
     if (body.grains) {
@@ -140,7 +143,7 @@ void move_wet(NodeStep<Law>& step, Index k) {
     StructuredImpulses& impulse = step.tally.impulse;
     if (releases) impulse.water -= (mass - met.mass) * vec(brought(body, k, mass));
     const FlatOf<double> weight = dt * (ground.pull + flat(met.lift));
-    DrivenOf<double> node{met.mass, (1.0 - met.support) * ground.across, met.depth, before, before + weight};
+    DrivenOf<double> node{met.mass, (1.0 - met.support) * ground.across, met.depth, before, before + weight, met.depth};
     impulse.weight += met.mass * vec(weight);
     if (body.grains) {
         const FlatOf<double> push = dt * grain_drive(body, k, ground, 1.0 - met.support);
