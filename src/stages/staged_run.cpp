@@ -38,18 +38,26 @@ void StagedRun::advance(double until) {
     if (!points_) {
         columns_->advance(std::min(until, scene_.solid->from));
         status_ = columns_->status();
-            if (status_.time < scene_.solid->from) return;
+        if (status_.time < scene_.solid->from) return;
         begin_space([&](const Marks& marks) { return columns_of(columns_->frame(), scene_.bed, marks); });
         return;
     }
+    const auto count = [&] {
+        status_.step += 1;
+        book(columns_->status());
+    };
     const double end = scene_.solid->until.value_or(until);
-    if (ended_)
-        columns_->advance(until);
-    else
-        step_points(std::min(until, end));
-    status_.step += 1;
-    if (!ended_ && scene_.solid->until && points_->status().time >= end) end_space();
-    book(columns_->status());
+    try {
+        if (ended_)
+            columns_->advance(until);
+        else
+            step_points(std::min(until, end));
+        if (!ended_ && scene_.solid->until && points_->status().time >= end) end_space();
+    } catch (const UserError&) {  // all but what is refused was done, and the last frame shows it
+        count();
+        throw;
+    }
+    count();
 }
 
 /// Columns that are left go a step ahead of the points, so that what flows into the window is there when the points arrive
