@@ -312,6 +312,24 @@ TEST_CASE("Points that leave their window onto a wall in a hole become columns b
     CHECK(behind > 0.0);  // some went round it
 }
 
+TEST_CASE("Points that leave their window onto the wall of a hole as wide as the window are remarked upon", "[stages][holes]") {
+    Scene scene = slide();
+    scene.solid->window = {12, 0, 18, 12};
+    for (Index i = 19; i <= 28; ++i)
+        for (Index j = 1; j <= 11; ++j) scene.bed.at(i, j) = Raster::nodata;
+    scene.holes = holes_of(scene.bed);
+    scene.hole_top = 3.0;
+    scene.sides = Sides::wall;
+    StagedRun run(scene);
+    const double mass = run.status().mass;
+    run_to(run, 0.8);
+    CHECK(mass_error(run.status(), mass) < 1e-12);
+    const std::vector<std::string> remarks = run.remarks();
+    CHECK(std::any_of(remarks.begin(), remarks.end(), [](const std::string& remark) {
+        return remark.find("m3 became columns on ground that barriers or walls in holes raise") != std::string::npos;
+    }));
+}
+
 TEST_CASE("Points that become columns are as deep as what is there, and at least as all that is new", "[stages]") {
     Scene scene = slide();  // cells of 1 m: quarters of 0.25 m2
     scene.density = 2000.0;

@@ -276,6 +276,11 @@ std::vector<std::string> StagedRun::remarks() const {
             "{:.2g} %{}; volume {:.4g} of that without pressure",
             start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
             largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : "", rest > 0.0 ? s.volume / rest : 1.0));
+    if (returned_.raised > 0.0)
+        remarks.push_back(fmt::format(
+            "{:.6g} m3 became columns on ground that barriers or walls in holes raise, and gained height: columns have no "
+            "cell before it within three cells; leave as much between barriers, and between stage.window and holes",
+            returned_.raised / density));
     remark_pieces(remarks);
     if (const auto spray = spray_.remark()) remarks.push_back(*spray);
     return remarks;
@@ -312,7 +317,7 @@ void StagedRun::keep(Archive& archive) {
     frana::keep(archive, "status", status_);
     archive.numbers("sums",
                     {&handed_.mass, &handed_.energy, &handed_.mass_later, &handed_.momentum[0], &handed_.momentum[1],
-                     &returned_.mass, &returned_.lost, &moved_, &largest_mach_});
+                     &returned_.mass, &returned_.lost, &returned_.raised, &moved_, &largest_mach_});
     archive.number("pieces", apart_.pieces);
     archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
     spray_.keep(archive);
