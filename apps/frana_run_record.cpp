@@ -172,13 +172,13 @@ std::string reason_text(const RunSummary& summary) {
                      : "the mass came to rest";
     if (summary.reason == "left") return "no material is left in the domain";
     if (summary.reason == "interrupted") return "interrupted; everything up to here is valid";
-    return "numerics: " + summary.failure_text;
+    return summary.reason + ": " + summary.failure_text;
 }
 
 /// Why the run ended, and what was in motion then.
 Json rest_json(const RunSummary& s) {
-    const bool by_itself = s.reason == "interrupted" || s.reason == "numerics" || s.reason == "left";
-    return {{"reason", by_itself ? s.reason : stopped_in_motion(s) ? "stopped by the rule" : "at rest"},
+    const bool by_rule = s.reason == "end" || s.reason == "rest";
+    return {{"reason", !by_rule ? s.reason : stopped_in_motion(s) ? "stopped by the rule" : "at rest"},
             {"moving_mass_share", s.motion.share()},
             {"faster_than", s.slow},
             {"fastest", s.motion.fastest}};

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "analytic_scene.h"
+#include "base/error.h"
 #include "catch.h"
 #include "observe/memory_archive.h"
 #include "observe/run_loop.h"
@@ -248,6 +249,40 @@ TEST_CASE("Points in space begin with the same bits whatever the time between th
     for (const double every : {0.0031, 0.07}) CHECK((begun(every) == seldom));
 }
 
+TEST_CASE("A hand-over that is refused on the way ends the run as refused, and the last frame is of its step", "[stages]") {
+    // Thin in front; what follows stands 3 m high, above the top over the window's edge at 17.1 m.
+    Scene scene = slide();
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return x > 3 && x < 13 && y > 3 && y < 9 ? (x < 7 ? 3.0 : 0.5) : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 8.0);
+    scene.solid->top = 18.5;
+    StagedRun alone(scene);
+    const double mass = alone.status().mass;
+    Index steps = 0;
+    const auto to_the_refusal = [&] {
+        while (alone.status().time < scene.end) ++steps, alone.advance(scene.end);
+    };
+    CHECK_THROWS_AS(to_the_refusal(), UserError);
+    REQUIRE(alone.points() != nullptr);
+    REQUIRE(alone.points()->status().time > scene.solid->from);
+
+    StagedRun staged(scene);
+    Observers nobody;
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::silent, scene.density);
+    const RunSummary summary = run(staged, {scene.end, 1000.0, false}, nobody, Interrupt(), progress);
+    CHECK(summary.reason == "refused");
+    REQUIRE(summary.failure);
+    CHECK_THROWS_AS(std::rethrow_exception(summary.failure), UserError);
+    CHECK(summary.failure_text.rfind("stage.top: found 18.5 m; expected more than ", 0) == 0);
+    CHECK(summary.frames == 2);
+    CHECK(summary.steps == steps);
+    CHECK(summary.last.step == steps);
+    CHECK(summary.last.time == alone.points()->status().time);
+    CHECK(staged.status().time == summary.last.time);
+    CHECK(mass_error(summary.last, mass) < 1e-12);
+}
+
 TEST_CASE("Points that leave their window onto a wall in a hole become columns before it", "[stages][holes]") {
     Scene scene = slide();
     scene.particles = {};
@@ -275,6 +310,24 @@ TEST_CASE("Points that leave their window onto a wall in a hole become columns b
     }
     CHECK(points > 100);
     CHECK(behind > 0.0);  // some went round it
+}
+
+TEST_CASE("Points that leave their window onto the wall of a hole as wide as the window are remarked upon", "[stages][holes]") {
+    Scene scene = slide();
+    scene.solid->window = {12, 0, 18, 12};
+    for (Index i = 19; i <= 28; ++i)
+        for (Index j = 1; j <= 11; ++j) scene.bed.at(i, j) = Raster::nodata;
+    scene.holes = holes_of(scene.bed);
+    scene.hole_top = 3.0;
+    scene.sides = Sides::wall;
+    StagedRun run(scene);
+    const double mass = run.status().mass;
+    run_to(run, 0.8);
+    CHECK(mass_error(run.status(), mass) < 1e-12);
+    const std::vector<std::string> remarks = run.remarks();
+    CHECK(std::any_of(remarks.begin(), remarks.end(), [](const std::string& remark) {
+        return remark.find("m3 became columns on ground that barriers or walls in holes raise") != std::string::npos;
+    }));
 }
 
 TEST_CASE("Points that become columns are as deep as what is there, and at least as all that is new", "[stages]") {

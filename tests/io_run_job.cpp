@@ -202,6 +202,20 @@ TEST_CASE("a numerics error leaves the products of its last frame, and run.json 
     CHECK(read_rasters(run.dir()).size() == 7);
 }
 
+TEST_CASE("a case that is refused on the way has products too, and run.json and the report call it refused") {
+    FakeScript script;
+    script.on_step = [](Index step) {
+        if (step == 30) throw UserError("stage.top: found 3 m; expected more");
+    };
+    const FakeRun run(script);
+    CHECK(run.json()["exit_reason"] == "refused");
+    CHECK(run.json()["rest"]["reason"] == "refused");
+    CHECK(run.json()["failure"] == "stage.top: found 3 m; expected more");
+    CHECK(run.json()["steps"] == 30);
+    CHECK(frame_times(run.dir()).back() == run.record.summary.last.time);
+    CHECK(text_of(run.dir() / "report.md").find("refused: stage.top: found 3 m") != std::string::npos);
+}
+
 TEST_CASE("a state that is not finite leaves no rasters but a report of what was computed before") {
     FakeScript script;
     script.fail_time = 0.7;

@@ -1,12 +1,14 @@
 // Columns on a part of a large terrain: no result depends on what else of the terrain there is.
 #include <cstring>
 #include <memory>
+#include <sstream>
 
 #include "analytic_scene.h"
 #include "base/error.h"
 #include "catch.h"
 #include "observe/memory_archive.h"
 #include "observe/memory_state.h"
+#include "observe/run_loop.h"
 #include "stages/growing_columns.h"
 #include "terrain/holes.h"
 
@@ -93,6 +95,24 @@ TEST_CASE("A run on a part of a terrain has the same bits whatever lies beyond",
     CHECK(frame.grid.x(west) < kLarge.x(begin.i0));
     CHECK(mass_error(large.status(), 400e3) < 1e-13);
     CHECK(large.status().mass_left == 0.0);
+}
+
+TEST_CASE("A part that may not grow ends the run as refused, after the step that needed more", "[terrain]") {
+    Scene scene = slide_on_large();
+    scene.wider = std::make_shared<WiderTerrain>(
+        WiderTerrain{kLarge, kBegin, [](const NodeBox&) -> Raster { throw UserError("dem.tif: cannot be read"); }, {}});
+    GrowingColumns part(scene);
+    Observers nobody;
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::silent, scene.density);
+    const RunSummary summary = run(part, {60.0, 1000.0, false}, nobody, Interrupt(), progress);
+    CHECK(summary.reason == "refused");
+    REQUIRE(summary.failure);
+    CHECK_THROWS_AS(std::rethrow_exception(summary.failure), UserError);
+    CHECK(summary.failure_text.find("more of the terrain is needed: dem.tif: cannot be read") != std::string::npos);
+    CHECK(summary.frames == 2);
+    CHECK(summary.last.time > 0.0);
+    CHECK(summary.last.step == part.status().step);
 }
 
 TEST_CASE("Growing changes a run by round-off only", "[terrain]") {

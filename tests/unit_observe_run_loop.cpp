@@ -168,11 +168,12 @@ TEST_CASE("a case that is refused on the way leaves a last frame too, and stays 
         if (step == 20) throw UserError("stage.spacing = 0.1: makes too many points");
     };
     const Outcome outcome = run_fake(script, {2.0, 0.4, false});
-    CHECK(outcome.summary.reason == "numerics");
+    CHECK(outcome.summary.reason == "refused");
     REQUIRE(outcome.summary.failure);
     CHECK_THROWS_AS(std::rethrow_exception(outcome.summary.failure), UserError);
     CHECK(outcome.summary.failure_text == "stage.spacing = 0.1: makes too many points");
     CHECK(outcome.summary.last.step == 20);
+    CHECK(outcome.summary.steps == 20);
     CHECK(outcome.notes.frame_times.back() == outcome.summary.last.time);
     CHECK(outcome.notes.end_times.size() == 1);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <ctime>
 #include <optional>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "observe/memory_state.h"
@@ -43,6 +44,12 @@ std::optional<std::string> unfit(const Frame& frame) {
     return std::nullopt;
 }
 
+/// A step that its simulation refuses as the user's error. Errors of observers are none: they pass through.
+struct Refusal : std::runtime_error {
+    explicit Refusal(const UserError& of) : std::runtime_error(of.what()), error(std::current_exception()) {}
+    std::exception_ptr error;
+};
+
 class Loop {
 public:
     Loop(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
@@ -76,7 +83,7 @@ private:
     void show_glance();
     void show_frame();
     void show_end();
-    void give_up(const NumericsError& error);
+    void give_up(const char* reason, const std::exception_ptr& error, const std::string& text);
     bool resume();
     void require_later_end() const;
     void save_state();
@@ -102,7 +109,6 @@ private:
     Index shown_step_ = -1;  ///< step of the last frame that was shown
     MemoryState aside_;      ///< the simulation, while outputs are shown between two of its steps
     bool kept_before_the_cut_ = false;
-    std::exception_ptr refusal_;  ///< what the simulation said of the case in a step
 };
 
 RunSummary Loop::run() {
@@ -124,8 +130,10 @@ RunSummary Loop::run() {
         summary_.motion = simulation_.motion({summary_.slow, simulation_.status().time});
         save_state();
         show_end();
+    } catch (const Refusal& refusal) {
+        give_up("refused", refusal.error, refusal.what());
     } catch (const NumericsError& error) {
-        give_up(error);
+        give_up("numerics", std::current_exception(), error.what());
     }
     summary_.ended = utc_now();
     summary_.wall_seconds = wall_seconds();
@@ -240,9 +248,8 @@ void Loop::step(double until) {
     const double before = time();
     try {
         simulation_.advance(until);
-    } catch (const UserError& error) {  // of what a stage asks for on the way: what was reached is shown all the same
-        refusal_ = std::current_exception();
-        throw NumericsError(error.what());
+    } catch (const UserError& error) {  // of what a stage asks for on the way
+        throw Refusal(error);
     }
     const Status& now = simulation_.status();
     if (!(now.time > before))
@@ -322,10 +329,11 @@ void Loop::show_end() {
         timed(summary_.output[i], [&] { observers_[i]->end(last); });
 }
 
-void Loop::give_up(const NumericsError& error) {
-    summary_.reason = "numerics";
-    summary_.failure = refusal_ ? refusal_ : std::current_exception();
-    summary_.failure_text = error.what();
+/// What was reached is shown all the same.
+void Loop::give_up(const char* reason, const std::exception_ptr& error, const std::string& text) {
+    summary_.reason = reason;
+    summary_.failure = error;
+    summary_.failure_text = text;
     try {
         if (const auto why = unfit(frame()))
             summary_.failure_text += fmt::format("; no last frame, because {}", *why);
@@ -334,6 +342,7 @@ void Loop::give_up(const NumericsError& error) {
     } catch (const NumericsError& second) {
         summary_.failure_text += fmt::format("; no last frame: {}", second.what());
     }
+    summary_.steps = summary_.last.step - summary_.first.step;  // the step that failed is in the last frame
 }
 
 }  // namespace

@@ -31,10 +31,10 @@ struct RunPlan {
 
 /// What happened, for run.json and the report.
 struct RunSummary {
-    /// "end", "rest", "interrupted", "left" (no material remains) or "numerics": numbers that are not
-    /// finite, or a stage that is refused on the way
+    /// "end", "rest", "interrupted", "left" (no material remains), "numerics" (numbers that are not finite) or "refused"
+    /// (what a stage or a larger terrain asks for on the way)
     std::string reason;
-    std::exception_ptr failure;  ///< the NumericsError or UserError, when that is the reason
+    std::exception_ptr failure;  ///< the NumericsError, or of a refusal the UserError
     std::string failure_text;    ///< its message; says also when no last frame could be written
     Status first, last;          ///< of the first and the last frame; without a last frame, of the last step
     Extremes extremes;
@@ -57,8 +57,9 @@ using Observers = std::vector<std::unique_ptr<Observer>>;
 /// Runs `simulation` from its present time to the plan's end. Observers' step() is called at the start and after
 /// every step; see() at the start, at every k * every exactly and at the end; glance() in between, for those who ask
 /// for a frame; end() once, after the last see(). An interruption finishes the step and ends the run as usual. A
-/// NumericsError ends it too: if the state can still be shown it is the last frame; the error is kept in the summary
-/// for the caller to throw once the products are written. Errors of observers (a full disk) pass through. With a
+/// NumericsError ends it too, and so does a UserError in a step: if the state can still be shown it is the last frame;
+/// the error is kept in the summary for the caller to throw once the products are written. Errors of observers (a full
+/// disk) pass through. With a
 /// `keeper` the state of simulation, observers and summary is kept whenever that is due and once the run is over,
 /// before the last frame and end(): a run that is taken up again shows its own. If the keeper has a state, the run
 /// goes on from there and its summary tells of the whole run.

@@ -91,14 +91,14 @@ Raster GrowingColumns::read_part(const NodeBox& box) const {
     return wider_->read(box);
 }
 
-/// A run that cannot grow ends as one whose numbers fail: what it has so far is written.
+/// A run that cannot grow is refused: what it has so far is written.
 void GrowingColumns::grow(const NodeBox& box) {
     const NodeBox before = held_;
     try {
         hold(box);
     } catch (const UserError& error) {
-        throw NumericsError(fmt::format("step {}, t = {:.6g} s: more of the terrain is needed: {}", columns_->status().step,
-                                        columns_->status().time, error.what()));
+        throw UserError(fmt::format("step {}, t = {:.6g} s: more of the terrain is needed: {}", columns_->status().step,
+                                    columns_->status().time, error.what()));
     }
     const Index east = before.i0 - held_.i0, north = before.j0 - held_.j0;
     auto larger = std::make_unique<DepthAveraged>(scene_, Start::kept);

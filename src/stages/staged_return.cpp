@@ -29,25 +29,49 @@ void StagedRun::note_departed() {
 }
 
 /// Where a column of a point that has come to `to` stands: there; or where it left; or, where a barrier raises the ground of
-/// columns that the point is not above, or a hole has a wall, before them on its own side: as far behind the edge of the
-/// nearest cell as it lay before it, so that all of them do not stand on that edge.
-Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) const {
+/// columns that the point is not above, or a hole has a wall, before them on its own side.
+/// Where the window ends so near to a barrier that columns have no cell there, it is one of the window, which they leave again
+/// in their next step: on the barrier they would gain its height. Not so before a hole. Points do not feel its wall, and would
+/// run down the same cells again and again.
+Vec2 StagedRun::place_of_column(const DepartedPoint& point, const Vec2& to) {
     const Vec2 left = point.position.head<2>();
     const Vec2 x = columns_->may_stand(to.x(), to.y()) ? to : left;
-    const GridGeometry& g = scene_.bed.geometry;
-    const auto raised = [&](Index i, Index j) {
-        return !raised_.empty() && raised_[static_cast<std::size_t>(j * g.nx + i)] != 0;
+    const Flow& flow = columns_->flow();
+    const bool at_hole = in_hole_wall(flow, x);
+    if (!at_hole && (!on_raised(x) || above_barrier(x))) return x;
+    const auto nearest = [&](std::uint8_t kind) {
+        return nearest_before(point, x, [&](Index i, Index j) { return flow.bed.exit[flow.grid.at(i, j)] == kind; });
     };
-    const auto i0 = static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
-               j0 = static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5));
-    if (!in_hole_wall(columns_->flow(), x) && (raised_.empty() || !raised(i0, j0) || above_barrier(x))) return x;
+    std::optional<Vec2> place = nearest(0);
+    if (!place && !at_hole) place = nearest(kNoted);
+    if (!place) returned_.raised += point.mass;
+    return place.value_or(x);
+}
+
+bool StagedRun::is_raised(Index i, Index j) const {
+    return !raised_.empty() && raised_[static_cast<std::size_t>(j * scene_.bed.geometry.nx + i)] != 0;
+}
+
+bool StagedRun::on_raised(const Vec2& x) const {
+    const GridGeometry& g = scene_.bed.geometry;
+    return is_raised(static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
+                     static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5)));
+}
+
+/// The nearest cell to x of those that no barrier raises or hides: as far behind its edge as x lies before it, so that not all
+/// columns stand on that edge.
+std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const Vec2& x,
+                                              const std::function<bool(Index, Index)>& allowed) const {
     constexpr Index kFar = 3;  // cells
     constexpr double kWithin = 0.499;  // of a cell: what belongs to its node for certain
-    Vec2 best = x;
+    const GridGeometry& g = scene_.bed.geometry;
+    const auto i0 = static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
+               j0 = static_cast<Index>(std::floor((x.y() - g.y0) / g.cell + 0.5));
+    std::optional<Vec2> best;
     double least = std::numeric_limits<double>::max();
     for (Index j = std::max<Index>(0, j0 - kFar); j <= std::min(g.ny - 1, j0 + kFar); ++j)
         for (Index i = std::max<Index>(0, i0 - kFar); i <= std::min(g.nx - 1, i0 + kFar); ++i) {
-            if (raised(i, j) || !columns_->may_stand(g.x(i), g.y(j))) continue;
+            if (is_raised(i, j) || !allowed(i, j)) continue;
             const auto in_cell = [&](const Vec2& at) {
                 const auto near = [&](double u, double node, double low, double high) {
                     return std::clamp(u, std::max(low, node - kWithin * g.cell), std::min(high, node + kWithin * g.cell));

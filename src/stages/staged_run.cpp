@@ -38,18 +38,26 @@ void StagedRun::advance(double until) {
     if (!points_) {
         columns_->advance(std::min(until, scene_.solid->from));
         status_ = columns_->status();
-            if (status_.time < scene_.solid->from) return;
+        if (status_.time < scene_.solid->from) return;
         begin_space([&](const Marks& marks) { return columns_of(columns_->frame(), scene_.bed, marks); });
         return;
     }
+    const auto count = [&] {
+        status_.step += 1;
+        book(columns_->status());
+    };
     const double end = scene_.solid->until.value_or(until);
-    if (ended_)
-        columns_->advance(until);
-    else
-        step_points(std::min(until, end));
-    status_.step += 1;
-    if (!ended_ && scene_.solid->until && points_->status().time >= end) end_space();
-    book(columns_->status());
+    try {
+        if (ended_)
+            columns_->advance(until);
+        else
+            step_points(std::min(until, end));
+        if (!ended_ && scene_.solid->until && points_->status().time >= end) end_space();
+    } catch (const UserError&) {  // all but what is refused was done, and the last frame shows it
+        count();
+        throw;
+    }
+    count();
 }
 
 /// Columns that are left go a step ahead of the points, so that what flows into the window is there when the points arrive
@@ -268,6 +276,11 @@ std::vector<std::string> StagedRun::remarks() const {
             "{:.2g} %{}; volume {:.4g} of that without pressure",
             start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
             largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : "", rest > 0.0 ? s.volume / rest : 1.0));
+    if (returned_.raised > 0.0)
+        remarks.push_back(fmt::format(
+            "{:.6g} m3 became columns on ground that barriers or walls in holes raise, and gained height: columns have no "
+            "cell before it within three cells; leave as much between barriers, and between stage.window and holes",
+            returned_.raised / density));
     remark_pieces(remarks);
     if (const auto spray = spray_.remark()) remarks.push_back(*spray);
     return remarks;
@@ -304,7 +317,7 @@ void StagedRun::keep(Archive& archive) {
     frana::keep(archive, "status", status_);
     archive.numbers("sums",
                     {&handed_.mass, &handed_.energy, &handed_.mass_later, &handed_.momentum[0], &handed_.momentum[1],
-                     &returned_.mass, &returned_.lost, &moved_, &largest_mach_});
+                     &returned_.mass, &returned_.lost, &returned_.raised, &moved_, &largest_mach_});
     archive.number("pieces", apart_.pieces);
     archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
     spray_.keep(archive);

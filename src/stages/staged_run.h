@@ -53,9 +53,10 @@ private:
         std::array<double, 2> momentum{};
     };
 
-    /// What points gave back: what columns took of it, and the energy that they have no place for.
+    /// What points gave back: what columns took of it, the energy that they have no place for, and what stands on ground
+    /// that a barrier or a hole's wall raises, for want of a cell before it.
     struct Returned {
-        double mass = 0.0, lost = 0.0;
+        double mass = 0.0, lost = 0.0, raised = 0.0;
     };
 
     using Marks = std::vector<std::uint8_t>;  ///< of nodes, 1 or 0
@@ -66,7 +67,11 @@ private:
     void note_departed();
     void take_back();
     void end_space();
-    Vec2 place_of_column(const DepartedPoint& point, const Vec2& to) const;
+    Vec2 place_of_column(const DepartedPoint& point, const Vec2& to);
+    std::optional<Vec2> nearest_before(const DepartedPoint& point, const Vec2& x,
+                                       const std::function<bool(Index, Index)>& allowed) const;
+    bool is_raised(Index i, Index j) const;
+    bool on_raised(const Vec2& x) const;
     void mark_raised(const Raster& bed);
     bool above_barrier(const Vec2& place) const;
     bool behind_barrier(const Vec3& from, const Vec2& place) const;
