@@ -22,7 +22,7 @@ wall(src/base "${outside}|terrain/|grid/|law/|particles/|scene/|solver/|observe/
 wall(src/terrain "${outside}|grid/|law/|particles/|scene/|solver/|observe/")
 wall(src/particles "${outside}|grid/|law/|scene/|solver/|observe/")
 wall(src/grid "${outside}|particles/|solver/|observe/|${scene_but_its_data}")
-wall(src/law "${outside}|particles/|solver/|observe/|${scene_but_its_data}")
+wall(src/law "${outside}|terrain/|grid/|particles/|scene/|solver/|solid/|structured/|water/|observe/")
 wall(src/solver "${outside}|stages/|verify/|bench/|${scene_but_its_data}")
 wall(src/solid "${outside}|stages/|scene/|particles/|verify/|bench/|solver/([^s]|s[^t])")
 wall(src/structured "${outside}|stages/|scene/|particles/|verify/|bench/|solid/")

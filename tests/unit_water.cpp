@@ -3,8 +3,8 @@
 
 #include "catch.h"
 #include "law/bed_law.h"
+#include "law/water_friction.h"
 #include "water/face_flux.h"
-#include "water/water_friction.h"
 
 using namespace frana;
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "base/simd.h"
-#include "scene/scene.h"
+#include "law/bed_parameters.h"
 
 namespace frana {
 

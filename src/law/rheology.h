@@ -5,7 +5,7 @@
 
 #include "base/simd.h"
 #include "law/bed_law.h"
-#include "scene/scene.h"
+#include "law/rheology_parameters.h"
 
 namespace frana {
 

@@ -1,6 +1,6 @@
 // The keys of [water]: free water beside solids that hold together.
+#include "law/free_water.h"
 #include "scene/parameter_makers.h"
-#include "water/free_water.h"
 
 namespace frana {
 

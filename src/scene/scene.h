@@ -7,18 +7,19 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "convert/profile.h"
+#include "law/bed_parameters.h"
+#include "law/free_water.h"
+#include "law/rheology_parameters.h"
 #include "law/solid_law.h"
 #include "law/structured_law.h"
+#include "law/water_friction.h"
 #include "particles/seeds.h"
 #include "scene/insitu.h"
 #include "terrain/holes.h"
 #include "terrain/raster.h"
-#include "water/free_water.h"
-#include "water/water_friction.h"
 
 namespace frana {
 
@@ -30,31 +31,6 @@ enum class Sides { open, wall };
 enum class Transfer { tpic, apic, flip, pic };
 enum class Shape { linear, quadratic, cubic };
 enum class Precision { full, single };  ///< of what points carry: float64, float32
-
-/// Bed laws: shear stress between the flow and its bed (law/bed_law.h has the formulas).
-namespace bed {
-struct None {};
-struct Coulomb { double mu = 0.0; };                                 ///< mu = tan(friction angle) [1]
-struct Voellmy { double mu = 0.0; double xi = 1000.0; };             ///< xi: turbulence coefficient [m/s^2]
-struct Manning { double n = 0.03; double mu = 0.0; };                ///< n: Manning roughness [s/m^(1/3)]
-struct Bingham { double viscosity = 0.0; double yield_stress = 0.0; double mu = 0.0; };  ///< [Pa s], [Pa], [1]
-struct Pouliquen {                                                   ///< mu(I), depth-averaged
-    double mu_s = 0.38;            ///< friction at I -> 0 [1]
-    double mu_2 = 0.65;            ///< friction at I -> infinity [1]
-    double i0 = 0.3;               ///< inertial number scale [1]
-    double grain_diameter = 1e-3;  ///< [m]
-    double solid_fraction = 0.6;   ///< [1]
-};
-}  // namespace bed
-using BedLaw = std::variant<bed::None, bed::Coulomb, bed::Voellmy, bed::Manning, bed::Bingham, bed::Pouliquen>;
-
-/// Rheologies: stress inside the depth-averaged mass.
-namespace rheology {
-struct None {};
-struct Newtonian { double viscosity = 0.0; };                            ///< [Pa s]
-struct Bingham { double viscosity = 0.0; double yield_stress = 0.0; };   ///< [Pa s], [Pa]
-}  // namespace rheology
-using Rheology = std::variant<rheology::None, rheology::Newtonian, rheology::Bingham>;
 
 /// How the equations are solved (solver/THEORY.md), by default on steep terrain; preset "paper" is Fois et al. (2024).
 struct Scheme {

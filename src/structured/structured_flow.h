@@ -12,7 +12,7 @@
 #include "solver/halving.h"
 #include "solver/step_clock.h"
 #include "structured/earth_pressure.h"
-#include "water/free_water.h"
+#include "law/free_water.h"
 #include "structured/ground.h"
 #include "structured/obstacle.h"
 #include "structured/structured_points.h"

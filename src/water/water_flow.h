@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "grid/tile_grid.h"
+#include "law/free_water.h"
+#include "law/water_friction.h"
 #include "observe/frame.h"
 #include "solver/step_clock.h"
-#include "water/free_water.h"
-#include "water/water_friction.h"
 
 namespace frana {
 

@@ -1,9 +1,10 @@
 #pragma once
 // Free water as structured columns meet it: cells around the nodes of the same grid.
+// Numbers of equations: src/water/THEORY.md.
 #include <algorithm>
 
 #include "law/two_phase.h"
-#include "water/water_friction.h"
+#include "law/water_friction.h"
 
 namespace frana {
 

@@ -1,5 +1,5 @@
 #pragma once
-// Friction of water at the bed.
+// Friction of water at the bed. Numbers of equations: src/water/THEORY.md.
 #include <cmath>
 
 namespace frana {
