@@ -10,9 +10,9 @@
 #include "fresh_folder.h"
 #include "observe/barriers.h"
 #include "observe/memory_archive.h"
-#include "solid/distance_field.h"
 #include "stages/staged_run.h"
 #include "stages/walled_columns.h"
+#include "terrain/distance_field.h"
 
 using namespace frana;
 using namespace frana::test;

@@ -3,7 +3,7 @@
 #include "catch.h"
 #include "scene/build_scene.h"
 #include "slope_case.h"
-#include "solid/distance_field.h"
+#include "terrain/distance_field.h"
 
 using namespace frana;
 using namespace frana::test;

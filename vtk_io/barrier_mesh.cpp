@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "solid/mesh_distance.h"
+#include "terrain/mesh_distance.h"
 #include "vtk_io/obj_file.h"
 #include "vtk_io/xml_reading.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "scene/toolbox.h"
-#include "solid/distance_field.h"
+#include "terrain/distance_field.h"
 #include "terrain/triangle_mesh.h"
 
 namespace frana {

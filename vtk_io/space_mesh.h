@@ -10,7 +10,7 @@
 namespace frana {
 
 /// The mesh in pieces of a patch, without those under the ground. The six faces are the sides of a box, towards -x, +x,
-/// -y, +y, -z and +z (solid/distance_field.h): a piece has the pressure of the face that it is turned to, and one
+/// -y, +y, -z and +z (terrain/distance_field.h): a piece has the pressure of the face that it is turned to, and one
 /// between two faces the sum of both, for either may have been booked with a push. Two walls of a mesh that are
 /// turned to the same face one behind the other have one pressure.
 BarrierSolid mesh_solid(const std::vector<LoadedFace>& faces, std::shared_ptr<const TriangleMesh> mesh,

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "solid/contact.h"
+#include "terrain/contact.h"
 #include "terrain/raster.h"
 
 namespace frana {

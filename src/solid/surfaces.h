@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "solid/contact.h"
-#include "solid/distance_field.h"
 #include "solid/prism.h"
+#include "terrain/contact.h"
+#include "terrain/distance_field.h"
 #include "terrain/raster.h"
 
 namespace frana {

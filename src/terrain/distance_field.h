@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "solid/contact.h"
+#include "terrain/contact.h"
 
 namespace frana {
 

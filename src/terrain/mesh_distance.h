@@ -1,5 +1,5 @@
 #pragma once
-#include "solid/distance_field.h"
+#include "terrain/distance_field.h"
 #include "terrain/triangle_mesh.h"
 
 namespace frana {

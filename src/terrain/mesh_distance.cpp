@@ -1,4 +1,4 @@
-#include "solid/mesh_distance.h"
+#include "terrain/mesh_distance.h"
 
 #include <Eigen/Geometry>
 

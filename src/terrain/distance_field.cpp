@@ -1,4 +1,4 @@
-#include "solid/distance_field.h"
+#include "terrain/distance_field.h"
 
 #include <algorithm>
 #include <cmath>
