@@ -3,7 +3,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "grid/stencil.h"
+#include "mpm/stencil.h"
 #include "stages/staged_run.h"
 
 using namespace frana;

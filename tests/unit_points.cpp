@@ -5,8 +5,8 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "grid/stencil.h"
-#include "solver/domain.h"
+#include "mpm/domain.h"
+#include "mpm/stencil.h"
 #include "solver/merge.h"
 #include "solver/split.h"
 

@@ -3,7 +3,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "grid/stencil.h"
+#include "mpm/stencil.h"
 #include "structured/structured_flow.h"
 #include "verify/structured.h"
 

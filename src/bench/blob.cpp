@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 
 namespace frana::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/simd.h"
 #include "base/error.h"
 #include "bench/team_clock.h"
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 
 namespace frana::bench {
 namespace {

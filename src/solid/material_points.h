@@ -2,7 +2,7 @@
 // The material points of the 3D model: one array per quantity, sorted by tile.
 #include <array>
 
-#include "grid/point_order.h"
+#include "mpm/point_order.h"
 #include "solid/space_grid.h"
 
 namespace frana {

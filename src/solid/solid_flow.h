@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "law/solid_law.h"
+#include "mpm/step_clock.h"
 #include "observe/frame.h"
 #include "solid/face_ledger.h"
 #include "solid/material_points.h"
 #include "solid/node_block.h"
 #include "solid/spline.h"
 #include "solid/surfaces.h"
-#include "solver/step_clock.h"
 
 namespace frana {
 

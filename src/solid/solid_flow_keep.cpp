@@ -1,7 +1,7 @@
 // The state of a body of points between two steps, as it is kept and taken up again: the points in their
 // order with the tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
+#include "mpm/stored_points.h"
 #include "solid/solid_flow.h"
-#include "solver/stored_points.h"
 
 namespace frana {
 namespace {

@@ -1,12 +1,12 @@
 #pragma once
 // The background grid in space: nodes in tiles of 8 x 8 x 8, each tile one stretch of memory, with a ring of
-// spare tiles around the domain. As in the plane (grid/tile_grid.h), only tiles near material are ever
+// spare tiles around the domain. As in the plane (mpm/tile_grid.h), only tiles near material are ever
 // touched.
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 
 namespace frana {
 

@@ -2,7 +2,7 @@
 // The bed as the solver sees it: static, computed once, one number per node and quantity. THEORY (5) to (7).
 #include <array>
 
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 #include "scene/scene.h"
 
 namespace frana {

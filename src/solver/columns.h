@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/staggered.h"
-#include "grid/point_order.h"
-#include "grid/tile_grid.h"
+#include "mpm/point_order.h"
+#include "mpm/tile_grid.h"
 
 namespace frana {
 

@@ -6,7 +6,7 @@
 
 #include "base/flush_denormals.h"
 #include "base/step_length.h"
-#include "grid/stencil.h"
+#include "mpm/stencil.h"
 #include "solver/lateral.h"
 #include "solver/shock.h"
 

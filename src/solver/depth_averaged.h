@@ -3,13 +3,13 @@
 #include <memory>
 #include <optional>
 
+#include "mpm/step_clock.h"
 #include "solver/kick.h"
 #include "solver/mass_fit.h"
 #include "solver/merge.h"
 #include "solver/peaks.h"
 #include "solver/simulation.h"
 #include "solver/split.h"
-#include "solver/step_clock.h"
 #include "solver/surface.h"
 #include "solver/transfer.h"
 

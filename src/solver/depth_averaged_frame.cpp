@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "base/simd.h"
-#include "grid/stencil.h"
 #include "law/rheology.h"
+#include "mpm/stencil.h"
 #include "solver/depth_averaged.h"
 #include "solver/sheet.h"
 

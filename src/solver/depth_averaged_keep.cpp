@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
+#include "mpm/stored_points.h"
 #include "solver/depth_averaged.h"
-#include "solver/stored_points.h"
 
 namespace frana {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 // Everything the phases of a depth-averaged step share.
 #include "base/error.h"
-#include "grid/node_groups.h"
-#include "grid/tile_grid.h"
+#include "mpm/node_groups.h"
+#include "mpm/tile_grid.h"
 #include "scene/scene.h"
 #include "solver/bed_geometry.h"
 #include "solver/columns.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "grid/stencil.h"
-#include "solver/domain.h"
+#include "mpm/domain.h"
+#include "mpm/stencil.h"
 #include "solver/surface.h"
 #include "solver/transfer.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "solver/domain.h"
+#include "mpm/domain.h"
 
 namespace frana {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 
 namespace frana {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Four points at once: their masses, momenta and stresses on the nodes, point after point.
-#include "grid/stencils.h"
 #include "law/rheology.h"
+#include "mpm/stencils.h"
 #include "solver/nodes.h"
 
 namespace frana {

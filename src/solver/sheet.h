@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/simd.h"
-#include "grid/stencils.h"
+#include "mpm/stencils.h"
 #include "solver/flow.h"
 
 namespace frana {

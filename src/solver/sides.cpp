@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/domain.h"
+#include "mpm/domain.h"
 
 namespace frana {
 

@@ -2,7 +2,8 @@
 #include <utility>
 #include <vector>
 
-#include "solver/halving.h"
+#include "mpm/halving.h"
+#include "solver/flow.h"
 
 namespace frana {
 

@@ -2,8 +2,8 @@
 // The columns' mass on the nodes, from sub-points that follow the material: what the depth is made of.
 #include <algorithm>
 
-#include "grid/stencil.h"
-#include "solver/domain.h"
+#include "mpm/domain.h"
+#include "mpm/stencil.h"
 #include "solver/flow.h"
 
 namespace frana {

@@ -1,6 +1,6 @@
 #pragma once
 // Four points at once: their columns on the nodes, from their sub-points (sub_points.h), and gradients as they feel them.
-#include "grid/stencils.h"
+#include "mpm/stencils.h"
 #include "solver/sub_points.h"
 
 namespace frana {
@@ -8,7 +8,7 @@ namespace frana {
 /// Edges of the domains of four points [cells].
 struct Domains { Double4 r1x, r1y, r2x, r2y; };
 
-/// Gradients as domains feel them (domain.h): few points are so narrow that it matters.
+/// Gradients as domains feel them (mpm/domain.h): few points are so narrow that it matters.
 [[gnu::always_inline]] inline void limit_gradients(const Domains& r, Double4& cxx, Double4& cxy, Double4& cyx, Double4& cyy) {
     constexpr double least = 1.01 / 256.0;  // of 12 times the smaller moment; a little early
     const Double4 xx = r.r1x * r.r1x + r.r2x * r.r2x, yy = r.r1y * r.r1y + r.r2y * r.r2y, xy = r.r1x * r.r1y + r.r2x * r.r2y;

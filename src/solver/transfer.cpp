@@ -4,9 +4,9 @@
 #include <cstring>
 
 #include "base/simd.h"
-#include "grid/stencil.h"
 #include "law/rheology.h"
-#include "solver/domain.h"
+#include "mpm/domain.h"
+#include "mpm/stencil.h"
 #include "solver/sheet.h"
 #include "solver/sides.h"
 #include "solver/sub_points.h"

@@ -5,14 +5,14 @@
 
 #include "base/simd.h"
 #include "base/touch.h"
-#include "grid/stencils.h"
 #include "law/rheology.h"
-#include "solver/domain.h"
+#include "mpm/domain.h"
+#include "mpm/stencils.h"
+#include "mpm/tile_points.h"
 #include "solver/scatter_four.h"
 #include "solver/sheet.h"
 #include "solver/sides.h"
 #include "solver/sub_points_of_four.h"
-#include "solver/tile_points.h"
 
 namespace frana {
 namespace {

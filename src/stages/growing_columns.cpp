@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "mpm/stored_points.h"
 #include "scene/bed_smoothing.h"
 #include "scene/memory_need.h"
 #include "scene/remarks.h"
-#include "solver/stored_points.h"
 #include "terrain/holes.h"
 #include "terrain/part_of.h"
 

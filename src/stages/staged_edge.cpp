@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grid/stencil.h"
+#include "mpm/stencil.h"
 #include "stages/staged_run.h"
 #include "stages/start_pressure.h"
 

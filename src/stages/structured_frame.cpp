@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "grid/stencil.h"
+#include "mpm/stencil.h"
 #include "particles/bed_points.h"
 #include "stages/structured_run.h"
 

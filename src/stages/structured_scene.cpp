@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "base/error.h"
-#include "grid/stencil.h"
+#include "mpm/stencil.h"
 #include "particles/bed_points.h"
 #include "stages/structured_run.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "base/touch.h"
-#include "grid/stencils.h"
-#include "solver/tile_points.h"
+#include "mpm/stencils.h"
+#include "mpm/tile_points.h"
 #include "structured/structured_flow.h"
 
 namespace frana {

@@ -1,6 +1,6 @@
 // The state of structured columns between two steps, as it is kept and taken up again: the columns in their order
 // with the tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
-#include "solver/stored_points.h"
+#include "mpm/stored_points.h"
 #include "structured/structured_flow.h"
 
 namespace frana {

@@ -3,7 +3,7 @@
 // tile.
 #include <array>
 
-#include "grid/point_order.h"
+#include "mpm/point_order.h"
 
 namespace frana {
 

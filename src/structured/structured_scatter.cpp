@@ -2,9 +2,9 @@
 #include <algorithm>
 
 #include "base/touch.h"
+#include "mpm/tile_points.h"
 #include "solver/scatter_four.h"
 #include "solver/sub_points_of_four.h"
-#include "solver/tile_points.h"
 #include "structured/structured_flow.h"
 
 namespace frana {

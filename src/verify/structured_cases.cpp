@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "grid/stencil.h"
+#include "mpm/stencil.h"
 
 namespace frana::verify {
 namespace {

@@ -5,11 +5,11 @@
 #include <functional>
 #include <vector>
 
-#include "grid/tile_grid.h"
 #include "law/free_water.h"
 #include "law/water_friction.h"
+#include "mpm/step_clock.h"
+#include "mpm/tile_grid.h"
 #include "observe/frame.h"
-#include "solver/step_clock.h"
 
 namespace frana {
 

@@ -87,6 +87,9 @@ private:
     Index tiles_x_, tiles_y_, stride_;
 };
 
+/// Gathers at rest before a tile sleeps: two rounds of splitting and merging that found nothing to do.
+constexpr std::uint8_t kAsleep = 6;
+
 /// Tiles that hold particles (with their ranges), those tiles grown by one (the work list of node loops), and the
 /// particle tiles by colour: tiles of one colour share no node, so that they scatter at once without locks and
 /// every sum has one order, whatever the number of threads.

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/simd.h"
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 
 namespace frana {
 

@@ -1,4 +1,4 @@
-#include "solver/step_clock.h"
+#include "mpm/step_clock.h"
 
 namespace frana {
 

@@ -1,11 +1,11 @@
 #pragma once
-// The quadratic shape function of four points at once (grid/stencil.h has one point's).
+// The quadratic shape function of four points at once (mpm/stencil.h has one point's).
 #include "base/simd.h"
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 
 namespace frana {
 
-/// Quadratic B-splines (grid/stencil.h) of four points in one direction.
+/// Quadratic B-splines (mpm/stencil.h) of four points in one direction.
 struct Stencils {
     Int4 first;      ///< node of the first weight, counted from the storage's first
     Double4 offset;  ///< position minus first node, 1/2 to 3/2

@@ -1,4 +1,4 @@
-#include "solver/domain.h"
+#include "mpm/domain.h"
 
 #include <cmath>
 

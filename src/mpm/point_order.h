@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/staggered.h"
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 
 namespace frana {
 

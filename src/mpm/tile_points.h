@@ -1,6 +1,6 @@
 #pragma once
 // The points of a tile four at a time, and the nodes that they reach.
-#include "solver/flow.h"
+#include "mpm/tile_grid.h"
 
 namespace frana {
 

@@ -1,4 +1,4 @@
-#include "grid/point_order.h"
+#include "mpm/point_order.h"
 
 #include <omp.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "grid/tile_grid.h"
+#include "mpm/tile_grid.h"
 #include "observe/archive.h"
 
 namespace frana {

@@ -1,12 +1,13 @@
 #pragma once
-// Halving points whose domains have grown, of any model that has columns with the names of columns.h (Points; Held: where
-// what they carry lies).
+// Halving points whose domains have grown, of any model that has columns with the names of solver/columns.h (Points; Held: where
+// what they carry lies). Numbers of equations: src/solver/THEORY.md.
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/simd.h"
-#include "solver/domain.h"
-#include "solver/flow.h"
+#include "mpm/domain.h"
+#include "mpm/tile_grid.h"
 
 namespace frana {
 
