@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/checkpoint_file.h"
-#include "observe/state_keeper.h"
+#include "run/state_keeper.h"
 #include "scene/case_file.h"
 #include "scene/scene.h"
 

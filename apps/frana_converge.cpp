@@ -19,7 +19,7 @@
 #include "frana_run_folder.h"
 #include "frana_run_lock.h"
 #include "io/gdal_reader.h"
-#include "observe/interrupt.h"
+#include "run/interrupt.h"
 #include "scene/build_scene.h"
 #include "terrain/part_of.h"
 #include "vtk_io/barrier_mesh.h"

@@ -12,8 +12,8 @@
 #include "frana_run_job.h"
 #include "frana_run_lock.h"
 #include "io/gdal_reader.h"
+#include "run/simulation.h"
 #include "scene/build_scene.h"
-#include "solver/simulation.h"
 #include "vtk_io/barrier_mesh.h"
 #include "vtk_io/writers.h"
 

@@ -23,7 +23,7 @@
 #include "observe/history.h"
 #include "observe/only_fields.h"
 #include "observe/profiles.h"
-#include "solver/simulation.h"
+#include "run/simulation.h"
 #include "terrain/part_of.h"
 #include "vtk_io/survey_vtp.h"
 #include "vtk_io/writers.h"

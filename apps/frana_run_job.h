@@ -6,7 +6,7 @@
 #include "frana_checkpoint.h"
 #include "frana_products.h"
 #include "frana_run_record.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 #include "scene/scene.h"
 
 namespace frana {

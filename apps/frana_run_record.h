@@ -9,7 +9,7 @@
 #include "frana_checkpoint.h"
 #include "observe/barriers.h"
 #include "observe/insitu.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 #include "scene/scene.h"
 
 namespace frana {

@@ -11,7 +11,7 @@
 #include "frana_stress_figure.h"
 #include "frana_stress_save.h"
 #include "io/gdal_reader.h"
-#include "observe/interrupt.h"
+#include "run/interrupt.h"
 #include "scene/build_scene.h"
 #include "stress/campaign.h"
 #include "stress/draw.h"

@@ -4,7 +4,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "observe/memory_archive.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 
 using namespace frana;
 using namespace frana::test;

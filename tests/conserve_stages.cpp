@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "observe/memory_archive.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 #include "stages/staged_run.h"
 #include "terrain/holes.h"
 

@@ -6,7 +6,7 @@
 #include "catch.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 #include "stages/structured_run.h"
 
 using namespace frana;

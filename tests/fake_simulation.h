@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "solver/simulation.h"
+#include "run/simulation.h"
 
 namespace frana {
 

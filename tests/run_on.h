@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "observe/rest_rule.h"
+#include "run/rest_rule.h"
 #include "solver/depth_averaged.h"
 
 namespace frana::test {

@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "catch.h"
 #include "observe/memory_archive.h"
-#include "observe/memory_state.h"
-#include "observe/run_loop.h"
+#include "run/memory_state.h"
+#include "run/run_loop.h"
 #include "stages/growing_columns.h"
 #include "terrain/holes.h"
 

@@ -8,8 +8,8 @@
 #include "fresh_folder.h"
 #include "observe/insitu.h"
 #include "observe/insitu_tables.h"
-#include "observe/run_loop.h"
 #include "observe/table.h"
+#include "run/run_loop.h"
 
 using namespace frana;
 namespace fs = std::filesystem;

@@ -9,7 +9,7 @@
 #include "observe/insitu.h"
 #include "observe/insitu_tables.h"
 #include "observe/memory_archive.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 
 using namespace frana;
 using Catch::Contains;

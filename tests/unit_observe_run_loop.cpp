@@ -3,7 +3,7 @@
 
 #include "catch.h"
 #include "fake_simulation.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 
 using namespace frana;
 

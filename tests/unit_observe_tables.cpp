@@ -6,7 +6,7 @@
 #include "observe/gauges.h"
 #include "observe/history.h"
 #include "observe/profiles.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 
 using namespace frana;
 

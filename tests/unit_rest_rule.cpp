@@ -5,7 +5,7 @@
 #include "catch.h"
 #include "fake_simulation.h"
 #include "observe/memory_archive.h"
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 #include "run_on.h"
 
 using namespace frana;

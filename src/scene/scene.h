@@ -1,6 +1,6 @@
 #pragma once
 // The checked, plain description of one run: SI units, no files, no text to parse. `build_scene` makes it from a
-// case file (scene/build_scene.h); `make_simulation` turns it into a solver (solver/simulation.h).
+// case file (scene/build_scene.h); `make_simulation` turns it into a solver (run/simulation.h).
 #include <array>
 #include <filesystem>
 #include <functional>

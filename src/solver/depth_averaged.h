@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "mpm/step_clock.h"
+#include "run/simulation.h"
 #include "solver/kick.h"
 #include "solver/mass_fit.h"
 #include "solver/merge.h"
 #include "solver/peaks.h"
-#include "solver/simulation.h"
 #include "solver/split.h"
 #include "solver/surface.h"
 #include "solver/transfer.h"

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "mixture/two_phase_flow.h"
+#include "run/simulation.h"
 #include "scene/scene.h"
-#include "solver/simulation.h"
 #include "structured/breakage.h"
 #include "structured/structured_map.h"
 

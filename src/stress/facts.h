@@ -2,7 +2,7 @@
 // What of a scene decides on which invariants hold, and how well.
 #include <limits>
 
-#include "solver/simulation.h"
+#include "run/simulation.h"
 #include "stress/draft.h"
 
 namespace frana::stress {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/simulation.h"
+#include "run/simulation.h"
 
 namespace frana::stress {
 

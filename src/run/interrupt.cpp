@@ -1,4 +1,4 @@
-#include "observe/interrupt.h"
+#include "run/interrupt.h"
 
 #include "base/error.h"
 

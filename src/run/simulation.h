@@ -7,7 +7,7 @@
 #include "observe/archive.h"
 #include "observe/frame.h"
 #include "observe/observer.h"
-#include "observe/rest_rule.h"
+#include "run/rest_rule.h"
 
 namespace frana {
 

@@ -1,9 +1,9 @@
-#include "observe/memory_state.h"
+#include "run/memory_state.h"
 
 #include <cstring>
 
 #include "base/error.h"
-#include "solver/simulation.h"
+#include "run/simulation.h"
 
 namespace frana {
 namespace {

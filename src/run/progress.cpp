@@ -1,4 +1,4 @@
-#include "observe/progress.h"
+#include "run/progress.h"
 
 #include <fmt/core.h>
 #include <sys/ioctl.h>

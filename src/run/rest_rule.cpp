@@ -1,9 +1,9 @@
-#include "observe/rest_rule.h"
+#include "run/rest_rule.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "solver/simulation.h"
+#include "run/simulation.h"
 
 namespace frana {
 namespace {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "observe/budget.h"
-#include "observe/interrupt.h"
 #include "observe/observer.h"
-#include "observe/progress.h"
-#include "observe/rest_rule.h"
-#include "observe/state_keeper.h"
+#include "run/interrupt.h"
+#include "run/progress.h"
+#include "run/rest_rule.h"
+#include "run/state_keeper.h"
 
 namespace frana {
 

@@ -1,4 +1,4 @@
-#include "observe/run_loop.h"
+#include "run/run_loop.h"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "base/error.h"
-#include "observe/memory_state.h"
-#include "solver/simulation.h"
+#include "run/memory_state.h"
+#include "run/simulation.h"
 
 namespace frana {
 namespace {
