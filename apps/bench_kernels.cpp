@@ -5,8 +5,8 @@
 #include <omp.h>
 
 #include "bench/blob.h"
-#include "solver/depth_averaged.h"
-#include "solver/shock.h"
+#include "shallow/depth_averaged.h"
+#include "shallow/shock.h"
 
 namespace {
 

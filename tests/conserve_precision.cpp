@@ -9,7 +9,7 @@
 
 #include "bench/blob.h"
 #include "bench/measure.h"
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 #include "verify/trial.h"
 
 using namespace frana;

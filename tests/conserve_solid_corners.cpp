@@ -2,7 +2,7 @@
 #include <random>
 
 #include "catch.h"
-#include "solid/solid_flow.h"
+#include "solid3d/solid_flow.h"
 
 using namespace frana;
 

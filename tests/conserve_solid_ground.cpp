@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "catch.h"
-#include "solid/bed_height.h"
+#include "solid3d/bed_height.h"
 #include "solid_maker.h"
 
 using namespace frana;

@@ -36,7 +36,7 @@ Vec3 corner_of(const TriangleMesh& mesh, std::size_t triangle, std::size_t k) {
     return mesh.points[static_cast<std::size_t>(mesh.triangles[triangle][k])];
 }
 
-/// The six sides of a box around it as the model in space hands them out (solid/face_ledger.h), in squares of 0.5 m.
+/// The six sides of a box around it as the model in space hands them out (solid3d/face_ledger.h), in squares of 0.5 m.
 std::vector<PatchedFace> box() {
     const double low[3] = {24, 3, 7}, size[3] = {11, 14, 7};
     std::vector<PatchedFace> faces;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "run/rest_rule.h"
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 
 namespace frana::test {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "catch.h"
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 #include "stress/campaign.h"
 #include "stress/cfl_map.h"
 #include "stress/draw.h"

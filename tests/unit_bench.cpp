@@ -10,7 +10,7 @@
 #include "bench/traffic.h"
 #include "catch.h"
 #include "fresh_folder.h"
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 
 using namespace frana;
 

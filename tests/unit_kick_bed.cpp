@@ -1,7 +1,7 @@
 // The terrain under a kick, at one node, against its formulas.
 #include "analytic_scene.h"
 #include "catch.h"
-#include "solver/kick_bed.h"
+#include "shallow/kick_bed.h"
 
 using namespace frana;
 

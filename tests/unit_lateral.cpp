@@ -1,7 +1,7 @@
 // Drag between neighbouring material of different velocity.
 #include "analytic_scene.h"
 #include "catch.h"
-#include "solver/lateral.h"
+#include "shallow/lateral.h"
 
 using namespace frana;
 using namespace frana::test;

@@ -4,7 +4,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 
 using namespace frana;
 

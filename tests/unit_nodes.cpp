@@ -1,8 +1,8 @@
 // Parts of the step on a few nodes and points, against what they should give.
 #include "analytic_scene.h"
 #include "catch.h"
-#include "solver/peaks.h"
-#include "solver/sides.h"
+#include "shallow/peaks.h"
+#include "shallow/sides.h"
 
 using namespace frana;
 using namespace frana::test;

@@ -2,9 +2,9 @@
 #include <omp.h>
 
 #include "catch.h"
-#include "solid/pieces.h"
-#include "solid/solid_flow.h"
-#include "solid/split_points.h"
+#include "solid3d/pieces.h"
+#include "solid3d/solid_flow.h"
+#include "solid3d/split_points.h"
 #include "solid_maker.h"
 
 using namespace frana;

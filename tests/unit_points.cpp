@@ -7,8 +7,8 @@
 #include "catch.h"
 #include "mpm/domain.h"
 #include "mpm/stencil.h"
-#include "solver/merge.h"
-#include "solver/split.h"
+#include "shallow/merge.h"
+#include "shallow/split.h"
 
 using namespace frana;
 

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "catch.h"
-#include "solid/face_ledger.h"
+#include "solid3d/face_ledger.h"
 
 using namespace frana;
 

@@ -1,8 +1,8 @@
 // Rigid surfaces in space: distances, mirror images, shares of an impulse.
 #include "catch.h"
 #include "law/solid_law.h"
-#include "solid/image_batch.h"
-#include "solid/surfaces.h"
+#include "solid3d/image_batch.h"
+#include "solid3d/surfaces.h"
 
 using namespace frana;
 

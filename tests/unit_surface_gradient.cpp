@@ -4,8 +4,8 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "solver/depth_averaged.h"
-#include "solver/surface_gradient.h"
+#include "shallow/depth_averaged.h"
+#include "shallow/surface_gradient.h"
 
 using namespace frana;
 

@@ -3,7 +3,7 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
-#include "solver/transfer.h"
+#include "shallow/transfer.h"
 #include "terrain/holes.h"
 
 using namespace frana;

@@ -2,7 +2,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "law/bed_law.h"
-#include "solver/transfer.h"
+#include "shallow/transfer.h"
 
 using namespace frana;
 

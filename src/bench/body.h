@@ -1,5 +1,5 @@
 #pragma once
-#include "solid/solid_flow.h"
+#include "solid3d/solid_flow.h"
 
 namespace frana::bench {
 

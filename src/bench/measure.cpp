@@ -6,7 +6,7 @@
 
 #include "bench/team_clock.h"
 #include "bench/traffic.h"
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 #include "stages/structured_run.h"
 
 namespace frana::bench {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "solid/solid_flow.h"
-#include "solver/columns.h"
+#include "shallow/columns.h"
+#include "solid3d/solid_flow.h"
 #include "structured/structured_points.h"
 
 namespace frana::bench {

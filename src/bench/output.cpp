@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "bench/blob.h"
 #include "bench/team_clock.h"
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 
 namespace frana::bench {
 namespace {

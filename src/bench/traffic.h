@@ -2,8 +2,8 @@
 // How many bytes each phase of a step has to move, from what it reads and writes: a model, not a measurement.
 #include <string>
 
-#include "solid/solid_flow.h"
-#include "solver/flow.h"
+#include "shallow/flow.h"
+#include "solid3d/solid_flow.h"
 #include "structured/structured_flow.h"
 
 namespace frana::bench {

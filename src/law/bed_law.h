@@ -1,7 +1,7 @@
 #pragma once
 // Bed friction: for each law the exact or implicit solution of one time step. A law only ever slows a node down;
 // it may stop it, it never turns it round, and a node at rest stays at rest to the last bit until driven hard enough.
-// Numbers of equations: src/solver/THEORY.md, section 9.
+// Numbers of equations: src/shallow/THEORY.md, section 9.
 #include <algorithm>
 #include <cmath>
 #include <type_traits>

@@ -1,5 +1,5 @@
 #pragma once
-// The step in which bed friction ends a motion: src/solver/THEORY.md (48).
+// The step in which bed friction ends a motion: src/shallow/THEORY.md (48).
 #include "law/bed_law.h"
 
 namespace frana {

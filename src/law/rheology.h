@@ -1,6 +1,6 @@
 #pragma once
 // Stress inside the depth-averaged mass, from the strain rate of a point. Pressure is not part of it.
-// Numbers of equations: src/solver/THEORY.md, section 7.
+// Numbers of equations: src/shallow/THEORY.md, section 7.
 #include <cmath>
 
 #include "base/simd.h"

@@ -57,7 +57,7 @@ template <class Real>
     return logarithm_series<9>(a);
 }
 
-/// What becomes (src/solid/THEORY.md, 20) of the logarithmic strain e by an elastic deformation F = I + g: ln(F exp(2
+/// What becomes (src/solid3d/THEORY.md, 20) of the logarithmic strain e by an elastic deformation F = I + g: ln(F exp(2
 /// e) F^T) / 2, to round-off. With exp(2 e) = I + b: F (I + b) F^T - I = b + g (I + b) + (g (I + b))^T + g (I + b) g^T,
 /// small numbers among themselves.
 template <class Real>

@@ -1,6 +1,6 @@
 #pragma once
 // A point's domain: the parallelogram of its edges r1, r2, known to the rest of the scheme by its second moments.
-// src/solver/THEORY.md (53).
+// src/shallow/THEORY.md (53).
 #include <cmath>
 
 #include "base/types.h"
@@ -15,7 +15,7 @@ struct Edges {
     double area() const { return r1x * r2y - r1y * r2x; }  ///< with its sign [cells^2]
 };
 
-/// Those of point p (Held: Carried of solver/columns.h).
+/// Those of point p (Held: Carried of shallow/columns.h).
 template <class Held>
 Edges edges_of(const Held& held, Index p) {
     return {held.r1x[p], held.r1y[p], held.r2x[p], held.r2y[p]};

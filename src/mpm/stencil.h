@@ -1,5 +1,5 @@
 #pragma once
-// Shape functions: which nodes a point touches, with which weights and slopes. src/solver/THEORY.md (8) to (10).
+// Shape functions: which nodes a point touches, with which weights and slopes. src/shallow/THEORY.md (8) to (10).
 #include <cmath>
 
 #include "base/types.h"

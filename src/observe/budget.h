@@ -7,7 +7,7 @@
 
 namespace frana {
 
-/// Residuals (src/solver/THEORY.md, 60 and 61) of the three balances between a first status and a later one of the same
+/// Residuals (src/shallow/THEORY.md, 60 and 61) of the three balances between a first status and a later one of the same
 /// run.
 struct Budget {
     double mass_error = 0.0;                    ///< (m + m_left - m_0) / m_0 [1]

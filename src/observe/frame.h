@@ -73,7 +73,7 @@ struct Breakage {
     double sub_cycling = 1.0;    ///< steps for each that the depth-averaged flow would need
 };
 
-/// What points in space have come apart into (solid/pieces.h), at the last output and where it was most.
+/// What points in space have come apart into (solid3d/pieces.h), at the last output and where it was most.
 struct PointsApart {
     Index pieces = 0;            ///< points of different ones are more than a cell apart
     double apart = 0.0;          ///< share of their mass outside the largest [1]

@@ -32,7 +32,7 @@ enum class Transfer { tpic, apic, flip, pic };
 enum class Shape { linear, quadratic, cubic };
 enum class Precision { full, single };  ///< of what points carry: float64, float32
 
-/// How the equations are solved (solver/THEORY.md), by default on steep terrain; preset "paper" is Fois et al. (2024).
+/// How the equations are solved (shallow/THEORY.md), by default on steep terrain; preset "paper" is Fois et al. (2024).
 struct Scheme {
     std::string preset = "default";
     Shape shape = Shape::quadratic;
@@ -68,7 +68,7 @@ struct Profile { std::string name; Polyline line; };
 /// A named point at which the flow is recorded every step.
 struct Gauge { std::string name; Vec2 point{0, 0}; };
 
-/// From a time on, the material in a window of the map is points in space (solid/solid_flow.h); what flows into the
+/// From a time on, the material in a window of the map is points in space (solid3d/solid_flow.h); what flows into the
 /// window later becomes points as it crosses the edge, and what flows out of it columns.
 struct SolidStage {
     double from = 0.0;                 ///< [s]

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "particles/bed_points.h"
-#include "solid/face_ledger.h"
+#include "solid3d/face_ledger.h"
 
 namespace frana {
 namespace {

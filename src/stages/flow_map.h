@@ -7,7 +7,7 @@
 #include "observe/archive.h"
 #include "observe/observer.h"
 #include "scene/scene.h"
-#include "solid/solid_flow.h"
+#include "solid3d/solid_flow.h"
 
 namespace frana {
 
@@ -18,7 +18,7 @@ public:
         double mass = 0.0;       ///< [kg]
         Vec3 momentum{0, 0, 0};  ///< [kg m/s]
     };
-    /// What a node ever saw; the same quantities as of the depth-averaged model (solver/peaks.h). The
+    /// What a node ever saw; the same quantities as of the depth-averaged model (shallow/peaks.h). The
     /// pressure is the weight of what stands there, normal to the bed.
     struct Peak {
         double depth = 0.0, speed = 0.0, pressure = 0.0, dynamic_pressure = 0.0;

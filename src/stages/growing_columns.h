@@ -1,6 +1,6 @@
 #pragma once
 // Columns on a part of a large terrain, which grows before they come near its edge.
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 
 namespace frana {
 

@@ -5,7 +5,7 @@
 
 #include "convert/solid_points.h"
 #include "scene/scene.h"
-#include "solid/solid_flow.h"
+#include "solid3d/solid_flow.h"
 
 namespace frana {
 

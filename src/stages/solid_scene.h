@@ -2,7 +2,7 @@
 // The scene in space that a stage of a case describes.
 #include "convert/flow_columns.h"
 #include "scene/scene.h"
-#include "solid/solid_flow.h"
+#include "solid3d/solid_flow.h"
 
 namespace frana {
 

@@ -9,7 +9,7 @@
 #include "observe/archive.h"
 #include "particles/bed_points.h"
 #include "scene/scene.h"
-#include "solid/solid_flow.h"
+#include "solid3d/solid_flow.h"
 
 namespace frana {
 

@@ -1,7 +1,7 @@
 // What the points of a run in stages have come apart into, at its output times.
 #include <fmt/core.h>
 
-#include "solid/pieces.h"
+#include "solid3d/pieces.h"
 #include "stages/staged_run.h"
 
 namespace frana {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 #include "stages/barriers.h"
 #include "stages/flow_map.h"
 #include "stages/hand_over.h"

@@ -1,6 +1,6 @@
 #pragma once
 // Columns among barriers: they take them for ground, and what runs up and over is watched.
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 #include "stages/barriers.h"
 
 namespace frana {

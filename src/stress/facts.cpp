@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/compensated_sum.h"
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 #include "stages/staged_run.h"
 #include "stages/structured_run.h"
 #include "stages/walled_columns.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 #include "stages/structured_run.h"
 
 namespace frana::stress {

@@ -1,6 +1,6 @@
-// The free surface of grains, by the phases of the depth-averaged flow (solver/surface.h, shock.h).
-#include "solver/shock.h"
-#include "solver/surface.h"
+// The free surface of grains, by the phases of the depth-averaged flow (shallow/surface.h, shock.h).
+#include "shallow/shock.h"
+#include "shallow/surface.h"
 #include "structured/structured_flow.h"
 
 namespace frana {

@@ -2,8 +2,8 @@
 // What drives and brakes the columns of a node (Real: double) or of four in a row (Double4).
 #include "base/simd.h"
 #include "law/bed_stop.h"
-#include "solver/kick_bed.h"
-#include "solver/surface_gradient.h"
+#include "shallow/kick_bed.h"
+#include "shallow/surface_gradient.h"
 #include "structured/structured_flow.h"
 
 namespace frana {
@@ -103,7 +103,7 @@ struct GrainsOf {
     return {wide_gradients(flow, k, 1), wide_gradients(flow, k, flow.grid.stride())};
 }
 
-/// Acceleration by the artificial viscosity at bores (solver/shock.h), as in the depth-averaged flow's kick [m/s^2].
+/// Acceleration by the artificial viscosity at bores (shallow/shock.h), as in the depth-averaged flow's kick [m/s^2].
 [[gnu::always_inline]] inline FlatOf<double> viscous_push(const Flow& flow, Index k, double) {
     const double depth = flow.nodes.depth[k];
     if (!(depth > 1e-12 * flow.cell)) return {0.0, 0.0};

@@ -8,7 +8,7 @@
 #include "law/bed_law.h"
 #include "law/structured_law.h"
 #include "observe/frame.h"
-#include "solver/flow.h"
+#include "shallow/flow.h"
 #include "mpm/halving.h"
 #include "mpm/step_clock.h"
 #include "structured/earth_pressure.h"

@@ -2,14 +2,14 @@
 // Structured solids and their free water seen from above: depth and velocity on the nodes, and what each node ever saw.
 #include "observe/archive.h"
 #include "structured/structured_flow.h"
-#include "solver/bed_geometry.h"
+#include "shallow/bed_geometry.h"
 #include "water/water_flow.h"
 
 namespace frana {
 
 class StructuredMap {
 public:
-    /// What a node ever saw; the same quantities as of the depth-averaged model (solver/peaks.h).
+    /// What a node ever saw; the same quantities as of the depth-averaged model (shallow/peaks.h).
     struct Peak {
         double depth, speed, pressure, dynamic_pressure;  ///< [m], [m/s], [Pa], [Pa]
         double arrival;  ///< first time deeper than the footprint depth; valid where depth is [s]

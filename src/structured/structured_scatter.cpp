@@ -3,8 +3,8 @@
 
 #include "base/touch.h"
 #include "mpm/tile_points.h"
-#include "solver/scatter_four.h"
-#include "solver/sub_points_of_four.h"
+#include "shallow/scatter_four.h"
+#include "shallow/sub_points_of_four.h"
 #include "structured/structured_flow.h"
 
 namespace frana {

@@ -2,7 +2,7 @@
 // Building scenes in space for verification problems, and running them.
 #include <functional>
 
-#include "solid/solid_flow.h"
+#include "solid3d/solid_flow.h"
 #include "verify/problem.h"
 
 namespace frana::verify {

@@ -1,6 +1,6 @@
 #pragma once
 // Building a problem's scene, running it, and holding the end state against exact fields.
-#include "solver/depth_averaged.h"
+#include "shallow/depth_averaged.h"
 #include "verify/problem.h"
 
 namespace frana::verify {

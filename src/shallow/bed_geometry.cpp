@@ -1,0 +1,233 @@
+#include "shallow/bed_geometry.h"
+
+#include <algorithm>
+#include <deque>
+
+#include "base/error.h"
+#include "scene/bed_smoothing.h"
+
+namespace frana {
+namespace {
+
+/// A rectangle of storage rows and columns on which static fields are computed; all loops run over it.
+struct Window {
+    const TileGrid& grid;
+    Index i0() const { return -kTile; }
+    Index j0() const { return -kTile; }
+    Index i1() const { return grid.tiles_x() * kTile - kTile; }
+    Index j1() const { return grid.tiles() / grid.tiles_x() * kTile - kTile; }
+};
+
+template <class Body>
+void for_each_node(const TileGrid& grid, Index margin, Body&& body) {
+    const Window window{grid};
+#pragma omp parallel for schedule(static)
+    for (Index j = window.j0() + margin; j < window.j1() - margin; ++j)
+        for (Index i = window.i0() + margin; i < window.i1() - margin; ++i) body(i, j, grid.at(i, j));
+}
+
+/// Elevation of the nearest node that has one (breadth first from the known nodes), so that shape functions
+/// near the edge of the data have something to average.
+std::vector<double> filled(const Raster& bed) {
+    const Index nx = bed.geometry.nx, ny = bed.geometry.ny;
+    std::vector<double> z = bed.values;
+    std::deque<Index> front;
+    bool any_missing = false;
+    for (Index k = 0; k < nx * ny; ++k) {
+        if (std::isnan(z[k])) any_missing = true;
+        else front.push_back(k);
+    }
+    if (front.empty())
+        throw UserError(bed.source + ": the elevation model holds no data in the window; choose another window");
+    if (!any_missing) return z;
+    while (!front.empty()) {
+        const Index k = front.front(), i = k % nx, j = k / nx;
+        front.pop_front();
+        const auto spread = [&](Index neighbour) {
+            if (!std::isnan(z[neighbour])) return;
+            z[neighbour] = z[k];
+            front.push_back(neighbour);
+        };
+        if (i > 0) spread(k - 1);
+        if (i + 1 < nx) spread(k + 1);
+        if (j > 0) spread(k - nx);
+        if (j + 1 < ny) spread(k + nx);
+    }
+    return z;
+}
+
+/// Index into 0..n-1 and the sign and offset of the extension beyond: mirrored at walls, odd about the end
+/// value (linear for a plane) at open sides.
+double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index j, bool wall) {
+    const auto inside = [](Index k, Index n) { return std::clamp<Index>(k, 0, n - 1); };
+    const auto mirror = [](Index k, Index n) {
+        if (n == 1) return Index{0};
+        const Index period = 2 * (n - 1);
+        k = ((k % period) + period) % period;
+        return k < n ? k : period - k;
+    };
+    const Index im = mirror(i, nx), jm = mirror(j, ny);
+    if (wall) return z[jm * nx + im];
+    const Index ic = inside(i, nx), jc = inside(j, ny);
+    if (ic == i && jc == j) return z[j * nx + i];
+    return 2.0 * z[jc * nx + ic] - z[inside(2 * jc - j, ny) * nx + inside(2 * ic - i, nx)];
+}
+
+/// The same up to kTile nodes beyond the domain on every side, whatever the tiles: filters that run often carry in what
+/// lies at the rim, and mirror images must stay so. The outer `margin_x` columns and `margin_y` rows are left out.
+template <class Body>
+void for_each_node_around(const TileGrid& grid, Index margin_x, Index margin_y, Body&& body) {
+#pragma omp parallel for schedule(static)
+    for (Index j = margin_y - kTile; j < grid.ny() + kTile - margin_y; ++j)
+        for (Index i = margin_x - kTile; i < grid.nx() + kTile - margin_x; ++i) body(grid.at(i, j));
+}
+
+enum class Axis { x, y };
+
+/// Applies the symmetric weights w[0] (centre), w[1], w[2] along one direction, in all of its lines: only so do the two
+/// directions commute, and what is symmetric about a diagonal stays so.
+void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch, Axis axis,
+            const std::array<double, 3>& w) {
+    const Index step = axis == Axis::x ? 1 : grid.stride();
+    const Index margin_x = axis == Axis::x ? 2 : 0, margin_y = 2 - margin_x;
+    for_each_node_around(grid, margin_x, margin_y, [&](Index k) {
+        scratch[k] = w[0] * field[k] + w[1] * (field[k - step] + field[k + step]) +
+                     w[2] * (field[k - 2 * step] + field[k + 2 * step]);
+    });
+    for_each_node_around(grid, margin_x, margin_y, [&](Index k) { field[k] = scratch[k]; });
+}
+
+/// Average of a bilinear bed with the scheme's own shape function: B-splines of two degrees more at whole numbers.
+std::array<double, 3> averaging(const Scene& scene) {
+    switch (scene.scheme.shape) {
+        case Shape::linear: return {1.0, 0.0, 0.0};
+        case Shape::quadratic: return {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
+        case Shape::cubic: return {66.0 / 120.0, 26.0 / 120.0, 1.0 / 120.0};
+    }
+    throw InternalError("unknown shape");
+}
+
+void average(const Scene& scene, const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& scratch) {
+    if (scene.scheme.shape == Shape::linear) return;
+    smooth(grid, field, scratch, Axis::x, averaging(scene));
+    smooth(grid, field, scratch, Axis::y, averaging(scene));
+}
+
+/// Change of slope over a cell that a step can follow: it moves a point by up to scheme.cfl of a cell, and a sharper bend
+/// (a cliff's foot in one cell) would turn more than the speed at hand. What is sharper counts as this.
+constexpr double kSharpest = 0.5;
+
+/// Slope by the 4th-order stencil that also differentiates the free surface.
+double slope_at(const double* z, Index step, double cell) {
+    return (8.0 * (z[step] - z[-step]) - (z[2 * step] - z[-2 * step])) * (1.0 / (12.0 * cell));
+}
+
+/// The bed averaged over the shape function and smoothed to `curvature_length`, extended linearly whatever the sides: a
+/// slope that meets a wall is mirrored for the pressure, but it has no curvature there.
+LazyArray<double> smoothed_bed(const Scene& scene, const TileGrid& grid, const std::vector<double>& z) {
+    LazyArray<double> smoothed(grid.size()), scratch(grid.size());
+    for_each_node(grid, 0, [&](Index i, Index j, Index k) {
+        smoothed[k] = extended(z, grid.nx(), grid.ny(), i, j, false);
+    });
+    average(scene, grid, smoothed, scratch);
+    const Index passes = smoothing_passes(scene.scheme, grid.cell());
+    const std::array<double, 3> binomial{0.5, 0.25, 0.0};
+    for (Index pass = 0; pass < passes; ++pass) {
+        smooth(grid, smoothed, scratch, Axis::x, binomial);
+        smooth(grid, smoothed, scratch, Axis::y, binomial);
+    }
+    return smoothed;
+}
+
+SmoothSlopes slopes_of(const TileGrid& grid, const LazyArray<double>& smoothed) {
+    SmoothSlopes slopes{LazyArray<double>(grid.size()), LazyArray<double>(grid.size())};
+    for_each_node(grid, 3, [&](Index, Index, Index k) {
+        const double* c = smoothed.data() + k;
+        slopes.x[k] = slope_at(c, 1, grid.cell());
+        slopes.y[k] = slope_at(c, grid.stride(), grid.cell());
+    });
+    return slopes;
+}
+
+void fill_curvature(const TileGrid& grid, const LazyArray<double>& smoothed, BedGeometry& bed) {
+    const double cell = grid.cell();
+    bed.hxx = LazyArray<double>(grid.size());
+    bed.hxy = LazyArray<double>(grid.size());
+    bed.hyy = LazyArray<double>(grid.size());
+    const Index up = grid.stride();
+    for_each_node(grid, 3, [&](Index, Index, Index k) {
+        const double* c = smoothed.data() + k;
+        bed.hxx[k] = (c[1] - 2.0 * c[0] + c[-1]) / (cell * cell);
+        bed.hyy[k] = (c[up] - 2.0 * c[0] + c[-up]) / (cell * cell);
+        bed.hxy[k] = (c[up + 1] - c[up - 1] - c[-up + 1] + c[-up - 1]) / (4.0 * cell * cell);
+        for (auto* h : {&bed.hxx, &bed.hxy, &bed.hyy}) (*h)[k] = std::clamp((*h)[k], -kSharpest / cell, kSharpest / cell);
+    });
+}
+
+/// The bed with walls in its holes; as it is where there are none.
+std::vector<double> walled(const Scene& scene, std::vector<double> z) {
+    if (scene.hole_top)
+        for (const Index node : scene.holes.nodes) z[static_cast<std::size_t>(node)] += *scene.hole_top;
+    return z;
+}
+
+/// Says of every node what kind it is.
+void mark_exits(const Scene& scene, const TileGrid& grid, BedGeometry& bed) {
+    const Index nx = grid.nx(), ny = grid.ny();
+    bed.exit = LazyArray<std::uint8_t>(grid.size());
+    const std::vector<double>& z = scene.bed.values;
+    for (Index n = 0; n < nx * ny; ++n)
+        if (std::isnan(z[static_cast<std::size_t>(n)])) bed.exit[grid.at(n % nx, n / nx)] = kNoData, bed.has_exits = true;
+    for (const Index n : scene.holes.nodes) bed.exit[grid.at(n % nx, n / nx)] = scene.hole_top ? kWall : kHole;
+}
+
+}  // namespace
+
+SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid) {
+    return slopes_of(grid, smoothed_bed(scene, grid, filled(scene.bed)));
+}
+
+BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
+    BedGeometry bed;
+    const Index nx = grid.nx(), ny = grid.ny(), up = grid.stride();
+    const bool wall = scene.sides == Sides::wall;
+    const std::vector<double> z = filled(scene.bed), raised = walled(scene, z);
+    bed.averaging = averaging(scene);
+    bed.z = LazyArray<double>(grid.size());
+    bed.ground = LazyArray<double>(grid.size());
+    for_each_node(grid, 0, [&](Index i, Index j, Index k) {
+        const bool inside = i >= 0 && i < nx && j >= 0 && j < ny;  // an open side goes on as if no wall were near
+        bed.z[k] = bed.ground[k] = extended(inside || wall ? raised : z, nx, ny, i, j, wall);
+    });
+    mark_exits(scene, grid, bed);
+    LazyArray<double> scratch(grid.size());
+    average(scene, grid, bed.z, scratch);
+    bed.z_min = LazyArray<double>(grid.size());
+    bed.slope_x = LazyArray<double>(grid.size());
+    bed.slope_y = LazyArray<double>(grid.size());
+    for_each_node(grid, 4, [&](Index, Index, Index k) {
+        const double* c = bed.z.data() + k;
+        bed.slope_x[k] = slope_at(c, 1, grid.cell());
+        bed.slope_y[k] = slope_at(c, up, grid.cell());
+        double least = c[0];
+        for (Index dj = -2; dj <= 2; ++dj)
+            for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);
+        bed.z_min[k] = least;
+    });
+    if (scene.terrain == TerrainModel::shallow) return bed;
+    const LazyArray<double> smoothed = smoothed_bed(scene, grid, z);
+    SmoothSlopes slopes = slopes_of(grid, smoothed);
+    bed.smooth_x = std::move(slopes.x), bed.smooth_y = std::move(slopes.y);
+    if (scene.curvature != Curvature::none) fill_curvature(grid, smoothed, bed);
+    return bed;
+}
+
+BedGeometry level_bed(const TileGrid& grid) {
+    BedGeometry bed;
+    for (auto* field : {&bed.z, &bed.ground, &bed.z_min, &bed.slope_x, &bed.slope_y})
+        *field = LazyArray<double>(grid.size());
+    bed.exit = LazyArray<std::uint8_t>(grid.size());
+    return bed;
+}
+
+}  // namespace frana

@@ -1,0 +1,90 @@
+#include "shallow/columns.h"
+
+#include <algorithm>
+
+namespace frana {
+
+/// All arrays of the points.
+const std::vector<PointField>& TileSorter::fields_of(Columns& columns) {
+    fields_.clear();
+    columns.each([&](auto& column) { fields_.push_back(&column); });
+    fields_.push_back(&columns.id);
+    return fields_;
+}
+
+void TileSorter::plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
+                      ActiveTiles& active) {
+    order_.find_tiles(columns.count(), grid.tiles(), [&](Index p) {
+        if (!gone.empty() && gone[static_cast<std::size_t>(p)]) return Index{-1};
+        return grid.tile_of(columns.x[p], columns.y[p]);
+    });
+    wake(columns.count(), active);
+    order_.lay_out(active);
+    list_tiles(grid, active);
+}
+
+void TileSorter::carry_out(Columns& columns) { order_.permute(fields_of(columns)); }
+
+/// Tiles that points leave or enter do not sleep.
+void TileSorter::wake(Index count, ActiveTiles& active) {
+    if (active.quiet.empty()) return;
+    const std::vector<std::int32_t>& key = order_.key();
+    Index p = 0;
+    for (Index n = 0; n < active.count(); ++n)
+        for (; p < active.begin[n + 1]; ++p)
+            if (key[p] != active.tile[n]) {
+                active.quiet[active.tile[n]] = 0;
+                if (key[p] >= 0) active.quiet[key[p]] = 0;
+            }
+    for (; p < count; ++p)
+        if (key[p] >= 0) active.quiet[key[p]] = 0;
+}
+
+void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+    order_.keep_places(columns.count(), gone, active);
+    order_.close_gaps(fields_of(columns));
+    columns.resize(static_cast<Index>(order_.order().size()));
+}
+
+void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
+    for (auto& positions : active.colour) {
+        positions.clear();
+        positions.reserve(active.tile.capacity());  // grows with the list of tiles, not some steps later
+    }
+    active.in_work.resize(static_cast<std::size_t>(grid.tiles()));
+    active.quiet.resize(static_cast<std::size_t>(grid.tiles()));
+    for (const Index tile : active.work) active.in_work[tile] = 0;
+    active.work.clear();
+    const Index width = grid.tiles_x();
+    for (Index n = 0; n < active.count(); ++n) {
+        const Index tile = active.tile[n], column = tile % width, row = tile / width;
+        active.colour[(row % 2) * 2 + column % 2].push_back(n);
+        for (Index dr = -1; dr <= 1; ++dr)
+            for (Index dc = -1; dc <= 1; ++dc) {
+                if (column + dc < 0 || column + dc >= width) continue;
+                const Index neighbour = tile + dr * width + dc;
+                if (neighbour < 0 || neighbour >= grid.tiles()) continue;
+                if (!active.in_work[neighbour]) {
+                    active.in_work[neighbour] = 1;
+                    active.work.push_back(neighbour);
+                }
+            }
+    }
+    std::sort(active.work.begin(), active.work.end());
+    list_runs(width, active);
+}
+
+/// Tiles of a run lie in one row of tiles.
+void TileSorter::list_runs(Index width, ActiveTiles& active) {
+    active.run.clear();
+    active.run.reserve(active.work.capacity() + 1);
+    const Index count = static_cast<Index>(active.work.size());
+    for (Index n = 0; n < count; ++n) {
+        const Index tile = active.work[n];
+        const bool goes_on = n > 0 && tile == active.work[n - 1] + 1 && tile % width != 0;
+        if (!goes_on || n - active.run.back() == kRunTiles) active.run.push_back(n);
+    }
+    active.run.push_back(count);
+}
+
+}  // namespace frana

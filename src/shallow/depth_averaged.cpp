@@ -1,0 +1,311 @@
+#include "shallow/depth_averaged.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "base/flush_denormals.h"
+#include "base/step_length.h"
+#include "mpm/stencil.h"
+#include "shallow/lateral.h"
+#include "shallow/shock.h"
+
+namespace frana {
+namespace {
+
+/// What a step does once, however short it is, adds up with the number of steps: affine points lose of their motion what
+/// the nodes cannot hold, and crowded points merge. So shorter steps than scheme.cfl's default do less of it.
+constexpr double kOrdinaryCfl = 0.5;
+constexpr double kStepsBetweenSplits = 3.0;  ///< ordinary ones
+/// Cells a point may have moved since the last sort: same-colour tiles then still share no node, as long as the drift d
+/// keeps 16 + d + 2 < 32 - d - 1 (sub-points reach from one node before the quadratic stencil to one behind it), d <= 6;
+/// cubic: d <= 5. A step that moves a point by more than 4 cells is refused.
+constexpr double kDriftLimit = 3.0;
+/// A step in which a signal would cross so many times what it was chosen for (scheme.cfl) is shortened. The default scheme
+/// holds to four times its scheme.cfl (tests/cfl_map.txt).
+constexpr double kFarther = 2.0;
+double drift_before_carry(const Scheme& scheme) { return scheme.shape == Shape::cubic ? 1.0 : 2.0; }
+
+double least_split_mass(const Scene& scene) {
+    double largest = 0.0;
+    for (const double volume : scene.particles.volume) largest = std::max(largest, volume);
+    return scene.scheme.split_min_mass * largest * scene.density;
+}
+
+}  // namespace
+
+DepthAveraged::DepthAveraged(const Scene& scene, Start start)
+    : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
+      peaks_(flow_.grid), shown_(NodeBox::all(scene.bed.geometry)), rheology_(scene.rheology),
+      steep_(scene.terrain != TerrainModel::shallow),
+      curved_(steep_ && scene.curvature == Curvature::full), sleeps_(scene.scheme.sleep),
+      footprint_depth_(scene.output.footprint_depth) {
+    expect(!scene.wider, "on a part of a terrain columns grow it (stages/growing_columns.h)");
+    expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
+    flush_denormals_on_all_threads();
+    flow_.columns.single = scene.scheme.precision == Precision::single;
+    if (start == Start::kept) return;
+    flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
+    if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
+    else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear) {
+        // Points that split later would spread over other nodes than those they were fitted on; the fit makes some heavy
+        // enough to split.
+        const auto split = [&] { return splitter_.split(flow_) > 0; };
+        const auto sort = [&] { sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active); };
+        while (split()) sort();
+        for (fit_ = fit_masses(flow_, *scene.still_surface); split(); fit_ = fit_masses(flow_, *scene.still_surface)) sort();
+    }
+    if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(flow_);
+    const double longest = longest_step();
+    arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest); }));
+    if (fit_) fit_->level_error = off_level(flow_, *scene.still_surface);
+    start_momentum_ = status_.momentum;
+    signal_ += std::sqrt(flow_.gravity * status_.max_depth);
+}
+
+/// Seeds become columns behind those that are there: positions in cells, square domains.
+template <class Real>
+void DepthAveraged::append(const Seeds& seeds, Index first_id) {
+    Columns& c = flow_.columns;
+    Carried<Real>& held = c.carried<Real>();
+    const GridGeometry& g = flow_.grid.geometry();
+    const Index before = c.count();
+    c.resize(before + seeds.count());
+    for (Index n = 0; n < seeds.count(); ++n) {
+        const Index p = before + n;
+        c.x[p] = (seeds.x[n] - g.x0) / g.cell;
+        c.y[p] = (seeds.y[n] - g.y0) / g.cell;
+        held.vx[p] = static_cast<Real>(seeds.vx[n]);
+        held.vy[p] = static_cast<Real>(seeds.vy[n]);
+        c.mass[p] = seeds.volume[n] * flow_.density;
+        held.r1x[p] = held.r2y[p] = static_cast<Real>(seeds.size[n] / g.cell);
+        held.depth[p] = static_cast<Real>(seeds.depth[n]);
+        c.id[p] = first_id + n;
+        status_.max_speed_on_map = std::max(status_.max_speed_on_map, std::hypot(seeds.vx[n], seeds.vy[n]));
+    }
+}
+template void DepthAveraged::append<double>(const Seeds&, Index);
+template void DepthAveraged::append<float>(const Seeds&, Index);
+
+/// The columns of a start, sorted by tile.
+template <class Real>
+void DepthAveraged::place(const Seeds& seeds) {
+    append<Real>(seeds, 0);
+    Columns& c = flow_.columns;
+    double mass = 0.0;
+    for (Index p = 0; p < seeds.count(); ++p) {
+        centre_ += c.mass[p] * Vec2(c.x[p], c.y[p]);
+        mass += c.mass[p];
+    }
+    signal_ = status_.max_speed_on_map;
+    if (mass > 0.0) centre_ /= mass;
+    splitter_.set_next_id(seeds.count());
+    sorter_.sort(c, flow_.grid, {}, flow_.active);
+}
+
+/// Depths of a lake's points up to the level from the bilinear bed beneath each, as the paper's points have them.
+void DepthAveraged::level_points(double level) {
+    Columns& c = flow_.columns;
+    for (Index p = 0; p < c.count(); ++p) {
+        const Linear sx(c.x[p]), sy(c.y[p]);
+        double bed = 0.0;
+        for (int j = 0; j < 2; ++j)
+            for (int i = 0; i < 2; ++i) bed += sx.w[i] * sy.w[j] * flow_.bed.z[flow_.grid.at(sx.base + i, sy.base + j)];
+        const double depth = level - bed;
+        if (!(depth > 0.0) || !(c.depth[p] > 0.0)) continue;
+        c.mass[p] *= depth / c.depth[p];
+        c.depth[p] = depth;
+    }
+}
+
+/// One step: the nodes are kicked and braked, the points are carried and deposit where they arrive.
+void DepthAveraged::advance(double until) {
+    const double share = share_of_ordinary_step();
+    const double dt = timed_("kick and friction", [&] { return kick_nodes(step_length(until)); });
+    flow_.carried_share = 1.0 - share;
+    since_split_ += share;
+    const bool due = since_split_ >= (1.0 - 1e-9) * kStepsBetweenSplits;
+    timed_("kick and friction", [&] { mirror_motion(flow_); });
+    const double next_kick = 0.5 * (dt + longest_step());
+    const bool adapts = due || drift_ > drift_before_carry(flow_.scheme);
+    PointSums points = adapts ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
+                              : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_kick); });
+    require_sound(points);
+    book_points(points);
+    status_.step += 1;
+    status_.time = dt >= until - status_.time ? until : status_.time + dt;
+    status_.dt = dt;
+    if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0);
+    if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_kick); });
+    arrive(points);
+}
+
+/// Kicks the nodes for a step of `dt` or, where forces drive them much farther than the step was chosen for, a shorter
+/// one: the step follows the last one's signal, and a film on a cliff, say, has none before it falls. Returns the step.
+double DepthAveraged::kick_nodes(double dt) {
+    const double reach = flow_.scheme.cfl * flow_.cell;
+    const double before = signal_;
+    for (;;) {
+        const double kick = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
+        const KickSums sums = kick_->kick(flow_, kick, dt);
+        if (!(sums.max_signal * dt > kFarther * reach)) {
+            book_kick(sums, kick);
+            return dt;
+        }
+        const double pull = (sums.max_signal - before) / kick;  // of the node that is driven farthest [m/s^2]
+        const double start = before + 0.5 * pull * status_.dt;
+        dt = std::min(0.5 * dt, 2.0 * reach / (start + std::sqrt(start * start + 2.0 * pull * reach)));
+    }
+}
+
+/// What follows from a deposit: depth, surface, status, peaks.
+void DepthAveraged::arrive(const PointSums& points) {
+    const PointSums nodes = timed_("deposit", [&] {
+        choose_stirred(flow_, *kick_);
+        return node_sums(flow_);
+    });
+    status_.p2g_mass_error = points.mass > 0.0 ? std::abs(nodes.mass - points.mass) / points.mass : 0.0;
+    status_.p2g_momentum_error =
+        points.p_abs > 0.0 ? std::hypot(nodes.px - points.px, nodes.py - points.py) / points.p_abs : 0.0;
+    timed_("depth", [&] { fold_walls(flow_); });
+    const NodeSums sums = raise_surface();
+    status_.max_speed = timed_("peaks", [&] {
+        return update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_);
+    });
+
+    stress_power_ = points.stress_power;
+    status_.particles = flow_.columns.count();
+    status_.mass = points.mass;
+    status_.momentum = {points.px, points.py};
+    status_.mean_speed = points.mass > 0.0 ? points.p_abs / points.mass : 0.0;
+    status_.potential = sums.potential;
+    status_.max_depth = sums.max_depth;
+    status_.covered_area = sums.covered_area;
+    status_.front = std::sqrt(sums.front2);
+}
+
+/// All that nodes have besides what was deposited on them.
+NodeSums DepthAveraged::raise_surface() {
+    const NodeSums sums = timed_("depth", [&] { return depth_pass(flow_, {footprint_depth_, centre_}); });
+    mark_margin(flow_);
+    timed_("filter", [&] {
+        shock_pass(flow_);
+        filter(flow_);
+    });
+    lateral_pass(flow_, status_.dt > 0.0 ? status_.dt : longest_step());
+    timed_("shoreline", [&] { shoreline(flow_); });
+    return sums;
+}
+
+/// Every few steps points split where they spread; points that left are dropped; tiles are kept up to date.
+void DepthAveraged::adapt_points(bool deposit_follows, bool due, bool points_left) {
+    const bool has_domains = !flow_.scheme.paper_pressure;
+    if (due) since_split_ = 0.0;
+    const std::vector<std::uint8_t> none;
+    // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
+    if (points_left) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
+    if (!deposit_follows) return;
+    Index born = 0;
+    if (has_domains && due) born = timed_("split", [&] { return splitter_.split(flow_); });
+    if (born == 0 && drift_ <= kDriftLimit && !due) return;
+    timed_("order", [&] { sorter_.plan(flow_.columns, flow_.grid, none, flow_.active); });
+    if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_, sorter_.order(), transfer_->gone()); }) > 0)
+        timed_("order", [&] { sorter_.leave_out(transfer_->gone(), flow_.active); });
+    timed_("sort", [&] { sorter_.carry_out(flow_.columns); });
+    drift_ = 0.0;
+}
+
+/// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs
+/// to cross the fraction C of a cell. A film at rest (S = 0) gets a step too.
+double DepthAveraged::longest_step(double cfl, double signal) const {
+    const double reach = cfl * flow_.cell;
+    return 2.0 * reach / (signal + std::sqrt(signal * signal + 2.0 * flow_.gravity * reach));
+}
+double DepthAveraged::longest_step() const { return longest_step(flow_.scheme.cfl, signal_); }
+
+/// How much of an ordinary step the scheme's steps are now, 1 at most. Those that an end shortens count as whole ones.
+double DepthAveraged::share_of_ordinary_step() const {
+    return std::min(1.0, longest_step() / longest_step(kOrdinaryCfl, signal_));
+}
+
+/// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
+double DepthAveraged::step_length(double until) const {
+    return step_towards(until - status_.time, longest_step());
+}
+
+void DepthAveraged::book_kick(const KickSums& sums, double kick) {
+    status_.kinetic = sums.kinetic;
+    status_.dissipated += sums.dissipated + kick * stress_power_;
+    status_.impulse[0] += sums.impulse_x;
+    status_.impulse[1] += sums.impulse_y;
+    signal_ = sums.max_signal;
+}
+
+void DepthAveraged::book_points(const PointSums& sums) {
+    signal_ = std::max(signal_, sums.max_signal);
+    drift_ += sums.max_shift;
+    status_.max_speed_on_map = sums.max_speed;
+    status_.impulse[0] += sums.pushed_x;
+    status_.impulse[1] += sums.pushed_y;
+    if (flow_.walls)  // what walls push is not seen on the nodes: it is what else the points gained
+        for (int axis = 0; axis < 2; ++axis) {
+            const double gathered = axis == 0 ? sums.px + sums.left_px : sums.py + sums.left_py;
+            status_.impulse[axis] = gathered + status_.momentum_left[axis] - start_momentum_[axis];
+        }
+    status_.mass_left += sums.left_mass;
+    lost_in_holes_ += sums.lost_in_holes;
+    status_.momentum_left[0] += sums.left_px;
+    status_.momentum_left[1] += sums.left_py;
+    status_.energy_left += sums.left_energy;
+}
+
+void DepthAveraged::require_sound(const PointSums& sums) const {
+    if (sums.bad < 0) return;
+    const Index p = sums.bad;
+    const GridGeometry& g = flow_.grid.geometry();
+    throw NumericsError(fmt::format(
+        "step {}, t = {:.6g} s, dt = {:.3g} s: the point at ({:.6g}, {:.6g}) has depth {:.3g} m and would move more than "
+        "four cells in one step or is not finite; reduce scheme.cfl (now {}) or look at the terrain there",
+        status_.step, status_.time, status_.dt, g.x0 + flow_.columns.x[p] * g.cell, g.y0 + flow_.columns.y[p] * g.cell,
+        flow_.columns.with_real([&](auto real) { return double{flow_.columns.carried<decltype(real)>().depth[p]}; }),
+        flow_.scheme.cfl));
+}
+
+Sample DepthAveraged::at(const Vec2& point) const {
+    const GridGeometry& g = flow_.grid.geometry();
+    // A point in the outer half pixel shows its rim.
+    const double u = std::clamp((point.x() - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
+    const double v = std::clamp((point.y() - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
+    Sample sample;
+    const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
+    const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
+    for (Index dj = 0; dj < 2; ++dj)
+        for (Index di = 0; di < 2; ++di) {
+            const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
+            const Index k = flow_.grid.at(i + di, j + dj);
+            sample.elevation += w * flow_.bed.z[k];
+            if (!flow_.touches(i + di, j + dj)) continue;
+            sample.depth += w * flow_.nodes.depth[k];
+            sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
+        }
+    return sample;
+}
+
+Index DepthAveraged::particle_bytes() const {
+    return flow_.columns.bytes() + sorter_.bytes() + allocated(transfer_->gone()) + (merger_ ? merger_->bytes() : 0);
+}
+
+std::vector<std::string> DepthAveraged::remarks() const {
+    std::vector<std::string> remarks = remarks_on_lost(lost_in_holes_, status_.mass + status_.mass_left);
+    if (!fit_) return remarks;
+    constexpr double kLevel = 1e-6;  // [cells]; far above round-off, and currents of it are slow
+    const bool rests = fit_->level_error <= kLevel * flow_.cell;
+    remarks.push_back(fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
+                        "{} points at their limits; level within {:.2g} m{}",
+                        fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped, fit_->level_error,
+                        rests ? "" : ", so the lake does not rest; give more points (particles.per_cell) or a finer "
+                                     "grid.cell"));
+    return remarks;
+}
+
+}  // namespace frana

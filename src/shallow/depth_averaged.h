@@ -1,0 +1,141 @@
+#pragma once
+// The depth-averaged material point method (THEORY.md) on steep, curved terrain, or the choices of Fois et al. 2024.
+#include <memory>
+#include <optional>
+
+#include "mpm/step_clock.h"
+#include "run/simulation.h"
+#include "shallow/kick.h"
+#include "shallow/mass_fit.h"
+#include "shallow/merge.h"
+#include "shallow/peaks.h"
+#include "shallow/split.h"
+#include "shallow/surface.h"
+#include "shallow/transfer.h"
+
+namespace frana {
+
+class DepthAveraged final : public Simulation {
+public:
+    explicit DepthAveraged(const Scene& scene, Start start = Start::placed);
+
+    void advance(double until) override;
+    const Status& status() const override { return status_; }
+    double longest_step() const override;
+    MovingMass motion(const MotionQuery& query) const override;
+    Frame frame() override;
+    std::vector<PhaseTime> timings() const override { return timed_.times(); }
+    Sample at(const Vec2& point) const override;
+    std::vector<std::string> remarks() const override;
+    void keep(Archive& archive) override;
+
+    /// From now on columns leave at the nodes marked (1; row after row from the south) and are noted; with `leave_now`
+    /// also those that stand there, which are not.
+    void open_exits(const std::vector<std::uint8_t>& marks, bool leave_now);
+    /// The columns that left so since the last call, by id.
+    std::vector<Departed> take_departed();
+
+    /// Velocities, half a step behind, come to the present; as at a start the next step is half a step of forces. What
+    /// has been deposited is of before: take_in() has to follow.
+    void catch_up();
+    /// Nothing leaves any more at the nodes that open_exits() marked, and columns may sleep again.
+    void close_exits();
+    /// More columns, between two steps at `time` [s], the columns' own unless there are none; `gradient` of the velocity of
+    /// each, dv_k/dx_l at (k, l) [1/s]. They are booked as what did not leave after all: mass, momentum and energy, which is
+    /// returned [J].
+    double take_in(const Seeds& seeds, const std::vector<Mat2>& gradient, double time);
+    /// Whether a column may stand at a place of the map: on ground, and not where columns leave.
+    bool may_stand(double x, double y) const;
+
+    /// For the next step: depth of other material on the nodes [m] (row after row from the south). It counts as
+    /// depth of the columns wherever that is asked for, but for their mass and motion: they are deposited once more, with it.
+    /// Nothing sleeps any more. Pressure on points (paper preset) does not feel it.
+    void stand_beside(const std::vector<double>& depth);
+
+    /// From now on frames show these nodes only.
+    void show(const NodeBox& box) { shown_ = box; }
+    /// The nodes of all tiles on the work list. Some may lie beyond the grid.
+    NodeBox worked() const;
+    /// The columns, peaks and sums of a run on a part of this grid, which gives them up; this one was made for that
+    /// (Start::kept). Its node (0, 0) is (east, north) here.
+    void take_over(DepthAveraged& from, Index east, Index north);
+
+    /// From now on columns that are split are noted.
+    void note_parents() { splitter_.note_parents(); }
+    /// A column that another one was split into, and that one, by id.
+    struct Birth { Index child, parent; };
+    /// All since the last call, the oldest first.
+    std::vector<Birth> take_births();
+
+    const Flow& flow() const { return flow_; }
+    /// timings() tell CPU time too from now on.
+    void count_cpu_time() { timed_.count_cpu_time(); }
+    /// Memory that grows with the points, sort buffers included [bytes].
+    Index particle_bytes() const;
+    /// What the fit of initial masses did; nothing when there was none.
+    const std::optional<MassFit>& mass_fit() const { return fit_; }
+
+private:
+    template <class Real>
+    void place(const Seeds& seeds);
+    template <class Real>
+    void append(const Seeds& seeds, Index first_id);
+    void leave_at_exits();
+    void level_points(double level);
+    void arrive(const PointSums& points);
+    NodeSums raise_surface();
+    void add_beside(const std::vector<double>& depth);
+    void keep_points(Archive& archive);
+    void keep_sums(Archive& archive);
+    void keep_nodes(Archive& archive);
+    void keep_peaks(Archive& archive);
+    void adapt_points(bool deposit_follows, bool due, bool points_left);
+    double step_length(double until) const;
+    double longest_step(double cfl, double signal) const;
+    double share_of_ordinary_step() const;
+    double kick_nodes(double dt);
+    void book_kick(const KickSums& sums, double kick);
+    void book_points(const PointSums& sums);
+    void require_sound(const PointSums& sums) const;
+
+    void particle_fields(Frame& frame);
+    void node_fields(Frame& frame);
+    void stress_fields(Frame& frame);
+    template <class Law>
+    void stress_at_points(const Law& law, double* stresses) const;
+    void stress_on_nodes(const double* stresses);
+    /// A new field's numbers: left over from the last frame; or zero.
+    double* add_column(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
+    double* add_field(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
+
+    Flow flow_;
+    std::unique_ptr<TransferKernel> transfer_;
+    std::unique_ptr<KickKernel> kick_;
+    Splitter splitter_;
+    std::optional<Merger> merger_;  ///< nothing when the scheme does not merge
+    TileSorter sorter_;
+    Peaks peaks_;
+    StepClock timed_;
+    Status status_;
+    std::optional<MassFit> fit_;
+
+    NodeBox shown_;  ///< in frames
+    Rheology rheology_;
+    bool steep_, curved_, sleeps_;
+    double footprint_depth_;
+    std::array<double, 2> start_momentum_{};  ///< [kg m/s]
+    double signal_ = 0.0;       ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]
+    double since_split_ = 0.0;  ///< ordinary steps since points were last split
+    double drift_ = 0.0;        ///< largest distance since the last sort [cells]
+    double stress_power_ = 0.0; ///< of the present deposit [W]
+    double lost_in_holes_ = 0.0;  ///< of the mass that left [kg]
+    Vec2 centre_{0, 0};         ///< of the release [cells]
+
+    struct StressSum { double stress[3], mass; };
+    LazyArray<StressSum> stress_sums_;  ///< per node, of the points' stress times mass [Pa kg], and mass [kg]
+    TransferKernel::Probe probe_;
+    std::vector<std::vector<double>> frame_storage_;  ///< what the last frame's fields point to
+    std::size_t frame_used_ = 0;                      ///< of them
+};
+
+}  // namespace frana

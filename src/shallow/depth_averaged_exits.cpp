@@ -1,0 +1,151 @@
+// Where a depth-averaged run gives its material to another model, and what it tells of its columns.
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "shallow/depth_averaged.h"
+#include "shallow/sides.h"
+
+namespace frana {
+namespace {
+
+/// Of point p above node k [J].
+template <class Real>
+double kinetic_of(const Flow& flow, Index p, Index k) {
+    const auto& held = flow.columns.carried<Real>();
+    const double vx = held.vx[p], vy = held.vy[p];
+    const double vz = flow.steep ? vx * flow.bed.slope_x[k] + vy * flow.bed.slope_y[k] : 0.0;
+    return 0.5 * flow.columns.mass[p] * (vx * vx + vy * vy + vz * vz);
+}
+
+/// Tiles that sleep keep what they deposited: not beside what comes or goes.
+void wake_all(Flow& flow) {
+    for (const Index tile : flow.active.tile) flow.active.quiet[tile] = 0;
+}
+
+}  // namespace
+
+void DepthAveraged::open_exits(const std::vector<std::uint8_t>& marks, bool leave_now) {
+    expect(static_cast<Index>(marks.size()) == flow_.grid.geometry().size(),
+           "every node of the grid is marked or not");
+    for (Index j = 0; j < flow_.grid.ny(); ++j)
+        for (Index i = 0; i < flow_.grid.nx(); ++i)
+            if (marks[static_cast<std::size_t>(j * flow_.grid.nx() + i)])
+                flow_.bed.exit[flow_.grid.at(i, j)] = kNoted;
+    flow_.bed.has_exits = true;
+    flow_.departed.resize(static_cast<std::size_t>(omp_get_max_threads()));
+    if (leave_now) leave_at_exits();
+}
+
+void DepthAveraged::catch_up() {
+    if (status_.dt == 0.0) return;
+    const Frame now = frame();
+    flow_.columns.with_real([&](auto real) {
+        using Real = decltype(real);
+        Carried<Real>& held = flow_.columns.carried<Real>();
+        for (Index p = 0; p < flow_.columns.count(); ++p)
+            held.vx[p] = static_cast<Real>(probe_.vx[p]), held.vy[p] = static_cast<Real>(probe_.vy[p]);
+    });
+    status_ = now.status;
+    status_.dt = 0.0;
+}
+
+void DepthAveraged::close_exits() {
+    flow_.scheme.sleep = sleeps_;
+    flow_.bed.has_exits = false;
+    for (Index j = 0; j < flow_.grid.ny(); ++j)
+        for (Index i = 0; i < flow_.grid.nx(); ++i) {
+            std::uint8_t& exit = flow_.bed.exit[flow_.grid.at(i, j)];
+            if (exit == kNoted) exit = 0;
+            flow_.bed.has_exits = flow_.bed.has_exits || exit != 0;
+        }
+}
+
+bool DepthAveraged::may_stand(double x, double y) const {
+    const GridGeometry& g = flow_.grid.geometry();
+    if (!(x >= g.x0 && x <= g.x_max() && y >= g.y0 && y <= g.y_max())) return false;
+    return flow_.bed.exit[flow_.grid.nearest((x - g.x0) / g.cell, (y - g.y0) / g.cell)] == 0;
+}
+
+double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradient, double time) {
+    Columns& c = flow_.columns;
+    const Index before = c.count();
+    expect(gradient.size() == seeds.x.size(), "columns that come in have a gradient each");
+    expect(before == 0 || time == status_.time, "columns that come in are at the time of the others");
+    if (before == 0) status_.time = time, status_.dt = 0.0;
+    wake_all(flow_);
+    PointSums came;
+    double kinetic = 0.0;
+    c.with_real([&](auto real) {
+        using Real = decltype(real);
+        append<Real>(seeds, splitter_.next_id());
+        for (Index p = before; p < c.count(); ++p) {
+            const Mat2& of = gradient[static_cast<std::size_t>(p - before)];
+            Carried<Real>& held = c.carried<Real>();
+            held.cxx[p] = static_cast<Real>(of(0, 0)), held.cxy[p] = static_cast<Real>(of(0, 1));
+            held.cyx[p] = static_cast<Real>(of(1, 0)), held.cyy[p] = static_cast<Real>(of(1, 1));
+            const Index k = flow_.grid.nearest(c.x[p], c.y[p]);
+            kinetic += kinetic_of<Real>(flow_, p, k);
+            leave<Real>(flow_, p, k, came);
+        }
+    });
+    splitter_.set_next_id(splitter_.next_id() + seeds.count());
+    status_.mass_left -= came.left_mass;
+    status_.momentum_left[0] -= came.left_px;
+    status_.momentum_left[1] -= came.left_py;
+    status_.energy_left -= came.left_energy;
+    status_.kinetic += kinetic;  // of nodes, and to the next kick only
+    signal_ = std::max(signal_, status_.max_speed_on_map);
+    sorter_.sort(c, flow_.grid, {}, flow_.active);
+    drift_ = 0.0;
+    arrive(transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())));
+    signal_ = std::max(signal_, status_.max_speed_on_map + std::sqrt(flow_.gravity * status_.max_depth));
+    return came.left_energy;
+}
+
+/// Drops the points at exits and deposits the others again, booking what left as at other exits.
+void DepthAveraged::leave_at_exits() {
+    wake_all(flow_);
+    const Columns& c = flow_.columns;
+    std::vector<std::uint8_t> gone(static_cast<std::size_t>(c.count()), 0);
+    PointSums left;
+    double kinetic = 0.0;
+    for (Index p = 0; p < c.count(); ++p) {
+        const Index k = flow_.grid.nearest(c.x[p], c.y[p]);
+        if (!leads_out(flow_.bed.exit[k])) continue;
+        gone[static_cast<std::size_t>(p)] = 1;
+        flow_.columns.with_real([&](auto real) {
+            kinetic += kinetic_of<decltype(real)>(flow_, p, k);
+            leave<decltype(real)>(flow_, p, k, left);
+        });
+    }
+    status_.mass_left += left.left_mass;
+    status_.momentum_left[0] += left.left_px;
+    status_.momentum_left[1] += left.left_py;
+    status_.energy_left += left.left_energy;
+    status_.kinetic = std::max(0.0, status_.kinetic - kinetic);  // of nodes, and to the next kick only
+    sorter_.drop(flow_.columns, gone, flow_.active);
+    arrive(transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())));
+}
+
+std::vector<Departed> DepthAveraged::take_departed() {
+    std::vector<Departed> all;
+    for (std::vector<Departed>& list : flow_.departed) {
+        all.insert(all.end(), list.begin(), list.end());
+        list.clear();
+    }
+    std::sort(all.begin(), all.end(), [](const Departed& a, const Departed& b) { return a.id < b.id; });
+    return all;
+}
+
+std::vector<DepthAveraged::Birth> DepthAveraged::take_births() {
+    std::vector<Birth> births;
+    const std::vector<Index> parents = splitter_.take_parents();
+    const Index first = splitter_.next_id() - static_cast<Index>(parents.size());
+    for (std::size_t n = 0; n < parents.size(); ++n) births.push_back({first + static_cast<Index>(n), parents[n]});
+    return births;
+}
+
+}  // namespace frana

@@ -1,0 +1,267 @@
+// What a depth-averaged run shows of itself: fields of points and nodes at the present time.
+#include <algorithm>
+
+#include "base/simd.h"
+#include "law/rheology.h"
+#include "mpm/stencil.h"
+#include "shallow/depth_averaged.h"
+#include "shallow/sheet.h"
+
+namespace frana {
+namespace {
+
+/// Calls body(storage index, output index) for all nodes of the box that points touch.
+template <class Body>
+void for_each_output_node(const Flow& flow, const NodeBox& box, Body&& body) {
+    for (const Index tile : flow.active.work)
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+            const Index a = i - box.i0, b = j - box.j0;
+            if (a >= 0 && a < box.nx && b >= 0 && b < box.ny) body(k, b * box.nx + a);
+        });
+}
+
+/// The same for all nodes, near material or not.
+template <class Body>
+void for_all_output_nodes(const Flow& flow, const NodeBox& box, Body&& body) {
+    for (Index j = 0; j < box.ny; ++j)
+        for (Index i = 0; i < box.nx; ++i) body(flow.grid.at(box.i0 + i, box.j0 + j), j * box.nx + i);
+}
+
+/// Bed at a point: elevation, its own slope, and that of the smoothed bed, which velocities follow (zero on gentle terrain),
+/// with its curvature where that counts.
+struct BedHere {
+    double z = 0.0, slope_x = 0.0, slope_y = 0.0, path_x = 0.0, path_y = 0.0, hxx = 0.0, hxy = 0.0, hyy = 0.0;
+
+    /// THEORY (59): g + v'Hv, not below zero [m/s^2].
+    double gravity(double g, double vx, double vy) const {
+        return std::max(0.0, g + vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy);
+    }
+};
+BedHere bed_at(const Flow& flow, bool steep, bool curved, double x, double y) {
+    const Quadratic sx(x), sy(y);
+    BedHere here;
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) {
+            const double w = sx.w[i] * sy.w[j];
+            const Index k = flow.grid.at(sx.base + i, sy.base + j);
+            here.z += w * flow.bed.z[k];
+            here.slope_x += w * flow.bed.slope_x[k];
+            here.slope_y += w * flow.bed.slope_y[k];
+            if (steep) here.path_x += w * flow.bed.smooth_x[k], here.path_y += w * flow.bed.smooth_y[k];
+            if (!curved) continue;
+            here.hxx += w * flow.bed.hxx[k];
+            here.hxy += w * flow.bed.hxy[k];
+            here.hyy += w * flow.bed.hyy[k];
+        }
+    return here;
+}
+
+}  // namespace
+
+double* DepthAveraged::add_column(std::vector<Field>& fields, const char* name, const char* unit, int components,
+                                  Index count) {
+    if (frame_used_ == frame_storage_.size()) frame_storage_.emplace_back();
+    std::vector<double>& storage = frame_storage_[frame_used_++];  // frames come alike: memory is asked for once
+    storage.resize(static_cast<std::size_t>(count * components));
+    fields.push_back({name, unit, components, storage.data(), count});
+    return storage.data();
+}
+
+double* DepthAveraged::add_field(std::vector<Field>& fields, const char* name, const char* unit, int components,
+                                 Index count) {
+    double* const column = add_column(fields, name, unit, components, count);
+    std::fill_n(column, count * components, 0.0);
+    return column;
+}
+
+/// Velocities are half a step behind: nodes are kicked by the missing half on a copy, points gather from it.
+Frame DepthAveraged::frame() {
+    Frame frame;
+    frame_used_ = 0;
+    timed_("frame", [&] {
+        const KickSums sums = kick_->kick(flow_, 0.5 * status_.dt, 0.0);
+        mirror_motion(flow_);
+        transfer_->probe(flow_, probe_);
+        frame.grid = shown_.of(flow_.grid.geometry());
+        frame.status = status_;
+        frame.status.kinetic = sums.kinetic;
+        frame.status.dissipated += sums.dissipated + 0.5 * status_.dt * stress_power_;
+        frame.status.impulse[0] += sums.impulse_x;
+        frame.status.impulse[1] += sums.impulse_y;
+        frame.status.momentum = {0.0, 0.0};
+        double speed2 = 0.0;
+        for (Index p = 0; p < flow_.columns.count(); ++p) {
+            frame.status.momentum[0] += flow_.columns.mass[p] * probe_.vx[p];
+            frame.status.momentum[1] += flow_.columns.mass[p] * probe_.vy[p];
+            speed2 = std::max(speed2, probe_.vx[p] * probe_.vx[p] + probe_.vy[p] * probe_.vy[p]);
+        }
+        frame.status.max_speed_on_map = std::sqrt(speed2);
+        if (flow_.walls)
+            for (int axis = 0; axis < 2; ++axis)
+                frame.status.impulse[axis] =
+                    frame.status.momentum[axis] + frame.status.momentum_left[axis] - start_momentum_[axis];
+        particle_fields(frame);
+        node_fields(frame);
+        if (rheology_.index() != 0) stress_fields(frame);
+    });
+    return frame;
+}
+
+void DepthAveraged::particle_fields(Frame& frame) {
+    const Columns& c = flow_.columns;
+    const Index count = c.count();
+    const GridGeometry& g = flow_.grid.geometry();
+    const auto column = [&](const char* name, const char* unit, int components) {
+        return add_column(frame.particles, name, unit, components, count);
+    };
+    double* position = column("position", "m", 3);
+    double* depth = column("depth", "m", 1);
+    double* thickness = column("thickness", "m", 1);
+    double* velocity = column("velocity", "m/s", 3);
+    double* speed = column("speed", "m/s", 1);
+    double* elevation = column("elevation", "m", 1);
+    double* surface = column("surface", "m", 1);
+    double* pressure = column("pressure", "Pa", 1);
+    double* mass = column("mass", "kg", 1);
+    double* volume = column("volume", "m3", 1);
+    double* id = column("id", "1", 1);
+#pragma omp parallel for schedule(static)
+    for (Index p = 0; p < count; ++p) {
+        const BedHere bed = bed_at(flow_, steep_, curved_, c.x[p], c.y[p]);
+        const double h = std::max(probe_.depth[p], 0.0), vx = probe_.vx[p], vy = probe_.vy[p];
+        const double slope2 = steep_ ? bed.slope_x * bed.slope_x + bed.slope_y * bed.slope_y : 0.0;
+        const double vz = vx * bed.path_x + vy * bed.path_y, path2 = bed.path_x * bed.path_x + bed.path_y * bed.path_y;
+        position[3 * p] = g.x0 + c.x[p] * g.cell;
+        position[3 * p + 1] = g.y0 + c.y[p] * g.cell;
+        position[3 * p + 2] = bed.z + h;
+        depth[p] = h;
+        thickness[p] = h / std::sqrt(1.0 + slope2);
+        velocity[3 * p] = vx;
+        velocity[3 * p + 1] = vy;
+        velocity[3 * p + 2] = vz;
+        speed[p] = std::sqrt(vx * vx + vy * vy + vz * vz);
+        elevation[p] = bed.z;
+        surface[p] = bed.z + h;
+        pressure[p] = flow_.density * bed.gravity(flow_.gravity, vx, vy) * h / (1.0 + path2);
+        mass[p] = c.mass[p];
+        volume[p] = c.mass[p] / flow_.density;
+        id[p] = static_cast<double>(c.id[p]);
+    }
+}
+
+void DepthAveraged::node_fields(Frame& frame) {
+    const Index count = shown_.nx * shown_.ny;
+    const auto column = [&](const char* name, const char* unit, int components) {
+        return add_field(frame.nodes, name, unit, components, count);
+    };
+    double* elevation = column("elevation", "m", 1);
+    double* depth = column("depth", "m", 1);
+    double* thickness = column("thickness", "m", 1);
+    double* surface = column("surface", "m", 1);
+    double* velocity = column("velocity", "m/s", 3);
+    double* speed = column("speed", "m/s", 1);
+    double* pressure = column("pressure", "Pa", 1);
+    double* peak_depth = column("peak_depth", "m", 1);
+    double* peak_speed = column("peak_speed", "m/s", 1);
+    double* peak_pressure = column("peak_pressure", "Pa", 1);
+    double* peak_dynamic = column("peak_dynamic_pressure", "Pa", 1);
+    double* arrival = column("arrival_time", "s", 1);
+    for_all_output_nodes(flow_, shown_, [&](Index k, Index n) {
+        elevation[n] = has_no_data(flow_.bed.exit[k]) ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
+        surface[n] = elevation[n];
+        peak_depth[n] = peaks_.depth[k];
+        peak_speed[n] = peaks_.speed[k];
+        peak_pressure[n] = peaks_.pressure[k];
+        peak_dynamic[n] = peaks_.dynamic_pressure[k];
+        arrival[n] = peaks_.depth[k] > footprint_depth_ ? peaks_.arrival[k] : -1.0;
+    });
+    const Motion* motions = flow_.nodes.motions();
+    double fastest = 0.0;
+    for_each_output_node(flow_, shown_, [&](Index k, Index n) {
+        const double h = flow_.nodes.depth[k], vx = motions[k].vx, vy = motions[k].vy;
+        if (h <= 0.0) return;
+        const double bx = steep_ ? flow_.bed.slope_x[k] : 0.0, by = steep_ ? flow_.bed.slope_y[k] : 0.0;
+        const BedContact contact = bed_contact(flow_, steep_, curved_, k, vx, vy);
+        depth[n] = h;
+        thickness[n] = h / std::sqrt(1.0 + bx * bx + by * by);
+        surface[n] += h;
+        velocity[3 * n] = vx;
+        velocity[3 * n + 1] = vy;
+        if (steep_) velocity[3 * n + 2] = vx * flow_.bed.smooth_x[k] + vy * flow_.bed.smooth_y[k];
+        speed[n] = contact.speed;
+        if (!(h < 0.1 * footprint_depth_)) fastest = std::max(fastest, contact.speed);
+        pressure[n] = contact.pressure;
+    });
+    frame.status.max_speed = fastest;
+}
+
+/// Stress of the rheology at the points and, mass-weighted, on the nodes; effective_stress adds the depth-averaged
+/// pressure: sigma - rho g h / 2 (Fois et al. 2024, before eq. 10).
+void DepthAveraged::stress_fields(Frame& frame) {
+    const Index count = flow_.columns.count(), nodes = shown_.nx * shown_.ny;
+    double* at_points = add_column(frame.particles, "stress", "Pa", 3, count);
+    double* effective = add_column(frame.particles, "effective_stress", "Pa", 3, count);
+    double* at_nodes = add_field(frame.nodes, "stress", "Pa", 3, nodes);
+    double* effective_nodes = add_field(frame.nodes, "effective_stress", "Pa", 3, nodes);
+    std::visit([&](const auto& law) { stress_at_points(law, at_points); }, rheology_);
+    stress_on_nodes(at_points);
+    const double half_weight = 0.5 * flow_.density * flow_.gravity;
+#pragma omp parallel for schedule(static)
+    for (Index p = 0; p < count; ++p)
+        for (int n = 0; n < 3; ++n)
+            effective[3 * p + n] = at_points[3 * p + n] - (n < 2 ? half_weight * std::max(probe_.depth[p], 0.0) : 0.0);
+    for_each_output_node(flow_, shown_, [&](Index k, Index to) {
+        const StressSum& sum = stress_sums_[k];
+        for (int n = 0; n < 3; ++n) {
+            if (sum.mass > 0.0) at_nodes[3 * to + n] = sum.stress[n] / sum.mass;
+            effective_nodes[3 * to + n] = at_nodes[3 * to + n] - (n < 2 ? half_weight * flow_.nodes.depth[k] : 0.0);
+        }
+    });
+}
+
+template <class Law>
+void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
+    if constexpr (!std::is_same_v<Law, rheology::None>) {
+        const Columns& c = flow_.columns;
+        const Index count = c.count();
+        const double kick = status_.dt > 0.0 ? status_.dt : longest_step();
+        const double cap = most_viscosity(flow_, kick);
+#pragma omp parallel for schedule(static)
+        for (Index p = 0; p < count; p += 4) {
+            const int lanes = static_cast<int>(std::min<Index>(4, count - p));
+            const auto four = [&](const auto& column) { return load(&column[p], lanes); };
+            const Double4 vx = four(probe_.vx), vy = four(probe_.vy), depth = four(probe_.depth), none = {};
+            const Mask4 wet = depth > flow_.dry_depth();
+            const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy), 0.5 * (four(probe_.cxy) + four(probe_.cyx))};
+            const Sheet<Double4> sheet = sheet_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy,
+                                                       max(depth, all(flow_.dry_depth())));
+            const PlaneOf<Double4> sigma =
+                stress(law, StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow_.scheme.strain_rate_floor, cap});
+            const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none), xy = select(wet, sigma.xy, none);
+            for (int n = 0; n < lanes; ++n)
+                stresses[3 * (p + n)] = xx[n], stresses[3 * (p + n) + 1] = yy[n], stresses[3 * (p + n) + 2] = xy[n];
+        }
+    }
+}
+
+/// Weighted with mass and shape function, whatever the scheme's: quadratic.
+void DepthAveraged::stress_on_nodes(const double* stresses) {
+    if (!stress_sums_) stress_sums_ = LazyArray<StressSum>(flow_.grid.size());
+    for (const Index tile : flow_.active.work)
+        for_each_node_of(flow_.grid, tile, kAllGroups, [&](Index k, Index, Index) { stress_sums_[k] = {}; });
+    const Columns& c = flow_.columns;
+    for_each_tile_coloured(flow_.active, [&](Index n) {
+        for (Index p = flow_.active.begin[n]; p < flow_.active.begin[n + 1]; ++p) {
+            const Quadratic sx(c.x[p]), sy(c.y[p]);
+            const double* s = stresses + 3 * p;
+            const Double4 value = c.mass[p] * Double4{s[0], s[1], s[2], 1.0};
+            for (int j = 0; j < 3; ++j) {
+                StressSum* row = &stress_sums_[flow_.grid.at(sx.base, sy.base + j)];
+                const Double4 weighted = sy.w[j] * value;
+                for (int i = 0; i < 3; ++i) store(row + i, load(row + i) + sx.w[i] * weighted);
+            }
+        }
+    });
+}
+
+}  // namespace frana

@@ -1,0 +1,50 @@
+// A run that goes on on a larger grid, because its material comes near the end of the one that it has.
+#include <algorithm>
+
+#include "shallow/depth_averaged.h"
+
+namespace frana {
+namespace {
+
+/// Where nothing ever was, peaks are zero.
+void copy_peaks(const TileGrid& from_grid, const Peaks& from, const TileGrid& to_grid, Peaks& to, Index east,
+                Index north) {
+    for (Index j = -kTile; j < from_grid.ny() + kGhosts; ++j)
+        for (Index i = -kTile; i < from_grid.nx() + kGhosts; ++i) {
+            const Index k = from_grid.at(i, j);
+            if (!(from.depth[k] > 0.0)) continue;
+            const Index n = to_grid.at(i + east, j + north);
+            to.depth[n] = from.depth[k], to.speed[n] = from.speed[k], to.pressure[n] = from.pressure[k];
+            to.dynamic_pressure[n] = from.dynamic_pressure[k], to.arrival[n] = from.arrival[k];
+        }
+}
+
+}  // namespace
+
+NodeBox DepthAveraged::worked() const {
+    const std::vector<Index>& work = flow_.active.work;
+    if (work.empty()) return {};
+    const TileGrid& grid = flow_.grid;
+    Index west = grid.tile_i(work.front()), east = west;
+    for (const Index tile : work) west = std::min(west, grid.tile_i(tile)), east = std::max(east, grid.tile_i(tile));
+    const Index south = grid.tile_j(work.front()), north = grid.tile_j(work.back());  // ascending
+    return {west, south, east - west + kTile, north - south + kTile};
+}
+
+void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
+    Columns& c = flow_.columns;
+    c = std::move(from.flow_.columns);
+    for (Index p = 0; p < c.count(); ++p) c.x[p] += static_cast<double>(east), c.y[p] += static_cast<double>(north);
+    copy_peaks(from.flow_.grid, from.peaks_, flow_.grid, peaks_, east, north);
+    splitter_ = std::move(from.splitter_), merger_ = std::move(from.merger_), timed_ = std::move(from.timed_);
+    frame_storage_ = std::move(from.frame_storage_);
+    status_ = from.status_, fit_ = from.fit_, start_momentum_ = from.start_momentum_;
+    lost_in_holes_ = from.lost_in_holes_;
+    signal_ = from.signal_, since_split_ = from.since_split_, stress_power_ = from.stress_power_;
+    centre_ = from.centre_ + Vec2(static_cast<double>(east), static_cast<double>(north));
+    sorter_.sort(c, flow_.grid, {}, flow_.active);
+    drift_ = 0.0;
+    arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())); }));
+}
+
+}  // namespace frana

@@ -1,0 +1,229 @@
+#include "shallow/mass_fit.h"
+
+#include <algorithm>
+
+#include "mpm/domain.h"
+#include "mpm/stencil.h"
+#include "shallow/surface.h"
+#include "shallow/transfer.h"
+
+namespace frana {
+namespace {
+
+/// The nodes that a point's column mass goes to and their weights, walls folded in: one row of B^T.
+struct Reach {
+    static constexpr int kMost = 64;  // four sub-points, 4 x 4 nodes of a cubic
+    int count = 0;
+    Index node[kMost];
+    double weight[kMost];
+};
+
+/// Node index with walls mirrored; wall nodes count their own image too.
+struct Folded { Index k; double factor; };
+
+Folded folded(const Flow& flow, Index i, Index j) {
+    double factor = 1.0;
+    if (flow.walls) {
+        const auto fold = [&](Index& n, Index last) {
+            if (n < 0) n = -n;
+            else if (n > last) n = 2 * last - n;
+            if (n == 0 || n == last) factor *= 2.0;
+        };
+        fold(i, flow.grid.nx() - 1);
+        fold(j, flow.grid.ny() - 1);
+    }
+    return {flow.grid.at(i, j), factor};
+}
+
+template <class S>
+Reach reach_with(const Flow& flow, Index p) {
+    const Columns& c = flow.columns;
+    const Edges edges = c.with_real([&](auto real) { return edges_of(c.carried<decltype(real)>(), p); });
+    Reach reach;
+    const double sub_reach = flow.scheme.sub_point_reach;
+    for (int sub = 0; sub < 4; ++sub) {
+        const double s1 = sub & 1 ? sub_reach : -sub_reach, s2 = sub & 2 ? sub_reach : -sub_reach;
+        double x = c.x[p] + s1 * edges.r1x + s2 * edges.r2x, y = c.y[p] + s1 * edges.r1y + s2 * edges.r2y;
+        if (!flow.walls) {
+            x = std::clamp(x, 0.0, static_cast<double>(flow.grid.nx() - 1));
+            y = std::clamp(y, 0.0, static_cast<double>(flow.grid.ny() - 1));
+        }
+        const S sx(x), sy(y);
+        for (int j = 0; j < S::kNodes; ++j)
+            for (int i = 0; i < S::kNodes; ++i) {
+                const Folded to = folded(flow, sx.base + i, sy.base + j);
+                reach.node[reach.count] = to.k;
+                reach.weight[reach.count++] = 0.25 * to.factor * sx.w[i] * sy.w[j];
+            }
+    }
+    return reach;
+}
+
+Reach reach_of(const Flow& flow, Index p) {
+    return flow.scheme.shape == Shape::cubic ? reach_with<Cubic>(flow, p) : reach_with<Quadratic>(flow, p);
+}
+
+/// The system B W B^T on the chosen rows, applied without being stored.
+class FitSystem {
+public:
+    FitSystem(const Flow& flow, const std::vector<double>& weight) : weight_(weight), row_(flow.grid.size()) {
+        reach_.reserve(static_cast<std::size_t>(flow.columns.count()));
+        for (Index p = 0; p < flow.columns.count(); ++p) reach_.push_back(reach_of(flow, p));
+    }
+    void set_rows(const std::vector<Index>& nodes) {
+        for (std::size_t r = 0; r < nodes.size(); ++r) row_[nodes[r]] = static_cast<Index>(r) + 1;
+        rows_ = static_cast<Index>(nodes.size());
+    }
+    /// W B^T y: the change of each point's mass.
+    void spread(const std::vector<double>& y, std::vector<double>& change) const {
+        const Index count = static_cast<Index>(reach_.size());
+        change.resize(reach_.size());
+#pragma omp parallel for schedule(static)
+        for (Index p = 0; p < count; ++p) {
+            double sum = 0.0;
+            for (int n = 0; n < reach_[p].count; ++n)
+                if (const Index r = row_[reach_[p].node[n]]) sum += reach_[p].weight[n] * y[r - 1];
+            change[p] = weight_[p] * sum;
+        }
+    }
+    /// B m on the rows.
+    void collect(const std::vector<double>& mass, std::vector<double>& sums) const {
+        sums.assign(static_cast<std::size_t>(rows_), 0.0);
+        for (std::size_t p = 0; p < reach_.size(); ++p)
+            for (int n = 0; n < reach_[p].count; ++n)
+                if (const Index r = row_[reach_[p].node[n]]) sums[r - 1] += reach_[p].weight[n] * mass[p];
+    }
+
+private:
+    const std::vector<double>& weight_;
+    std::vector<Reach> reach_;
+    LazyArray<Index> row_;  ///< row number + 1 of a node, 0: none
+    Index rows_ = 0;
+};
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+    return sum;
+}
+
+/// Conjugate gradients for (B W B^T) y = rhs, to round-off or 1000 iterations. Rows that no point with weight reaches are
+/// left out; more rows than such points may have no solution, then the best so far counts. Returns the iterations.
+Index solve(const FitSystem& system, const std::vector<double>& weight, std::vector<double> residual,
+            std::vector<double>& y) {
+    std::vector<double> change, applied;
+    system.collect(weight, applied);
+    for (std::size_t k = 0; k < residual.size(); ++k)
+        if (!(applied[k] > 0.0)) residual[k] = 0.0;
+    std::vector<double> direction = residual, best(residual.size(), 0.0);
+    y = best;
+    double rr = dot(residual, residual), least = rr;
+    const double goal = 1e-30 * rr;
+    Index iteration = 0;
+    for (; iteration < 1000 && rr > goal && rr < 1e12 * least; ++iteration) {
+        system.spread(direction, change);
+        system.collect(change, applied);
+        const double bend = dot(direction, applied);
+        if (!(bend > 0.0)) break;
+        const double step = rr / bend;
+        for (std::size_t k = 0; k < y.size(); ++k) {
+            y[k] += step * direction[k];
+            residual[k] -= step * applied[k];
+        }
+        const double next = dot(residual, residual);
+        for (std::size_t k = 0; k < y.size(); ++k) direction[k] = residual[k] + next / rr * direction[k];
+        rr = next;
+        if (rr < least) {
+            least = rr;
+            best = y;
+        }
+    }
+    y.swap(best);
+    return iteration;
+}
+
+/// Deposits the columns' mass alone and finds wetness and margin.
+void deposit_columns(Flow& flow) {
+    start_deposit(flow, 1, 3);
+    touch_all(flow);
+    for (Index p = 0; p < flow.columns.count(); ++p) {
+        const Reach reach = reach_of(flow, p);
+        for (int n = 0; n < reach.count; ++n)
+            flow.nodes.column_mass[reach.node[n]] += flow.columns.mass[p] * reach.weight[n];
+    }
+    depth_pass(flow, {0.0, Vec2(0, 0)});
+}
+
+bool inside(const Flow& flow, Index i, Index j) {
+    return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
+}
+
+}  // namespace
+
+double off_level(const Flow& flow, double level) {
+    double most = 0.0;
+    for (const Index tile : flow.active.work)
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+            const bool inside = i >= 0 && j >= 0 && i < flow.grid.nx() && j < flow.grid.ny();
+            if (inside && flow.nodes.flags[k] & kWet) most = std::max(most, std::abs(flow.nodes.surface[k] - level));
+        });
+    return most;
+}
+
+MassFit fit_masses(Flow& flow, double level) {
+    MassFit fit;
+    const std::vector<double> start(flow.columns.mass.begin(), flow.columns.mass.end());
+    // A mass that meets its limits stays there, with no weight of its own, and the others are fitted again.
+    std::vector<double> from = start, weight = start;
+    FitSystem system(flow, weight);
+    const double column = flow.density * flow.area;
+
+    deposit_columns(flow);
+    mark_margin(flow);
+    std::vector<Index> rows;
+    const auto gather_rows = [&](bool margin, double below) {
+        std::size_t added = 0;
+        for (const Index tile : flow.active.work)
+            for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+                if (!inside(flow, i, j) || !(flow.nodes.flags[k] & kWet)) return;
+                if (static_cast<bool>(flow.nodes.flags[k] & kMargin) != margin) return;
+                if (margin && !(flow.nodes.depth[k] + flow.bed.z[k] < below)) return;
+                if (margin && std::find(rows.begin(), rows.end(), k) != rows.end()) return;
+                rows.push_back(k);
+                ++added;
+            });
+        return added;
+    };
+    gather_rows(false, 0.0);
+    for (int round = 0, refits = 0; round < 4;) {
+        system.set_rows(rows);
+        std::vector<double> rhs, y, change;
+        system.collect(from, rhs);
+        for (std::size_t r = 0; r < rows.size(); ++r) rhs[r] = column * (level - flow.bed.z[rows[r]]) - rhs[r];
+        fit.iterations += solve(system, weight, rhs, y);
+        system.spread(y, change);
+        fit.largest_change = 0.0;
+        Index clipped = 0;
+        for (std::size_t p = 0; p < start.size(); ++p) {
+            const double wanted = from[p] + change[p];
+            flow.columns.mass[p] = std::clamp(wanted, 0.03 * start[p], 5.0 * start[p]);
+            if (flow.columns.mass[p] != wanted) {
+                from[p] = flow.columns.mass[p];
+                weight[p] = 0.0;
+                ++clipped;
+            }
+            fit.largest_change = std::max(fit.largest_change, std::abs(flow.columns.mass[p] / start[p] - 1.0));
+        }
+        fit.clipped += clipped;
+        if (clipped > 0 && ++refits < 20) continue;
+        ++round;
+        deposit_columns(flow);
+        mark_margin(flow);
+        // A margin node that would stand below the level pulls the surface down (the margin takes a minimum).
+        if (gather_rows(true, level - 1e-13 * std::max(1.0, std::abs(level))) == 0) break;
+    }
+    fit.rows = static_cast<Index>(rows.size());
+    return fit;
+}
+
+}  // namespace frana

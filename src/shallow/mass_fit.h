@@ -1,0 +1,24 @@
+#pragma once
+#include "shallow/flow.h"
+
+namespace frana {
+
+/// What the fit did.
+struct MassFit {
+    Index rows = 0;              ///< nodes held to the level
+    Index iterations = 0;        ///< of the conjugate gradients, all rounds
+    double largest_change = 0.0; ///< largest |m - m0| / m0 of a point [1]
+    Index clipped = 0;           ///< points whose mass met the limits [0.03, 5] m0
+    double level_error = 0.0;    ///< largest distance of the surface from the level where it is wet (off_level) [m]
+};
+
+/// Largest distance of the free surface, margins included, from `level` on the wet nodes of the domain [m].
+double off_level(const Flow& flow, double level);
+
+/// THEORY (58): changes the points' masses so that depth + bed equals `level` [m] on the wet nodes: a lake that starts
+/// at exact rest, wherever the points stand. Least change, weighted by mass: m = m0 + W B^T y, (B W B^T) y = t - B m0
+/// with B the deposit (sub-points and walls included), by conjugate gradients. Nodes whose surface is extrapolated from
+/// inside are left free unless they would end below the level. Sorts must have been done; rheology plays no part.
+MassFit fit_masses(Flow& flow, double level);
+
+}  // namespace frana

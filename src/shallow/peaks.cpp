@@ -1,0 +1,68 @@
+#include "shallow/peaks.h"
+
+#include <algorithm>
+
+#include "base/simd.h"
+
+namespace frana {
+
+namespace {
+
+template <class Real>
+struct Contact { Real speed, pressure; };
+
+/// bed_contact of one node or four.
+template <class Real>
+Contact<Real> contact(const Flow& flow, bool steep, bool curved, Index k, Real vx, Real vy) {
+    Real gravity = Real{} + flow.gravity, rise{}, cosine2 = Real{} + 1.0;
+    if (steep) {
+        const Real bx = read<Real>(&flow.bed.smooth_x[k]), by = read<Real>(&flow.bed.smooth_y[k]);
+        rise = vx * bx + vy * by;
+        cosine2 = 1.0 / (1.0 + bx * bx + by * by);
+        if (curved)
+            gravity = max(Real{}, flow.gravity + vx * vx * read<Real>(&flow.bed.hxx[k]) +
+                                      2.0 * vx * vy * read<Real>(&flow.bed.hxy[k]) +
+                                      vy * vy * read<Real>(&flow.bed.hyy[k]));
+    }
+    return {sqrt(vx * vx + vy * vy + rise * rise),
+            flow.density * gravity * cosine2 * read<Real>(&flow.nodes.depth[k])};
+}
+
+void raise(double* peaks, Double4 values) { store(peaks, max(load(peaks), values)); }
+
+}  // namespace
+
+BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, double vx, double vy) {
+    const Contact<double> c = contact<double>(flow, steep, curved, k, vx, vy);
+    return {c.speed, c.pressure};
+}
+
+double update_peaks(const Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
+    double fastest = 0.0;
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        Double4 most = {};
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) {
+            const Double4 h = load(&flow.nodes.depth[k]), none = {};
+            if (!any(h > 0.0)) return;
+            if (any((h > footprint_depth) & (load(&peaks.depth[k]) <= footprint_depth)))
+                for (Index n = k; n < k + 4; ++n)
+                    if (flow.nodes.depth[n] > footprint_depth && !(peaks.depth[n] > footprint_depth))
+                        peaks.arrival[n] = time;
+            Double4 vx, vy;
+            unzip(&flow.nodes.before[k], vx, vy);
+            const Contact<Double4> c = contact(flow, steep, curved, k, vx, vy);
+            const Double4 speed = select(h < 0.1 * footprint_depth, none, c.speed);
+            raise(&peaks.depth[k], h);
+            raise(&peaks.pressure[k], c.pressure);
+            raise(&peaks.speed[k], speed);
+            most = max(most, speed);
+            raise(&peaks.dynamic_pressure[k], flow.density * speed * speed);
+        });
+        const double of_run = largest(most);
+#pragma omp critical(frana_fastest_node)
+        fastest = std::max(fastest, of_run);
+    });
+    return fastest;
+}
+
+}  // namespace frana

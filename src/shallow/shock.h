@@ -1,0 +1,32 @@
+#pragma once
+// Artificial viscosity at bores, and the sensor that holds the surface filter back there.
+#include <algorithm>
+
+#include "shallow/flow.h"
+
+namespace frana {
+
+/// THEORY (27), (28): momentum fluxes of the limited artificial viscosity through the faces of each node towards +x
+/// (for vx) and +y (for vy) [m^3/s^2], and the shock sensor [0, 1]. Acts in compression only, zero for linear
+/// velocities: per face with velocity jump d < 0, depth h (harmonic mean) and c = sqrt(g h), e = |d| (1 - limiter),
+/// flux = h e (c1 c + c2 e). The limiter fades out where |d| exceeds scheme.shock_gate * c, so that the middle of a
+/// bore is not mistaken for a smooth velocity; the sensor grows from e = kap c to 2 kap c, kap = scheme.shock_sensor.
+/// Needs depth, flags and velocity before the kick. Does nothing when the scheme has no viscosity.
+void shock_pass(Flow& flow);
+
+/// Whether the scheme has artificial viscosity at all.
+inline bool has_viscosity(const Scheme& scheme) {
+    return scheme.viscosity_linear > 0.0 || scheme.viscosity_quadratic > 0.0;
+}
+
+/// Sensor at a node: the largest of its own four faces and of those of its four neighbours.
+inline double shock_near(const Nodes& nodes, Index k, Index up) {
+    const Pair* s = nodes.shock.data() + k;
+    const double along_x = std::max({s[-2].x, s[-1].x, s[0].x, s[1].x});
+    const double along_y = std::max({s[-2 * up].y, s[-up].y, s[0].y, s[up].y});
+    const double beside_x = std::max({s[up].x, s[up - 1].x, s[-up].x, s[-up - 1].x});
+    const double beside_y = std::max({s[1].y, s[1 - up].y, s[-1].y, s[-1 - up].y});
+    return std::max({along_x, along_y, beside_x, beside_y});
+}
+
+}  // namespace frana

@@ -1,0 +1,33 @@
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "mpm/halving.h"
+#include "shallow/flow.h"
+
+namespace frana {
+
+/// Splits points whose domain has grown, so that spreading material does not fall apart (numerical fracture).
+class Splitter {
+public:
+    /// `least_mass`: no point lighter than this is split [kg].
+    explicit Splitter(double least_mass) : least_mass_(least_mass) {}
+    /// Clamps domain edges to one cell (or scheme.split_length, if longer) and gives strongly sheared domains a
+    /// rectangle; then, when scheme.split is on, halves every point whose longer edge reaches scheme.split_length
+    /// cells (both ways where both are equally long): children at +- r/4 along that edge, with the velocity there.
+    /// Mass and momentum are kept exactly.
+    /// New points are appended; returns how many. The caller sorts afterwards.
+    Index split(Flow& flow);
+    /// From now on split() tells whose parts the new points are.
+    void note_parents() { halves_.notes = true; }
+    /// Numbers of the points that were split, for each new one since the last call; theirs end at next_id().
+    std::vector<Index> take_parents() { return std::exchange(halves_.parents, {}); }
+    Index next_id() const { return halves_.next_id; }
+    void set_next_id(Index id) { halves_.next_id = id; }
+
+private:
+    double least_mass_;
+    Halves halves_;
+};
+
+}  // namespace frana

@@ -1,0 +1,370 @@
+#include "shallow/surface.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+
+#include "base/simd.h"
+#include "shallow/shock.h"
+#include "shallow/two_cell_wave.h"
+
+namespace frana {
+namespace {
+
+/// Ghost nodes beyond walls take the surface, depth and wetness of their mirror images.
+void mirror_surface(Flow& flow) {
+    if (!flow.walls) return;
+    Nodes& nodes = flow.nodes;
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
+            nodes.depth[ghost] = nodes.depth[mirror];
+            nodes.law_depth[ghost] = nodes.law_depth[mirror];
+            nodes.surface[ghost] = nodes.surface[mirror];
+            nodes.level[ghost] = nodes.level[mirror];
+            nodes.flags[ghost] = nodes.flags[mirror];
+        });
+}
+
+/// The velocity before the kick beyond walls: mirrored, the normal component turned round.
+void mirror_velocity(Flow& flow) {
+    if (!flow.walls) return;
+    Nodes& nodes = flow.nodes;
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
+            nodes.before[ghost] = nodes.before[mirror];
+            (axis == 0 ? nodes.before[ghost].x : nodes.before[ghost].y) *= -1.0;
+        });
+}
+
+/// Wetness of a tile and two nodes around it: one bit a node, bit n + 2 of row n + 2 is node (n, n). Right in rows two or
+/// fewer from a touched node, empty elsewhere.
+struct WetRows {
+    std::uint32_t row[kTile + 4] = {};
+    WetRows(const Flow& flow, Index tile) {
+        const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+        const NodeGroups touched = flow.touched[tile];
+        for (Index j = 0; j < kTile + 4; ++j) {
+            const Index from = 4 * std::max<Index>(j - 4, 0), past = 4 * std::min<Index>(j + 1, kTile);
+            const NodeGroups below = past < 64 ? (NodeGroups{1} << past) - 1 : kAllGroups;
+            if (!((touched & below) >> from)) continue;
+            const Index first = flow.grid.at(i0, j0 + j - 2) - 2;
+            if (first < 0 || first + kTile + 4 > flow.grid.size()) continue;  // beyond the spare ring: dry
+            // Depth and not the flags, which other threads write at the same time.
+            const double* depth = flow.nodes.depth.data() + first;
+            for (Index i = 0; i < kTile + 4; ++i)
+                row[j] |= static_cast<std::uint32_t>(depth[i] > 0.0) << i;
+        }
+    }
+};
+
+/// The sixteen nodes of four groups, a bit each.
+std::uint32_t nodes_in(NodeGroups groups) {
+    const auto spread = static_cast<std::uint32_t>(groups | groups << 3 | groups << 6 | groups << 9) & 0x1111u;
+    return spread * 0xfu;
+}
+
+constexpr int kSweeps = 3;  ///< a ragged shore is flagged three nodes deep
+
+/// How much of the ground around a node stands above `level`, averaged as the bed is: by so much a surface at that
+/// level comes out too high there, at most (the ground is taken at nodes: Jensen). Linear shapes: no bound.
+double emerging(const Flow& flow, Index k, double level) {
+    const auto& w = flow.bed.averaging;
+    if (w[0] == 1.0) return std::numeric_limits<double>::infinity();
+    const Index up = flow.grid.stride();
+    double sum = 0.0;
+    for (Index dj = -2; dj <= 2; ++dj)
+        for (Index di = -2; di <= 2; ++di)
+            sum += w[std::abs(dj)] * w[std::abs(di)] * std::max(0.0, flow.bed.ground[k + dj * up + di] - level);
+    return sum;
+}
+
+/// Flags that another thread may be writing: it only adds the present sweep, which readers take for none.
+std::uint8_t flags_now(const Nodes& nodes, Index k) { return __atomic_load_n(&nodes.flags[k], __ATOMIC_RELAXED); }
+
+/// What a film adds to the line through its surface at p and q when that is continued to k: it bends as the ground does. Of a
+/// film only, on ground that bends by more than it is deep: on what a grid resolves waves are linear at shores. Nothing where
+/// the ground from q to p is next to level, as on a crest: a lake is as level there as a film.
+double film_bend(const Flow& flow, Index k, Index p, Index q) {
+    const double bend = flow.bed.z[k] - 2.0 * flow.bed.z[p] + flow.bed.z[q], depth = std::max(flow.nodes.depth[p], flow.nodes.depth[q]);
+    if (std::abs(bend) <= depth) return 0.0;
+    const double rise = flow.nodes.surface[p] - flow.nodes.surface[q], ground = flow.bed.z[p] - flow.bed.z[q];
+    return std::min(1.0, std::abs(bend) / depth - 1.0) * film_share(rise / flow.cell, ground / flow.cell) * bend;
+}
+
+/// One extrapolated surface value from up to eight directions, made of nodes known before this sweep, or nothing.
+bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
+    const Nodes& nodes = flow.nodes;
+    const auto known = [&](Index n) {
+        const std::uint8_t f = flags_now(nodes, n);
+        const int found = f / kSweep;
+        return (f & kWet) && (!(f & kMargin) || (found > 0 && found < sweep));
+    };
+    const Index up = flow.grid.stride();
+    // The flank of what rests bends down to the level at most: bent on under the ground, it would be steeper than it is
+    // anywhere and pull the pile apart. (Not to the bed itself, or a dry neighbour as high would be a shore by round-off.)
+    // A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
+    constexpr double kCreeps = 1e-6;  // of the speed of a wave one cell deep, where it is a front
+    const double creeps = kCreeps * std::sqrt(flow.gravity * flow.cell);
+    const double rests = std::max(0.0, 1.0 - std::hypot(nodes.before[k].x, nodes.before[k].y) / creeps);
+    double sum = 0.0, weights = 0.0;
+    for (int dj = -1; dj <= 1; ++dj)
+        for (int di = -1; di <= 1; ++di) {
+            if (di == 0 && dj == 0) continue;
+            const Index step = dj * up + di, p = k + step, q = p + step, r = q + step;
+            if (!known(p) || !known(q)) continue;
+            const double film = film_bend(flow, k, p, q);
+            double e = 2.0 * nodes.surface[p] - nodes.surface[q] + film;
+            const double limit = flow.scheme.margin_limit * nodes.depth[p];
+            if (known(r)) {
+                const double bend = std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r] - film, -limit, limit);
+                e += bend + rests * (std::max(bend, std::min(0.0, nodes.level[k] - e)) - bend);
+            }
+            const double weight = di == 0 || dj == 0 ? nodes.depth[p] : 0.25 * nodes.depth[p];
+            sum += weight * e;
+            weights += weight;
+        }
+    if (weights <= 0.0) return false;
+    value = std::max(sum / weights, flow.bed.z_min[k]);
+    const double level = nodes.level[k];
+    if (value >= level) value = level;
+    else  // a heap stays seen
+        value = std::max(value, level - emerging(flow, k, value) - (value - flow.bed.z_min[k]));
+    return true;
+}
+
+/// Extrapolates to the margin nodes inside the walls that no earlier sweep reached.
+void shoreline_sweep(Flow& flow, int sweep) {
+    Nodes& nodes = flow.nodes;
+    const auto inside = [&](Index i, Index j) {
+        return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
+    };
+    const Index count = static_cast<Index>(flow.shore.size());
+#pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
+    for (Index n = 0; n < count; ++n) {
+        const Index tile = flow.shore[static_cast<std::size_t>(n)];
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+            const std::uint8_t f = nodes.flags[k];
+            if (!(f & kMargin) || f >= kSweep || !inside(i, j) || !extrapolate(flow, k, sweep, nodes.surface[k])) return;
+            __atomic_store_n(&nodes.flags[k], static_cast<std::uint8_t>(f | sweep * kSweep), __ATOMIC_RELAXED);
+        });
+    }
+}
+
+/// Whether a node and two each way are wet and not of the margin.
+bool five_known(const Nodes& nodes, Index k, Index step) {
+    const std::uint8_t* f = nodes.flags.data() + k;
+    const int all = f[0] & f[step] & f[-step] & f[2 * step] & f[-2 * step];
+    const int any = f[0] | f[step] | f[-step] | f[2 * step] | f[-2 * step];
+    return (all & kWet) && !(any & kMargin);
+}
+
+void wave_along_x(Nodes& nodes, Index k) {
+    const double* e = nodes.level.data() + k;
+    if (eight_have(nodes.flags.data() + k - 2, kWet, kMargin)) {
+        std::memset(nodes.row_known.data() + k, 1, 4);
+        store(&nodes.wave_x[k], wave_along<Double4>(e, 1));
+        return;
+    }
+    for (Index n = 0; n < 4; ++n) {
+        nodes.row_known[k + n] = five_known(nodes, k + n, 1);
+        nodes.wave_x[k + n] = nodes.row_known[k + n] ? wave_along<double>(e + n, 1) : 0.0;
+    }
+}
+
+/// Four nodes in a row without margin or bore nearby.
+bool calm(const Nodes& nodes, Index k, Index up) {
+    const std::uint8_t *f = nodes.flags.data() + k, *row = nodes.row_known.data() + k, *s = nodes.sensed.data() + k - 2;
+    for (Index n = -2; n <= 2; ++n)
+        if (!four_have(f + n * up, kWet, kMargin) || !four_have(row + n * up, 1, 0)) return false;
+    for (Index n = -2; n <= 1; ++n)
+        if (!eight_have(s + n * up, 0, 1)) return false;
+    return true;
+}
+
+/// Of the depth that a filter may take or add. A depth that repeats every two cells and is nowhere negative has a mean of
+/// a quarter of its peak at least. Where a filter takes more, it sees no wave but the edge of a film.
+constexpr double kMostOfDepth = 0.75;
+
+/// The depth h without its wave, as the bed law sees it.
+template <class Real>
+Real without_wave(Real h, Real wave) {
+    return h - min(max(wave, -kMostOfDepth * h), kMostOfDepth * h);
+}
+
+/// (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; where the product is not known, two thirds
+/// of each: the waves along one axis and the chequerboard then both keep a third.
+void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool sensed) {
+    const bool x = nodes.row_known[k], y = five_known(nodes, k, up);
+    if (!x && !y) return;
+    const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
+    const double strength = flow.scheme.filter * held;
+    const double wave_y = y ? wave_along<double>(nodes.level.data() + k, up) : 0.0;
+    const std::uint8_t* row = nodes.row_known.data() + k;
+    const bool all = x && y && row[up] && row[-up] && row[2 * up] && row[-2 * up];
+    const double both = all ? strength * wave_along<double>(nodes.wave_x.data() + k, up) : 0.0;
+    const double share = x && y && !all ? 2.0 / 3.0 : 1.0;
+    nodes.surface[k] -= share * strength * (nodes.wave_x[k] + wave_y - both);
+    const double* h = nodes.depth.data() + k;
+    const double depth_x = x ? wave_along<double>(h, 1) : 0.0, depth_y = y ? wave_along<double>(h, up) : 0.0;
+    const double depth_both = all ? strength * wave_along_both<double>(h, up) : 0.0;
+    nodes.law_depth[k] = without_wave(*h, share * strength * (depth_x + depth_y - depth_both));
+}
+
+void filter_calm(const Flow& flow, Nodes& nodes, Index k, Index up) {
+    const double strength = flow.scheme.filter;
+    const Double4 wave_y = wave_along<Double4>(nodes.level.data() + k, up);
+    const Double4 both = strength * wave_along<Double4>(nodes.wave_x.data() + k, up);
+    store(&nodes.surface[k], load(&nodes.level[k]) - strength * (load(&nodes.wave_x[k]) + wave_y - both));
+    const double* h = nodes.depth.data() + k;
+    const Double4 depth_x = wave_along<Double4>(h, 1), depth_y = wave_along<Double4>(h, up);
+    const Double4 depth_both = strength * wave_along_both<Double4>(h, up);
+    store(&nodes.law_depth[k], without_wave(load(h), strength * (depth_x + depth_y - depth_both)));
+}
+
+/// Mass and momentum of a node vanish together: however little it is, the velocity is right, and points that gather
+/// would miss it. Only denormal numbers are none.
+constexpr double kLeastMass = 1e-200;  ///< [kg]
+
+/// Four nodes in a row that no point touches.
+void dry_four(Flow& flow, Index k) {
+    Nodes& nodes = flow.nodes;
+    const Double4 none = {}, z = load(&flow.bed.z[k]);
+    store(&nodes.depth[k], none);
+    store(&nodes.law_depth[k], none);
+    store(&nodes.level[k], z);
+    store(&nodes.surface[k], z);
+    for (Index n = 0; n < 4; n += 2)
+        for (auto* pairs : {&nodes.before, &nodes.viscous_flux, &nodes.shock}) store(&(*pairs)[k + n], none);
+    for (auto* bytes : {&nodes.flags, &nodes.sensed, &nodes.row_known}) std::memset(bytes->data() + k, 0, 4);
+}
+
+/// The sums of one tile: four nodes at a time.
+struct DepthSums {
+    Double4 potential{}, max_depth{}, covered_area{}, front2{};
+    TileSums of_tile() const { return {sum(potential), largest(max_depth), sum(covered_area), largest(front2)}; }
+};
+
+/// Depth, wetness, surface and velocity of four nodes in a row from what lies on them.
+void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, Index j, DepthSums& sums) {
+    Nodes& nodes = flow.nodes;
+    const Deposit* d = nodes.deposits() + k;
+    const double column = flow.density * flow.area;
+    const Double4 none = {}, z = load(&flow.bed.z[k]), raw = load(&nodes.column_mass[k]) / column;
+    const Double4 px = {d[0].px, d[1].px, d[2].px, d[3].px}, py = {d[0].py, d[1].py, d[2].py, d[3].py};
+    const Double4 deposited = load(&nodes.mass[k]);
+    const Mask4 wet = raw > flow.dry_depth(), moving = deposited > kLeastMass;
+    for (int n = 0; n < 4; ++n)
+        nodes.flags[k + n] = static_cast<std::uint8_t>((wet[n] ? kWet : 0) | (moving[n] ? kMoving : 0));
+    const Double4 h = select(wet, raw, none), mass = select(moving, deposited, all(1.0));
+    store(&nodes.depth[k], h);
+    store(&nodes.law_depth[k], h);
+    store(&nodes.level[k], z + h);
+    store(&nodes.surface[k], z + h);
+    zip(select(moving, px / mass, none), select(moving, py / mass, none), &nodes.before[k]);
+    if (!any(wet)) return;
+    const Double4 share = {flow.share(i, j), flow.share(i + 1, j), flow.share(i + 2, j), flow.share(i + 3, j)};
+    sums.potential += share * column * flow.gravity * h * (z + 0.5 * h);
+    sums.max_depth = max(sums.max_depth, select(share > 0.0, h, none));
+    const Mask4 covered = (h > request.footprint_depth) & (share > 0.0);
+    const Double4 dx = static_cast<double>(i) - request.centre.x() + Double4{0.0, 1.0, 2.0, 3.0};
+    const double dy = static_cast<double>(j) - request.centre.y();
+    sums.covered_area += select(covered, share * flow.area, none);
+    sums.front2 = max(sums.front2, select(covered, (dx * dx + dy * dy) * flow.area, none));
+}
+
+}  // namespace
+
+NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        std::array<DepthSums, kRunTiles> sums{};
+        const auto dry = [&](Index tile) { return flow.rest.stirred[tile] ? flow.near[tile] & ~flow.touched[tile] : 0; };
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index n, Index k, Index i, Index j) {
+            depth_of_four(flow, request, k, i, j, sums[static_cast<std::size_t>(n)]);
+        });
+        for_each_four_of_run(flow.grid, run, dry, [&](Index, Index k, Index, Index) { dry_four(flow, k); });
+        for (Index n = 0; n < run.count; ++n)
+            if (flow.rest.stirred[run.tile[n]])
+                flow.depth_sums[run.tile[n]] = sums[static_cast<std::size_t>(n)].of_tile();
+    });
+    NodeSums total;
+    for (const Index tile : flow.active.work) {
+        const TileSums& part = flow.depth_sums[tile];
+        total.potential += part[0];
+        total.max_depth = std::max(total.max_depth, part[1]);
+        total.covered_area += part[2];
+        total.front2 = std::max(total.front2, part[3]);
+    }
+    mirror_surface(flow);
+    mirror_velocity(flow);
+    return total;
+}
+
+void mark_margin(Flow& flow) {
+    flow.marked.assign(flow.active.work.size(), 0);
+    for_each_work_tile(flow.active, [&](Index n, Index tile) {
+        const NodeGroups touched = flow.walked(tile);
+        if (!touched) return;
+        const WetRows wet(flow, tile);
+        std::uint8_t any = 0;
+        std::uint32_t across[kTile + 4];  // this node and two each way in x
+        for (Index j = 0; j < kTile + 4; ++j) {
+            const std::uint32_t r = wet.row[j];
+            across[j] = r & (r << 1) & (r << 2) & (r >> 1) & (r >> 2);
+        }
+        const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+        for (Index j = 0; j < kTile; ++j) {
+            const std::uint32_t here = nodes_in(touched >> (4 * j) & 0xf);
+            if (!here) continue;
+            const std::uint32_t* r = wet.row + j;
+            const std::uint32_t wide_y = r[0] & r[1] & r[2] & r[3] & r[4];
+            const std::uint32_t* a = across + j;
+            const std::uint32_t inner = a[0] & a[1] & a[2] & a[3] & a[4];
+            std::uint8_t* flags = flow.nodes.flags.data() + flow.grid.at(i0, j0 + j);
+            for (Index i = 0; i < kTile; ++i) {
+                const std::uint32_t bit = 1u << (i + 2);
+                if (!(r[2] & here << 2 & bit)) continue;
+                std::uint8_t flag = flags[i] & (kWet | kMoving);
+                if (!(inner & bit)) flag |= kMargin;
+                any |= flag;
+                if (a[2] & bit) flag |= kWideX;
+                if (wide_y & bit) flag |= kWideY;
+                flags[i] = flag;
+            }
+        }
+        flow.marked[n] = any & kMargin;
+    });
+    flow.shore.clear();
+    flow.shore.reserve(flow.active.work.capacity());  // grows with the list of tiles, not some steps later
+    for (std::size_t n = 0; n < flow.marked.size(); ++n)
+        if (flow.marked[n]) flow.shore.push_back(flow.active.work[n]);
+    mirror_surface(flow);
+}
+
+void shoreline(Flow& flow) {
+    for (int sweep = 1; sweep <= (flow.scheme.margin ? kSweeps : 0); ++sweep) {
+        shoreline_sweep(flow, sweep);
+        mirror_surface(flow);
+    }
+}
+
+void filter(Flow& flow) {
+    if (flow.scheme.filter <= 0.0) return;
+    Nodes& nodes = flow.nodes;
+    const Index up = flow.grid.stride();
+    const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) { wave_along_x(nodes, k); });
+    });
+    for_each_work_run(flow.active, [&](const TileRun& run) {
+        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) {
+            if (calm(nodes, k, up)) {
+                filter_calm(flow, nodes, k, up);
+            } else {
+                for (Index n = 0; n < 4; ++n) filter_node(flow, nodes, k + n, up, sensed);
+            }
+        });
+    });
+    mirror_surface(flow);
+}
+
+}  // namespace frana

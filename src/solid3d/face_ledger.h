@@ -1,0 +1,62 @@
+#pragma once
+// What each face of each barrier has given to the material, and where on it.
+#include <vector>
+
+#include "observe/archive.h"
+#include "solid3d/surfaces.h"
+
+namespace frana {
+
+/// What a face gives to a node, or to a point that it puts back, in one step.
+struct FacePush {
+    int face;      ///< in the ledger
+    Index patch;   ///< of the face
+    Vec3 impulse;  ///< [kg m/s]
+    Vec3 moment;   ///< of the impulse about the grid's origin [kg m^2/s]
+};
+
+/// A face in squares of about a cell, from `origin` along `right` and `up`.
+struct Patches {
+    Vec3 origin{0, 0, 0}, right{1, 0, 0}, up{0, 1, 0};
+    double size = 1.0;                 ///< of a square's edge [m]
+    std::array<Index, 2> count{0, 0};  ///< along right and up
+    std::vector<Vec3> impulse;  ///< on the material since the start, at row * count[0] + column [kg m/s]
+
+    /// The square nearest to a place.
+    Index at(const Vec3& x) const;
+};
+
+/// A face of a barrier.
+struct Face {
+    int surface;                             ///< its number in the scene
+    int number;                              ///< of the face in its surface
+    Vec3 impulse{0, 0, 0}, moment{0, 0, 0};  ///< on the material since the start; about the grid's origin
+    Patches patches;
+};
+
+/// All faces of all barriers in the order of the surfaces; planes and the ground, whose impulses are known
+/// anyway (SolidBody::impulse), have none here.
+class FaceLedger {
+public:
+    FaceLedger() = default;
+    /// Patches cover the part of each face that lies in the box from `low` to `high`.
+    FaceLedger(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell);
+
+    const std::vector<Face>& faces() const { return faces_; }
+    /// Number of the first face of a surface.
+    int first(int surface) const { return first_[static_cast<std::size_t>(surface)]; }
+    const Face& face(int surface, int number) const {
+        return faces_[static_cast<std::size_t>(first(surface)) + static_cast<std::size_t>(number)];
+    }
+    /// Moment of a face's impulse about a point, both given from the grid's origin [kg m^2/s].
+    static Vec3 moment_about(const Face& face, const Vec3& point);
+    void add(const FacePush& push);
+    /// Saves what was given so far, or takes it up again.
+    void keep(Archive& archive);
+
+private:
+    std::vector<Face> faces_;
+    std::vector<int> first_;
+};
+
+}  // namespace frana

@@ -1,0 +1,219 @@
+#include "solid3d/surfaces.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "solid3d/bed_height.h"
+
+namespace frana {
+namespace {
+
+constexpr double kSquare = 1e-9;
+
+}  // namespace
+
+Surface Surface::plane(const Vec3& through, const Vec3& normal, Hold hold, double friction) {
+    Surface s;
+    s.normal = normal.normalized();
+    s.offset = s.normal.dot(through);
+    s.hold = hold;
+    s.friction = friction;
+    return s;
+}
+
+Surface Surface::ground(Raster bed, Hold hold, double friction) {
+    Surface s;
+    s.kind = Kind::ground;
+    s.bed = std::move(bed);
+    s.hold = hold;
+    s.friction = friction;
+    return s;
+}
+
+Surface Surface::barrier(Prism prism, Hold hold, double friction) {
+    Surface s;
+    s.kind = Kind::prism;
+    s.prism = std::make_shared<const Prism>(std::move(prism));
+    s.hold = hold;
+    s.friction = friction;
+    return s;
+}
+
+Surface Surface::barrier(DistanceField shape, Hold hold, double friction) {
+    Surface s;
+    s.kind = Kind::shape;
+    s.shape = std::make_shared<const DistanceField>(std::move(shape));
+    s.hold = hold;
+    s.friction = friction;
+    return s;
+}
+
+bool Surface::inside(const Vec3& x) const {
+    if (kind == Kind::prism) return prism->inside(x);
+    return contact(*this, x).distance < 0.0;
+}
+
+Contact contact(const Surface& surface, const Vec3& x) {
+    if (surface.kind == Surface::Kind::plane) return {surface.normal.dot(x) - surface.offset, surface.normal};
+    if (surface.kind != Surface::Kind::ground) {
+        Contact list[kMostContacts];
+        contacts(surface, x, std::numeric_limits<double>::infinity(), list);
+        return list[0];
+    }
+    const BedHeight g = bed_height(surface.bed, x.x(), x.y());
+    const Vec3 normal = Vec3(-g.slope_x, -g.slope_y, 1.0).normalized();
+    return {(x.z() - g.z) * normal.z(), normal};
+}
+
+int contacts(const Surface& barrier, const Vec3& x, double cell, Contact* list) {
+    if (barrier.kind == Surface::Kind::prism) return barrier.prism->contacts(x, cell, list);
+    list[0] = barrier.shape->contact(x);
+    return 1;
+}
+
+bool enters(const Surface& barrier, const Vec3& from, const Vec3& to, Entry& entry) {
+    return barrier.kind == Surface::Kind::prism ? barrier.prism->enters(from, to, entry)
+                                                : barrier.shape->enters(from, to, entry);
+}
+
+double thickness(const Surface& barrier, const Vec3& from, const Vec3& way) {
+    return barrier.kind == Surface::Kind::prism ? barrier.prism->thickness(from, way)
+                                                : barrier.shape->thickness(from, way);
+}
+
+SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
+                         double more) {
+    SurfaceSet set = 0;
+    const Vec3 centre = 0.5 * (low + high), half = 0.5 * (high - low);
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+        const Surface& surface = surfaces[s];
+        bool near = false;
+        if (surface.kind == Surface::Kind::plane) {
+            const double span = surface.normal.cwiseAbs().dot(half);
+            near = contact(surface, centre).distance - span < image_reach(surface.normal) * cell + more;
+        } else if (surface.is_barrier()) {
+            const auto [least, most] =
+                surface.kind == Surface::Kind::prism ? surface.prism->box() : surface.shape->box();
+            const double reach = kLongestReach * cell + more;
+            near = (least - high).maxCoeff() < reach && (low - most).maxCoeff() < reach;
+        } else {
+            const double step = std::min(surface.bed.geometry.cell, cell);
+            for (double y = low.y(); y < high.y() + step && !near; y += step)
+                for (double x = low.x(); x < high.x() + step && !near; x += step) {
+                    const Contact c = contact(surface, {x, y, low.z()});
+                    near = c.distance < image_reach(c.normal) * cell + more;
+                }
+        }
+        if (near) set |= SurfaceSet{1} << s;
+    }
+    return set;
+}
+
+Images::Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell) {
+    Near list[kMostNear];
+    int count = 0;
+    for (; near != 0 && count < kMostNear; near &= near - 1) {
+        const Surface& surface = surfaces[static_cast<std::size_t>(__builtin_ctz(near))];
+        if (surface.is_barrier()) {
+            count = near_barrier(surface, x, cell, list, count);
+            continue;
+        }
+        const Contact c = contact(surface, x);
+        if (c.distance < image_reach(c.normal) * cell)
+            list[count++] = {c, surface.hold == Hold::stuck, std::numeric_limits<double>::infinity()};
+    }
+    if (count > 0) reflect(list, count, x);
+}
+
+int Images::near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count) {
+    Contact found[kMostContacts];
+    const int faces = contacts(surface, x, cell, found);
+    for (const Contact* c = found; c < found + faces && count < kMostNear; ++c) {
+        if (c->distance < 0.0 || c->distance >= image_reach(c->normal) * cell) continue;
+        const double thick = thickness(surface, x - c->distance * c->normal, -c->normal);
+        list[count++] = {*c, surface.hold == Hold::stuck, thick};
+    }
+    return count;
+}
+
+/// In a barrier an image shows only down to half of its thickness.
+void Images::cut_off(Image& image, const Near& near, const Vec3& from) {
+    const Vec3& normal = near.contact.normal;
+    if (near.thick < std::numeric_limits<double>::infinity() && image.cuts < 2)
+        image.cut[image.cuts++] = {{normal[0], normal[1], normal[2]},
+                                   normal.dot(from) - near.contact.distance - 0.5 * near.thick};
+}
+
+/// Whether two surfaces meet.
+bool Images::corner(const Near* near, int count) {
+    for (int n = 0; n < count; ++n)
+        for (int m = 0; m < n; ++m)
+            if (near[n].contact.normal.dot(near[m].contact.normal) >= kOpposite) return true;
+    return false;
+}
+
+/// The next surface of a corner that an image is mirrored in, after those of `turn`.
+void Images::slide_along(Image& image, const Near& near, const Mat3& turn) {
+    if (!image.held) image.slide[image.slides++] = turn.transpose() * near.contact.normal;
+}
+
+/// Reflects a point in each of the surfaces, and these images in those listed behind; at most three times in a row.
+void Images::reflect(const Near* near, int count, const Vec3& x) {
+    const bool meet = corner(near, count);
+    for (int n = 0; n < count && count_ < kMost; ++n) {
+        const Vec3& normal = near[n].contact.normal;
+        Image& image = list_[static_cast<std::size_t>(count_++)];
+        image.place = x - 2.0 * near[n].contact.distance * normal;
+        image.turn = Mat3::Identity() - 2.0 * normal * normal.transpose();
+        image.motion = near[n].stuck ? Mat3(-Mat3::Identity()) : image.turn;
+        image.held_normal = near[n].bends() ? normal : Vec3(Vec3::Zero());
+        image.held_above = near[n].bends() ? near[n].contact.distance : 0.0;
+        image.held = near[n].stuck, image.slides = 0, image.cuts = 0;
+        if (meet) slide_along(image, near[n], Mat3::Identity());
+        cut_off(image, near[n], x);
+        if (n + 1 < count) reflect_in_others(near, count, n, x, image, 0);
+    }
+}
+
+/// The image of `from` in near[n], in the surfaces behind that one.
+void Images::reflect_in_others(const Near* near, int count, int n, const Vec3& from, const Image& image, int depth) {
+    Near others[kMostNear];
+    int left = 0;
+    for (int m = n + 1; m < count; ++m) {
+        if (near[n].contact.normal.dot(near[m].contact.normal) < kOpposite) continue;
+        Near other = near[m];
+        other.contact.distance += other.contact.normal.dot(image.place - from);
+        if (other.contact.distance > 0.0) others[left++] = other;  // in a wide corner it may lie behind already
+    }
+    reflect(others, left, image, depth + 1);
+}
+
+/// The same of an image. Surfaces are perpendicular to each other when the cosine of their angle is below kSquare,
+/// round-off.
+void Images::reflect(const Near* near, int count, const Image& from, int depth) {
+    for (int n = 0; n < count && count_ < kMost; ++n) {
+        const Vec3& normal = near[n].contact.normal;
+        const Mat3 mirror = Mat3::Identity() - 2.0 * normal * normal.transpose();
+        Image image{from.place - 2.0 * near[n].contact.distance * normal,
+                    mirror * from.turn,
+                    near[n].stuck ? Mat3(-from.motion) : Mat3(mirror * from.motion),
+                    Vec3::Zero(),
+                    0.0,
+                    from.held || near[n].stuck,
+                    from.slides,
+                    {from.slide[0], from.slide[1], from.slide[2]},
+                    from.cuts,
+                    {from.cut[0], from.cut[1]}};
+        const bool square = (from.turn * normal - normal).norm() < kSquare;  // to all mirrors before
+        if (near[n].bends() && square && !from.held)
+            image.held_normal = normal, image.held_above = near[n].contact.distance;
+        else if (!near[n].stuck && std::abs(from.held_normal.dot(normal)) < kSquare)
+            image.held_normal = from.held_normal, image.held_above = from.held_above;
+        slide_along(image, near[n], from.turn);
+        cut_off(image, near[n], from.place);
+        list_[static_cast<std::size_t>(count_++)] = image;
+        if (depth < 2) reflect_in_others(near, count, n, from.place, image, depth);
+    }
+}
+
+}  // namespace frana

@@ -1,0 +1,133 @@
+#pragma once
+// Rigid surfaces that 3D material meets: planes, the ground as a height field, and barriers.
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solid3d/prism.h"
+#include "terrain/contact.h"
+#include "terrain/distance_field.h"
+#include "terrain/raster.h"
+
+namespace frana {
+
+/// How material moves along a surface. free: nothing holds it but friction; stuck: it does not move along it.
+enum class Hold { free, stuck };
+
+/// A surface with material on the side that its normal points to. Barriers are solids: material may be all
+/// around them, and no point passes through, however thin they are and however fast it comes.
+struct Surface {
+    enum class Kind { plane, ground, prism, shape };
+    Kind kind = Kind::plane;
+    Vec3 normal{0, 0, 1};  ///< of a plane, a unit vector
+    double offset = 0.0;   ///< of a plane: normal . x on it [m]
+    Raster bed;            ///< of the ground: elevation [m], bilinear between nodes; beyond them the nearest
+    std::shared_ptr<const Prism> prism;          ///< of a barrier with a footprint
+    std::shared_ptr<const DistanceField> shape;  ///< of a barrier of any shape
+    Hold hold = Hold::free;
+    double friction = 0.0;  ///< Coulomb's coefficient of a free surface [1]
+    std::string name;
+
+    static Surface plane(const Vec3& through, const Vec3& normal, Hold hold = Hold::free,
+                         double friction = 0.0);
+    static Surface ground(Raster bed, Hold hold = Hold::free, double friction = 0.0);
+    static Surface barrier(Prism prism, Hold hold = Hold::free, double friction = 0.0);
+    /// The field reaches image_reach() cells beyond the solid wherever material comes near.
+    static Surface barrier(DistanceField shape, Hold hold = Hold::free, double friction = 0.0);
+
+    bool is_barrier() const { return kind == Kind::prism || kind == Kind::shape; }
+    int faces() const { return kind == Kind::prism ? prism->faces() : kind == Kind::shape ? 6 : 1; }
+    /// Whether a place is in the solid, or behind the plane or the ground.
+    bool inside(const Vec3& x) const;
+};
+
+/// For the ground the tangent plane below the point: exact for a plane, and of first order in distance over
+/// radius of curvature. For a barrier its nearest face.
+Contact contact(const Surface& surface, const Vec3& x);
+
+/// All faces of a barrier that a point in cells of that size can meet, at most kMostContacts.
+int contacts(const Surface& barrier, const Vec3& x, double cell, Contact* list);
+/// Whether the way between two places, the first outside, goes into a barrier.
+bool enters(const Surface& barrier, const Vec3& from, const Vec3& to, Entry& entry);
+/// How far a barrier reaches on from a place on its surface into the unit direction `way` [m].
+double thickness(const Surface& barrier, const Vec3& from, const Vec3& way);
+
+/// Numbers of surfaces, a bit each.
+using SurfaceSet = std::uint32_t;
+constexpr int kMostSurfaces = 32;
+
+/// Surfaces that a box from `low` to `high` [m] may come closer to than image_reach() cells and `more` [m].
+SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
+                         double more);
+
+/// A mirror image of a point and of what surrounds it: dx' = turn dx, v' = motion v. A free surface mirrors
+/// both; a stuck one turns velocities round, so that all of them vanish on it. In a barrier it shows only
+/// down to half of the barrier's thickness: the other half is for the other side's material.
+struct Image {
+    Vec3 place;  ///< of the point's image [m]
+    Mat3 turn, motion;
+    /// Of the one stuck surface that it is an image in, and how far the point is above it: what flows there bends. Zero
+    /// in barriers, and in corners of which not all surfaces are perpendicular to that one.
+    Vec3 held_normal;
+    double held_above;  ///< [m]
+    bool held;          ///< in a stuck surface, or more
+    /// In corners of free surfaces: normals of those that it is an image in, as its point sees them (see without_shear).
+    int slides;
+    Vec3 slide[3];
+    /// A free surface turns the shear beside it round: the image shows the speed along the surface with a kink there. The
+    /// surface itself asks for none of that. But the other one of a corner takes it for motion, and would drive what shears.
+    /// So an image in a corner shows its point's speed along the surface everywhere.
+    Mat3 without_shear(Mat3 gradient) const {
+        for (const Vec3* n = slide; n < slide + slides; ++n) {
+            const Vec3 across = gradient * *n;
+            gradient -= (across - n->dot(across) * *n) * n->transpose();
+        }
+        return gradient;
+    }
+    /// Places x with normal . x < least do not see it.
+    struct Cut {
+        double normal[3];
+        double least;  ///< [m]
+    };
+    int cuts;
+    Cut cut[2];
+    bool shows_at(const Vec3& x) const {
+        for (const Cut* c = cut; c < cut + cuts; ++c)
+            if (c->normal[0] * x[0] + c->normal[1] * x[1] + c->normal[2] * x[2] < c->least) return false;
+        return true;
+    }
+};
+
+/// The images of a point: one in each surface near it; in a corner also those of the images, which together
+/// leave no gap there, as long as they do not lie behind the other surface already. Surfaces whose normals
+/// are more than 120 degrees apart, such as both sides of a slice, have no common corner. The first four
+/// surfaces, or faces of barriers, of the list count.
+class Images {
+public:
+    Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell);
+    const Image* begin() const { return list_.data(); }
+    const Image* end() const { return list_.data() + count_; }
+
+private:
+    struct Near {
+        Contact contact;
+        bool stuck;
+        double thick;  ///< [m], without end but for barriers
+        bool bends() const { return stuck && thick == std::numeric_limits<double>::infinity(); }
+    };
+    static constexpr int kMostNear = 4, kMost = 14;
+    static int near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count);
+    void reflect(const Near* near, int count, const Vec3& x);
+    static bool corner(const Near* near, int count);
+    static void slide_along(Image& image, const Near& near, const Mat3& turn);
+    void reflect(const Near* near, int count, const Image& from, int depth);
+    void reflect_in_others(const Near* near, int count, int n, const Vec3& from, const Image& image, int depth);
+    static void cut_off(Image& image, const Near& near, const Vec3& from);
+    std::array<Image, kMost> list_;
+    int count_ = 0;
+};
+
+}  // namespace frana
