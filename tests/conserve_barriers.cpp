@@ -7,11 +7,11 @@
 #include "analytic_scene.h"
 #include "base/error.h"
 #include "catch.h"
+#include "coupling/staged_run.h"
+#include "coupling/walled_columns.h"
 #include "fresh_folder.h"
 #include "observe/barriers.h"
 #include "observe/memory_archive.h"
-#include "stages/staged_run.h"
-#include "stages/walled_columns.h"
 #include "terrain/distance_field.h"
 
 using namespace frana;

@@ -3,8 +3,8 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "coupling/staged_run.h"
 #include "mpm/stencil.h"
-#include "stages/staged_run.h"
 
 using namespace frana;
 using namespace frana::test;

@@ -6,8 +6,8 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "coupling/structured_run.h"
 #include "observe/memory_archive.h"
-#include "stages/structured_run.h"
 #include "verify/structured.h"
 
 using namespace frana;

@@ -2,7 +2,7 @@
 #include <omp.h>
 
 #include "catch.h"
-#include "mixture/two_phase_flow.h"
+#include "coupling/two_phase_flow.h"
 #include "verify/structured.h"
 
 using namespace frana;

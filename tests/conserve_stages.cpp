@@ -8,9 +8,9 @@
 #include "analytic_scene.h"
 #include "base/error.h"
 #include "catch.h"
+#include "coupling/staged_run.h"
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
-#include "stages/staged_run.h"
 #include "terrain/holes.h"
 
 using namespace frana;

@@ -4,10 +4,10 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "coupling/structured_run.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
-#include "stages/structured_run.h"
 
 using namespace frana;
 using namespace frana::test;

@@ -5,8 +5,8 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "coupling/structured_run.h"
 #include "solid_maker.h"
-#include "stages/structured_run.h"
 #include "verify/structured_cases.h"
 #include "verify/water.h"
 

@@ -6,10 +6,10 @@
 #include "analytic_scene.h"
 #include "base/error.h"
 #include "catch.h"
+#include "coupling/growing_columns.h"
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "run/run_loop.h"
-#include "stages/growing_columns.h"
 #include "terrain/holes.h"
 
 using namespace frana;

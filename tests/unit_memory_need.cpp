@@ -2,11 +2,11 @@
 #include "base/error.h"
 #include "catch.h"
 #include "convert/solid_points.h"
+#include "coupling/hand_over.h"
+#include "coupling/staged_run.h"
 #include "scene/build_scene.h"
 #include "scene/memory_need.h"
 #include "slope_case.h"
-#include "stages/hand_over.h"
-#include "stages/staged_run.h"
 
 using namespace frana;
 using namespace frana::test;

@@ -1,7 +1,7 @@
 // The pressure that columns have on their bed when they become points in space.
 #include "analytic_scene.h"
 #include "catch.h"
-#include "stages/start_pressure.h"
+#include "coupling/start_pressure.h"
 
 using namespace frana;
 using namespace frana::test;

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "coupling/structured_run.h"
 #include "scene/build_scene.h"
 #include "slope_case.h"
-#include "stages/structured_run.h"
 
 using namespace frana;
 using namespace frana::test;

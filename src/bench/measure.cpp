@@ -6,8 +6,8 @@
 
 #include "bench/team_clock.h"
 #include "bench/traffic.h"
+#include "coupling/structured_run.h"
 #include "shallow/depth_averaged.h"
-#include "stages/structured_run.h"
 
 namespace frana::bench {
 namespace {

@@ -12,7 +12,7 @@ namespace frana {
 /// end; a single layer stands in the middle, where the paper divides by zero.
 enum class Layers { centres, end_points };
 
-/// src/stages/THEORY.md (3): speed over the mean speed at the relative height s = (z - Z) / h over the bed:
+/// src/coupling/THEORY.md (3): speed over the mean speed at the relative height s = (z - Z) / h over the bed:
 /// plug 1; linear 2 s; parabolic 3/2 s (2 - s) (Newtonian film); bagnold 5/3 (1 - (1 - s)^(3/2)) (Bagnold 1954).
 enum class VelocityProfile { plug, linear, parabolic, bagnold };
 

@@ -117,7 +117,7 @@ struct Structure {
     bool hydrostatic = false;  ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
 };
 
-/// Free water on the grid beside the columns of a structure (mixture/two_phase_flow.h).
+/// Free water on the grid beside the columns of a structure (coupling/two_phase_flow.h).
 struct WaterPhase {
     WaterExchange exchange;
     WaterFriction friction;

@@ -1,6 +1,6 @@
 #pragma once
 // The part of a large terrain that a run begins with. Columns on it grow it before they come near its edge
-// (stages/growing_columns.h), so no result depends on where the terrain ends beyond it.
+// (coupling/growing_columns.h), so no result depends on where the terrain ends beyond it.
 #include <optional>
 
 #include "scene/case_file.h"

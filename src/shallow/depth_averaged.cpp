@@ -40,7 +40,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
       steep_(scene.terrain != TerrainModel::shallow),
       curved_(steep_ && scene.curvature == Curvature::full), sleeps_(scene.scheme.sleep),
       footprint_depth_(scene.output.footprint_depth) {
-    expect(!scene.wider, "on a part of a terrain columns grow it (stages/growing_columns.h)");
+    expect(!scene.wider, "on a part of a terrain columns grow it (coupling/growing_columns.h)");
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
     flow_.columns.single = scene.scheme.precision == Precision::single;

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/compensated_sum.h"
+#include "coupling/staged_run.h"
+#include "coupling/structured_run.h"
+#include "coupling/walled_columns.h"
 #include "shallow/depth_averaged.h"
-#include "stages/staged_run.h"
-#include "stages/structured_run.h"
-#include "stages/walled_columns.h"
 
 namespace frana::stress {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/structured_run.h"
 #include "shallow/depth_averaged.h"
-#include "stages/structured_run.h"
 
 namespace frana::stress {
 namespace {

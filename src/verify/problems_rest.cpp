@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "stages/staged_run.h"
+#include "coupling/staged_run.h"
 #include "verify/body.h"
 #include "verify/library.h"
 #include "verify/trial.h"

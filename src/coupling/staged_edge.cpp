@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/staged_run.h"
+#include "coupling/start_pressure.h"
 #include "mpm/stencil.h"
-#include "stages/staged_run.h"
-#include "stages/start_pressure.h"
 
 namespace frana {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "coupling/staged_run.h"
 #include "particles/bed_points.h"
-#include "stages/staged_run.h"
 
 namespace frana {
 namespace {

@@ -1,4 +1,4 @@
-#include "stages/spray.h"
+#include "coupling/spray.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "stages/hand_over.h"
+#include "coupling/hand_over.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "stages/walled_columns.h"
+#include "coupling/walled_columns.h"
 
 namespace frana {
 namespace {

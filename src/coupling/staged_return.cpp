@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "stages/staged_run.h"
+#include "coupling/staged_run.h"
 
 namespace frana {
 namespace {

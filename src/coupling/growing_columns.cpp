@@ -1,4 +1,4 @@
-#include "stages/growing_columns.h"
+#include "coupling/growing_columns.h"
 
 #include <fmt/format.h>
 

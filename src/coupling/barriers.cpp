@@ -1,4 +1,4 @@
-#include "stages/barriers.h"
+#include "coupling/barriers.h"
 
 #include <fmt/core.h>
 

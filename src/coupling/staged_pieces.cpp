@@ -1,8 +1,8 @@
 // What the points of a run in stages have come apart into, at its output times.
 #include <fmt/core.h>
 
+#include "coupling/staged_run.h"
 #include "solid3d/pieces.h"
-#include "stages/staged_run.h"
 
 namespace frana {
 

@@ -1,4 +1,4 @@
-#include "stages/start_pressure.h"
+#include "coupling/start_pressure.h"
 
 #include <algorithm>
 #include <cmath>

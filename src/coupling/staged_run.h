@@ -8,12 +8,12 @@
 #include <memory>
 #include <optional>
 
+#include "coupling/barriers.h"
+#include "coupling/flow_map.h"
+#include "coupling/hand_over.h"
+#include "coupling/solid_scene.h"
+#include "coupling/spray.h"
 #include "shallow/depth_averaged.h"
-#include "stages/barriers.h"
-#include "stages/flow_map.h"
-#include "stages/hand_over.h"
-#include "stages/solid_scene.h"
-#include "stages/spray.h"
 
 namespace frana {
 

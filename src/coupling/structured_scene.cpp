@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "base/error.h"
+#include "coupling/structured_run.h"
 #include "mpm/stencil.h"
 #include "particles/bed_points.h"
-#include "stages/structured_run.h"
 
 namespace frana {
 namespace {

@@ -1,4 +1,4 @@
-#include "stages/staged_run.h"
+#include "coupling/staged_run.h"
 
 #include <fmt/core.h>
 
@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
-#include "stages/start_pressure.h"
+#include "coupling/start_pressure.h"
 
 namespace frana {
 

@@ -1,11 +1,11 @@
-#include "stages/solid_scene.h"
+#include "coupling/solid_scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 
 #include "base/error.h"
-#include "stages/barriers.h"
+#include "coupling/barriers.h"
 
 namespace frana {
 namespace {

@@ -1,4 +1,4 @@
-#include "stages/structured_run.h"
+#include "coupling/structured_run.h"
 
 #include <fmt/core.h>
 

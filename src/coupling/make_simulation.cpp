@@ -1,7 +1,7 @@
-#include "stages/growing_columns.h"
-#include "stages/staged_run.h"
-#include "stages/structured_run.h"
-#include "stages/walled_columns.h"
+#include "coupling/growing_columns.h"
+#include "coupling/staged_run.h"
+#include "coupling/structured_run.h"
+#include "coupling/walled_columns.h"
 
 namespace frana {
 

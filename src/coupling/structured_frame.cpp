@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "coupling/structured_run.h"
 #include "mpm/stencil.h"
 #include "particles/bed_points.h"
-#include "stages/structured_run.h"
 
 namespace frana {
 namespace {

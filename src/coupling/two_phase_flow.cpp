@@ -1,4 +1,4 @@
-#include "mixture/two_phase_flow.h"
+#include "coupling/two_phase_flow.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "mixture/two_phase_flow.h"
+#include "coupling/two_phase_flow.h"
 #include "run/simulation.h"
 #include "scene/scene.h"
 #include "structured/breakage.h"

@@ -1,4 +1,4 @@
-#include "stages/flow_map.h"
+#include "coupling/flow_map.h"
 
 #include <algorithm>
 #include <cmath>

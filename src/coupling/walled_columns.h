@@ -1,7 +1,7 @@
 #pragma once
 // Columns among barriers: they take them for ground, and what runs up and over is watched.
+#include "coupling/barriers.h"
 #include "shallow/depth_averaged.h"
-#include "stages/barriers.h"
 
 namespace frana {
 
