@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
-#include "bench/blob.h"
+#include "checks/bench/blob.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/shock.h"
 

@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "base/atomic_file.h"
-#include "bench/print.h"
+#include "checks/bench/print.h"
 #include "frana_commands.h"
 #include "io/xdmf_writer.h"
 #include "vtk_io/writers.h"

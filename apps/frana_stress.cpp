@@ -7,14 +7,14 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "checks/fuzz/campaign.h"
+#include "checks/fuzz/draw.h"
 #include "frana_commands.h"
 #include "frana_stress_figure.h"
 #include "frana_stress_save.h"
 #include "io/gdal_reader.h"
 #include "run/interrupt.h"
 #include "scene/build_scene.h"
-#include "stress/campaign.h"
-#include "stress/draw.h"
 
 namespace frana {
 namespace {

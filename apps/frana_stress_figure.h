@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-#include "stress/cfl_map.h"
+#include "checks/fuzz/cfl_map.h"
 
 namespace frana {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "base/atomic_file.h"
+#include "checks/fuzz/draw.h"
 #include "io/gdal_writer.h"
 #include "particles/export.h"
-#include "stress/draw.h"
 
 namespace frana {
 

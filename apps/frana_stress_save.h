@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-#include "stress/campaign.h"
+#include "checks/fuzz/campaign.h"
 
 namespace frana {
 

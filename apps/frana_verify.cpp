@@ -12,11 +12,11 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/version.h"
+#include "checks/verify/library.h"
+#include "checks/verify/table.h"
 #include "frana_commands.h"
 #include "frana_verify_figure.h"
 #include "scene/parameters.h"
-#include "verify/library.h"
-#include "verify/table.h"
 
 namespace frana {
 namespace {

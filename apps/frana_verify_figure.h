@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "verify/problem.h"
+#include "checks/verify/problem.h"
 
 namespace frana {
 

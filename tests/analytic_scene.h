@@ -2,7 +2,7 @@
 // Scenes from formulas, for tests: those of the verification library, and short words for running them.
 #include <cmath>
 
-#include "verify/trial.h"
+#include "checks/verify/trial.h"
 
 namespace frana::test {
 

@@ -6,9 +6,9 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "checks/verify/structured.h"
 #include "coupling/structured_run.h"
 #include "observe/memory_archive.h"
-#include "verify/structured.h"
 
 using namespace frana;
 using namespace frana::test;

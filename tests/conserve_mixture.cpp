@@ -2,8 +2,8 @@
 #include <omp.h>
 
 #include "catch.h"
+#include "checks/verify/structured.h"
 #include "coupling/two_phase_flow.h"
-#include "verify/structured.h"
 
 using namespace frana;
 

@@ -7,10 +7,10 @@
 #include <limits>
 #include <set>
 
-#include "bench/blob.h"
-#include "bench/measure.h"
+#include "checks/bench/blob.h"
+#include "checks/bench/measure.h"
+#include "checks/verify/trial.h"
 #include "shallow/depth_averaged.h"
-#include "verify/trial.h"
 
 using namespace frana;
 

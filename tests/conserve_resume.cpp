@@ -3,8 +3,8 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "checks/verify/placement.h"
 #include "observe/memory_archive.h"
-#include "verify/placement.h"
 
 using namespace frana;
 using namespace frana::test;

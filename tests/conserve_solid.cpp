@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "catch.h"
+#include "checks/verify/library.h"
 #include "solid_maker.h"
-#include "verify/library.h"
 
 using namespace frana;
 

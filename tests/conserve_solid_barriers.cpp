@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "catch.h"
-#include "verify/body.h"
+#include "checks/verify/body.h"
 
 using namespace frana;
 

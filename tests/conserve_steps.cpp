@@ -43,7 +43,7 @@ TEST_CASE("A film at rest on a cliff of many cells begins with a step that it ca
     CHECK(most > 0.1 * scene.scheme.cfl);  // it did begin to fall
     CHECK(most <= 2.0 * scene.scheme.cfl);
     CHECK(fastest > 10.0);
-    CHECK(fastest <= 1.25 * std::sqrt(2 * scene.gravity * 60.0));  // of the fall; a quarter as in stress/invariants.h
+    CHECK(fastest <= 1.25 * std::sqrt(2 * scene.gravity * 60.0));  // of the fall; a quarter as in checks/fuzz/invariants.h
 }
 
 TEST_CASE("Where nothing is driven far, a step is what its signal asks for", "[conserve][steps]") {
@@ -127,7 +127,7 @@ TEST_CASE("Viscosity gives lone columns of any transfer no energy", "[conserve][
     const double start = simulation.status().kinetic + simulation.status().potential;
     while (simulation.status().step < 40) {
         simulation.advance(1e9);
-        // A tenth as in stress/invariants.h; what is unstable grows by the step.
+        // A tenth as in checks/fuzz/invariants.h; what is unstable grows by the step.
         REQUIRE(simulation.status().kinetic <= 1.1 * start);
     }
 }

@@ -4,9 +4,9 @@
 #include <omp.h>
 
 #include "catch.h"
+#include "checks/verify/library.h"
+#include "checks/verify/structured_cases.h"
 #include "structured/breakage.h"
-#include "verify/library.h"
-#include "verify/structured_cases.h"
 
 using namespace frana;
 

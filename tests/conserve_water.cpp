@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "catch.h"
-#include "verify/exact_dam_break.h"
-#include "verify/library.h"
-#include "verify/water.h"
+#include "checks/verify/exact_dam_break.h"
+#include "checks/verify/library.h"
+#include "checks/verify/water.h"
 
 using namespace frana;
 

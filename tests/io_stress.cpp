@@ -2,13 +2,13 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
+#include "checks/fuzz/draw.h"
 #include "frana_stress_figure.h"
 #include "frana_stress_save.h"
 #include "fresh_folder.h"
 #include "io/gdal_reader.h"
 #include "program.h"
 #include "scene/build_scene.h"
-#include "stress/draw.h"
 
 using namespace frana;
 using namespace frana::stress;

@@ -1,6 +1,6 @@
 #pragma once
 // A small 3D scene for tests: a lump of material that falls on a rough slope, beside a wall.
-#include "verify/body.h"
+#include "checks/verify/body.h"
 
 namespace frana {
 

@@ -5,10 +5,10 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "checks/verify/structured_cases.h"
+#include "checks/verify/water.h"
 #include "coupling/structured_run.h"
 #include "solid_maker.h"
-#include "verify/structured_cases.h"
-#include "verify/water.h"
 
 namespace {
 std::atomic<long> allocations{0};

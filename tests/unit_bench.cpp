@@ -4,11 +4,11 @@
 #include <regex>
 
 #include "base/error.h"
-#include "bench/blob.h"
-#include "bench/body.h"
-#include "bench/print.h"
-#include "bench/traffic.h"
 #include "catch.h"
+#include "checks/bench/blob.h"
+#include "checks/bench/body.h"
+#include "checks/bench/print.h"
+#include "checks/bench/traffic.h"
 #include "fresh_folder.h"
 #include "shallow/depth_averaged.h"
 

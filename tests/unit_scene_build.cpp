@@ -5,10 +5,10 @@
 
 #include "base/error.h"
 #include "catch.h"
+#include "checks/verify/trial.h"
 #include "fake_gis.h"
 #include "fresh_folder.h"
 #include "scene/build_scene.h"
-#include "verify/trial.h"
 
 using namespace frana;
 

@@ -3,9 +3,9 @@
 
 #include "analytic_scene.h"
 #include "catch.h"
+#include "checks/verify/structured.h"
 #include "mpm/stencil.h"
 #include "structured/structured_flow.h"
-#include "verify/structured.h"
 
 using namespace frana;
 

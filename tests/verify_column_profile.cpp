@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "catch.h"
+#include "checks/verify/body.h"
 #include "shared_data.h"
-#include "verify/body.h"
 
 using namespace frana;
 

@@ -3,11 +3,11 @@
 #include <set>
 
 #include "catch.h"
+#include "checks/verify/library.h"
+#include "checks/verify/table.h"
+#include "checks/verify/trial.h"
 #include "scene/build_scene.h"
 #include "scene/case_file.h"
-#include "verify/library.h"
-#include "verify/table.h"
-#include "verify/trial.h"
 
 using namespace frana;
 

@@ -3,7 +3,7 @@
 #include <complex>
 
 #include "catch.h"
-#include "verify/trial.h"
+#include "checks/verify/trial.h"
 
 using namespace frana;
 using namespace frana::verify;

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "catch.h"
-#include "verify/trial.h"
+#include "checks/verify/trial.h"
 
 using namespace frana;
 using namespace frana::verify;

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "catch.h"
+#include "checks/verify/structured.h"
 #include "structured/breakage.h"
-#include "verify/structured.h"
 
 using namespace frana;
 

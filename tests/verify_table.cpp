@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "catch.h"
-#include "verify/library.h"
-#include "verify/table.h"
+#include "checks/verify/library.h"
+#include "checks/verify/table.h"
 
 using namespace frana;
 

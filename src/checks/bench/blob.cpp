@@ -1,0 +1,97 @@
+#include "checks/bench/blob.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mpm/tile_grid.h"
+
+namespace frana::bench {
+namespace {
+
+constexpr double kCell = 5.0;      ///< [m]
+constexpr double kPi = 3.14159265358979323846;
+constexpr Index kRoom = 48;        ///< [cells]
+constexpr double kDepth = 4.0;     ///< [m]
+
+/// A place of the lattice, in half cells from the blob's centre.
+struct Place {
+    Index i, j;
+    Index distance2() const { return (2 * i + 1) * (2 * i + 1) + (2 * j + 1) * (2 * j + 1); }
+};
+
+/// The `count` places nearest to the centre, row by row.
+std::vector<Place> nearest_places(Index count) {
+    const Index reach = static_cast<Index>(std::ceil(std::sqrt(static_cast<double>(count) / kPi))) + 2;
+    std::vector<Place> places;
+    for (Index j = -reach; j < reach; ++j)
+        for (Index i = -reach; i < reach; ++i) places.push_back({i, j});
+    std::nth_element(places.begin(), places.begin() + count - 1, places.end(), [](const Place& a, const Place& b) {
+        return std::make_tuple(a.distance2(), a.j, a.i) < std::make_tuple(b.distance2(), b.j, b.i);
+    });
+    places.resize(static_cast<std::size_t>(count));
+    std::sort(places.begin(), places.end(),
+              [](const Place& a, const Place& b) { return std::make_pair(a.j, a.i) < std::make_pair(b.j, b.i); });
+    return places;
+}
+
+/// The column of places from which on points move, when a share of them rests.
+Index first_moving(const std::vector<Place>& places, double resting) {
+    if (resting <= 0.0) return std::numeric_limits<Index>::min();
+    std::vector<Index> columns;
+    columns.reserve(places.size());
+    for (const Place& place : places) columns.push_back(place.i);
+    const auto nth = static_cast<std::ptrdiff_t>(resting * static_cast<double>(places.size()));
+    std::nth_element(columns.begin(), columns.begin() + nth, columns.end());
+    return columns[static_cast<std::size_t>(nth)];
+}
+
+/// Bed elevation at (x, y) from the blob's centre [m].
+double ground(double x, double y) {
+    return 2000.0 - 0.5 * x + 4.0 * std::sin(2.0 * kPi * x / 190.0) * std::cos(2.0 * kPi * y / 230.0);
+}
+
+Raster bed_of(const Blob& blob, Index nodes, Index centre) {
+    Raster bed = Raster::filled(GridGeometry{nodes, nodes, 0.0, 0.0, kCell}, 0.0);
+    if (!blob.topography) return bed;
+#pragma omp parallel for schedule(static)
+    for (Index j = 0; j < nodes; ++j)
+        for (Index i = 0; i < nodes; ++i)
+            bed.at(i, j) = ground(kCell * static_cast<double>(i - centre), kCell * static_cast<double>(j - centre));
+    return bed;
+}
+
+}  // namespace
+
+Scene blob_scene(const Blob& blob) {
+    const double cells = static_cast<double>(blob.particles) / 4.0, radius = std::sqrt(cells / kPi);  // [cells]
+    const Index tight = 2 * (static_cast<Index>(std::ceil(radius)) + kRoom + kTile);
+    const Index nodes = std::max(tight, static_cast<Index>(std::lround(std::sqrt(blob.emptiness * cells))));
+    const Index centre = nodes / 2 / kTile * kTile;
+
+    Scene scene;
+    scene.bed = bed_of(blob, nodes, centre);
+    scene.density = 1291.0;
+    if (blob.friction) scene.bed_law = bed::Voellmy{0.2, 500.0};
+    if (blob.rheology) scene.rheology = rheology::Bingham{2000.0, 50.0};
+    scene.scheme.sleep = blob.sleeps;
+    if (blob.single) scene.scheme.precision = Precision::single;
+    Seeds& seeds = scene.particles;
+    const std::vector<Place> places = nearest_places(blob.particles);
+    const Index front = first_moving(places, blob.resting);
+    for (const Place& place : places) {
+        const double x = 0.5 * static_cast<double>(place.i) + 0.25, y = 0.5 * static_cast<double>(place.j) + 0.25;
+        const double out = std::hypot(x, y) / radius, depth = kDepth * std::max(0.02, 1.0 - std::pow(out, 4));
+        seeds.x.push_back(kCell * (static_cast<double>(centre) + x));
+        seeds.y.push_back(kCell * (static_cast<double>(centre) + y));
+        const bool moves = place.i >= front;
+        seeds.vx.push_back(moves ? 8.0 + 3.0 * x / radius : 0.0);
+        seeds.vy.push_back(moves ? 3.0 * y / radius : 0.0);
+        seeds.depth.push_back(depth);
+        seeds.size.push_back(0.5 * kCell);
+        seeds.volume.push_back(depth * 0.25 * kCell * kCell);
+    }
+    return scene;
+}
+
+}  // namespace frana::bench

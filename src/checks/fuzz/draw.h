@@ -1,0 +1,58 @@
+#pragma once
+// Random hostile cases. The same seed and number give the same draft on every machine.
+#include <cstdint>
+
+#include "checks/fuzz/dice.h"
+#include "checks/fuzz/draft.h"
+
+namespace frana::stress {
+
+/// Case `n` of the series `seed`: slopes to 80 degrees, cliffs, pits, noise, nodata, films beside masses, all laws and
+/// schemes; some of them piles below their friction angle, lakes, or mirror images of themselves.
+Draft draw(std::uint64_t seed, std::uint64_t n);
+
+/// Case `n` of the series `seed` that `model` carries: each has its own series. That of depth_averaged is draw(seed, n).
+Draft draw(Model model, std::uint64_t seed, std::uint64_t n);
+/// The model of case `n` where several are drawn, each as often as the others.
+Model model_of(const std::vector<Model>& models, std::uint64_t seed, std::uint64_t n);
+
+/// All of a case that another model carries, but for its end and its claims on bits.
+void draw_solid_flow(Dice& dice, Draft& draft);  ///< points in space from the start, on all of the terrain
+void draw_structured(Dice& dice, Draft& draft);  ///< columns that hold together, and grains
+void draw_water(Dice& dice, Draft& draft);       ///< a lake, rain, a wave of water, beside little that is solid
+void draw_mixture(Dice& dice, Draft& draft);     ///< columns and grains with water in their pores and within them
+void draw_staged(Dice& dice, Draft& draft);      ///< columns, points in space in a window, and perhaps columns again
+
+/// Shape of the ground, of the release, what it is made of, how it is solved: the parts of draw().
+void draw_terrain(Dice& dice, Draft& draft);
+void draw_release(Dice& dice, Draft& draft);
+void draw_material(Dice& dice, Draft& draft);
+void draw_scheme(Dice& dice, Draft& draft);
+/// A pile on a plane whose surface is nowhere as steep as friction holds; in place of the four above.
+void draw_pile(Dice& dice, Draft& draft);
+/// Still water over any ground; in place of draw_release and draw_material.
+void draw_lake(Dice& dice, Draft& draft);
+/// Makes every raster, and velocity, its own mirror image.
+void mirror(Draft& draft, Mirror mirror);
+
+/// A number as TOML with all its digits.
+std::string toml_number(double value);
+/// A key whose value is a word, or a number.
+void say(Draft& draft, const std::string& key, const std::string& word);
+void say(Draft& draft, const std::string& key, double number);
+
+/// Parts of those that other models use too.
+void draw_bed_law(Dice& dice, Draft& draft);
+/// Where the material lies on the ground of the draft: depths of `least` to `most` cells, no more than `pixels` of them,
+/// half of the time in motion.
+struct ReleaseKind { double least, most; Index pixels; };
+void draw_release(Dice& dice, Draft& draft, const ReleaseKind& kind);
+/// Makes the ground flatter until no node is more than `rise` cells higher than its neighbour.
+void flatten(Draft& draft, double rise);
+/// Ground for material that is not the depth-averaged flow's: as draw_terrain, at most as steep as it draws.
+void draw_ground(Dice& dice, Draft& draft);
+/// What is let go, as it is drawn so far: how deep it is, how fast, and how fast that can become [m], [m/s].
+struct Scales { double deepest, volume, speed, wave, gravity; };
+Scales scales_of(const Draft& draft);
+
+}  // namespace frana::stress

@@ -1,0 +1,186 @@
+#include "checks/fuzz/facts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/compensated_sum.h"
+#include "coupling/staged_run.h"
+#include "coupling/structured_run.h"
+#include "coupling/walled_columns.h"
+#include "shallow/depth_averaged.h"
+
+namespace frana::stress {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+/// What the bed's curvature is against the scheme's steps and the flow's depth; zero on gentle terrain, which has none.
+struct Bends {
+    double unresolved = 0.0;  ///< largest change of slope from node to node that the Hessian does not account for [1]
+    double sharpest = 0.0;    ///< largest entry of the Hessian [1/m]
+};
+
+Bends bends_of(const Flow& flow) {
+    Bends worst;
+    if (!flow.steep) return worst;
+    const bool bent = flow.bed.hxx.count() > 0;
+    const Index up = flow.grid.stride();
+    for (Index j = 0; j < flow.grid.ny(); ++j)
+        for (Index i = 0; i < flow.grid.nx(); ++i) {
+            const Index k = flow.grid.at(i, j);
+            const auto look = [&](Index step, double hessian) {
+                const double* z = flow.bed.z.data() + k;
+                const double bend = (z[step] - 2.0 * z[0] + z[-step]) / flow.cell;
+                worst.unresolved = std::max(worst.unresolved, std::abs(bend - hessian * flow.cell));
+                worst.sharpest = std::max(worst.sharpest, std::abs(hessian));
+            };
+            look(1, bent ? flow.bed.hxx[k] : 0.0);
+            look(up, bent ? flow.bed.hyy[k] : 0.0);
+        }
+    return worst;
+}
+
+/// What the depth on the nodes could set free [J].
+double depth_energy(const Flow& flow) {
+    CompensatedSum sum;
+    for (const Index tile : flow.active.work)
+        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+            const double h = flow.nodes.depth[k];
+            sum.add(0.5 * flow.share(i, j) * flow.density * flow.area * flow.gravity * h * h);
+        });
+    return sum.value();
+}
+
+constexpr double kSmooth = 0.02, kThin = 0.1;  // slope a cell; depth over radius of curvature
+
+/// The bed as the depth-averaged flow has it.
+void learn_bed(const Scene& scene, const Flow& flow, Facts& facts) {
+    facts.walls = flow.walls;
+    facts.steep = flow.steep;
+    double steepest2 = 0.0;
+    for (Index j = 0; j < flow.grid.ny(); ++j)
+        for (Index i = 0; i < flow.grid.nx(); ++i) {
+            const Index k = flow.grid.at(i, j);
+            const double bx = flow.bed.slope_x[k], by = flow.bed.slope_y[k];
+            steepest2 = std::max(steepest2, bx * bx + by * by);
+            for (const Index step : {Index{1}, flow.grid.stride()}) {
+                const double* z = flow.bed.z.data() + k;
+                facts.one_cell_drop = std::max(facts.one_cell_drop, std::abs(z[step] - z[0]));
+                facts.one_cell_bend = std::max(facts.one_cell_bend, std::abs(z[step] - 2.0 * z[0] + z[-step]));
+            }
+        }
+    const Bends bends = bends_of(flow);
+    facts.energy_law = bends.unresolved < kSmooth && bends.sharpest * facts.release_depth < kThin &&
+                       scene.terrain != TerrainModel::linearised && !scene.scheme.paper_pressure;
+    facts.turn = bends.sharpest * flow.cell;
+    if (facts.steep) facts.steepest = std::sqrt(steepest2);
+    if (!facts.energy_law && facts.steep) facts.stretch = std::sqrt(1.0 + steepest2);
+}
+
+/// The same as structured columns and water have it: no Hessian bends their paths.
+void learn_bed(const Raster& bed, Facts& facts) {
+    const GridGeometry& g = bed.geometry;
+    double steepest = 0.0;
+    const auto look = [&](double behind, double here, double ahead) {
+        const double up = ahead - here, down = here - behind;
+        for (const double rise : {up, down})
+            if (std::isfinite(rise)) facts.one_cell_drop = std::max(facts.one_cell_drop, std::abs(rise));
+        if (std::isfinite(up - down)) facts.one_cell_bend = std::max(facts.one_cell_bend, std::abs(up - down));
+        const double across = std::isfinite(up) && std::isfinite(down) ? 0.5 * (up + down)
+                              : std::isfinite(up)                      ? up
+                                                                       : down;
+        if (std::isfinite(across)) steepest = std::max(steepest, std::abs(across) / g.cell);
+    };
+    const auto at = [&](Index i, Index j) {
+        return i < 0 || j < 0 || i >= g.nx || j >= g.ny ? Raster::nodata : bed.at(i, j);
+    };
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            look(at(i - 1, j), at(i, j), at(i + 1, j));
+            look(at(i, j - 1), at(i, j), at(i, j + 1));
+        }
+    facts.steepest = std::sqrt(2.0) * steepest;  // along both axes at once, at most
+    facts.energy_law = facts.one_cell_bend / g.cell < kSmooth;
+    if (!facts.energy_law) facts.stretch = std::hypot(1.0, facts.steepest);
+}
+
+void learn_release(const Scene& scene, Facts& facts) {
+    for (Index p = 0; p < scene.particles.count(); ++p) {
+        const auto n = static_cast<std::size_t>(p);
+        const double depth = scene.particles.depth[n], mass = scene.density * scene.particles.volume[n];
+        facts.release_depth = std::max(facts.release_depth, depth);
+        facts.release_energy += 0.5 * mass * scene.gravity * depth;
+    }
+}
+
+void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
+    learn_bed(scene, flow, facts);
+    if (scene.still_surface) {
+        facts.lake = true;
+        facts.level_error = off_level(flow, *scene.still_surface);
+        facts.level_round_off = 16.0 * kEps * (std::abs(*scene.still_surface) + facts.release_depth);
+    }
+    const Transfer transfer = scene.scheme.transfer;
+    facts.affine = transfer == Transfer::tpic || transfer == Transfer::apic;
+    facts.linear = scene.scheme.shape == Shape::linear;
+    facts.carried_depth = scene.scheme.paper_pressure;
+    facts.hidden_energy = std::max(0.0, facts.release_energy - depth_energy(flow));
+}
+
+/// No column ever stands in such a run: points from the start, and they may leave only where columns cannot stand.
+bool is_all_in_space(const Scene& scene) {
+    const std::array<Index, 4>& w = scene.solid->window;
+    const GridGeometry& g = scene.bed.geometry;
+    return scene.solid->from == 0.0 && !scene.solid->until && w[0] == 0 && w[1] == 0 && w[2] == g.nx - 1 &&
+           w[3] == g.ny - 1;
+}
+
+/// What columns have on nodes is no excuse for points in space.
+void forget_columns(Facts& facts) {
+    facts.energy_law = true, facts.stretch = 1.0;
+    facts.linear = facts.carried_depth = false;
+    facts.turn = facts.hidden_energy = facts.steepest = facts.one_cell_drop = facts.one_cell_bend = 0.0;
+}
+
+void learn_water(const Scene& scene, Facts& facts) {
+    facts.all_in_points = false;
+    facts.virtual_mass = scene.water->exchange.virtual_mass != VirtualMass::none;
+    if (scene.water->level) {
+        double volume = 0.0;
+        for (const double of : scene.particles.volume) volume += of;
+        facts.displaces = scene.water->exchange.material.fluid_density * scene.gravity * volume;
+        facts.bears = scene.water->exchange.pore_pressure;
+    }
+    if (scene.water->rain.values.empty()) return;
+    for (const double z : scene.bed.values) facts.highest_rain = std::max(facts.highest_rain, z);
+}
+
+}  // namespace
+
+Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& claims) {
+    Facts facts;
+    facts.claims = claims;
+    facts.gravity = scene.gravity;
+    facts.density = scene.density;
+    facts.cell = scene.bed.geometry.cell;
+    facts.nodes_x = scene.bed.geometry.nx, facts.nodes_y = scene.bed.geometry.ny;
+    learn_release(scene, facts);
+    if (const auto* columns = dynamic_cast<const DepthAveraged*>(&simulation)) {
+        learn_columns(scene, columns->flow(), facts);
+    } else if (const auto* walled = dynamic_cast<const WalledColumns*>(&simulation)) {
+        learn_columns(scene, walled->columns().flow(), facts);
+    } else if (const auto* staged = dynamic_cast<const StagedRun*>(&simulation)) {
+        facts.space = facts.cancels = true, facts.all_in_points = false;
+        facts.space_cell = scene.solid->cell;
+        learn_columns(scene, staged->columns().flow(), facts);
+        if (is_all_in_space(scene)) forget_columns(facts);
+    } else {
+        facts.walls = scene.sides == Sides::wall;
+        facts.affine = facts.cancels = true;
+        learn_bed(scene.bed, facts);
+        if (scene.water) learn_water(scene, facts);
+    }
+    return facts;
+}
+
+}  // namespace frana::stress

@@ -1,0 +1,51 @@
+#pragma once
+// What of a scene decides on which invariants hold, and how well.
+#include <limits>
+
+#include "checks/fuzz/draft.h"
+#include "run/simulation.h"
+
+namespace frana::stress {
+
+/// What of a scene decides on which invariants hold, and how well.
+struct Facts {
+    Claims claims;
+    double gravity = 9.81;       ///< [m/s^2]
+    Index nodes_x = 0, nodes_y = 0;
+    bool walls = false;
+    bool steep = true;
+    /// The model itself keeps V^2/2 + g z along a path: shallow terrain always (speeds along the map); steep terrain
+    /// where the Hessian that the scheme uses bends the path as the slopes do, and the flow is thin against the radius
+    /// of curvature (whose pressure is none of gravity). Elsewhere a path along a bent bed changes its speed along the
+    /// bed, by the factor `stretch` = sqrt(1 + B^2) between level and steepest.
+    bool energy_law = true;
+    double stretch = 1.0;
+    double release_depth = 0.0;  ///< largest of the release; nodes see it averaged over a cell and more [m]
+    double release_energy = 0.0; ///< that its depth alone could set free [J]
+    /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
+    double hidden_energy = 0.0;
+    bool linear = false;         ///< linear shape functions
+    double turn = 0.0;           ///< largest change of the slope across a cell that turns velocities [1]
+    bool affine = false;         ///< points bring the nodes a velocity that changes along the gradient they carry
+    bool carried_depth = false;  ///< pressure is that of the depth which points carry, not of the nodes' (paper preset)
+    double one_cell_drop = 0.0;  ///< largest difference of the bed between neighbouring nodes [m]
+    double cell = 1.0;           ///< [m]
+    double steepest = 0.0;       ///< largest slope of the bed that a velocity follows; none on shallow terrain [1]
+    bool lake = false;
+    double level_error = 0.0;    ///< of a lake: how far its surface is off the level at the start [m]
+    double level_round_off = 0.0; ///< of elevations, depths and their sum in a lake [m]
+    double one_cell_bend = 0.0;  ///< largest second difference of the bed between neighbouring nodes [m]
+    double density = 0.0;        ///< of the columns or points [kg/m^3]
+    bool all_in_points = true;   ///< no mass but that of points: no free water, nothing on its way between two models
+    bool space = false;          ///< points in space, some of the time
+    double space_cell = 0.0;     ///< of their grid [m]
+    bool cancels = false;        ///< impulses of weight and pressure are booked each, and cancel where material rests
+    double displaces = 0.0;      ///< weight of the water that columns can displace [N]
+    double bears = 1.0;          ///< share of that which bears them (WaterExchange::pore_pressure) [1]
+    bool virtual_mass = false;   ///< columns carry water's inertia: they part from it by what a step gets wrong
+    double highest_rain = -std::numeric_limits<double>::infinity();  ///< highest ground that rain falls on [m]
+};
+/// Of a simulation that make_simulation() made of `scene` and that has not moved.
+Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& claims);
+
+}  // namespace frana::stress

@@ -1,0 +1,41 @@
+#pragma once
+// Building scenes in space for verification problems, and running them.
+#include <functional>
+
+#include "checks/verify/problem.h"
+#include "solid3d/solid_flow.h"
+
+namespace frana::verify {
+
+/// Where a problem's own axes lie in the grid: a point (x, y, z) of the problem stands at at(x, y, z).
+struct Frame3 {
+    Mat3 turn = Mat3::Identity();
+    Vec3 at(const Vec3& x) const { return turn * x; }
+};
+/// Turned by so many degrees about the y axis.
+Frame3 turned_about_y(double degrees);
+
+/// Calls take(place, volume) for the centres of `per_cell`^3 parts of each cell of a box, in the problem's
+/// own axes. The box is a whole number of parts long in each direction, or the parts are stretched a little
+/// to be so.
+void for_each_part(const Vec3& low, const Vec3& high, double cell, int per_cell,
+                   const std::function<void(const Vec3& place, double volume)>& take);
+
+/// A grid that holds a box given in the problem's axes, with room for images.
+SpaceGeometry grid_around(const Frame3& frame, const Vec3& low, const Vec3& high, double cell);
+
+/// The two planes at y = 0 and y = width that make a slice of a plane problem.
+void add_slice(SolidScene& scene, double width);
+
+/// A run to `end`, timed; calls each(flow) after every step. momentum_residual: what the ledger of surfaces
+/// and gravity leaves open, over all momentum that went round.
+Measurement run_body(SolidFlow& flow, double end, const std::function<void(const SolidFlow&)>& each = {});
+
+/// Shares of an energy [J] that a run turned over, as extras: what the scheme lost of it, and what the law did.
+void add_energies(Measurement& m, const SolidFlow& flow, double turned_over);
+
+/// Runs of one problem as one: steps and times add up, and the larger residual counts; the rest is the later
+/// run's.
+Measurement joined(const Measurement& before, const Measurement& now);
+
+}  // namespace frana::verify
