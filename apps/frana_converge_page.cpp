@@ -9,7 +9,7 @@
 #include "base/version.h"
 #include "compare/flow_width.h"
 #include "frana_converge_study.h"
-#include "vtk_io/chart_figure.h"
+#include "vtk_io/figures/chart_figure.h"
 
 namespace frana {
 namespace {

@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "observe/insitu_tables.h"
 #include "observe/profiles.h"
-#include "vtk_io/chart_figure.h"
-#include "vtk_io/map_figure.h"
-#include "vtk_io/map_figure_perspective.h"
+#include "vtk_io/figures/chart_figure.h"
+#include "vtk_io/figures/map_figure.h"
+#include "vtk_io/figures/map_figure_perspective.h"
 
 namespace frana {
 namespace fs = std::filesystem;

@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "observe/table.h"
+#include "vtk_io/figures/space_figure.h"
 #include "vtk_io/reader.h"
-#include "vtk_io/space_figure.h"
 
 namespace frana {
 namespace fs = std::filesystem;

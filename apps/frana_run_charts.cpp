@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "observe/table.h"
-#include "vtk_io/chart_figure.h"
+#include "vtk_io/figures/chart_figure.h"
 
 namespace frana {
 namespace fs = std::filesystem;

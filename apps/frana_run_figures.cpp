@@ -10,8 +10,8 @@
 #include "frana_run_charts.h"
 #include "frana_run_film.h"
 #include "frana_run_space.h"
-#include "vtk_io/map_figure.h"
-#include "vtk_io/map_figure_perspective.h"
+#include "vtk_io/figures/map_figure.h"
+#include "vtk_io/figures/map_figure_perspective.h"
 
 namespace frana {
 namespace fs = std::filesystem;

@@ -9,7 +9,7 @@
 #include "frana_products.h"
 #include "frana_run_record.h"
 #include "scene/scene.h"
-#include "vtk_io/space_barriers.h"
+#include "vtk_io/figures/space_barriers.h"
 
 namespace frana {
 

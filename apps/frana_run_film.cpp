@@ -8,10 +8,10 @@
 #include "base/error.h"
 #include "frana_cutoff.h"
 #include "terrain/part_of.h"
-#include "vtk_io/film.h"
-#include "vtk_io/filmstrip.h"
+#include "vtk_io/figures/film.h"
+#include "vtk_io/figures/filmstrip.h"
+#include "vtk_io/figures/shared_view.h"
 #include "vtk_io/reader.h"
-#include "vtk_io/shared_view.h"
 
 namespace frana {
 namespace fs = std::filesystem;

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "frana_run_film.h"
-#include "vtk_io/film.h"
-#include "vtk_io/space_figure.h"
+#include "vtk_io/figures/film.h"
+#include "vtk_io/figures/space_figure.h"
 
 namespace frana {
 namespace fs = std::filesystem;

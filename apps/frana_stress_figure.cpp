@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/version.h"
-#include "vtk_io/chart_figure.h"
+#include "vtk_io/figures/chart_figure.h"
 
 namespace frana {
 namespace {

@@ -13,8 +13,8 @@
 #include "checks/verify/structured_cases.h"
 #include "checks/verify/study.h"
 #include "checks/verify/table.h"
-#include "vtk_io/chart_figure.h"
-#include "vtk_io/map_figure.h"
+#include "vtk_io/figures/chart_figure.h"
+#include "vtk_io/figures/map_figure.h"
 
 namespace frana {
 namespace {

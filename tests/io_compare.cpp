@@ -9,7 +9,7 @@
 #include "io/gdal_reader.h"
 #include "io/gdal_writer.h"
 #include "program.h"
-#include "vtk_io/offscreen.h"
+#include "vtk_io/figures/offscreen.h"
 
 using namespace frana;
 namespace fs = std::filesystem;

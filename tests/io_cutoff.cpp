@@ -14,7 +14,7 @@
 
 #include "catch.h"
 #include "plane_case.h"
-#include "vtk_io/offscreen.h"
+#include "vtk_io/figures/offscreen.h"
 
 namespace fs = std::filesystem;
 using Catch::Contains;

@@ -1,7 +1,7 @@
 // Charts and perspective views.
 #include "io_figures_scene.h"
-#include "vtk_io/chart_figure.h"
-#include "vtk_io/map_figure_perspective.h"
+#include "vtk_io/figures/chart_figure.h"
+#include "vtk_io/figures/map_figure_perspective.h"
 
 using namespace frana;
 using figures::cannot_draw;

@@ -1,9 +1,9 @@
 // Maps: what is drawn, where, in which colour, and what happens when nothing can be drawn.
 #include "io_figures_scene.h"
 #include "small_disk.h"
-#include "vtk_io/filmstrip.h"
-#include "vtk_io/map_figure_layout.h"
-#include "vtk_io/map_figure_paint.h"
+#include "vtk_io/figures/filmstrip.h"
+#include "vtk_io/figures/map_figure_layout.h"
+#include "vtk_io/figures/map_figure_paint.h"
 
 #include <fmt/core.h>
 

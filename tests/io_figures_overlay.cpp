@@ -1,8 +1,8 @@
 // The picture of two extents: which colour stands where.
 #include "io_figures_scene.h"
-#include "vtk_io/map_figure_layout.h"
-#include "vtk_io/map_figure_overlay.h"
-#include "vtk_io/map_figure_paint.h"
+#include "vtk_io/figures/map_figure_layout.h"
+#include "vtk_io/figures/map_figure_overlay.h"
+#include "vtk_io/figures/map_figure_paint.h"
 
 using namespace frana;
 

@@ -1,10 +1,10 @@
 // The parts figures are made of: round numbers, relief, level lines, clipping.
 #include "catch.h"
-#include "vtk_io/chart_figure_ticks.h"
+#include "vtk_io/figures/chart_figure_ticks.h"
+#include "vtk_io/figures/map_figure_layout.h"
+#include "vtk_io/figures/offscreen_canvas.h"
 #include "vtk_io/hillshade.h"
-#include "vtk_io/map_figure_contours.h"
-#include "vtk_io/map_figure_layout.h"
-#include "vtk_io/offscreen_canvas.h"
+#include "vtk_io/level_lines.h"
 
 using namespace frana;
 

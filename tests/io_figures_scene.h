@@ -9,8 +9,8 @@
 #include <string>
 
 #include "catch.h"
-#include "vtk_io/map_figure.h"
-#include "vtk_io/offscreen.h"
+#include "vtk_io/figures/map_figure.h"
+#include "vtk_io/figures/offscreen.h"
 
 namespace figures {
 

@@ -14,8 +14,8 @@
 #include "fresh_folder.h"
 #include "io_figures_scene.h"
 #include "scene/case_file.h"
-#include "vtk_io/film.h"
-#include "vtk_io/offscreen_canvas.h"
+#include "vtk_io/figures/film.h"
+#include "vtk_io/figures/offscreen_canvas.h"
 
 using namespace frana;
 namespace fs = std::filesystem;

@@ -8,9 +8,9 @@
 #include "fresh_folder.h"
 #include "io_figures_scene.h"
 #include "io_space_pictures.h"
+#include "vtk_io/figures/space_colours.h"
+#include "vtk_io/figures/space_figure.h"
 #include "vtk_io/reader.h"
-#include "vtk_io/space_colours.h"
-#include "vtk_io/space_figure.h"
 #include "vtk_io/writers.h"
 
 using namespace frana;

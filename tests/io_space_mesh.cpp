@@ -11,10 +11,10 @@
 #include "io_figures_scene.h"
 #include "io_space_pictures.h"
 #include "vtk_io/barrier_mesh.h"
+#include "vtk_io/figures/space_colours.h"
+#include "vtk_io/figures/space_figure.h"
+#include "vtk_io/figures/space_mesh.h"
 #include "vtk_io/reader.h"
-#include "vtk_io/space_colours.h"
-#include "vtk_io/space_figure.h"
-#include "vtk_io/space_mesh.h"
 #include "vtk_io/writers.h"
 
 using namespace frana;

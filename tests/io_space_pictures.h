@@ -3,7 +3,7 @@
 #include <string>
 
 #include "io_figures_scene.h"
-#include "vtk_io/space_figure.h"
+#include "vtk_io/figures/space_figure.h"
 
 namespace figures {
 

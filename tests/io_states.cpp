@@ -18,7 +18,7 @@
 #include "frana_states.h"
 #include "fresh_folder.h"
 #include "observe/table.h"
-#include "vtk_io/offscreen.h"
+#include "vtk_io/figures/offscreen.h"
 #include "vtk_io/reader.h"
 
 using namespace frana;

@@ -16,7 +16,7 @@
 #include <cmath>
 
 #include "observe/insitu_tables.h"
-#include "vtk_io/map_figure_contours.h"
+#include "vtk_io/level_lines.h"
 #include "vtk_io/pvd.h"
 #include "vtk_io/writers_xml.h"
 

@@ -1,0 +1,253 @@
+#include "vtk_io/figures/map_figure.h"
+
+#include <vtkNew.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "vtk_io/figures/map_figure_furniture.h"
+#include "vtk_io/figures/map_figure_overlay.h"
+#include "vtk_io/figures/map_figure_paint.h"
+#include "vtk_io/figures/offscreen.h"
+#include "vtk_io/hillshade.h"
+#include "vtk_io/level_lines.h"
+
+namespace frana {
+namespace {
+
+/// A raster of the picture's pixels, or of every n-th.
+GridGeometry coarser(const GridGeometry& pixels, Index n) {
+    GridGeometry grid = pixels;
+    grid.cell = pixels.cell * static_cast<double>(n);
+    grid.nx = (pixels.nx + n - 1) / n + 1;
+    grid.ny = (pixels.ny + n - 1) / n + 1;
+    grid.x0 = pixels.x0 - 0.5 * pixels.cell;
+    grid.y0 = pixels.y0 - 0.5 * pixels.cell;
+    return grid;
+}
+
+class MapDrawing {
+public:
+    MapDrawing(const MapFigure& figure, const MapLayout& layout) : figure_(figure), layout_(layout) {}
+
+    void draw() {
+        ground();
+        contours();
+        outline();
+        overlays();
+        axes();
+        explanations();
+    }
+    Canvas& canvas() { return canvas_; }
+
+private:
+    void ground() {
+        const GridGeometry pixels = layout_.pixel_grid();
+        const Raster field{figure_.bed.geometry, figure_.field, "", ""};
+        field_ = resampled(field, pixels, Between::linear);
+        double shown_above = figure_.shown_above;
+        if (!figure_.outline_field.empty()) {
+            const Raster outlined{figure_.bed.geometry, figure_.outline_field, "", ""};
+            field_.values = inside_outline(field_.values, resampled(outlined, pixels, Between::linear).values, shown_above);
+            shown_above = kAll;
+        }
+        const Raster bed = resampled(figure_.bed, pixels, Between::smooth);
+        const Pixels picture =
+            figure_.shows_overlay()
+                ? painted_overlay(bed, *figure_.simulated, all_rings(*figure_.survey))
+                : painted(bed, field_, {figure_.colormap, layout_.colours, shown_above, 0.0});
+        canvas_.image(picture, static_cast<int>(layout_.frame.x0), static_cast<int>(layout_.frame.y0));
+    }
+
+    std::vector<std::vector<Vec2>> on_sheet(const Polyline& line) const {
+        std::vector<Vec2> pixels;
+        for (const Vec2& point : line) pixels.push_back(layout_.pixel(point));
+        return clipped(pixels, layout_.frame);
+    }
+
+    void contours() {
+        const double interval = layout_.contour_interval;
+        if (interval <= 0.0) return;
+        const Raster bed = resampled(figure_.bed, coarser(layout_.pixel_grid(), 2), Between::smooth);
+        double low = 1e300, high = -1e300;
+        for (const double z : bed.values) {
+            if (std::isnan(z)) continue;
+            low = std::min(low, z);
+            high = std::max(high, z);
+        }
+        constexpr double off_plateaus = 1e-4;  // a flat exactly at a level would give a tangle at round-off
+        for (double n = std::ceil(low / interval); n * interval <= high; ++n) {
+            const bool index = std::fmod(std::abs(n), 5.0) == 0.0;
+            for (const Polyline& line : level_lines(bed, (n + off_plateaus) * interval))
+                for (const auto& piece : on_sheet(line))
+                    contour(piece, index, with_step(n * interval, interval));
+        }
+    }
+
+    void contour(const std::vector<Vec2>& line, bool index, const std::string& label) {
+        Pen pen{colours::contour, (index ? 0.085 : 0.05) * layout_.unit, {}};
+        pen.colour.a = index ? 200 : 120;
+        if (!index) return canvas_.stroke(line, pen);
+        TextStyle style{0.75 * layout_.unit, Across::centre, Upward::middle, 0.0, false, false,
+                        colours::contour};
+        const double width = text_size(label, style).x() + 0.6 * layout_.unit;
+        const LabelledLine parts =
+            with_label(line, width, [&](const Vec2& p) { return free_for_label(p, width); });
+        for (const auto& piece : parts.pieces) canvas_.stroke(piece, pen);
+        if (!parts.labelled) return;
+        style.angle = parts.angle;
+        style.colour = scaled(colours::contour, 0.6);
+        canvas_.text(label, parts.at, style);
+        labels_.push_back(around(parts.at, width));
+    }
+
+    static Rectangle around(const Vec2& p, double width) {
+        return {p.x() - 0.6 * width, p.y() - 0.6 * width, p.x() + 0.6 * width, p.y() + 0.6 * width};
+    }
+
+    bool free_for_label(const Vec2& p, double width) const {
+        const Rectangle box = around(p, width), f = layout_.frame;
+        if (box.x0 < f.x0 || box.y0 < f.y0 || box.x1 > f.x1 || box.y1 > f.y1) return false;
+        for (const Rectangle& other : labels_)
+            if (box.meets(other)) return false;
+        for (const double dx : {0.0, -0.5 * width, 0.5 * width}) {
+            const auto i = static_cast<Index>(p.x() - f.x0 + dx), j = static_cast<Index>(p.y() - f.y0);
+            if (std::abs(field_.at(std::min(i, field_.geometry.nx - 1),
+                                   std::min(j, field_.geometry.ny - 1))) > figure_.shown_above)
+                return false;
+        }
+        return true;
+    }
+
+    void closed_line(Polyline ring, const Pen& pen, bool cased) {
+        if (ring.empty()) return;
+        ring.push_back(ring.front());
+        for (const auto& piece : on_sheet(ring)) cased ? stroke_cased(canvas_, piece, pen) : canvas_.stroke(piece, pen);
+    }
+
+    void outline() {
+        if (figure_.shows_overlay()) {
+            for (const Polyline& ring : *figure_.simulated)
+                closed_line(ring, {colours::black, 0.1 * layout_.unit, {}}, false);
+            return;
+        }
+        Raster field{figure_.bed.geometry, figure_.outlined(), "", ""};
+        for (double& value : field.values) value = std::isnan(value) ? 0.0 : std::abs(value);
+        const Raster seen = resampled(field, coarser(layout_.pixel_grid(), 1), Between::linear);
+        for (const Polyline& line : level_lines(seen, figure_.shown_above))
+            for (const auto& piece : on_sheet(line))
+                canvas_.stroke(piece, {colours::black, 0.1 * layout_.unit, {}});
+    }
+
+    void overlays() {
+        const double u = layout_.unit;
+        if (figure_.survey)
+            for (const Polyline& ring : all_rings(*figure_.survey))
+                closed_line(ring, {colours::survey, figure_.survey_pen() * u, {}}, true);
+        for (const NamedPoint& gauge : figure_.gauges) {
+            const Vec2 at = layout_.pixel(gauge.point);
+            if (!layout_.frame.holds(at)) continue;
+            draw_gauge(canvas_, at, u);
+            name(gauge.name, {at.x(), at.y() + 0.3 * u});
+        }
+        for (const NamedLine& profile : figure_.profiles) {
+            const auto pieces = on_sheet(profile.line);
+            for (const auto& piece : pieces)
+                stroke_cased(canvas_, piece, {colours::black, 0.12 * u, {0.55 * u, 0.3 * u}});
+            if (!pieces.empty()) name(profile.name, pieces.front().front());
+        }
+    }
+
+    /// A name beside a point, on the side where there is room.
+    void name(const std::string& text, const Vec2& at) {
+        const double u = layout_.unit;
+        TextStyle style{0.9 * u, Across::left, Upward::middle, 0.0, false, true, {}};
+        const bool room = at.x() + 1.2 * u + text_size(text, style).x() < layout_.frame.x1;
+        if (!room) style.across = Across::right;
+        const double width = text_size(text, style).x(), x = at.x() + (room ? 0.9 : -0.9) * u;
+        double y = std::clamp(at.y(), layout_.frame.y0 + u, layout_.frame.y1 - u);
+        const auto box = [&] { return Rectangle{room ? x : x - width, y - 0.6 * u, room ? x + width : x, y + 0.6 * u}; };
+        for (bool moved = true; moved;) {  // above the names that stand there already
+            moved = false;
+            for (const Rectangle& other : names_)
+                if (box().meets(other)) y = other.y1 + 0.61 * u, moved = true;
+        }
+        names_.push_back(box());
+        canvas_.text(text, {x, y}, style);
+    }
+
+    void axes() {
+        const double u = layout_.unit;
+        const Rectangle& f = layout_.frame;
+        const Pen pen{colours::black, std::max(1.0, std::round(0.09 * u)), {}};
+        canvas_.frame(f, pen);
+        TextStyle style = layout_.text(Across::centre, Upward::top);
+        for (std::size_t i = 0; i < layout_.x_ticks.at.size(); ++i) {
+            const double x = layout_.pixel({layout_.x_ticks.at[i], 0.0}).x();
+            canvas_.stroke({{x, f.y0}, {x, f.y0 - 0.4 * u}}, pen);
+            canvas_.text(layout_.x_ticks.labels[i], {x, f.y0 - 0.6 * u}, style);
+        }
+        style = layout_.text(Across::right, Upward::middle);
+        double widest = 0.0;
+        for (std::size_t i = 0; i < layout_.y_ticks.at.size(); ++i) {
+            const double y = layout_.pixel({0.0, layout_.y_ticks.at[i]}).y();
+            canvas_.stroke({{f.x0, y}, {f.x0 - 0.4 * u, y}}, pen);
+            canvas_.text(layout_.y_ticks.labels[i], {f.x0 - 0.6 * u, y}, style);
+            widest = std::max(widest, text_size(layout_.y_ticks.labels[i], style).x());
+        }
+        const bool projected = !figure_.bed.crs_wkt.empty();
+        style = layout_.text(Across::centre, Upward::top);
+        canvas_.text(projected ? "easting [m]" : "x [m]", {0.5 * (f.x0 + f.x1), f.y0 - 1.8 * u}, style);
+        style.upward = Upward::bottom;
+        style.angle = 90.0;
+        canvas_.text(projected ? "northing [m]" : "y [m]", {f.x0 - 1.0 * u - widest, 0.5 * (f.y0 + f.y1)},
+                     style);
+    }
+
+    void explanations() {
+        const double u = layout_.unit;
+        const Rectangle& f = layout_.frame;
+        if (!figure_.shows_overlay())
+            draw_colour_bar(canvas_, {std::round(f.x1 + u), f.y0, std::round(f.x1 + 2.1 * u), f.y1},
+                            layout_.colours, figure_.colormap, figure_.field_label, u);
+        for (std::size_t i = 0; i < layout_.strip.places.size(); ++i) {
+            const auto [x, row] = layout_.strip.places[i];
+            const Vec2 at(u + x, layout_.strip_top - (row + 0.5) * layout_.row_height());
+            if (i == 0)
+                draw_scale(canvas_, layout_.scale_length, layout_.scale_length / layout_.metres_per_pixel, at,
+                           u);
+            else
+                draw_legend_entry(canvas_, layout_.legend[i - 1], {at.x(), at.y() - 0.5 * u}, u);
+        }
+        draw_captions(canvas_, layout_.captions, layout_.width, layout_.height);
+    }
+
+    const MapFigure& figure_;
+    const MapLayout& layout_;
+    Canvas canvas_;
+    Raster field_;  ///< at the pixels of the frame
+    std::vector<Rectangle> labels_;  ///< of contours
+    std::vector<Rectangle> names_;   ///< of profiles and gauges
+};
+
+}  // namespace
+
+bool render_map(const MapFigure& figure, const std::filesystem::path& png, std::string& why_not) {
+    expect(figure.field.size() == figure.bed.values.size(),
+           "the field of a map has one value per node of the bed");
+    why_not = no_renderer_reason();
+    if (!why_not.empty()) return false;
+    const MapLayout layout = lay_out(figure);
+    MapDrawing drawing(figure, layout);
+    drawing.draw();
+    const auto window = Offscreen::open(layout.width, layout.height, why_not);
+    if (!window) return false;
+    vtkNew<vtkRenderer> renderer;
+    drawing.canvas().show(renderer);
+    window->add(renderer);
+    return window->save(png, why_not);
+}
+
+}  // namespace frana

@@ -1,0 +1,59 @@
+#pragma once
+// A field on its terrain as a map, ready for a paper: north up, with everything needed to read it off.
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "terrain/raster.h"
+#include "vtk_io/figures/colour.h"
+
+namespace frana {
+
+struct NamedLine {
+    std::string name;
+    Polyline line;
+};
+struct NamedPoint {
+    std::string name;
+    Vec2 point{0, 0};
+};
+
+struct MapFigure {
+    Raster bed;                 ///< terrain [m]; NaN is plain light grey
+    std::vector<double> field;  ///< on bed.geometry, row 0 south; NaN is not shown
+    double shown_above = 0.1;   ///< shown (and outlined) where |field| exceeds this
+    /// With a field here, as large, `field` is shown (and the flow outlined) where this one exceeds `shown_above`,
+    /// whatever its own value; outline_label is its name and unit.
+    std::vector<double> outline_field;
+    std::string outline_label;
+    std::string title;
+    std::string field_label = "peak depth [m]";      ///< name and unit, for the colour bar
+    std::optional<std::pair<double, double>> range;  ///< of the colours; default: from the field
+    Colormap colormap = Colormap::depth;
+    std::optional<Polygons> survey;  ///< mapped outline
+    /// Rings of the simulated extent: with a survey, areas of both, of this one and of the survey only are coloured
+    /// instead of the field, which then only says what has to be in view.
+    std::optional<std::vector<Polyline>> simulated;
+    std::vector<NamedLine> profiles;
+    std::vector<NamedPoint> gauges;
+    std::string footer;                          ///< model, parameters; wrapped
+    std::optional<std::array<double, 4>> focus;  ///< xmin, ymin, xmax, ymax to be in view [m]
+    int width = 1400;                            ///< at most [px]
+    int height = 1200;                           ///< at most [px]
+
+    const std::vector<double>& outlined() const { return outline_field.empty() ? field : outline_field; }
+    bool shows_overlay() const { return simulated && survey; }
+    /// Thickness of the surveyed outline, in sizes of ordinary text: thinner where areas beside it are looked at.
+    double survey_pen() const { return shows_overlay() ? 0.1 : 0.16; }
+};
+
+/// Draws the map into a PNG. Where `focus` is not given, the covered area and the survey are in view with a
+/// margin, and at least 30 % of the terrain's width and height. Width and height are met exactly unless the
+/// terrain is too narrow to fill 90 % of them; then the picture is cut to what it needs. False with a reason
+/// when there is no renderer (no file is made); UserError when the file cannot be written.
+bool render_map(const MapFigure& figure, const std::filesystem::path& png, std::string& why_not);
+
+}  // namespace frana

@@ -1,0 +1,19 @@
+#pragma once
+// Two extents on the terrain: where they agree, and where only one of them is.
+#include "terrain/raster.h"
+#include "vtk_io/figures/colour.h"
+
+namespace frana {
+
+/// For each node of the grid, row 0 = south: 1 inside an odd number of the rings, else 0.
+std::vector<char> nodes_inside(const std::vector<Polyline>& rings, const GridGeometry& grid);
+
+/// One pixel per node of the bed: relief in grey, and laid over it the colour of what is in both extents, in the
+/// simulated one only, in the surveyed one only (colours::hit, beyond, missed).
+Pixels painted_overlay(const Raster& bed, const std::vector<Polyline>& simulated,
+                       const std::vector<Polyline>& surveyed);
+
+/// All rings of all parts.
+std::vector<Polyline> all_rings(const Polygons& polygons);
+
+}  // namespace frana

@@ -1,0 +1,26 @@
+#pragma once
+// Terrain and field as one picture: relief in grey, the field's colours laid over it.
+#include "terrain/raster.h"
+#include "vtk_io/figures/colour.h"
+#include "vtk_io/figures/map_figure_layout.h"
+
+namespace frana {
+
+struct FieldStyle {
+    Colormap colormap = Colormap::depth;
+    ColourRange range;
+    double shown_above = 0.1;
+    double light_turn = 0.0;  ///< lamps turned clockwise from the north-west [radians]
+};
+
+/// One pixel per node. With r the relief's grey, the colour c of a value becomes 0.88 c (0.62 + 0.45 r) +
+/// 0.12 r: relief shows through, and the colour stays that of the colour bar within a few per cent.
+Pixels painted(const Raster& bed, const Raster& field, const FieldStyle& style);
+
+/// Colour of something opaque on ground of the given grey (`painted` has the formula).
+Colour colour_on_ground(const Colour& colour, double grey);
+
+/// Colour of one value on ground of the given grey in [0, 1] (`painted` has the formula).
+Colour on_ground(double value, double grey, const FieldStyle& style);
+
+}  // namespace frana

@@ -1,0 +1,43 @@
+#pragma once
+// Pictures without a screen: a surfaceless EGL context under a VTK window. Never tries X, since VTK ends the
+// process when it finds no display; where no renderer can be had, a reason is returned instead.
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "vtk_io/figures/colour.h"
+
+class vtkRenderer;
+
+namespace frana {
+
+/// Why no picture can be drawn in this process; empty when one can. FRANA_NO_RENDER=1 in the environment
+/// switches drawing off. The first call makes the one EGL context of the process (about 50 ms).
+std::string no_renderer_reason();
+
+/// A window of the given size [px] with a white background, kept in memory. One at a time: a second `open`
+/// in another thread waits until the first window is gone. VTK's own error messages go to `why_not`.
+class Offscreen {
+public:
+    /// nullptr when there is no renderer; then `why_not` has the reason.
+    static std::unique_ptr<Offscreen> open(int width, int height, std::string& why_not);
+    ~Offscreen();
+    Offscreen(const Offscreen&) = delete;
+    Offscreen& operator=(const Offscreen&) = delete;
+
+    /// Renderers are drawn in the order of their layers; the caller sets viewport and layer.
+    void add(vtkRenderer* renderer, int layer = 0);
+    /// Draws and writes the PNG whole or not at all. False with a reason when VTK failed to draw; throws
+    /// UserError when the file cannot be written.
+    bool save(const std::filesystem::path& png, std::string& why_not);
+
+private:
+    struct Window;
+    explicit Offscreen(std::unique_ptr<Window> window);
+    std::unique_ptr<Window> window_;
+};
+
+/// The pixels of a PNG file with 8 bits a channel, alpha dropped. UserError when it cannot be read.
+Pixels read_png(const std::filesystem::path& png);
+
+}  // namespace frana

@@ -1,0 +1,23 @@
+#pragma once
+// Maps of one terrain at several times that can be compared by eye.
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "vtk_io/figures/map_figure.h"
+
+namespace frana {
+
+/// One colour range and one view for maps of the same terrain: those that hold all the maps that were added.
+class SharedView {
+public:
+    void add(const MapFigure& map);
+    /// Sets the map's range, and its focus unless it has one. At least one map must have been added.
+    void apply(MapFigure& map) const;
+
+private:
+    std::optional<std::pair<double, double>> range_;
+    std::optional<std::array<double, 4>> covered_;  ///< [m]; nothing where no map shows anything
+};
+
+}  // namespace frana
