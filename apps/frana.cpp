@@ -17,9 +17,9 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "frana_commands.h"
-#include "frana_run_folder.h"
 #include "io/gdal_reader.h"
 #include "io/hdf5_version.h"
+#include "run/folder/run_folder.h"
 #include "scene/parameters.h"
 #include "vtk_io/vtk_version.h"
 

@@ -6,9 +6,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "frana_commands.h"
-#include "frana_comparison.h"
 #include "frana_figures.h"
-#include "frana_states.h"
+#include "run/folder/comparison.h"
+#include "run/folder/states.h"
 #include "vtk_io/survey_vtp.h"
 
 namespace frana {

@@ -12,13 +12,13 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "frana_checkpoint.h"
 #include "frana_commands.h"
 #include "frana_converge_study.h"
-#include "frana_products.h"
-#include "frana_run_folder.h"
-#include "frana_run_lock.h"
 #include "io/gdal_reader.h"
+#include "run/folder/checkpoint.h"
+#include "run/folder/products.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_lock.h"
 #include "run/interrupt.h"
 #include "scene/build_scene.h"
 #include "terrain/part_of.h"

@@ -10,7 +10,7 @@
 #include "compare/flow_width.h"
 #include "compare/outline.h"
 #include "compare/runout.h"
-#include "frana_products.h"
+#include "run/folder/products.h"
 
 namespace frana {
 namespace fs = std::filesystem;

@@ -14,8 +14,8 @@
 #include "frana_commands.h"
 #include "frana_export.h"
 #include "frana_figures.h"
-#include "frana_run_state.h"
 #include "io/kratos_mdpa.h"
+#include "run/folder/run_state.h"
 
 namespace frana {
 namespace fs = std::filesystem;

@@ -10,9 +10,9 @@
 #include "base/compensated_sum.h"
 #include "convert/gather.h"
 #include "frana_commands.h"
-#include "frana_run_state.h"
 #include "io/gdal_writer.h"
 #include "io/hdf5_points.h"
+#include "run/folder/run_state.h"
 
 namespace frana {
 namespace {

@@ -9,12 +9,12 @@
 
 #include "base/error.h"
 #include "frana_commands.h"
-#include "frana_cutoff.h"
 #include "frana_figures.h"
-#include "frana_run_film.h"
-#include "frana_run_folder.h"
-#include "frana_run_space.h"
 #include "io/gdal_reader.h"
+#include "run/folder/cutoff.h"
+#include "run/folder/run_film.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_space.h"
 #include "terrain/part_of.h"
 #include "vtk_io/reader.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "frana_run_figures.h"
+#include "run/folder/run_figures.h"
 #include "scene/case_file.h"
 
 namespace frana {

@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "frana_commands.h"
 #include "frana_figures.h"
-#include "frana_look.h"
-#include "frana_states.h"
+#include "run/folder/look.h"
+#include "run/folder/states.h"
 
 namespace frana {
 namespace {

@@ -1,7 +1,7 @@
 """What frana's ParaView states are made of: terrain with relief, flow on it, outlines, charts, cameras.
 
 Colour ranges, cameras and sizes come from RUN_DIR/states/look.json, which `frana run` and `frana states` write
-(apps/frana_look.h tells what is in it). The modules overview, stress, profiles, survey and budgets build one state
+(run/folder/look.h tells what is in it). The modules overview, stress, profiles, survey and budgets build one state
 each from these parts; make_states.py saves them as the .pvsm templates that lie beside this file.
 """
 import json

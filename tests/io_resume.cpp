@@ -12,12 +12,12 @@
 #include "base/error.h"
 #include "catch.h"
 #include "fake_scene.h"
-#include "frana_run_folder.h"
-#include "frana_run_job.h"
-#include "frana_run_lock.h"
 #include "fresh_folder.h"
 #include "io/gdal_sum.h"
 #include "program.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_job.h"
+#include "run/folder/run_lock.h"
 #include "small_disk.h"
 
 using namespace frana;

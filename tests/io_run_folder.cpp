@@ -3,9 +3,9 @@
 
 #include "base/error.h"
 #include "catch.h"
-#include "frana_run_folder.h"
-#include "frana_run_lock.h"
 #include "fresh_folder.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_lock.h"
 
 using namespace frana;
 namespace fs = std::filesystem;

@@ -7,11 +7,11 @@
 #include "catch.h"
 #include "fake_scene.h"
 #include "frana_commands.h"
-#include "frana_run_folder.h"
-#include "frana_run_job.h"
 #include "fresh_folder.h"
 #include "io/gdal_writer.h"
 #include "observe/table.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_job.h"
 #include "scene/case_file.h"
 #include "vtk_io/reader.h"
 

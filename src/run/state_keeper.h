@@ -5,7 +5,7 @@
 
 namespace frana {
 
-/// Decides when the state of a run is kept and where it goes (apps/frana_checkpoint.h writes files).
+/// Decides when the state of a run is kept and where it goes (run/folder/checkpoint.h writes files).
 class StateKeeper {
 public:
     using State = std::function<void(Archive&)>;

@@ -1,4 +1,4 @@
-#include "frana_run_figures.h"
+#include "run/folder/run_figures.h"
 
 #include <fmt/core.h>
 
@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "compare/overlap.h"
-#include "frana_cutoff.h"
-#include "frana_run_charts.h"
-#include "frana_run_film.h"
-#include "frana_run_space.h"
+#include "run/folder/cutoff.h"
+#include "run/folder/run_charts.h"
+#include "run/folder/run_film.h"
+#include "run/folder/run_space.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/figures/map_figure_perspective.h"
 

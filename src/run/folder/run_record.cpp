@@ -1,4 +1,4 @@
-#include "frana_run_record.h"
+#include "run/folder/run_record.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "frana_products.h"
+#include "run/folder/products.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "frana_comparison.h"
+#include "run/folder/comparison.h"
 
 #include <fmt/core.h>
 

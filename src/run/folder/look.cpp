@@ -1,4 +1,4 @@
-#include "frana_look.h"
+#include "run/folder/look.h"
 
 #include <fmt/core.h>
 

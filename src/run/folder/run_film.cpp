@@ -1,4 +1,4 @@
-#include "frana_run_film.h"
+#include "run/folder/run_film.h"
 
 #include <fmt/core.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "frana_cutoff.h"
+#include "run/folder/cutoff.h"
 #include "terrain/part_of.h"
 #include "vtk_io/figures/film.h"
 #include "vtk_io/figures/filmstrip.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "frana_run_figures.h"
+#include "run/folder/run_figures.h"
 
 namespace frana {
 

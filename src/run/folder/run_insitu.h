@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "frana_run_record.h"
 #include "observe/insitu.h"
+#include "run/folder/run_record.h"
 #include "scene/scene.h"
 
 namespace frana {

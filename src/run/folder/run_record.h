@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "compare/comparison.h"
-#include "frana_checkpoint.h"
 #include "observe/barriers.h"
 #include "observe/insitu.h"
+#include "run/folder/checkpoint.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
 
@@ -58,7 +58,7 @@ struct RunRecord {
     std::optional<PointsApart> points_apart;
     std::optional<WaterBudget> water;  ///< beside it
     std::vector<std::string> warnings;
-    std::vector<std::string> files;  ///< that the run made, relative to its folder: frana_run_folder.h
+    std::vector<std::string> files;  ///< that the run made, relative to its folder: run/folder/run_folder.h
 };
 
 /// What the scene and its case file contribute.

@@ -1,12 +1,12 @@
 # Writes a C++ source that holds ParaView states as texts.
-# cmake "-DSTATES=a.pvsm;b.pvsm" -DOUT=state_templates.cpp -P state_templates.cmake
+# cmake "-DSTATES=a.pvsm;b.pvsm" -DOUT=state_templates.cpp -P run/folder/state_templates.cmake
 set(texts "")
 foreach(state ${STATES})
   get_filename_component(name ${state} NAME_WE)
   file(READ ${state} text)
   string(APPEND texts "        {\"${name}\", R\"pvsm(${text})pvsm\"},\n")
 endforeach()
-file(WRITE ${OUT} "#include \"frana_states.h\"
+file(WRITE ${OUT} "#include \"run/folder/states.h\"
 
 namespace frana {
 

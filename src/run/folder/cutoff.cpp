@@ -1,4 +1,4 @@
-#include "frana_cutoff.h"
+#include "run/folder/cutoff.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "frana_run_charts.h"
+#include "run/folder/run_charts.h"
 
 #include <fmt/core.h>
 

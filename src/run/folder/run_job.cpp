@@ -1,4 +1,4 @@
-#include "frana_run_job.h"
+#include "run/folder/run_job.h"
 
 #include <fmt/core.h>
 
@@ -10,14 +10,14 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compare/flow_width.h"
-#include "frana_comparison.h"
-#include "frana_cutoff.h"
-#include "frana_run_figures.h"
-#include "frana_run_film.h"
-#include "frana_run_folder.h"
-#include "frana_run_space.h"
-#include "frana_run_insitu.h"
-#include "frana_states.h"
+#include "run/folder/comparison.h"
+#include "run/folder/cutoff.h"
+#include "run/folder/run_figures.h"
+#include "run/folder/run_film.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_space.h"
+#include "run/folder/run_insitu.h"
+#include "run/folder/states.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
 #include "observe/history.h"

@@ -1,4 +1,4 @@
-#include "frana_run_lock.h"
+#include "run/folder/run_lock.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-#include "frana_run_folder.h"
+#include "run/folder/run_folder.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "frana_insitu_figures.h"
+#include "run/folder/insitu_figures.h"
 
 #include <fmt/core.h>
 

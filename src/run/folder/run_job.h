@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <string>
 
-#include "frana_checkpoint.h"
-#include "frana_products.h"
-#include "frana_run_record.h"
+#include "run/folder/checkpoint.h"
+#include "run/folder/products.h"
+#include "run/folder/run_record.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
 

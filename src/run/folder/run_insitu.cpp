@@ -1,12 +1,12 @@
-#include "frana_run_insitu.h"
+#include "run/folder/run_insitu.h"
 
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "frana_insitu_figures.h"
 #include "io/gdal_series.h"
 #include "observe/insitu_tables.h"
 #include "observe/scalar.h"
+#include "run/folder/insitu_figures.h"
 #include "vtk_io/catalyst.h"
 #include "vtk_io/insitu.h"
 

@@ -9,7 +9,7 @@ namespace frana {
 
 /// A template, compiled into the program: a state that ParaView saved and pvstates/make_states.py cut down. Elements
 /// with a `slot` attribute get their value from the run: slot="file:grid.pvd" the file's absolute path, others the
-/// number or text at that JSON pointer of the run's look (apps/frana_look.h), as slot="/camera/map/focal/0";
+/// number or text at that JSON pointer of the run's look (run/folder/look.h), as slot="/camera/map/focal/0";
 /// slot="/range/depth@0.25" is a quarter of the way between the two numbers there.
 struct StateTemplate {
     std::string name;

@@ -1,4 +1,4 @@
-#include "frana_run_space.h"
+#include "run/folder/run_space.h"
 
 #include <fmt/core.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "frana_run_film.h"
+#include "run/folder/run_film.h"
 #include "vtk_io/figures/film.h"
 #include "vtk_io/figures/space_figure.h"
 

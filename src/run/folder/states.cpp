@@ -1,4 +1,4 @@
-#include "frana_states.h"
+#include "run/folder/states.h"
 
 #include <fmt/core.h>
 
@@ -6,7 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "frana_look.h"
+#include "run/folder/look.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ std::string text_of(const Json& value) {
     return fmt::format("{}", value.get<double>());
 }
 
-/// What belongs into a slot (frana_states.h has the grammar).
+/// What belongs into a slot (run/folder/states.h has the grammar).
 std::string slot_value(const std::string& slot, const Json& look, const fs::path& run_dir) {
     const std::string file = "file:";
     if (slot.rfind(file, 0) == 0) return escaped((run_dir / slot.substr(file.size())).string());

@@ -1,4 +1,4 @@
-#include "frana_checkpoint.h"
+#include "run/folder/checkpoint.h"
 
 #include <fmt/core.h>
 
@@ -9,8 +9,8 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/version.h"
-#include "frana_run_folder.h"
 #include "io/gdal_sum.h"
+#include "run/folder/run_folder.h"
 
 namespace frana {
 namespace fs = std::filesystem;

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "base/version.h"
-#include "frana_comparison.h"
-#include "frana_run_folder.h"
-#include "frana_run_record.h"
+#include "run/folder/comparison.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_record.h"
 
 namespace frana {
 namespace {

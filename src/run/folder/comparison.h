@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compare/comparison.h"
-#include "frana_products.h"
+#include "run/folder/products.h"
 
 namespace frana {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "frana_products.h"
-#include "frana_run_record.h"
+#include "run/folder/products.h"
+#include "run/folder/run_record.h"
 #include "scene/scene.h"
 #include "vtk_io/figures/space_barriers.h"
 
@@ -49,7 +49,7 @@ void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
 using Draw = std::function<bool(const std::filesystem::path& png, std::string& why_not)>;
 
 /// Makes one figure and notes it down, or a warning with the reason why there is none. Once an end was asked for
-/// (frana_cutoff.h): nothing.
+/// (run/folder/cutoff.h): nothing.
 void attempt(const FigureSource& source, const DrawnFigure& figure, std::vector<DrawnFigure>& figures,
              std::vector<std::string>& warnings, const Draw& draw);
 

@@ -1,4 +1,4 @@
-#include "frana_run_state.h"
+#include "run/folder/run_state.h"
 
 #include <fmt/core.h>
 
@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "frana_products.h"
 #include "io/hdf5_particles.h"
+#include "run/folder/products.h"
 #include "vtk_io/pvd.h"
 #include "vtk_io/reader.h"
 
