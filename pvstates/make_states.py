@@ -4,8 +4,8 @@
 
 RUN_DIR is a run that has everything (stress, a profile, a survey; for the state impact, points in space and a
 barrier; for structure, a case with [material.structure]; for phases, one with [water]); which one does not matter, for all that belongs to the run becomes a slot: `frana run` and `frana states` put
-there what run/folder/states.h says. To know what belongs to the run, each number and text of its look is replaced by one
-of a kind before the state is built, and searched for in what ParaView saved. Domains, informative properties, property ids and values that equal their defaults are left out:
+there what src/run/folder/states.h says. To know what belongs to the run, each number and text of its look is replaced by
+one of a kind before the state is built, and searched for in what ParaView saved. Domains, informative properties, property ids and values that equal their defaults are left out:
 a state then is a tenth of its size, loads the same, and changes line by line.
 """
 import argparse

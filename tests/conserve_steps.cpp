@@ -43,7 +43,7 @@ TEST_CASE("A film at rest on a cliff of many cells begins with a step that it ca
     CHECK(most > 0.1 * scene.scheme.cfl);  // it did begin to fall
     CHECK(most <= 2.0 * scene.scheme.cfl);
     CHECK(fastest > 10.0);
-    CHECK(fastest <= 1.25 * std::sqrt(2 * scene.gravity * 60.0));  // of the fall; a quarter as in checks/fuzz/invariants.h
+    CHECK(fastest <= 1.25 * std::sqrt(2 * scene.gravity * 60.0));  // of the fall; a quarter: checks/fuzz/invariants.h
 }
 
 TEST_CASE("Where nothing is driven far, a step is what its signal asks for", "[conserve][steps]") {

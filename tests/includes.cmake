@@ -1,5 +1,5 @@
-# The walls between the rooms. A room is a folder; it may include itself and the rooms that are named here for it, all of
-# them said before it: no arrow runs back up. Each of these arrows is in use. Fails on any other include.
+# The walls between the rooms. A room is a folder; it may include itself and the rooms that are named for it here, all
+# of them above its own line: no arrow runs back up. Each of these arrows is in use. Fails on any other include.
 # cmake -DROOT=... -P includes.cmake
 cmake_minimum_required(VERSION 3.22)
 set(packages "gdal|ogr|cpl_|proj|vtk|hdf5|H5|CLI/|nlohmann/|benchmark/|EGL/")
@@ -7,7 +7,7 @@ set(rooms)
 set(arrows 0)
 set(floors 0)
 
-# room(FOLDER [rooms below that it may include] [PACKAGES beginnings of headers that only it and others who say so know])
+# room(FOLDER [rooms that it may include] [PACKAGES beginnings of headers that only rooms with this word may know])
 function(room folder)
   cmake_parse_arguments(PARSE_ARGV 1 of "" "PACKAGES" "")
   string(REGEX REPLACE "^src/" "" name ${folder})

@@ -1,6 +1,6 @@
 #pragma once
-// Halving points whose domains have grown, of any model that has columns with the names of shallow/columns.h (Points; Held: where
-// what they carry lies). Numbers of equations: src/shallow/THEORY.md.
+// Halving points whose domains have grown, of any model that has columns with the names of shallow/columns.h (Points;
+// Held: where what they carry lies). Numbers of equations: src/shallow/THEORY.md.
 #include <algorithm>
 #include <cmath>
 #include <vector>

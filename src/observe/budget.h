@@ -7,8 +7,8 @@
 
 namespace frana {
 
-/// Residuals (src/shallow/THEORY.md, 60 and 61) of the three balances between a first status and a later one of the same
-/// run.
+/// Residuals (src/shallow/THEORY.md, 60 and 61) of the three balances between a first status and a later one of the
+/// same run.
 struct Budget {
     double mass_error = 0.0;                    ///< (m + m_left - m_0) / m_0 [1]
     std::array<double, 2> momentum_residual{};  ///< P + P_left - P_0 - impulse [kg m/s]

@@ -1,6 +1,6 @@
 #pragma once
-// When a run is over: what still moves can change the deposit no more. One rule for every model (shallow/THEORY.md, 63).
-//
+// When a run is over: what still moves can change the deposit no more. One rule for every model
+// (shallow/THEORY.md, 63).
 // As a run is judged by its deposit on cells, the question is what would change in as much time again. Material that is
 // braked evenly and stops then goes v t / 2: less than a cell when v < 2 cells / t, t being the time so far. So
 // - the mean speed is below a share of its peak (time.rest_fraction): the flow has been, and is not about to begin;

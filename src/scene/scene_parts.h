@@ -72,7 +72,7 @@ double cut_release(const Release& release, Raster& bed);
 /// Finds the holes inside the terrain, with a remark on what they are (boundary.holes).
 void find_holes(const CaseFile& file, Scene& scene);
 /// How high walls in holes stand above the ground beside them [m]: so that the surface does not fall towards them. What
-/// comes onto them is stopped (shallow/sides.cpp). On flanks that rise by six cells in one a flow gains energy of nothing.
+/// comes onto them is stopped (shallow/sides.cpp). On flanks that rise by six cells in one a flow gains energy.
 double hole_wall_height(const Scene& scene);
 /// Makes them walls, when they are to be; of a scene that has its particles. Where the model knows
 /// no such walls that goes to `problems`.

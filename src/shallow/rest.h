@@ -1,8 +1,8 @@
 #pragma once
 // Material at rest sleeps, tile by tile: what cannot change is not computed again, and the run has the same bits.
 //
-// A tile sleeps when kAsleep (mpm/tile_grid.h) gathers in a row found all its points without velocity and velocity gradient: its points then
-// stay as they are, and so does what they deposit. While any tile sleeps, a step goes over
+// A tile sleeps when kAsleep gathers (mpm/tile_grid.h) in a row found all its points without velocity and gradient: its
+// points then stay as they are, and so does what they deposit. While any tile sleeps, a step goes over
 // - the points of tiles awake and of tiles that touch a node in motion or deposited anew (`gathers`),
 // - the points of tiles that touch a node which a tile awake touches (`deposits`): its sums are made again, in their order,
 // - the nodes near such nodes (`stirred`). All others keep what they had, and sums over tiles count them as they are.

@@ -28,7 +28,7 @@ std::vector<double> numbers_of(const Status& s) {
             s.mean_speed, s.covered_area, s.front,       s.stored};
 }
 
-/// Mass of points whose sub-points an open side may hold back [kg]: they lie within 3/4 of a cell (shallow/sub_points.h).
+/// Mass of points whose sub-points an open side may hold back [kg]: those within 3/4 of a cell (shallow/sub_points.h).
 double beside_open_sides(const Facts& facts, const PointStates& points) {
     if (facts.walls) return 0.0;
     constexpr double kReach = 0.75;

@@ -75,7 +75,7 @@ void compare_bits(const Scene& scene, const Claims& claims, Verdict& verdict) {
                 "a run that was kept half way and taken up again ends with different bits", verdict);
 }
 
-/// kDisturbed times the round-off of the surface over the depth, but no more than what decides a tie (shallow/merge.cpp).
+/// kDisturbed times the round-off of the surface over the depth, but at most what decides a tie (shallow/merge.cpp).
 double disturbance(const Scene& scene, const Facts& facts) {
     double highest = 0.0;
     for (const double z : scene.bed.values)
