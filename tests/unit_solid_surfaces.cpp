@@ -85,6 +85,19 @@ TEST_CASE("Behind a stuck surface the images of a flow that bends go on with its
     CHECK(held == 2);
 }
 
+TEST_CASE("A side that meets no other surface shows its images as a lone one, also where two others meet", "[solid]") {
+    // Two sides that meet, and one opposite to both: more than 120 degrees from each.
+    const std::vector<Surface> sides = {Surface::plane({0, 0, 0}, {1, 0, 0}), Surface::plane({0, 0, 0}, {0.8, 0.6, 0}),
+                                        Surface::plane({2, 0, 0}, {-1, 0, 0})};
+    int alone = 0;
+    for (const Image& image : images_of(sides, {1.0, 0.5, 0.0})) {
+        const bool in_third = image.place.x() > 2.0;
+        alone += in_third;
+        CHECK((image.slides == 0) == in_third);
+    }
+    CHECK(alone == 1);
+}
+
 TEST_CASE("Images bend with one stuck plane, not in a corner of two or in one that leans", "[solid]") {
     const Surface floor = Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck);
     const auto bent = [](const Surface& one, const Surface& other, const Vec3& x) {

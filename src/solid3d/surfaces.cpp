@@ -144,11 +144,10 @@ void Images::cut_off(Image& image, const Near& near, const Vec3& from) {
                                    normal.dot(from) - near.contact.distance - 0.5 * near.thick};
 }
 
-/// Whether two surfaces meet.
-bool Images::corner(const Near* near, int count) {
-    for (int n = 0; n < count; ++n)
-        for (int m = 0; m < n; ++m)
-            if (near[n].contact.normal.dot(near[m].contact.normal) >= kOpposite) return true;
+/// Whether surface n meets another one.
+bool Images::corner(const Near* near, int count, int n) {
+    for (int m = 0; m < count; ++m)
+        if (m != n && near[n].contact.normal.dot(near[m].contact.normal) >= kOpposite) return true;
     return false;
 }
 
@@ -159,7 +158,6 @@ void Images::slide_along(Image& image, const Near& near, const Mat3& turn) {
 
 /// Reflects a point in each of the surfaces, and these images in those listed behind; at most three times in a row.
 void Images::reflect(const Near* near, int count, const Vec3& x) {
-    const bool meet = corner(near, count);
     for (int n = 0; n < count && count_ < kMost; ++n) {
         const Vec3& normal = near[n].contact.normal;
         Image& image = list_[static_cast<std::size_t>(count_++)];
@@ -169,7 +167,7 @@ void Images::reflect(const Near* near, int count, const Vec3& x) {
         image.held_normal = near[n].bends() ? normal : Vec3(Vec3::Zero());
         image.held_above = near[n].bends() ? near[n].contact.distance : 0.0;
         image.held = near[n].stuck, image.slides = 0, image.cuts = 0;
-        if (meet) slide_along(image, near[n], Mat3::Identity());
+        if (corner(near, count, n)) slide_along(image, near[n], Mat3::Identity());
         cut_off(image, near[n], x);
         if (n + 1 < count) reflect_in_others(near, count, n, x, image, 0);
     }

@@ -121,7 +121,7 @@ private:
     static constexpr int kMostNear = 4, kMost = 14;
     static int near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count);
     void reflect(const Near* near, int count, const Vec3& x);
-    static bool corner(const Near* near, int count);
+    static bool corner(const Near* near, int count, int n);
     static void slide_along(Image& image, const Near& near, const Mat3& turn);
     void reflect(const Near* near, int count, const Image& from, int depth);
     void reflect_in_others(const Near* near, int count, int n, const Vec3& from, const Image& image, int depth);
