@@ -90,6 +90,7 @@ struct ConvertOptions {
 struct VerifyOptions {
     std::vector<std::string> names;  ///< empty: all
     bool list = false;
+    bool coarse = false;             ///< finest grids that take long are left out
     std::vector<long long> cells;    ///< empty: each problem's own grids
     std::string preset = "default";
     int per_cell = 4;                ///< points a cell: 1, 4, 9 or 16

@@ -72,7 +72,7 @@ double order_two(double cell) { return std::pow(2.0 * M_PI * cell / kWavelength,
 // A fast sheet multiplies what disturbs it, whatever the cell: by law, not by the scheme.
 // The scheme is of second order: the error is a part of the square of cell times wavenumber.
 // Half the cell leaves a quarter of it; a third is asked for.
-TEST_CASE("Roll waves grow on a fast Voellmy flow as theory has it", "[roll_waves]") {
+TEST_CASE("Roll waves grow on a fast Voellmy flow as theory has it", "[verify][roll_waves]") {
     const Sheet sheet{2000.0};
     REQUIRE(sheet.froude() > 6.0);
     const double exact = sheet.rate().real(), coarse = measured_rate(sheet, 0.5), fine = measured_rate(sheet, 0.25);
@@ -82,7 +82,7 @@ TEST_CASE("Roll waves grow on a fast Voellmy flow as theory has it", "[roll_wave
     CHECK(std::abs(fine - exact) < std::abs(coarse - exact) / 3.0);
 }
 
-TEST_CASE("Below a Froude number of two waves die on a Voellmy flow as theory has it", "[roll_waves]") {
+TEST_CASE("Below a Froude number of two waves die on a Voellmy flow as theory has it", "[verify][roll_waves]") {
     const Sheet sheet{100.0};
     REQUIRE(sheet.froude() < 2.0);
     const double exact = sheet.rate().real(), fine = measured_rate(sheet, 0.25);

@@ -29,7 +29,7 @@ double wave_in(const Frame& frame, double from, double to) {
 // What then piles up no gradient of the surface sees. Kinematic waves run at three times the speed u. A sheet is stable
 // where that is less than u + sqrt(g h). So what is there at the start bounds what is there later.
 // In the time that the sheet takes for 20 m they come from its rear at 10 m to 70 m.
-TEST_CASE("A viscous sheet on a slope grows no wave of two cells", "[sheet_waves]") {
+TEST_CASE("A viscous sheet on a slope grows no wave of two cells", "[verify][sheet_waves]") {
     const double fall = std::tan(20.0 * M_PI / 180.0), cosine = std::cos(std::atan(fall)), nu = 1e-2;
     Scene scene = scene_on(801, 5, kCell, [&](double x, double) { return -fall * x; });
     scene.bed_law = bed::Bingham{nu * scene.density, 0.0, 0.0};

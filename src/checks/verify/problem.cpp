@@ -23,6 +23,12 @@ void Measurement::add(const std::string& extra, double number, const std::string
     extras.push_back({extra, number, unit});
 }
 
+std::vector<Index> grids_of(const Problem& problem, bool coarse) {
+    std::vector<Index> grids = problem.grids;
+    if (coarse && problem.finest_is_long) grids.pop_back();
+    return grids;
+}
+
 std::vector<Measurement> measure(const Problem& problem, Setup setup, const std::vector<Index>& grids) {
     std::vector<Measurement> results;
     for (const Index cells : grids) {

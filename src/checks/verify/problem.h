@@ -79,9 +79,13 @@ struct Problem {
     std::string order_of = "l1_depth";    ///< quantity whose order is observed
     bool needs_level = false;             ///< the paper preset is given the still level
     bool takes_minutes = false;           ///< runs when it is named only
+    bool finest_is_long = false;          ///< half a minute or more: `frana verify --coarse` leaves the last grid out
     bool in_space = false;                ///< of the 3D model: knows no presets
     bool has_presets = true;              ///< false: of a model on the plane that knows none
 };
+
+/// The problem's grids; "coarse" those without a last one that takes long.
+std::vector<Index> grids_of(const Problem& problem, bool coarse);
 
 /// Runs the problem on each grid and fills observed_order in.
 std::vector<Measurement> measure(const Problem& problem, Setup setup, const std::vector<Index>& grids);

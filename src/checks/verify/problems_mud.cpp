@@ -143,6 +143,7 @@ std::vector<Problem> mud_problems() {
                 {4, 8},
                 mud_residuals,
                 run_mud_sheet};
+    mud.finest_is_long = true;
     mud.order_of = "profile_error";
     // Two errors of opposite signs: points are pressed by up to 0.7 %, which raises the stress as much, and the law
     // takes it to the power of two; and each step takes a little from what shears.
@@ -157,6 +158,7 @@ std::vector<Problem> mud_problems() {
                     {4, 8},
                     {},
                     run_viscous_sheet};
+    viscous.finest_is_long = true;
     viscous.order_of = "profile_error";
     viscous.gates = {{4, "profile_error", 0.018, own},
                      {4, "error_between", 0.033, own},
