@@ -84,11 +84,16 @@ void add_check(CLI::App& app, CheckOptions& options, Action& action) {
     command->callback([&] { action = [&] { return check_command(options); }; });
 }
 
-void add_describe(CLI::App& app, std::string& key, bool& markdown, Action& action) {
+void add_describe(CLI::App& app, DescribeOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("describe", "case keys: meaning, unit, range, default");
-    CLI::Option* wanted = command->add_option("key", key, "a key, a table or the beginning of either; default all");
-    command->add_flag("--markdown", markdown, "the whole table as a page of Markdown (cases/KEYS.md)")->excludes(wanted);
-    command->callback([&] { action = [&] { return describe_command(key, markdown); }; });
+    CLI::Option* wanted = command->add_option("key", options.key, "a key, a table or the beginning of either; default all");
+    CLI::Option* page =
+        command->add_flag("--markdown", options.markdown, "the whole table as a page of Markdown (cases/KEYS.md)");
+    page->excludes(wanted);
+    command->add_flag("--combinations", options.combinations, "what is refused together, and what to do instead")
+        ->excludes(wanted)
+        ->excludes(page);
+    command->callback([&] { action = [&] { return describe_command(options); }; });
 }
 
 void add_particles(CLI::App& app, ParticlesOptions& options, Action& action) {
@@ -259,8 +264,7 @@ int run_program(int argc, char** argv) {
     RunOptions run;
     ConvergeOptions converge;
     CheckOptions check;
-    std::string key;
-    bool markdown = false;
+    DescribeOptions describe;
     ParticlesOptions particles;
     ConvertOptions convert;
     FiguresOptions figures;
@@ -274,7 +278,7 @@ int run_program(int argc, char** argv) {
     add_run(app, run, action);
     add_converge(app, converge, action);
     add_check(app, check, action);
-    add_describe(app, key, markdown, action);
+    add_describe(app, describe, action);
     add_particles(app, particles, action);
     add_convert(app, convert, action);
     add_figures(app, figures, size, action);

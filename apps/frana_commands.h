@@ -65,6 +65,11 @@ struct CheckOptions {
 };
 
 /// `frana particles CASE --out FILE [--count N] [--set key=value]...`
+struct DescribeOptions {
+    std::string key;  ///< a key, a table or the beginning of either; empty: all
+    bool markdown = false, combinations = false;
+};
+
 struct ParticlesOptions {
     std::filesystem::path case_file;
     std::filesystem::path out;
@@ -139,7 +144,7 @@ int figures_command(const FiguresOptions& options);      // frana_figures.cpp
 int compare_command(const CompareOptions& options);      // frana_compare.cpp
 int states_command(const StatesOptions& options);        // frana_states_command.cpp
 int check_command(const CheckOptions& options);          // frana_check.cpp
-int describe_command(const std::string& key, bool markdown);  // frana_describe.cpp; no key: every key
+int describe_command(const DescribeOptions& options);    // frana_describe.cpp
 int particles_command(const ParticlesOptions& options);  // frana_particles.cpp
 int convert_command(const ConvertOptions& options);      // frana_convert.cpp
 int convert_back(const ConvertOptions& options);         // frana_convert_back.cpp

@@ -1,12 +1,14 @@
 #include <iostream>
 
 #include "frana_commands.h"
-#include "scene/parameters.h"
+#include "scene/combinations.h"
 
 namespace frana {
 
-int describe_command(const std::string& key, bool markdown) {
-    std::cout << (markdown ? describe_in_markdown() : describe(key));
+int describe_command(const DescribeOptions& options) {
+    std::cout << (options.combinations ? describe_combinations()
+                  : options.markdown   ? describe_in_markdown()
+                                       : describe(options.key));
     return 0;
 }
 

@@ -35,6 +35,16 @@ Scene slide(double from = 0.4) {
     return scene;
 }
 
+/// A smaller slab, of which all leaves a shorter window again.
+Scene slide_through() {
+    Scene scene = slide();
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return x > 9 && x < 15 && y > 4 && y < 8 ? 1.0 : 0.0; });
+    scene.particles.vx.assign(scene.particles.x.size(), 8.0);
+    scene.solid->window = {12, 0, 18, 12};
+    return scene;
+}
+
 double total(const Field* field, Index from, Index to) {
     double sum = 0.0;
     for (Index p = from; p < to; ++p) sum += field->data[p];
@@ -224,11 +234,7 @@ TEST_CASE("Runs in stages have the same bits for any number of threads, and when
 }
 
 TEST_CASE("So have runs whose points become columns, on their way when it stops, and whose stage in space ends", "[stages]") {
-    Scene scene = slide();
-    scene.particles = {};
-    fill(scene, [](double x, double y) { return x > 9 && x < 15 && y > 4 && y < 8 ? 1.0 : 0.0; });
-    scene.particles.vx.assign(scene.particles.x.size(), 8.0);
-    scene.solid->window = {12, 0, 18, 12};
+    Scene scene = slide_through();
     scene.solid->until = 0.95;
     take_up_again(scene, {0.85, 0.9, 0.97}, 1.0, true);
 }
@@ -284,11 +290,7 @@ TEST_CASE("A hand-over that is refused on the way ends the run as refused, and t
 }
 
 TEST_CASE("Points that leave their window onto a wall in a hole become columns before it", "[stages][holes]") {
-    Scene scene = slide();
-    scene.particles = {};
-    fill(scene, [](double x, double y) { return x > 9 && x < 15 && y > 4 && y < 8 ? 1.0 : 0.0; });
-    scene.particles.vx.assign(scene.particles.x.size(), 8.0);
-    scene.solid->window = {12, 0, 18, 12};
+    Scene scene = slide_through();
     for (const Index i : {19, 20})
         for (const Index j : {5, 6, 7}) scene.bed.at(i, j) = Raster::nodata;
     scene.holes = holes_of(scene.bed);

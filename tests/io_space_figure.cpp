@@ -101,21 +101,54 @@ SpaceFigure figure_of(const SpaceMoment& moment) {
     return figure;
 }
 
-/// Pixels of the picture without its colour bars that are nearest in hue to a colour: channels in the same
-/// proportion to within a tenth, whatever the light.
-int like(const Pixels& picture, const Colour& colour) {
+/// The same in hue: channels in the same proportion to within a tenth, whatever the light.
+bool alike(const Colour& c, const Colour& colour) {
     const double bright = std::max({colour.r, colour.g, colour.b, std::uint8_t{1}});
+    const double most = std::max({c.r, c.g, c.b, std::uint8_t{1}});
+    const double off =
+        std::max({std::abs(c.r / most - colour.r / bright), std::abs(c.g / most - colour.g / bright),
+                  std::abs(c.b / most - colour.b / bright)});
+    return most > 60.0 && off < 0.1;
+}
+
+/// Pixels of the picture without its colour bars that are nearest in hue to a colour.
+int like(const Pixels& picture, const Colour& colour) {
     int found = 0;
     for (int y = 0; y < picture.height; ++y)
-        for (int x = 0; x < picture.width * 8 / 10; ++x) {
-            const Colour c = picture.at(x, y);
-            const double most = std::max({c.r, c.g, c.b, std::uint8_t{1}});
-            const double off =
-                std::max({std::abs(c.r / most - colour.r / bright), std::abs(c.g / most - colour.g / bright),
-                          std::abs(c.b / most - colour.b / bright)});
-            found += most > 60.0 && off < 0.1;
-        }
+        for (int x = 0; x < picture.width * 8 / 10; ++x) found += alike(picture.at(x, y), colour);
     return found;
+}
+
+/// How wide the first of two things of one colour is, which stand `apart` of each other across the picture [m], and how
+/// wide a pixel is.
+struct Width { double wide = 0.0, pixel = 0.0; };
+Width width_of_first(const Pixels& picture, const Colour& colour, double apart) {
+    std::vector<int> from, to;
+    bool within = false;
+    for (int x = 0; x < picture.width * 8 / 10; ++x) {
+        bool here = false;
+        for (int y = 0; y < picture.height && !here; ++y) here = alike(picture.at(x, y), colour);
+        if (here && !within) from.push_back(x);
+        if (!here && within) to.push_back(x);
+        within = here;
+    }
+    REQUIRE(from.size() == 2);
+    REQUIRE(to.size() == 2);
+    const double metres = apart / (from[1] - from[0]);
+    return {metres * (to[0] - from[0]), metres};
+}
+
+/// Two pieces of the material 1.5 m in size, 8 m from each other along the flow and 3 m above the floor.
+SpaceFigure two_pieces(bool columns) {
+    SpaceFigure figure;
+    figure.bed = floor_of_10();
+    for (const double x : {16.0, 24.0}) figure.moment.material.push_back({{x, 10, 13}, 1.5, 10.0, 10.0, columns});
+    figure.moment.typical_size = 1.5;
+    figure.view = {{12, 5, 28, 15}, 10.0, 0.0, {1, 0}, {20, 10}};
+    figure.look = SpaceLook{0.0, 0.3};  // to the north: both are as far away
+    figure.width = 900;
+    figure.height = 700;
+    return figure;
 }
 
 }  // namespace
@@ -215,6 +248,38 @@ TEST_CASE("The section shows the points near its plane at their heights, and no 
     CHECK(lowest > floor + 10);  // the heap hangs 1.9 m over the floor, of 20 m across 600 pixels
     // half a metre is as far as points may be from the plane; these are 2 m away
     CHECK(like(drawn(render_section, figure_of(flow({24, 13, 12.0}))), fast) == 0);
+}
+
+TEST_CASE("A point is as large as a cube of its volume, a column as wide as its volume and depth make it", "[space]") {
+    LoadedParticles particles;
+    particles.count = 4;
+    particles.columns["position"].assign(12, 0.0);
+    particles.columns["speed"].assign(4, 1.0);
+    particles.columns["volume"] = {0.125, 18.0, 0.125, 0.064};
+    particles.columns["depth"] = {0.0, 2.0, 0.0, 0.0};
+    particles.columns["model"] = {1.0, 0.0, 1.0, 1.0};
+    const SpaceMoment moment = space_moment(particles, {});
+    const double sizes[] = {0.5, 3.0, 0.5, 0.4};
+    REQUIRE(moment.material.size() == 4);
+    for (std::size_t k = 0; k < 4; ++k) CHECK(moment.material[k].size == Approx(sizes[k]));
+    CHECK(moment.typical_size == Approx(0.5));  // the points' median, whatever the columns are
+}
+
+TEST_CASE("Points and columns are drawn in the size that they have", "[space]") {
+    if (cannot_draw()) return;
+    const Colour fast = colour_at(Colormap::speed, 1.0);
+    for (const bool columns : {false, true}) {
+        INFO((columns ? "columns" : "points"));
+        const SpaceFigure figure = two_pieces(columns);
+        // Balls are 0.62 of the size in radius. Their rims are lit less, which may cost a pixel more at each side.
+        const Width ball = width_of_first(drawn(render_space, figure), fast, 8.0);
+        CHECK(std::abs(ball.wide - 2.0 * 0.62 * 1.5) < 4.0 * ball.pixel);
+        CHECK(ball.pixel < 0.04);
+        // In the section a column is as wide as it is, a point an octagon whose corners lie on the ball.
+        const Width cut = width_of_first(drawn(render_section, figure), fast, 8.0);
+        CHECK(std::abs(cut.wide - (columns ? 1.5 : 1.5 * std::cos(M_PI / 8))) < 2.0 * cut.pixel);
+        CHECK(cut.pixel < 0.04);
+    }
 }
 
 TEST_CASE("Half a million points are drawn in seconds", "[space]") {

@@ -45,6 +45,8 @@ private:
     void check_barrier(const std::string& prefix);
     void check_line_names(const std::string& table);
     void check_meaning();
+    void check_combinations();
+    bool unused(const std::string& key) const;
     void missing(const std::string& key, const Parameter& parameter, const std::string& why);
     void wrong(const std::string& key, const std::string& found, const std::string& expected,
                const std::string& way_out);

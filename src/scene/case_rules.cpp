@@ -6,6 +6,7 @@
 
 #include "base/layer_name.h"
 #include "scene/case_reader.h"
+#include "scene/combinations.h"
 
 namespace frana {
 namespace {
@@ -55,6 +56,7 @@ void CaseReader::check_rules() {
     check_tables();
     for (const char* table : {"profile", "gauge", "barrier", "insitu", "camera"}) check_line_names(table);
     check_meaning();
+    check_combinations();
 }
 
 void CaseReader::check_tables() {
@@ -206,39 +208,36 @@ void CaseReader::check_meaning() {
                   "expected [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax",
                   "put the smaller coordinates first");
     }
-    if (case_.given("terrain.curvature") && !misread_.count("terrain.model") &&
-        case_.word("terrain.model") == "shallow" && case_.word("terrain.curvature") != "none")
-        wrong("terrain.curvature",
-              fmt::format("found \"{}\" with terrain.model = \"shallow\"", case_.word("terrain.curvature")),
-              "expected \"none\", since that model has no curvature",
-              "remove it, or set terrain.model = \"steep\"");
-    const auto chose = [&](const char* key, const char* word) {
-        return !misread_.count(key) && case_.word(key) == word;
-    };
-    if (chose("scheme.preset", "paper") && !misread_.count("terrain.model") && !chose("terrain.model", "shallow"))
-        wrong("terrain.model", "found \"" + case_.word("terrain.model") + "\" with scheme.preset = \"paper\"",
-              "expected \"shallow\", the only terrain that preset has", "remove it, or use the default preset");
-    if (chose("scheme.preset", "paper") && chose("scheme.shape", "cubic"))
-        wrong("scheme.shape", "found \"cubic\" with scheme.preset = \"paper\"", "expected \"linear\" or \"quadratic\"",
-              "choose one of them, or scheme.preset = \"default\"");
-    if (chose("scheme.shape", "linear") && chose("scheme.transfer", "apic"))
-        wrong("scheme.transfer", "found \"apic\" with scheme.shape = \"linear\"",
-              "expected \"tpic\", \"flip\" or \"pic\", since apic here is the one of quadratic shapes",
-              "choose one of them, or scheme.shape = \"quadratic\"");
-    if (chose("scheme.precision", "float") &&
-        !(chose("scheme.preset", "default") && chose("scheme.shape", "quadratic") && chose("scheme.transfer", "tpic")))
-        wrong("scheme.precision", "found \"float\" with another preset, shape or transfer than the default",
-              "expected \"double\", since only the default kernels have the other",
-              "remove it, or use the default preset, shape and transfer");
-    if (case_.given("output.film") && !chose("output.film", "none") && !misread_.count("output.formats") &&
-        !contains(case_.words("output.formats"), "vtk"))
-        wrong("output.film", "found \"" + case_.word("output.film") + "\" without \"vtk\" in output.formats",
-              "expected the frames that a film is made of", "add \"vtk\" to output.formats, or remove film");
     if (case_.given("material.bed.mu_s") && case_.given("material.bed.mu_2") &&
         case_.number("material.bed.mu_2") <= case_.number("material.bed.mu_s"))
         wrong("material.bed.mu_2", fmt::format("found {}", case_.number("material.bed.mu_2")),
               fmt::format("expected more than mu_s = {}", case_.number("material.bed.mu_s")),
               "mu_s is the friction of slow flow, mu_2 that of fast flow; correct one");
+}
+
+/// Of two rows that complain of a key in the same words one is enough.
+void CaseReader::check_combinations() {
+    std::set<std::string> done;
+    const auto unread = [&](const Values& values) { return misread_.count(values.key) > 0; };
+    for (const Combination& row : combinations()) {
+        const std::string& key = row.refused.key;
+        if (unread(row.refused) || std::any_of(row.beside.begin(), row.beside.end(), unread)) continue;
+        if (!row.found(case_) || unused(key) || !done.insert(key + row.expected).second) continue;
+        if (row.refused.are != Values::Are::tables) {
+            wrong(key, row.found_text(case_), row.expected, row.way_out);
+            continue;
+        }
+        const std::string first = key + ".0";
+        problems_.add(line_of(first + "."), case_.table_place(first), row.found_text(case_), row.expected, row.way_out);
+    }
+}
+
+/// Whether the case has chosen what does not use the key, which is complained of already.
+bool CaseReader::unused(const std::string& key) const {
+    const Parameter* parameter = find_parameter(key);
+    if (!parameter || parameter->switch_key.empty()) return false;
+    const std::string choice = parameter->switch_of(key);
+    return misread_.count(choice) > 0 || !case_.has(choice) || !contains(parameter->used_by, case_.word(choice));
 }
 
 void CaseReader::check_files() {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "scene/combinations.h"
 #include "scene/parameters.h"
 
 namespace frana {
@@ -120,7 +121,7 @@ std::string describe_in_markdown() {
         }
         text += row(parameter);
     }
-    return text;
+    return text + combinations_in_markdown();
 }
 
 }  // namespace frana

@@ -17,21 +17,13 @@ public:
         : case_(file), scene_(scene), problems_(problems) {}
 
     std::optional<Structure> read() {
-        if (case_.word(key("law")) == "none") {
-            if (case_.flag("terrain.unrolled"))
-                problems_.add(case_.place("terrain.unrolled"), "found true with material.structure.law = \"none\"",
-                              "expected it with structured columns only", "remove it, or give the mass a structure");
-            return {};
-        }
+        if (case_.word(key("law")) == "none") return {};
         Structure structure;
         structure.cohesion = number("cohesion");
         structure.share = number("fraction");
         structure.hydrostatic = case_.word(key("earth_pressure")) == "hydrostatic";
         structure.cfl = number("cfl");
         structure.confined = number("confined_water");
-        if (structure.confined > 0.0 && case_.word("water.model") == "none")
-            problems_.add(case_.place(key("confined_water")), fmt::format("found {:.6g} without free water", structure.confined),
-                          "expected 0, since what breaks has to give its water somewhere", "remove it, or set water.model = \"free\"");
         structure.unrolled = case_.flag("terrain.unrolled");
         ColumnMaterial& m = structure.material;
         m.young = number("young_modulus");
@@ -45,11 +37,6 @@ public:
         if (given("critical_length"))
             m.critical_strain =
                 critical_strain(m.critical_strain, number("critical_length"), scene_.bed.geometry.cell);
-        if (structure.confined > 0.0 && structure.share == 0.0)
-            problems_.add(case_.place(key("confined_water")),
-                          fmt::format("found {:.6g} with fraction = 0", structure.confined),
-                          "expected 0, since what has no structure holds no water in it",
-                          "use water.share for water in the pores");
         if (structure.unrolled) require_sines();
         if (m.damage_by == DamageBy::strain) m.onset = number("onset");
         if (m.dilatancy > m.friction)
@@ -57,7 +44,6 @@ public:
                           fmt::format("found {:.6g}", number("dilatancy_angle_deg")),
                           fmt::format("expected at most friction_angle_deg = {:.6g}", number("friction_angle_deg")),
                           "give a smaller angle");
-        refuse_others();
         for (std::size_t n = 0; n < scene_.barriers.size(); ++n) require_box(n);
         return structure;
     }
@@ -114,29 +100,6 @@ private:
                               "correct the elevation model, or remove unrolled");
                 return;
             }
-    }
-
-    /// What structured columns do not know of.
-    void refuse_others() {
-        const auto refuse = [&](const std::string& place, const std::string& found, const char* expected,
-                                const char* way_out) { problems_.add(case_.place(place), found, expected, way_out); };
-        const std::string with = fmt::format(" with material.structure.law = \"{}\"", case_.word(key("law")));
-        const auto word = [&](const char* name) { return "found \"" + case_.word(name) + "\"" + with; };
-        if (case_.word("material.rheology.law") != "none")
-            refuse("material.rheology.law", word("material.rheology.law"),
-                   "expected \"none\": the structure is what resists inside the mass", "remove one of them");
-        if (case_.given("terrain.curvature") && case_.word("terrain.curvature") != "none")
-            refuse("terrain.curvature", word("terrain.curvature"),
-                   "expected \"none\": a solid keeps its length on the map over a bend", "remove it");
-        if (scene_.terrain != TerrainModel::steep)
-            refuse("terrain.model", word("terrain.model"), "expected \"steep\"", "remove it");
-        if (case_.word("scheme.preset") != "default")
-            refuse("scheme.preset", word("scheme.preset"), "expected \"default\"", "remove it");
-        if (case_.word("scheme.shape") != "quadratic")
-            refuse("scheme.shape", word("scheme.shape"), "expected \"quadratic\"", "remove it");
-        if (case_.count("stage") > 0)
-            problems_.add(case_.table_place("stage.0"), "found a stage" + with,
-                          "expected none: structured columns go from the start to the end", "remove it");
     }
 
     /// Obstacles are boxes along the axes; their height does not count.

@@ -90,35 +90,22 @@ WaterExchange exchange_of(const CaseFile& file, double viscosity, const Scene& s
     return exchange;
 }
 
-/// What free water does not know of.
+/// Grains and ground that free water cannot be beside; scene/combinations.cpp has the rest.
 void refuse_others(const CaseFile& file, const TwoPhaseMaterial& m, const Scene& scene, Problems& problems) {
     if (m.solid_density <= m.fluid_density)
         problems.add(file.place("material.density"),
                      fmt::format("found {:.6g} kg/m3, so that grains have {:.6g}", scene.density, m.solid_density),
                      fmt::format("expected grains denser than water.density = {:.6g}", m.fluid_density),
                      "give the columns' density, of grains and confined water together");
-    if (!scene.barriers.empty())
-        problems.add(file.table_place("barrier.0"), "found a barrier with water.model = \"free\"",
-                     "expected none, since water does not know them", "raise the elevation model there");
     if (std::any_of(scene.bed.values.begin(), scene.bed.values.end(), [](double z) { return !std::isfinite(z); }))
         problems.add(file.place("terrain.dem"), "found nodes without elevation with water.model = \"free\"",
                      "expected ground everywhere", "give a terrain.window without nodata, or fill the elevation model");
-    if (scene.structure->unrolled)
-        problems.add(file.place("terrain.unrolled"), "found true with water.model = \"free\"",
-                     "expected coordinates on the map, where water finds its level", "remove one of them");
 }
 
 }  // namespace
 
 std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     if (file.word("water.model") == "none") return {};
-    if (!scene.structure) {
-        problems.add(file.place("water.model"), "found \"free\" without material.structure",
-                     "expected solids for the water to be beside",
-                     "add [material.structure] (law, cohesion, friction_angle_deg, young_modulus), or use material.bed and "
-                     "material.rheology for one phase");
-        return {};
-    }
     WaterPhase water;
     water.share = number(file, "share");
     if (file.given("water.level")) water.level = number(file, "level");
@@ -131,9 +118,6 @@ std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& read
     if (file.word("water.viscous") != "none")
         water.viscosity = {viscosity / water.exchange.material.fluid_density, number(file, "bed_shear"),
                            file.flag("water.solid_gradient"), number(file, "profile_factor")};
-    if (water.viscosity.profile > 0.0 && !water.viscosity.solid_gradient)
-        problems.add(file.place("water.profile_factor"), fmt::format("found {:.6g} without water.solid_gradient", water.viscosity.profile),
-                     "expected 0, since it is a part of that term", "set water.solid_gradient = true, or remove it");
     refuse_others(file, water.exchange.material, scene, problems);
     return water;
 }

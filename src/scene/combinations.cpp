@@ -1,0 +1,176 @@
+#include "scene/combinations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace frana {
+namespace {
+
+using Are = Values::Are;
+
+/// `"a", "b" or "c"`.
+std::string quoted(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t k = 0; k < words.size(); ++k)
+        text += fmt::format("{}\"{}\"", k == 0 ? "" : k + 1 < words.size() ? ", " : " or ", words[k]);
+    return text;
+}
+
+bool among(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool of_words(Are are) { return are == Are::words || are == Are::others; }
+
+/// As messages write it.
+std::string value_text(const CaseFile& file, const Values& values) {
+    if (of_words(values.are)) return "\"" + file.word(values.key) + "\"";
+    if (values.are == Are::on) return "true";
+    if (values.are == Are::tables) return "a " + values.key;
+    return fmt::format("{:.6g}", file.number(values.key));
+}
+
+Values is(const char* key, std::vector<std::string> words) { return {key, Are::words, std::move(words)}; }
+Values is_not(const char* key, std::vector<std::string> words) { return {key, Are::others, std::move(words)}; }
+
+/// What structured columns do not know of.
+void add_structure(std::vector<Combination>& table) {
+    const Values structure = is_not("material.structure.law", {"none"});
+    table.push_back({{"terrain.unrolled", Are::on}, {is("material.structure.law", {"none"})},
+                     "expected it with structured columns only", "remove it, or give the mass a structure"});
+    table.push_back({is_not("material.rheology.law", {"none"}), {structure},
+                     "expected \"none\": the structure is what resists inside the mass", "remove one of them"});
+    table.push_back({is_not("terrain.curvature", {"none"}), {structure},
+                     "expected \"none\": a solid keeps its length on the map over a bend", "remove it"});
+    table.push_back({is_not("terrain.model", {"steep"}), {structure}, "expected \"steep\"", "remove it"});
+    table.push_back({is_not("scheme.preset", {"default"}), {structure}, "expected \"default\"", "remove it"});
+    table.push_back({is_not("scheme.shape", {"quadratic"}), {structure}, "expected \"quadratic\"", "remove it"});
+    table.push_back({{"stage", Are::tables}, {structure},
+                     "expected none: structured columns go from the start to the end", "remove it"});
+}
+
+/// What free water, and water within a structure, do not know of.
+void add_water(std::vector<Combination>& table) {
+    const Values free = is("water.model", {"free"});
+    const char* const solids =
+        "add [material.structure] (law, cohesion, friction_angle_deg, young_modulus), or use material.bed and "
+        "material.rheology for one phase";
+    table.push_back({free, {is("material.structure.law", {"none"})}, "expected solids for the water to be beside",
+                     solids, " without material.structure"});
+    table.push_back({{"barrier", Are::tables}, {free}, "expected none, since water does not know them",
+                     "raise the elevation model there"});
+    table.push_back({{"terrain.unrolled", Are::on}, {free},
+                     "expected coordinates on the map, where water finds its level", "remove one of them"});
+    table.push_back({{"material.structure.confined_water", Are::above_zero}, {is("water.model", {"none"})},
+                     "expected 0, since what breaks has to give its water somewhere",
+                     "remove it, or set water.model = \"free\"", " without free water"});
+    table.push_back({{"material.structure.confined_water", Are::above_zero},
+                     {{"material.structure.fraction", Are::zero}},
+                     "expected 0, since what has no structure holds no water in it",
+                     "use water.share for water in the pores", " with fraction = 0"});
+    table.push_back({{"water.profile_factor", Are::above_zero}, {{"water.solid_gradient", Are::off}},
+                     "expected 0, since it is a part of that term", "set water.solid_gradient = true, or remove it",
+                     " without water.solid_gradient"});
+}
+
+/// What the schemes of the depth-averaged flow do not know of.
+void add_schemes(std::vector<Combination>& table) {
+    const Values paper = is("scheme.preset", {"paper"});
+    table.push_back({is_not("terrain.curvature", {"none"}), {is("terrain.model", {"shallow"})},
+                     "expected \"none\", since that model has no curvature",
+                     "remove it, or set terrain.model = \"steep\""});
+    table.push_back({is_not("terrain.model", {"shallow"}), {paper},
+                     "expected \"shallow\", the only terrain that preset has", "remove it, or use the default preset"});
+    table.push_back({is("scheme.shape", {"cubic"}), {paper}, "expected \"linear\" or \"quadratic\"",
+                     "choose one of them, or scheme.preset = \"default\""});
+    table.push_back({is("scheme.transfer", {"apic"}), {is("scheme.shape", {"linear"})},
+                     "expected \"tpic\", \"flip\" or \"pic\", since apic here is the one of quadratic shapes",
+                     "choose one of them, or scheme.shape = \"quadratic\""});
+    table.push_back({is("scheme.precision", {"float"}),
+                     {is_not("scheme.preset", {"default"}), is_not("scheme.shape", {"quadratic"}),
+                      is_not("scheme.transfer", {"tpic"})},
+                     "expected \"double\", since only the default kernels have the other",
+                     "remove it, or use the default preset, shape and transfer",
+                     " with another preset, shape or transfer than the default"});
+}
+
+std::string beside_text(const Combination& row) {
+    std::string text;
+    for (const Values& values : row.beside) text += (text.empty() ? "" : ", or ") + values.text();
+    return text;
+}
+
+}  // namespace
+
+bool Values::hold(const CaseFile& file) const {
+    if (are == Are::tables) return file.count(key) > 0;
+    if (!file.has(key)) return false;
+    switch (are) {
+        case Are::words: return among(words, file.word(key));
+        case Are::others: return !among(words, file.word(key));
+        case Are::without: return !among(file.words(key), words.front());
+        case Are::above_zero: return file.number(key) > 0.0;
+        case Are::zero: return file.number(key) == 0.0;
+        case Are::on: return file.flag(key);
+        default: return !file.flag(key);
+    }
+}
+
+std::string Values::text() const {
+    switch (are) {
+        case Are::words: return fmt::format("{} = {}", key, quoted(words));
+        case Are::others: return fmt::format("{} other than {}", key, quoted(words));
+        case Are::without: return fmt::format("{} without {}", key, quoted(words));
+        case Are::above_zero: return key + " above 0";
+        case Are::zero: return key + " = 0";
+        case Are::on: return key + " = true";
+        case Are::off: return key + " = false";
+        default: return "[[" + key + "]]";
+    }
+}
+
+bool Combination::found(const CaseFile& file) const {
+    if (refused.are != Are::tables && !file.given(refused.key)) return false;
+    return refused.hold(file) &&
+           std::any_of(beside.begin(), beside.end(), [&](const Values& values) { return values.hold(file); });
+}
+
+std::string Combination::found_text(const CaseFile& file) const {
+    const std::string with =
+        said.empty() ? fmt::format(" with {} = {}", beside.front().key, value_text(file, beside.front())) : said;
+    return "found " + value_text(file, refused) + with;
+}
+
+const std::vector<Combination>& combinations() {
+    static const std::vector<Combination> all = [] {
+        std::vector<Combination> table;
+        add_schemes(table);
+        add_structure(table);
+        add_water(table);
+        table.push_back({is_not("output.film", {"none"}), {{"output.formats", Are::without, {"vtk"}}},
+                         "expected the frames that a film is made of", "add \"vtk\" to output.formats, or remove film",
+                         " without \"vtk\" in output.formats"});
+        return table;
+    }();
+    return all;
+}
+
+std::string describe_combinations() {
+    std::string text = "Combinations that are refused\n";
+    for (const Combination& row : combinations())
+        text += fmt::format("\n{}\n    with {}\n    {}\n    {}\n", row.refused.text(), beside_text(row), row.expected,
+                            row.way_out);
+    return text;
+}
+
+std::string combinations_in_markdown() {
+    std::string text =
+        "\n## Combinations that are refused\n\nAlso printed by `frana describe --combinations`.\n\n"
+        "| Given | With | Expected | What to do |\n|---|---|---|---|\n";
+    for (const Combination& row : combinations())
+        text += fmt::format("| {} | {} | {} | {} |\n", row.refused.text(), beside_text(row), row.expected, row.way_out);
+    return text;
+}
+
+}  // namespace frana

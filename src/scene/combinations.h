@@ -1,0 +1,43 @@
+#pragma once
+// What cannot go together in a case. One table: checks, their messages and `frana describe --combinations` read it.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/case_file.h"
+
+namespace frana {
+
+/// Some of the values that a key can have, or tables of a name that are there at all.
+struct Values {
+    enum class Are { words, others, without, above_zero, zero, on, off, tables };
+    std::string key;  ///< of tables their name
+    Are are = Are::words;
+    std::vector<std::string> words = {};  ///< those, all others, or (without) what a list of words lacks
+
+    /// Whether the case has one of them, by default or given.
+    bool hold(const CaseFile& file) const;
+    /// `scheme.shape = "cubic"`, `terrain.model other than "steep"`.
+    std::string text() const;
+};
+
+/// A row: what is refused when the case gives it, and beside what.
+struct Combination {
+    Values refused;
+    std::vector<Values> beside;  ///< any of these
+    std::string expected, way_out;
+    std::string said = {};       ///< `beside` in the message where it is not " with KEY = VALUE"
+
+    bool found(const CaseFile& file) const;
+    /// "found "cubic" with scheme.preset = "paper"".
+    std::string found_text(const CaseFile& file) const;
+};
+
+const std::vector<Combination>& combinations();
+
+/// The table for people.
+std::string describe_combinations();
+/// The same as a section of a page of Markdown.
+std::string combinations_in_markdown();
+
+}  // namespace frana

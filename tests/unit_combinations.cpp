@@ -1,0 +1,118 @@
+// What cannot go together: each row of the table is refused in its own words, and each is in the lists for people.
+#include <algorithm>
+#include <map>
+
+#include "catch.h"
+#include "scene/combinations.h"
+#include "slope_case.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+using Are = Values::Are;
+using Sets = std::map<std::string, std::string>;  ///< key and value as --set has them
+
+bool among(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool begins(const std::string& key, const std::string& with) { return key.compare(0, with.size(), with) == 0; }
+
+/// Values that a row speaks of, or (not `named`) those of the key that it does not.
+std::vector<std::string> examples(const Values& values, bool named = true) {
+    const Are are = values.are;
+    if (are == Are::above_zero || are == Are::zero) return {named == (are == Are::zero) ? "0" : "0.5"};
+    if (are == Are::on || are == Are::off) return {named == (are == Are::on) ? "true" : "false"};
+    if (values.are == Are::without) return {"[\"png\"]"};
+    if (values.are == Are::tables) return {""};
+    std::vector<std::string> all = find_parameter(values.key)->choices;
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const std::string& word) {
+                                 return (values.are == Are::words) == named ? !among(values.words, word)
+                                                                            : among(values.words, word);
+                             }),
+              all.end());
+    return all;
+}
+
+void give(Sets& sets, const std::string& key, const std::string& value) { sets.emplace(key, value); }
+
+/// What the keys that are set need beside them: a structure for water, water for what lies within it, numbers for laws.
+void complete(Sets& sets) {
+    const auto any = [&](const std::string& table) {
+        return std::any_of(sets.begin(), sets.end(), [&](const auto& set) { return begins(set.first, table); });
+    };
+    if (any("material.structure.confined_water")) give(sets, "water.model", "free");
+    if (any("water.profile_factor")) give(sets, "water.viscous", "clear"), give(sets, "water.model", "free");
+    if (any("water.") && sets["water.model"] == "free") give(sets, "material.structure.law", "drucker_prager");
+    if (any("material.structure.")) give(sets, "material.structure.law", "drucker_prager");
+    for (const Parameter& parameter : parameters()) {
+        const auto chosen = sets.find(parameter.switch_key);
+        if (chosen != sets.end() && among(parameter.required_by, chosen->second) && !sets.count(parameter.instead_of))
+            give(sets, parameter.key, "0.5");
+    }
+}
+
+const std::string kLeast = "[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = 1\n[time]\nend = 1\n";
+const std::map<std::string, std::string> kTables = {
+    {"stage", "[[stage]]\nmodel = \"solid_flow\"\n"},
+    {"barrier", "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"}};
+
+void parse(Sets sets, const std::string& table) {
+    complete(sets);
+    std::vector<std::string> arguments;
+    for (const auto& [key, value] : sets) arguments.push_back(key + "=" + value);
+    CAPTURE(arguments);
+    CaseFile::parse(kLeast + (table.empty() ? "" : kTables.at(table)), "case.toml", arguments);
+}
+
+std::string in_message(const Values& values, const std::string& value) {
+    const bool word = values.are == Are::words || values.are == Are::others;
+    return values.are == Are::tables ? "a " + values.key : word ? "\"" + value + "\"" : value;
+}
+
+/// The sentence of a row with these values.
+std::string sentence(const Combination& row, const Values& beside, const std::string& value, const std::string& other) {
+    const bool table = row.refused.are == Are::tables;
+    const std::string with = row.said.empty() ? " with " + beside.key + " = " + in_message(beside, other) : row.said;
+    return (table ? "case.toml:7: " + row.refused.key + ".0" : "--set " + row.refused.key) + ": found " +
+           in_message(row.refused, value) + with + "; " + row.expected + "; " + row.way_out;
+}
+
+}  // namespace
+
+TEST_CASE("What cannot go together is refused in the words of its row, and only together", "[case][combinations]") {
+    for (const Combination& row : combinations()) {
+        const bool table = row.refused.are == Are::tables;
+        for (const Values& beside : row.beside)
+            for (const std::string& other : examples(beside)) {
+                Sets sets{{beside.key, other}};
+                for (const std::string& value : examples(row.refused)) {
+                    Sets both = sets;
+                    if (!table) both[row.refused.key] = value;
+                    CAPTURE(row.refused.key, value, beside.key, other);
+                    CHECK(only_problem([&] { parse(both, table ? row.refused.key : ""); }) ==
+                          sentence(row, beside, value, other));
+                }
+                for (const std::string& value : examples(row.refused, false)) {
+                    if (!table) sets[row.refused.key] = value;
+                    CAPTURE(row.refused.key, value, beside.key, other);
+                    CHECK_NOTHROW(parse(sets, ""));
+                }
+            }
+    }
+}
+
+TEST_CASE("Every combination that is refused is listed for people", "[case][combinations][describe]") {
+    const std::string text = describe_combinations(), page = describe_in_markdown();
+    for (const Combination& row : combinations())
+        for (const std::string& list : {text, page}) {
+            CAPTURE(row.refused.text());
+            CHECK(list.find(row.refused.text()) != std::string::npos);
+            CHECK(list.find(row.expected) != std::string::npos);
+            CHECK(list.find(row.way_out) != std::string::npos);
+            for (const Values& values : row.beside) CHECK(list.find(values.text()) != std::string::npos);
+        }
+}
