@@ -109,21 +109,9 @@ Forecast forecast(const Scene& scene) {
     return result;
 }
 
-/// Of the laws that have one.
-double friction_of(const BedLaw& law) {
-    return std::visit(
-        [](const auto& chosen) {
-            using Law = std::decay_t<decltype(chosen)>;
-            if constexpr (std::is_same_v<Law, bed::None>) return 0.0;
-            else if constexpr (std::is_same_v<Law, bed::Pouliquen>) return chosen.mu_s;
-            else return chosen.mu;
-        },
-        law);
-}
-
 /// How many cells will lie across the flow, with a remark where they are too few.
 std::string width_text(const Scene& scene) {
-    const ExpectedWidth expected = expected_width(scene.bed, scene.particles, friction_of(scene.bed_law));
+    const ExpectedWidth expected = expected_width(scene.bed, scene.particles, friction_at_rest(scene.bed_law));
     const double cell = scene.bed.geometry.cell;
     if (!std::isfinite(expected.width)) return "";
     std::string text = fmt::format(

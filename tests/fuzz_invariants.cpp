@@ -7,6 +7,7 @@
 #include "checks/fuzz/campaign.h"
 #include "checks/fuzz/cfl_map.h"
 #include "checks/fuzz/draw.h"
+#include "scene/parameters.h"
 #include "shallow/depth_averaged.h"
 
 using namespace frana;
@@ -52,6 +53,22 @@ std::string broken_by(const Draft& draft, const Falsify& change) {
 std::string broken_by(const Falsify& change) { return broken_by(mound(), change); }
 
 }  // namespace
+
+TEST_CASE("A bed law that random scenes know nothing of gets the keys that it needs, within their ranges", "[stress]") {
+    for (const std::string& law : find_parameter("material.bed.law")->choices)
+        for (std::uint64_t n = 0; n < 20; ++n) {
+            Dice dice(7, n);
+            Draft draft;
+            draw_bed_keys(dice, draft, law);
+            CAPTURE(law, n, draft.keys);
+            for (const Parameter& key : parameters()) {
+                const auto& by = key.required_by;
+                if (key.switch_key != "material.bed.law" || std::find(by.begin(), by.end(), law) == by.end()) continue;
+                CHECK(draft.has(key.key) + (draft.has(key.instead_of) ? 1 : 0) == 1);
+                if (draft.has(key.key)) CHECK(key.range.holds(std::stod(draft.keys.at(key.key))));
+            }
+        }
+}
 
 TEST_CASE("A seed draws the same cases again, another seed other ones", "[stress]") {
     for (std::uint64_t n = 0; n < 50; ++n) {

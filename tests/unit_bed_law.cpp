@@ -1,6 +1,6 @@
 #include "analytic_scene.h"
 #include "catch.h"
-#include "law/bed_law.h"
+#include "law/bed/laws.h"
 #include "law/rheology.h"
 
 using namespace frana;
@@ -12,9 +12,9 @@ constexpr double kRoundOff = 1e-12;
 
 TEST_CASE("Coulomb friction takes mu g dt off the driven speed and stops exactly", "[law]") {
     const bed::Coulomb law{0.4};
-    CHECK(speed_after(law, flat(1.0), 3.0, 3.0, 0.1) == Approx(3.0 - 0.4 * 9.81 * 0.1).epsilon(kRoundOff));
-    CHECK(speed_after(law, flat(1.0), 0.0, 0.39, 0.1) == 0.0);
-    CHECK(speed_after(law, flat(1.0), 0.1, 0.1, 0.1) == 0.0);
+    CHECK(law.speed_after(flat(1.0), 3.0, 3.0, 0.1) == Approx(3.0 - 0.4 * 9.81 * 0.1).epsilon(kRoundOff));
+    CHECK(law.speed_after(flat(1.0), 0.0, 0.39, 0.1) == 0.0);
+    CHECK(law.speed_after(flat(1.0), 0.1, 0.1, 0.1) == 0.0);
 }
 
 TEST_CASE("Voellmy friction follows tanh from rest and holds its terminal speed", "[law]") {
@@ -23,7 +23,7 @@ TEST_CASE("Voellmy friction follows tanh from rest and holds its terminal speed"
     double speed = 0.0;
     const double dt = 0.25;
     for (int step = 1; step <= 400; ++step) {
-        speed = speed_after(law, flat(2.0), speed, speed + drive * dt, dt);
+        speed = law.speed_after(flat(2.0), speed, speed + drive * dt, dt);
         // exact for a constant drive, so only round-off of 400 steps may stand between
         REQUIRE(speed == Approx(terminal * std::tanh(net * dt * step / terminal)).epsilon(1e-12));
     }
@@ -36,7 +36,7 @@ TEST_CASE("A decelerating Voellmy block follows tan and stops within the step th
     const double end = std::atan(10.0 / scale) / rate;
     double speed = 10.0, time = 0.0;
     while (speed > 0.0) {
-        speed = speed_after(law, flat(1.0), speed, speed, 0.05);
+        speed = law.speed_after(flat(1.0), speed, speed, 0.05);
         time += 0.05;
         if (speed > 0.0)
             REQUIRE(speed == Approx(scale * std::tan(rate * (end - time))).epsilon(1e-10));  // round-off of tan near 0
@@ -44,8 +44,8 @@ TEST_CASE("A decelerating Voellmy block follows tan and stops within the step th
     CHECK(time - end < 0.05);
     CHECK(time >= end);
     for (const double dt : {0.5, 1.5, 2.5})  // one long step is as exact
-        CHECK(speed_after(law, flat(1.0), 10.0, 10.0, dt) == Approx(scale * std::tan(rate * (end - dt))).epsilon(1e-12));
-    CHECK(speed_after(law, flat(1.0), 10.0, 10.0, 1.001 * end) == 0.0);
+        CHECK(law.speed_after(flat(1.0), 10.0, 10.0, dt) == Approx(scale * std::tan(rate * (end - dt))).epsilon(1e-12));
+    CHECK(law.speed_after(flat(1.0), 10.0, 10.0, 1.001 * end) == 0.0);
 }
 
 TEST_CASE("The series of tanh(sqrt(x)) / sqrt(x) is right to round-off as far as it is used, on either side", "[law]") {
@@ -68,7 +68,7 @@ TEST_CASE("No law speeds a node up or turns it round", "[law]") {
                         std::visit(
                             [&](const auto& chosen) {
                                 const double s0 = std::min(before, driven);
-                                const double speed = speed_after(chosen, flat(thickness), s0, driven, dt);
+                                const double speed = chosen.speed_after(flat(thickness), s0, driven, dt);
                                 CAPTURE(law.index(), thickness, driven, s0, dt, speed);
                                 CHECK(speed >= 0.0);
                                 CHECK(speed <= driven * (1.0 + 1e-14));  // one rounding
@@ -81,18 +81,18 @@ TEST_CASE("The Bingham closure inverts |v| = tau_B h / (6 mu) (2 + zeta)(1 - zet
     for (const double zeta : {1e-6, 0.05, 0.3, 0.7, 0.95, 1.0 - 1e-7}) {
         const double y = 1.0 - zeta;
         const double speed = tau_y / zeta * h / (6.0 * mu) * (2.0 + zeta) * y * y;
-        const SheetShares sheet = bingham_sheet(0.0, 6.0 * mu * speed / (tau_y * h));
+        const bed::SheetShares sheet = bed::bingham_sheet(0.0, 6.0 * mu * speed / (tau_y * h));
         CHECK(sheet.plug == Approx(zeta).epsilon(1e-14));
         CHECK(sheet.sheared == Approx(y).epsilon(1e-14));  // to full precision at rest too
     }
-    CHECK(bingham_sheet(0.0, 0.0).plug == 1.0);
-    CHECK(bingham_sheet(1e9, 0.0).sheared == 0.0);
+    CHECK(bed::bingham_sheet(0.0, 0.0).plug == 1.0);
+    CHECK(bed::bingham_sheet(1e9, 0.0).sheared == 0.0);
 }
 
 TEST_CASE("Both shares of a Bingham sheet satisfy their cubic to round-off, from rest to a Newtonian sheet", "[law]") {
     for (double b = 1e-12; b < 1e13; b *= 10.0)
         for (double d = 1e-18; d < 1e13; d *= 10.0) {
-            const auto [z, y] = bingham_sheet(b, d);
+            const auto [z, y] = bed::bingham_sheet(b, d);
             CAPTURE(b, d, z, y);
             // The smaller share solves a well-conditioned equation; the other is one less it.
             const double of_y = (3.0 * y * y - y * y * y) + (b + d) * y - d, of_z = z * z * z - (3.0 + b + d) * z + 2.0 + b;
@@ -109,7 +109,7 @@ TEST_CASE("A Newtonian sheet relaxes exactly, whatever the step", "[law]") {
     for (const double dt : {0.01, 0.3, 5.0}) {
         double speed = 3.0;
         for (int step = 1; step <= 20; ++step) {
-            speed = speed_after(law, flat(h, rho), speed, speed + dt * drive, dt);
+            speed = law.speed_after(flat(h, rho), speed, speed + dt * drive, dt);
             const double terminal = drive / rate;
             REQUIRE(speed == Approx(terminal + (3.0 - terminal) * std::exp(-rate * dt * step)).epsilon(1e-13));
         }
@@ -122,7 +122,7 @@ template <class Law>
 double sheet_speed(const Law& law, const BedState& bed, double start, double drive, double time, int steps) {
     const double dt = time / steps;
     double speed = start;
-    for (int step = 0; step < steps; ++step) speed = speed_after(law, bed, speed, speed + dt * drive, dt);
+    for (int step = 0; step < steps; ++step) speed = law.speed_after(bed, speed, speed + dt * drive, dt);
     return speed;
 }
 
@@ -159,8 +159,8 @@ TEST_CASE("No step of friction parts two speeds under the same drive", "[law]") 
                         std::visit(
                             [&](const auto& chosen) {
                                 const double fast = slow * (1.0 + step);
-                                const double a = speed_after(chosen, flat(thickness), slow, slow + dt * drive, dt);
-                                const double b = speed_after(chosen, flat(thickness), fast, fast + dt * drive, dt);
+                                const double a = chosen.speed_after(flat(thickness), slow, slow + dt * drive, dt);
+                                const double b = chosen.speed_after(flat(thickness), fast, fast + dt * drive, dt);
                                 CAPTURE(law.index(), thickness, slow, drive, dt, a, b);
                                 REQUIRE(std::abs(b - a) <= (fast - slow) * (1.0 + 1e-4) + 8.0 * (slow + dt * drive) * 2.3e-16);
                             },
@@ -173,11 +173,11 @@ TEST_CASE("A Bingham sheet reaches its uniform speed and yields exactly", "[law]
     const double plug = law.yield_stress / shear;  // share of the depth that does not shear
     const double exact = shear * h / (3.0 * law.viscosity) * (1 - plug) * (1 - plug) * (1 + 0.5 * plug);
     double speed = 0.0;
-    for (int step = 0; step < 2000; ++step) speed = speed_after(law, flat(h, rho), speed, speed + 0.1 * drive, 0.1);
+    for (int step = 0; step < 2000; ++step) speed = law.speed_after(flat(h, rho), speed, speed + 0.1 * drive, 0.1);
     CHECK(speed == Approx(exact).epsilon(1e-12));  // the fixed point of backward Euler is the exact one
     const double just_below = law.yield_stress / (rho * h) * 0.1;
-    CHECK(speed_after(law, flat(h, rho), 0.0, just_below * (1 - 1e-12), 0.1) == 0.0);
-    CHECK(speed_after(law, flat(h, rho), 0.0, just_below * 1.01, 0.1) > 0.0);
+    CHECK(law.speed_after(flat(h, rho), 0.0, just_below * (1 - 1e-12), 0.1) == 0.0);
+    CHECK(law.speed_after(flat(h, rho), 0.0, just_below * 1.01, 0.1) > 0.0);
 }
 
 TEST_CASE("A mu(I) sheet reaches Bagnold's mean speed", "[law]") {
@@ -186,14 +186,14 @@ TEST_CASE("A mu(I) sheet reaches Bagnold's mean speed", "[law]") {
     BedState bed{9.81 * std::cos(slope), 0.02, 1.0, std::cos(slope), 9.81, 1500.0};
     double speed = 0.0;
     for (int step = 0; step < 20000; ++step)
-        speed = speed_after(law, bed, speed, speed + 1e-3 * 9.81 * std::sin(slope), 1e-3);
+        speed = law.speed_after(bed, speed, speed + 1e-3 * 9.81 * std::sin(slope), 1e-3);
     CHECK(speed == Approx(0.50154241).epsilon(1e-7));  // computed from the closed form to eight digits
 }
 
 TEST_CASE("The plug's share from three Newton steps is the cubic's root to round-off", "[law]") {
     for (double d = 1e-18; d < 1e15; d *= 7.0) {
         CAPTURE(d);
-        const double exact = bingham_sheet(0.0, d).plug;
+        const double exact = bed::bingham_sheet(0.0, d).plug;
         // Five roundings of numbers near one, divided by a slope of the equation that is small only with its terms.
         CHECK(plug_share(d) == Approx(exact).margin(1e-15).epsilon(0.0));
     }
@@ -217,7 +217,7 @@ TEST_CASE("On a slope every law holds its steady speed along the bed", "[law]") 
         CAPTURE(dt);
         const auto keeps = [&](const auto& law, double along, double drive) {  // the speed along the map is 1 / kappa of it
             const double speed = along / kappa;
-            CHECK(speed_after(law, bed, speed, speed + dt * drive, dt) == Approx(speed).epsilon(kRoundOff));
+            CHECK(law.speed_after(bed, speed, speed + dt * drive, dt) == Approx(speed).epsilon(kRoundOff));
         };
         // tau / (rho h), along the map 1 / kappa of it, is what the drive must make up for
         keeps(bed::Voellmy{0.2, 400.0}, 7.0, 0.2 * normal + g * 7.0 * 7.0 / (400.0 * h * kappa));
@@ -229,7 +229,7 @@ TEST_CASE("On a slope every law holds its steady speed along the bed", "[law]") 
         const double inertial = 0.2, friction = 0.38 + (0.65 - 0.38) / (0.3 / inertial + 1.0);
         keeps(grains, inertial * 2.0 * h * std::sqrt(0.6 * g * 0.8 * h) / (5.0 * 2e-3), friction * normal);
         const double plastic = 5.0 - dt * 300.0 / (rho * h * kappa);
-        CHECK(speed_after(bed::Bingham{0.0, 300.0, 0.0}, bed, 5.0, 5.0, dt) ==
+        CHECK(bed::Bingham{0.0, 300.0, 0.0}.speed_after(bed, 5.0, 5.0, dt) ==
               Approx(std::max(plastic, 0.0)).epsilon(kRoundOff));
     }
 }
@@ -237,7 +237,7 @@ TEST_CASE("On a slope every law holds its steady speed along the bed", "[law]") 
 TEST_CASE("Bingham stress of a moving sheet has its vertical part and its vertical shear in I2", "[law]") {
     const rheology::Bingham law{10.0, 100.0};
     const Plane rate{0.3, 0.1, 0.4};
-    const double speed = 2.0, depth = 0.5, zeta = bingham_sheet(0.0, 6.0 * 10.0 * speed / (100.0 * depth)).plug;
+    const double speed = 2.0, depth = 0.5, zeta = bed::bingham_sheet(0.0, 6.0 * 10.0 * speed / (100.0 * depth)).plug;
     const double shear = 3.0 / (2.0 + zeta) * speed / depth;
     const double i2 = 0.5 * (0.09 + 0.01 + 0.16) + 0.16 + 0.25 * shear * shear;
     const Plane sigma = stress(law, StrainState<double>{rate, speed, depth, 0.0, 1e9});

@@ -1,7 +1,7 @@
 // The plain transfers against what they must reproduce exactly: fields linear in x and y, and the forces of one point.
 #include "analytic_scene.h"
 #include "catch.h"
-#include "law/bed_law.h"
+#include "law/bed/bingham.h"
 #include "shallow/transfer.h"
 
 using namespace frana;
@@ -148,7 +148,7 @@ TEST_CASE("On 45 degrees a Bingham sheet shears twice as fast as speed and depth
             if (std::hypot(x[3 * p] - 30.0, x[3 * p + 1] - 30.0) > 10.0) continue;
             const double along = std::sqrt(2.0 * v[3 * p] * v[3 * p] + v[3 * p + 1] * v[3 * p + 1]);
             const double across = h[p] / std::sqrt(2.0);
-            const double zeta = bingham_sheet(0.0, 6.0 * law.viscosity * along / (law.yield_stress * across)).plug;
+            const double zeta = bed::bingham_sheet(0.0, 6.0 * law.viscosity * along / (law.yield_stress * across)).plug;
             const double shear = 3.0 / (2.0 + zeta) * along / across;
             const double mu2 = 2.0 * law.viscosity + law.yield_stress / std::sqrt(plane + 0.25 * shear * shear + floor * floor);
             CHECK(stress[3 * p] == Approx(mu2 * a).epsilon(1e-10));

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "catch.h"
-#include "law/bed_law.h"
+#include "law/friction_step.h"
 #include "law/water_friction.h"
 #include "water/face_flux.h"
 

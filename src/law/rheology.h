@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/simd.h"
-#include "law/bed_law.h"
 #include "law/rheology_parameters.h"
 
 namespace frana {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "law/bed_law.h"
+#include "law/friction_step.h"
 
 namespace frana {
 namespace {

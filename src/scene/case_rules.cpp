@@ -5,6 +5,8 @@
 #include <set>
 
 #include "base/layer_name.h"
+#include "law/bed/catalogue.h"
+#include "law/bed/laws.h"
 #include "scene/case_reader.h"
 #include "scene/combinations.h"
 
@@ -208,11 +210,13 @@ void CaseReader::check_meaning() {
                   "expected [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax",
                   "put the smaller coordinates first");
     }
-    if (case_.given("material.bed.mu_s") && case_.given("material.bed.mu_2") &&
-        case_.number("material.bed.mu_2") <= case_.number("material.bed.mu_s"))
-        wrong("material.bed.mu_2", fmt::format("found {}", case_.number("material.bed.mu_2")),
-              fmt::format("expected more than mu_s = {}", case_.number("material.bed.mu_s")),
-              "mu_s is the friction of slow flow, mu_2 that of fast flow; correct one");
+    for (const bed::SharedKey& key : bed::Catalogue<BedLaw>::keys()) {
+        const std::string name = "material.bed." + key.name, smaller = "material.bed." + key.more_than;
+        if (!key.more_than.empty() && case_.given(name) && case_.given(smaller) &&
+            case_.number(name) <= case_.number(smaller))
+            wrong(name, fmt::format("found {}", case_.number(name)),
+                  fmt::format("expected more than {} = {}", key.more_than, case_.number(smaller)), key.way_out);
+    }
 }
 
 /// Of two rows that complain of a key in the same words one is enough.

@@ -1,6 +1,5 @@
 #pragma once
 // How the rows of the parameter table are written down. Private to the files that hold the table.
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,15 +25,7 @@ void add_stages(Table& table);
 
 namespace rows {
 
-inline const double infinity = std::numeric_limits<double>::infinity();
-inline const Range any{};
-inline const Range positive{0.0, infinity, true, false};
-inline const Range not_negative{0.0, infinity, false, false};
-inline const Range fraction{0.0, 1.0, false, false};
-
-inline Range between(double low, double high) { return {low, high, false, false}; }
-inline Range at_least(double low) { return {low, infinity, false, false}; }
-inline Range above_to(double low, double high) { return {low, high, true, false}; }
+using namespace ranges;
 
 inline Value text(const char* value) { return std::string(value); }
 

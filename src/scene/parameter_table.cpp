@@ -1,6 +1,8 @@
 // The table itself: every key a case file can have. The order is that of the documentation.
 #include <cmath>
 
+#include "law/bed/catalogue.h"
+#include "law/bed/laws.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -85,44 +87,23 @@ void add_release(Table& table) {
                            "lattice; r2: quasi-random sequence; slope: denser where the bed is steeper"));
 }
 
+/// The bed laws bring their own keys.
+void add_bed_law(Table& table) {
+    using Laws = bed::Catalogue<BedLaw>;
+    const std::string law = "material.bed.law", meaning = "friction between the mass and its bed" + Laws::other_names();
+    table.push_back(choice(law.c_str(), Laws::words(), "none", meaning.c_str()));
+    for (const bed::SharedKey& key : Laws::keys()) {
+        const std::string name = "material.bed." + key.name;
+        Parameter row = number(name.c_str(), key.unit.c_str(), key.range, key.meaning.c_str());
+        if (key.usual) row.fallback = *key.usual;
+        if (!key.instead_of.empty()) row.instead_of = "material.bed." + key.instead_of;
+        table.push_back(with(row, law.c_str(), key.used_by, key.needed_by));
+    }
+}
+
 void add_material(Table& table) {
-    const char* law = "material.bed.law";
     table.push_back(number("material.density", "kg/m^3", positive, 1000.0, "density of the mass"));
-    table.push_back(choice(law, {"none", "coulomb", "voellmy", "manning", "bingham", "pouliquen"}, "none",
-                           "friction between the mass and its bed; pouliquen is mu(I)"));
-    table.push_back(instead(with(number("material.bed.friction_angle_deg", "degree", {0.0, 90.0, false, true},
-                                        "friction angle at the bed"),
-                                 law, {"coulomb", "voellmy", "manning", "bingham"}, {"coulomb", "voellmy"}),
-                            "material.bed.mu"));
-    table.push_back(instead(with(number("material.bed.mu", "1", between(0.0, 10.0),
-                                        "friction coefficient at the bed, the tangent of the friction angle"),
-                                 law, {"coulomb", "voellmy", "manning", "bingham"}, {"coulomb", "voellmy"}),
-                            "material.bed.friction_angle_deg"));
-    table.push_back(with(
-        number("material.bed.xi", "m/s^2", positive, "Voellmy's turbulence coefficient: larger runs faster"),
-        law, {"voellmy"}, {"voellmy"}));
-    table.push_back(
-        with(number("material.bed.manning_n", "s/m^(1/3)", above_to(0.0, 1.0), "Manning's roughness"), law,
-             {"manning"}, {"manning"}));
-    table.push_back(with(number("material.bed.viscosity", "Pa s", positive, "viscosity of the sheared layer"),
-                         law, {"bingham"}, {"bingham"}));
-    table.push_back(with(number("material.bed.yield_stress", "Pa", not_negative,
-                                "stress below which the layer does not shear"),
-                         law, {"bingham"}, {"bingham"}));
-    table.push_back(
-        with(number("material.bed.mu_s", "1", above_to(0.0, 10.0), "friction of the slowest flow"), law,
-             {"pouliquen"}, {"pouliquen"}));
-    table.push_back(
-        with(number("material.bed.mu_2", "1", above_to(0.0, 10.0), "friction of the fastest flow"), law,
-             {"pouliquen"}, {"pouliquen"}));
-    table.push_back(
-        with(number("material.bed.i0", "1", positive, 0.3, "inertial number between slow and fast"), law,
-             {"pouliquen"}));
-    table.push_back(with(number("material.bed.grain_diameter", "m", positive, "diameter of the grains"), law,
-                         {"pouliquen"}, {"pouliquen"}));
-    table.push_back(with(number("material.bed.solid_fraction", "1", {0.0, 1.0, true, true}, 0.6,
-                                "share of the volume that is grains"),
-                         law, {"pouliquen"}));
+    add_bed_law(table);
     const char* rheology = "material.rheology.law";
     table.push_back(choice(rheology, {"none", "newtonian", "bingham"}, "none", "stress inside the mass"));
     table.push_back(with(number("material.rheology.viscosity", "Pa s", not_negative, "viscosity"), rheology,
@@ -188,7 +169,7 @@ void add_scheme(Table& table) {
     table.push_back(number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
                            "largest 2 viscosity dt / (density cell^2) in one step; with linear shapes, pic or flip 0.25 at most"));
     table.push_back(
-        absent(with(number("scheme.still_level", "m", any, "known level of a lake at rest (eq. 33)"),
+        absent(with(number("scheme.still_level", "m", any_number, "known level of a lake at rest (eq. 33)"),
                     "scheme.preset", {"paper"}),
                "no still level is used"));
 }

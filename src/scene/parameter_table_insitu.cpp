@@ -67,10 +67,10 @@ void add_what(Table& table) {
     Parameter of = choice("insitu.of", {"grid", "particles"}, "grid", "cells of the grid, or particles");
     table.push_back(with(of, kind, {"threshold"}));
     table.push_back(absent(
-        with(number("insitu.from", "", any, "smallest value that is kept, in the field's unit"), kind, {"threshold"}),
+        with(number("insitu.from", "", any_number, "smallest value that is kept, in the field's unit"), kind, {"threshold"}),
         "no lower limit"));
     table.push_back(absent(
-        with(number("insitu.to", "", any, "largest value that is kept, in the field's unit"), kind, {"threshold"}),
+        with(number("insitu.to", "", any_number, "largest value that is kept, in the field's unit"), kind, {"threshold"}),
         "no upper limit"));
     table.push_back(with(flag("insitu.gis", false,
                               "besides, for a GIS: insitu/NAME.gpkg with the lines, or the outlines of the cells, at all "

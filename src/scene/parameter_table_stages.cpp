@@ -95,7 +95,7 @@ void add_barriers(Table& table) {
                        "barrier.top"),
                "top is needed"));
     table.push_back(
-        absent(instead(number("barrier.top", "m", any, "elevation of a level top"), "barrier.height"),
+        absent(instead(number("barrier.top", "m", any_number, "elevation of a level top"), "barrier.height"),
                "height is needed"));
     table.push_back(number("barrier.friction", "1", between(0.0, 10.0), 0.0,
                            "Coulomb's friction coefficient between points in space and the barrier"));
@@ -130,7 +130,7 @@ void add_stages(Table& table) {
         of_space(number("stage.spacing", "m", positive, "distance of the points in space at the start"),
                  "half of the stage's cell: eight points a cell"));
     table.push_back(
-        of_space(number("stage.top", "m", any, "elevation above which points leave the space"),
+        of_space(number("stage.top", "m", any_number, "elevation above which points leave the space"),
                  "four times as high above the lowest ground as the energy of the material reaches"));
     add_laws(table);
     table.push_back(

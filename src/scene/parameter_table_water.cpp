@@ -13,7 +13,7 @@ void add_water(Table& table) {
                            "free: water on the grid that drags, bears and drains the columns of material.structure"));
     table.push_back(used(number("water.share", "1", {0.0, 1.0, false, true}, 0.0,
                                 "share of each release's volume that is free water in its pores; the columns have the rest")));
-    table.push_back(absent(used(number("water.level", "m", any,
+    table.push_back(absent(used(number("water.level", "m", any_number,
                                        "elevation of a lake at rest at the start, wherever the ground lies lower")),
                            "no lake"));
     const auto rate = [&](const char* key, const char* meaning) {

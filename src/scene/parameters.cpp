@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 
 #include "base/error.h"
 
@@ -16,8 +15,6 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
     for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
     return text;
 }
-
-std::string short_number(double value) { return fmt::format("{:g}", value); }
 
 /// Optimal string alignment distance: insert, delete, replace, swap of neighbours.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -77,20 +74,6 @@ struct ValueText {
 };
 
 }  // namespace
-
-bool Range::holds(double value) const {
-    const bool above = low_open ? value > low : value >= low;
-    return above && (high_open ? value < high : value <= high);
-}
-
-bool Range::is_all() const { return std::isinf(low) && std::isinf(high); }
-
-std::string Range::text() const {
-    std::vector<std::string> limits;
-    if (!std::isinf(low)) limits.push_back((low_open ? "above " : "at least ") + short_number(low));
-    if (!std::isinf(high)) limits.push_back((high_open ? "below " : "at most ") + short_number(high));
-    return joined(limits, " and ");
-}
 
 std::string Parameter::switch_of(const std::string& own_key) const {
     const std::size_t dot = switch_key.rfind('.');

@@ -1,11 +1,11 @@
 #pragma once
 // The one table of case keys. Parser, checks, `frana describe`, resolved.toml and --set all read it.
-#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "base/range.h"
 #include "base/types.h"
 
 namespace frana {
@@ -28,18 +28,6 @@ enum class Kind {
     points,            ///< Vec2, at least Parameter::length
     words,             ///< std::string, each one of Parameter::choices; none with Parameter::may_be_empty
     words_or_all       ///< the same, or the text "all" (held as an empty list)
-};
-
-/// Interval of numbers; an open end excludes its limit.
-struct Range {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-    bool low_open = false;
-    bool high_open = false;
-
-    bool holds(double value) const;
-    bool is_all() const;
-    std::string text() const;  ///< "above 0 and at most 1", empty for all numbers
 };
 
 /// Another default that holds when the key `when` has the value `is`.

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "convert/profile.h"
-#include "law/bed_parameters.h"
+#include "law/bed/laws.h"
 #include "law/free_water.h"
 #include "law/rheology_parameters.h"
 #include "law/solid_law.h"

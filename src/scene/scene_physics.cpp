@@ -1,31 +1,17 @@
-#include <cmath>
+#include <optional>
 
 #include "base/error.h"
+#include "law/bed/catalogue.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-/// Friction coefficient from either of its keys; 0 where the law can do without and none is given.
-double friction(const CaseFile& file) {
-    if (file.given("material.bed.friction_angle_deg"))
-        return std::tan(file.number("material.bed.friction_angle_deg") * pi / 180.0);
-    return file.given("material.bed.mu") ? file.number("material.bed.mu") : 0.0;
-}
-
 BedLaw bed_law(const CaseFile& file) {
-    const auto value = [&](const char* name) { return file.number(std::string("material.bed.") + name); };
-    const std::string& law = file.word("material.bed.law");
-    if (law == "none") return bed::None{};
-    if (law == "coulomb") return bed::Coulomb{friction(file)};
-    if (law == "voellmy") return bed::Voellmy{friction(file), value("xi")};
-    if (law == "manning") return bed::Manning{value("manning_n"), friction(file)};
-    if (law == "bingham") return bed::Bingham{value("viscosity"), value("yield_stress"), friction(file)};
-    expect(law == "pouliquen", "a bed law of the parameter table that the scene does not know");
-    return bed::Pouliquen{value("mu_s"), value("mu_2"), value("i0"), value("grain_diameter"),
-                          value("solid_fraction")};
+    return bed::Catalogue<BedLaw>::make(file.word("material.bed.law"), [&](const std::string& name) {
+        const std::string key = "material.bed." + name;
+        return file.has(key) ? std::optional<double>(file.number(key)) : std::nullopt;
+    });
 }
 
 Rheology rheology_of(const CaseFile& file) {

@@ -11,21 +11,6 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-/// Coulomb's part of a bed law.
-double friction_of(const BedLaw& law) {
-    return std::visit(
-        [](const auto& chosen) {
-            using Law = std::decay_t<decltype(chosen)>;
-            if constexpr (std::is_same_v<Law, bed::None>)
-                return 0.0;
-            else if constexpr (std::is_same_v<Law, bed::Pouliquen>)
-                return chosen.mu_s;
-            else
-                return chosen.mu;
-        },
-        law);
-}
-
 class StageReader {
 public:
     StageReader(const CaseFile& file, const Scene& scene, Problems& problems)
@@ -108,7 +93,7 @@ private:
         stage.law = law();
         stage.stuck = case_.flag(prefix_ + "stuck");
         stage.split = case_.flag(prefix_ + "split");
-        stage.bed_friction = number_or("bed_friction", friction_of(scene_.bed_law));
+        stage.bed_friction = number_or("bed_friction", friction_at_rest(scene_.bed_law));
         stage.cfl = number("cfl");
         read_transfer(stage);
         stage.profile = profile_of(case_.word(prefix_ + "profile"));

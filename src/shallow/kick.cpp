@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "law/bed_stop.h"
+#include "law/bed/node_friction.h"
 #include "shallow/kick_bed.h"
 #include "shallow/lateral.h"
 #include "shallow/shock.h"
@@ -310,7 +310,7 @@ private:
         const Real along = mx * bed.bx + my * bed.by, speed2 = mx * mx + my * my;
         const Real normal = kCurvature == Curvature::full ? bed.gravity(g, n.vx, n.vy) : Real{} + g;
         // Speed lost to friction, over the speed: normal force over kappa is normal * cosine * speed / sqrt(...).
-        const Real lost = 0.5 * dt * sliding_friction(law_) * normal * cosine;
+        const Real lost = 0.5 * dt * law_.friction_at_rest() * normal * cosine;
         const Real keep = select(speed2 > 0.0, max(Real{}, 1.0 - lost / sqrt(speed2 + along * along)), Real{});
         return {mx * keep, my * keep};
     }

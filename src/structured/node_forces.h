@@ -1,7 +1,7 @@
 #pragma once
 // What drives and brakes the columns of a node (Real: double) or of four in a row (Double4).
 #include "base/simd.h"
-#include "law/bed_stop.h"
+#include "law/bed/node_friction.h"
 #include "shallow/kick_bed.h"
 #include "shallow/surface_gradient.h"
 #include "structured/structured_flow.h"
@@ -144,7 +144,7 @@ template <class Real>
     return (Real{} - bears) * (s * drive + beyond) + s * viscous_push(flow, k, Real{});
 }
 
-/// A bed law's friction over a step that would change `before` to `driven` (law/bed_law.h, bed_stop.h); `across`: gravity
+/// A bed law's friction over a step that would change `before` to `driven` (law/bed/node_friction.h); `across`: gravity
 /// that presses on the ground [m/s^2].
 template <class Real, class Law>
 [[gnu::always_inline]] inline FlatOf<Real> braked(const Law& law, const StructuredBody& body, const GroundOf<Real>& ground,

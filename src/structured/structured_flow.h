@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "law/bed_law.h"
+#include "law/bed/laws.h"
 #include "law/structured_law.h"
 #include "observe/frame.h"
 #include "shallow/flow.h"

@@ -2,7 +2,7 @@
 // A step of water under friction of both kinds.
 #include <cmath>
 
-#include "law/bed_law.h"
+#include "law/friction_step.h"
 
 namespace frana {
 

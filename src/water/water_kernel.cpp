@@ -313,7 +313,7 @@ Vec2 velocity_before(const WaterBody& body, Index k) {
     return h > body.film ? Vec2(Vec2(body.now.qx[k], body.now.qy[k]) / h) : Vec2(0, 0);
 }
 
-/// Friction over a step, exact for a constant drive (law/bed_law.h), on water deeper than a film. Viscosity shears all
+/// Friction over a step, exact for a constant drive (law/friction_step.h), on water deeper than a film. Viscosity shears all
 /// that stands on the bed, confined mass as well.
 void brake(const WaterBody& body, Index k, double dt, Water& w) {
     const Vec2 q(w.qx, w.qy);

@@ -43,6 +43,8 @@ void say(Draft& draft, const std::string& key, double number);
 
 /// Parts of those that other models use too.
 void draw_bed_law(Dice& dice, Draft& draft);
+/// The keys that a bed law needs, anywhere in their ranges.
+void draw_bed_keys(Dice& dice, Draft& draft, const std::string& law);
 /// Where the material lies on the ground of the draft: depths of `least` to `most` cells, no more than `pixels` of them,
 /// half of the time in motion.
 struct ReleaseKind { double least, most; Index pixels; };

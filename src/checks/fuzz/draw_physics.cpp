@@ -2,11 +2,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "checks/fuzz/draw.h"
+#include "scene/parameters.h"
 
 namespace frana::stress {
 namespace {
+
+bool has(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 double draw_mu(Dice& dice) { return dice.one_of({0.0, 1e-6, 0.1, 0.4, 1.0, 3.0, 10.0, dice.between(0.0, 1.0)}); }
 
@@ -37,9 +43,23 @@ std::string toml_number(double value) {
 void say(Draft& draft, const std::string& key, const std::string& word) { draft.keys[key] = "\"" + word + "\""; }
 void say(Draft& draft, const std::string& key, double number) { draft.keys[key] = toml_number(number); }
 
+void draw_bed_keys(Dice& dice, Draft& draft, const std::string& law) {
+    for (const Parameter& key : parameters()) {
+        if (key.switch_key != "material.bed.law" || !has(key.required_by, law) || draft.has(key.instead_of)) continue;
+        const double low = std::isinf(key.range.low) ? 0.0 : key.range.low;
+        say(draft, key.key, std::isinf(key.range.high) ? low + dice.decades(1e-4, 1e6)
+                                                       : dice.between(low, key.range.high));
+    }
+}
+
 void draw_bed_law(Dice& dice, Draft& draft) {
-    const std::string law = dice.one_of({"none", "coulomb", "voellmy", "voellmy", "manning", "bingham", "pouliquen"});
+    std::vector<std::string> laws = {"none", "coulomb", "voellmy", "voellmy", "manning", "bingham", "pouliquen"};
+    const auto known = laws;
+    for (const std::string& law : find_parameter("material.bed.law")->choices)
+        if (!has(known, law)) laws.push_back(law);
+    const std::string law = laws[dice.below(static_cast<Index>(laws.size()))];
     say(draft, "material.bed.law", law);
+    if (!has(known, law)) return draw_bed_keys(dice, draft, law);
     if (law != "none" && law != "pouliquen") say(draft, "material.bed.mu", draw_mu(dice));
     if (law == "voellmy") say(draft, "material.bed.xi", dice.decades(1e-3, 1e7));
     if (law == "manning") say(draft, "material.bed.manning_n", dice.decades(1e-4, 1.0));
