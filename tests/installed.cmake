@@ -4,6 +4,7 @@
 #         -DCOMPILER=... -DFLAGS=... -DBUILD_TYPE=... -P installed.cmake
 set(prefix ${OUT}/prefix)
 string(REGEX REPLACE "([][+.*()^$?|])" "\\\\\\1" source "${SOURCE}")  # as a pattern
+set(source "${source}/(src|vtk_io|apps|cases|tests)/")  # a short name alone may stand in any text
 set(away ${OUT}/away)  # the prefix moved there: nothing may know where it was
 file(REMOVE_RECURSE ${OUT})
 
