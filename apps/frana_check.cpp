@@ -21,7 +21,7 @@ namespace {
 /// Assumptions of the forecast, said in its text.
 constexpr double seconds_per_particle_step = 150e-9;  ///< whole step on one core
 
-constexpr double seconds_per_point_step = 300e-9;  ///< of points in space
+constexpr double seconds_per_point_step = 300e-9;  ///< of 3D points
 
 std::string crs_name(const std::string& wkt) {
     const std::size_t begin = wkt.find('"');
@@ -128,19 +128,20 @@ std::string seconds_text(double seconds) {
                             : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
-/// The stage in space: sound is ten times as fast as the material.
+/// The 3D stage: sound is ten times as fast as the material.
 std::string stage_text(const Scene& scene) {
     const SolidStage& stage = *scene.solid;
     double depth = 0.0;
     for (const double here : scene.particles.depth) depth = std::max(depth, here);
-    const double sound = stage.sound_speed.value_or(10.0 * std::sqrt(2.0 * scene.gravity * depth));
-    const double steps = std::ceil((stage.until.value_or(scene.end) - stage.from) * sound / (stage.cfl * stage.cell)),
+    const double sound_speed = stage.sound_speed.value_or(10.0 * std::sqrt(2.0 * scene.gravity * depth));
+    const double steps =
+                     std::ceil((stage.until.value_or(scene.end) - stage.from) * sound_speed / (stage.cfl * stage.cell)),
                  points = most_points(scene);
     return fmt::format(
         "stage       points in space from {:.6g} s to {:.6g} s, at most about {:.3g} of them, {:.3g} MB; {:.0f} steps "
         "or more with "
         "sound at {:.3g} m/s, {} on one core if all are there, assuming {:.0f} ns per point and step\n",
-        stage.from, stage.until.value_or(scene.end), points, points * bytes_per_point / 1e6, steps, sound,
+        stage.from, stage.until.value_or(scene.end), points, points * bytes_per_point / 1e6, steps, sound_speed,
         seconds_text(steps * points * seconds_per_point_step), seconds_per_point_step * 1e9);
 }
 

@@ -14,7 +14,7 @@
 #include "run/folder/cutoff.h"
 #include "run/folder/run_film.h"
 #include "run/folder/run_folder.h"
-#include "run/folder/run_space.h"
+#include "run/folder/run_3d.h"
 #include "terrain/part_of.h"
 #include "vtk_io/reader.h"
 
@@ -75,7 +75,7 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         source.gauges.push_back({run_case.word(table + "name"), Vec2(point[0], point[1])});
     }
     for (Index i = 0; i < run_case.count("stage"); ++i)
-        source.in_space |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
+        source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
     for (Index i = 0; i < run_case.count("barrier"); ++i) {
         const std::string table = fmt::format("barrier.{}.", i);
         BarrierTop top;
@@ -232,7 +232,7 @@ int figures_command(const FiguresOptions& options) {
     if (options.time) draw_moment(source, *options.time, figures, warnings);
     if (!options.film.empty()) {
         draw_film(source, options.film, figures, warnings);
-        draw_space_film(source, options.film, figures, warnings);
+        draw_film_3d(source, options.film, figures, warnings);
     }
     for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
     for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';

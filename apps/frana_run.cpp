@@ -93,7 +93,7 @@ int run_command(const RunOptions& options) {
     std::unique_ptr<CheckpointFile> kept;
     if (options.resume) kept = open_checkpoint(run_dir, labels);
     const std::unique_ptr<Simulation> simulation =
-        make_simulation(scene, options.resume ? Start::kept : Start::placed);
+        make_simulation(scene, options.resume ? Start::resumed : Start::placed);
 
     // Only now is the folder touched: what lies there survives a case that cannot run.
     if (!options.resume) {

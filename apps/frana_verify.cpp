@@ -153,7 +153,7 @@ int verify_command(const VerifyOptions& options) {
     fmt::print("{}\n", head);
     for (const Problem* problem : problems) {
         if (problem->takes_minutes && options.names.empty()) continue;
-        if ((problem->in_space || !problem->has_presets) && options.names.empty() && options.preset != "default") continue;
+        if ((problem->in_3d || !problem->has_presets) && options.names.empty() && options.preset != "default") continue;
         const auto measured = run_problem(*problem, setup, grids.empty() ? verify::grids_of(*problem, options.coarse) : grids, table,
                                           complaints);
         all.insert(all.end(), measured.begin(), measured.end());

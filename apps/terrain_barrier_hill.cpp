@@ -66,14 +66,14 @@ public:
         const Vec2 out = Vec2(x, y) - kSummit, way = (kRelease - kSummit).normalized();
         const double s = out.norm() - (kRelease - kSummit).norm();
         const double across = out.dot(way) > 0.0 ? out.x() * way.y() - out.y() * way.x() : 1e3;
-        const double beside =
+        const double flank =
             smooth_step((std::abs(across) - 28.0) / 40.0);  // 0 on the ramp, 1 on the cliffs
         const double spurs = 4.0 * std::sin(std::atan2(out.y(), out.x()) * 23.0) *
                              smooth_step((s - 30.0) / 60.0) * smooth_step((190.0 - s) / 60.0);
         const double swells = std::sin(x / 23.0) * std::sin(y / 31.0 + 0.7);
         const double hollow =
             1.5 * std::min(1.0, across * across / (28.0 * 28.0)) * smooth_step((170.0 - s) / 40.0);
-        return (1.0 - beside) * ramp_.at(s) + beside * (cliff_.at(s) + spurs + swells) + hollow;
+        return (1.0 - flank) * ramp_.at(s) + flank * (cliff_.at(s) + spurs + swells) + hollow;
     }
 
 private:

@@ -61,18 +61,18 @@ double valley_floor(double x, double y) {
 /// it.
 double slope_relief(double x, double y) {
     const double across = x - kMiddle;
-    const double beside = smooth_step((std::abs(across) - 120.0) / 250.0);
+    const double flank = smooth_step((std::abs(across) - 120.0) / 250.0);
     const double hollow = 24.0 * (1.0 - std::exp(-across * across / (2.0 * 300.0 * 300.0)));
     const double head = kToe + 1.03 * kLength - across * across / 400.0;  // an arc around the upper end
     const double scarp = 14.0 * smooth_step((y - head) / 18.0) * std::exp(-std::pow(across / 180.0, 4));
     const double swell = std::sin(x / 23.0) * std::sin(y / 31.0 + 0.7) + 0.6 * std::sin(x / 13.0 + y / 37.0);
     const double spurs = 7.0 * std::sin(x / 62.0 + 0.4 * std::sin(y / 120.0));
-    return hollow + scarp + (0.15 + beside) * swell + beside * spurs;
+    return hollow + scarp + (0.15 + flank) * swell + flank * spurs;
 }
 
 double ground(const FallLine& line, double x, double y) {
-    const double beside = smooth_step((std::abs(x - kMiddle) - 150.0) / 300.0);
-    const double shifted = y + 22.0 * beside * std::sin(x / 95.0);  // the slope's foot is no straight line
+    const double flank = smooth_step((std::abs(x - kMiddle) - 150.0) / 300.0);
+    const double shifted = y + 22.0 * flank * std::sin(x / 95.0);  // the slope's foot is no straight line
     const double on_slope = smooth_step((shifted - kFloorEdge) / 90.0);
     return kFloor + line.at(shifted) + valley_floor(x, y) + on_slope * slope_relief(x, y);
 }
@@ -93,11 +93,11 @@ double mass_shape(double x, double y) {
 /// deepest, then a lobe that spreads on the valley floor and closes at `toe`.
 double surveyed_half_width(double y, double crown, double toe) {
     const double widest = kToe + kDeepest * kLength;
-    const double beside = 112.0;  // [m]; the mass itself has 109.5
-    if (y >= widest) return beside * std::sqrt(1.0 - std::pow((y - widest) / (crown - widest), 2));
+    const double flank = 112.0;  // [m]; the mass itself has 109.5
+    if (y >= widest) return flank * std::sqrt(1.0 - std::pow((y - widest) / (crown - widest), 2));
     const double closing = 60.0;  // the length of the lobe's round end [m]
     const double end = std::max(0.0, (toe + closing - y) / closing);
-    return (beside + 18.0 * smooth_step((widest - y) / 80.0)) * std::sqrt(std::max(0.0, 1.0 - end * end));
+    return (flank + 18.0 * smooth_step((widest - y) / 80.0)) * std::sqrt(std::max(0.0, 1.0 - end * end));
 }
 
 /// An outline as somebody might have mapped it after the event, drawn from what the paper prints and never from a run:

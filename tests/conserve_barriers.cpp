@@ -156,9 +156,9 @@ TEST_CASE("Columns that go over a low barrier are counted once, and the count is
     const double mass = run.status().mass;
     while (run.status().time < 1.0) run.advance(2.0);
     MemoryArchive kept;
-    run.keep(kept);
-    WalledColumns resumed(scene, Start::kept);
-    resumed.keep(kept.rewind());
+    run.serialize(kept);
+    WalledColumns resumed(scene, Start::resumed);
+    resumed.serialize(kept.rewind());
     for (WalledColumns* one : {&run, &resumed}) run_to(*one, 2.0);
     const double over = run.loads()->barriers.at(0).overtopped * scene.density;
     CHECK(resumed.loads()->barriers.at(0).overtopped * scene.density == over);
@@ -261,7 +261,7 @@ TEST_CASE("Run-up is what stands at a barrier, not between the legs of a bent on
     CHECK(run.loads()->barriers.at(0).run_up > foot);
 }
 
-TEST_CASE("Columns see a wall along a line, its thickness given or not, with a stage in space or without", "[barrier]") {
+TEST_CASE("Columns see a wall along a line, its thickness given or not, with a 3D stage or without", "[barrier]") {
     Scene scene = channel(1.5);
     scene.barriers[0].outline = {};
     scene.barriers[0].line = {{10.0, 4.5}, {10.0, -0.5}};
@@ -283,9 +283,9 @@ TEST_CASE("A run against a barrier has the same bits when it is taken up again",
     StagedRun straight(scene);
     while (straight.status().time < 0.6) straight.advance(1.0);
     MemoryArchive kept;
-    straight.keep(kept);
-    StagedRun resumed(scene, Start::kept);
-    resumed.keep(kept.rewind());
+    straight.serialize(kept);
+    StagedRun resumed(scene, Start::resumed);
+    resumed.serialize(kept.rewind());
     for (StagedRun* run : {&straight, &resumed})
         for (int step = 0; step < 20; ++step) run->advance(1.0);
     const BarrierLoad &a = straight.loads()->barriers.at(0), &b = resumed.loads()->barriers.at(0);
@@ -315,7 +315,7 @@ TEST_CASE("A barrier's mean force knows nothing of a short blow", "[barrier]") {
         probe.state.barriers[0].faces[0].impulse.x() += 0.01 * (step == 1 ? 100.0 : 2.0);
         table.step(now, probe);
     }
-    table.see({});
+    table.observe({});
     const BarrierSummary& dam = summaries.at(0);
     CHECK(dam.raw_peak_force == Approx(100.0));
     CHECK(dam.peak_force == Approx(1.0 + 2.0 * 0.99));  // the second that has both
@@ -340,7 +340,7 @@ TEST_CASE("A barrier's mean force begins within a step, and its raw peak is hori
         now.time = time;
         table.step(now, probe);
     }
-    table.see({});
+    table.observe({});
     CHECK(summaries.at(0).raw_peak_force == Approx(5.0));
     // Of the second up to 1.2 s the push has 0.2 s: half of the step that it begins in.
     CHECK(read_table(scratch.path() / "barriers" / "dam.csv").column("mean_force").back() == Approx(1.0));
@@ -360,12 +360,12 @@ TEST_CASE("A barrier's mean force goes on from what was measured before the run 
         whole.step(now, probe);
         (step <= 12 ? cut : resumed).step(now, probe);
         if (step != 12) continue;
-        cut.see({});
+        cut.observe({});
         MemoryArchive kept;
-        cut.keep(kept);
-        resumed.keep(kept.rewind());
+        cut.serialize(kept);
+        resumed.serialize(kept.rewind());
     }
-    whole.see({}), resumed.see({});
+    whole.observe({}), resumed.observe({});
     CHECK(resumed_summaries.at(0).peak_force == summaries.at(0).peak_force);
     CHECK(read_table(scratch.path() / "cut" / "barriers" / "dam.csv").column("mean_force") ==
           read_table(scratch.path() / "whole" / "barriers" / "dam.csv").column("mean_force"));

@@ -1,4 +1,4 @@
-// The edge between columns and points in space: what is on one side feels what is on the other.
+// The edge between columns and 3D points: what is on one side feels what is on the other.
 #include <map>
 
 #include "analytic_scene.h"
@@ -101,7 +101,7 @@ TEST_CASE("A lake at rest that reaches across the window's edge creeps by less t
     // The ledger is not empty: what is beside the points holds their pressure on the whole edge.
     const double depth = slope > 0.0 ? 5.0 - slope * 20.5 : 1.5;
     const double force = 0.5 * scene.density * scene.gravity * depth * depth * 4.0;
-    CHECK(run.points()->status().beside_impulse.x() == Approx(1.0 * force).epsilon(0.02));
+    CHECK(run.points()->status().ghost_impulse.x() == Approx(1.0 * force).epsilon(0.02));
     CHECK(run.points()->momentum_residual().norm() < 1e-12 * force);
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("Momentum closes to round-off at an edge with a barrier across it, wit
     const double start = run.status().momentum[0];
     CHECK(worst_momentum(run, 0.5, start, 4.0) < 1e-12);
     const SolidStatus& points = run.points()->status();
-    CHECK(points.beside_impulse.norm() > 0.001 * points.momentum.norm());
+    CHECK(points.ghost_impulse.norm() > 0.001 * points.momentum.norm());
     CHECK(run.points()->momentum_residual().norm() < 1e-12 * points.momentum.norm());
     Vec3 on_post{0, 0, 0};
     for (const FaceLoad& face : run.loads()->barriers.at(0).faces) on_post += face.impulse;
@@ -250,7 +250,7 @@ TEST_CASE("Points that leave the window go on as columns, with their mass and mo
     CHECK(now.energy_left == Approx(0.0).margin(1e-12 * energy));
 }
 
-TEST_CASE("A stage in space ends: all points become columns, which go on", "[stages]") {
+TEST_CASE("A 3D stage ends: all points become columns, which go on", "[stages]") {
     const Scene scene = slab(2, 0.7);
     StagedRun run(scene);
     const double mass = run.status().mass, start = run.status().momentum[0], x0 = centre_of(run);
@@ -275,7 +275,7 @@ TEST_CASE("A stage in space ends: all points become columns, which go on", "[sta
     CHECK(std::abs(residual) < 0.01 * now.kinetic);
 }
 
-TEST_CASE("Where a stage in space ends while columns go on beside it, none of them gets a push", "[stages]") {
+TEST_CASE("Where a 3D stage ends while columns go on beside it, none of them gets a push", "[stages]") {
     // With velocities half a step apart the momentum of a frame would jump by a hundredth.
     const Scene scene = slab(2, 1.6);
     StagedRun run(scene);

@@ -52,14 +52,14 @@ Apart apart(Scene scene, double dt, int steps) {
         columns.advance(n * dt);
         REQUIRE(flow.status().time == columns.status().time);
     }
-    columns.look();
+    columns.sample();
     const Flow &a = flow.flow(), &b = columns.body().flow;
     double depth = 0.0, momentum = 0.0, depths = 0.0, momenta = 0.0;
     for (Index j = 0; j < a.grid.ny(); ++j)
         for (Index i = 0; i < a.grid.nx(); ++i) {
             const Index k = a.grid.at(i, j);
             const auto of = [&](const Flow& f) {
-                const double h = f.touches(i, j) ? f.nodes.depth[k] : 0.0;
+                const double h = f.is_in_reach(i, j) ? f.nodes.depth[k] : 0.0;
                 const Vec2 v = h > 0.0 ? Vec2(f.nodes.before[k].x, f.nodes.before[k].y) : Vec2(0, 0);
                 return Vec3(h, h * v.x(), h * v.y());
             };
@@ -116,7 +116,7 @@ TEST_CASE("Steps are counted for each of a flow whose waves run at sqrt(g h)", "
     for (int n = 1; n <= 20; ++n) {
         double signal = 0.0;
         for (Index p = 0; p < q.count(); ++p)
-            signal = std::max(signal, std::hypot(q.vx[p], q.vy[p]) + std::sqrt(q.pull[p] * q.layer[p]));
+            signal = std::max(signal, std::hypot(q.vx[p], q.vy[p]) + std::sqrt(q.normal_gravity[p] * q.layer[p]));
         // THEORY (56) of the depth-averaged flow.
         steps += flow.longest_step() * (signal + std::sqrt(signal * signal + 2.0 * scene.gravity * reach)) / (2.0 * reach);
         flow.advance(1e9);
@@ -157,7 +157,7 @@ TEST_CASE("Grains that spread, split and meet a wall have the same bits for any 
         CHECK(flow.body().active.count() >= kTilesForThreads);
         CHECK(flow.status().points > 1600);
         std::vector<double> bits = {flow.status().kinetic, flow.status().impulse.friction.x()};
-        flow.body().points.each([&](const Column& c) { bits.insert(bits.end(), c.begin(), c.end()); });
+        flow.body().points.each([&](const Array& c) { bits.insert(bits.end(), c.begin(), c.end()); });
         if (count == 1) first = bits;
         CHECK(bits == first);
     }
@@ -171,13 +171,13 @@ TEST_CASE("A kept run of grains that split goes on with the same bits", "[struct
     go_to(whole, 1.0);
     CHECK(whole.flow().status().points > 1600);
     MemoryArchive archive;
-    whole.keep(archive);
-    StructuredRun resumed(scene, Start::kept);
-    resumed.keep(archive.rewind());
-    CHECK(kept_bits(whole) == kept_bits(resumed));
+    whole.serialize(archive);
+    StructuredRun resumed(scene, Start::resumed);
+    resumed.serialize(archive.rewind());
+    CHECK(state_bits(whole) == state_bits(resumed));
     go_to(whole, 1.6);
     go_to(resumed, 1.6);
-    CHECK(kept_bits(whole) == kept_bits(resumed));
+    CHECK(state_bits(whole) == state_bits(resumed));
 }
 
 TEST_CASE("A kept run of grains splits no lighter columns than it did before", "[structured][grains]") {
@@ -189,13 +189,13 @@ TEST_CASE("A kept run of grains splits no lighter columns than it did before", "
     StructuredRun whole(scene);
     go_to(whole, 0.4);
     MemoryArchive archive;
-    whole.keep(archive);
-    StructuredRun resumed(scene, Start::kept);
-    resumed.keep(archive.rewind());
+    whole.serialize(archive);
+    StructuredRun resumed(scene, Start::resumed);
+    resumed.serialize(archive.rewind());
     go_to(whole, 2.0);
     go_to(resumed, 2.0);
     CHECK(whole.flow().status().points == resumed.flow().status().points);
-    CHECK(kept_bits(whole) == kept_bits(resumed));
+    CHECK(state_bits(whole) == state_bits(resumed));
 }
 
 TEST_CASE("The mass at the start is as exact as the later ones, however many columns there are", "[structured][grains]") {

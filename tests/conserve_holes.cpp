@@ -104,11 +104,11 @@ TEST_CASE("A run round a hole has the same bits on any number of threads", "[hol
 TEST_CASE("A run round a hole, or into it, is taken up again with the same bits and the same loss", "[holes][resume]") {
     for (const bool wall : {true, false}) {
         const Scene scene = wall ? walled(stream(Outline::square)) : stream(Outline::square);
-        DepthAveraged straight(scene), resumed(scene, Start::kept);
+        DepthAveraged straight(scene), resumed(scene, Start::resumed);
         run_to(straight, 1.6);
         MemoryArchive kept;
-        straight.keep(kept);
-        resumed.keep(kept.rewind());
+        straight.serialize(kept);
+        resumed.serialize(kept.rewind());
         for (DepthAveraged* run : {&straight, &resumed}) run_to(*run, 2.5);
         CHECK(resumed.flow().columns.x == straight.flow().columns.x);
         CHECK(resumed.flow().columns.vx == straight.flow().columns.vx);

@@ -194,15 +194,15 @@ TEST_CASE("Drag slows columns beside a wall as it slows those in the open", "[mi
         std::vector<double> h(nodes, 1.2), qx(nodes, 0.0), qy(nodes, 0.0), bed(nodes, 0.0);
         columns.meet({by, law, h.data(), qx.data(), qy.data(), bed.data(), 1e-3, {}, {}});
         columns.advance(0.01);
-        // With grains the first kick is half a step.
-        const double kick = columns.status().dt * (share < 1.0 ? 0.5 : 1.0);
+        // With grains the first grid update is half a step.
+        const double velocity_dt = columns.status().dt * (share < 1.0 ? 0.5 : 1.0);
         const double per_speed = 2.0 * law.coefficient({0.8 / 2.0, share, 0.0}, 0.4 * 0.5);  // h_w C, with the flux of the start
         const auto check_node = [&](double x, double y, double open) {
             const Index k = body.grid.at(std::lround((x - s.grid.x0) / s.grid.cell), std::lround((y - s.grid.y0) / s.grid.cell));
             const double m_c = 800.0 * open, m_u = 1200.0, mu = m_c * m_u / (m_c + m_u);
-            const double slip = 0.5 * std::exp(-open * per_speed * kick / mu);
+            const double slip = 0.5 * std::exp(-open * per_speed * velocity_dt / mu);
             CAPTURE(share, y, open, slip);
-            REQUIRE(body.pull[k].open == Approx(open).epsilon(1e-14));
+            REQUIRE(body.ground[k].open == Approx(open).epsilon(1e-14));
             CHECK(slip < 0.499);
             // The step of a linear law is exact: round-off is left.
             CHECK(body.moved[k].vx == Approx(0.5 - mu / m_c * (0.5 - slip)).epsilon(1e-12));
@@ -244,7 +244,8 @@ TEST_CASE("xi feeds the slip at its own rate, and is left out where drag is weak
     const auto [plain, time] = slip_of(0.0, &outrun);
     CHECK(outrun == 0);
     const double rate = 0.5 * 3.0 * 0.4 / (2.0 * 2.0);  // nu xi (1 - f_sc) alpha_s / h^2
-    // The first kick is half a step (leapfrog). Drag grows as the water falls behind, since the flux does: 20 / s of it, 1 %.
+    // The first grid update is half a step (leapfrog). Drag grows as the water falls behind, since the flux does: 20 /
+    // s of it, 1 %.
     CHECK(std::log(slip_of(3.0, &outrun).first / plain) == Approx(rate * (time - 0.5 * dt)).epsilon(0.015));
     CHECK(outrun < 20 * steps);  // of 1300 a step: where the rim of the body has next to no columns
     CHECK(slip_of(1e6, &outrun).first == plain);
@@ -305,7 +306,8 @@ TEST_CASE("Two phases have the same bits for any number of threads", "[mixture][
         const StructuredPoints& q = flow.columns().body().points;
         std::vector<double> bits = {flow.water().status().kinetic, flow.water().status().volume,
                                     flow.columns().status().released};
-        for (const Column* column : {&q.x, &q.vx, &q.damage, &q.volume}) bits.insert(bits.end(), column->begin(), column->end());
+        for (const Array* column : {&q.x, &q.vx, &q.damage, &q.volume})
+            bits.insert(bits.end(), column->begin(), column->end());
         if (count == 1) first = bits;
         CHECK(bits == first);
     }

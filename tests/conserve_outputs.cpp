@@ -28,7 +28,7 @@ class Times final : public Observer {
 public:
     explicit Times(std::vector<double>& times) : times_(times) {}
     std::string name() const override { return "times"; }
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         times_.push_back(frame.status.time);
         double mass = 0.0;
         const Field& masses = *frame.particle("mass");
@@ -57,7 +57,7 @@ Outcome run_with(const Scene& scene, double every, double end) {
     Progress progress(stream, Progress::Style::silent, scene.density);
     outcome.summary = run(simulation, {end, every, false}, observers, Interrupt(), progress);
     MemoryArchive archive;
-    simulation.keep(archive);
+    simulation.serialize(archive);
     outcome.state = archive.entries();
     return outcome;
 }

@@ -35,7 +35,7 @@ Bits bits(const MemoryArchive& archive) {
 
 Bits bits(DepthAveraged& simulation) {
     MemoryArchive archive;
-    simulation.keep(archive);
+    simulation.serialize(archive);
     return bits(archive);
 }
 
@@ -70,15 +70,15 @@ std::unique_ptr<DepthAveraged> check_resume(const Scene& scene, double end, int 
     const double output = 0.4 * end;  // steps are shortened to hit it
     while (straight->status().time < end) {
         const Index step = straight->status().step;
-        if (step <= 4 || step % 13 == 0) straight->keep(kept.emplace_back());
+        if (step <= 4 || step % 13 == 0) straight->serialize(kept.emplace_back());
         straight->advance(straight->status().time < output ? output : end);
     }
     REQUIRE(kept.size() >= 5);
     REQUIRE(straight->status().step >= 6);
     omp_set_num_threads(threads_after);
     for (MemoryArchive& state : kept) {
-        DepthAveraged resumed(scene, Start::kept);
-        resumed.keep(state.rewind());
+        DepthAveraged resumed(scene, Start::resumed);
+        resumed.serialize(state.rewind());
         INFO("kept at step " << resumed.status().step);
         check_same(bits(resumed), bits(state));
         resumed.frame();  // a look at a state changes nothing
@@ -167,13 +167,13 @@ TEST_CASE("A lake whose masses were fitted is not fitted again", "[resume]") {
     const auto end = check_resume(scene, 1.0, 1, 1);
     REQUIRE(end->mass_fit());
     CHECK(end->remarks().size() == 1);
-    DepthAveraged resumed(scene, Start::kept);
+    DepthAveraged resumed(scene, Start::resumed);
     CHECK_FALSE(resumed.mass_fit());
 }
 
 TEST_CASE("A state on a larger grid is refused with a reason", "[resume]") {
-    DepthAveraged simulation(slide()), other(scene_on(20, 20, 1.0, [](double, double) { return 0.0; }), Start::kept);
+    DepthAveraged simulation(slide()), other(scene_on(20, 20, 1.0, [](double, double) { return 0.0; }), Start::resumed);
     MemoryArchive state;
-    simulation.keep(state);
-    CHECK_THROWS_WITH(other.keep(state.rewind()), Catch::Contains("does not fit this case"));
+    simulation.serialize(state);
+    CHECK_THROWS_WITH(other.serialize(state.rewind()), Catch::Contains("does not fit this case"));
 }

@@ -10,12 +10,12 @@ using namespace frana;
 
 namespace {
 
-void steps(SolidFlow& flow, int count) {
+void steps(Mpm3d& flow, int count) {
     for (int n = 0; n < count; ++n) flow.advance(1e9);
 }
 
 /// Places of the points, in the order of the scene's; zero for those that left.
-std::vector<Vec3> by_id(const SolidFlow& flow, const SolidScene& scene) {
+std::vector<Vec3> by_id(const Mpm3d& flow, const SolidScene& scene) {
     std::vector<Vec3> x(scene.points.mass.size(), Vec3::Zero());
     for (Index p = 0; p < flow.body().points.count(); ++p)
         x[static_cast<std::size_t>(flow.body().points.id[p])] = flow.position(p);
@@ -27,7 +27,7 @@ std::vector<Vec3> by_id(const SolidFlow& flow, const SolidScene& scene) {
 TEST_CASE("Mass is exact in space, and momentum changes by what gravity and surfaces give", "[solid]") {
     for (const SolidLaw& law : all_solid_laws()) {
         CAPTURE(law.index());
-        SolidFlow flow(lump(law));
+        Mpm3d flow(lump(law));
         const double mass = flow.status().mass;
         steps(flow, 300);
         CHECK(flow.status().mass + flow.status().mass_left == Approx(mass).epsilon(1e-14));
@@ -47,7 +47,7 @@ TEST_CASE("Points that keep their velocities keep mass and momentum too, and hav
         std::vector<std::vector<Vec3>> places;
         for (const int count : {1, 3}) {
             omp_set_num_threads(count);
-            SolidFlow flow(scene);
+            Mpm3d flow(scene);
             const double mass = flow.status().mass;
             steps(flow, 200);
             CHECK(flow.status().mass + flow.status().mass_left == Approx(mass).epsilon(1e-14));
@@ -62,14 +62,14 @@ TEST_CASE("Points that keep their velocities keep mass and momentum too, and hav
 
 TEST_CASE("The ledger of energy in space has each loss under its name", "[solid]") {
     const auto run = [](SolidScene s, double end) {
-        SolidFlow flow(s);
+        Mpm3d flow(s);
         while (flow.status().time < end) flow.advance(end);
         return flow.status();
     };
-    for (const bool keeps : {false, true}) {
-        CAPTURE(keeps);
+    for (const bool flip : {false, true}) {
+        CAPTURE(flip);
         SolidScene s = lump(solid::Elastic::of(4e5, 0.3));
-        if (keeps) s = kept(s);
+        if (flip) s = kept(s);
         s.surfaces.clear();
         s.points.velocity.assign(s.points.velocity.size(), Vec3(0.3, -0.2, 0.1));
         const SolidStatus fall = run(s, 0.2);
@@ -94,7 +94,7 @@ TEST_CASE("The ledger of energy in space has each loss under its name", "[solid]
     CHECK(std::abs(run(smooth, 0.4).friction) < 1e-12 * rough.friction);
 }
 
-TEST_CASE("Bodies in space have the same bits for any number of threads", "[solid][threads]") {
+TEST_CASE("3D bodies have the same bits for any number of threads", "[solid][threads]") {
     const int threads = omp_get_max_threads();
     for (const SolidLaw& law : all_solid_laws()) {
         CAPTURE(law.index());
@@ -102,7 +102,7 @@ TEST_CASE("Bodies in space have the same bits for any number of threads", "[soli
         for (const int count : {1, 2, 4}) {
             omp_set_num_threads(count);
             const SolidScene scene = lump(law);
-            SolidFlow flow(scene);
+            Mpm3d flow(scene);
             steps(flow, 150);
             places.push_back(by_id(flow, scene));
             places.back().push_back(flow.body().impulse[0]);
@@ -128,7 +128,7 @@ TEST_CASE("Tiles that work side by side do not meet, in a long corner", "[solid]
     std::vector<std::vector<Vec3>> places;
     for (const int count : {1, 2, 4}) {
         omp_set_num_threads(count);
-        SolidFlow flow(s);
+        Mpm3d flow(s);
         steps(flow, 25);
         places.push_back(by_id(flow, s));
         places.back().push_back(flow.body().impulse[0]);
@@ -150,7 +150,7 @@ TEST_CASE("Each surface is credited with what it gives: a rough floor's friction
     verify::for_each_part({0.05, 0, 0}, {0.85, 0.6, 0.4}, 0.1, 2, [&](const Vec3& x, double volume) {
         s.points.add(x, {1.5, 0, 0}, s.density * volume);  // away from the wall, within its reach
     });
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     while (flow.status().time < 0.05) flow.advance(0.05);
     const Vec3 floor = flow.body().impulse[0], wall = flow.body().impulse[1];
     CHECK(floor.z() > 0.0);
@@ -165,7 +165,7 @@ TEST_CASE("A body that falls free keeps its shape", "[solid]") {
     s.affine = Affine::apic;
     s.points.velocity.assign(s.points.velocity.size(), Vec3(0.3, -0.2, 0.1));
     const auto start = s.points.position;
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     while (flow.status().time < 0.2) flow.advance(0.2);
     const auto now = by_id(flow, s);
     // Velocity first: x = v t + g t (t + dt) / 2, and dt is below 2 % of the time.
@@ -175,7 +175,7 @@ TEST_CASE("A body that falls free keeps its shape", "[solid]") {
     CHECK(flow.velocity(0).z() == Approx(0.1 - 9.81 * 0.2).epsilon(1e-12));
 }
 
-TEST_CASE("A mirrored scene in space gives the mirrored flow", "[solid]") {
+TEST_CASE("A mirrored 3D scene gives the mirrored flow", "[solid]") {
     SolidScene s = lump(solid::Fluid{4e5, 0.0});
     s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}), Surface::plane({0, 0, 0}, {1, 0, 0})};
     s.points = {};
@@ -187,7 +187,7 @@ TEST_CASE("A mirrored scene in space gives the mirrored flow", "[solid]") {
         s.points.add(x, {-1, 0.2, 0}, 1000.0 * volume);
         mirror.points.add({x.y(), x.x(), x.z()}, {0.2, -1, 0}, 1000.0 * volume);
     });
-    SolidFlow one(s), two(mirror);
+    Mpm3d one(s), two(mirror);
     steps(one, 60), steps(two, 60);
     const auto a = by_id(one, s), b = by_id(two, mirror);
     for (std::size_t p = 0; p < a.size(); ++p)
@@ -197,7 +197,7 @@ TEST_CASE("A mirrored scene in space gives the mirrored flow", "[solid]") {
 TEST_CASE("Points that leave the grid are counted and gone", "[solid]") {
     SolidScene s = lump(solid::Fluid{4e5, 0.0});
     s.surfaces.clear();
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     const double mass = flow.status().mass;
     while (flow.status().time < 0.6) flow.advance(0.6);
     CHECK(flow.status().points < static_cast<Index>(s.points.mass.size()));
@@ -208,7 +208,7 @@ TEST_CASE("Points that leave the grid are counted and gone", "[solid]") {
 
 TEST_CASE("No point is found behind a surface, and one that is not finite is told of", "[solid]") {
     SolidScene s = lump(solid::DruckerPrager::of(solid::Elastic::of(4e5, 0.3), 0.5, 0.0));
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     for (int n = 0; n < 200; ++n) {
         flow.advance(1e9);
         for (Index p = 0; p < flow.body().points.count(); ++p)
@@ -218,7 +218,7 @@ TEST_CASE("No point is found behind a surface, and one that is not finite is tol
     s.points.velocity[7].x() = std::nan("");
     for (const bool ground : {false, true}) {
         if (ground) s.surfaces = {Surface::ground(Raster::filled({9, 9, -1.0, -1.0, 0.5}, 0.0))};
-        SolidFlow bad(s);
+        Mpm3d bad(s);
         CHECK_THROWS_AS(bad.advance(1.0), NumericsError);
     }
 }
@@ -245,7 +245,7 @@ TEST_CASE("A floor that holds material gives it no energy, whatever the transfer
             s.surfaces[0] = Surface::plane({0, 0, 0.03}, {0, 0, 1}, Hold::stuck);
             if (transfer[0] == 'a') s.affine = Affine::apic;
             if (transfer[0] == 'f') s = kept(s), s.blending = 1.0;
-            SolidFlow flow(s);
+            Mpm3d flow(s);
             flow.advance(1e9);
             const double start = energy(flow.status()), fall = flow.status().mass * 9.81 * 0.1;
             double most = 0.0;

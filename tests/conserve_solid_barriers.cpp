@@ -1,4 +1,4 @@
-// Flow in space against barriers: nothing leaks, pushes are those of water at rest, ledgers close.
+// 3D flow against barriers: nothing leaks, pushes are those of water at rest, ledgers close.
 #include <omp.h>
 
 #include <Eigen/Geometry>
@@ -55,11 +55,11 @@ SolidScene water(const Turn& turn, const Vec3& size, const Vec3& room, double ce
     return s;
 }
 
-void run_to(SolidFlow& flow, double end) {
+void run_to(Mpm3d& flow, double end) {
     while (flow.status().time < end) flow.advance(end);
 }
 
-Vec3 sum_of_faces(const SolidFlow& flow, int surface) {
+Vec3 sum_of_faces(const Mpm3d& flow, int surface) {
     Vec3 sum = Vec3::Zero();
     for (const Face& face : flow.body().ledger.faces())
         if (face.surface == surface) sum += face.impulse;
@@ -68,12 +68,12 @@ Vec3 sum_of_faces(const SolidFlow& flow, int surface) {
 
 /// Points that lie in a barrier, or for which `beyond` holds.
 template <class Beyond>
-Index count_points(const SolidFlow& flow, Beyond&& beyond) {
+Index count_points(const Mpm3d& flow, Beyond&& beyond) {
     Index count = 0;
     for (Index p = 0; p < flow.body().points.count(); ++p) count += beyond(flow.position(p)) ? 1 : 0;
     return count;
 }
-Index inside_barriers(const SolidFlow& flow) {
+Index inside_barriers(const Mpm3d& flow) {
     return count_points(flow, [&](const Vec3& x) {
         for (const Surface& s : flow.body().surfaces)
             if (s.is_barrier() && s.inside(x)) return true;
@@ -96,7 +96,7 @@ TEST_CASE(
                   Surface::barrier(Prism(turn.at(box(1, -1, 1.6, 2)), 3.0))};
     SolidScene planes = s;
     planes.surfaces[4] = turn.plane({1, 0, 0}, {-1, 0, 0});
-    SolidFlow flow(s), other(planes);
+    Mpm3d flow(s), other(planes);
     run_to(flow, 0.15), run_to(other, 0.15);
     const Face early = flow.body().ledger.face(4, 3);
     run_to(flow, 0.35), run_to(other, 0.35);
@@ -147,7 +147,7 @@ TEST_CASE("Not one point of a block of water that strikes a wall gets into it or
     const Prism wall(turn.at(box(face, -1, face + blow.cells * cell, 2)), 3.0);
     s.surfaces = {turn.plane({0, 0, 0}, {0, 0, 1}), turn.plane({0, 0, 0}, {0, 1, 0}),
                   turn.plane({0, width, 0}, {0, -1, 0}), Surface::barrier(wall)};
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     const double start = flow.status().momentum.norm();
     Index leaked = 0;
     while (flow.status().time < 0.6 / blow.speed) {
@@ -173,7 +173,7 @@ TEST_CASE("Water at rest in the inner corner of an angle stays quiet, and pushes
                   turn.plane({0, side, 0}, {0, -1, 0}),
                   Surface::barrier(Prism(
                       turn.at(ring({{0, 0}, {0, 3}, {-0.5, 3}, {-0.5, -0.5}, {3, -0.5}, {3, 0}})), 2.0))};
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     run_to(flow, 0.5);
     // The gate of the tank in `frana verify`, 0.8 cm/s for water 1 m deep, where waves run 1.4 times as fast.
     CHECK(flow.status().max_speed < 0.008);
@@ -204,7 +204,7 @@ TEST_CASE("A blow on one side of a wall of the least thickness is not felt at al
         {1 + thick, 0, 0}, {1.6 + thick, 0.6, 0.6}, cell, 2,
         [&](const Vec3& x, double volume) { s.points.add(turn.at(x), Vec3::Zero(), kDensity * volume); });
     s.surfaces = {Surface::barrier(Prism(wall_outline(face, WetSide::left, thick), 3.0))};
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     run_to(flow, 0.15);
     CHECK(flow.body().impulse[0].norm() > 4 * kDensity * 0.2);
     double fastest = 0.0;
@@ -224,7 +224,7 @@ TEST_CASE("Water poured over a low wall ends on both sides of it, and its mass a
     s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}),    Surface::plane({0, 0, 0}, {1, 0, 0}),
                   Surface::plane({0, 0, 0}, {0, 1, 0}),    Surface::plane({0, width, 0}, {0, -1, 0}),
                   Surface::plane({3.0, 0, 0}, {-1, 0, 0}), Surface::barrier(wall)};
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     const double mass = flow.status().mass;
     while (flow.status().time < 1.0) {
         flow.advance(1.0);
@@ -254,7 +254,7 @@ TEST_CASE("What a barrier gives a spinning block is in its ledger: momentum and 
         const Vec3 spin(0.3, -0.2, 0.8);
         s.points.add(x, Vec3(3, 0.3, 0) + spin.cross(x - Vec3(0.6, 0.7, 0.5)), s.density * volume);
     });
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     const Vec3 start = flow.status().momentum;
     const Vec3 turning = flow.angular_momentum();
     run_to(flow, 0.25);
@@ -283,7 +283,7 @@ TEST_CASE("Flow around barriers has the same bits for any number of threads, led
     std::vector<std::vector<Vec3>> kept;
     for (const int count : {1, 2, 4}) {
         omp_set_num_threads(count);
-        SolidFlow flow(s);
+        Mpm3d flow(s);
         for (int n = 0; n < 120; ++n) flow.advance(1e9);
         std::vector<Vec3> all;
         for (Index p = 0; p < flow.body().points.count(); ++p) all.push_back(flow.position(p));
@@ -321,7 +321,7 @@ TEST_CASE("A cube as a field of distances is pushed like one with a footprint", 
     shaped.surfaces[4] = Surface::barrier(field);
     for (Vec3& v : s.points.velocity) v.x() = 2.0;
     shaped.points = s.points;
-    SolidFlow flow(s), other(shaped);
+    Mpm3d flow(s), other(shaped);
     run_to(flow, 0.3), run_to(other, 0.3);
     CHECK(inside_barriers(other) == 0);
     const Vec3 front = flow.body().ledger.face(4, 3).impulse, same = other.body().ledger.face(4, 0).impulse;

@@ -2,7 +2,7 @@
 #include <random>
 
 #include "catch.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 
 using namespace frana;
 
@@ -43,9 +43,10 @@ SolidScene thrown(double angle, int many, double width, Hold hold, std::uint32_t
     return s;
 }
 
-/// The most that energy has risen above the start's, over the kinetic energy of the start. The impulses' books balance.
+/// The most that energy has risen above the start's, over the kinetic energy of the start. The impulses' records
+/// balance.
 double gain(const SolidScene& scene) {
-    SolidFlow flow(scene);
+    Mpm3d flow(scene);
     const SolidStatus& s = flow.status();
     const double start = s.energy_given, moves = s.kinetic, momentum = std::sqrt(2.0 * s.mass * moves);
     double most = 0.0;
@@ -85,7 +86,7 @@ TEST_CASE("Oblique corners give pairs, groups and jets no energy", "[solid][corn
                 CAPTURE(many, angle, seed);
                 SolidScene scene = thrown(angle, many, width, Hold::free, seed);
                 CHECK(gain(scene) < 0.01);
-                scene.keeps = true, scene.blending = 0.1;
+                scene.flip = true, scene.blending = 0.1;
                 scene.law = solid::DruckerPrager::of(solid::Elastic::of(4e5, 0.3), 0.5, 0.0);
                 CHECK(gain(scene) < 0.01);
             }
@@ -107,7 +108,7 @@ TEST_CASE("A square corner gives few points no energy, rough or smooth", "[solid
                 SolidScene other = scene;
                 other.affine = Affine::apic;
                 CHECK(gain(other) < 0.01);
-                scene.keeps = true, scene.blending = 0.1;
+                scene.flip = true, scene.blending = 0.1;
                 CHECK(gain(scene) < 0.01);
                 scene.law = solid::DruckerPrager::of(solid::Elastic::of(4e5, 0.3), 0.5, 0.0);
                 CHECK(gain(scene) < 0.01);

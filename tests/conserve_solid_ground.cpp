@@ -1,4 +1,4 @@
-// Material in space on rough ground: none gets through it.
+// 3D material on rough ground: none gets through it.
 #include <algorithm>
 #include <cmath>
 
@@ -45,7 +45,7 @@ SolidScene thrown(const SolidLaw& law, const Surface& ground) {
 }
 
 /// How far the deepest point that the ground is still under lies below it [m].
-double deepest(const SolidFlow& flow, const Raster& bed) {
+double deepest(const Mpm3d& flow, const Raster& bed) {
     double worst = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p) {
         const Vec3 x = flow.position(p);
@@ -64,7 +64,7 @@ TEST_CASE("Nothing gets through ground with features a cell wide, at slopes up t
                     CAPTURE(static_cast<int>(feature), degrees, static_cast<int>(hold), law.index());
                     const Raster bed = ground_with(feature, degrees);
                     SolidScene s = thrown(law, Surface::ground(bed, hold, hold == Hold::free ? 0.3 : 0.0));
-                    SolidFlow flow(s);
+                    Mpm3d flow(s);
                     const double mass = flow.status().mass;
                     double worst = 0.0;
                     while (flow.status().time < 0.4) {

@@ -1,4 +1,4 @@
-// Runs in stages: columns that become points in space keep mass, momentum and energy, at once and as they
+// Runs in stages: columns that become 3D points keep mass, momentum and energy, at once and as they
 // flow in.
 #include <omp.h>
 
@@ -84,7 +84,7 @@ TEST_CASE("Columns that become points keep mass, momentum and energy, at once an
     CHECK(most > run.points()->status().points);
 }
 
-TEST_CASE("A frame in space has the mass of both models on its particles and on its nodes", "[stages]") {
+TEST_CASE("A 3D frame has the mass of both models on its particles and on its nodes", "[stages]") {
     const Scene scene = slide();
     StagedRun run(scene);
     run_to(run, 0.6);
@@ -131,14 +131,14 @@ TEST_CASE("Points that have more energy than the release could give are remarked
         low.particles.vx.assign(low.particles.x.size(), 0.0);
         return low;
     }());
-    less.look(*within.points());
+    less.sample(*within.points());
     CHECK(less.available() == Approx(Spray(scene).available() - 8.0 * 8.0 * (1.0 + 0.25 * 0.25) / (2.0 * scene.gravity)));
     CHECK(less.most_share() > 0.0);
     REQUIRE(less.remark());
     CHECK(less.remark()->find("more energy than a fall from the release's highest head") != std::string::npos);
 }
 
-TEST_CASE("A stage in space from the start takes the release as it is", "[stages]") {
+TEST_CASE("A 3D stage from the start takes the release as it is", "[stages]") {
     Scene scene = slide(0.0);
     scene.solid->window = {0, 0, 40, 12};
     StagedRun run(scene);
@@ -160,7 +160,7 @@ TEST_CASE("Sand starts pressed from all sides by its column's weight, as fluids 
                                 SolidLaw(solid::DruckerPrager::of(solid::Elastic::of(young, 0.3), phi, 0.0))}) {
         scene.solid->law = law;
         const StagedRun run(scene);
-        const SolidFlow& points = *run.points();
+        const Mpm3d& points = *run.points();
         double worst = 0.0;
         for (Index p = 0; p < points.body().points.count(); ++p) {
             const double weight = scene.density * scene.gravity * (21.5 - points.position(p).z());
@@ -202,20 +202,20 @@ void take_up_again(const Scene& scene, const std::vector<double>& stops, double 
     bool returning = false;
     for (std::size_t n = 0; n < stops.size(); ++n) {
         while (straight.status().time < stops[n]) straight.advance(end);
-        straight.keep(kept[n]);
+        straight.serialize(kept[n]);
         returning = returning || !kept[n].entries().at("returning").bytes.empty();
     }
     CHECK(returning == some_return);
     run_to(straight, end);
     CHECK((straight.points()->status().points == 0) == scene.solid->until.has_value());
-    const auto expected = kept_bits(straight);
+    const auto expected = state_bits(straight);
     for (const int other : {1, 2, 4}) {
         omp_set_num_threads(other);
         for (std::size_t n = 0; n < stops.size(); ++n) {
-            StagedRun resumed(scene, Start::kept);
-            resumed.keep(kept[n].rewind());
+            StagedRun resumed(scene, Start::resumed);
+            resumed.serialize(kept[n].rewind());
             run_to(resumed, end);
-            const auto found = kept_bits(resumed);
+            const auto found = state_bits(resumed);
             REQUIRE(found.size() == expected.size());
             for (const auto& [name, entry] : expected) {
                 INFO(name << " with " << other << " threads, from " << stops[n] << " s");
@@ -233,13 +233,13 @@ TEST_CASE("Runs in stages have the same bits for any number of threads, and when
     take_up_again(slide(), {0.3, 0.55}, 0.7, false);
 }
 
-TEST_CASE("So have runs whose points become columns, on their way when it stops, and whose stage in space ends", "[stages]") {
+TEST_CASE("So have runs whose points become columns, on their way when it stops, and whose 3D stage ends", "[stages]") {
     Scene scene = slide_through();
     scene.solid->until = 0.95;
     take_up_again(scene, {0.85, 0.9, 0.97}, 1.0, true);
 }
 
-TEST_CASE("Points in space begin with the same bits whatever the time between the frames before", "[stages]") {
+TEST_CASE("3D points begin with the same bits whatever the time between the frames before", "[stages]") {
     const Scene scene = slide();
     const auto begun = [&](double every) {
         StagedRun staged(scene);
@@ -249,7 +249,7 @@ TEST_CASE("Points in space begin with the same bits whatever the time between th
         const RunSummary summary = run(staged, {scene.solid->from, every, false}, nobody, Interrupt(), progress);
         CHECK(summary.frames == 1 + static_cast<Index>(std::ceil(scene.solid->from / every)));
         REQUIRE(staged.points() != nullptr);
-        return kept_bits(staged);
+        return state_bits(staged);
     };
     const auto seldom = begun(1000.0);
     for (const double every : {0.0031, 0.07}) CHECK((begun(every) == seldom));

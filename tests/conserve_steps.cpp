@@ -149,7 +149,8 @@ TEST_CASE("Between nodes the flow is what it is on them, linearly; the outer hal
 }
 
 TEST_CASE("A stop by gravity and friction together lets no difference of flip's points grow", "[conserve][flip]") {
-    // Uphill at the speed that gravity takes away in the first kick, found by repetition; points' own velocities differ.
+    // Uphill at the speed that gravity takes away in the first grid update, found by repetition; points' own velocities
+    // differ.
     const double slope = 0.3, own = 0.01;
     double uphill = 0.0, fastest = 0.0;
     for (int trial = 0; trial < 40; ++trial) {

@@ -70,7 +70,7 @@ TEST_CASE("Structured solids have the same bits for any number of threads", "[st
         const StructuredPoints& q = flow.body().points;
         std::vector<double> bits = {flow.status().kinetic, flow.status().impulse.friction.x(),
                                     flow.status().damage};
-        for (const Column* column : {&q.x, &q.y, &q.vx, &q.xx, &q.damage})
+        for (const Array* column : {&q.x, &q.y, &q.vx, &q.xx, &q.damage})
             bits.insert(bits.end(), column->begin(), column->end());
         CHECK(flow.body().active.count() >= kTilesForThreads);
         if (count == 1) first = bits;
@@ -85,7 +85,7 @@ TEST_CASE("A column that spreads becomes thinner as its area grows, and stands o
           "[structured]") {
     StructuredScene s;
     s.grid = verify::grid_over({-3, -2}, {3, 2}, 0.1);
-    s.ground = [](double, double) { return GroundPull{0, 0, 2.0}; };
+    s.ground = [](double, double) { return GroundGravity{0, 0, 2.0}; };
     s.material.young = 1e-3;  // holds nothing together
     verify::StructuredBlock block;
     block.low = {-1, -1}, block.cohesion = 1e9;
@@ -112,7 +112,7 @@ TEST_CASE("Neighbours that part unbroken are numerical fracture, and pieces are 
           "[structured]") {
     StructuredScene s;
     s.grid = verify::grid_over({-1, -1}, {6, 3}, 0.1);
-    s.ground = [](double, double) { return GroundPull{0, 0, 0}; };
+    s.ground = [](double, double) { return GroundGravity{0, 0, 0}; };
     verify::StructuredBlock block;
     block.cohesion = 1e9, block.high = {2.0, 1.0};
     verify::add_block(s, block);

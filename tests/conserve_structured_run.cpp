@@ -48,7 +48,7 @@ void go_to(Simulation& run, double time) {
 
 }  // namespace
 
-TEST_CASE("A run of a block keeps mass and momentum, and loses energy to what it books", "[structured]") {
+TEST_CASE("A run of a block keeps mass and momentum, and loses energy to what it records", "[structured]") {
     const Scene scene = sliding(600.0);
     const std::unique_ptr<Simulation> run = make_simulation(scene);
     const Status first = run->status();
@@ -104,7 +104,7 @@ TEST_CASE("Energy of a whole block on a plane: what it loses is friction", "[str
     CHECK(now.dissipated > 0.1 * first.kinetic);
     const double left = (now.kinetic - first.kinetic) + (now.potential - first.potential) + (now.stored - first.stored) +
                         (now.dissipated - first.dissipated);
-    // Work is booked with the velocity at a step's end: half a step's share of the time.
+    // Work is recorded with the velocity at a step's end: half a step's share of the time.
     CHECK(std::abs(left) < 0.5 * step / scene.end * (first.potential - now.potential));
 }
 
@@ -200,14 +200,14 @@ TEST_CASE("A kept run of structured columns goes on with the same bits", "[struc
     StructuredRun whole(scene);
     go_to(whole, 0.7);
     MemoryArchive archive;
-    whole.keep(archive);
-    StructuredRun resumed(scene, Start::kept);
-    resumed.keep(archive.rewind());
-    CHECK(kept_bits(whole) == kept_bits(resumed));
+    whole.serialize(archive);
+    StructuredRun resumed(scene, Start::resumed);
+    resumed.serialize(archive.rewind());
+    CHECK(state_bits(whole) == state_bits(resumed));
     whole.frame();  // looking changes nothing that follows
     go_to(whole, scene.end);
     go_to(resumed, scene.end);
-    CHECK(kept_bits(whole) == kept_bits(resumed));
+    CHECK(state_bits(whole) == state_bits(resumed));
     CHECK(whole.breakage()->pairs == resumed.breakage()->pairs);
     CHECK(whole.breakage()->torn == resumed.breakage()->torn);
 }
@@ -248,7 +248,7 @@ TEST_CASE("Structured columns that leave carry out the energy of where they leav
     go_to(run, scene.end);
     const Status last = run.frame().status;
     REQUIRE(last.mass == 0.0);
-    // The slope has 1 in 3, a column leaves within half a cell (0.25 m) of the node that it is booked at: 0.083 m of
+    // The slope has 1 in 3, a column leaves within half a cell (0.25 m) of the node that it is recorded at: 0.083 m of
     // some 1000, beside what the thousand metres make if they are forgotten.
     const double allowed = first.mass * scene.gravity * (0.25 / 3.0);
     CAPTURE(hole, first.potential, last.potential, first.kinetic, last.kinetic, last.dissipated, last.energy_left);
@@ -392,14 +392,14 @@ TEST_CASE("A kept run with water goes on with the same bits", "[structured][mixt
     StructuredRun whole(scene);
     go_to(whole, 0.7);
     MemoryArchive archive;
-    whole.keep(archive);
-    StructuredRun resumed(scene, Start::kept);
-    resumed.keep(archive.rewind());
-    CHECK(kept_bits(whole) == kept_bits(resumed));
+    whole.serialize(archive);
+    StructuredRun resumed(scene, Start::resumed);
+    resumed.serialize(archive.rewind());
+    CHECK(state_bits(whole) == state_bits(resumed));
     whole.frame();
     go_to(whole, scene.end);
     go_to(resumed, scene.end);
-    CHECK(kept_bits(whole) == kept_bits(resumed));
+    CHECK(state_bits(whole) == state_bits(resumed));
     CHECK(whole.flow().status().dragged > 0.0);
     CHECK((whole.water()->status().ledger.sheared > 0.0) == viscous);
 }
@@ -441,7 +441,7 @@ TEST_CASE("Frames of a wet run show water and columns on all of their tiles, and
     for (Index n = 0; n < 81 * 31; ++n) CHECK(frame.node("surface")->data[n] - frame.node("elevation")->data[n] == Approx(depth[n]).margin(1e-14));
 }
 
-TEST_CASE("Energy of a wet run: most of what is lost is booked, and the rest is no gain", "[structured][mixture]") {
+TEST_CASE("Energy of a wet run: most of what is lost is recorded, and the rest is no gain", "[structured][mixture]") {
     Scene scene = wet_slide();
     scene.structure->share = 0.0, scene.structure->confined = 0.0;
     scene.water->share = 0.4, scene.water->level.reset();
@@ -480,7 +480,7 @@ class WholeFrames final : public Observer {
 public:
     explicit WholeFrames(std::vector<double>& times) : times_(times) {}
     std::string name() const override { return "whole frames"; }
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         times_.push_back(frame.status.time);
         const double mass = frame.status.mass + frame.status.mass_left;
         if (times_.size() == 1) whole_ = mass;
@@ -506,7 +506,7 @@ Watched watched(const Scene& scene, double every) {
     std::ostringstream stream;
     Progress progress(stream, Progress::Style::silent, scene.density);
     result.summary = run(simulation, {scene.end, every, false}, observers, Interrupt(), progress);
-    result.bits = kept_bits(simulation);
+    result.bits = state_bits(simulation);
     return result;
 }
 

@@ -108,14 +108,14 @@ TEST_CASE("What runs out faster than waves leaves undisturbed", "[water][conserv
             };
             s.sides[static_cast<std::size_t>(2 * axis + (sign > 0.0 ? 1 : 0))] = WaterSide::open;
             WaterFlow flow(s);
-            const double end = 2.0, pull = 9.81 / (1.0 + slope * slope) * slope;
+            const double end = 2.0, drive = 9.81 / (1.0 + slope * slope) * slope;
             while (flow.status().time < end) flow.advance(end);
-            const double way = speed * end + 0.5 * pull * end * end;
+            const double way = speed * end + 0.5 * drive * end * end;
             CHECK(flow.status().ledger.left == Approx(depth * way * 1.5).epsilon(1e-12));
             const Index last = sign > 0.0 ? 159 : 0;
             const WaterState at_side = axis == 0 ? flow.at(last, 1) : flow.at(1, last);
             CHECK(at_side.depth == Approx(depth).epsilon(1e-12));
-            CHECK(std::hypot(at_side.u, at_side.v) == Approx(speed + pull * end).epsilon(1e-12));
+            CHECK(std::hypot(at_side.u, at_side.v) == Approx(speed + drive * end).epsilon(1e-12));
         }
 }
 
@@ -454,7 +454,7 @@ TEST_CASE("Slip along a gradient of the columns' share is sheared as eq. 30 has 
     }
 }
 
-TEST_CASE("What smooth water loses is what friction and viscosity are booked to take", "[water][conserve]") {
+TEST_CASE("What smooth water loses is what friction and viscosity are recorded to take", "[water][conserve]") {
     // Waves of 1 cm on 1 m: what the scheme takes of their energy falls by more than half on half the cells.
     const auto unbooked = [](Index cells) {
         WaterScene s;
@@ -480,7 +480,7 @@ TEST_CASE("What smooth water loses is what friction and viscosity are booked to 
     CHECK(std::abs(fine) < 0.6 * std::abs(coarse));
 }
 
-TEST_CASE("What a bore takes of the water's energy is not booked: it is what is left", "[water][conserve]") {
+TEST_CASE("What a bore takes of the water's energy is not recorded: it is what is left", "[water][conserve]") {
     const verify::Stoker wave(1.0, 0.2);
     const double length = 100.0, end = 8.0;
     // Belanger's jump: g m (h_m - h_r)^3 / (4 h_m h_r) over density, width and time, m what goes through it.

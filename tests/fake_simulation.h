@@ -60,8 +60,8 @@ public:
         return {status_.mass, moving ? status_.mass : 0.0, status_.max_speed, 0};
     }
     std::vector<PhaseTime> timings() const override { return {{"deposit", 0.25}, {"kick", 0.5}}; }
-    void keep(Archive& archive) override {
-        frana::keep(archive, "status", status_);
+    void serialize(Archive& archive) override {
+        frana::serialize(archive, "status", status_);
         for (const auto& [name, peak] : {std::pair{"depth", &peak_depth_}, {"speed", &peak_speed_},
                                          {"pressure", &peak_pressure_}, {"arrival", &arrival_}})
             archive.array(name, *peak);

@@ -163,17 +163,17 @@ TEST_CASE("A falsified state of every model is seen, by the invariant that it br
     }
 }
 
-TEST_CASE("A point in space that is too high, or too fast where it is, is seen", "[stress]") {
+TEST_CASE("A 3D point that is too high, or too fast where it is, is seen", "[stress]") {
     for (const Model model : {Model::solid_flow, Model::staged}) {
-        const auto first_in_space = [](const Snapshot& s) {
+        const auto first_in_3d = [](const Snapshot& s) {
             std::size_t p = 0;
-            while (!s.points.in_space[p]) ++p;
+            while (!s.points.in_3d[p]) ++p;
             return p;
         };
         CAPTURE(word_of(model));
-        CHECK(broken_by(model, [&](Snapshot& s) { s.points.z[first_in_space(s)] = 25.0; }) == "head");
-        CHECK(broken_by(model, [&](Snapshot& s) { s.points.speed[first_in_space(s)] = 20.0; }) == "head");
-        CHECK(broken_by(model, [&](Snapshot& s) { s.points.speed[first_in_space(s)] = 2.0; }) == "");
+        CHECK(broken_by(model, [&](Snapshot& s) { s.points.z[first_in_3d(s)] = 25.0; }) == "head");
+        CHECK(broken_by(model, [&](Snapshot& s) { s.points.speed[first_in_3d(s)] = 20.0; }) == "head");
+        CHECK(broken_by(model, [&](Snapshot& s) { s.points.speed[first_in_3d(s)] = 2.0; }) == "");
     }
 }
 

@@ -110,7 +110,7 @@ endforeach()
 wall(src/io "scene/[^rt]")
 wall(vtk_io "scene/[^t]")
 # The phases that depth-averaged particles share, whatever their law.
-wall(src/structured "shallow/(depth_averaged|kick\\.|transfer|merge|split|sides|peaks|mass_fit)")
+wall(src/structured "shallow/(depth_averaged|grid_update\\.|transfer|merge|split|sides|peaks|mass_fit)")
 
 # No room is forgotten.
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/src/*.h ${ROOT}/src/*.cpp ${ROOT}/vtk_io/*.h ${ROOT}/vtk_io/*.cpp)

@@ -28,7 +28,7 @@ struct Things {
     Status status;
     std::vector<PhaseTime> phases{{"deposit", 0.5, 0.25, 3}, {"kick", 1.5, 0.0, 4}};
 
-    void keep(Archive& archive) {
+    void serialize(Archive& archive) {
         const Archive::Part part(archive, "things");
         archive.array("reals", reals);
         archive.array("none", none);
@@ -37,22 +37,22 @@ struct Things {
         archive.texts("texts", texts);
         archive.number("number", number);
         archive.number("count", count);
-        frana::keep(archive, "status", status);
-        frana::keep(archive, "phases", phases);
+        frana::serialize(archive, "status", status);
+        frana::serialize(archive, "phases", phases);
     }
 };
 
 const CheckpointLabels labels{{"version", "9.9"}, {"case", "time.end = 3\n"}};
 
 void write(const fs::path& file, Things things = {}) {
-    write_checkpoint(file, labels, [&](Archive& archive) { things.keep(archive); });
+    write_checkpoint(file, labels, [&](Archive& archive) { things.serialize(archive); });
 }
 
 /// What opening and loading the file says, empty when nothing.
 std::string complaint(const fs::path& file) {
     try {
         Things things;
-        CheckpointFile(file).load([&](Archive& archive) { things.keep(archive); });
+        CheckpointFile(file).load([&](Archive& archive) { things.serialize(archive); });
     } catch (const UserError& error) {
         return error.what();
     }
@@ -76,7 +76,7 @@ TEST_CASE("a state comes back from its file bit for bit", "[resume]") {
     out = Things{{}, {1.0}, {}, {}, {"x"}, 0.0, 0, {}, {}};
     const CheckpointFile opened(file);
     CHECK(opened.labels() == labels);
-    opened.load([&](Archive& archive) { out.keep(archive); });
+    opened.load([&](Archive& archive) { out.serialize(archive); });
     CHECK(std::memcmp(out.reals.data(), in.reals.data(), sizeof(double) * in.reals.size()) == 0);
     CHECK(out.none.empty());
     CHECK(out.wholes == in.wholes);

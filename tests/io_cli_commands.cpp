@@ -82,7 +82,7 @@ TEST_CASE("check tells grid, particles and volume of a good case without running
     CHECK_FALSE(fs::exists(scene.folder() / "out"));
 }
 
-TEST_CASE("check and run refuse points in space that no memory holds", "[cli]") {
+TEST_CASE("check and run refuse 3D points that no memory holds", "[cli]") {
     const PlaneCase scene;
     scene.write("[[stage]]\nmodel = \"solid_flow\"\nspacing = 0.001\n");
     for (const char* command : {"check CASE", "run CASE"}) {

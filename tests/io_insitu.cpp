@@ -44,8 +44,8 @@ TEST_CASE("contours are the circles of the fake's hill, on the surface of the fl
     const FreshFolder folder;
     FakeSimulation simulation;
     const auto work = make_contours(folder.path(), "lines", "depth", {0.5, 1.0});
-    work->look(frame_at(simulation, 0.0), 0);
-    work->look(frame_at(simulation, 0.6), 1);
+    work->sample(frame_at(simulation, 0.0), 0);
+    work->sample(frame_at(simulation, 0.6), 1);
     const std::vector<PvdEntry> entries = read_pvd(folder.path() / "lines.pvd");
     REQUIRE(entries.size() == 2);
     CHECK(entries[1].time == 0.6);
@@ -83,7 +83,7 @@ TEST_CASE("a contour of a field that the run does not have says so and leaves no
     const FreshFolder folder;
     FakeSimulation simulation;
     const auto work = make_contours(folder.path(), "lines", "stress_xx", {1.0});
-    CHECK_THROWS_WITH(work->look(simulation.frame(), 0), Catch::Contains("found no field \"stress_xx\" of the grid"));
+    CHECK_THROWS_WITH(work->sample(simulation.frame(), 0), Catch::Contains("found no field \"stress_xx\" of the grid"));
     CHECK(fs::is_empty(folder.path()));
 }
 
@@ -91,7 +91,7 @@ TEST_CASE("a threshold keeps the particles whose values lie in the interval, wit
     const FreshFolder folder;
     const FrameMaker made(3, 1.5, 500, FrameMaker::utm(20, 15));
     const auto work = make_particle_threshold(folder.path(), "some", "velocity_y", {-4.0, -1.5});
-    work->look(made.frame, 0);
+    work->sample(made.frame, 0);
     const auto reader = read<vtkXMLPolyDataReader>(folder.path() / "some" / "some_000000.vtp");
     vtkPolyData* cloud = reader->GetOutput();
     CHECK(time_of(cloud) == 1.5);
@@ -121,7 +121,7 @@ TEST_CASE("a threshold of particles that have all left is an empty file and a qu
     const FreshFolder folder;
     FrameMaker made(0, 1.5, 0, FrameMaker::utm(5, 5));
     const auto work = make_particle_threshold(folder.path(), "none", "velocity_y", {0.1, 1e9});
-    CHECK(heard_on_stderr([&] { work->look(made.frame, 0); }).empty());
+    CHECK(heard_on_stderr([&] { work->sample(made.frame, 0); }).empty());
     const auto reader = read<vtkXMLPolyDataReader>(folder.path() / "none" / "none_000000.vtp");
     CHECK(reader->GetOutput()->GetNumberOfPoints() == 0);
     CHECK(time_of(reader->GetOutput()) == 1.5);
@@ -133,7 +133,7 @@ TEST_CASE("a threshold keeps the cells all of whose nodes have terrain and lie i
     made.cut_corner();
     const GridGeometry& grid = made.frame.grid;
     const auto work = make_cell_threshold(folder.path(), "dry", "depth", {-1.0, 1.0});
-    work->look(made.frame, 0);
+    work->sample(made.frame, 0);
     const auto reader = read<vtkXMLUnstructuredGridReader>(folder.path() / "dry" / "dry_000000.vtu");
     vtkUnstructuredGrid* kept = reader->GetOutput();
     const Field &depth = *made.frame.node("depth"), &bed = *made.frame.node("elevation");

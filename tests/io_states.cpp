@@ -54,7 +54,7 @@ bool ran(const char* name, const fs::path& out) {
     return run_command(options) == 0;
 }
 
-/// A small run with points in space and a wall, which the state of the impact is for.
+/// A small run with 3D points and a wall, which the state of the impact is for.
 const fs::path& impact_run() {
     static const FreshFolder folder;
     static const fs::path run = folder.path() / "run";
@@ -241,7 +241,7 @@ TEST_CASE("states written again after a move name the files where they lie now")
     fs::copy(full_run(), moved, fs::copy_options::recursive);
     CHECK(text_of(moved / "states" / "overview.pvsm").find(moved.filename().string()) == std::string::npos);
     REQUIRE(states_command({moved, {}}) == 0);
-    CHECK(!fs::exists(moved / "states" / "impact.pvsm"));  // it has no points in space
+    CHECK(!fs::exists(moved / "states" / "impact.pvsm"));  // it has no 3D points
     for (const std::string& name : state_names()) {
         if (name == "impact" || name == "structure" || name == "phases") continue;  // not of this run
         const std::string text = text_of(moved / "states" / (name + ".pvsm"));
@@ -283,7 +283,7 @@ TEST_CASE("the look of an impact has its time, the points' size and a camera on 
     CHECK(fs::exists(impact_run() / "states" / "impact.pvsm"));
 }
 
-TEST_CASE("a run with points in space draws them, and frana figures does it again", "[space]") {
+TEST_CASE("a run with 3D points draws them, and frana figures does it again", "[space]") {
     const std::vector<std::string> pictures = {"view_impact.png", "section_impact.png", "view_points.png",
                                                "section_points.png"};
     const FreshFolder folder;

@@ -116,7 +116,7 @@ TEST_CASE("profiles hold what the frame has at their stations, and the first fra
     std::vector<double> first_surfaces;
     for (const double time : {0.0, 2.5}) {
         FrameMaker maker(time > 0.0 ? 1 : 0, time, 100, grid);
-        writer->see(maker.frame);
+        writer->observe(maker.frame);
         const auto data = polydata(folder.path() / fmt::format("profiles/profiles_{:06d}.vtp", time > 0.0 ? 1 : 0));
         REQUIRE(data->GetNumberOfCells() == 2);
         CHECK(data->GetFieldData()->GetArray("TimeValue")->GetTuple1(0) == time);

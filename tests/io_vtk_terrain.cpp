@@ -89,8 +89,8 @@ TEST_CASE("read_frame gives back what the writers were shown", "[io][vtk]") {
     for (Index number = 0; number < 4; ++number) {
         FrameMaker maker(number, 2.5 * static_cast<double>(number), 100 * number, FrameMaker::utm(31, 17));
         maker.cut_corner();
-        grid->see(maker.frame);
-        particles->see(maker.frame);
+        grid->observe(maker.frame);
+        particles->observe(maker.frame);
     }
     CHECK(frame_times(run.path()) == std::vector<double>{0.0, 2.5, 5.0, 7.5});
     CHECK(nearest_frame(run.path(), 5.4) == 2);
@@ -134,7 +134,7 @@ TEST_CASE("A missing, broken or absent frame is an error that names it", "[io][v
     CHECK_THROWS_WITH(frame_times(run.path()), Contains("grid.pvd: not found"));
     CHECK_THROWS_WITH(read_terrain(run.path()), Contains("terrain.vti: not found"));
     FrameMaker maker(0, 0.0, 1, FrameMaker::utm(40, 40));
-    make_grid_writer(run.path())->see(maker.frame);
+    make_grid_writer(run.path())->observe(maker.frame);
     CHECK_THROWS_WITH(read_frame(run.path(), 5), Contains("has no frame 5"));
     CHECK_THROWS_WITH(read_frame(run.path(), -2), Contains("has no frame -2"));
     fs::resize_file(run.path() / "grid/grid_000000.vti", 900);
@@ -146,7 +146,7 @@ TEST_CASE("A missing, broken or absent frame is an error that names it", "[io][v
 TEST_CASE("A frame with a damaged header is an error that names it, whatever VTK makes of it", "[io][vtk]") {
     const FreshFolder run;
     FrameMaker maker(0, 0.0, 10, FrameMaker::utm(5, 5));
-    make_particle_writer(run.path())->see(maker.frame);
+    make_particle_writer(run.path())->observe(maker.frame);
     const fs::path file = run.path() / "particles/particles_000000.vtp";
     std::string text = text_of(file);
     std::string sentence = "cannot be read";

@@ -129,7 +129,7 @@ TEST_CASE("VTK reads the particles back bit for bit", "[io][vtk]") {
             maker.particle_numbers("mass")[1] = 1e300;
             maker.particle_numbers("stress")[2] = -3.4e38;
         }
-        writer->see(maker.frame);
+        writer->observe(maker.frame);
         CAPTURE(count);
         check_particles(maker.frame, run.path() / check_series(run.path() / "particles.pvd").back().file);
     }
@@ -138,7 +138,7 @@ TEST_CASE("VTK reads the particles back bit for bit", "[io][vtk]") {
 TEST_CASE("Particle arrays have the number types that the contract names", "[io][vtk]") {
     const FreshFolder run;
     FrameMaker maker(0, 0.0, 5, FrameMaker::utm(3, 3));
-    make_particle_writer(run.path())->see(maker.frame);
+    make_particle_writer(run.path())->observe(maker.frame);
     const auto reader = read<vtkXMLPolyDataReader>(run.path() / "particles/particles_000000.vtp");
     vtkPointData* arrays = reader->GetOutput()->GetPointData();
     CHECK(arrays->GetArray("depth")->GetDataType() == VTK_FLOAT);
@@ -157,7 +157,7 @@ TEST_CASE("VTK reads the grid back bit for bit, whatever its shape", "[io][vtk]"
     for (const auto& [nx, ny] : shapes) {
         FrameMaker maker(number, 0.5 * static_cast<double>(number), 0, FrameMaker::utm(nx, ny));
         maker.node_numbers("depth")[0] = 1e-40;
-        writer->see(maker.frame);
+        writer->observe(maker.frame);
         CAPTURE(nx, ny);
         check_grid(maker.frame, run.path() / check_series(run.path() / "grid.pvd").back().file);
         ++number;
@@ -170,7 +170,7 @@ TEST_CASE("Nodes without terrain are hidden and leave no NaN in the grid file", 
     const double lowest =
         *std::min_element(maker.node_numbers("elevation").begin(), maker.node_numbers("elevation").end());
     maker.cut_corner();
-    make_grid_writer(run.path())->see(maker.frame);
+    make_grid_writer(run.path())->observe(maker.frame);
     const auto reader = read<vtkXMLImageDataReader>(run.path() / "grid/grid_000000.vti");
     vtkPointData* arrays = reader->GetOutput()->GetPointData();
     vtkDataArray* ghosts = arrays->GetArray(vtkDataSetAttributes::GhostArrayName());
@@ -192,10 +192,10 @@ TEST_CASE("A NaN inside the terrain stops the grid writer and leaves no file", "
     const FreshFolder run;
     FrameMaker maker(0, 0.0, 3, FrameMaker::utm(4, 4));
     maker.node_numbers("depth")[5] = std::numeric_limits<double>::quiet_NaN();
-    CHECK_THROWS_WITH(make_grid_writer(run.path())->see(maker.frame), Contains("depth of item 5 is nan"));
+    CHECK_THROWS_WITH(make_grid_writer(run.path())->observe(maker.frame), Contains("depth of item 5 is nan"));
     CHECK_FALSE(fs::exists(run.path() / "grid.pvd"));
     maker.particle_numbers("depth")[1] = 1e39;  // finite, yet more than float32 can hold
-    CHECK_THROWS_AS(make_particle_writer(run.path())->see(maker.frame), NumericsError);
+    CHECK_THROWS_AS(make_particle_writer(run.path())->observe(maker.frame), NumericsError);
     CHECK_FALSE(fs::exists(run.path() / "particles.pvd"));
 }
 
@@ -207,8 +207,8 @@ TEST_CASE("After every frame the series name only files that exist, with exact t
     for (Index number = 0; number < 12; ++number) {
         times.push_back(static_cast<double>(number) / 3.0);  // no short decimal text stands for these
         FrameMaker maker(number, times.back(), 10, FrameMaker::utm(8, 6));
-        particles->see(maker.frame);
-        grid->see(maker.frame);
+        particles->observe(maker.frame);
+        grid->observe(maker.frame);
         for (const char* name : {"particles.pvd", "grid.pvd"}) {
             const auto entries = check_series(run.path() / name);
             REQUIRE(entries.size() == times.size());
@@ -225,8 +225,8 @@ TEST_CASE("A frame number seen twice replaces its file and its line", "[io][vtk]
     const FreshFolder run;
     const auto writer = make_grid_writer(run.path());
     FrameMaker first(0, 1.0, 0, FrameMaker::utm(5, 5)), second(0, 2.0, 0, FrameMaker::utm(6, 5));
-    writer->see(first.frame);
-    writer->see(second.frame);
+    writer->observe(first.frame);
+    writer->observe(second.frame);
     const auto entries = check_series(run.path() / "grid.pvd");
     REQUIRE(entries.size() == 1);
     CHECK(entries[0].time == 2.0);
@@ -238,13 +238,13 @@ TEST_CASE("A full disk is an error with path and reason, and the files before it
     const auto particles = make_particle_writer(run.path());
     const auto grid = make_grid_writer(run.path());
     FrameMaker maker(0, 0.0, 20000, FrameMaker::utm(150, 150));
-    particles->see(maker.frame);
-    grid->see(maker.frame);
+    particles->observe(maker.frame);
+    grid->observe(maker.frame);
     maker.frame.number = 1;
     {
         const SmallDisk disk(20000);
-        CHECK_THROWS_AS(particles->see(maker.frame), UserError);
-        CHECK_THROWS_WITH(grid->see(maker.frame),
+        CHECK_THROWS_AS(particles->observe(maker.frame), UserError);
+        CHECK_THROWS_WITH(grid->observe(maker.frame),
                           Contains("grid_000001.vti") && Contains("cannot be written"));
     }
     CHECK(check_series(run.path() / "particles.pvd").size() == 1);
@@ -257,8 +257,8 @@ TEST_CASE("A folder that cannot be made is an error with path and reason", "[io]
     const FreshFolder run;
     std::ofstream(run.path() / "grid") << "a file where a folder should be";
     FrameMaker maker(0, 0.0, 1, FrameMaker::utm(3, 3));
-    CHECK_THROWS_WITH(make_grid_writer(run.path())->see(maker.frame),
+    CHECK_THROWS_WITH(make_grid_writer(run.path())->observe(maker.frame),
                       Contains((run.path() / "grid").string()) && Contains("cannot be made"));
-    CHECK_THROWS_WITH(make_particle_writer(run.path() / "no" / std::string(300, 'x'))->see(maker.frame),
+    CHECK_THROWS_WITH(make_particle_writer(run.path() / "no" / std::string(300, 'x'))->observe(maker.frame),
                       Contains("File name too long"));
 }

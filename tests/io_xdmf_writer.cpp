@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Array {
+struct StoredArray {
     std::vector<hsize_t> shape;
     std::vector<double> numbers;
     H5T_class_t kind = H5T_NO_CLASS;
@@ -40,13 +40,13 @@ std::string text_attribute(hid_t object, const char* name) {
     return text.c_str();
 }
 
-Array read_array(const fs::path& file, const std::string& name) {
+StoredArray read_array(const fs::path& file, const std::string& name) {
     CAPTURE(name);
     const hid_t opened = H5Fopen(file.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     REQUIRE(opened >= 0);
     const hid_t set = H5Dopen2(opened, name.c_str(), H5P_DEFAULT);
     REQUIRE(set >= 0);
-    Array array;
+    StoredArray array;
     const hid_t space = H5Dget_space(set), type = H5Dget_type(set), plist = H5Dget_create_plist(set);
     array.shape.resize(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
     H5Sget_simple_extent_dims(space, array.shape.data(), nullptr);
@@ -65,7 +65,7 @@ Array read_array(const fs::path& file, const std::string& name) {
     return array;
 }
 
-void check_same(const Field& field, std::vector<hsize_t> shape, const Array& found) {
+void check_same(const Field& field, std::vector<hsize_t> shape, const StoredArray& found) {
     CAPTURE(field.name);
     if (field.components > 1) shape.push_back(static_cast<hsize_t>(field.components));
     CHECK(found.shape == shape);
@@ -119,7 +119,7 @@ TEST_CASE("HDF5 reads every frame back bit for bit", "[io][xdmf]") {
         FrameMaker maker(number, 0.1 * static_cast<double>(number), 1000 * number, FrameMaker::utm(nx, ny));
         maker.node_numbers("depth")[0] = 1e-42;  // a denormal of float32
         if (number > 0) maker.particle_numbers("mass")[0] = 5e-324;
-        writer->see(maker.frame);
+        writer->observe(maker.frame);
         CAPTURE(number);
         check_frame(maker.frame, run.path() / "run.h5");
         ++number;
@@ -132,7 +132,7 @@ TEST_CASE("HDF5 reads every frame back bit for bit", "[io][xdmf]") {
 TEST_CASE("HDF5 arrays have the number types that the contract names", "[io][xdmf]") {
     const FreshFolder run;
     FrameMaker maker(7, 1.0, 5, FrameMaker::utm(3, 3));
-    make_xdmf_writer(run.path())->see(maker.frame);
+    make_xdmf_writer(run.path())->observe(maker.frame);
     const fs::path file = run.path() / "run.h5";
     CHECK(read_array(file, "/frame_000007/particles/id").kind == H5T_INTEGER);
     CHECK(read_array(file, "/frame_000007/particles/id").bytes == 8);
@@ -148,7 +148,7 @@ TEST_CASE("After every frame run.xdmf names only arrays that run.h5 has, with ex
     for (Index number = 0; number < 5; ++number) {
         FrameMaker maker(number, static_cast<double>(number) / 3.0, 20, FrameMaker::utm(6, 4));
         if (number == 4) maker.cut_corner();
-        writer->see(maker.frame);
+        writer->observe(maker.frame);
         const std::string text = text_of(run.path() / "run.xdmf");
         const auto names = named_arrays(text);
         CHECK(names.size() == static_cast<std::size_t>(14 * (number + 1) + (number == 4 ? 1 : 0)));
@@ -166,7 +166,7 @@ TEST_CASE("Nodes without terrain are marked and leave no NaN in run.h5", "[io][x
     const FreshFolder run;
     FrameMaker maker(0, 0.0, 0, FrameMaker::utm(20, 10));
     maker.cut_corner();
-    make_xdmf_writer(run.path())->see(maker.frame);
+    make_xdmf_writer(run.path())->observe(maker.frame);
     const auto outside = read_array(run.path() / "run.h5", "/frame_000000/grid/outside").numbers;
     const auto elevation = read_array(run.path() / "run.h5", "/frame_000000/grid/elevation").numbers;
     for (std::size_t k = 0; k < 200; ++k) {
@@ -179,11 +179,11 @@ TEST_CASE("A viewer that holds a lock on run.h5 does not stop the writer", "[io]
     const FreshFolder run;
     const auto writer = make_xdmf_writer(run.path());
     FrameMaker first(0, 0.0, 10, FrameMaker::utm(5, 5)), second(1, 1.0, 10, FrameMaker::utm(5, 5));
-    writer->see(first.frame);
+    writer->observe(first.frame);
     const int viewer = ::open((run.path() / "run.h5").c_str(), O_RDONLY);
     REQUIRE(viewer >= 0);
     REQUIRE(::flock(viewer, LOCK_SH) == 0);  // what HDF5 does to a file it reads
-    CHECK_NOTHROW(writer->see(second.frame));
+    CHECK_NOTHROW(writer->observe(second.frame));
     ::close(viewer);
     check_frame(second.frame, run.path() / "run.h5");
 }
@@ -192,8 +192,8 @@ TEST_CASE("A frame number seen twice is replaced in run.h5 and run.xdmf", "[io][
     const FreshFolder run;
     const auto writer = make_xdmf_writer(run.path());
     FrameMaker first(0, 1.0, 10, FrameMaker::utm(5, 5)), second(0, 2.0, 7, FrameMaker::utm(6, 5));
-    writer->see(first.frame);
-    writer->see(second.frame);
+    writer->observe(first.frame);
+    writer->observe(second.frame);
     check_frame(second.frame, run.path() / "run.h5");
     CHECK(named_arrays(text_of(run.path() / "run.xdmf")).size() == 14);
 }
@@ -201,7 +201,7 @@ TEST_CASE("A frame number seen twice is replaced in run.h5 and run.xdmf", "[io][
 TEST_CASE("A run.h5 that cannot be written is an error with path and reason", "[io][xdmf]") {
     const FreshFolder run;
     FrameMaker maker(0, 0.0, 20000, FrameMaker::utm(100, 100));
-    CHECK_THROWS_WITH(make_xdmf_writer(run.path() / "absent")->see(maker.frame),
+    CHECK_THROWS_WITH(make_xdmf_writer(run.path() / "absent")->observe(maker.frame),
                       Contains("run.h5: cannot be written") && Contains("No such file or directory"));
 }
 
@@ -210,11 +210,11 @@ TEST_CASE("A full disk is an error with path and reason, and the frames before i
     const FreshFolder run;
     FrameMaker maker(0, 0.0, 200, FrameMaker::utm(20, 20)), large(1, 1.0, 20000, FrameMaker::utm(100, 100));
     const auto writer = make_xdmf_writer(run.path());
-    writer->see(maker.frame);
+    writer->observe(maker.frame);
     const auto size = fs::file_size(run.path() / "run.h5");
     {
         const SmallDisk disk(size + 50000);
-        CHECK_THROWS_WITH(writer->see(large.frame),
+        CHECK_THROWS_WITH(writer->observe(large.frame),
                           Contains("run.h5: cannot be written") && Contains("File too large"));
     }
     CHECK(fs::file_size(run.path() / "run.h5") == size);
@@ -225,7 +225,7 @@ TEST_CASE("A full disk is an error with path and reason, and the frames before i
 TEST_CASE("run.h5 keeps no space beyond its arrays", "[io][xdmf]") {
     const FreshFolder run;
     FrameMaker maker(0, 0.0, 1000, FrameMaker::utm(100, 100));
-    make_xdmf_writer(run.path())->see(maker.frame);
+    make_xdmf_writer(run.path())->observe(maker.frame);
     // 11 float32 of 1e4 nodes; 7 float32 and 6 eight-byte numbers of 1e3 particles; 64 kB for HDF5's own
     // tables
     CHECK(fs::file_size(run.path() / "run.h5") < 11 * 4 * 10000 + (7 * 4 + 6 * 8) * 1000 + 65536);

@@ -87,7 +87,7 @@ json make_run(const std::filesystem::path& run_dir) {
         FrameMaker maker(number, time, 3000 - 1500 * number, nodes);
         maker.cut_corner();
         if (number == 0) terrain = make_terrain(run_dir, maker);
-        for (const auto* writer : {&particles, &grid, &xdmf}) (*writer)->see(maker.frame);
+        for (const auto* writer : {&particles, &grid, &xdmf}) (*writer)->observe(maker.frame);
         times.push_back(time);
         grids.push_back(image_of_nodes(nodes, maker.frame.nodes));
         clouds.push_back(particles_of(maker.frame));

@@ -22,7 +22,7 @@ inline SolidScene lump(const SolidLaw& law) {
 /// The same with points that keep their velocities.
 inline SolidScene kept(SolidScene s) {
     s.affine = Affine::tpic;
-    s.keeps = true;
+    s.flip = true;
     s.blending = 0.1;
     return s;
 }

@@ -76,7 +76,7 @@ TEST_CASE("Steps of a warm run allocate nothing", "[speed]") {
 }
 
 TEST_CASE("Warm steps in space allocate nothing", "[speed][solid]") {
-    SolidFlow flow(lump(solid::Bingham{4e5, 1e5, 10.0, 500.0}));
+    Mpm3d flow(lump(solid::Bingham{4e5, 1e5, 10.0, 500.0}));
     for (int step = 0; step < 10; ++step) flow.advance(1e9);
     const long before = allocations;
     for (int step = 0; step < 10; ++step) flow.advance(1e9);
@@ -88,7 +88,7 @@ TEST_CASE("Warm steps against a barrier allocate nothing", "[speed][solid][barri
     const std::vector<Vec2> corners = {{1.3, -0.5}, {1.5, -0.5}, {1.5, 2.0}, {1.3, 2.0}};
     scene.surfaces.push_back(Surface::barrier(Prism({{Polygon{{corners}}}, "", ""}, 0.6)));
     for (Vec3& v : scene.points.velocity) v.x() = 3.0;
-    SolidFlow flow(scene);
+    Mpm3d flow(scene);
     while (flow.body().ledger.face(2, 3).impulse.norm() == 0.0) flow.advance(1e9);
     for (int step = 0; step < 10; ++step) flow.advance(1e9);
     const long before = allocations;

@@ -108,7 +108,7 @@ TEST_CASE("Every phase that the solver times has a traffic model, and phases mak
         CHECK(phase.calls > 0);
         CHECK(phase.cpu_seconds == 0.0);  // not asked for
     }
-    SolidFlow space(bench::body_scene(bench::BodyLaw::bingham, 1000));
+    Mpm3d space(bench::body_scene(bench::BodyLaw::bingham, 1000));
     for (int step = 0; step < 3; ++step) space.advance(1e9);
     for (const PhaseTime& phase : space.timings()) {
         CAPTURE(phase.name);
@@ -121,7 +121,7 @@ TEST_CASE("Every phase that the solver times has a traffic model, and phases mak
         if (phase.name != "full") sum += phase.cpu_ns;
     CHECK(sum == Approx(cost.full().cpu_ns).epsilon(1e-6));
     CHECK(cost.phases.back().name == "other");
-    CHECK(cost.phases.back().cpu_ns < 0.2 * sum);  // a phase that nobody books would hide there
+    CHECK(cost.phases.back().cpu_ns < 0.2 * sum);  // a phase that nobody records would hide there
 }
 
 TEST_CASE("Memory per point counts at least the columns and the copy of one in the sort", "[bench]") {
@@ -151,7 +151,7 @@ class Witness final : public Observer {
 public:
     explicit Witness(Shown& shown) : shown_(shown) {}
     std::string name() const override { return "witness"; }
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         CHECK(frame.number == static_cast<Index>(shown_.frames++));
         shown_.particle_fields = frame.particles.size();
         shown_.node_fields = frame.nodes.size();

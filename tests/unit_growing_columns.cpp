@@ -174,9 +174,9 @@ TEST_CASE("A part that grows onto holes of the terrain holds all of it, and its 
     CHECK(told);
     {
         MemoryArchive archive;
-        part.keep(archive);
-        GrowingColumns again(scene, Start::kept);
-        again.keep(archive.rewind());
+        part.serialize(archive);
+        GrowingColumns again(scene, Start::resumed);
+        again.serialize(archive.rewind());
         for (int step = 0; step < 50; ++step) part.advance(1e9), again.advance(1e9);
         require_same(part, again);
     }
@@ -221,9 +221,9 @@ TEST_CASE("A run on a part goes on from a kept state with the same bits, before 
     for (const bool grown : {false, true}) {
         while ((run.held() == begin) == grown || run.status().time < 3.0) run.advance(1e9);
         MemoryArchive archive;
-        run.keep(archive);
-        GrowingColumns again(slide_on_large(), Start::kept);
-        again.keep(archive.rewind());
+        run.serialize(archive);
+        GrowingColumns again(slide_on_large(), Start::resumed);
+        again.serialize(archive.rewind());
         CHECK(again.held() == run.held());
         for (int step = 0; step < 50; ++step) run.advance(1e9), again.advance(1e9);
         require_same(run, again);
@@ -240,9 +240,9 @@ TEST_CASE("What may split is kept with a part that has grown", "[terrain]") {
     const NodeBox begin = run.held();
     while (run.held() == begin) run.advance(1e9);
     MemoryArchive archive;
-    run.keep(archive);
-    GrowingColumns again(slide(1.0), Start::kept);
-    again.keep(archive.rewind());
+    run.serialize(archive);
+    GrowingColumns again(slide(1.0), Start::resumed);
+    again.serialize(archive.rewind());
     for (int step = 0; step < 50; ++step) run.advance(1e9), again.advance(1e9);
     require_same(run, again);
     run_to(splits, run.status().time);

@@ -20,7 +20,7 @@ namespace {
 class Diary final : public InsituWork {
 public:
     explicit Diary(std::vector<double>& times, Index fail_until = 0) : times_(times), fail_until_(fail_until) {}
-    void look(const Frame& frame, Index number) override {
+    void sample(const Frame& frame, Index number) override {
         if (calls_++ < fail_until_) throw UserError("the disk is full");
         CHECK(number == static_cast<Index>(times_.size()));
         times_.push_back(frame.status.time);
@@ -155,8 +155,8 @@ TEST_CASE("A cut has the values of the grid between its nodes, and empty cells w
     const fs::path csv = folder.path() / "insitu" / "cut.csv";
     // along the lower row, one node to the next, then up the last column to the node without terrain
     const auto work = make_cut_table(csv, {{100, 200}, {106, 200}, {106, 204}}, {"depth", "velocity_x"});
-    work->look(made.frame, 0);
-    work->look(made.frame, 1);
+    work->sample(made.frame, 0);
+    work->sample(made.frame, 1);
     const Table table = read_table(csv);
     CHECK(table.columns ==
           std::vector<std::string>{"t", "distance", "x", "y", "bed", "depth", "velocity_x"});
@@ -180,9 +180,9 @@ TEST_CASE("A reduction has extremes, mean, area and volume of what is deep enoug
     SmallFrame made;
     const fs::path csv = folder.path() / "extremes.csv";
     const auto work = make_reduction(csv, {"depth", "velocity_y"}, 2.0);
-    work->look(made.frame, 0);
+    work->sample(made.frame, 0);
     std::fill(made.depth.begin(), made.depth.end(), 2.0);  // not above the limit
-    work->look(made.frame, 1);
+    work->sample(made.frame, 1);
     const Table table = read_table(csv);
     REQUIRE(table.rows() == 2);
     const auto first = [&](const char* column) { return table.column(column)[0]; };

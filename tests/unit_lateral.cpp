@@ -59,7 +59,8 @@ TEST_CASE("The lateral drag at a node is that of its faces, and takes momentum f
     CHECK(work < 0.0);
 }
 
-TEST_CASE("Lateral drag of any strength slows a shear stably and books the energy that it takes", "[lateral][conserve]") {
+TEST_CASE("Lateral drag of any strength slows a shear stably and records the energy that it takes",
+          "[lateral][conserve]") {
     for (const double drag : {0.3, 1e6}) {
         DepthAveraged free(stream(1.0, 0.0)), held(stream(1.0, drag));  // nothing comes to the sides in 0.3 s
         const auto shear_energy = [](DepthAveraged& run) {
@@ -72,7 +73,8 @@ TEST_CASE("Lateral drag of any strength slows a shear stably and books the energ
         CHECK(b.kinetic < a.kinetic);
         CHECK(b.dissipated > a.dissipated);
         CHECK(b.mass_left == 0.0);
-        // What is gone from motion and height has been booked; the scheme's own share is that of the run without drag.
+        // What is gone from motion and height has been recorded; the scheme's own share is that of the run without
+        // drag.
         const auto open = [&](const Status& s) { return s.kinetic + s.potential + s.dissipated - start.kinetic - start.potential; };
         CHECK(open(b) <= std::max(open(a), 0.0) + 0.01 * b.dissipated);
     }

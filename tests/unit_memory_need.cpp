@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "catch.h"
 #include "convert/solid_points.h"
-#include "coupling/hand_over.h"
+#include "coupling/stage_conversion.h"
 #include "coupling/staged_run.h"
 #include "scene/build_scene.h"
 #include "scene/memory_need.h"

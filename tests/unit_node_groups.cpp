@@ -80,11 +80,11 @@ TEST_CASE("Nodes that no point touches hold nothing, and nodes near them are dry
             simulation.advance(1e9);
             const Flow& flow = simulation.flow();
             for (const Index tile : flow.active.work) {
-                for_each_node_of(flow.grid, tile, ~flow.touched[tile], [&](Index k, Index, Index) {
+                for_each_node_of(flow.grid, tile, ~flow.in_reach[tile], [&](Index k, Index, Index) {
                     loaded += flow.nodes.mass[k] != 0.0 || flow.nodes.column_mass[k] != 0.0;
                     ++passed_over;
                 });
-                for_each_node_of(flow.grid, tile, flow.near[tile] & ~flow.touched[tile], [&](Index k, Index, Index) {
+                for_each_node_of(flow.grid, tile, flow.near[tile] & ~flow.in_reach[tile], [&](Index k, Index, Index) {
                     dry += flow.nodes.depth[k] == 0.0 && flow.nodes.flags[k] == 0 &&
                            flow.nodes.surface[k] == flow.bed.z[k] && flow.nodes.before[k].x == 0.0;
                     --dry;

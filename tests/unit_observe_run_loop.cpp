@@ -20,7 +20,7 @@ public:
     explicit NoteTaker(Notes& notes) : notes_(notes) {}
     std::string name() const override { return "notes"; }
     void step(const Status& now, const Probe&) override { notes_.step_times.push_back(now.time); }
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         notes_.frame_times.push_back(frame.status.time);
         notes_.frame_numbers.push_back(frame.number);
     }

@@ -200,7 +200,7 @@ TEST_CASE("Map coordinates of millions of metres cost neither particles nor volu
     check_volume(there, volume_in_box(near, 0, 0, 100, 100));
 }
 
-TEST_CASE("Two releases keep their own books and velocities", "[particles][nan]") {
+TEST_CASE("Two releases keep their own records and velocities", "[particles][nan]") {
     Release first = release_of({{{rotated_square({30, 30}, 20, 0.1)}}}, 1.0);
     Release second = release_of({{{rotated_square({70, 60}, 25, 0.7)}}}, 2.0);
     first.velocity = Vec2(1.0, -2.0);

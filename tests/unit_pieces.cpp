@@ -1,9 +1,9 @@
-// What material in space has come apart into: exact answers.
+// What 3D material has come apart into: exact answers.
 #include <omp.h>
 
 #include "catch.h"
 #include "solid3d/pieces.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 #include "solid3d/split_points.h"
 #include "solid_maker.h"
 
@@ -24,7 +24,7 @@ Pieces with_gap(int axis, double gap) {
     cube(low, 2.0);
     low[axis] += 2.0 + gap;
     cube(low, 1.0);
-    const SolidFlow flow(s);
+    const Mpm3d flow(s);
     return pieces_of(flow.body().points, flow.body().grid);
 }
 
@@ -55,7 +55,7 @@ TEST_CASE("Points no farther apart than a cell are one piece, wherever cells end
 TEST_CASE("Without points there are no pieces", "[solid][pieces]") {
     SolidScene s;
     s.grid.nodes = {8, 8, 8};
-    const SolidFlow flow(s);
+    const Mpm3d flow(s);
     CHECK(pieces_of(flow.body().points, flow.body().grid).count == 0);
 }
 
@@ -78,7 +78,7 @@ SolidScene pair(double gap) {
 TEST_CASE("Points become two across a gap that grows, and halves lie evenly", "[solid][pieces]") {
     for (const double gap : {0.79, 1.0, 1.76}) {
         CAPTURE(gap);
-        const SolidFlow flow(pair(gap));
+        const Mpm3d flow(pair(gap));
         const auto list = points_to_split(flow.body().points, flow.body().grid, {});
         REQUIRE(list.size() == (gap == 1.0 ? 2 : 0));
         if (list.empty()) continue;
@@ -87,7 +87,7 @@ TEST_CASE("Points become two across a gap that grows, and halves lie evenly", "[
     }
     SolidScene closing = pair(1.0);
     std::swap(closing.points.velocity[0], closing.points.velocity[1]);
-    const SolidFlow flow(closing);
+    const Mpm3d flow(closing);
     CHECK(points_to_split(flow.body().points, flow.body().grid, {}).empty());
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("Splitting keeps mass, momentum and its ledger, with the same bits for
             omp_set_num_threads(count);
             SolidScene scene = kept(lump(law));
             scene.split = true;
-            SolidFlow flow(scene);
+            Mpm3d flow(scene);
             const double mass = flow.status().mass;
             const Index before = flow.status().points;
             for (int n = 0; n < 300; ++n) flow.advance(1e9);

@@ -126,9 +126,9 @@ TEST_CASE("A rule that is taken up again sees rest at the same step", "[rest][re
     RestRule before(kCell, 0.05);
     while (again.status().time < 41.0) again.advance(400.0), before.note(again);
     MemoryArchive archive;
-    before.keep(archive);
+    before.serialize(archive);
     RestRule after(kCell, 0.05);
-    after.keep(archive.rewind());
+    after.serialize(archive.rewind());
     while (!after.at_rest() && again.status().time < 400.0) again.advance(400.0), after.note(again);
     CHECK(again.status().time == seen);
 }

@@ -87,7 +87,7 @@ TEST_CASE("A corner that stands in is a corner of two planes, from before it and
                                          Surface::plane({2, 2, 0}, {0, 1, 0})};
     const std::vector<Surface> corner = {
         Surface::barrier(Prism(ring({{-40, -40}, {60, -40}, {60, 2}, {2, 2}, {2, 60}, {-40, 60}}), 300.0))};
-    const Images of_planes(planes, 3u, {2.3, 2.5, 1}, 0.5), of_corner(corner, 1u, {2.3, 2.5, 1}, 0.5);
+    const MirrorParticles of_planes(planes, 3u, {2.3, 2.5, 1}, 0.5), of_corner(corner, 1u, {2.3, 2.5, 1}, 0.5);
     REQUIRE(of_planes.end() - of_planes.begin() == 3);
     REQUIRE(of_corner.end() - of_corner.begin() == 3);
     for (int n = 0; n < 3; ++n) {
@@ -98,10 +98,10 @@ TEST_CASE("A corner that stands in is a corner of two planes, from before it and
     const auto behind = all_contacts(angle, {1.8, 1.9, -10}, 0.2);
     REQUIRE(behind.size() == 2);
     CHECK(behind[0].distance + behind[1].distance == Approx(-0.3));
-    const auto beside = all_contacts(angle, {1.9, 2.2, -10}, 0.2);
-    REQUIRE(beside.size() == 2);
-    CHECK(beside[0].distance == Approx(-0.1));
-    CHECK(beside[1].distance == Approx(0.2));
+    const auto adjacent = all_contacts(angle, {1.9, 2.2, -10}, 0.2);
+    REQUIRE(adjacent.size() == 2);
+    CHECK(adjacent[0].distance == Approx(-0.1));
+    CHECK(adjacent[1].distance == Approx(0.2));
 }
 
 TEST_CASE("In corners of a barrier of any width no image stands where material may be", "[solid]") {
@@ -114,11 +114,11 @@ TEST_CASE("In corners of a barrier of any width no image stands where material m
         const double angle = share * wide;
         const Vec3 x(1.5 * std::cos(angle), 1.5 * std::sin(angle), 0);
         REQUIRE(!corner[0].inside(x));
-        const Images images(corner, 1u, x, 1.0);
-        CHECK(images.end() - images.begin() >= 2);
-        for (const Image& image : images) {
-            CAPTURE(wide, share, image.place.x(), image.place.y());
-            CHECK(contact(corner[0], image.place).distance < 1e-9);
+        const MirrorParticles mirrors(corner, 1u, x, 1.0);
+        CHECK(mirrors.end() - mirrors.begin() >= 2);
+        for (const MirrorParticle& mirror : mirrors) {
+            CAPTURE(wide, share, mirror.place.x(), mirror.place.y());
+            CHECK(contact(corner[0], mirror.place).distance < 1e-9);
         }
     }
 }
@@ -155,12 +155,12 @@ TEST_CASE("No way that ends inside or beyond a barrier misses its faces, seams i
 TEST_CASE("Images in a wall stop at half of its thickness, and those in a thick one are not cut short",
           "[solid]") {
     const std::vector<Surface> wall = {Surface::barrier(Prism(box(0, -50, 2, 50), 50.0))};
-    const Images images(wall, 1u, {-0.7, 0, 0}, 1.0);
-    REQUIRE(images.end() - images.begin() == 1);
-    const Image& image = *images.begin();
-    CHECK((image.place - Vec3(0.7, 0, 0)).norm() < 1e-12);
-    CHECK(image.shows_at({0.99, 3, 3}));
-    CHECK(!image.shows_at({1.01, 3, 3}));
+    const MirrorParticles mirrors(wall, 1u, {-0.7, 0, 0}, 1.0);
+    REQUIRE(mirrors.end() - mirrors.begin() == 1);
+    const MirrorParticle& mirror = *mirrors.begin();
+    CHECK((mirror.place - Vec3(0.7, 0, 0)).norm() < 1e-12);
+    CHECK(mirror.shows_at({0.99, 3, 3}));
+    CHECK(!mirror.shows_at({1.01, 3, 3}));
 }
 
 TEST_CASE("The top of a barrier may follow the ground", "[solid]") {

@@ -1,4 +1,4 @@
-// Laws of material in space against numbers found another way.
+// Laws of 3D material against numbers found another way.
 #include <Eigen/Eigenvalues>
 
 #include "catch.h"

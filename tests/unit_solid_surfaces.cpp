@@ -1,27 +1,27 @@
-// Rigid surfaces in space: distances, mirror images, shares of an impulse.
+// 3D rigid surfaces: distances, mirror images, shares of an impulse.
 #include "catch.h"
 #include "law/solid_law.h"
-#include "solid3d/image_batch.h"
+#include "solid3d/mirror_batch.h"
 #include "solid3d/surfaces.h"
 
 using namespace frana;
 
 namespace {
 
-std::vector<Image> images_of(const std::vector<Surface>& surfaces, const Vec3& x) {
-    const Images images(surfaces, (SurfaceSet{1} << surfaces.size()) - 1, x, 1.0);
-    return {images.begin(), images.end()};
+std::vector<MirrorParticle> mirrors_of(const std::vector<Surface>& surfaces, const Vec3& x) {
+    const MirrorParticles mirrors(surfaces, (SurfaceSet{1} << surfaces.size()) - 1, x, 1.0);
+    return {mirrors.begin(), mirrors.end()};
 }
 
 }  // namespace
 
 TEST_CASE("A point near one plane has one image; beyond the reach of its nodes, none", "[solid]") {
     const std::vector<Surface> floor = {Surface::plane({0, 0, 1}, {0, 0, 1})};
-    const auto one = images_of(floor, {5, 6, 3.5});
+    const auto one = mirrors_of(floor, {5, 6, 3.5});
     REQUIRE(one.size() == 1);
     CHECK((one[0].place - Vec3(5, 6, -1.5)).norm() < 1e-15);
     CHECK((one[0].motion * Vec3(1, 2, 3) - Vec3(1, 2, -3)).norm() < 1e-15);
-    CHECK(images_of(floor, {5, 6, 4.1}).empty());
+    CHECK(mirrors_of(floor, {5, 6, 4.1}).empty());
 }
 
 TEST_CASE("In a corner of three planes the eight points are symmetric in each plane", "[solid]") {
@@ -29,12 +29,12 @@ TEST_CASE("In a corner of three planes the eight points are symmetric in each pl
                                          Surface::plane({0, 0, 0}, {0, 1, 0}),
                                          Surface::plane({0, 0, 0}, {0, 0, 1})};
     const Vec3 x(0.5, 1.0, 1.5);
-    const auto seven = images_of(corner, x);
+    const auto seven = mirrors_of(corner, x);
     REQUIRE(seven.size() == 7);
     Vec3 sum = x, motion = Vec3(1, 1, 1);
-    for (const Image& image : seven) {
-        sum += image.place, motion += image.motion * Vec3(1, 1, 1);
-        CHECK((image.place - image.turn * x).norm() < 1e-15);
+    for (const MirrorParticle& mirror : seven) {
+        sum += mirror.place, motion += mirror.motion * Vec3(1, 1, 1);
+        CHECK((mirror.place - mirror.turn * x).norm() < 1e-15);
     }
     CHECK(sum.norm() < 1e-14);
     CHECK(motion.norm() < 1e-14);
@@ -44,10 +44,10 @@ TEST_CASE("A stuck surface turns velocities round, and two sides of a slice have
           "[solid]") {
     const std::vector<Surface> slice = {Surface::plane({0, 0, 0}, {0, 1, 0}, Hold::stuck),
                                         Surface::plane({0, 2, 0}, {0, -1, 0})};
-    const auto images = images_of(slice, {0, 0.5, 0});
-    REQUIRE(images.size() == 2);
-    CHECK((images[0].motion * Vec3(1, 2, 3) + Vec3(1, 2, 3)).norm() < 1e-15);
-    CHECK((images[1].place - Vec3(0, 3.5, 0)).norm() < 1e-15);
+    const auto mirrors = mirrors_of(slice, {0, 0.5, 0});
+    REQUIRE(mirrors.size() == 2);
+    CHECK((mirrors[0].motion * Vec3(1, 2, 3) + Vec3(1, 2, 3)).norm() < 1e-15);
+    CHECK((mirrors[1].place - Vec3(0, 3.5, 0)).norm() < 1e-15);
 }
 
 TEST_CASE("Behind a stuck surface the images of a flow that bends go on with its bend, in a corner too", "[solid]") {
@@ -58,27 +58,28 @@ TEST_CASE("Behind a stuck surface the images of a flow that bends go on with its
     const std::vector<Surface> corner = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck),
                                          Surface::plane({0, 0, 0}, {0, 1, 0})};
     MaterialPoints q;
-    q.each([](Column& column) { column.assign(1, 0.0); });
+    q.each([](Array& column) { column.assign(1, 0.0); });
     q.mass[0] = 3.0, q.rest_volume[0] = 1.0, q.j[0] = 1.0;
     for (int k = 0; k < 3; ++k) {
         q.v[static_cast<std::size_t>(k)][0] = slope[k] * x.z() + bend[k] * x.z() * x.z();
         q.gradient[static_cast<std::size_t>(6 + k)][0] = slope[k] + 2.0 * bend[k] * x.z();
     }
     int held = 0;
-    for (const Image& image : images_of(corner, x)) {
-        if (image.place.z() > 0.0) continue;
-        ImageBatch batch;
-        batch.add(0, image.place, image, 1.0);
+    for (const MirrorParticle& mirror : mirrors_of(corner, x)) {
+        if (mirror.place.z() > 0.0) continue;
+        MirrorBatch batch;
+        batch.add(0, mirror.place, mirror, 1.0);
         batch.fill();
-        const BatchGift gift = mirrored_gift<true>(solid::Fluid{1e6, 0.0}, q, batch, Vec3::Zero(), 0.0);
-        const double z = image.place.z();
+        const BatchContribution contribution =
+            mirrored_contribution<true>(solid::Fluid{1e6, 0.0}, q, batch, Vec3::Zero(), 0.0);
+        const double z = mirror.place.z();
         for (int k = 0; k < 3; ++k) {
-            const double side = k == 1 && image.place.y() < 0.0 ? -1.0 : 1.0;
+            const double side = k == 1 && mirror.place.y() < 0.0 ? -1.0 : 1.0;
             const double speed = settled ? slope[k] * z + bend[k] * z * z : slope[k] * z - bend[k] * z * z;
             const double gradient = settled ? slope[k] + 2.0 * bend[k] * z : 0.0;
-            CHECK(gift.momentum[k][0] / 3.0 == Approx(side * speed).margin(1e-14));
-            CHECK(gift.affine[2][k][0] / 3.0 == Approx(side * gradient).margin(1e-14));
-            CHECK(gift.affine[0][k][0] == 0.0);
+            CHECK(contribution.momentum[k][0] / 3.0 == Approx(side * speed).margin(1e-14));
+            CHECK(contribution.affine[2][k][0] / 3.0 == Approx(side * gradient).margin(1e-14));
+            CHECK(contribution.affine[0][k][0] == 0.0);
         }
         ++held;
     }
@@ -90,10 +91,10 @@ TEST_CASE("A side that meets no other surface shows its images as a lone one, al
     const std::vector<Surface> sides = {Surface::plane({0, 0, 0}, {1, 0, 0}), Surface::plane({0, 0, 0}, {0.8, 0.6, 0}),
                                         Surface::plane({2, 0, 0}, {-1, 0, 0})};
     int alone = 0;
-    for (const Image& image : images_of(sides, {1.0, 0.5, 0.0})) {
-        const bool in_third = image.place.x() > 2.0;
+    for (const MirrorParticle& mirror : mirrors_of(sides, {1.0, 0.5, 0.0})) {
+        const bool in_third = mirror.place.x() > 2.0;
         alone += in_third;
-        CHECK((image.slides == 0) == in_third);
+        CHECK((mirror.slides == 0) == in_third);
     }
     CHECK(alone == 1);
 }
@@ -102,7 +103,7 @@ TEST_CASE("Images bend with one stuck plane, not in a corner of two or in one th
     const Surface floor = Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck);
     const auto bent = [](const Surface& one, const Surface& other, const Vec3& x) {
         int count = 0;
-        for (const Image& image : images_of({one, other}, x)) count += image.held_above > 0.0;
+        for (const MirrorParticle& mirror : mirrors_of({one, other}, x)) count += mirror.held_above > 0.0;
         return count;
     };
     const Vec3 x(5.0, 0.5, 0.5);
@@ -139,10 +140,10 @@ TEST_CASE("In corners of any width no image stands where material may be", "[sol
                                          Surface::plane({0, 0, 0}, {std::sin(wide), 0, -std::cos(wide)})};
     for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
         const double angle = share * wide;
-        for (const Image& image : images_of(corner, {1.5 * std::cos(angle), 0, 1.5 * std::sin(angle)})) {
-            CAPTURE(wide, share, image.place.x(), image.place.z());
-            CHECK((contact(corner[0], image.place).distance < 1e-12 ||
-                   contact(corner[1], image.place).distance < 1e-12));
+        for (const MirrorParticle& mirror : mirrors_of(corner, {1.5 * std::cos(angle), 0, 1.5 * std::sin(angle)})) {
+            CAPTURE(wide, share, mirror.place.x(), mirror.place.z());
+            CHECK((contact(corner[0], mirror.place).distance < 1e-12 ||
+                   contact(corner[1], mirror.place).distance < 1e-12));
         }
     }
 }

@@ -40,7 +40,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 }  // namespace
 
-TEST_CASE("A stage in space has the scene's laws where it gives none of its own", "[stages]") {
+TEST_CASE("A 3D stage has the scene's laws where it gives none of its own", "[stages]") {
     const SolidStage stage = scene_of(two + west).solid.value();
     CHECK(stage.from == 8.0);
     // Nodes stand at 1002.5, 1007.5, ...: those in the window.
@@ -75,7 +75,7 @@ TEST_CASE("A window is closed where the case says so, and where it reaches walls
     CHECK(near.window == std::array<Index, 4>{0, 0, 11, 19});
 }
 
-TEST_CASE("A stage in space ends where columns follow it", "[stages]") {
+TEST_CASE("A 3D stage ends where columns follow it", "[stages]") {
     const std::string after = "[[stage]]\nmodel = \"depth_averaged\"\n";
     const SolidStage middle = scene_of(two + west + "until = 12\n" + after).solid.value();
     CHECK(middle.from == 8.0);

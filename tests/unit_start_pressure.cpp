@@ -1,4 +1,4 @@
-// The pressure that columns have on their bed when they become points in space.
+// The pressure that columns have on their bed when they become 3D points.
 #include "analytic_scene.h"
 #include "catch.h"
 #include "coupling/start_pressure.h"

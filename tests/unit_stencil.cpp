@@ -72,7 +72,7 @@ TEMPLATE_TEST_CASE("V17: weights and slopes go on without a jump from one stenci
 TEST_CASE("V17: columns take a linear velocity from the nodes, and its gradient, exactly", "[structured]") {
     StructuredScene scene;
     scene.grid = verify::grid_over({0, 0}, {4, 3}, 0.1);
-    scene.ground = [](double, double) { return GroundPull{0, 0, 0}; };
+    scene.ground = [](double, double) { return GroundGravity{0, 0, 0}; };
     scene.material.young = 1.0;  // holds nothing together
     verify::StructuredBlock block;
     block.high = {4.0, 3.0}, block.cohesion = 1e9;

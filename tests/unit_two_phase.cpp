@@ -215,11 +215,11 @@ TEST_CASE("V19: settling speeds of quartz in water", "[two_phase][solver]") {
 TEST_CASE("Buoyancy, what rests on the bed, and the viscosity of mud", "[two_phase][solver]") {
     const TwoPhaseMaterial m;
     CHECK((buoyancy(1000.0, 9.0, 0.5, {0.1, -0.2}) - Vec2(-450.0, 900.0)).norm() < 1e-10);
-    const double pull = 9.0, depth = 2.0;
-    CHECK(basal_stress(m, {0.4}, pull, depth, 0.0) == Approx(0.4 * 1650.0 * 18.0).epsilon(1e-14));
+    const double normal_gravity = 9.0, depth = 2.0;
+    CHECK(basal_stress(m, {0.4}, normal_gravity, depth, 0.0) == Approx(0.4 * 1650.0 * 18.0).epsilon(1e-14));
     const Mixture blocks{0.4, 1.0, 0.5};
-    CHECK(basal_stress(m, blocks, pull, depth, 1.0) == Approx(0.4 * 1650.0 * 18.0).epsilon(1e-13));
-    CHECK(basal_stress(m, blocks, pull, depth, 0.0) ==
+    CHECK(basal_stress(m, blocks, normal_gravity, depth, 1.0) == Approx(0.4 * 1650.0 * 18.0).epsilon(1e-13));
+    CHECK(basal_stress(m, blocks, normal_gravity, depth, 0.0) ==
           Approx((0.4 * 2650.0 + 0.3 * 1000.0) * 18.0).epsilon(1e-13));
     CHECK(mud_viscosity(3.6e-3, 22.1, 0.4) == Approx(3.6e-3 * std::exp(8.84)).epsilon(1e-14));
     CHECK(mud_viscosity(1e-4, 6.0, 0.0) == 1e-3);

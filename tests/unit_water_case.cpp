@@ -68,7 +68,7 @@ TEST_CASE("A raster of rates that does not fit is refused in one sentence", "[wa
     CHECK(has(problem_of(slope_gis(), "rain = -1\n"), "water.rain: found -1"));
 }
 
-TEST_CASE("A run in the rain of a raster books what it brings and what the ground takes", "[water][mixture]") {
+TEST_CASE("A run in the rain of a raster records what it brings and what the ground takes", "[water][mixture]") {
     Scene scene = scene_on(41, 31, 0.5, [](double x, double y) { return 0.2 * std::sin(x) * std::cos(y); });
     scene.particles = {};
     fill(scene, [](double x, double y) { return x > 4 && x < 9 && y > 5 && y < 10 ? 0.5 : 0.0; });

@@ -49,7 +49,7 @@ private:
 };
 
 /// Half a column 2 m long and 1 m high, 8 cells, of sand that is as rough as its floor; at rest.
-SolidFlow collapsed(double friction, double cell) {
+Mpm3d collapsed(double friction, double cell) {
     const double length = 2.0, height = 1.0, width = 3.0 * cell, density = 1000.0, gravity = 9.81,
                  poisson = 0.3;
     const double modulus = density * 100.0 * gravity * height;  // sound ten times as fast as a wave on it
@@ -66,7 +66,7 @@ SolidFlow collapsed(double friction, double cell) {
     verify::for_each_part({0, 0, 0}, {length, width, height}, cell, 2, [&](const Vec3& x, double volume) {
         s.points.add(x, Vec3::Zero(), density * volume);
     });
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     while (flow.status().time < 3.0) flow.advance(3.0);
     return flow;
 }
@@ -79,7 +79,7 @@ TEST_CASE("A column of sand comes to rest as a column of grains does", "[verify]
     constexpr double kFriction = 0.32, kCell = 0.125;  // mu_s of these grains
     const Deposit grains(*data / "profiles.csv", 0.5);
     REQUIRE(grains.count() > 100);
-    const SolidFlow sand = collapsed(kFriction, kCell);
+    const Mpm3d sand = collapsed(kFriction, kCell);
     std::vector<double> heights(60, 0.0);  // volume without stress in each cell's width
     for (Index p = 0; p < sand.body().points.count(); ++p)
         heights[static_cast<std::size_t>(sand.position(p).x() / kCell)] +=

@@ -74,7 +74,7 @@ double spread_error(const SavageHutterHeap& pile, bool hydrostatic, int cells) {
     s.hydrostatic = hydrostatic;
     StructuredFlow flow(s);
     while (flow.status().time < kEnd) flow.advance(kEnd);
-    flow.look();
+    flow.sample();
     const double k = hydrostatic ? 1.0 : flow.body().law.active();
     return depth_error(flow, [&](double x) { return pile.depth(k, kEnd, x); });
 }
@@ -155,7 +155,7 @@ TEST_CASE("V18: columns that are pulled stay as evenly apart as they were, witho
     const Vec2 along(std::cos(angle), std::sin(angle)), side(-along.y(), along.x());
     StructuredScene s;
     s.grid = verify::grid_over({-8, -8}, {8, 8}, 2.0 * kSpacing);
-    s.ground = [](double, double) { return GroundPull{0, 0, 0}; };
+    s.ground = [](double, double) { return GroundGravity{0, 0, 0}; };
     s.material.young = 1e4;
     for (int j = -4; j < 4; ++j)
         for (int i = -120; i < 120; ++i) {
@@ -177,8 +177,8 @@ TEST_CASE("V18: columns that are pulled stay as evenly apart as they were, witho
         const double stretched = (1.0 + kRate * kEnd) * from.dot(along);
         apart = std::max(apart, std::abs(to.dot(along) - stretched));
         strain = std::max(strain, to.dot(along) / from.dot(along));
-        const Vec2 pull(q.xx[p] * along.x() + q.xy[p] * along.y(), q.xy[p] * along.x() + q.yy[p] * along.y());
-        least = std::min(least, pull.dot(along));
+        const Vec2 traction(q.xx[p] * along.x() + q.xy[p] * along.y(), q.xy[p] * along.x() + q.yy[p] * along.y());
+        least = std::min(least, traction.dot(along));
     }
     CAPTURE(angle, strain, apart / kSpacing, least);
     CHECK(least > 0.1 * s.material.young);  // all of it is under tension

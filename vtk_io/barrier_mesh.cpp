@@ -84,7 +84,7 @@ vtkSmartPointer<vtkPolyData> read_any(const Path& file) {
 }
 
 /// Throws UserError with what VTK's filters would die of, or take for something else.
-void require_sound(const Path& file, vtkPolyData* mesh) {
+void require_valid(const Path& file, vtkPolyData* mesh) {
     std::string fault = fault_of(mesh);
     for (vtkIdType n = 0; n < mesh->GetNumberOfPoints(); ++n) {
         const Vec3 x = Vec3(mesh->GetPoint(n));
@@ -100,7 +100,7 @@ void require_sound(const Path& file, vtkPolyData* mesh) {
 /// Triangles only, with one point at each place: files may repeat it for every triangle.
 vtkSmartPointer<vtkPolyData> read_triangles(const Path& file) {
     const vtkSmartPointer<vtkPolyData> raw = read_any(file);
-    require_sound(file, raw);
+    require_valid(file, raw);
     vtkNew<vtkTriangleFilter> triangles;
     triangles->SetInputData(raw);
     triangles->PassVertsOff(), triangles->PassLinesOff();

@@ -33,7 +33,7 @@ public:
         write_xml(writer, data, files_.file(number));
         files_.add(number, frame.status.time);
     }
-    void keep(Archive& archive) { files_.keep(archive); }
+    void serialize(Archive& archive) { files_.serialize(archive); }
 
 private:
     PvdSeries files_;
@@ -55,7 +55,7 @@ public:
              std::vector<double> levels)
         : series_(folder, name, ".vtp"), field_(std::move(field)), levels_(std::move(levels)) {}
 
-    void look(const Frame& frame, Index number) override {
+    void sample(const Frame& frame, Index number) override {
         const Scalar surface = scalar(frame.nodes, "surface", "the grid");
         vtkNew<vtkPoints> points;
         points->SetDataTypeToDouble();
@@ -77,7 +77,7 @@ public:
         vtkNew<vtkXMLPolyDataWriter> writer;
         series_.write(writer, contours, frame, number);
     }
-    void keep(Archive& archive) override { series_.keep(archive); }
+    void serialize(Archive& archive) override { series_.serialize(archive); }
 
 private:
     Series series_;
@@ -115,7 +115,7 @@ public:
                   const Interval& kept)
         : series_(folder, name, ".vtu"), field_(std::move(field)), kept_(kept) {}
 
-    void look(const Frame& frame, Index number) override {
+    void sample(const Frame& frame, Index number) override {
         const std::vector<double> values = on_terrain(frame, field_);
         const auto image = image_of(frame);
         mark(image, {field_, "", values.data(), static_cast<Index>(values.size()), 1}, kept_);
@@ -126,7 +126,7 @@ public:
         vtkNew<vtkXMLUnstructuredGridWriter> writer;
         series_.write(writer, filtered(threshold.Get(), image), frame, number);
     }
-    void keep(Archive& archive) override { series_.keep(archive); }
+    void serialize(Archive& archive) override { series_.serialize(archive); }
 
 private:
     Series series_;
@@ -140,7 +140,7 @@ public:
                       const Interval& kept)
         : series_(folder, name, ".vtp"), field_(std::move(field)), kept_(kept) {}
 
-    void look(const Frame& frame, Index number) override {
+    void sample(const Frame& frame, Index number) override {
         const auto cloud = cloud_of(frame);
         const Scalar values = scalar(frame.particles, field_, "the particles");
         vtkNew<vtkXMLPolyDataWriter> writer;
@@ -154,7 +154,7 @@ public:
         threshold->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
         series_.write(writer, filtered(threshold.Get(), cloud), frame, number);
     }
-    void keep(Archive& archive) override { series_.keep(archive); }
+    void serialize(Archive& archive) override { series_.serialize(archive); }
 
 private:
     Series series_;

@@ -66,7 +66,7 @@ std::filesystem::path PvdSeries::file(std::int64_t number) const {
     return file;
 }
 
-void PvdSeries::keep(Archive& archive) {
+void PvdSeries::serialize(Archive& archive) {
     std::vector<double> times;
     std::vector<std::string> files;
     for (const PvdEntry& entry : entries_) {

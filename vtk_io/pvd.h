@@ -33,7 +33,7 @@ public:
     void add(std::int64_t number, double time);
     /// Saves the list, or takes it up again: files of the series that are not on it are removed. Throws UserError
     /// when one on it is not there.
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
     void take_back_others() const;

@@ -18,13 +18,13 @@ public:
 
     std::string name() const override { return "vtk particles"; }
 
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         const auto cloud = cloud_of(frame);
         vtkNew<vtkXMLPolyDataWriter> writer;
         write_xml(writer, cloud, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }
-    void keep(Archive& archive) override { series_.keep(archive); }
+    void serialize(Archive& archive) override { series_.serialize(archive); }
 
 private:
     PvdSeries series_;
@@ -37,13 +37,13 @@ public:
 
     std::string name() const override { return "vtk grid"; }
 
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         const auto image = image_of(frame);
         vtkNew<vtkXMLImageDataWriter> writer;
         write_xml(writer, image, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }
-    void keep(Archive& archive) override { series_.keep(archive); }
+    void serialize(Archive& archive) override { series_.serialize(archive); }
 
 private:
     PvdSeries series_;

@@ -19,7 +19,7 @@
 namespace frana {
 
 /// particles.pvd and particles/particles_NNNNNN.vtp: vtkPolyData, points in double at "position", one vertex
-/// cell a particle, every other particle column as an array. see() throws UserError when a file cannot be
+/// cell a particle, every other particle column as an array. observe() throws UserError when a file cannot be
 /// written (path and reason), NumericsError for a number that is not finite.
 std::unique_ptr<Observer> make_particle_writer(const std::filesystem::path& run_dir);
 
@@ -34,7 +34,7 @@ std::unique_ptr<Observer> make_grid_writer(const std::filesystem::path& run_dir)
 std::unique_ptr<Observer> make_profile_writer(const std::filesystem::path& run_dir, std::vector<ProfileLine> lines);
 
 /// barriers.pvd and barriers/barriers_NNNNNN.vtp, from the first frame on that has loads of barriers: their faces in squares
-/// of about a cell of the model in space. Cell data `pressure` (mean since the frame before, across the face),
+/// of about a cell of the 3D model. Cell data `pressure` (mean since the frame before, across the face),
 /// `peak_pressure` (largest of these) [Pa], `impulse_per_area` [Pa s], `barrier`, `face`. Errors as above.
 std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir);
 

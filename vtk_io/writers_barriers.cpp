@@ -34,7 +34,7 @@ public:
 
     std::string name() const override { return "vtk barriers"; }
 
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         if (frame.faces.empty()) return;
         const double span = frame.status.time - time_;
         const auto data = polydata_of(frame, span > 0.0 ? span : 0.0);
@@ -44,8 +44,8 @@ public:
         series_.add(frame.number, frame.status.time);
         if (span > 0.0) time_ = frame.status.time;
     }
-    void keep(Archive& archive) override {
-        series_.keep(archive);
+    void serialize(Archive& archive) override {
+        series_.serialize(archive);
         archive.numbers("time", {&time_});
         archive.array("before", before_);
         archive.array("peak", peak_);

@@ -41,7 +41,7 @@ public:
 
     std::string name() const override { return "vtk profiles"; }
 
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         std::vector<Line> sampled;
         for (const ProfileLine& line : lines_) sampled.push_back(along(line, frame));
         if (first_.empty()) first_ = surfaces_of(sampled);
@@ -54,8 +54,8 @@ public:
         write_xml(writer, data, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }
-    void keep(Archive& archive) override {
-        series_.keep(archive);
+    void serialize(Archive& archive) override {
+        series_.serialize(archive);
         first_.resize(lines_.size());  // a state is kept after the first frame only
         for (std::size_t k = 0; k < first_.size(); ++k) archive.array("surface_" + std::to_string(k), first_[k]);
     }

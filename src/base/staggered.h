@@ -37,19 +37,19 @@ private:
 
 /// One quantity of all points.
 template <class Real>
-using ColumnOf = std::vector<Real, Staggered<Real>>;
-using Column = ColumnOf<double>;
+using ArrayOf = std::vector<Real, Staggered<Real>>;
+using Array = ArrayOf<double>;
 
 /// Sets the size; grows by no more than an eighth beyond what is asked for.
-template <class Array>
-void resize_sparingly(Array& array, std::size_t count) {
+template <class Values>
+void resize_sparingly(Values& array, std::size_t count) {
     if (count > array.capacity()) array.reserve(count + count / 8);
     array.resize(count);
 }
 
 /// Fills `count` places with `value`, with room to grow as above.
-template <class Array>
-void assign_sparingly(Array& array, std::size_t count, const typename Array::value_type& value) {
+template <class Values>
+void assign_sparingly(Values& array, std::size_t count, const typename Values::value_type& value) {
     array.clear();
     if (count > array.capacity()) array.reserve(count + count / 8);
     array.resize(count, value);

@@ -55,13 +55,13 @@ private:
         constexpr std::size_t small = 9;  // nodes: three by three
         std::vector<char> seen = covered_;
         std::vector<std::size_t> hole;
-        const std::array<Index, 4> beside{1, -1, nx_, -nx_};
+        const std::array<Index, 4> adjacent{1, -1, nx_, -nx_};
         for (std::size_t start = 0; start < seen.size(); ++start) {
             if (seen[start]) continue;
             hole.assign(1, start);
             seen[start] = 1;
             for (std::size_t k = 0; k < hole.size(); ++k)
-                for (const Index step : beside) {
+                for (const Index step : adjacent) {
                     const Index node = static_cast<Index>(hole[k]) + step;
                     if (node < 0 || node >= nx_ * ny_ || seen[static_cast<std::size_t>(node)]) continue;
                     seen[static_cast<std::size_t>(node)] = 1;

@@ -50,7 +50,7 @@ Index NearestOnRings::bucket_of(const Vec2& p, int axis) const {
     return std::clamp<Index>(static_cast<Index>(std::floor((p[axis] - low_[axis]) / size_)), 0, count - 1);
 }
 
-void NearestOnRings::look_in(Index i, Index j, const Vec2& p, double& best) const {
+void NearestOnRings::search_node(Index i, Index j, const Vec2& p, double& best) const {
     if (i < 0 || j < 0 || i >= nx_ || j >= ny_) return;
     const auto bucket = static_cast<std::size_t>(j * nx_ + i);
     for (std::size_t k = first_[bucket]; k < first_[bucket + 1]; ++k) {
@@ -68,7 +68,7 @@ double NearestOnRings::distance(const Vec2& p) const {
     for (Index r = 0; r <= std::max(nx_, ny_) && best > (static_cast<double>(r) - 1.5) * size_; ++r)
         for (Index dj = -r; dj <= r; ++dj) {
             const bool whole_row = dj == -r || dj == r;
-            for (Index di = -r; di <= r; di += whole_row || r == 0 ? 1 : 2 * r) look_in(i + di, j + dj, p, best);
+            for (Index di = -r; di <= r; di += whole_row || r == 0 ? 1 : 2 * r) search_node(i + di, j + dj, p, best);
         }
     return best;
 }

@@ -21,7 +21,7 @@ private:
         Index bucket;
     };
     Index bucket_of(const Vec2& p, int axis) const;
-    void look_in(Index i, Index j, const Vec2& p, double& best) const;
+    void search_node(Index i, Index j, const Vec2& p, double& best) const;
 
     Vec2 low_{0, 0};
     double size_ = 1.0;  ///< of a bucket; no piece is longer [m]

@@ -47,7 +47,7 @@ private:
     double height(Index node) const { return bed_.values[static_cast<std::size_t>(node)]; }
 
     /// Node beside another, or `edge` where there is none with an elevation.
-    Index beside(Index node, const Neighbour& n) const {
+    Index adjacent(Index node, const Neighbour& n) const {
         const GridGeometry& g = bed_.geometry;
         const Index i = node % g.nx + n.di, j = node / g.nx + n.dj;
         if (i < 0 || j < 0 || i >= g.nx || j >= g.ny || std::isnan(bed_.at(i, j))) return edge;
@@ -58,7 +58,7 @@ private:
         Index best = edge;
         double most = 0.0;
         for (const Neighbour& n : neighbours) {
-            const Index other = beside(node, n);
+            const Index other = adjacent(node, n);
             if (other == edge) continue;
             const double drop = (height(node) - height(other)) / n.distance;
             if (drop > most) most = drop, best = other;
@@ -68,7 +68,7 @@ private:
 
     bool at_edge(Index node) const {
         return std::any_of(std::begin(neighbours), std::end(neighbours),
-                           [&](const Neighbour& n) { return beside(node, n) == edge; });
+                           [&](const Neighbour& n) { return adjacent(node, n) == edge; });
     }
 
     /// From the edge inwards, always on from the node with the lowest way to the edge.
@@ -84,7 +84,7 @@ private:
             const auto [level, node] = front.top();
             front.pop();
             for (const Neighbour& n : neighbours) {
-                const Index other = beside(node, n);
+                const Index other = adjacent(node, n);
                 if (other == edge || way_out_[static_cast<std::size_t>(other)] != unseen) continue;
                 way_out_[static_cast<std::size_t>(other)] = node;
                 front.emplace(std::max(level, height(other)), other);

@@ -12,7 +12,7 @@
 namespace frana {
 namespace {
 
-void require_sound(const FlowColumns& columns, const ConversionChoice& choice) {
+void require_valid(const FlowColumns& columns, const ConversionChoice& choice) {
     require_spacing(choice.spacing);
     const std::size_t n = columns.count();
     for (const auto* numbers :
@@ -84,7 +84,7 @@ double forecast_points(const FlowColumns& columns, double spacing) {
 }
 
 SolidPoints columns_to_points(const FlowColumns& columns, const ConversionChoice& choice) {
-    require_sound(columns, choice);
+    require_valid(columns, choice);
     SolidPoints points;
     points.first.reserve(columns.count() + 1);
     points.first.push_back(0);

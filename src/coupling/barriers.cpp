@@ -64,7 +64,7 @@ Vec3 middle_of(const Surface& barrier, const Raster& bed) {
 }
 
 /// Whether a node stands in a barrier, or within half a cell of it.
-bool touches(const Surface& barrier, const Vec2& node, double top, double cell) {
+bool is_in_reach(const Surface& barrier, const Vec2& node, double top, double cell) {
     if (barrier.shape) return true;  // top_near() has looked there
     const Vec3 below(node.x(), node.y(), top - 2.0 * cell);
     Contact contact[kMostContacts];
@@ -137,7 +137,7 @@ Raster with_barriers(const Scene& scene) {
                 const Vec2 node(g.x(i), g.y(j));
                 if (!near_box(box, node, 0.5 * g.cell)) continue;
                 const double top = top_near(solid, node, g.cell);
-                if (top > bed.at(i, j) && touches(solid, node, top, g.cell)) bed.at(i, j) = top;
+                if (top > bed.at(i, j) && is_in_reach(solid, node, top, g.cell)) bed.at(i, j) = top;
             }
     }
     return bed;
@@ -168,7 +168,7 @@ void ColumnWatch::make_room(std::size_t id) {
     if (last_.size() < 2 * (id + 1)) last_.resize(2 * (id + 1), 0.0);
 }
 
-void ColumnWatch::look(const ColumnAt& column) {
+void ColumnWatch::sample(const ColumnAt& column) {
     constexpr double kClose = 2.0;  // cells
     const auto id = static_cast<std::size_t>(column.id);
     make_room(id);
@@ -178,16 +178,16 @@ void ColumnWatch::look(const ColumnAt& column) {
         const bool near = stands_near(surfaces_[n], boxes_[n], top_of_it, kClose * cell_, cell_);
         std::vector<std::uint8_t>& seen = seen_[n];
         const bool over = near && (std::isfinite(top_of(surfaces_[n], column.place)) ||
-                                   (seen[id] == kBeside && crosses(surfaces_[n], boxes_[n], from, column.place)));
+                                   (seen[id] == kAdjacent && crosses(surfaces_[n], boxes_[n], from, column.place)));
         BarrierLoad& load = loads_.barriers[n];
         if (near) load.run_up = std::max(load.run_up, column.surface);
-        if (over && seen[id] == kBeside) load.overtopped += column.volume;
-        if (over || seen[id] == kNever) seen[id] = over ? kOver : kBeside;
+        if (over && seen[id] == kAdjacent) load.overtopped += column.volume;
+        if (over || seen[id] == kNever) seen[id] = over ? kOver : kAdjacent;
     }
     for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * id + axis] = column.place[static_cast<Eigen::Index>(axis)];
 }
 
-void ColumnWatch::keep(Archive& archive) {
+void ColumnWatch::serialize(Archive& archive) {
     const Archive::Part part(archive, "barriers");
     for (std::size_t n = 0; n < seen_.size(); ++n) {
         archive.array("seen_" + std::to_string(n), seen_[n]);
@@ -196,7 +196,7 @@ void ColumnWatch::keep(Archive& archive) {
     archive.array("last", last_);
 }
 
-BarrierWatch::BarrierWatch(const Scene& scene, const SolidFlow& flow, double blur) : density_(scene.density) {
+BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur) : density_(scene.density) {
     const std::vector<Surface>& surfaces = flow.body().surfaces;
     for (std::size_t s = 0; s < surfaces.size(); ++s)
         if (surfaces[s].is_barrier()) surfaces_.push_back(static_cast<int>(s));
@@ -213,7 +213,7 @@ BarrierWatch::BarrierWatch(const Scene& scene, const SolidFlow& flow, double blu
     over_.resize(surfaces_.size());
 }
 
-void BarrierWatch::weigh(const SolidFlow& flow) {
+void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
     const Vec3& origin = flow.body().grid.geometry().origin;
     for (std::size_t n = 0; n < surfaces_.size(); ++n)
         for (std::size_t f = 0; f < loads_.barriers[n].faces.size(); ++f) {
@@ -224,7 +224,7 @@ void BarrierWatch::weigh(const SolidFlow& flow) {
         }
 }
 
-void BarrierWatch::look(const SolidFlow& flow) {
+void BarrierWatch::sample(const Mpm3d& flow) {
     constexpr double kClose = 2.0;  // cells
     const double cell = flow.body().grid.cell();
     for (std::size_t n = 0; n < surfaces_.size(); ++n) {
@@ -245,7 +245,7 @@ void BarrierWatch::look(const SolidFlow& flow) {
     }
 }
 
-std::vector<PatchedFace> BarrierWatch::patched(const SolidFlow& flow) const {
+std::vector<PatchedFace> BarrierWatch::patched(const Mpm3d& flow) const {
     std::vector<PatchedFace> faces;
     for (std::size_t n = 0; n < surfaces_.size(); ++n)
         for (std::size_t f = 0; f < loads_.barriers[n].faces.size(); ++f) {
@@ -264,7 +264,7 @@ std::vector<PatchedFace> BarrierWatch::patched(const SolidFlow& flow) const {
     return faces;
 }
 
-void BarrierWatch::keep(Archive& archive) {
+void BarrierWatch::serialize(Archive& archive) {
     const Archive::Part part(archive, "barriers");
     for (std::size_t n = 0; n < over_.size(); ++n) {
         archive.array("over_" + std::to_string(n), over_[n]);

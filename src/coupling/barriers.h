@@ -5,7 +5,7 @@
 #include "convert/flow_columns.h"
 #include "observe/observer.h"
 #include "scene/scene.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 
 namespace frana {
 
@@ -18,7 +18,7 @@ Prism solid_of(const Barrier& barrier, const Raster& bed, double cell);
 /// top.
 Raster with_barriers(const Scene& scene);
 
-/// A barrier of that scene as a surface in space. Throws as solid_of().
+/// A barrier of that scene as a 3D surface. Throws as solid_of().
 Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);
 
 /// Elevation of a barrier's top at a place of the map; minus infinity beside it [m].
@@ -44,13 +44,13 @@ public:
     void inherit(Index child, Index parent);
     /// Takes a column's place. It counts when its way from the last place first leads onto a barrier, and once. Of two
     /// that merge the one that keeps its number counts for both from then on.
-    void look(const ColumnAt& column);
+    void sample(const ColumnAt& column);
     const BarrierLoads& loads() const { return loads_; }
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
     void make_room(std::size_t id);
-    enum Seen : std::uint8_t { kNever, kBeside, kOver };
+    enum Seen : std::uint8_t { kNever, kAdjacent, kOver };
     std::vector<Surface> surfaces_;                ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;     ///< around each
     std::vector<std::vector<std::uint8_t>> seen_;  ///< per barrier, by number of the column
@@ -59,19 +59,19 @@ private:
     double cell_;
 };
 
-/// What points in space do to barriers.
+/// What 3D points do to barriers.
 class BarrierWatch {
 public:
     /// Barriers are the surfaces of that kind of the flow's scene, in the order of `scene`.
-    BarrierWatch(const Scene& scene, const SolidFlow& flow, double blur);
+    BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur);
     /// Takes the impulses of the faces.
-    void weigh(const SolidFlow& flow);
+    void accumulate_loads(const Mpm3d& flow);
     /// Takes run-up, and what stands over the barriers.
-    void look(const SolidFlow& flow);
+    void sample(const Mpm3d& flow);
     const BarrierLoads& loads() const { return loads_; }
     /// The faces with what each of their patches got.
-    std::vector<PatchedFace> patched(const SolidFlow& flow) const;
-    void keep(Archive& archive);
+    std::vector<PatchedFace> patched(const Mpm3d& flow) const;
+    void serialize(Archive& archive);
 
 private:
     std::vector<int> surfaces_;                    ///< of each barrier

@@ -72,7 +72,7 @@ Sample FlowMap::at(const Vec2& point) const {
 }
 
 /// One thread: it takes a hundredth of the steps between two looks.
-void FlowMap::look(const SolidFlow& flow, double time) {
+void FlowMap::sample(const Mpm3d& flow, double time) {
     std::fill(nodes_.begin(), nodes_.end(), Node{});
     for (Index p = 0; p < flow.body().points.count(); ++p) {
         const Vec3 x = flow.position(p);
@@ -117,7 +117,7 @@ Index FlowMap::fronts(double since, double speed) const {
     return count;
 }
 
-void FlowMap::keep(Archive& archive) {
+void FlowMap::serialize(Archive& archive) {
     const Archive::Part part(archive, "map");
     constexpr std::size_t kNumbers = 9;  // of a node and its peak
     std::vector<double> all;

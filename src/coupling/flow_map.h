@@ -1,5 +1,5 @@
 #pragma once
-// Points in space seen from above: depth and velocity on the nodes of the terrain, and their peaks.
+// 3D points seen from above: depth and velocity on the nodes of the terrain, and their peaks.
 #include <array>
 #include <cmath>
 #include <vector>
@@ -7,7 +7,7 @@
 #include "observe/archive.h"
 #include "observe/observer.h"
 #include "scene/scene.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 
 namespace frana {
 
@@ -27,7 +27,7 @@ public:
 
     explicit FlowMap(const Scene& scene);
     /// Takes the points as they are now, and the peaks. Same bits for any number of threads.
-    void look(const SolidFlow& flow, double time);
+    void sample(const Mpm3d& flow, double time);
 
     const GridGeometry& grid() const { return grid_; }
     /// Volume without stress over the area of a cell: a pile of air and drops is as deep as if it had settled
@@ -53,7 +53,7 @@ public:
     double front() const { return front_; }  ///< of these nodes the farthest from the release's centre [m]
     /// Nodes that are covered since a time at most, and where material is faster than `speed` (MovingMass::fronts).
     Index fronts(double since, double speed) const;
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
     void note_peaks(double time);

@@ -36,16 +36,16 @@ GrowingColumns::GrowingColumns(const Scene& scene, Start start)
     const double largest = volume.empty() ? 0.0 : *std::max_element(volume.begin(), volume.end());
     scene_.particles = {};
     scene_.particles.volume = {largest};  // what may split hangs on it, also when a kept part is taken up again
-    if (start == Start::placed) look();
+    if (start == Start::placed) sample();
 }
 
 void GrowingColumns::advance(double until) {
     columns_->advance(until);
-    look();
+    sample();
 }
 
 /// Notes where material is, and grows where it comes near an edge that is none of the terrain.
-void GrowingColumns::look() {
+void GrowingColumns::sample() {
     NodeBox worked = columns_->worked();
     if (worked.nx == 0) return;
     worked.i0 += held_.i0, worked.j0 += held_.j0;
@@ -101,7 +101,7 @@ void GrowingColumns::grow(const NodeBox& box) {
                                     columns_->status().time, error.what()));
     }
     const Index east = before.i0 - held_.i0, north = before.j0 - held_.j0;
-    auto larger = std::make_unique<DepthAveraged>(scene_, Start::kept);
+    auto larger = std::make_unique<DepthAveraged>(scene_, Start::resumed);
     larger->take_over(*columns_, east, north);
     columns_ = std::move(larger);
     ++times_grown_;
@@ -126,7 +126,7 @@ std::vector<std::string> GrowingColumns::remarks() const {
     return all;
 }
 
-void GrowingColumns::keep(Archive& archive) {
+void GrowingColumns::serialize(Archive& archive) {
     aside_ = archive.aside() && !archive.loading();
     {
         const Archive::Part part(archive, "part");
@@ -140,10 +140,10 @@ void GrowingColumns::keep(Archive& archive) {
             if (!(common(held_, box) == held_) || !(common(box, NodeBox::all(wider_->grid)) == box))
                 throw misfit("its part of the terrain is not one of this terrain");
             hold(box);
-            columns_ = std::make_unique<DepthAveraged>(scene_, Start::kept);
+            columns_ = std::make_unique<DepthAveraged>(scene_, Start::resumed);
         }
     }
-    columns_->keep(archive);
+    columns_->serialize(archive);
 }
 
 }  // namespace frana

@@ -19,12 +19,12 @@ public:
     std::vector<std::string> remarks() const override;
     std::vector<PhaseTime> timings() const override { return columns_->timings(); }
     const Raster* ground() const override { return &scene_.bed; }
-    void keep(Archive& archive) override;
+    void serialize(Archive& archive) override;
 
     const NodeBox& held() const { return held_; }  ///< nodes of the whole terrain that it works on
 
 private:
-    void look();
+    void sample();
     NodeBox room_for(const NodeBox& worked, Index clear) const;
     void grow(const NodeBox& box);
     void hold(NodeBox box);

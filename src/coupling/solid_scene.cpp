@@ -40,7 +40,7 @@ Raster without_gaps(Raster bed) {
     return bed;
 }
 
-SolidLaw with_sound(SolidLaw law, double density, double sound_speed) {
+SolidLaw with_sound_speed(SolidLaw law, double density, double sound_speed) {
     std::visit(
         [&](auto& chosen) {
             if constexpr (std::decay_t<decltype(chosen)>::kAverages)  // fluids
@@ -50,7 +50,7 @@ SolidLaw with_sound(SolidLaw law, double density, double sound_speed) {
     return law;
 }
 
-/// Cells that a grid in space has beyond a side, so that nodes that points and images touch exist: beside
+/// Cells that a 3D grid has beyond a side, so that nodes that points and images touch exist: beside
 /// walls; and at open sides as many as a point needs, so that it leaves where the side is (solid_kernel.cpp).
 constexpr double kBehindWalls = 3.0, kAtOpenSides = 0.5;
 
@@ -115,7 +115,7 @@ SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
     start.top =
         scene.solid->top.value_or(std::max(low + kSplash * (head - low), high + kRoom * scene.solid->cell));
     constexpr double kTransits = 20.0;
-    const SolidLaw law = with_sound(scene.solid->law, scene.density, start.sound_speed);
+    const SolidLaw law = with_sound_speed(scene.solid->law, scene.density, start.sound_speed);
     start.blur = kTransits * deepest /
                  std::visit([&](const auto& chosen) { return chosen.sound_speed(scene.density); }, law);
     return start;
@@ -158,9 +158,9 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
         result.surfaces.push_back(surface_of(barrier, scene.bed, stage.cell));
     result.gravity = {0.0, 0.0, -scene.gravity};
     result.density = scene.density;
-    result.law = with_sound(stage.law, scene.density, start.sound_speed);
+    result.law = with_sound_speed(stage.law, scene.density, start.sound_speed);
     result.affine = stage.transfer == Transfer::apic ? Affine::apic : Affine::tpic;
-    result.keeps = stage.transfer == Transfer::flip;
+    result.flip = stage.transfer == Transfer::flip;
     result.blending = stage.blending;
     result.cfl = stage.cfl;
     result.split = stage.split;

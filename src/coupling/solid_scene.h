@@ -1,8 +1,8 @@
 #pragma once
-// The scene in space that a stage of a case describes.
+// The 3D scene that a stage of a case describes.
 #include "convert/flow_columns.h"
 #include "scene/scene.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 
 namespace frana {
 

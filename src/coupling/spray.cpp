@@ -9,7 +9,7 @@
 #include "observe/archive.h"
 #include "particles/bed_points.h"
 #include "scene/scene.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 
 namespace frana {
 
@@ -26,7 +26,7 @@ Spray::Spray(const Scene& scene) : gravity_(scene.gravity) {
     if (s.count() > 0) highest_ = -INFINITY;
 }
 
-void Spray::look(const SolidFlow& flow) {
+void Spray::sample(const Mpm3d& flow) {
     constexpr double kSlack = 1.01 * 1.01;  // one per cent of the speed
     const MaterialPoints& points = flow.body().points;
     double all = 0.0, above = 0.0;
@@ -57,7 +57,7 @@ std::optional<std::string> Spray::remark() const {
     return text;
 }
 
-void Spray::keep(Archive& archive) {
+void Spray::serialize(Archive& archive) {
     archive.numbers("spray", {&most_share_, &time_, &head_, &fastest_, &highest_});
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Points in space that have more energy than the release could give them.
+// 3D points that have more energy than the release could give them.
 #include <optional>
 #include <string>
 
@@ -8,7 +8,7 @@
 namespace frana {
 
 class Archive;
-class SolidFlow;
+class Mpm3d;
 struct Scene;
 
 /// No material of a run can be faster at an elevation than what falls there from the highest head of its release:
@@ -19,10 +19,10 @@ public:
     /// Of a scene with its particles.
     explicit Spray(const Scene& scene);
 
-    void look(const SolidFlow& flow);
+    void sample(const Mpm3d& flow);
     /// Nothing when no point had more.
     std::optional<std::string> remark() const;
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
     double available() const { return available_; }    ///< highest surface plus v^2 / 2g of the release [m]
     double most_share() const { return most_share_; }  ///< of the points' mass above it, at the worst look [1]

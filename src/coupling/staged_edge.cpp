@@ -50,7 +50,7 @@ void StagedRun::show_points() {
                     depth[static_cast<std::size_t>(v.node[j] * g.nx + u.node[i])] +=
                         scale * q.mass[p] * u.w[i] * v.w[j];
         }
-        columns_->stand_beside(depth);
+        columns_->set_adjacent(depth);
     });
 }
 
@@ -91,12 +91,12 @@ FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
 
 /// As the points that they will be when they cross the edge, but each with the column's velocity at its place: what widens
 /// sinks, as it does in nature, in proportion to the height above the bed.
-MaterialBeside StagedRun::beside_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const {
+GhostParticles StagedRun::ghosts_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const {
     const GridGeometry& g = scene_.bed.geometry;
     const FlowColumns parts =
         in_parts(columns, scene_.solid->spacing, g.cell, scene_.bed, {g.x0, g.y0, g.x_max(), g.y_max()});
     const std::vector<std::size_t> part_of = parts_of_seeds(parts, *scene_.solid);
-    MaterialBeside beside{seeds_of(parts, *scene_.solid), {}, columns_->status().time, columns_->status().dt};
+    GhostParticles ghosts{seeds_of(parts, *scene_.solid), {}, columns_->status().time, columns_->status().dt};
     for (std::size_t k = 0; k < part_of.size(); ++k) {
         const std::size_t part = part_of[k], column = static_cast<std::size_t>(parts.id[part]);
         const Mat2& c = gradients[column];
@@ -105,19 +105,19 @@ MaterialBeside StagedRun::beside_of(const FlowColumns& columns, const std::vecto
         gradient.topLeftCorner<2, 2>() = c;
         if (scene_.solid->along_bed) gradient.bottomLeftCorner<1, 2>() = slope.transpose() * c;
         gradient(2, 2) = -c.trace();
-        const Vec3 x = beside.seeds.position[k];
-        beside.seeds.velocity[k] +=
+        const Vec3 x = ghosts.seeds.position[k];
+        ghosts.seeds.velocity[k] +=
             gradient * Vec3(x[0] - columns.x[column], x[1] - columns.y[column], x[2] - parts.bed[part]);
-        beside.gradient.push_back(gradient);
+        ghosts.gradient.push_back(gradient);
     }
-    return beside;
+    return ghosts;
 }
 
 void StagedRun::show_columns() {
     timed_("edge", [&] {
         std::vector<Mat2> gradients;
         const FlowColumns columns = columns_at_edge(gradients);
-        points_->stand_beside(beside_of(columns, gradients));
+        points_->set_adjacent(ghosts_of(columns, gradients));
     });
 }
 

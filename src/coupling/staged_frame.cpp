@@ -32,7 +32,7 @@ Frame StagedRun::frame() {
     timed_("frame", [&] {
         const Status now = status_;
         const double mach = largest_mach_;
-        book(frame.status);  // of the columns at the points' time
+        accumulate(frame.status);  // of the columns at the points' time
         frame.status = status_;
         frame.status.step = now.step;
         status_ = now, largest_mach_ = mach;

@@ -6,7 +6,7 @@
 
 namespace frana {
 
-void StagedRun::look_for_pieces() {
+void StagedRun::find_pieces() {
     timed_("pieces", [&] {
         const Pieces now = pieces_of(points_->body().points, points_->body().grid);
         apart_.pieces = now.count, apart_.apart = now.apart, apart_.alone = now.alone;

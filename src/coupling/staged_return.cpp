@@ -24,7 +24,7 @@ void StagedRun::note_departed() {
         const Vec2 x = point.position.head<2>();
         if (!columns_->may_stand(x.x(), x.y()) && !in_hole_wall(columns_->flow(), x)) continue;
         returning_.push_back(point);
-        points_->stand_beside(point);
+        points_->set_adjacent(point);
     }
 }
 
@@ -115,7 +115,7 @@ bool StagedRun::behind_barrier(const Vec3& from, const Vec2& place) const {
 }
 
 /// They become columns. What these have no place for, motion up and down and against each other, is lost.
-void StagedRun::take_back() {
+void StagedRun::convert_to_2d() {
     const double time = points_->status().time;
     for (const DepartedPoint& point : returning_) returned_.mass += point.mass, returned_.lost += point.energy;
     const MovingColumns columns =
@@ -127,9 +127,9 @@ void StagedRun::take_back() {
 }
 
 /// All points become columns, and the window is a part of the map like any other.
-void StagedRun::end_space() {
+void StagedRun::end_3d() {
     timed_("hand back", [&] {
-        points_->stand_beside(MaterialBeside{});
+        points_->set_adjacent(GhostParticles{});
         points_->leave();
         columns_->close_exits();
         columns_->catch_up();
@@ -138,11 +138,11 @@ void StagedRun::end_space() {
             returning_ = std::move(all);
         else
             returning_.insert(returning_.end(), all.begin(), all.end());
-        take_back();
+        convert_to_2d();
         returning_.shrink_to_fit();
         ended_ = true;
     });
-    timed_("map", [&] { map_.look(*points_, points_->status().time); });
+    timed_("map", [&] { map_.sample(*points_, points_->status().time); });
 }
 
 }  // namespace frana

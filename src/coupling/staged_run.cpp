@@ -30,7 +30,7 @@ StagedRun::StagedRun(const Scene& scene, Start start)
     scene_.particles = {};
     status_ = columns_->status();
     if (start == Start::placed && scene.solid->from == 0.0)
-        begin_space([&](const Marks& marks) { return columns_of(scene.particles, scene, marks); });
+        begin_3d([&](const Marks& marks) { return columns_of(scene.particles, scene, marks); });
 }
 
 /// One step of the model in charge: columns until their stage ends; then points; then, perhaps, columns.
@@ -39,12 +39,12 @@ void StagedRun::advance(double until) {
         columns_->advance(std::min(until, scene_.solid->from));
         status_ = columns_->status();
         if (status_.time < scene_.solid->from) return;
-        begin_space([&](const Marks& marks) { return columns_of(columns_->frame(), scene_.bed, marks); });
+        begin_3d([&](const Marks& marks) { return columns_of(columns_->frame(), scene_.bed, marks); });
         return;
     }
     const auto count = [&] {
         status_.step += 1;
-        book(columns_->status());
+        accumulate(columns_->status());
     };
     const double end = scene_.solid->until.value_or(until);
     try {
@@ -52,7 +52,7 @@ void StagedRun::advance(double until) {
             columns_->advance(until);
         else
             step_points(std::min(until, end));
-        if (!ended_ && scene_.solid->until && points_->status().time >= end) end_space();
+        if (!ended_ && scene_.solid->until && points_->status().time >= end) end_3d();
     } catch (const UserError&) {  // all but what is refused was done, and the last frame shows it
         count();
         throw;
@@ -68,16 +68,16 @@ void StagedRun::step_points(double until) {
     points_->advance(alone ? until : std::min(until, columns_->status().time));
     note_departed();
     if (alone || points_->status().time == columns_->status().time) {
-        hand_over();
-        if (!returning_.empty()) timed_("hand back", [&] { take_back(); });
+        convert_to_3d();
+        if (!returning_.empty()) timed_("hand back", [&] { convert_to_2d(); });
     }
-    if (watch_) watch_->weigh(*points_);
+    if (watch_) watch_->accumulate_loads(*points_);
     moved_ += points_->status().max_speed * points_->status().dt;
-    look(until);
+    sample(until);
 }
 
 /// Columns in the window become points, those outside stay; none of them is in both.
-void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& columns_at) {
+void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns_at) {
     const Status before = columns_->status();
     timed_("hand over", [&] {
         const Marks inside = nodes_in_window(scene_), everywhere(inside.size(), 1);
@@ -86,7 +86,7 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
         FlowColumns columns = columns_at(inside);
         take_start_pressure(columns, scene_);
         space.points = seeds_of_window(columns, space.surfaces);
-        points_ = std::make_unique<SolidFlow>(space);
+        points_ = std::make_unique<Mpm3d>(space);
         points_->start_at(scene_.solid->from);
         points_->note_departed();
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
@@ -94,17 +94,17 @@ void StagedRun::begin_space(const std::function<FlowColumns(const Marks&)>& colu
         columns_->open_exits(inside, true);
     });
     const Status& now = columns_->status();  // what they gave counts as left
-    handed_.mass = now.mass_left - before.mass_left;
-    handed_.energy = now.energy_left - before.energy_left;
+    converted_.mass = now.mass_left - before.mass_left;
+    converted_.energy = now.energy_left - before.energy_left;
     for (std::size_t axis = 0; axis < 2; ++axis)
-        handed_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
-    look(points_->status().time);
-    book(columns_->status());
+        converted_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
+    sample(points_->status().time);
+    accumulate(columns_->status());
 }
 
 /// Refuses what does not fit into memory before it is asked for.
 void StagedRun::require_room(const FlowColumns& columns) const {
-    // Of a point: its numbers, room to sort, and both forms while it is handed over, at the end back as well.
+    // Of a point: its numbers, room to sort, and both forms while it is converted, at the end back as well.
     const double per_point = scene_.solid->until ? 600.0 : 450.0, per_column = 128.0;
     const PartsForecast parts = forecast_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell);
     const double bytes = parts.columns * per_column + parts.points * per_point, free = free_memory();
@@ -138,20 +138,20 @@ SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns, const std::vec
 }
 
 void StagedRun::step_columns(double until) {
-    if (columns_->status().particles == 0) return points_->stand_beside(MaterialBeside{});
+    if (columns_->status().particles == 0) return points_->set_adjacent(GhostParticles{});
     show_points();
     columns_->advance(until);
     pending_ = columns_->take_departed();
     for (const Departed& column : pending_) {
-        handed_.mass += column.mass, handed_.mass_later += column.mass;
-        handed_.energy += column.energy;
-        handed_.momentum[0] += column.mass * column.vx, handed_.momentum[1] += column.mass * column.vy;
+        converted_.mass += column.mass, converted_.mass_later += column.mass;
+        converted_.energy += column.energy;
+        converted_.momentum[0] += column.mass * column.vx, converted_.momentum[1] += column.mass * column.vy;
     }
     show_columns();
 }
 
 /// The columns that flowed into the window in the columns' last step.
-void StagedRun::hand_over() {
+void StagedRun::convert_to_3d() {
     if (pending_.empty()) return;
     timed_("hand over", [&] {
         std::vector<Mat2> gradients;
@@ -166,23 +166,23 @@ void StagedRun::hand_over() {
 
 /// The map follows when material has moved by a quarter of a cell, and at output times; with barriers when it
 /// has moved by half a cell of the points, so that what goes over them is seen there.
-void StagedRun::look(double until) {
+void StagedRun::sample(double until) {
     constexpr double kShare = 0.25;
     double far = kShare * scene_.bed.geometry.cell;
     if (watch_) far = std::min(far, 2.0 * kShare * scene_.solid->cell);
     if (points_->status().time < until && moved_ < far) return;
-    if (points_->status().time >= until) look_for_pieces();
-    spray_.look(*points_);
+    if (points_->status().time >= until) find_pieces();
+    spray_.sample(*points_);
     timed_("map", [&] {
-        map_.look(*points_, points_->status().time);
-        if (watch_) watch_->look(*points_);
+        map_.sample(*points_, points_->status().time);
+        if (watch_) watch_->sample(*points_);
     });
     moved_ = 0.0;
 }
 
 /// Sums of both models. All energy that the points lost counts as dissipated; what columns do not have, that of
 /// their compression, is in the residual.
-void StagedRun::book(const Status& columns) {
+void StagedRun::accumulate(const Status& columns) {
     const SolidStatus& s = points_->status();
     const Index step = status_.step;
     double mass = 0.0, energy = 0.0;  // on their way, in neither model
@@ -199,25 +199,25 @@ void StagedRun::book(const Status& columns) {
     }
     Vec3 impulse = s.momentum_given + s.weight_impulse;
     for (const Vec3& of_surface : points_->body().impulse) impulse += of_surface;
-    impulse += s.beside_impulse;
+    impulse += s.ghost_impulse;
     status_ = columns;
     status_.step = step;
     if (!ended_) status_.time = s.time, status_.dt = s.dt;
     status_.particles += s.points + static_cast<Index>(pending_.size() + returning_.size());
     status_.mass += s.mass + mass + mass_back;
-    status_.mass_left += s.mass_left - handed_.mass - mass_back;
+    status_.mass_left += s.mass_left - converted_.mass - mass_back;
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
         status_.momentum[axis] += s.momentum[k] + momentum[k] + momentum_back[k];
-        status_.impulse[axis] += impulse[k] + momentum[k] - handed_.momentum[axis];
-        status_.momentum_left[axis] += s.momentum_left[k] - handed_.momentum[axis] - momentum_back[k];
+        status_.impulse[axis] += impulse[k] + momentum[k] - converted_.momentum[axis];
+        status_.momentum_left[axis] += s.momentum_left[k] - converted_.momentum[axis] - momentum_back[k];
     }
     status_.kinetic += s.kinetic;
     status_.potential += s.potential + energy + energy_back;
     status_.stored = s.stored;
-    status_.in_space = {s.friction, -s.pushed, s.material, s.numerical() + returned_.lost, s.volume};
+    status_.in_3d = {s.friction, -s.contact_work, s.material, s.numerical() + returned_.lost, s.volume};
     status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left + returned_.lost;
-    status_.energy_left += s.energy_left - handed_.energy - energy_back - returned_.lost;
+    status_.energy_left += s.energy_left - converted_.energy - energy_back - returned_.lost;
     status_.max_depth = std::max(columns.max_depth, map_.max_depth());
     status_.max_speed = std::max(columns.max_speed, s.max_speed);
     status_.max_speed_on_map = std::max(columns.max_speed_on_map, s.max_speed);
@@ -266,7 +266,7 @@ std::vector<std::string> StagedRun::remarks() const {
     remarks.push_back(fmt::format(
         "points in space from {:.6g} s on: {} now, {:.6g} m3 of them came in over the window's edges later, "
         "{:.6g} m3 became columns again, {:.6g} m3 left through its sides; top of the space {:.6g} m",
-        scene_.solid->from, s.points, handed_.mass_later / density, returned_.mass / density,
+        scene_.solid->from, s.points, converted_.mass_later / density, returned_.mass / density,
         gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
     if (fluid)
@@ -298,13 +298,13 @@ std::vector<PhaseTime> StagedRun::timings() const {
     return all;
 }
 
-void StagedRun::keep(Archive& archive) {
-    Index in_space = ended_ ? 2 : points_ ? 1 : 0;
-    archive.number("in_space", in_space);
+void StagedRun::serialize(Archive& archive) {
+    Index in_3d = ended_ ? 2 : points_ ? 1 : 0;
+    archive.number("in_space", in_3d);
     archive.numbers("start", {&start_.sound_speed, &start_.top, &start_.blur});
-    if (archive.loading() && in_space) {
-        ended_ = in_space == 2;
-        points_ = std::make_unique<SolidFlow>(solid_scene(scene_, start_));
+    if (archive.loading() && in_3d) {
+        ended_ = in_3d == 2;
+        points_ = std::make_unique<Mpm3d>(solid_scene(scene_, start_));
         points_->note_departed();
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
         if (!ended_) columns_->open_exits(nodes_in_window(scene_), false);
@@ -312,32 +312,32 @@ void StagedRun::keep(Archive& archive) {
     }
     {
         const Archive::Part part(archive, "columns");
-        columns_->keep(archive);
+        columns_->serialize(archive);
     }
-    frana::keep(archive, "status", status_);
-    archive.numbers("sums",
-                    {&handed_.mass, &handed_.energy, &handed_.mass_later, &handed_.momentum[0], &handed_.momentum[1],
-                     &returned_.mass, &returned_.lost, &returned_.raised, &moved_, &largest_mach_});
+    frana::serialize(archive, "status", status_);
+    archive.numbers("sums", {&converted_.mass, &converted_.energy, &converted_.mass_later, &converted_.momentum[0],
+                             &converted_.momentum[1], &returned_.mass, &returned_.lost, &returned_.raised, &moved_,
+                             &largest_mach_});
     archive.number("pieces", apart_.pieces);
     archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
-    spray_.keep(archive);
-    timed_.keep(archive);
-    keep_on_their_way(archive);
+    spray_.serialize(archive);
+    timed_.serialize(archive);
+    serialize_returning(archive);
     if (!points_) return;
-    map_.keep(archive);
-    if (watch_) watch_->keep(archive);
+    map_.serialize(archive);
+    if (watch_) watch_->serialize(archive);
     {
         const Archive::Part part(archive, "points");
-        points_->keep(archive);
+        points_->serialize(archive);
     }
     if (archive.loading() && !ended_) {
         if (columns_->status().time > points_->status().time) show_columns();
-        for (const DepartedPoint& point : returning_) points_->stand_beside(point);
+        for (const DepartedPoint& point : returning_) points_->set_adjacent(point);
     }
-    if (watch_ && archive.loading()) watch_->weigh(*points_);
+    if (watch_ && archive.loading()) watch_->accumulate_loads(*points_);
 }
 
-void StagedRun::keep_on_their_way(Archive& archive) {
+void StagedRun::serialize_returning(Archive& archive) {
     std::vector<std::int64_t> ids;
     std::vector<double> numbers;
     for (const Departed& c : pending_) {

@@ -1,6 +1,6 @@
 #pragma once
-// A run in stages: columns, from a time on points in space in a window of the map (Fois, de Falco, Formaggia 2025, with
-// the tail that still flows into the window handed over column by column, and what flows out made columns), and where the
+// A run in stages: columns, from a time on 3D points in a window of the map (Fois, de Falco, Formaggia 2025, with
+// the tail that still flows into the window converted column by column, and what flows out made columns), and where the
 // case asks for it columns alone again.
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "coupling/barriers.h"
 #include "coupling/flow_map.h"
-#include "coupling/hand_over.h"
+#include "coupling/stage_conversion.h"
 #include "coupling/solid_scene.h"
 #include "coupling/spray.h"
 #include "shallow/depth_averaged.h"
@@ -40,15 +40,15 @@ public:
     std::vector<std::string> remarks() const override;
     std::optional<PointsApart> points_apart() const override;
     std::vector<PhaseTime> timings() const override;
-    void keep(Archive& archive) override;
+    void serialize(Archive& archive) override;
 
-    /// The points in space; nullptr before their stage.
-    const SolidFlow* points() const { return points_.get(); }
+    /// The 3D points; nullptr before their stage.
+    const Mpm3d* points() const { return points_.get(); }
     const DepthAveraged& columns() const { return *columns_; }
 
 private:
-    /// What the columns gave away, as they booked it.
-    struct Handed {
+    /// What the columns gave away, as they recorded it.
+    struct Converted {
         double mass = 0.0, energy = 0.0, mass_later = 0.0;
         std::array<double, 2> momentum{};
     };
@@ -60,13 +60,13 @@ private:
     };
 
     using Marks = std::vector<std::uint8_t>;  ///< of nodes, 1 or 0
-    void begin_space(const std::function<FlowColumns(const Marks&)>& columns_at);
+    void begin_3d(const std::function<FlowColumns(const Marks&)>& columns_at);
     void step_columns(double until);
     void step_points(double until);
-    void hand_over();
+    void convert_to_3d();
     void note_departed();
-    void take_back();
-    void end_space();
+    void convert_to_2d();
+    void end_3d();
     Vec2 place_of_column(const DepartedPoint& point, const Vec2& to);
     std::optional<Vec2> nearest_before(const DepartedPoint& point, const Vec2& x,
                                        const std::function<bool(Index, Index)>& allowed) const;
@@ -78,22 +78,22 @@ private:
     void show_points();
     void show_columns();
     FlowColumns columns_at_edge(std::vector<Mat2>& gradients) const;
-    MaterialBeside beside_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const;
+    GhostParticles ghosts_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const;
     SolidSeeds seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) const;
     void require_room(const FlowColumns& columns) const;
     void require_below_top(const FlowColumns& columns) const;
-    void look(double until);
-    void look_for_pieces();
+    void sample(double until);
+    void find_pieces();
     void remark_pieces(std::vector<std::string>& remarks) const;
-    void book(const Status& columns);
-    void keep_on_their_way(Archive& archive);
+    void accumulate(const Status& columns);
+    void serialize_returning(Archive& archive);
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
     double* add_field(std::vector<Field>& fields, const Field& like, int components, Index count);
 
     Scene scene_;
     std::unique_ptr<DepthAveraged> columns_;
-    std::unique_ptr<SolidFlow> points_;
+    std::unique_ptr<Mpm3d> points_;
     SolidStart start_;
     FlowMap map_;
     std::optional<BarrierWatch> watch_;  ///< when there are barriers
@@ -102,9 +102,9 @@ private:
     std::vector<std::uint8_t> raised_;   ///< with barriers: 1 at nodes whose ground they raise for columns
     std::vector<double> points_depth_;   ///< scratch of show_points, on the terrain's nodes [m]
     std::vector<DepartedPoint> returning_;  ///< points that left where columns may stand, since the columns' last step
-    Handed handed_;
+    Converted converted_;
     Returned returned_;
-    bool ended_ = false;  ///< the stage in space is over: its points, none, only have its sums
+    bool ended_ = false;  ///< the 3D stage is over: its points, none, only have its sums
     Status status_;
     StepClock timed_;
     double moved_ = 0.0;  ///< farthest way of a point since the last look at the map [m]

@@ -48,8 +48,8 @@ Frame StructuredRun::frame() {
     Frame frame;
     frame_used_ = 0;
     timed_("frame", [&] {
-        if (alone_) alone_->look();
-        book();
+        if (alone_) alone_->sample();
+        accumulate();
         frame.grid = flow().body().grid.geometry();
         frame.status = status_;
         particle_fields(frame);
@@ -78,8 +78,8 @@ void StructuredRun::particle_fields(Frame& frame) {
     for (Index p = 0; p < count; ++p) {
         const Vec2 x = flow().position(p);
         const double z = bed_below(bed_, x.x(), x.y()), h = q.layer[p];
-        const double bx = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_x; }),
-                     by = from_nodes(body, p, [&](Index k) { return body.pull[k].slope_y; });
+        const double bx = from_nodes(body, p, [&](Index k) { return body.ground[k].slope_x; }),
+                     by = from_nodes(body, p, [&](Index k) { return body.ground[k].slope_y; });
         const double up = from_nodes(body, p, [&](Index k) { return map_.climb(k, q.vx[p], q.vy[p]); });
         const double steep = std::sqrt(1.0 + bx * bx + by * by);
         const double holds = body.share * (1.0 - q.damage[p]);
@@ -88,13 +88,14 @@ void StructuredRun::particle_fields(Frame& frame) {
         velocity[3 * p] = q.vx[p], velocity[3 * p + 1] = q.vy[p], velocity[3 * p + 2] = up;
         speed[p] = std::sqrt(q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p] + up * up);
         elevation[p] = z, surface[p] = z + h;
-        pressure[p] = body.density * h * from_nodes(body, p, [&](Index k) { return body.pull[k].across; });
+        pressure[p] = body.density * h * from_nodes(body, p, [&](Index k) { return body.ground[k].across; });
         mass[p] = q.mass[p], volume[p] = q.volume[p], id[p] = static_cast<double>(q.id[p]);
         stress[3 * p] = holds * q.xx[p], stress[3 * p + 1] = holds * q.yy[p], stress[3 * p + 2] = holds * q.xy[p];
-        const Sym2 k = earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, h, q.pull[p], body.rankine);
-        const double push = 0.5 * (1.0 - holds) * body.density * q.pull[p] * h;
-        effective[3 * p] = stress[3 * p] - push * k.xx, effective[3 * p + 1] = stress[3 * p + 1] - push * k.yy,
-                      effective[3 * p + 2] = stress[3 * p + 2] - push * k.xy;
+        const Sym2 k =
+            earth_pressure({q.cxx[p], q.cyy[p], 0.5 * (q.cxy[p] + q.cyx[p])}, h, q.normal_gravity[p], body.rankine);
+        const double thrust = 0.5 * (1.0 - holds) * body.density * q.normal_gravity[p] * h;
+        effective[3 * p] = stress[3 * p] - thrust * k.xx, effective[3 * p + 1] = stress[3 * p + 1] - thrust * k.yy,
+                      effective[3 * p + 2] = stress[3 * p + 2] - thrust * k.xy;
         damage[p] = q.damage[p];
         cohesion[p] = (1.0 - q.damage[p]) * q.cohesion[p];
     }
@@ -124,7 +125,7 @@ void StructuredRun::node_fields(Frame& frame) {
         }
     for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
         const StructuredBody::Moved& node = body.moved[k];
-        const StructuredBody::Pull& ground = body.pull[k];
+        const StructuredBody::NodeGround& ground = body.ground[k];
         const double h = StructuredMap::depth_of(body, k), up = map_.climb(k, node.vx, node.vy);
         if (!(h > 0.0)) return;
         depth[n] = h, surface[n] += h;
@@ -202,7 +203,7 @@ void StructuredRun::water_fields(Frame& frame) {
         speed[n] = Vec3(velocity[3 * n], velocity[3 * n + 1], velocity[3 * n + 2]).norm();
         water_depth[n] = h, depth[n] = all, surface[n] += h;
         thickness[n] = all / std::sqrt(1.0 + bx * bx + by * by);
-        pressure[n] += water_density_ * water.pull[k] * h;
+        pressure[n] += water_density_ * water.normal_gravity[k] * h;
     });
 }
 

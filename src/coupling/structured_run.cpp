@@ -20,13 +20,13 @@ Vec2 centre_of(const Seeds& seeds) {
 
 StructuredScene started(const Scene& scene, Start start) {
     StructuredScene s = structured_scene(scene);
-    if (start == Start::kept) s.points = {};
+    if (start == Start::resumed) s.points = {};
     return s;
 }
 
 TwoPhaseScene wet(const Scene& scene, Start start) {
     TwoPhaseScene s = two_phase_scene(scene);
-    if (start == Start::kept) s.columns.points = {}, s.water.start = {};
+    if (start == Start::resumed) s.columns.points = {}, s.water.start = {};
     return s;
 }
 
@@ -57,9 +57,9 @@ StructuredRun::StructuredRun(const Scene& scene, Start start)
       map_(flow().body().grid, centre_of(scene.particles), scene.output.footprint_depth,
            path_of(scene, flow().body().grid)),
       neighbours_(flow(), reach_of_neighbours(scene.particles)) {
-    if (start == Start::kept) return;
+    if (start == Start::resumed) return;
     map_.note(flow().body(), water(), 0.0);
-    book();
+    accumulate();
 }
 
 void StructuredRun::advance(double until) {
@@ -68,10 +68,10 @@ void StructuredRun::advance(double until) {
     else
         alone_->advance(until);
     timed_("peaks", [&] { map_.note(flow().body(), water(), flow().status().time); });
-    book();
+    accumulate();
 }
 
-void StructuredRun::book() {
+void StructuredRun::accumulate() {
     const StructuredStatus& s = flow().status();
     status_.step = s.step, status_.time = s.time, status_.dt = s.dt;
     status_.particles = s.points;
@@ -85,24 +85,24 @@ void StructuredRun::book() {
     }
     status_.kinetic = s.bed_kinetic, status_.potential = s.potential;
     status_.stored = s.stored;
-    status_.dissipated = s.friction + s.pushed + (s.worked - s.stored);
+    status_.dissipated = s.friction + s.obstacle_work + (s.worked - s.stored);
     status_.energy_left = s.energy_left;
     status_.max_speed = map_.sums().max_speed, status_.max_speed_on_map = s.max_speed;
     status_.mean_speed = s.mass > 0.0 ? s.speeds / s.mass : 0.0;
     status_.max_depth = map_.sums().max_depth;
     status_.covered_area = map_.sums().covered_area;
     status_.front = map_.sums().front;
-    if (both_) book_water();
+    if (both_) accumulate_water();
 }
 
 /// The water's part. Rain and what the ground takes count as gone through the sides. Of its energy friction, viscosity and
-/// drag are booked; what shocks and the scheme take is what is left, the residual.
-void StructuredRun::book_water() {
+/// drag are recorded; what shocks and the scheme take is what is left, the residual.
+void StructuredRun::accumulate_water() {
     const WaterStatus& w = both_->water().status();
     const WaterLedger& l = w.ledger;
     const double density = water_density_, solids = status_.mass, mass = solids + density * w.volume;
     const Vec2 left = l.momentum_left + l.momentum_infiltrated,
-               push = w.momentum_given + l.ground + l.walls + l.friction + l.columns;
+               thrust = w.momentum_given + l.ground + l.walls + l.friction + l.columns;
     status_.dt = w.dt;
     status_.mass = mass;
     status_.mass_left += density * (l.left + l.infiltrated - l.rained);
@@ -110,7 +110,7 @@ void StructuredRun::book_water() {
         const auto k = static_cast<Eigen::Index>(axis);
         status_.momentum[axis] += density * w.momentum[k];
         status_.momentum_left[axis] += density * left[k];
-        status_.impulse[axis] += density * push[k];
+        status_.impulse[axis] += density * thrust[k];
     }
     status_.kinetic += density * both_->water_kinetic();
     status_.potential += density * both_->water_potential();
@@ -190,18 +190,18 @@ std::vector<PhaseTime> StructuredRun::timings() const {
     return all;
 }
 
-void StructuredRun::keep(Archive& archive) {
+void StructuredRun::serialize(Archive& archive) {
     {
         const Archive::Part part(archive, "columns");
         if (both_)
-            both_->keep(archive);
+            both_->serialize(archive);
         else
-            alone_->keep(archive);
+            alone_->serialize(archive);
     }
-    neighbours_.keep(archive);
-    map_.keep(archive);
-    frana::keep(archive, "status", status_);
-    timed_.keep(archive);
+    neighbours_.serialize(archive);
+    map_.serialize(archive);
+    frana::serialize(archive, "status", status_);
+    timed_.serialize(archive);
 }
 
 }  // namespace frana

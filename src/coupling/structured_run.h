@@ -35,15 +35,15 @@ public:
     std::optional<Breakage> breakage() const override;
     std::optional<WaterBudget> water_budget() const override;
     std::vector<PhaseTime> timings() const override;
-    void keep(Archive& archive) override;
+    void serialize(Archive& archive) override;
 
     const StructuredFlow& flow() const { return both_ ? both_->columns() : *alone_; }
     /// nullptr in a dry run.
     const WaterFlow* water() const { return both_ ? &both_->water() : nullptr; }
 
 private:
-    void book();
-    void book_water();
+    void accumulate();
+    void accumulate_water();
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
     void inner_fields(Frame& frame);

@@ -18,7 +18,7 @@ public:
     Terrain(const Scene& scene)
         : bed_(scene.bed), holes_(scene.holes.nodes), gravity_(scene.gravity), unrolled_(scene.structure->unrolled) {}
 
-    GroundPull operator()(double x, double y) const {
+    GroundGravity operator()(double x, double y) const {
         const GridGeometry& g = bed_.geometry;
         const auto place = [&](double at, double start, Index count) {
             return std::clamp((at - start) / g.cell, 0.0, static_cast<double>(count - 1));
@@ -27,23 +27,23 @@ public:
         const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
         const double fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
         Vec2 slope(0, 0);
-        GroundPull pull;
+        GroundGravity ground;
         for (Index dj = 0; dj < 2; ++dj)
             for (Index di = 0; di < 2; ++di) {
                 const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
                 if (w < 1e-9) continue;  // round-off of a place on a node
                 const double z = bed_.at(i + di, j + dj);
-                pull.exit = pull.exit || !std::isfinite(z);
-                pull.hole = pull.hole || is_hole(i + di, j + dj);
-                pull.elevation += w * z, slope += w * slope_at(i + di, j + dj);
+                ground.exit = ground.exit || !std::isfinite(z);
+                ground.hole = ground.hole || is_hole(i + di, j + dj);
+                ground.elevation += w * z, slope += w * slope_at(i + di, j + dj);
             }
-        if (pull.exit) pull.elevation = beside_hole(i, j), slope = Vec2(0, 0);
+        if (ground.exit) ground.elevation = ground_near_hole(i, j), slope = Vec2(0, 0);
         // Along the ground the slope is a sine, on the map a tangent.
         const double drive = unrolled_ ? gravity_ : gravity_ / (1.0 + slope.squaredNorm());
-        pull.across = unrolled_ ? gravity_ * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) : drive;
-        pull.x = -drive * slope.x(), pull.y = -drive * slope.y();
-        if (!unrolled_) pull.slope_x = slope.x(), pull.slope_y = slope.y();
-        return pull;
+        ground.across = unrolled_ ? gravity_ * std::sqrt(std::max(0.0, 1.0 - slope.squaredNorm())) : drive;
+        ground.x = -drive * slope.x(), ground.y = -drive * slope.y();
+        if (!unrolled_) ground.slope_x = slope.x(), ground.slope_y = slope.y();
+        return ground;
     }
 
 private:
@@ -53,7 +53,7 @@ private:
 
     /// Where there is no ground: the mean elevation of the nearest ring of nodes that has any, as far as columns reach [m].
     /// Nodes there carry a share of the columns beside the hole, and that share has its height.
-    double beside_hole(Index i, Index j) const {
+    double ground_near_hole(Index i, Index j) const {
         constexpr Index kReach = 4;
         for (Index reach = 1; reach <= kReach; ++reach) {
             double sum = 0.0, known = 0.0;
@@ -186,10 +186,10 @@ std::vector<double> depths_of(const StructuredScene& columns) {
     std::vector<double> depths(static_cast<std::size_t>(g.size()), 0.0);
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i)
-            if (StructuredMap::touches(body, i, j)) {
+            if (StructuredMap::is_in_reach(body, i, j)) {
                 const Index k = body.grid.at(i, j);
                 if (body.node_mass[k] > 0.0)
-                    depths[static_cast<std::size_t>(j * g.nx + i)] = per_mass * body.node_mass[k] / body.pull[k].open;
+                    depths[static_cast<std::size_t>(j * g.nx + i)] = per_mass * body.node_mass[k] / body.ground[k].open;
             }
     return depths;
 }

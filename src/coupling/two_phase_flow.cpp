@@ -24,7 +24,7 @@ TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene) : columns_(scene.columns)
     water_.lend(water);
     columns_.meet(water);
     confine();
-    weigh();
+    update_totals();
     volume_given_ = confined_volume(columns_) + water_.status().volume;
 }
 
@@ -80,25 +80,26 @@ void TwoPhaseFlow::advance(double until) {
     const double longest = step_of_columns();
     water_.advance(longest > 0.0 ? std::min(until, time() + longest) : until);
     const double end = water_.status().time;
-    touched_ = columns_.body().active.work;
+    reached_tiles_ = columns_.body().active.work;
     while (columns_.status().time < end) {
         columns_.advance(end);
         touch(columns_.body().active.work);
     }
-    columns_.look();
-    water_.take_changes(touched_);
+    columns_.sample();
+    water_.take_changes(reached_tiles_);
     confine();
-    weigh();
+    update_totals();
 }
 
 void TwoPhaseFlow::touch(const std::vector<Index>& tiles) {
-    if (std::includes(touched_.begin(), touched_.end(), tiles.begin(), tiles.end())) return;
+    if (std::includes(reached_tiles_.begin(), reached_tiles_.end(), tiles.begin(), tiles.end())) return;
     scratch_.clear();
-    std::set_union(touched_.begin(), touched_.end(), tiles.begin(), tiles.end(), std::back_inserter(scratch_));
-    touched_.swap(scratch_);
+    std::set_union(reached_tiles_.begin(), reached_tiles_.end(), tiles.begin(), tiles.end(),
+                   std::back_inserter(scratch_));
+    reached_tiles_.swap(scratch_);
 }
 
-void TwoPhaseFlow::weigh() {
+void TwoPhaseFlow::update_totals() {
     const WaterBody& w = water_.body();
     potential_ = speeds_ = kinetic_ = 0.0;
     const double per = w.steep ? 0.5 / w.grid.cell() : 0.0;
@@ -121,18 +122,18 @@ void TwoPhaseFlow::weigh() {
     potential_ *= area * w.gravity, speeds_ *= area, kinetic_ *= area;
 }
 
-void TwoPhaseFlow::keep(Archive& archive) {
+void TwoPhaseFlow::serialize(Archive& archive) {
     {
         const Archive::Part part(archive, "columns");
-        columns_.keep(archive);
+        columns_.serialize(archive);
     }
     {
         const Archive::Part part(archive, "water");
-        water_.keep(archive);
+        water_.serialize(archive);
     }
     archive.numbers("weights", {&volume_given_, &potential_, &speeds_, &kinetic_});
     if (!archive.loading()) return;
-    columns_.look();  // beside the water that has been loaded
+    columns_.sample();  // beside the water that has been loaded
     confine();
 }
 

@@ -39,19 +39,19 @@ public:
     double water_kinetic() const { return kinetic_; }
     double water_speeds() const { return speeds_; }
     /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
     void confine();
     void mix();
     void touch(const std::vector<Index>& tiles);
-    void weigh();
+    void update_totals();
     double step_of_columns() const;
 
     StructuredFlow columns_;
     WaterFlow water_;
     std::vector<Index> confined_;  ///< tiles where the water lies on columns
-    std::vector<Index> touched_;   ///< tiles where columns were since the last step of the water
+    std::vector<Index> reached_tiles_;   ///< tiles where columns were since the last step of the water
     std::vector<Index> scratch_;
     double volume_given_ = 0.0, potential_ = 0.0, speeds_ = 0.0, kinetic_ = 0.0;
 };

@@ -13,7 +13,7 @@ Scene with_walls(Scene scene) {
 WalledColumns::WalledColumns(const Scene& scene, Start start)
     : density_(scene.density), columns_(std::make_unique<DepthAveraged>(with_walls(scene), start)), watch_(scene) {
     columns_->note_parents();
-    if (start == Start::placed) look();
+    if (start == Start::placed) sample();
 }
 
 /// Looks when a column may have moved by half a cell, and at output times.
@@ -23,18 +23,18 @@ void WalledColumns::advance(double until) {
     const Status& now = columns_->status();
     moved_ += now.max_speed_on_map * now.dt;
     if (moved_ < 0.5 * columns_->flow().cell && now.time < until) return;
-    timed_("barriers", [&] { look(); });
+    timed_("barriers", [&] { sample(); });
     moved_ = 0.0;
 }
 
-void WalledColumns::look() {
+void WalledColumns::sample() {
     const Flow& flow = columns_->flow();
     const GridGeometry& g = flow.grid.geometry();
     const Columns& c = flow.columns;
     for (Index p = 0; p < c.count(); ++p) {
         const Vec2 place(g.x0 + g.cell * c.x[p], g.y0 + g.cell * c.y[p]);
         const Sample there = columns_->at(place);
-        watch_.look({c.id[p], place, there.elevation + there.depth, c.mass[p] / density_});
+        watch_.sample({c.id[p], place, there.elevation + there.depth, c.mass[p] / density_});
     }
 }
 
@@ -44,12 +44,12 @@ std::vector<PhaseTime> WalledColumns::timings() const {
     return all;
 }
 
-void WalledColumns::keep(Archive& archive) {
-    columns_->keep(archive);
-    watch_.keep(archive);
+void WalledColumns::serialize(Archive& archive) {
+    columns_->serialize(archive);
+    watch_.serialize(archive);
     archive.numbers("walled", {&moved_});
     const Archive::Part part(archive, "walled_clock");
-    timed_.keep(archive);
+    timed_.serialize(archive);
 }
 
 }  // namespace frana

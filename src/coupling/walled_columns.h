@@ -19,12 +19,12 @@ public:
     const BarrierLoads* loads() const override { return &watch_.loads(); }
     std::vector<std::string> remarks() const override { return columns_->remarks(); }
     std::vector<PhaseTime> timings() const override;
-    void keep(Archive& archive) override;
+    void serialize(Archive& archive) override;
 
     const DepthAveraged& columns() const { return *columns_; }
 
 private:
-    void look();
+    void sample();
 
     double density_;
     std::unique_ptr<DepthAveraged> columns_;

@@ -162,7 +162,7 @@ void require_whole(const fs::path& file) {
     throw damaged("is damaged, its checksum does not fit");
 }
 
-void keep_labels(Archive& archive, std::vector<std::string>& names, std::vector<std::string>& texts) {
+void serialize_labels(Archive& archive, std::vector<std::string>& names, std::vector<std::string>& texts) {
     const Archive::Part part(archive, "labels");
     archive.texts("names", names);
     archive.texts("texts", texts);
@@ -174,12 +174,12 @@ void put_labels(Archive& archive, const CheckpointLabels& labels) {
         names.push_back(name);
         texts.push_back(text);
     }
-    keep_labels(archive, names, texts);
+    serialize_labels(archive, names, texts);
 }
 
 CheckpointLabels taken_labels(Archive& archive) {
     std::vector<std::string> names, texts;
-    keep_labels(archive, names, texts);
+    serialize_labels(archive, names, texts);
     if (names.size() != texts.size()) Archive::wrong_length("labels/texts", texts.size(), names.size());
     CheckpointLabels labels;
     for (std::size_t i = 0; i < names.size(); ++i) labels[names[i]] = texts[i];
@@ -205,13 +205,13 @@ std::uintmax_t write_checkpoint(const fs::path& path, const CheckpointLabels& la
     const hdf5::QuietErrors quiet;
     ArchiveSize size;
     put_all(size);
-    AtomicFile beside(path);
+    AtomicFile pending(path);
     const Access access(path);
-    const std::string place = beside.path().string();
+    const std::string place = pending.path().string();
     {
         const Handle creation(access, H5Pcreate(H5P_FILE_CREATE), H5Pclose);
         access.check(H5Pset_userblock(creation, kHead));
-        std::ofstream(beside.path()).close();
+        std::ofstream(pending.path()).close();
         hdf5::reserve(access, place, 4096);  // for what the next line writes
         Handle(access, H5Fcreate(place.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT), H5Fclose).close();
     }
@@ -220,9 +220,9 @@ std::uintmax_t write_checkpoint(const fs::path& path, const CheckpointLabels& la
     Saver saver(access, file);
     put_all(saver);
     file.close();
-    write_head(beside.path());
-    const std::uintmax_t written = fs::file_size(beside.path());
-    beside.commit_to_disk();
+    write_head(pending.path());
+    const std::uintmax_t written = fs::file_size(pending.path());
+    pending.commit_to_disk();
     return written;
 }
 

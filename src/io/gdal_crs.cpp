@@ -84,7 +84,7 @@ std::string scale_line(const Place& place, const Unit& unit) {
         }
         if (!crs.empty()) crs = "-a_srs " + shell(crs) + " ";
     }
-    const std::string target = beside(place.file, "_metres");
+    const std::string target = sibling(place.file, "_metres");
     const std::string between = std::filesystem::path(target).replace_extension(".vrt").string();
     return fmt::format(
         "gdalbuildvrt {}{} {} && gdal_translate -ot Float32 -scale 0 1 0 {:.12g} -a_nodata -9999 "
@@ -96,7 +96,7 @@ std::string scale_line(const Place& place, const Unit& unit) {
     const Unit up = vertical_unit(place);
     const bool metres = up.name.empty();
     const std::filesystem::path input =
-        metres ? place.file : std::filesystem::path(beside(place.file, "_metres"));
+        metres ? place.file : std::filesystem::path(sibling(place.file, "_metres"));
     throw UserError(
         fmt::format("{}: {}{}; expected a projected CRS in metres; run: {}{}{}", place.file.string(), found,
                     metres ? "" : ", and its elevations are in " + up.name,
@@ -218,7 +218,7 @@ std::string warp_line(const std::filesystem::path& file, const std::string& targ
                       const std::string& suffix) {
     return fmt::format("gdalwarp {}-r cubic -ot Float32 -dstnodata -9999 {} {}",
                        target_crs.empty() ? "" : "-t_srs " + target_crs + " ", shell(file.string()),
-                       shell(beside(file, suffix)));
+                       shell(sibling(file, suffix)));
 }
 
 }  // namespace frana::gdal

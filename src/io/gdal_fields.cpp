@@ -165,7 +165,7 @@ Raster GdalReader::read_raster(const std::filesystem::path& file, const std::arr
             fmt::format("{}: its pixels are {:g} m by {:g} m; expected square pixels; run: gdalwarp -tr "
                         "{:.12g} {:.12g} -r bilinear -ot Float32 -dstnodata -9999 {} {}",
                         file.string(), raster.x_axis().size, raster.y_axis().size, edge, edge,
-                        gdal::shell(file.string()), gdal::shell(gdal::beside(file, "_square"))));
+                        gdal::shell(file.string()), gdal::shell(gdal::sibling(file, "_square"))));
     }
     Raster out = raster.read_raster(i, j, nx, ny);
     if (out.crs_wkt.empty()) out.crs_wkt = crs_wkt;

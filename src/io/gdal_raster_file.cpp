@@ -31,7 +31,7 @@ RasterFile::RasterFile(const std::filesystem::path& file, Meaning meaning, std::
             fmt::format("{}: holds no raster band{}", file_.string(),
                         inner ? fmt::format(" but subdatasets; expected one raster; run: gdal_translate "
                                             "{} {}",
-                                            shell(inner), shell(beside(file_, "_1")))
+                                            shell(inner), shell(sibling(file_, "_1")))
                               : std::string("; expected a raster such as a GeoTIFF")));
     }
     band_ = dataset_->GetRasterBand(1);
@@ -40,7 +40,7 @@ RasterFile::RasterFile(const std::filesystem::path& file, Meaning meaning, std::
         throw UserError(
             fmt::format("{}: holds complex numbers; expected real ones; run: gdal_translate -ot Float64 "
                         "{} {}",
-                        file_.string(), shell(file_.string()), shell(beside(file_, "_real"))));
+                        file_.string(), shell(file_.string()), shell(sibling(file_, "_real"))));
     // GDAL takes alpha for a mask in integer rasters only; gdalwarp -dstalpha makes it in any.
     if (bands > 1 && dataset_->GetRasterBand(bands)->GetColorInterpretation() == GCI_AlphaBand)
         alpha_ = dataset_->GetRasterBand(bands);
@@ -66,7 +66,7 @@ void RasterFile::take_geotransform() {
             "{}: has no georeference; expected the map position of its pixels; run: {}", file_.string(),
             points ? straight_line(file_)
                    : fmt::format("gdal_translate -a_ullr XMIN YMAX XMAX YMIN {} {}", shell(file_.string()),
-                                 shell(beside(file_, "_placed")))));
+                                 shell(sibling(file_, "_placed")))));
     }
     const Index nx = dataset_->GetRasterXSize(), ny = dataset_->GetRasterYSize();
     // A thousandth of a pixel over the whole raster is not a rotation but the round-off of some writer.
@@ -87,7 +87,7 @@ void RasterFile::take_geotransform() {
                         "a map; expected pixels of a size in metres; run: gdal_translate -a_ullr XMIN YMAX "
                         "XMAX YMIN {} {}",
                         file_.string(), t[0], t[1], t[2], t[3], t[4], t[5], shell(file_.string()),
-                        shell(beside(file_, "_placed"))));
+                        shell(sibling(file_, "_placed"))));
     south_up_ = t[5] > 0.0;
     x_ = {nx, t[0], t[1]};
     y_ = {ny, south_up_ ? t[3] : t[3] + double(ny) * t[5], std::abs(t[5])};
@@ -180,7 +180,7 @@ void RasterFile::refuse_sentinels(const std::vector<double>& raw, Index i, Index
             file_.string(), column, row, x_.start + (double(column) + 0.5) * x_.size,
             y_.start + (double(j) + 0.5) * y_.size, raw[k],
             meaning_ == Meaning::elevation ? "an elevation in metres" : "a measured value",
-            fmt::format("{:.17g}", raw[k]), shell(file_.string()), shell(beside(file_, "_nodata"))));
+            fmt::format("{:.17g}", raw[k]), shell(file_.string()), shell(sibling(file_, "_nodata"))));
     }
 }
 

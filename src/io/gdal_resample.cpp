@@ -132,7 +132,7 @@ public:
     }
     const double* row(Index j) const { return values_.data() + (j - first_) * columns_; }
     double value(const NodeWeights& wx, const NodeWeights& wy, double fast) const {
-        if (std::isnan(fast)) return beside_nodata(wx, wy);
+        if (std::isnan(fast)) return near_nodata(wx, wy);
         if (!steep_.empty() && over_steep(wx, wy)) return limited(wx, wy);
         return fast;
     }
@@ -173,7 +173,7 @@ private:
     }
 
     /// Plain weights over what is left.
-    double beside_nodata(const NodeWeights& wx, const NodeWeights& wy) const {
+    double near_nodata(const NodeWeights& wx, const NodeWeights& wy) const {
         double sum = 0.0, left = 0.0;
         each_pixel(wx, wy, [&](std::size_t i, std::size_t j, Index column, Index row) {
             const double weight = wx.plain[i] * wy.plain[j], v = at(column, row);

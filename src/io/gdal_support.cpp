@@ -89,7 +89,7 @@ std::string shell(const std::string& text) {
     return quoted + "'";
 }
 
-std::string beside(const std::filesystem::path& file, const std::string& suffix) {
+std::string sibling(const std::filesystem::path& file, const std::string& suffix) {
     return (file.parent_path() / (file.stem().string() + suffix + ".tif")).string();
 }
 

@@ -58,6 +58,6 @@ Dataset warp(const std::string& target, GDALDataset& source, const std::vector<s
 std::string shell(const std::string& text);
 
 /// dem.tif, "_utm" -> dem_utm.tif: a name beside the file for the line that cures it. Always a GeoTIFF.
-std::string beside(const std::filesystem::path& file, const std::string& suffix);
+std::string sibling(const std::filesystem::path& file, const std::string& suffix);
 
 }  // namespace frana::gdal

@@ -76,7 +76,7 @@ std::vector<double> read_column(const Access& access, hid_t file, const char* na
     return std::move(numbers.values);
 }
 
-void require_sound(const std::filesystem::path& file, const SolidPoints& points) {
+void require_valid(const std::filesystem::path& file, const SolidPoints& points) {
     const std::size_t n = points.mass.size();
     const auto wrong = [&](const std::string& what) {
         return UserError(
@@ -111,19 +111,19 @@ SolidPoints read_points_hdf5(const std::filesystem::path& path) {
     points.volume = read_column(access, file, "volume", 1);
     points.pressure.assign(points.mass.size(), 0.0);
     if (H5Lexists(file, "pressure", H5P_DEFAULT) > 0) points.pressure = read_column(access, file, "pressure", 1);
-    require_sound(path, points);
+    require_valid(path, points);
     return points;
 }
 
 void write_points_hdf5(const std::filesystem::path& file, const PointTable& table) {
     require_finite(table);
-    AtomicFile beside(file);
+    AtomicFile pending(file);
     const hdf5::QuietErrors quiet;
     const Access access(file);
-    Handle(access, H5Fcreate(beside.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose).close();
-    hdf5::reserve(access, beside.path(), space_for(table));
-    write_all(access, beside.path(), table);
-    beside.commit();
+    Handle(access, H5Fcreate(pending.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose).close();
+    hdf5::reserve(access, pending.path(), space_for(table));
+    write_all(access, pending.path(), table);
+    pending.commit();
 }
 
 }  // namespace frana

@@ -31,13 +31,13 @@ bool touch(const Box& lower, const Box& upper) {
 }
 
 /// Calls see(k, box, shared) for every point; shared: its bottom nodes are the top nodes of the point before.
-template <class See>
-void for_each_box(const SolidPoints& points, See&& see) {
+template <class Visit>
+void for_each_box(const SolidPoints& points, Visit&& visit) {
     for (std::size_t p = 0; p + 1 < points.first.size(); ++p) {
         Box before;
         for (std::size_t k = points.first[p]; k < points.first[p + 1]; ++k) {
             const Box box = box_of(points, k);
-            see(k, box, k > points.first[p] && touch(before, box));
+            visit(k, box, k > points.first[p] && touch(before, box));
             before = box;
         }
     }

@@ -94,7 +94,7 @@ public:
 
     std::string name() const override { return "xdmf"; }
 
-    void see(const Frame& frame) override {
+    void observe(const Frame& frame) override {
         const auto outside = outside_nodes(frame);
         for (const FileExtent& array : append_frame(run_dir_ / "run.h5", grids_.empty(), frame, outside))
             arrays_.push_back(array);
@@ -103,11 +103,11 @@ public:
         write_list();
     }
 
-    void keep(Archive& archive) override {
-        keep_texts(archive, "grids", grids_);
-        keep_texts(archive, "particles", particles_);
+    void serialize(Archive& archive) override {
+        serialize_texts(archive, "grids", grids_);
+        serialize_texts(archive, "particles", particles_);
         if (grids_.empty()) return;
-        keep_file(archive);
+        serialize_file(archive);
         if (archive.loading()) write_list();
     }
 
@@ -121,7 +121,7 @@ private:
 
     /// HDF5 writes its tables over and over in the same places, and a run that is killed there leaves a file that
     /// nobody can open. So they are kept apart.
-    void keep_file(Archive& archive) {
+    void serialize_file(Archive& archive) {
         const std::filesystem::path file = run_dir_ / "run.h5";
         std::vector<Index> offsets, bytes;
         for (const FileExtent& array : arrays_) {
@@ -144,7 +144,7 @@ private:
         put_tables_back(file, length, arrays_, tables);
     }
 
-    static void keep_texts(Archive& archive, const std::string& name, std::map<Index, std::string>& of_frames) {
+    static void serialize_texts(Archive& archive, const std::string& name, std::map<Index, std::string>& of_frames) {
         std::vector<Index> numbers;
         std::vector<std::string> texts;
         for (const auto& [number, text] : of_frames) {

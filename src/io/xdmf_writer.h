@@ -13,7 +13,7 @@ namespace frana {
 /// has the attributes "time" [s] and "number"; its grid "origin" and "cell" [m]. Where some nodes have no
 /// terrain, grid/outside (uint8) is 1 there. run.xdmf lists two temporal collections, "grid" (3DCoRectMesh of
 /// one layer) and "particles" (Polyvertex; a frame without particles has a mesh of no points). Each frame is
-/// closed in run.h5 before run.xdmf names it, so both can be read while the run goes on. see() throws
+/// closed in run.h5 before run.xdmf names it, so both can be read while the run goes on. observe() throws
 /// UserError (path and reason) when writing fails, NumericsError for a number that is not finite.
 std::unique_ptr<Observer> make_xdmf_writer(const std::filesystem::path& run_dir);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Laws of material in space: stress of a point from its own numbers, and how these change with the
+// Laws of 3D material: stress of a point from its own numbers, and how these change with the
 // deformation. Numbers of equations: src/solid3d/THEORY.md, section 7. A law is a struct of parameters with
 //
 //   kStates      numbers that a point keeps for it

@@ -1,5 +1,5 @@
 #pragma once
-// Symmetric tensors in space, of one point or of four side by side (base/simd.h): laws are written once for
+// Symmetric 3D tensors, of one point or of four side by side (base/simd.h): laws are written once for
 // both.
 #include <type_traits>
 
@@ -27,7 +27,7 @@ struct Mat3x4 {
 template <class Real>
 using Square = std::conditional_t<std::is_same_v<Real, double>, Mat3, Mat3x4>;
 
-/// Symmetric tensor in space.
+/// Symmetric 3D tensor.
 template <class Real>
 struct SymOf {
     Real xx{}, yy{}, zz{}, xy{}, yz{}, xz{};

@@ -105,14 +105,14 @@ double virtual_mass(VirtualMass law, const TwoPhaseMaterial& material, const Mix
     return mixture.bound() * material.fluid_density * virtual_mass_number(law, material, mixture) * depth;
 }
 
-Vec2 buoyancy(double fluid_density, double pull, double bound_depth, const Vec2& surface_slope) {
-    return -fluid_density * pull * bound_depth * surface_slope;
+Vec2 buoyancy(double fluid_density, double normal_gravity, double bound_depth, const Vec2& surface_slope) {
+    return -fluid_density * normal_gravity * bound_depth * surface_slope;
 }
 
-double basal_stress(const TwoPhaseMaterial& m, const Mixture& x, double pull, double depth, double support) {
+double basal_stress(const TwoPhaseMaterial& m, const Mixture& x, double normal_gravity, double depth, double support) {
     const double grains = x.solids * (m.solid_density - m.fluid_density),
                  blocks = x.bound() * (bound_density(m, x) - support * m.fluid_density);
-    return pull * depth * ((1.0 - x.structured) * grains + x.structured * blocks);
+    return normal_gravity * depth * ((1.0 - x.structured) * grains + x.structured * blocks);
 }
 
 double mud_viscosity(double eta_0, double beta, double concentration, double clear) {

@@ -77,11 +77,11 @@ double virtual_mass_number(VirtualMass law, const TwoPhaseMaterial& material, co
 /// Per area, of a mixture `depth` [m] deep: alpha_c rho_f C_VM h [kg/m^2]
 double virtual_mass(VirtualMass law, const TwoPhaseMaterial& material, const Mixture& mixture, double depth);
 
-/// Force of the fluid's pressure on c per area, -rho_f g_z h_c grad(surface) [Pa]; `pull`: g_z [m/s^2]
-Vec2 buoyancy(double fluid_density, double pull, double bound_depth, const Vec2& surface_slope);
+/// Force of the fluid's pressure on c per area, -rho_f g_z h_c grad(surface) [Pa]; `normal_gravity`: g_z [m/s^2]
+Vec2 buoyancy(double fluid_density, double normal_gravity, double bound_depth, const Vec2& surface_slope);
 /// Stress with which c rests on the bed (39) [Pa], >= 0; `support`: share B of the pore pressure below
 /// blocks.
-double basal_stress(const TwoPhaseMaterial& material, const Mixture& mixture, double pull, double depth,
+double basal_stress(const TwoPhaseMaterial& material, const Mixture& mixture, double normal_gravity, double depth,
                     double support);
 
 /// eta = eta_0 exp(beta C) of water with fines (O'Brien and Julien 1988), not below clear water's [Pa s];

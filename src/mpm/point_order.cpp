@@ -14,12 +14,12 @@ namespace {
 
 /// field[p] becomes field[order[p]], p < kept; `scratch` is room for it.
 template <class Field>
-void permute_field(Field& field, const std::int32_t* order, Index kept, Column& scratch) {
+void permute_field(Field& field, const std::int32_t* order, Index kept, Array& scratch) {
     using Number = typename Field::value_type;
     static_assert(sizeof(Number) <= sizeof(double), "the scratch is too narrow");
     resize_sparingly(scratch, static_cast<std::size_t>(kept));  // after a change of places it may be longer
     const Number* from = field.data();
-    if constexpr (std::is_same_v<Field, Column>) {
+    if constexpr (std::is_same_v<Field, Array>) {
         for (Index p = 0; p < kept; ++p) scratch[p] = from[order[p]];
         field.swap(scratch);
     } else {
@@ -84,7 +84,7 @@ void PointOrder::lay_out(ActiveTiles& active) {
 
 /// Makes order_ of the points that stay, place by place of `active`; at(place) is the point there.
 template <class At>
-void PointOrder::keep(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at) {
+void PointOrder::retain(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at) {
     Index kept = 0;
     for (Index n = 0, place = 0; n < active.count(); ++n) {
         const Index end = active.begin[n + 1];
@@ -99,12 +99,12 @@ void PointOrder::keep(const std::vector<std::uint8_t>& gone, ActiveTiles& active
 }
 
 void PointOrder::leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
-    keep(gone, active, [&](Index place) { return order_[static_cast<std::size_t>(place)]; });
+    retain(gone, active, [&](Index place) { return order_[static_cast<std::size_t>(place)]; });
 }
 
-void PointOrder::keep_places(Index count, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
+void PointOrder::retain_places(Index count, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
     resize_sparingly(order_, static_cast<std::size_t>(count));
-    keep(gone, active, [](Index place) { return static_cast<std::int32_t>(place); });
+    retain(gone, active, [](Index place) { return static_cast<std::int32_t>(place); });
 }
 
 /// Each thread permutes one field at a time: scattering all fields in one loop keeps too many streams open.
@@ -112,7 +112,7 @@ void PointOrder::permute(const std::vector<PointField>& fields) {
     const Index kept = static_cast<Index>(order_.size()), count = static_cast<Index>(fields.size());
     scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(omp_get_max_threads())));
     // Here, not when a thread first takes a field: which does is chance.
-    for (Column& scratch : scratch_) resize_sparingly(scratch, static_cast<std::size_t>(kept));
+    for (Array& scratch : scratch_) resize_sparingly(scratch, static_cast<std::size_t>(kept));
 #pragma omp parallel for schedule(dynamic, 1) if (kept > 4096)
     for (Index f = 0; f < count; ++f)
         std::visit(

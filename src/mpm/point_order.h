@@ -9,13 +9,13 @@
 namespace frana {
 
 /// Memory that an array holds [bytes].
-template <class Array>
-Index allocated(const Array& array) {
-    return static_cast<Index>(array.capacity() * sizeof(typename Array::value_type));
+template <class Values>
+Index allocated(const Values& array) {
+    return static_cast<Index>(array.capacity() * sizeof(typename Values::value_type));
 }
 
 /// An array with one number for each point.
-using PointField = std::variant<Column*, ColumnOf<float>*, std::vector<std::int64_t>*>;
+using PointField = std::variant<Array*, ArrayOf<float>*, std::vector<std::int64_t>*>;
 
 /// Which point lies where once points are sorted by tile. Needs no memory once warmed up; same bits for any
 /// number of threads.
@@ -39,7 +39,7 @@ public:
     /// Leaves points marked in `gone` out of an order that was laid out.
     void leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// The order of the points as they lie, without those marked in `gone`.
-    void keep_places(Index count, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
+    void retain_places(Index count, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
 
     /// Each field's number p becomes the one at order()[p].
     void permute(const std::vector<PointField>& fields);
@@ -49,7 +49,7 @@ public:
     /// Memory that grows with the points [bytes].
     Index bytes() const {
         Index sum = allocated(key_) + allocated(order_);
-        for (const Column& column : scratch_) sum += allocated(column);
+        for (const Array& column : scratch_) sum += allocated(column);
         return sum;
     }
 
@@ -57,12 +57,12 @@ private:
     void make_room(Index count, Index tiles);
     void tally(Index count);
     template <class At>
-    void keep(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at);
+    void retain(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile
     std::vector<Index> tile_count_;          ///< per tile of the domain; only entries in `used_` are non-zero
     std::vector<Index> used_;
-    std::vector<Column> scratch_;  ///< one per thread: columns are permuted one by one through it
+    std::vector<Array> scratch_;  ///< one per thread: columns are permuted one by one through it
 };
 
 }  // namespace frana

@@ -20,7 +20,7 @@ public:
         return body();
     }
     std::vector<PhaseTime> times() const { return times_; }
-    void keep(Archive& archive) { frana::keep(archive, "clock", times_); }
+    void serialize(Archive& archive) { frana::serialize(archive, "clock", times_); }
 
 private:
     struct Lap {

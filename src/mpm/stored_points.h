@@ -15,7 +15,7 @@ inline UserError misfit(const std::string& what) {
 
 /// All columns of `points`, and their ids.
 template <class Points>
-void keep_points(Archive& archive, Points& points) {
+void serialize_points(Archive& archive, Points& points) {
     const Archive::Part part(archive, "points");
     int n = 0;
     points.each([&](auto& column) { archive.array("column_" + std::to_string(n++), column); });
@@ -28,12 +28,12 @@ void keep_points(Archive& archive, Points& points) {
 /// Refuses tiles that do not hold so many points, each in one of a grid's `tiles`.
 inline void require_whole(const ActiveTiles& active, Index tiles, Index points) {
     const Index count = active.count();
-    bool sound = static_cast<Index>(active.begin.size()) == count + 1 && active.begin.front() == 0 &&
+    bool valid = static_cast<Index>(active.begin.size()) == count + 1 && active.begin.front() == 0 &&
                  active.begin.back() == points;
-    for (Index n = 0; sound && n < count; ++n)
-        sound = active.tile[n] >= 0 && active.tile[n] < tiles && active.begin[n] <= active.begin[n + 1] &&
+    for (Index n = 0; valid && n < count; ++n)
+        valid = active.tile[n] >= 0 && active.tile[n] < tiles && active.begin[n] <= active.begin[n + 1] &&
                 (n == 0 || active.tile[n - 1] < active.tile[n]);
-    if (!sound) throw misfit("its tiles are not those of the points");
+    if (!valid) throw misfit("its tiles are not those of the points");
 }
 
 }  // namespace frana

@@ -55,19 +55,41 @@ void Archive::texts(const std::string& name, std::vector<std::string>& values) {
     }
 }
 
-void keep(Archive& archive, const std::string& name, Status& s) {
+void serialize(Archive& archive, const std::string& name, Status& s) {
     const Archive::Part part(archive, name);
     archive.number("step", s.step);
     archive.number("particles", s.particles);
-    archive.numbers("numbers", {&s.time, &s.dt, &s.mass, &s.mass_left, &s.momentum[0], &s.momentum[1], &s.impulse[0],
-                                &s.impulse[1], &s.momentum_left[0], &s.momentum_left[1], &s.kinetic, &s.potential,
-                                &s.dissipated, &s.energy_left, &s.p2g_mass_error, &s.p2g_momentum_error, &s.max_depth,
-                                &s.max_speed, &s.max_speed_on_map, &s.mean_speed, &s.covered_area, &s.front, &s.stored, &s.in_space.friction,
-                                &s.in_space.walls, &s.in_space.material, &s.in_space.numerical,
-                                &s.in_space.volume});
+    archive.numbers("numbers", {&s.time,
+                                &s.dt,
+                                &s.mass,
+                                &s.mass_left,
+                                &s.momentum[0],
+                                &s.momentum[1],
+                                &s.impulse[0],
+                                &s.impulse[1],
+                                &s.momentum_left[0],
+                                &s.momentum_left[1],
+                                &s.kinetic,
+                                &s.potential,
+                                &s.dissipated,
+                                &s.energy_left,
+                                &s.p2g_mass_error,
+                                &s.p2g_momentum_error,
+                                &s.max_depth,
+                                &s.max_speed,
+                                &s.max_speed_on_map,
+                                &s.mean_speed,
+                                &s.covered_area,
+                                &s.front,
+                                &s.stored,
+                                &s.in_3d.friction,
+                                &s.in_3d.walls,
+                                &s.in_3d.material,
+                                &s.in_3d.numerical,
+                                &s.in_3d.volume});
 }
 
-void keep(Archive& archive, const std::string& name, std::vector<PhaseTime>& phases) {
+void serialize(Archive& archive, const std::string& name, std::vector<PhaseTime>& phases) {
     const Archive::Part part(archive, name);
     std::vector<std::string> names;
     std::vector<double> seconds, cpu_seconds;

@@ -80,9 +80,9 @@ private:
 };
 
 /// Saves and loads a status, all of it.
-void keep(Archive& archive, const std::string& name, Status& status);
+void serialize(Archive& archive, const std::string& name, Status& status);
 /// Saves and loads phases with their names.
-void keep(Archive& archive, const std::string& name, std::vector<PhaseTime>& phases);
+void serialize(Archive& archive, const std::string& name, std::vector<PhaseTime>& phases);
 
 /// Bytes that a state would take, found by saving it nowhere.
 class ArchiveSize final : public Archive {

@@ -92,11 +92,11 @@ double Barriers::mean_force(Watched& watched, const Moment& now, double blur) co
     return std::hypot(now.x - a.x - share * (b.x - a.x), now.y - a.y - share * (b.y - a.y)) / blur;
 }
 
-void Barriers::see(const Frame&) {
+void Barriers::observe(const Frame&) {
     for (TableWriter& table : tables_) table.flush();
 }
 
-void Barriers::keep(Archive& archive) {
+void Barriers::serialize(Archive& archive) {
     archive.numbers("time", {&time_});
     Index begun = watched_.empty() ? 0 : 1;
     archive.number("begun", begun);
@@ -129,7 +129,7 @@ void Barriers::keep(Archive& archive) {
         for (std::size_t k = 0; k + 2 < lately.size(); k += 3)
             watched_[n].lately.push_back({lately[k], lately[k + 1], lately[k + 2]});
     }
-    keep_all(archive, tables_);
+    serialize_all(archive, tables_);
 }
 
 }  // namespace frana

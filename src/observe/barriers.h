@@ -32,8 +32,8 @@ public:
              std::vector<BarrierSummary>& summaries);
     std::string name() const override { return "barriers"; }
     void step(const Status& now, const Probe& probe) override;
-    void see(const Frame& frame) override;
-    void keep(Archive& archive) override;
+    void observe(const Frame& frame) override;
+    void serialize(Archive& archive) override;
 
 private:
     /// Impulse on a barrier at a time, for means.

@@ -29,26 +29,26 @@ struct Status {
     double mass_left = 0.0;          ///< left through open sides or exits since the start [kg]
     std::array<double, 2> momentum{};          ///< [kg m/s]
     std::array<double, 2> impulse{};           ///< of all forces since the start [kg m/s]; with walls their push
-                                               ///< is booked as what closes the balance
+                                               ///< is recorded as what closes the balance
     std::array<double, 2> momentum_left{};     ///< carried out by what left [kg m/s]
     double kinetic = 0.0;            ///< [J]
     double potential = 0.0;          ///< sum of rho g A h (Z + h/2) [J]
     double dissipated = 0.0;         ///< by bed friction, rheology and bores since the start [J]
     double energy_left = 0.0;        ///< carried out by what left [J]
-    double stored = 0.0;             ///< of points in space: of deformation, that unloading gives back [J]
-    /// Of points in space since the start, parts of `dissipated` [J].
-    struct InSpace {
+    double stored = 0.0;             ///< of 3D points: of deformation, that unloading gives back [J]
+    /// Of 3D points since the start, parts of `dissipated` [J].
+    struct In3d {
         double friction = 0.0;   ///< along the bed and barriers
         double walls = 0.0;      ///< lost to their pushes
         double material = 0.0;   ///< yielding and viscosity
         double numerical = 0.0;  ///< what is left: of the scheme
         double volume = 0.0;     ///< of the points now, compressed as they are [m3]; not a part, but a diagnostic
-    } in_space;
+    } in_3d;
     double p2g_mass_error = 0.0;     ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
     double p2g_momentum_error = 0.0; ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]
     double max_depth = 0.0;          ///< [m]
     double max_speed = 0.0;          ///< largest speed along the bed, of nodes deeper than a tenth of the footprint depth
-                                     ///< [m/s]; of points in space that of the fastest
+                                     ///< [m/s]; of 3D points that of the fastest
     double max_speed_on_map = 0.0;   ///< largest particle speed along the map [m/s]
     double mean_speed = 0.0;         ///< mass mean of the speed [m/s]
     double covered_area = 0.0;       ///< deeper than the footprint depth now [m2]
@@ -73,7 +73,7 @@ struct Breakage {
     double sub_cycling = 1.0;    ///< steps for each that the depth-averaged flow would need
 };
 
-/// What points in space have come apart into (solid3d/pieces.h), at the last output and where it was most.
+/// What 3D points have come apart into (solid3d/pieces.h), at the last output and where it was most.
 struct PointsApart {
     Index pieces = 0;            ///< points of different ones are more than a cell apart
     double apart = 0.0;          ///< share of their mass outside the largest [1]

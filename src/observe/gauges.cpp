@@ -21,7 +21,7 @@ void Gauges::step(const Status& now, const Probe& probe) {
     }
 }
 
-void Gauges::see(const Frame&) {
+void Gauges::observe(const Frame&) {
     for (TableWriter& table : tables_) table.flush();
 }
 

@@ -21,8 +21,8 @@ public:
     Gauges(const std::filesystem::path& run_dir, std::vector<GaugePoint> gauges);
     std::string name() const override { return "gauges"; }
     void step(const Status& now, const Probe& probe) override;
-    void see(const Frame&) override;
-    void keep(Archive& archive) override { keep_all(archive, tables_); }
+    void observe(const Frame&) override;
+    void serialize(Archive& archive) override { serialize_all(archive, tables_); }
 
 private:
     std::vector<GaugePoint> gauges_;

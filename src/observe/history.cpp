@@ -56,16 +56,16 @@ void History::step(const Status& now, const Probe&) {
     if (lines_ == Lines::per_step) add(now);
 }
 
-void History::see(const Frame& frame) {
+void History::observe(const Frame& frame) {
     if (!first_) first_ = frame.status;
     if (lines_ == Lines::per_output) add(frame.status);
     table_.flush();
 }
 
-void History::keep(Archive& archive) {
-    table_.keep(archive);
+void History::serialize(Archive& archive) {
+    table_.serialize(archive);
     if (!first_) first_.emplace();  // a state is kept after the first step() only
-    frana::keep(archive, "first", *first_);
+    frana::serialize(archive, "first", *first_);
 }
 
 void History::add(const Status& now) {
@@ -96,11 +96,11 @@ void History::add(const Status& now) {
                                      now.p2g_mass_error,
                                      now.p2g_momentum_error,
                                      now.stored,
-                                     now.in_space.friction,
-                                     now.in_space.walls,
-                                     now.in_space.material,
-                                     now.in_space.numerical,
-                                     now.in_space.volume,
+                                     now.in_3d.friction,
+                                     now.in_3d.walls,
+                                     now.in_3d.material,
+                                     now.in_3d.numerical,
+                                     now.in_3d.volume,
                                      now.max_speed_on_map};
     for (std::size_t i = 0; i < row.size(); ++i)
         if (!std::isfinite(row[i]))

@@ -22,8 +22,8 @@ public:
     History(const std::filesystem::path& run_dir, Lines lines);
     std::string name() const override { return "history"; }
     void step(const Status& now, const Probe&) override;
-    void see(const Frame& frame) override;
-    void keep(Archive& archive) override;
+    void observe(const Frame& frame) override;
+    void serialize(Archive& archive) override;
 
 private:
     void add(const Status& now);

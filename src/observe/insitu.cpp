@@ -24,34 +24,34 @@ bool InsituObserver::due(const Status& now) const {
 
 bool InsituObserver::wants_frame(const Status& now) { return due(now); }
 
-void InsituObserver::glance(const Frame& frame) {
-    if (due(frame.status)) look(frame);
+void InsituObserver::observe_between(const Frame& frame) {
+    if (due(frame.status)) sample(frame);
 }
 
-void InsituObserver::see(const Frame& frame) {
+void InsituObserver::observe(const Frame& frame) {
     const bool every_output = !times_.every && !times_.every_steps;
-    if (every_output || due(frame.status)) look(frame);
+    if (every_output || due(frame.status)) sample(frame);
 }
 
 void InsituObserver::end(const Frame& last) {
-    if (last.status.step != looked_at_) look(last);
+    if (last.status.step != sampled_step_) sample(last);
 }
 
-void InsituObserver::keep(Archive& archive) {
+void InsituObserver::serialize(Archive& archive) {
     archive.number("next_multiple", next_multiple_);
-    archive.number("looked_at", looked_at_);
+    archive.number("looked_at", sampled_step_);
     archive.number("made", tally_.made);
     archive.number("failed", tally_.failed);
     archive.text("first_failure", tally_.first_failure);
     const Archive::Part part(archive, "work");
-    work_->keep(archive);
+    work_->serialize(archive);
 }
 
-void InsituObserver::look(const Frame& frame) {
+void InsituObserver::sample(const Frame& frame) {
     if (times_.every || times_.every_steps) next_multiple_ = multiples(times_, frame.status) + 1;
-    looked_at_ = frame.status.step;
+    sampled_step_ = frame.status.step;
     try {
-        work_->look(frame, tally_.made);
+        work_->sample(frame, tally_.made);
         ++tally_.made;
     } catch (const std::bad_alloc&) {  // the run will not get far either, and can be resumed
         throw;

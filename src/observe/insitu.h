@@ -14,8 +14,8 @@ class InsituWork {
 public:
     virtual ~InsituWork() = default;
     /// Looks at a frame; `number` counts what was made so far (0, 1, 2, ...). Any exception says that it failed.
-    virtual void look(const Frame& frame, Index number) = 0;
-    virtual void keep(Archive&) {}  ///< as Observer::keep
+    virtual void sample(const Frame& frame, Index number) = 0;
+    virtual void serialize(Archive&) {}  ///< as Observer::keep
 };
 
 /// When: neither member: at every output.
@@ -40,20 +40,20 @@ public:
         : times_(times), work_(std::move(work)), tally_(tally) {}
     std::string name() const override { return "insitu " + tally_.name; }
     bool wants_frame(const Status& now) override;
-    void glance(const Frame& frame) override;
-    void see(const Frame& frame) override;
+    void observe_between(const Frame& frame) override;
+    void observe(const Frame& frame) override;
     void end(const Frame& last) override;
-    void keep(Archive& archive) override;
+    void serialize(Archive& archive) override;
 
 private:
     bool due(const Status& now) const;
-    void look(const Frame& frame);
+    void sample(const Frame& frame);
 
     InsituTimes times_;
     std::unique_ptr<InsituWork> work_;
     InsituTally& tally_;
     Index next_multiple_ = 0;  ///< of times_.every or every_steps
-    Index looked_at_ = -1;     ///< the step
+    Index sampled_step_ = -1;     ///< the step
 };
 
 }  // namespace frana

@@ -26,11 +26,11 @@ public:
         if (!table_) table_.emplace(file_, columns);
         return *table_;
     }
-    void keep(Archive& archive) {
+    void serialize(Archive& archive) {
         std::vector<std::string> columns;
         if (table_) columns = table_->columns();
         archive.texts("columns", columns);
-        if (!columns.empty()) with_columns(columns).keep(archive);
+        if (!columns.empty()) with_columns(columns).serialize(archive);
     }
 
 private:
@@ -43,7 +43,7 @@ public:
     CutTable(std::filesystem::path csv, Polyline line, std::vector<std::string> fields)
         : table_(std::move(csv)), line_(std::move(line)), fields_(std::move(fields)) {}
 
-    void look(const Frame& frame, Index) override {
+    void sample(const Frame& frame, Index) override {
         const std::vector<Scalar> values = scalars(frame, fields_);
         const Scalar bed = scalar(frame.nodes, "elevation", "the grid");
         std::vector<std::string> columns = {"t [s]", "distance [m]", "x [m]", "y [m]", "bed [m]"};
@@ -57,7 +57,7 @@ public:
         }
         table.flush();
     }
-    void keep(Archive& archive) override { table_.keep(archive); }
+    void serialize(Archive& archive) override { table_.serialize(archive); }
 
 private:
     LateTable table_;
@@ -82,7 +82,7 @@ public:
     Reduction(std::filesystem::path csv, std::vector<std::string> fields, double above)
         : table_(std::move(csv)), fields_(std::move(fields)), above_(above) {}
 
-    void look(const Frame& frame, Index) override {
+    void sample(const Frame& frame, Index) override {
         const std::vector<Scalar> values = scalars(frame, fields_);
         const Scalar depth = scalar(frame.nodes, "depth", "the grid");
         std::vector<Extent> extents(values.size());
@@ -101,7 +101,7 @@ public:
         table.add(row);
         table.flush();
     }
-    void keep(Archive& archive) override { table_.keep(archive); }
+    void serialize(Archive& archive) override { table_.serialize(archive); }
 
 private:
     static std::vector<std::string> columns(const std::vector<Scalar>& values) {

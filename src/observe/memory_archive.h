@@ -50,9 +50,9 @@ private:
 
 /// All that a simulation keeps, but for its clock.
 template <class Simulation>
-std::map<std::string, MemoryArchive::Entry> kept_bits(Simulation& run) {
+std::map<std::string, MemoryArchive::Entry> state_bits(Simulation& run) {
     MemoryArchive archive;
-    run.keep(archive);
+    run.serialize(archive);
     std::map<std::string, MemoryArchive::Entry> entries;
     for (const auto& [name, entry] : archive.entries())
         if (name.find("clock/") == std::string::npos) entries.emplace(name, entry);

@@ -50,14 +50,14 @@ public:
     virtual ~Observer() = default;
     virtual std::string name() const = 0;                  ///< for the timing table
     virtual void step(const Status&, const Probe&) {}      ///< after every step (and once at the start)
-    /// Asked after every step that ends between outputs: is a frame wanted now? Then glance() gets it.
+    /// Asked after every step that ends between outputs: is a frame wanted now? Then observe_between() gets it.
     virtual bool wants_frame(const Status&) { return false; }
-    virtual void glance(const Frame&) {}
-    virtual void see(const Frame&) {}                      ///< at the start, at every output time and at the end
-    virtual void end(const Frame&) {}                      ///< once, with the last frame, after see()
+    virtual void observe_between(const Frame&) {}
+    virtual void observe(const Frame&) {}                      ///< at the start, at every output time and at the end
+    virtual void end(const Frame&) {}                      ///< once, with the last frame, after observe()
     /// Saves what the observer needs to go on, or takes it up again before its first call; then its files are those of
     /// that moment: what was written later is taken back. Throws UserError when they are not there any more.
-    virtual void keep(Archive&) {}
+    virtual void serialize(Archive&) {}
 };
 
 }  // namespace frana

@@ -14,9 +14,9 @@ public:
     }
     std::string name() const override { return inner_->name(); }
     void step(const Status& now, const Probe& probe) override { inner_->step(now, probe); }
-    void see(const Frame& frame) override { inner_->see(chosen(frame)); }
+    void observe(const Frame& frame) override { inner_->observe(chosen(frame)); }
     void end(const Frame& frame) override { inner_->end(chosen(frame)); }
-    void keep(Archive& archive) override { inner_->keep(archive); }
+    void serialize(Archive& archive) override { inner_->serialize(archive); }
 
 private:
     Frame chosen(const Frame& frame) const {

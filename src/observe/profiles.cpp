@@ -35,7 +35,7 @@ std::vector<Corner> corners(const GridGeometry& grid, const Vec2& point) {
 
 std::vector<Station> stations(const Polyline& line, double spacing) {
     std::vector<Station> result;
-    double walked = 0.0;
+    double travelled = 0.0;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
         const Vec2 piece = line[k + 1] - line[k];
         const double length = piece.norm();
@@ -43,11 +43,11 @@ std::vector<Station> stations(const Polyline& line, double spacing) {
         const auto parts = static_cast<Index>(std::ceil(length / spacing - 1e-9));
         for (Index part = 0; part < parts; ++part) {
             const double share = static_cast<double>(part) / static_cast<double>(parts);
-            result.push_back({walked + share * length, line[k] + share * piece, piece / length});
+            result.push_back({travelled + share * length, line[k] + share * piece, piece / length});
         }
-        walked += length;
+        travelled += length;
     }
-    if (!result.empty()) result.push_back({walked, line.back(), result.back().along});
+    if (!result.empty()) result.push_back({travelled, line.back(), result.back().along});
     return result;
 }
 
@@ -87,7 +87,7 @@ Profiles::Profiles(const std::filesystem::path& run_dir, std::vector<ProfileLine
         tables_.emplace_back(run_dir / "profiles" / (line.name + ".csv"), columns);
 }
 
-void Profiles::see(const Frame& frame) {
+void Profiles::observe(const Frame& frame) {
     for (std::size_t k = 0; k < lines_.size(); ++k) {
         for (const Station& station : stations(lines_[k].line, 0.5 * frame.grid.cell)) {
             const Sample flow = sample(frame, station.point);

@@ -45,8 +45,8 @@ class Profiles : public Observer {
 public:
     Profiles(const std::filesystem::path& run_dir, std::vector<ProfileLine> lines);
     std::string name() const override { return "profiles"; }
-    void see(const Frame& frame) override;
-    void keep(Archive& archive) override { keep_all(archive, tables_); }
+    void observe(const Frame& frame) override;
+    void serialize(Archive& archive) override { serialize_all(archive, tables_); }
 
 private:
     std::vector<ProfileLine> lines_;

@@ -85,7 +85,7 @@ void TableWriter::flush() {
     pending_.clear();
 }
 
-void TableWriter::keep(Archive& archive) {
+void TableWriter::serialize(Archive& archive) {
     if (!archive.loading()) flush();
     auto bytes = static_cast<Index>(bytes_);
     archive.number("bytes", bytes);
@@ -95,10 +95,10 @@ void TableWriter::keep(Archive& archive) {
     begun_ = true;
 }
 
-void keep_all(Archive& archive, std::vector<TableWriter>& tables) {
+void serialize_all(Archive& archive, std::vector<TableWriter>& tables) {
     for (std::size_t i = 0; i < tables.size(); ++i) {
         const Archive::Part part(archive, std::to_string(i));
-        tables[i].keep(archive);
+        tables[i].serialize(archive);
     }
 }
 

@@ -25,7 +25,7 @@ public:
     /// when the rows cannot be written.
     void flush();
     /// Saves how long the file is, after a flush, or cuts it back to that. Throws UserError when it is shorter.
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
     std::filesystem::path file_;
@@ -36,7 +36,7 @@ private:
 };
 
 /// All tables of an observer, one after the other.
-void keep_all(Archive& archive, std::vector<TableWriter>& tables);
+void serialize_all(Archive& archive, std::vector<TableWriter>& tables);
 
 /// A table read back. Column names stand without their unit: "depth [m]" is found as "depth".
 struct Table {

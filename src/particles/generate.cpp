@@ -63,7 +63,7 @@ void require_simple(const Material& material, const OutlineFaults& faults, doubl
 }
 
 /// Volume and area on the grid, and what lies beyond it.
-ReleaseReport weighed(const Material& material, const GridGeometry& grid, Log& log) {
+ReleaseReport measured(const Material& material, const GridGeometry& grid, Log& log) {
     ReleaseReport report;
     const MaterialTotals inside = material.totals(material.box());
     const MaterialTotals whole = material.totals(material.unclipped_box());
@@ -166,7 +166,7 @@ Seeds make_seeds(const std::vector<Release>& releases, const Raster& bed, const 
     reports.clear();
     double area = 0.0;
     for (const Material& material : materials) {
-        reports.push_back(weighed(material, grid, log));
+        reports.push_back(measured(material, grid, log));
         remark_bare_outline(material, reports.back(), grid, log);
         area += reports.back().area;
     }

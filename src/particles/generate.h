@@ -21,7 +21,7 @@ struct ParticleOptions {
     Placement placement = Placement::lattice;
 };
 
-/// The books of one release.
+/// The records of one release.
 struct ReleaseReport {
     double volume = 0.0;           ///< of the release within the grid, from outline and raster alone [m^3]
     double area = 0.0;             ///< map area of that material [m^2]

@@ -34,7 +34,7 @@ struct PatchRow {
     const double* volume = nullptr;
     const double* area = nullptr;
 };
-using SeePatchRow = std::function<void(const PatchRow&)>;
+using VisitPatchRow = std::function<void(const PatchRow&)>;
 
 struct MaterialTotals {
     double volume = 0.0, area = 0.0;
@@ -54,9 +54,9 @@ public:
     bool contains(double x, double y) const;
 
     /// Integrates depth over every patch of the lattice within `within`, exactly: outline and raster are cut
-    /// at lattice lines and pixel edges. Calls `see` for each row of patches with material, southernmost
+    /// at lattice lines and pixel edges. Calls `visit` for each row of patches with material, southernmost
     /// first. Returns what is wrong with the outline, if anything.
-    OutlineFaults integrate(const Lattice& lattice, const Box& within, const SeePatchRow& see) const;
+    OutlineFaults integrate(const Lattice& lattice, const Box& within, const VisitPatchRow& visit) const;
 
     /// Volume and area within `within` from the pixels and the outline alone (no lattice).
     MaterialTotals totals(const Box& within) const;
@@ -69,7 +69,7 @@ private:
     void take_raster(const GridGeometry& grid);
     void sort_edges_into_bands();
     FineLines fine_lines(const Lattice* lattice, const Box& within) const;
-    OutlineFaults integrate_fine(const FineLines& fine, const SeePatchRow& see) const;
+    OutlineFaults integrate_fine(const FineLines& fine, const VisitPatchRow& visit) const;
 
     const Release& release_;
     std::string name_;

@@ -87,7 +87,7 @@ Material::FineLines Material::fine_lines(const Lattice* lattice, const Box& with
     return fine;
 }
 
-OutlineFaults Material::integrate_fine(const FineLines& fine, const SeePatchRow& see) const {
+OutlineFaults Material::integrate_fine(const FineLines& fine, const VisitPatchRow& visit) const {
     const Index fine_columns = static_cast<Index>(fine.x.size()) - 1;
     const Index fine_rows = static_cast<Index>(fine.y.size()) - 1;
     std::vector<double> covered(fine_columns), volume(fine.columns, 0.0), area(fine.columns, 0.0);
@@ -118,7 +118,7 @@ OutlineFaults Material::integrate_fine(const FineLines& fine, const SeePatchRow&
         }
         const bool row_ends = j + 1 == fine_rows || fine.patch_row[j + 1] != fine.patch_row[j];
         if (!row_ends || high < low) continue;
-        see({fine.patch_row[j], fine.first_column + low, high - low + 1, &volume[low], &area[low]});
+        visit({fine.patch_row[j], fine.first_column + low, high - low + 1, &volume[low], &area[low]});
         std::fill(volume.begin() + low, volume.begin() + high + 1, 0.0);
         std::fill(area.begin() + low, area.begin() + high + 1, 0.0);
         low = fine.columns;
@@ -127,10 +127,10 @@ OutlineFaults Material::integrate_fine(const FineLines& fine, const SeePatchRow&
     return outline ? outline->faults() : OutlineFaults{};
 }
 
-OutlineFaults Material::integrate(const Lattice& lattice, const Box& within, const SeePatchRow& see) const {
+OutlineFaults Material::integrate(const Lattice& lattice, const Box& within, const VisitPatchRow& visit) const {
     const Box box = within.common(unclipped_box_);
     if (!wide_enough(box)) return {};
-    return integrate_fine(fine_lines(&lattice, box), see);
+    return integrate_fine(fine_lines(&lattice, box), visit);
 }
 
 MaterialTotals Material::totals(const Box& within) const {

@@ -15,14 +15,14 @@ std::size_t size_of(Archive::Kind kind) { return kind == Archive::Kind::bytes ? 
 void MemoryState::save(Simulation& simulation) {
     loading_ = false;
     at_ = 0;
-    simulation.keep(*this);
+    simulation.serialize(*this);
     entries_.resize(at_);
 }
 
 void MemoryState::load(Simulation& simulation) {
     loading_ = true;
     at_ = 0;
-    simulation.keep(*this);
+    simulation.serialize(*this);
 }
 
 MemoryState::Entry& MemoryState::next(const std::string& name, Kind kind) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMovingShare = 0.01;  ///< of the mass: what a deposit may change by
 constexpr double kHold = 0.05;         ///< of the time so far: how long all must be calm
-constexpr double kLook = 0.1 * kHold;  ///< the same between looks
+constexpr double kCheck = 0.1 * kHold;  ///< the same between looks
 
 }  // namespace
 
@@ -23,22 +23,22 @@ void RestRule::note(const Simulation& simulation) {
     peak_mean_speed_ = std::max(peak_mean_speed_, now.mean_speed);
     const bool may_rest = simulation.may_rest();
     nothing_moves_ = may_rest && now.max_speed_on_map == 0.0;
-    if (now.time < next_look_) return;
-    next_look_ = (1.0 + kLook) * now.time;
-    if (!may_rest || !looks_at_rest(simulation)) calm_since_ = now.time;
+    if (now.time < next_check_) return;
+    next_check_ = (1.0 + kCheck) * now.time;
+    if (!may_rest || !is_at_rest(simulation)) calm_since_ = now.time;
     rests_ = now.time > 0.0 && now.time - calm_since_ >= kHold * now.time;
 }
 
-bool RestRule::looks_at_rest(const Simulation& simulation) const {
+bool RestRule::is_at_rest(const Simulation& simulation) const {
     const Status& now = simulation.status();
     if (!(now.mean_speed < fraction_ * peak_mean_speed_)) return false;
     const MovingMass motion = simulation.motion({slow_at(now.time), (1.0 - kHold) * now.time});
     return motion.share() <= kMovingShare && motion.fronts == 0;
 }
 
-void RestRule::keep(Archive& archive) {
+void RestRule::serialize(Archive& archive) {
     Index nothing_moves = nothing_moves_, rests = rests_;
-    archive.numbers("rest", {&peak_mean_speed_, &calm_since_, &next_look_});
+    archive.numbers("rest", {&peak_mean_speed_, &calm_since_, &next_check_});
     archive.number("nothing_moves", nothing_moves);
     archive.number("rests", rests);
     nothing_moves_ = nothing_moves != 0, rests_ = rests != 0;

@@ -41,14 +41,14 @@ public:
     bool at_rest() const { return nothing_moves_ || rests_; }
     /// What is slower does not count as moving, at a time [s] of the run [m/s].
     double slow_at(double time) const;
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
-    bool looks_at_rest(const Simulation& simulation) const;
+    bool is_at_rest(const Simulation& simulation) const;
 
     double cell_, fraction_;
     double peak_mean_speed_ = 0.0;  ///< [m/s]
-    double calm_since_ = 0.0, next_look_ = 0.0;  ///< [s]
+    double calm_since_ = 0.0, next_check_ = 0.0;  ///< [s]
     bool nothing_moves_ = false, rests_ = false;
 };
 

@@ -80,7 +80,7 @@ private:
     std::string reason_to_stop() const;
     double next_output_time() const;
     void show_step();
-    void show_glance();
+    void show_between();
     void show_frame();
     void show_end();
     void give_up(const char* reason, const std::exception_ptr& error, const std::string& text);
@@ -90,7 +90,7 @@ private:
     bool heads_for_the_cut() const;
     double time() const { return simulation_.status().time; }
     bool last_before_the_cut() const;
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
     double wall_seconds() const { return wall_before_ + seconds_since(start_); }
     Frame frame();
 
@@ -152,7 +152,7 @@ void Loop::step_past_outputs() {
         output_time = next_output_time();
         advance(own_steps() ? plan_.end : output_time);
         show_step();
-        if (time() < output_time) show_glance();
+        if (time() < output_time) show_between();
     } while (time() < shown);
     if (time() < output_time) return;
     ++outputs_;
@@ -181,7 +181,7 @@ double Loop::show_outputs_aside() {
 
 bool Loop::resume() {
     if (!keeper_) return false;
-    return keeper_->load([&](Archive& archive) { keep(archive); });
+    return keeper_->load([&](Archive& archive) { serialize(archive); });
 }
 
 void Loop::require_later_end() const {
@@ -206,16 +206,16 @@ void Loop::save_state() {
     if (!keeper_ || (heads_for_the_cut() && !last_before_the_cut())) return;
     kept_before_the_cut_ = heads_for_the_cut();
     timed(summary_.output.back(), [&] {
-        keeper_->save(simulation_.status().time, [&](Archive& archive) { keep(archive); });
+        keeper_->save(simulation_.status().time, [&](Archive& archive) { serialize(archive); });
     });
 }
 
-void Loop::keep(Archive& archive) {
+void Loop::serialize(Archive& archive) {
     {
         const Archive::Part part(archive, "run");
-        frana::keep(archive, "first", summary_.first);
-        frana::keep(archive, "last", summary_.last);
-        frana::keep(archive, "output", summary_.output);
+        frana::serialize(archive, "first", summary_.first);
+        frana::serialize(archive, "last", summary_.last);
+        frana::serialize(archive, "output", summary_.output);
         Extremes& most = summary_.extremes;
         archive.numbers("extremes", {&most.max_depth, &most.max_depth_time, &most.max_speed, &most.max_speed_time,
                                      &most.max_covered_area, &most.max_front, &most.p2g_mass_error,
@@ -227,19 +227,19 @@ void Loop::keep(Archive& archive) {
         archive.number("outputs", outputs_);
         archive.number("shown_step", shown_step_);
         archive.text("started", summary_.started);
-        rest_.keep(archive);
+        rest_.serialize(archive);
         if (archive.loading()) wall_before_ = wall;
         if (summary_.output.size() != observers_.size() + 2)
             throw UserError("the kept state is of other observers; run without --resume");
     }
     {
         const Archive::Part part(archive, "simulation");
-        simulation_.keep(archive);
+        simulation_.serialize(archive);
     }
     if (archive.loading()) require_later_end();  // before observers take back what is newer than the state
     for (std::size_t i = 0; i < observers_.size(); ++i) {
         const Archive::Part part(archive, fmt::format("observers/{:03d}", i));
-        observers_[i]->keep(archive);
+        observers_[i]->serialize(archive);
     }
 }
 
@@ -298,14 +298,14 @@ Frame Loop::frame() {
 }
 
 /// A frame between two outputs, for those who ask for one.
-void Loop::show_glance() {
+void Loop::show_between() {
     std::vector<std::size_t> asking;
     for (std::size_t i = 0; i < observers_.size(); ++i)
         if (observers_[i]->wants_frame(summary_.last)) asking.push_back(i);
     if (asking.empty()) return;
     Frame now = frame();
     now.number = summary_.frames;
-    for (const std::size_t i : asking) timed(summary_.output[i], [&] { observers_[i]->glance(now); });
+    for (const std::size_t i : asking) timed(summary_.output[i], [&] { observers_[i]->observe_between(now); });
 }
 
 void Loop::show_frame() {
@@ -315,7 +315,7 @@ void Loop::show_frame() {
     summary_.last = now.status;
     if (summary_.frames == 0) summary_.first = now.status;
     for (std::size_t i = 0; i < observers_.size(); ++i)
-        timed(summary_.output[i], [&] { observers_[i]->see(now); });
+        timed(summary_.output[i], [&] { observers_[i]->observe(now); });
     shown_step_ = now.status.step;
     progress_.output(now.number, now.status);
     ++summary_.frames;

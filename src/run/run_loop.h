@@ -55,14 +55,13 @@ struct RunSummary {
 using Observers = std::vector<std::unique_ptr<Observer>>;
 
 /// Runs `simulation` from its present time to the plan's end. Observers' step() is called at the start and after
-/// every step; see() at the start, at every k * every exactly and at the end; glance() in between, for those who ask
-/// for a frame; end() once, after the last see(). An interruption finishes the step and ends the run as usual. A
-/// NumericsError ends it too, and so does a UserError in a step: if the state can still be shown it is the last frame;
-/// the error is kept in the summary for the caller to throw once the products are written. Errors of observers (a full
-/// disk) pass through. With a
-/// `keeper` the state of simulation, observers and summary is kept whenever that is due and once the run is over,
-/// before the last frame and end(): a run that is taken up again shows its own. If the keeper has a state, the run
-/// goes on from there and its summary tells of the whole run.
+/// every step; observe() at the start, at every k * every exactly and at the end; observe_between() in between, for
+/// those who ask for a frame; end() once, after the last observe(). An interruption finishes the step and ends the run
+/// as usual. A NumericsError ends it too, and so does a UserError in a step: if the state can still be shown it is the
+/// last frame; the error is kept in the summary for the caller to throw once the products are written. Errors of
+/// observers (a full disk) pass through. With a `keeper` the state of simulation, observers and summary is kept
+/// whenever that is due and once the run is over, before the last frame and end(): a run that is taken up again shows
+/// its own. If the keeper has a state, the run goes on from there and its summary tells of the whole run.
 RunSummary run(Simulation& simulation, const RunPlan& plan, Observers& observers, const Interrupt& interrupt,
                Progress& progress, StateKeeper* keeper = nullptr);
 

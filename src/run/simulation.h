@@ -32,19 +32,20 @@ public:
     virtual std::vector<std::string> remarks() const { return {}; }
     /// What the material has come apart into; nothing of material that has no structure.
     virtual std::optional<Breakage> breakage() const { return {}; }
-    /// What points in space have come apart into; nothing without any.
+    /// What 3D points have come apart into; nothing without any.
     virtual std::optional<PointsApart> points_apart() const { return {}; }
     /// Where the water is and has gone; nothing without any.
     virtual std::optional<WaterBudget> water_budget() const { return {}; }
     /// Wall time by phase since the start.
     virtual std::vector<PhaseTime> timings() const = 0;
     /// Saves the state between two steps, or takes it up again with all its bits, in a simulation of the same scene
-    /// that was made for that (Start::kept). Steps then go on as if they had never stopped, on any number of threads.
-    virtual void keep(Archive& archive) = 0;
+    /// that was made for that (Start::resumed). Steps then go on as if they had never stopped, on any number of
+    /// threads.
+    virtual void serialize(Archive& archive) = 0;
 };
 
-/// Where a simulation starts: with the scene's particles, or empty, for keep() to fill.
-enum class Start { placed, kept };
+/// Where a simulation starts: with the scene's particles, or empty, for serialize() to fill.
+enum class Start { placed, resumed };
 
 /// Chooses physics and scheme once, as types, and builds the solver of a scene.
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, Start start = Start::placed);

@@ -111,9 +111,9 @@ bool CaseFile::is_text(const std::string& key) const {
 std::filesystem::path CaseFile::path(const std::string& key) const { return resolve(word(key)); }
 
 std::filesystem::path CaseFile::resolve(const std::string& path) const {
-    const std::filesystem::path beside = file_.parent_path() / path;
-    const bool virtual_name = path.find(':') != std::string::npos && !std::filesystem::exists(beside);
-    return virtual_name ? std::filesystem::path(path) : beside;
+    const std::filesystem::path sibling = file_.parent_path() / path;
+    const bool virtual_name = path.find(':') != std::string::npos && !std::filesystem::exists(sibling);
+    return virtual_name ? std::filesystem::path(path) : sibling;
 }
 
 std::vector<std::pair<std::string, std::filesystem::path>> CaseFile::named_files() const {

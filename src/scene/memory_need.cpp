@@ -24,10 +24,10 @@ constexpr double part_node_rate = 160.0;
 constexpr double structure_rate = 35.0, water_rate = 140.0;
 constexpr double graphics_need = 350e6;        ///< besides, for pictures: software OpenGL, 290 to 420 MB
 
-/// A grid in space has an entry for each of its tiles, and storage of those that are reached only.
-constexpr double space_tile_nodes = 512.0, bytes_per_space_tile = 16.0;
+/// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.
+constexpr double tile_nodes_3d = 512.0, bytes_per_tile_3d = 16.0;
 
-double space_tiles(const Scene& scene) {
+double tiles_3d(const Scene& scene) {
     const SolidStage& stage = *scene.solid;
     const double cell = scene.bed.geometry.cell;
     const double across = static_cast<double>(stage.window[2] - stage.window[0] + 1) * cell / stage.cell;
@@ -39,7 +39,7 @@ double space_tiles(const Scene& scene) {
             high = std::fmax(high, scene.bed.at(i, j));
         }
     const double up = std::max(0.0, stage.top.value_or(high) - low) / stage.cell;
-    return (across + 1.0) * (along + 1.0) * (up + 1.0) / space_tile_nodes;
+    return (across + 1.0) * (along + 1.0) * (up + 1.0) / tile_nodes_3d;
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ MemoryNeed memory_need(const Scene& scene) {
         return kind_word(entry.kind) == std::string("figure");
     });
     if (scene.output.png || draws) need.base += graphics_need;
-    if (scene.solid) need.space = bytes_per_point * most_points(scene) + bytes_per_space_tile * space_tiles(scene);
+    if (scene.solid) need.space = bytes_per_point * most_points(scene) + bytes_per_tile_3d * tiles_3d(scene);
     return need;
 }
 

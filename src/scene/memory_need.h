@@ -11,7 +11,7 @@ struct MemoryNeed {
     double base = 0.0;       ///< libraries, and of pictures what draws them
     double nodes = 0.0;      ///< grows with the terrain's nodes
     double particles = 0.0;  ///< grows with the particles at the start
-    double space = 0.0;      ///< points in space if all of the release is in the window, and their grid's tiles
+    double space = 0.0;      ///< 3D points if all of the release is in the window, and their grid's tiles
     double total() const { return base + nodes + particles + space; }
 };
 
@@ -22,9 +22,9 @@ double memory_of_part(double nodes);
 /// Of a scene that is built.
 MemoryNeed memory_need(const Scene& scene);
 
-/// Points in space if all of the release were in the window, 8 a cell of (2 spacing)^3.
+/// 3D points if all of the release were in the window, 8 a cell of (2 spacing)^3.
 double most_points(const Scene& scene);
-constexpr double bytes_per_point = 450.0;  ///< of points in space
+constexpr double bytes_per_point = 450.0;  ///< of 3D points
 
 /// A key of the case with what it asks for, and what would ask for less.
 struct MemoryUse {

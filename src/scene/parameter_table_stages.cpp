@@ -8,29 +8,29 @@ namespace {
 using namespace rows;
 
 const char* const model = "stage.model";
-const std::vector<std::string> in_space = {"solid_flow"};
+const std::vector<std::string> in_3d = {"solid_flow"};
 
-Parameter of_space(Parameter parameter, const char* otherwise) {
-    return absent(with(std::move(parameter), model, in_space), otherwise);
+Parameter of_3d(Parameter parameter, const char* otherwise) {
+    return absent(with(std::move(parameter), model, in_3d), otherwise);
 }
 
-/// Keys of one law of material in space; other laws refuse them.
+/// Keys of one law of 3D material; other laws refuse them.
 void add_laws(Table& table) {
     const char* const law = "stage.law";
     Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in space");
     choice_of_law.choices = {"fluid", "bingham", "herschel_bulkley", "drucker_prager", "elastic"};
-    table.push_back(of_space(choice_of_law, "fluid, or bingham where the rheology is"));
+    table.push_back(of_3d(choice_of_law, "fluid, or bingham where the rheology is"));
     table.push_back(
-        of_space(number("stage.viscosity", "Pa s", not_negative, "viscosity of a fluid, or of bingham"),
+        of_3d(number("stage.viscosity", "Pa s", not_negative, "viscosity of a fluid, or of bingham"),
                  "the rheology's"));
-    table.push_back(of_space(number("stage.yield_stress", "Pa", positive,
+    table.push_back(of_3d(number("stage.yield_stress", "Pa", positive,
                                     "yield stress of bingham or herschel_bulkley in shear"),
                              "the rheology's"));
     table.push_back(
-        of_space(number("stage.shear_modulus", "Pa", positive, "stiffness of both below their yield stress"),
+        of_3d(number("stage.shear_modulus", "Pa", positive, "stiffness of both below their yield stress"),
                  "a hundred yield stresses"));
     table.push_back(
-        of_space(number("stage.sound_speed", "m/s", positive,
+        of_3d(number("stage.sound_speed", "m/s", positive,
                         "artificial speed of sound of fluids, with a yield stress or without: the density changes by about "
                         "(speed / sound_speed)^2"),
                  "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
@@ -117,50 +117,50 @@ void add_stages(Table& table) {
              "where material becomes points in space: [xmin, ymin, xmax, ymax] in map coordinates; "
              "cells whose nodes lie in it belong to it");
     window.length = 4;
-    table.push_back(of_space(window, "the whole terrain"));
+    table.push_back(of_3d(window, "the whole terrain"));
     Parameter closed = make("stage.closed", Kind::words, "",
                             "sides of the window that points do not cross; columns still come in over them");
     closed.choices = {"west", "east", "south", "north"};
     closed.may_be_empty = true;
     closed.fallback = std::vector<std::string>{};
-    table.push_back(with(closed, model, in_space));
-    table.push_back(of_space(number("stage.cell", "m", positive, "node distance of the grid in space"),
+    table.push_back(with(closed, model, in_3d));
+    table.push_back(of_3d(number("stage.cell", "m", positive, "node distance of the grid in space"),
                              "half of the grid's cell"));
     table.push_back(
-        of_space(number("stage.spacing", "m", positive, "distance of the points in space at the start"),
+        of_3d(number("stage.spacing", "m", positive, "distance of the points in space at the start"),
                  "half of the stage's cell: eight points a cell"));
     table.push_back(
-        of_space(number("stage.top", "m", any_number, "elevation above which points leave the space"),
+        of_3d(number("stage.top", "m", any_number, "elevation above which points leave the space"),
                  "four times as high above the lowest ground as the energy of the material reaches"));
     add_laws(table);
     table.push_back(
-        with(flag("stage.stuck", false, "the lowest material does not slide on the bed"), model, in_space));
-    table.push_back(of_space(number("stage.bed_friction", "1", between(0.0, 10.0),
+        with(flag("stage.stuck", false, "the lowest material does not slide on the bed"), model, in_3d));
+    table.push_back(of_3d(number("stage.bed_friction", "1", between(0.0, 10.0),
                                     "Coulomb's friction coefficient between the points and the bed"),
                              "the friction coefficient of material.bed, without its other terms"));
     table.push_back(with(number("stage.cfl", "1", above_to(0.0, 1.0), 0.4,
                                 "largest way of sound and flow in one time step, in cells"),
-                         model, in_space));
+                         model, in_3d));
     Parameter transfer =
         make("stage.transfer", Kind::choice, "",
              "how velocity passes between points and grid: tpic has the quieter pressure, apic keeps angular momentum, "
              "flip lets points keep their velocity, so that what few cells hold is damped by time and not by step");
     transfer.choices = {"tpic", "apic", "flip"};
-    table.push_back(of_space(transfer, "flip for drucker_prager, else tpic"));
-    table.push_back(of_space(number("stage.blending", "s", positive,
+    table.push_back(of_3d(transfer, "flip for drucker_prager, else tpic"));
+    table.push_back(of_3d(number("stage.blending", "s", positive,
                                     "time in which points with flip take over the grid's velocity"),
                              "sqrt(cell / gravity), in which material falls half a cell"));
     table.push_back(with(flag("stage.split", false,
                               "points that are drawn 0.8 of a cell apart become two, down to 1/64 of a cell each: thin ends "
                               "keep together; up to eight times as many points"),
-                         model, in_space));
+                         model, in_3d));
     table.push_back(with(choice("stage.profile", {"plug", "linear", "parabolic", "bagnold"}, "plug",
                                 "velocity over the depth that columns become points with"),
-                         model, in_space));
+                         model, in_3d));
     table.push_back(
         with(choice("stage.vertical", {"along-bed", "zero"}, "along-bed",
                     "vertical velocity that columns become points with; zero: Fois et al. (2025)"),
-             model, in_space));
+             model, in_3d));
 }
 
 }  // namespace frana

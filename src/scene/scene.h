@@ -68,14 +68,14 @@ struct Profile { std::string name; Polyline line; };
 /// A named point at which the flow is recorded every step.
 struct Gauge { std::string name; Vec2 point{0, 0}; };
 
-/// From a time on, the material in a window of the map is points in space (solid3d/solid_flow.h); what flows into the
+/// From a time on, the material in a window of the map is 3D points (solid3d/mpm3d.h); what flows into the
 /// window later becomes points as it crosses the edge, and what flows out of it columns.
 struct SolidStage {
     double from = 0.0;                 ///< [s]
     std::optional<double> until;       ///< from then on all are columns again [s]; nothing: to the end
     std::array<Index, 4> window{};     ///< first and last nodes of the terrain's grid in it: i0, j0, i1, j1
     std::array<bool, 4> closed{};      ///< west, south, east, north: points do not cross these sides
-    double cell = 1.0;                 ///< of the grid in space [m]
+    double cell = 1.0;                 ///< of the 3D grid [m]
     double spacing = 0.5;              ///< of the points at the start [m]
     SolidLaw law;                      ///< of fluids without the bulk modulus, which the speed of sound gives
     std::optional<double> sound_speed; ///< of fluids [m/s]; nothing: chosen when the stage begins

@@ -71,7 +71,7 @@ private:
         return case_.place(prefix_ + (given("mesh") ? "mesh" : given("line") ? "line" : "outline"));
     }
 
-    /// Of the stage in space: x, y of the low corner and of the high one [m].
+    /// Of the 3D stage: x, y of the low corner and of the high one [m].
     std::array<double, 4> window_extent() const {
         const GridGeometry& g = scene_.bed.geometry;
         const std::array<Index, 4>& w = scene_.solid->window;

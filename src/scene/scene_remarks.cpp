@@ -27,7 +27,7 @@ void remark_zero_margin(Scene& scene, const std::string& place) {
     const GridGeometry& g = scene.bed.geometry;
     Index rim = 0, cliffs = 0;
     double highest = 0.0;
-    const auto look = [&](Index i, Index j, Index di, Index dj) {
+    const auto sample = [&](Index i, Index j, Index di, Index dj) {
         const Index ahead_i = i + kReach * di, ahead_j = j + kReach * dj, behind_i = i - di, behind_j = j - dj;
         const auto inside = [&](Index a, Index b) { return a >= 0 && b >= 0 && a < g.nx && b < g.ny; };
         if (!inside(ahead_i, ahead_j) || !inside(behind_i, behind_j)) return;
@@ -43,7 +43,7 @@ void remark_zero_margin(Scene& scene, const std::string& place) {
         for (Index i = 0; i < g.nx; ++i)
             if (scene.bed.at(i, j) == 0.0)
                 for (const auto& [di, dj] : {std::pair<Index, Index>{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-                    look(i, j, di, dj);
+                    sample(i, j, di, dj);
     remark_on(scene.log, Remark::zero_margin, place,
               {2 * cliffs > rim ? double(cliffs) : 0.0, highest, into(scene.bed.source, "_nodata")});
 }

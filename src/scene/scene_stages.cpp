@@ -1,4 +1,4 @@
-// The [[stage]]s of a case: columns first, or from the start points in space.
+// The [[stage]]s of a case: columns first, or from the start 3D points.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,9 +21,9 @@ public:
         Index space = count;  // the one in space
         for (Index i = 0; i < count; ++i) {
             prefix_ = fmt::format("stage.{}.", i);
-            const bool in_space = case_.word(prefix_ + "model") == "solid_flow";
-            if (in_space && space == count) space = i;
-            if (space < count ? i > space + 1 || (in_space && i > space) || space > 1 : i > 0)
+            const bool in_3d = case_.word(prefix_ + "model") == "solid_flow";
+            if (in_3d && space == count) space = i;
+            if (space < count ? i > space + 1 || (in_3d && i > space) || space > 1 : i > 0)
                 return refuse(i, "found it after the others",
                               "expected depth_averaged, then solid_flow, then depth_averaged, or a part of that",
                               "remove it; `frana convert` makes points of columns and columns of points besides");
@@ -179,7 +179,7 @@ private:
         }
     }
 
-    /// Points in space need ground below them everywhere.
+    /// 3D points need ground below them everywhere.
     void require_ground(const SolidStage& stage) {
         const std::array<Index, 4>& w = stage.window;
         for (Index j = w[1]; j <= w[3]; ++j)

@@ -41,7 +41,7 @@ void TileSorter::wake(Index count, ActiveTiles& active) {
 }
 
 void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
-    order_.keep_places(columns.count(), gone, active);
+    order_.retain_places(columns.count(), gone, active);
     order_.close_gaps(fields_of(columns));
     columns.resize(static_cast<Index>(order_.order().size()));
 }

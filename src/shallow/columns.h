@@ -13,10 +13,10 @@ namespace frana {
 /// What a point carries from node to node, in double or single precision.
 template <class Real>
 struct Carried {
-    ColumnOf<Real> vx, vy;              ///< velocity [m/s], half a step behind the position
-    ColumnOf<Real> cxx, cxy, cyx, cyy;  ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
-    ColumnOf<Real> r1x, r1y, r2x, r2y;  ///< edges of the point's domain [cells]
-    ColumnOf<Real> depth;               ///< sampled from the nodes (paper preset: carried) [m]
+    ArrayOf<Real> vx, vy;              ///< velocity [m/s], half a step behind the position
+    ArrayOf<Real> cxx, cxy, cyx, cyy;  ///< velocity gradient, c_kl = dv_k / dx_l [1/s]
+    ArrayOf<Real> r1x, r1y, r2x, r2y;  ///< edges of the point's domain [cells]
+    ArrayOf<Real> depth;               ///< sampled from the nodes (paper preset: carried) [m]
 
     template <class Self, class Visit>
     static void each(Self& s, Visit&& visit) {
@@ -29,8 +29,8 @@ struct Carried {
 /// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI. Positions
 /// and masses are always in double precision: a step moves a point by little, and mass is exact.
 struct Columns : Carried<double> {
-    Column x, y;  ///< position [cells]
-    Column mass;  ///< [kg]
+    Array x, y;  ///< position [cells]
+    Array mass;  ///< [kg]
     Carried<float>
         narrow;  ///< with scheme.precision = "float" instead of the base's columns, which are empty then
     std::vector<std::int64_t> id;  ///< constant through sorting; children of a split get new ones
@@ -100,7 +100,7 @@ struct Departed {
     double vx, vy;  ///< [m/s]
     double depth;   ///< [m]
     double mass;    ///< [kg]
-    double energy;  ///< kinetic and potential, as it was booked [J]
+    double energy;  ///< kinetic and potential, as it was recorded [J]
     std::array<double, 4> gradient;  ///< of the velocity: cxx, cyx, cxy, cyy [1/s]
 };
 

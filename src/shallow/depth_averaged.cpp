@@ -35,16 +35,22 @@ double least_split_mass(const Scene& scene) {
 }  // namespace
 
 DepthAveraged::DepthAveraged(const Scene& scene, Start start)
-    : flow_(scene), transfer_(make_transfer(scene)), kick_(make_kick(scene)), splitter_(least_split_mass(scene)),
-      peaks_(flow_.grid), shown_(NodeBox::all(scene.bed.geometry)), rheology_(scene.rheology),
+    : flow_(scene),
+      transfer_(make_transfer(scene)),
+      grid_update_(make_grid_update(scene)),
+      splitter_(least_split_mass(scene)),
+      peaks_(flow_.grid),
+      shown_(NodeBox::all(scene.bed.geometry)),
+      rheology_(scene.rheology),
       steep_(scene.terrain != TerrainModel::shallow),
-      curved_(steep_ && scene.curvature == Curvature::full), sleeps_(scene.scheme.sleep),
+      curved_(steep_ && scene.curvature == Curvature::full),
+      sleeps_(scene.scheme.sleep),
       footprint_depth_(scene.output.footprint_depth) {
     expect(!scene.wider, "on a part of a terrain columns grow it (coupling/growing_columns.h)");
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
     flow_.columns.single = scene.scheme.precision == Precision::single;
-    if (start == Start::kept) return;
+    if (start == Start::resumed) return;
     flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
     if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear) {
@@ -118,50 +124,53 @@ void DepthAveraged::level_points(double level) {
     }
 }
 
-/// One step: the nodes are kicked and braked, the points are carried and deposit where they arrive.
+/// One step: the nodes are updated and braked, the points are carried and deposit where they arrive.
 void DepthAveraged::advance(double until) {
     const double share = share_of_ordinary_step();
-    const double dt = timed_("kick and friction", [&] { return kick_nodes(step_length(until)); });
+    const double dt = timed_("kick and friction", [&] { return update_nodes(step_length(until)); });
     flow_.carried_share = 1.0 - share;
     since_split_ += share;
     const bool due = since_split_ >= (1.0 - 1e-9) * kStepsBetweenSplits;
     timed_("kick and friction", [&] { mirror_motion(flow_); });
-    const double next_kick = 0.5 * (dt + longest_step());
+    const double next_velocity_dt = 0.5 * (dt + longest_step());
     const bool adapts = due || drift_ > drift_before_carry(flow_.scheme);
-    PointSums points = adapts ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
-                              : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_kick); });
-    require_sound(points);
-    book_points(points);
+    PointSums points =
+        adapts ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
+               : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_velocity_dt); });
+    require_finite(points);
+    accumulate_points(points);
     status_.step += 1;
     status_.time = dt >= until - status_.time ? until : status_.time + dt;
     status_.dt = dt;
     if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0);
-    if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_kick); });
+    if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
 }
 
-/// Kicks the nodes for a step of `dt` or, where forces drive them much farther than the step was chosen for, a shorter
-/// one: the step follows the last one's signal, and a film on a cliff, say, has none before it falls. Returns the step.
-double DepthAveraged::kick_nodes(double dt) {
+/// Grid updates the nodes for a step of `dt` or, where forces drive them much farther than the step was chosen for, a
+/// shorter one: the step follows the last one's signal, and a film on a cliff, say, has none before it falls. Returns
+/// the step.
+double DepthAveraged::update_nodes(double dt) {
     const double reach = flow_.scheme.cfl * flow_.cell;
     const double before = signal_;
     for (;;) {
-        const double kick = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
-        const KickSums sums = kick_->kick(flow_, kick, dt);
+        const double velocity_dt = 0.5 * (status_.dt + dt);  // leapfrog: velocities stand between the positions
+        const GridUpdateSums sums = grid_update_->update(flow_, velocity_dt, dt);
         if (!(sums.max_signal * dt > kFarther * reach)) {
-            book_kick(sums, kick);
+            accumulate_grid_update(sums, velocity_dt);
             return dt;
         }
-        const double pull = (sums.max_signal - before) / kick;  // of the node that is driven farthest [m/s^2]
-        const double start = before + 0.5 * pull * status_.dt;
-        dt = std::min(0.5 * dt, 2.0 * reach / (start + std::sqrt(start * start + 2.0 * pull * reach)));
+        const double acceleration =
+            (sums.max_signal - before) / velocity_dt;  // of the node that is driven farthest [m/s^2]
+        const double start = before + 0.5 * acceleration * status_.dt;
+        dt = std::min(0.5 * dt, 2.0 * reach / (start + std::sqrt(start * start + 2.0 * acceleration * reach)));
     }
 }
 
 /// What follows from a deposit: depth, surface, status, peaks.
 void DepthAveraged::arrive(const PointSums& points) {
     const PointSums nodes = timed_("deposit", [&] {
-        choose_stirred(flow_, *kick_);
+        choose_active(flow_, *grid_update_);
         return node_sums(flow_);
     });
     status_.p2g_mass_error = points.mass > 0.0 ? std::abs(nodes.mass - points.mass) / points.mass : 0.0;
@@ -233,20 +242,20 @@ double DepthAveraged::step_length(double until) const {
     return step_towards(until - status_.time, longest_step());
 }
 
-void DepthAveraged::book_kick(const KickSums& sums, double kick) {
+void DepthAveraged::accumulate_grid_update(const GridUpdateSums& sums, double velocity_dt) {
     status_.kinetic = sums.kinetic;
-    status_.dissipated += sums.dissipated + kick * stress_power_;
+    status_.dissipated += sums.dissipated + velocity_dt * stress_power_;
     status_.impulse[0] += sums.impulse_x;
     status_.impulse[1] += sums.impulse_y;
     signal_ = sums.max_signal;
 }
 
-void DepthAveraged::book_points(const PointSums& sums) {
+void DepthAveraged::accumulate_points(const PointSums& sums) {
     signal_ = std::max(signal_, sums.max_signal);
     drift_ += sums.max_shift;
     status_.max_speed_on_map = sums.max_speed;
-    status_.impulse[0] += sums.pushed_x;
-    status_.impulse[1] += sums.pushed_y;
+    status_.impulse[0] += sums.wall_impulse_x;
+    status_.impulse[1] += sums.wall_impulse_y;
     if (flow_.walls)  // what walls push is not seen on the nodes: it is what else the points gained
         for (int axis = 0; axis < 2; ++axis) {
             const double gathered = axis == 0 ? sums.px + sums.left_px : sums.py + sums.left_py;
@@ -259,7 +268,7 @@ void DepthAveraged::book_points(const PointSums& sums) {
     status_.energy_left += sums.left_energy;
 }
 
-void DepthAveraged::require_sound(const PointSums& sums) const {
+void DepthAveraged::require_finite(const PointSums& sums) const {
     if (sums.bad < 0) return;
     const Index p = sums.bad;
     const GridGeometry& g = flow_.grid.geometry();
@@ -284,7 +293,7 @@ Sample DepthAveraged::at(const Vec2& point) const {
             const double w = (di ? fu : 1.0 - fu) * (dj ? fv : 1.0 - fv);
             const Index k = flow_.grid.at(i + di, j + dj);
             sample.elevation += w * flow_.bed.z[k];
-            if (!flow_.touches(i + di, j + dj)) continue;
+            if (!flow_.is_in_reach(i + di, j + dj)) continue;
             sample.depth += w * flow_.nodes.depth[k];
             sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
         }

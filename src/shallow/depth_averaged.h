@@ -5,7 +5,7 @@
 
 #include "mpm/step_clock.h"
 #include "run/simulation.h"
-#include "shallow/kick.h"
+#include "shallow/grid_update.h"
 #include "shallow/mass_fit.h"
 #include "shallow/merge.h"
 #include "shallow/peaks.h"
@@ -27,7 +27,7 @@ public:
     std::vector<PhaseTime> timings() const override { return timed_.times(); }
     Sample at(const Vec2& point) const override;
     std::vector<std::string> remarks() const override;
-    void keep(Archive& archive) override;
+    void serialize(Archive& archive) override;
 
     /// From now on columns leave at the nodes marked (1; row after row from the south) and are noted; with `leave_now`
     /// also those that stand there, which are not.
@@ -40,9 +40,9 @@ public:
     void catch_up();
     /// Nothing leaves any more at the nodes that open_exits() marked, and columns may sleep again.
     void close_exits();
-    /// More columns, between two steps at `time` [s], the columns' own unless there are none; `gradient` of the velocity of
-    /// each, dv_k/dx_l at (k, l) [1/s]. They are booked as what did not leave after all: mass, momentum and energy, which is
-    /// returned [J].
+    /// More columns, between two steps at `time` [s], the columns' own unless there are none; `gradient` of the
+    /// velocity of each, dv_k/dx_l at (k, l) [1/s]. They are recorded as what did not leave after all: mass, momentum
+    /// and energy, which is returned [J].
     double take_in(const Seeds& seeds, const std::vector<Mat2>& gradient, double time);
     /// Whether a column may stand at a place of the map: on ground, and not where columns leave.
     bool may_stand(double x, double y) const;
@@ -50,14 +50,14 @@ public:
     /// For the next step: depth of other material on the nodes [m] (row after row from the south). It counts as
     /// depth of the columns wherever that is asked for, but for their mass and motion: they are deposited once more, with it.
     /// Nothing sleeps any more. Pressure on points (paper preset) does not feel it.
-    void stand_beside(const std::vector<double>& depth);
+    void set_adjacent(const std::vector<double>& depth);
 
     /// From now on frames show these nodes only.
     void show(const NodeBox& box) { shown_ = box; }
     /// The nodes of all tiles on the work list. Some may lie beyond the grid.
     NodeBox worked() const;
     /// The columns, peaks and sums of a run on a part of this grid, which gives them up; this one was made for that
-    /// (Start::kept). Its node (0, 0) is (east, north) here.
+    /// (Start::resumed). Its node (0, 0) is (east, north) here.
     void take_over(DepthAveraged& from, Index east, Index north);
 
     /// From now on columns that are split are noted.
@@ -84,19 +84,19 @@ private:
     void level_points(double level);
     void arrive(const PointSums& points);
     NodeSums raise_surface();
-    void add_beside(const std::vector<double>& depth);
-    void keep_points(Archive& archive);
-    void keep_sums(Archive& archive);
-    void keep_nodes(Archive& archive);
-    void keep_peaks(Archive& archive);
+    void add_adjacent(const std::vector<double>& depth);
+    void serialize_points(Archive& archive);
+    void serialize_sums(Archive& archive);
+    void serialize_nodes(Archive& archive);
+    void serialize_peaks(Archive& archive);
     void adapt_points(bool deposit_follows, bool due, bool points_left);
     double step_length(double until) const;
     double longest_step(double cfl, double signal) const;
     double share_of_ordinary_step() const;
-    double kick_nodes(double dt);
-    void book_kick(const KickSums& sums, double kick);
-    void book_points(const PointSums& sums);
-    void require_sound(const PointSums& sums) const;
+    double update_nodes(double dt);
+    void accumulate_grid_update(const GridUpdateSums& sums, double velocity_dt);
+    void accumulate_points(const PointSums& sums);
+    void require_finite(const PointSums& sums) const;
 
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
@@ -110,7 +110,7 @@ private:
 
     Flow flow_;
     std::unique_ptr<TransferKernel> transfer_;
-    std::unique_ptr<KickKernel> kick_;
+    std::unique_ptr<GridUpdateKernel> grid_update_;
     Splitter splitter_;
     std::optional<Merger> merger_;  ///< nothing when the scheme does not merge
     TileSorter sorter_;

@@ -96,7 +96,7 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     status_.momentum_left[0] -= came.left_px;
     status_.momentum_left[1] -= came.left_py;
     status_.energy_left -= came.left_energy;
-    status_.kinetic += kinetic;  // of nodes, and to the next kick only
+    status_.kinetic += kinetic;  // of nodes, and to the next grid update only
     signal_ = std::max(signal_, status_.max_speed_on_map);
     sorter_.sort(c, flow_.grid, {}, flow_.active);
     drift_ = 0.0;
@@ -105,7 +105,7 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     return came.left_energy;
 }
 
-/// Drops the points at exits and deposits the others again, booking what left as at other exits.
+/// Drops the points at exits and deposits the others again, recording what left as at other exits.
 void DepthAveraged::leave_at_exits() {
     wake_all(flow_);
     const Columns& c = flow_.columns;
@@ -125,7 +125,7 @@ void DepthAveraged::leave_at_exits() {
     status_.momentum_left[0] += left.left_px;
     status_.momentum_left[1] += left.left_py;
     status_.energy_left += left.left_energy;
-    status_.kinetic = std::max(0.0, status_.kinetic - kinetic);  // of nodes, and to the next kick only
+    status_.kinetic = std::max(0.0, status_.kinetic - kinetic);  // of nodes, and to the next grid update only
     sorter_.drop(flow_.columns, gone, flow_.active);
     arrive(transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())));
 }

@@ -14,7 +14,7 @@ namespace {
 template <class Body>
 void for_each_output_node(const Flow& flow, const NodeBox& box, Body&& body) {
     for (const Index tile : flow.active.work)
-        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+        for_each_node_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
             const Index a = i - box.i0, b = j - box.j0;
             if (a >= 0 && a < box.nx && b >= 0 && b < box.ny) body(k, b * box.nx + a);
         });
@@ -74,12 +74,12 @@ double* DepthAveraged::add_field(std::vector<Field>& fields, const char* name, c
     return column;
 }
 
-/// Velocities are half a step behind: nodes are kicked by the missing half on a copy, points gather from it.
+/// Velocities are half a step behind: nodes are updated by the missing half on a copy, points gather from it.
 Frame DepthAveraged::frame() {
     Frame frame;
     frame_used_ = 0;
     timed_("frame", [&] {
-        const KickSums sums = kick_->kick(flow_, 0.5 * status_.dt, 0.0);
+        const GridUpdateSums sums = grid_update_->update(flow_, 0.5 * status_.dt, 0.0);
         mirror_motion(flow_);
         transfer_->probe(flow_, probe_);
         frame.grid = shown_.of(flow_.grid.geometry());
@@ -224,8 +224,8 @@ void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
     if constexpr (!std::is_same_v<Law, rheology::None>) {
         const Columns& c = flow_.columns;
         const Index count = c.count();
-        const double kick = status_.dt > 0.0 ? status_.dt : longest_step();
-        const double cap = most_viscosity(flow_, kick);
+        const double velocity_dt = status_.dt > 0.0 ? status_.dt : longest_step();
+        const double cap = most_viscosity(flow_, velocity_dt);
 #pragma omp parallel for schedule(static)
         for (Index p = 0; p < count; p += 4) {
             const int lanes = static_cast<int>(std::min<Index>(4, count - p));

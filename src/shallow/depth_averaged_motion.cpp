@@ -20,7 +20,7 @@ MovingMass DepthAveraged::motion(const MotionQuery& query) const {
         return mass_faster_than(flow_.columns, flow_.columns.carried<decltype(real)>(), query.faster_than);
     });
     for (const Index tile : flow_.active.work)
-        for_each_node_of(flow_.grid, tile, flow_.touched[tile], [&](Index k, Index, Index) {
+        for_each_node_of(flow_.grid, tile, flow_.in_reach[tile], [&](Index k, Index, Index) {
             if (!(peaks_.depth[k] > footprint_depth_) || peaks_.arrival[k] < query.since) return;
             motion.fronts += std::hypot(flow_.nodes.before[k].x, flow_.nodes.before[k].y) > query.faster_than;
         });

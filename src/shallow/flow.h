@@ -25,7 +25,7 @@ struct FlowSetup {
     Scheme scheme;
 };
 
-/// The state of a depth-averaged run. Phases are free functions on it (transfer.h, surface.h, kick.h, split.h).
+/// The state of a depth-averaged run. Phases are free functions on it (transfer.h, surface.h, grid update.h, split.h).
 struct Flow {
     explicit Flow(const Scene& scene)
         : Flow({scene.bed.geometry, scene.density, scene.gravity, scene.sides == Sides::wall,
@@ -35,7 +35,7 @@ struct Flow {
     Flow(const FlowSetup& setup, BedGeometry of)
         : grid(setup.grid), bed(std::move(of)), nodes(grid, setup.with_force), density(setup.density),
           gravity(setup.gravity), cell(grid.cell()), area(cell * cell), walls(setup.walls), steep(setup.steep),
-          scheme(setup.scheme), touched(grid.tiles()), near(grid.tiles()), reach(grid.tiles()),
+          scheme(setup.scheme), in_reach(grid.tiles()), near(grid.tiles()), reach(grid.tiles()),
           deposit_sums(grid.tiles()), depth_sums(grid.tiles()), rest(grid) {}
 
     TileGrid grid;
@@ -54,7 +54,7 @@ struct Flow {
     double carried_share = 0.0;
     /// Per tile of the domain, good for tiles of the work list: what the points of the last deposit touched, the only nodes
     /// with material. Stale elsewhere; deposits are cleared by it.
-    LazyArray<NodeGroups> touched;
+    LazyArray<NodeGroups> in_reach;
     /// The same grown by three nodes, as far as passes look: these nodes, and no others, hold what a dry node holds.
     LazyArray<NodeGroups> near;
     LazyArray<TileReach> reach;       ///< what the points of each tile touch
@@ -63,16 +63,16 @@ struct Flow {
     std::vector<std::vector<Departed>> departed;  ///< in the last gather, by thread
     LazyArray<TileSums> deposit_sums, depth_sums;  ///< per tile, of node_sums and depth_pass
     Rest rest;
-    /// Nodes that the passes walk.
-    NodeGroups walked(Index tile) const { return rest.stirred[tile] ? touched[tile] : 0; }
-    auto walked() const {
-        return [this](Index tile) { return walked(tile); };
+    /// Nodes that the passes go over.
+    NodeGroups active_nodes(Index tile) const { return rest.active[tile] ? in_reach[tile] : 0; }
+    auto active_nodes() const {
+        return [this](Index tile) { return active_nodes(tile); };
     }
     StencilMarks marks_of(Index tile) const { return {grid.tile_i(tile) + kTile, grid.tile_j(tile) + kTile}; }
     /// Whether a node was touched.
-    bool touches(Index i, Index j) const {
+    bool is_in_reach(Index i, Index j) const {
         const Index tile = (j + kTile) / kTile * grid.tiles_x() + (i + kTile) / kTile;
-        return active.in_work[tile] && (touched[tile] & group_of((i + kTile) % kTile, (j + kTile) % kTile));
+        return active.in_work[tile] && (in_reach[tile] & group_of((i + kTile) % kTile, (j + kTile) % kTile));
     }
     double dry_depth() const { return 1e-14 * cell; }  ///< round-off of a depth [m]
 

@@ -27,7 +27,7 @@ void lateral_pass(Flow& flow, double dt) {
     if (!has_lateral_drag(flow.scheme) || !(dt > 0.0)) return;
     const Index up = flow.grid.stride();
     for_each_work_run(flow.active, [&](const TileRun& run) {
-        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index first, Index, Index) {
+        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index, Index first, Index, Index) {
             for (Index k = first; k < first + 4; ++k) {
                 Pair sum{0.0, 0.0};
                 if (known(flow.nodes, k))

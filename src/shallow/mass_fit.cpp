@@ -145,7 +145,7 @@ Index solve(const FitSystem& system, const std::vector<double>& weight, std::vec
 /// Deposits the columns' mass alone and finds wetness and margin.
 void deposit_columns(Flow& flow) {
     start_deposit(flow, 1, 3);
-    touch_all(flow);
+    reach_all(flow);
     for (Index p = 0; p < flow.columns.count(); ++p) {
         const Reach reach = reach_of(flow, p);
         for (int n = 0; n < reach.count; ++n)
@@ -163,7 +163,7 @@ bool inside(const Flow& flow, Index i, Index j) {
 double off_level(const Flow& flow, double level) {
     double most = 0.0;
     for (const Index tile : flow.active.work)
-        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+        for_each_node_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
             const bool inside = i >= 0 && j >= 0 && i < flow.grid.nx() && j < flow.grid.ny();
             if (inside && flow.nodes.flags[k] & kWet) most = std::max(most, std::abs(flow.nodes.surface[k] - level));
         });

@@ -16,9 +16,9 @@ struct alignas(32) Deposit {
 
 /// What points gather from a node.
 struct alignas(32) Motion {
-    double vx, vy;  ///< velocity after the kick [m/s]
+    double vx, vy;  ///< velocity after the grid update [m/s]
     double depth;   ///< [m]
-    double kept;    ///< share of the velocity that friction left [1]; read by flip
+    double velocity_share;    ///< share of the velocity that friction left [1]; read by flip
 };
 
 /// A pair of numbers per node.
@@ -73,7 +73,7 @@ struct Nodes {
     LazyArray<double> surface;       ///< free surface: the level, filtered and mended at margins; bed where dry [m]
     LazyArray<double> wave_x;        ///< part of the 2-cell wave in x, scratch of the filter [m]
     LazyArray<std::uint8_t> row_known;  ///< 1: the wave in x is known there
-    LazyArray<Pair> before;          ///< momentum / mass, before the kick [m/s]
+    LazyArray<Pair> before;          ///< momentum / mass, before the grid update [m/s]
     LazyArray<Motion> motion;
     LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^3/s^2]
     LazyArray<Pair> lateral;         ///< acceleration by the lateral drag; used only when the scheme has one [m/s^2]

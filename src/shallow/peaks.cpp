@@ -41,7 +41,7 @@ double update_peaks(const Flow& flow, bool steep, bool curved, double time, doub
     double fastest = 0.0;
     for_each_work_run(flow.active, [&](const TileRun& run) {
         Double4 most = {};
-        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) {
+        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index, Index k, Index, Index) {
             const Double4 h = load(&flow.nodes.depth[k]), none = {};
             if (!any(h > 0.0)) return;
             if (any((h > footprint_depth) & (load(&peaks.depth[k]) <= footprint_depth)))

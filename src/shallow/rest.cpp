@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "shallow/flow.h"
-#include "shallow/kick.h"
+#include "shallow/grid_update.h"
 
 namespace frana {
 namespace {
@@ -60,7 +60,7 @@ void mark_stencils(Flow& flow, Index n, int before, int after) {
 void find_changes(Flow& flow, int before, int after) {
     Rest& rest = flow.rest;
     for (const Index tile : flow.active.work) {
-        if (!rest.known[tile]) rest.changed[tile] = flow.touched[tile];  // what it held when it was last here
+        if (!rest.known[tile]) rest.changed[tile] = flow.in_reach[tile];  // what it held when it was last here
         if (at_wall(flow, tile)) rest.changed[tile] = kAllGroups;
     }
     for_each_tile(flow.active, [&](Index n) {
@@ -72,19 +72,19 @@ void find_changes(Flow& flow, int before, int after) {
 
 void choose_deposits(Flow& flow) {
     Rest& rest = flow.rest;
-    for (const Index tile : flow.active.work) rest.kept[tile] = 0;
+    for (const Index tile : flow.active.work) rest.frozen[tile] = 0;
     for (Index n = 0; n < flow.active.count(); ++n) {
         const Index tile = flow.active.tile[n];
         rest.deposits[n] = awake(flow, tile) || reaches(flow, tile, rest.changed);
-        if (rest.deposits[n] && !awake(flow, tile)) add_reach(flow, tile, rest.kept);
+        if (rest.deposits[n] && !awake(flow, tile)) add_reach(flow, tile, rest.frozen);
     }
-    for (const Index tile : flow.active.work) rest.kept[tile] &= ~rest.changed[tile];
+    for (const Index tile : flow.active.work) rest.frozen[tile] &= ~rest.changed[tile];
 }
 
 void put_aside(Flow& flow) {
     flow.rest.saved.clear();
     for (const Index tile : flow.active.work)
-        for_each_four_of(flow.grid, tile, flow.rest.kept[tile], [&](Index k, Index, Index) {
+        for_each_four_of(flow.grid, tile, flow.rest.frozen[tile], [&](Index k, Index, Index) {
             SavedGroup& group = flow.rest.saved.emplace_back();
             std::memcpy(group.deposit, flow.nodes.deposits() + k, sizeof group.deposit);
             std::memcpy(group.mass, &flow.nodes.mass[k], sizeof group.mass);
@@ -95,7 +95,7 @@ void put_aside(Flow& flow) {
 void put_back(Flow& flow) {
     const SavedGroup* group = flow.rest.saved.data();
     for (const Index tile : flow.active.work)
-        for_each_four_of(flow.grid, tile, flow.rest.kept[tile], [&](Index k, Index, Index) {
+        for_each_four_of(flow.grid, tile, flow.rest.frozen[tile], [&](Index k, Index, Index) {
             std::memcpy(flow.nodes.deposits() + k, group->deposit, sizeof group->deposit);
             std::memcpy(&flow.nodes.mass[k], group->mass, sizeof group->mass);
             std::memcpy(&flow.nodes.column_mass[k], group->column_mass, sizeof group->column_mass);
@@ -118,7 +118,7 @@ void clear(Flow& flow, const LazyArray<NodeGroups>& groups) {
 void mark_near(Flow& flow) {
     for_each_work_tile(flow.active, [&](Index, Index tile) {
         TileReach around{};
-        for_each_around(flow, tile, [&](Index to, std::size_t m) { around[m] = flow.touched[to]; });
+        for_each_around(flow, tile, [&](Index to, std::size_t m) { around[m] = flow.in_reach[to]; });
         flow.near[tile] = grown(around);
     });
 }
@@ -167,7 +167,7 @@ void start_deposit(Flow& flow, int before, int after) {
     Rest& rest = flow.rest;
     rest.some_asleep = some_asleep(flow);
     rest.deposits.assign(static_cast<std::size_t>(flow.active.count()), 1);
-    if (!rest.some_asleep) return clear(flow, flow.touched);
+    if (!rest.some_asleep) return clear(flow, flow.in_reach);
     find_changes(flow, before, after);
     choose_deposits(flow);
     put_aside(flow);
@@ -176,31 +176,31 @@ void start_deposit(Flow& flow, int before, int after) {
 
 void finish_deposit(Flow& flow) {
     if (flow.rest.some_asleep) put_back(flow);
-    for (const Index tile : flow.active.work) flow.touched[tile] = at_wall(flow, tile) ? kAllGroups : 0;
-    for (const Index tile : flow.active.tile) add_reach(flow, tile, flow.touched);
+    for (const Index tile : flow.active.work) flow.in_reach[tile] = at_wall(flow, tile) ? kAllGroups : 0;
+    for (const Index tile : flow.active.tile) add_reach(flow, tile, flow.in_reach);
     mark_near(flow);
     remember_work(flow);
 }
 
-void choose_stirred(Flow& flow, const KickKernel& kick) {
+void choose_active(Flow& flow, const GridUpdateKernel& grid_update) {
     Rest& rest = flow.rest;
     for (const Index tile : flow.active.work) {
-        const bool walked = rest.stirred[tile];
-        rest.stirred[tile] = !rest.some_asleep || rest.moving[tile] != 0;
+        const bool was_active = rest.active[tile];
+        rest.active[tile] = !rest.some_asleep || rest.moving[tile] != 0;
         if (!rest.some_asleep) continue;
-        for_each_around(flow, tile, [&](Index to, std::size_t) { rest.stirred[tile] |= rest.changed[to] != 0; });
-        if (walked && !rest.stirred[tile]) rest.stirred[tile] = !kick.holds(flow, tile);
+        for_each_around(flow, tile, [&](Index to, std::size_t) { rest.active[tile] |= rest.changed[to] != 0; });
+        if (was_active && !rest.active[tile]) rest.active[tile] = !grid_update.holds(flow, tile);
     }
 }
 
-void stir_all(Flow& flow) {
-    for (const Index tile : flow.active.work) flow.rest.stirred[tile] = 1;
+void activate_all(Flow& flow) {
+    for (const Index tile : flow.active.work) flow.rest.active[tile] = 1;
     mark_near(flow);
 }
 
-void touch_all(Flow& flow) {
-    for (const Index tile : flow.active.work) flow.touched[tile] = kAllGroups;
-    stir_all(flow);
+void reach_all(Flow& flow) {
+    for (const Index tile : flow.active.work) flow.in_reach[tile] = kAllGroups;
+    activate_all(flow);
 }
 
 }  // namespace frana

@@ -5,7 +5,7 @@
 // points then stay as they are, and so does what they deposit. While any tile sleeps, a step goes over
 // - the points of tiles awake and of tiles that touch a node in motion or deposited anew (`gathers`),
 // - the points of tiles that touch a node which a tile awake touches (`deposits`): its sums are made again, in their order,
-// - the nodes near such nodes (`stirred`). All others keep what they had, and sums over tiles count them as they are.
+// - the nodes near such nodes (`active`). All others keep what they had, and sums over tiles count them as they are.
 #include <vector>
 
 #include "mpm/node_groups.h"
@@ -14,7 +14,7 @@
 namespace frana {
 
 struct Flow;
-class KickKernel;
+class GridUpdateKernel;
 
 /// A group's deposits, put aside.
 struct SavedGroup {
@@ -25,12 +25,16 @@ struct SavedGroup {
 /// What a step may skip. Arrays hold one entry per tile of the domain, good for tiles of the work list.
 struct Rest {
     explicit Rest(const TileGrid& grid)
-        : moving(grid.tiles()), changed(grid.tiles()), kept(grid.tiles()), stirred(grid.tiles()), known(grid.tiles()) {}
+        : moving(grid.tiles()),
+          changed(grid.tiles()),
+          frozen(grid.tiles()),
+          active(grid.tiles()),
+          known(grid.tiles()) {}
 
-    LazyArray<NodeGroups> moving;     ///< groups with a node in motion after the last kick
+    LazyArray<NodeGroups> moving;     ///< groups with a node in motion after the last grid update
     LazyArray<NodeGroups> changed;    ///< groups that the last deposit made anew
-    LazyArray<NodeGroups> kept;       ///< groups that sleeping points touch a second time and that must not change
-    LazyArray<std::uint8_t> stirred;  ///< 1: the passes walk this tile
+    LazyArray<NodeGroups> frozen;       ///< groups that sleeping points touch a second time and that must not change
+    LazyArray<std::uint8_t> active;  ///< 1: the passes go over this tile
     LazyArray<std::uint8_t> known;    ///< 1: was on the work list of the last deposit
     std::vector<std::uint8_t> gathers, deposits;  ///< by position in ActiveTiles
     bool some_asleep = false;         ///< in the present deposit; otherwise it is of all points
@@ -38,7 +42,7 @@ struct Rest {
     std::vector<SavedGroup> saved;
 };
 
-/// Before a gather, after the kick: which tiles' points can change.
+/// Before a gather, after the grid update: which tiles' points can change.
 void choose_gathers(Flow& flow);
 
 /// After the gather of the n-th tile: whether all its points are at rest.
@@ -54,18 +58,18 @@ bool some_asleep(const Flow& flow);
 /// of their quadratic stencil to `after` behind it. Clears those nodes; puts aside what sleeping points would double.
 void start_deposit(Flow& flow, int before, int after);
 
-/// After a deposit: puts back what was put aside, and marks nodes touched and near (Flow).
+/// After a deposit: puts back what was put aside, and marks nodes in reach and near (Flow).
 void finish_deposit(Flow& flow);
 
-/// Before the passes over nodes: which tiles they walk. A change is felt 15 nodes away at most (2 by the margin's flags, 2
-/// more by the filter, 3 by each of three sweeps along the shore, 2 by the kick), that is in the next tile. A tile that
-/// falls still is left only when friction holds it whatever the length of a step.
-void choose_stirred(Flow& flow, const KickKernel& kick);
+/// Before the passes over nodes: which tiles they walk. A change is felt 15 nodes away at most (2 by the margin's
+/// flags, 2 more by the filter, 3 by each of three sweeps along the shore, 2 by the grid update), that is in the next
+/// tile. A tile that falls still is left only when friction holds it whatever the length of a step.
+void choose_active(Flow& flow, const GridUpdateKernel& grid_update);
 
-/// What follows from Flow::touched when nothing sleeps: which nodes are near, and that passes walk all tiles.
-void stir_all(Flow& flow);
+/// What follows from Flow::in_reach when nothing sleeps: which nodes are near, and that passes walk all tiles.
+void activate_all(Flow& flow);
 
-/// Takes all nodes of the work list for touched and stirred.
-void touch_all(Flow& flow);
+/// Takes all nodes of the work list for in reach and active.
+void reach_all(Flow& flow);
 
 }  // namespace frana

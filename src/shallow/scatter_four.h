@@ -20,9 +20,9 @@ struct Brought {
 };
 
 /// Mass, momentum and the force -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21), of four
-/// points. `pull`: V sigma / cell [N].
+/// points. `internal_force`: V sigma / cell [N].
 [[gnu::always_inline]] inline void scatter_four(Nodes& nodes, Index stride, int lanes, const Stencils& sx, const Stencils& sy,
-                                                const FourMotions& q, const PlaneOf<Double4>& pull) {
+                                                const FourMotions& q, const PlaneOf<Double4>& internal_force) {
     const Double4 zero = {}, m = q.mass;
     Brought brought[4];
     const auto fill = [&](Double4 Brought::*what, Double4 a, Double4 b, Double4 c, Double4 d) {
@@ -31,8 +31,8 @@ struct Brought {
         for (int lane = 0; lane < 4; ++lane) brought[lane].*what = of[lane];
     };
     fill(&Brought::base, q.px - (sx.offset * q.xx + sy.offset * q.xy), q.py - (sx.offset * q.yx + sy.offset * q.yy),
-         -pull.xy, -pull.yy);
-    fill(&Brought::along_x, q.xx, q.yx, -pull.xx, -pull.xy);
+         -internal_force.xy, -internal_force.yy);
+    fill(&Brought::along_x, q.xx, q.yx, -internal_force.xx, -internal_force.xy);
     fill(&Brought::along_y, q.xy, q.yy, zero, zero);
     fill(&Brought::mass, m * sx.w[0], m * sx.w[1], m * sx.w[2], zero);
     fill(&Brought::of_row, sy.w[0], sy.w[1], sy.s[0], sy.s[1]);

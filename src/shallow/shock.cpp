@@ -83,7 +83,7 @@ void shock_pass(Flow& flow) {
     const Index up = flow.grid.stride();
     constexpr std::uint8_t kKnown = kWet | kMoving;
     for_each_work_run(flow.active, [&](const TileRun& run) {
-        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) {
+        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index, Index k, Index, Index) {
             const std::uint8_t* f = flags + k;
             if (eight_have(f - 2, kKnown, 0) && four_have(f - up, kKnown, 0) && four_have(f + up, kKnown, 0) &&
                 four_have(f + 2 * up, kKnown, 0)) {

@@ -11,7 +11,7 @@ namespace frana {
 /// velocities: per face with velocity jump d < 0, depth h (harmonic mean) and c = sqrt(g h), e = |d| (1 - limiter),
 /// flux = h e (c1 c + c2 e). The limiter fades out where |d| exceeds scheme.shock_gate * c, so that the middle of a
 /// bore is not mistaken for a smooth velocity; the sensor grows from e = kap c to 2 kap c, kap = scheme.shock_sensor.
-/// Needs depth, flags and velocity before the kick. Does nothing when the scheme has no viscosity.
+/// Needs depth, flags and velocity before the grid update. Does nothing when the scheme has no viscosity.
 void shock_pass(Flow& flow);
 
 /// Whether the scheme has artificial viscosity at all.
@@ -24,9 +24,9 @@ inline double shock_near(const Nodes& nodes, Index k, Index up) {
     const Pair* s = nodes.shock.data() + k;
     const double along_x = std::max({s[-2].x, s[-1].x, s[0].x, s[1].x});
     const double along_y = std::max({s[-2 * up].y, s[-up].y, s[0].y, s[up].y});
-    const double beside_x = std::max({s[up].x, s[up - 1].x, s[-up].x, s[-up - 1].x});
-    const double beside_y = std::max({s[1].y, s[1 - up].y, s[-1].y, s[-1 - up].y});
-    return std::max({along_x, along_y, beside_x, beside_y});
+    const double adjacent_x = std::max({s[up].x, s[up - 1].x, s[-up].x, s[-up - 1].x});
+    const double adjacent_y = std::max({s[1].y, s[1 - up].y, s[-1].y, s[-1 - up].y});
+    return std::max({along_x, along_y, adjacent_x, adjacent_y});
 }
 
 }  // namespace frana

@@ -65,18 +65,19 @@ double stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
         least = way, to_x = a, to_y = b;
     }
     const double x = c.x[p], y = c.y[p];
-    const auto turn = [&](Index to, double node, Column& place, ColumnOf<Real>& v, std::array<ColumnOf<Real>*, 2> gradient) {
+    const auto turn = [&](Index to, double node, Array& place, ArrayOf<Real>& v,
+                          std::array<ArrayOf<Real>*, 2> gradient) {
         if (to == 0) return 0.0;
         const double side = static_cast<double>(to), behind = 0.5 - side * (place[p] - node);
         place[p] = node + side * (0.5 + std::clamp(behind, 1e-9, 0.49));
         const double speed = v[p];
-        for (ColumnOf<Real>* g : gradient) (*g)[p] = Real{0};
+        for (ArrayOf<Real>* g : gradient) (*g)[p] = Real{0};
         if (side * speed >= 0.0) return 0.0;
         v[p] = Real{0};
         return -c.mass[p] * speed;
     };
-    sums.pushed_x += turn(to_x, static_cast<double>(i), c.x, held.vx, {&held.cxx, &held.cxy});
-    sums.pushed_y += turn(to_y, static_cast<double>(j), c.y, held.vy, {&held.cyx, &held.cyy});
+    sums.wall_impulse_x += turn(to_x, static_cast<double>(i), c.x, held.vx, {&held.cxx, &held.cxy});
+    sums.wall_impulse_y += turn(to_y, static_cast<double>(j), c.y, held.vy, {&held.cyx, &held.cyy});
     return std::max(std::abs(c.x[p] - x), std::abs(c.y[p] - y));
 }
 

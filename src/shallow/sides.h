@@ -7,13 +7,13 @@ namespace frana {
 /// A point so near to a wall lies on it [cells]: the round-off of places on grids of up to 65 000 cells.
 constexpr double kOnWall = 1e-11;
 
-/// Books in `sums` that point p leaves at node k. Returns its kinetic and potential energy [J].
+/// Records in `sums` that point p leaves at node k. Returns its kinetic and potential energy [J].
 template <class Real>
 double leave(const Flow& flow, Index p, Index k, PointSums& sums);
 
-/// Walls reflect point p, those in holes of the terrain stop it. Beyond open sides, and where the elevation model has no
-/// data, it leaves: marked in `gone`, booked in `sums`, without mass from then on. Returns how far a wall in a hole set it
-/// back [cells].
+/// Walls reflect point p, those in holes of the terrain stop it. Beyond open sides, and where the elevation model has
+/// no data, it leaves: marked in `gone`, recorded in `sums`, without mass from then on. Returns how far a wall in a
+/// hole set it back [cells].
 template <class Real>
 double meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums);
 

@@ -25,7 +25,7 @@ void mirror_surface(Flow& flow) {
         });
 }
 
-/// The velocity before the kick beyond walls: mirrored, the normal component turned round.
+/// The velocity before the grid update beyond walls: mirrored, the normal component turned round.
 void mirror_velocity(Flow& flow) {
     if (!flow.walls) return;
     Nodes& nodes = flow.nodes;
@@ -42,11 +42,11 @@ struct WetRows {
     std::uint32_t row[kTile + 4] = {};
     WetRows(const Flow& flow, Index tile) {
         const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
-        const NodeGroups touched = flow.touched[tile];
+        const NodeGroups in_reach = flow.in_reach[tile];
         for (Index j = 0; j < kTile + 4; ++j) {
             const Index from = 4 * std::max<Index>(j - 4, 0), past = 4 * std::min<Index>(j + 1, kTile);
             const NodeGroups below = past < 64 ? (NodeGroups{1} << past) - 1 : kAllGroups;
-            if (!((touched & below) >> from)) continue;
+            if (!((in_reach & below) >> from)) continue;
             const Index first = flow.grid.at(i0, j0 + j - 2) - 2;
             if (first < 0 || first + kTile + 4 > flow.grid.size()) continue;  // beyond the spare ring: dry
             // Depth and not the flags, which other threads write at the same time.
@@ -142,7 +142,7 @@ void shoreline_sweep(Flow& flow, int sweep) {
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) {
         const Index tile = flow.shore[static_cast<std::size_t>(n)];
-        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+        for_each_node_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
             const std::uint8_t f = nodes.flags[k];
             if (!(f & kMargin) || f >= kSweep || !inside(i, j) || !extrapolate(flow, k, sweep, nodes.surface[k])) return;
             __atomic_store_n(&nodes.flags[k], static_cast<std::uint8_t>(f | sweep * kSweep), __ATOMIC_RELAXED);
@@ -277,13 +277,15 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
 NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
     for_each_work_run(flow.active, [&](const TileRun& run) {
         std::array<DepthSums, kRunTiles> sums{};
-        const auto dry = [&](Index tile) { return flow.rest.stirred[tile] ? flow.near[tile] & ~flow.touched[tile] : 0; };
-        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index n, Index k, Index i, Index j) {
+        const auto dry = [&](Index tile) {
+            return flow.rest.active[tile] ? flow.near[tile] & ~flow.in_reach[tile] : 0;
+        };
+        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index n, Index k, Index i, Index j) {
             depth_of_four(flow, request, k, i, j, sums[static_cast<std::size_t>(n)]);
         });
         for_each_four_of_run(flow.grid, run, dry, [&](Index, Index k, Index, Index) { dry_four(flow, k); });
         for (Index n = 0; n < run.count; ++n)
-            if (flow.rest.stirred[run.tile[n]])
+            if (flow.rest.active[run.tile[n]])
                 flow.depth_sums[run.tile[n]] = sums[static_cast<std::size_t>(n)].of_tile();
     });
     NodeSums total;
@@ -302,8 +304,8 @@ NodeSums depth_pass(Flow& flow, const DepthRequest& request) {
 void mark_margin(Flow& flow) {
     flow.marked.assign(flow.active.work.size(), 0);
     for_each_work_tile(flow.active, [&](Index n, Index tile) {
-        const NodeGroups touched = flow.walked(tile);
-        if (!touched) return;
+        const NodeGroups in_reach = flow.active_nodes(tile);
+        if (!in_reach) return;
         const WetRows wet(flow, tile);
         std::uint8_t any = 0;
         std::uint32_t across[kTile + 4];  // this node and two each way in x
@@ -313,7 +315,7 @@ void mark_margin(Flow& flow) {
         }
         const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
         for (Index j = 0; j < kTile; ++j) {
-            const std::uint32_t here = nodes_in(touched >> (4 * j) & 0xf);
+            const std::uint32_t here = nodes_in(in_reach >> (4 * j) & 0xf);
             if (!here) continue;
             const std::uint32_t* r = wet.row + j;
             const std::uint32_t wide_y = r[0] & r[1] & r[2] & r[3] & r[4];
@@ -353,10 +355,11 @@ void filter(Flow& flow) {
     const Index up = flow.grid.stride();
     const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
     for_each_work_run(flow.active, [&](const TileRun& run) {
-        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) { wave_along_x(nodes, k); });
+        for_each_four_of_run(flow.grid, run, flow.active_nodes(),
+                             [&](Index, Index k, Index, Index) { wave_along_x(nodes, k); });
     });
     for_each_work_run(flow.active, [&](const TileRun& run) {
-        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index, Index k, Index, Index) {
+        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index, Index k, Index, Index) {
             if (calm(nodes, k, up)) {
                 filter_calm(flow, nodes, k, up);
             } else {

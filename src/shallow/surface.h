@@ -27,8 +27,8 @@ struct DepthRequest {
     Vec2 centre;             ///< of the release, in cells
 };
 
-/// Nodal depth h = column mass / (rho A), wetness, surface = z + h (z where dry), velocity before the kick = P / M.
-/// Wetness is decided by the depth alone: nodes that only sub-points reach have depth and no momentum.
+/// Nodal depth h = column mass / (rho A), wetness, surface = z + h (z where dry), velocity before the grid update = P /
+/// M. Wetness is decided by the depth alone: nodes that only sub-points reach have depth and no momentum.
 NodeSums depth_pass(Flow& flow, const DepthRequest& request);
 
 /// Flags the wet nodes that have a dry one within two layers, and those with five wet nodes in a row in x or y.

@@ -41,14 +41,14 @@ void deposit_paper_pressure(Flow& flow, const S& sx, const S& sy, double mass, d
             zy += sx.w[i] * sy.slope(j) * zi / flow.cell;
         }
     const double still = flow.scheme.still_level ? *flow.scheme.still_level - z : 0.0;
-    const double push = 0.5 * flow.gravity * mass * (depth * depth - still * still) / (depth * flow.cell);
+    const double flux = 0.5 * flow.gravity * mass * (depth * depth - still * still) / (depth * flow.cell);
     const double weight = flow.gravity * mass * (depth - still) / depth;
     for (int j = 0; j < S::kNodes; ++j) {
         Deposit* row = flow.nodes.deposits() + flow.grid.at(sx.base, sy.base + j);
         for (int i = 0; i < S::kNodes; ++i) {
             const double w = sx.w[i] * sy.w[j];
-            row[i].fx += push * sx.slope(i) * sy.w[j] - weight * zx * w;
-            row[i].fy += push * sx.w[i] * sy.slope(j) - weight * zy * w;
+            row[i].fx += flux * sx.slope(i) * sy.w[j] - weight * zx * w;
+            row[i].fy += flux * sx.w[i] * sy.slope(j) - weight * zy * w;
         }
     }
 }
@@ -64,10 +64,10 @@ class Kernel final : public TransferKernel {
 public:
     explicit Kernel(const Law& law) : law_(law) {}
 
-    PointSums deposit(Flow& flow, double kick) override {
+    PointSums deposit(Flow& flow, double velocity_dt) override {
         make_room(flow);
         start_deposit(flow, kBefore, kAfter);
-        const double cap = most_viscosity(flow, kick);
+        const double cap = most_viscosity(flow, velocity_dt);
         for_each_tile_coloured(flow.active, [&](Index n) {
             if (!flow.rest.deposits[n]) return;
             const Index tile = flow.active.tile[n];
@@ -100,8 +100,8 @@ public:
         return total(flow.active, gathered_);
     }
 
-    PointSums carry(Flow& flow, double dt, double kick) override {
-        return carry_apart(flow, dt, kick);
+    PointSums carry(Flow& flow, double dt, double velocity_dt) override {
+        return carry_apart(flow, dt, velocity_dt);
     }
 
     void probe(Flow& flow, Probe& out) override {
@@ -124,7 +124,7 @@ public:
     }
 
 private:
-    struct Gathered { double vx, vy, cxx, cxy, cyx, cyy, depth, kept, old_x, old_y; };
+    struct Gathered { double vx, vy, cxx, cxy, cyx, cyy, depth, velocity_share, old_x, old_y; };
 
     /// APIC: C = D^-1 sum N v (x) d, D = cell^2/4 (quadratic) or cell^2/3 (cubic; Jiang et al. 2015);
     /// TPIC: C = sum v (x) grad N.
@@ -144,7 +144,7 @@ private:
             for (int i = 0; i < S::kNodes; ++i) {
                 const Index k = flow.grid.at(sx.base + i, sy.base + j);
                 const double di = static_cast<double>(i) - sx.offset, dj = static_cast<double>(j) - sy.offset;
-                const double share = flow.carried_share * flow.nodes.motions()[k].kept;
+                const double share = flow.carried_share * flow.nodes.motions()[k].velocity_share;
                 const double x = share * (c.vx[p] + flow.cell * (g.xx * di + g.xy * dj) - flow.nodes.before[k].x);
                 const double y = share * (c.vy[p] + flow.cell * (g.yx * di + g.yy * dj) - flow.nodes.before[k].y);
                 const double w = sx.w[i] * sy.w[j];
@@ -217,7 +217,7 @@ private:
                     row_x += (sx.w[i] * (static_cast<double>(i) - sx.offset)) * node;
                 else row_x += sx.slope(i) * node;
                 if constexpr (kTransfer == Transfer::flip) {
-                    const double share = sx.w[i] * sy.w[j] * motions[k + i].kept;
+                    const double share = sx.w[i] * sy.w[j] * motions[k + i].velocity_share;
                     old_x += share * flow.nodes.before[k + i].x;
                     old_y += share * flow.nodes.before[k + i].y;
                 }
@@ -238,9 +238,9 @@ private:
     /// fast the other way.) The points' momentum is that of the nodes: sum m_p N_i kept_i (v_p + change_i).
     std::pair<double, double> velocity_of(const Flow& flow, Index p, const Gathered& g) const {
         if constexpr (kTransfer == Transfer::flip) {
-            const double keep = 1.0 - (1.0 - flow.scheme.flip_ratio) * (1.0 - flow.carried_share);
-            return {keep * (g.kept * flow.columns.vx[p] + g.vx - g.old_x) + (1.0 - keep) * g.vx,
-                    keep * (g.kept * flow.columns.vy[p] + g.vy - g.old_y) + (1.0 - keep) * g.vy};
+            const double flip_share = 1.0 - (1.0 - flow.scheme.flip_ratio) * (1.0 - flow.carried_share);
+            return {flip_share * (g.velocity_share * flow.columns.vx[p] + g.vx - g.old_x) + (1.0 - flip_share) * g.vx,
+                    flip_share * (g.velocity_share * flow.columns.vy[p] + g.vy - g.old_y) + (1.0 - flip_share) * g.vy};
         } else {
             return {g.vx, g.vy};
         }

@@ -20,32 +20,33 @@ struct PointSums {
     double stress_power = 0.0;       ///< sum of V sigma : eps [W]
     double left_mass = 0.0, left_px = 0.0, left_py = 0.0, left_energy = 0.0;  ///< removed in this step
     double lost_in_holes = 0.0;      ///< of left_mass [kg]
-    double pushed_x = 0.0, pushed_y = 0.0;  ///< by walls in holes of the terrain [kg m/s]
+    double wall_impulse_x = 0.0, wall_impulse_y = 0.0;  ///< by walls in holes of the terrain [kg m/s]
     Index left_count = 0;
     Index bad = -1;                  ///< a point whose state is not finite, or that jumped more than 4 cells
 
     void add(const PointSums& other);
 };
 
-/// Largest 2 mu_eff of the rheology in a step of `kick` [s] that is stable explicitly [Pa s]: nu = scheme.stress_cap, or 1/4.
+/// Largest 2 mu_eff of the rheology in a step of `velocity_dt` [s] that is stable explicitly [Pa s]: nu =
+/// scheme.stress_cap, or 1/4.
 ///
 /// A point of gradient c alone pulls its nodes by A c, A = nu sum (N')^2 / N: 4 to 6 nu for quadratic shapes, 3 nu for
 /// cubic ones. Affine transfers bring the nodes c too and gather (1 - A) c: stable up to A = 2. Others gather -A c, and
-/// are with A = 1; as nodes have at least half their depth's inertia (kick.cpp), A there is below 4 nu. So it is with
-/// linear shapes of any transfer.
-double most_viscosity(const Flow& flow, double kick);
+/// are with A = 1; as nodes have at least half their depth's inertia (grid update.cpp), A there is below 4 nu. So it is
+/// with linear shapes of any transfer.
+double most_viscosity(const Flow& flow, double velocity_dt);
 
 class TransferKernel {
 public:
     virtual ~TransferKernel() = default;
-    /// Clears the nodes near material and deposits all points. `kick` is the longest time step the result will be
-    /// used for [s]: it caps the explicit stress (scheme.stress_cap).
-    virtual PointSums deposit(Flow& flow, double kick) = 0;
+    /// Clears the nodes near material and deposits all points. `velocity_dt` is the longest time step the result will
+    /// be used for [s]: it caps the explicit stress (scheme.stress_cap).
+    virtual PointSums deposit(Flow& flow, double velocity_dt) = 0;
     /// Moves all points by `dt` [s] with the nodes' velocities; points outside are marked in gone().
     virtual PointSums gather(Flow& flow, double dt) = 0;
     /// `gather`, then `deposit` with the points as they are: the same bits in one sweep. Points that left deposit
     /// nothing more. The sums are those of gather, with the deposit's stress power.
-    virtual PointSums carry(Flow& flow, double dt, double kick) = 0;
+    virtual PointSums carry(Flow& flow, double dt, double velocity_dt) = 0;
     /// The points' velocities gathered from the nodes, without moving anything: v and grad v at the points.
     struct Probe { std::vector<double> vx, vy, cxx, cxy, cyx, cyy, depth; };
     virtual void probe(Flow& flow, Probe& out) = 0;
@@ -54,9 +55,9 @@ public:
     const std::vector<std::uint8_t>& gone() const { return gone_; }
 
 protected:
-    PointSums carry_apart(Flow& flow, double dt, double kick) {
+    PointSums carry_apart(Flow& flow, double dt, double velocity_dt) {
         PointSums sums = gather(flow, dt);
-        if (sums.bad < 0) sums.stress_power = deposit(flow, kick).stress_power;
+        if (sums.bad < 0) sums.stress_power = deposit(flow, velocity_dt).stress_power;
         return sums;
     }
 

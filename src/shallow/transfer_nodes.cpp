@@ -20,19 +20,19 @@ void PointSums::add(const PointSums& o) {
     left_py += o.left_py;
     left_energy += o.left_energy;
     lost_in_holes += o.lost_in_holes;
-    pushed_x += o.pushed_x;
-    pushed_y += o.pushed_y;
+    wall_impulse_x += o.wall_impulse_x;
+    wall_impulse_y += o.wall_impulse_y;
     left_count += o.left_count;
     if (bad < 0) bad = o.bad;
 }
 
-double most_viscosity(const Flow& flow, double kick) {
+double most_viscosity(const Flow& flow, double velocity_dt) {
     constexpr double kPlain = 0.25;
     const Scheme& scheme = flow.scheme;
     const bool affine = scheme.transfer == Transfer::tpic || scheme.transfer == Transfer::apic;
     const bool plain = !affine || scheme.shape == Shape::linear;
     const double nu = plain ? std::min(kPlain, scheme.stress_cap) : scheme.stress_cap;
-    return nu * flow.density * flow.area / kick;
+    return nu * flow.density * flow.area / velocity_dt;
 }
 
 PointSums total(const ActiveTiles& active, const LazyArray<PointSums>& parts) {
@@ -45,12 +45,12 @@ PointSums node_sums(Flow& flow) {
     const Deposit* deposits = flow.nodes.deposits();
     for_each_work_run(flow.active, [&](const TileRun& run) {
         Double4 sums[kRunTiles] = {}, masses[kRunTiles] = {};
-        for_each_four_of_run(flow.grid, run, flow.walked(), [&](Index n, Index k, Index, Index) {
+        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index n, Index k, Index, Index) {
             for (Index m = k; m < k + 4; ++m) sums[n] += load(deposits + m);
             masses[n] += load(&flow.nodes.mass[k]);
         });
         for (Index n = 0; n < run.count; ++n)
-            if (flow.rest.stirred[run.tile[n]])
+            if (flow.rest.active[run.tile[n]])
                 flow.deposit_sums[run.tile[n]] = {sum(masses[n]), sums[n][0], sums[n][1], 0.0};
     });
     PointSums all;

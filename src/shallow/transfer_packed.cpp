@@ -26,8 +26,8 @@ class PackedKernel final : public TransferKernel {
 public:
     explicit PackedKernel(const Law& law) : law_(law) {}
 
-    PointSums deposit(Flow& flow, double kick) override {
-        const double cap = prepare_deposit(flow, kick);
+    PointSums deposit(Flow& flow, double velocity_dt) override {
+        const double cap = prepare_deposit(flow, velocity_dt);
         for_each_tile_coloured(flow.active, [&](Index n) {
             if (!flow.rest.deposits[n]) return;
             const Index tile = flow.active.tile[n];
@@ -54,17 +54,17 @@ public:
             for_each_batch(flow, n, [&](Index first, Index end, bool) {
                 for_each_four(first, end, [&](Index p, int lanes) { gather_four(flow, p, lanes, dt, sums); });
             });
-            keep_gathered(flow, n, sums);
+            store_gathered(flow, n, sums);
         });
         note_changed(flow);
         return total(flow.active, gathered_);
     }
 
     /// Points are still in the first cache when they deposit.
-    PointSums carry(Flow& flow, double dt, double kick) override {
-        if (some_asleep(flow)) return carry_apart(flow, dt, kick);  // what sleeps is chosen between the two
+    PointSums carry(Flow& flow, double dt, double velocity_dt) override {
+        if (some_asleep(flow)) return carry_apart(flow, dt, velocity_dt);  // what sleeps is chosen between the two
         prepare_gather(flow);
-        const double cap = prepare_deposit(flow, kick);
+        const double cap = prepare_deposit(flow, velocity_dt);
         for_each_tile_coloured(flow.active, [&](Index n) {
             const Index tile = flow.active.tile[n];
             touch_motions(flow, n);
@@ -77,7 +77,7 @@ public:
             });
             flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
             deposited_[tile] = deposited.points();
-            keep_gathered(flow, n, moved);
+            store_gathered(flow, n, moved);
         });
         finish_deposit(flow);
         PointSums sums = total(flow.active, gathered_);
@@ -122,7 +122,7 @@ private:
         }
     };
 
-    void keep_gathered(Flow& flow, Index n, const Sums& sums) {
+    void store_gathered(Flow& flow, Index n, const Sums& sums) {
         gathered_[flow.active.tile[n]] = sums.points();
         note_rest(flow, n, largest(sums.motion) == 0.0);
     }
@@ -133,10 +133,10 @@ private:
     }
 
     /// Clears what will be deposited; returns the largest 2 mu_eff that is stable explicitly [Pa s].
-    double prepare_deposit(Flow& flow, double kick) {
+    double prepare_deposit(Flow& flow, double velocity_dt) {
         make_room(flow);
         start_deposit(flow, kReachBefore, kReachAfter);
-        return most_viscosity(flow, kick);
+        return most_viscosity(flow, velocity_dt);
     }
 
     template <class Body>
@@ -175,18 +175,18 @@ private:
 
     /// Stresses first: a chain of divisions and roots that points wait for side by side.
     void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side, StencilMarks& marks, Sums& sums) {
-        PlaneOf<Double4> pull[kBatch / 4];
+        PlaneOf<Double4> internal_force[kBatch / 4];
         if constexpr (kStress)
             for_each_four(first, end, [&](Index p, int lanes) {
-                pull[(p - first) / 4] = pull_of(flow, p, lanes, cap, sums);
+                internal_force[(p - first) / 4] = internal_force_of(flow, p, lanes, cap, sums);
             });
         for_each_four(first, end, [&](Index p, int lanes) {
-            deposit_four(flow, p, lanes, pull[(p - first) / 4], at_side, marks, sums);
+            deposit_four(flow, p, lanes, internal_force[(p - first) / 4], at_side, marks, sums);
         });
     }
 
-    void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& pull, bool at_side, StencilMarks& marks,
-                      Sums& sums) {
+    void deposit_four(Flow& flow, Index p, int lanes, const PlaneOf<Double4>& internal_force, bool at_side,
+                      StencilMarks& marks, Sums& sums) {
         const Columns& c = flow.columns;
         const Carried<Real>& held = c.carried<Real>();
         const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), m = load(&c.mass[p], lanes);
@@ -198,7 +198,8 @@ private:
         const Stencils sx(x), sy(y);
         limit_gradients({r1x, r1y, r2x, r2y}, cxx, cxy, cyx, cyy);
         const Double4 mc = flow.cell * m, px = m * vx, py = m * vy;
-        scatter_four(flow.nodes, flow.grid.stride(), lanes, sx, sy, {m, px, py, mc * cxx, mc * cxy, mc * cyx, mc * cyy}, pull);
+        scatter_four(flow.nodes, flow.grid.stride(), lanes, sx, sy, {m, px, py, mc * cxx, mc * cxy, mc * cyx, mc * cyy},
+                     internal_force);
         marks.mark(sx.first, sy.first, lanes);
         deposit_columns(flow, p, lanes, x, y, m, {r1x, r1y, r2x, r2y}, at_side);
         sums.mass += m;
@@ -215,7 +216,7 @@ private:
     }
 
     /// V sigma / cell of four points [N], the explicit stress capped (scheme.stress_cap).
-    PlaneOf<Double4> pull_of(const Flow& flow, Index p, int lanes, double cap, Sums& sums) const {
+    PlaneOf<Double4> internal_force_of(const Flow& flow, Index p, int lanes, double cap, Sums& sums) const {
         const Columns& c = flow.columns;
         const Carried<Real>& held = c.carried<Real>();
         const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), depth = load(&held.depth[p], lanes);
@@ -302,7 +303,7 @@ private:
                     for (int j = 0; j < 3; ++j, k += stride, row += along_y) {
                         const auto more = [&](int i) {
                             const Pair& before = flow.nodes.before[k + i];
-                            const double share = flow.carried_share * flow.nodes.motions()[k + i].kept;
+                            const double share = flow.carried_share * flow.nodes.motions()[k + i].velocity_share;
                             return share * (row + static_cast<double>(i) * along_x - Double4{before.x, before.y, 0.0, 0.0});
                         };
                         const Double4 a = more(0), b = more(1), d = more(2);
@@ -340,14 +341,14 @@ private:
         const Gathered g(flow, p, lanes);
         const Double4 shift_x = dt / flow.cell * g.vx, shift_y = dt / flow.cell * g.vy;
         const Double4 shift = max(abs(shift_x), abs(shift_y));
-        const Mask4 sound = shift <= 4.0;  // also catches what is not finite
-        if (any(~sound)) {
+        const Mask4 is_finite = shift <= 4.0;  // also catches what is not finite
+        if (any(~is_finite)) {
             for (int lane = 0; lane < lanes; ++lane)
-                if (!sound[lane] && sums.rare.bad < 0) sums.rare.bad = p + lane;
+                if (!is_finite[lane] && sums.rare.bad < 0) sums.rare.bad = p + lane;
             return;
         }
-        const bool keeps = flow.carried_share > 0.0;
-        if (keeps) take_motion(held, p, lanes, g, Own(flow, p, lanes), sums);
+        const bool flip = flow.carried_share > 0.0;
+        if (flip) take_motion(held, p, lanes, g, Own(flow, p, lanes), sums);
         else take_motion(held, p, lanes, g);
         const Double4 x = load(&c.x[p], lanes) + shift_x, y = load(&c.y[p], lanes) + shift_y;
         store(&c.x[p], x, lanes), store(&c.y[p], y, lanes);
@@ -355,7 +356,7 @@ private:
         stretch(&held.r1x[p], &held.r1y[p], g, dt, lanes);
         stretch(&held.r2x[p], &held.r2y[p], g, dt, lanes);
 
-        const Double4 speed = keeps ? speed_of(held, p, lanes) : sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
+        const Double4 speed = flip ? speed_of(held, p, lanes) : sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
         sums.shift = max(sums.shift, shift);
         sums.motion = max(sums.motion, max(max(abs(g.vx), abs(g.vy)),
                                            max(max(abs(g.cxx), abs(g.cxy)), max(abs(g.cyx), abs(g.cyy)))));

@@ -64,14 +64,14 @@ Vec3 FaceLedger::moment_about(const Face& face, const Vec3& point) {
     return face.moment - point.cross(face.impulse);
 }
 
-void FaceLedger::add(const FacePush& push) {
-    Face& face = faces_[static_cast<std::size_t>(push.face)];
-    face.impulse += push.impulse;
-    face.moment += push.moment;
-    face.patches.impulse[static_cast<std::size_t>(push.patch)] += push.impulse;
+void FaceLedger::add(const FaceImpulse& part) {
+    Face& face = faces_[static_cast<std::size_t>(part.face)];
+    face.impulse += part.impulse;
+    face.moment += part.moment;
+    face.patches.impulse[static_cast<std::size_t>(part.patch)] += part.impulse;
 }
 
-void FaceLedger::keep(Archive& archive) {
+void FaceLedger::serialize(Archive& archive) {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
         Face& face = faces_[f];
         std::vector<double> numbers;

@@ -8,7 +8,7 @@
 namespace frana {
 
 /// What a face gives to a node, or to a point that it puts back, in one step.
-struct FacePush {
+struct FaceImpulse {
     int face;      ///< in the ledger
     Index patch;   ///< of the face
     Vec3 impulse;  ///< [kg m/s]
@@ -50,9 +50,9 @@ public:
     }
     /// Moment of a face's impulse about a point, both given from the grid's origin [kg m^2/s].
     static Vec3 moment_about(const Face& face, const Vec3& point);
-    void add(const FacePush& push);
+    void add(const FaceImpulse& part);
     /// Saves what was given so far, or takes it up again.
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
     std::vector<Face> faces_;

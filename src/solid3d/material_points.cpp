@@ -4,7 +4,7 @@
 
 namespace frana {
 
-void SpaceSorter::sort(MaterialPoints& points, const SpaceGrid& grid, const std::vector<std::uint8_t>& gone,
+void Sorter3d::sort(MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone,
                        ActiveTiles& active) {
     const auto first = [](double x) { return static_cast<Index>(std::floor(x - 0.5)); };
     order_.find_tiles(points.count(), grid.tiles(), [&](Index p) {
@@ -13,13 +13,13 @@ void SpaceSorter::sort(MaterialPoints& points, const SpaceGrid& grid, const std:
     });
     order_.lay_out(active);
     fields_.clear();
-    points.each([&](Column& column) { fields_.push_back(&column); });
+    points.each([&](Array& column) { fields_.push_back(&column); });
     fields_.push_back(&points.id);
     order_.permute(fields_);
     list_tiles(grid, active);
 }
 
-void SpaceSorter::list_tiles(const SpaceGrid& grid, ActiveTiles& active) {
+void Sorter3d::list_tiles(const Grid3d& grid, ActiveTiles& active) {
     for (auto& positions : active.colour) {
         positions.clear();
         positions.reserve(active.tile.capacity());

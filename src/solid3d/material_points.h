@@ -3,20 +3,20 @@
 #include <array>
 
 #include "mpm/point_order.h"
-#include "solid3d/space_grid.h"
+#include "solid3d/grid3d.h"
 
 namespace frana {
 
-/// Points in space. Positions are in cells from node (0, 0, 0); all else is SI. A law has up to six numbers
+/// 3D points. Positions are in cells from node (0, 0, 0); all else is SI. A law has up to six numbers
 /// of its own for each point (law/solid_law.h); columns that no law needs are empty.
 struct MaterialPoints {
-    std::array<Column, 3> x;         ///< position [cells]
-    std::array<Column, 3> v;         ///< velocity [m/s]
-    std::array<Column, 9> gradient;  ///< of the velocity, dv_k/dx_l at 3 l + k [1/s]
-    Column mass;                     ///< [kg]
-    Column rest_volume;              ///< without stress [m^3]
-    Column j;                        ///< volume over rest_volume [1]
-    std::array<Column, 7> state;     ///< of the law
+    std::array<Array, 3> x;         ///< position [cells]
+    std::array<Array, 3> v;         ///< velocity [m/s]
+    std::array<Array, 9> gradient;  ///< of the velocity, dv_k/dx_l at 3 l + k [1/s]
+    Array mass;                     ///< [kg]
+    Array rest_volume;              ///< without stress [m^3]
+    Array j;                        ///< volume over rest_volume [1]
+    std::array<Array, 7> state;     ///< of the law
     int states = 0;                  ///< of them in use
     std::vector<std::int64_t> id;    ///< constant through sorting
 
@@ -25,9 +25,9 @@ struct MaterialPoints {
     /// The one list of floating-point columns in use: sorting, growing and keeping walk it.
     template <class Visit>
     void each(Visit&& visit) {
-        for (Column& column : x) visit(column);
-        for (Column& column : v) visit(column);
-        for (Column& column : gradient) visit(column);
+        for (Array& column : x) visit(column);
+        for (Array& column : v) visit(column);
+        for (Array& column : gradient) visit(column);
         visit(mass), visit(rest_volume), visit(j);
         for (int n = 0; n < states; ++n) visit(state[static_cast<std::size_t>(n)]);
     }
@@ -35,26 +35,26 @@ struct MaterialPoints {
     Index bytes() const {
         Index sum = allocated(mass) + allocated(rest_volume) + allocated(j) + allocated(id);
         const auto add = [&](const auto& columns) {
-            for (const Column& column : columns) sum += allocated(column);
+            for (const Array& column : columns) sum += allocated(column);
         };
         add(x), add(v), add(gradient), add(state);
         return sum;
     }
     void resize(Index count) {
-        each([&](Column& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
+        each([&](Array& column) { resize_sparingly(column, static_cast<std::size_t>(count)); });
         resize_sparingly(id, static_cast<std::size_t>(count));
     }
 };
 
 /// Sorts points by the tile of their first node.
-class SpaceSorter {
+class Sorter3d {
 public:
     /// Sorts `points`, without those marked in `gone` (one byte a point, may be empty), and rebuilds
     /// `active`: tiles with points in eight colours, and on the work list those and their 26 neighbours.
-    void sort(MaterialPoints& points, const SpaceGrid& grid, const std::vector<std::uint8_t>& gone,
+    void sort(MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone,
               ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.
-    static void list_tiles(const SpaceGrid& grid, ActiveTiles& active);
+    static void list_tiles(const Grid3d& grid, ActiveTiles& active);
     Index bytes() const { return order_.bytes(); }
 
 private:

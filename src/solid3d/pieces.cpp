@@ -32,7 +32,7 @@ void link_points(const MaterialPoints& points, const PointCells& cells, Index ce
     for (Index a = cells.begin(cell); a < cells.end(cell); ++a)
         for (Index b = cells.begin(other); b < cells.end(other); ++b) {
             double distance2 = 0.0;
-            for (const Column& x : points.x) {
+            for (const Array& x : points.x) {
                 const double apart = x[cells.point(a)] - x[cells.point(b)];
                 distance2 += apart * apart;
             }
@@ -42,7 +42,7 @@ void link_points(const MaterialPoints& points, const PointCells& cells, Index ce
 
 /// Groups of which the point at a place belongs to that of member(place, its cell).
 template <class Member>
-Pieces weigh(const MaterialPoints& points, const PointCells& cells, Groups& groups, Member&& member) {
+Pieces measure(const MaterialPoints& points, const PointCells& cells, Groups& groups, Member&& member) {
     std::vector<double> mass(static_cast<std::size_t>(cells.points()), 0.0);
     double all = 0.0;
     for (Index cell = 0; cell < cells.count(); ++cell)
@@ -61,7 +61,7 @@ Pieces weigh(const MaterialPoints& points, const PointCells& cells, Groups& grou
 
 }  // namespace
 
-Pieces pieces_of(const MaterialPoints& points, const SpaceGrid& grid) {
+Pieces pieces_of(const MaterialPoints& points, const Grid3d& grid) {
     if (points.count() == 0) return {};
     const PointCells cells(points, grid);
     Groups linked(cells.points()), feeling(cells.count());
@@ -71,8 +71,8 @@ Pieces pieces_of(const MaterialPoints& points, const SpaceGrid& grid) {
         });
         cells.each_near(cell, PointCells::kReach, [&](Index other) { feeling.join(cell, other); });
     }
-    Pieces pieces = weigh(points, cells, linked, [](Index place, Index) { return place; });
-    pieces.alone = weigh(points, cells, feeling, [](Index, Index cell) { return cell; }).apart;
+    Pieces pieces = measure(points, cells, linked, [](Index place, Index) { return place; });
+    pieces.alone = measure(points, cells, feeling, [](Index, Index cell) { return cell; }).apart;
     return pieces;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What material in space has come apart into.
+// What 3D material has come apart into.
 #include "solid3d/material_points.h"
 
 namespace frana {
@@ -16,6 +16,6 @@ struct Pieces {
 
 /// Of all points of a grid. Sums run in the order of cells and points: the same bits for any number of threads. Asks
 /// for memory, so it is for output times.
-Pieces pieces_of(const MaterialPoints& points, const SpaceGrid& grid);
+Pieces pieces_of(const MaterialPoints& points, const Grid3d& grid);
 
 }  // namespace frana

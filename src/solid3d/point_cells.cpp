@@ -4,7 +4,7 @@
 
 namespace frana {
 
-PointCells::PointCells(const MaterialPoints& points, const SpaceGrid& grid, const std::vector<std::uint8_t>& gone) {
+PointCells::PointCells(const MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone) {
     // Behind each row so many more that neighbours of its ends are not cells of the next.
     for (int axis = 0; axis < 2; ++axis)
         stride_[axis + 1] = stride_[axis] * (grid.geometry().nodes[static_cast<std::size_t>(axis)] + kReach);

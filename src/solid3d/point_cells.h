@@ -1,5 +1,5 @@
 #pragma once
-// Points in space cell by cell, for looks at their neighbourhoods between steps.
+// 3D points cell by cell, for looks at their neighbourhoods between steps.
 #include <algorithm>
 #include <vector>
 
@@ -14,7 +14,7 @@ public:
     static constexpr Index kReach = 2;  ///< the farthest that neighbours are asked for
 
     /// Of all points but those marked in `gone` (one byte a point, may be empty).
-    PointCells(const MaterialPoints& points, const SpaceGrid& grid, const std::vector<std::uint8_t>& gone = {});
+    PointCells(const MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone = {});
 
     Index count() const { return static_cast<Index>(key_.size()); }
     Index points() const { return static_cast<Index>(point_.size()); }

@@ -13,7 +13,7 @@ namespace frana {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Normals nearer to each other than this, 30 degrees, are one face that bends: its images would count twice.
+/// Normals nearer to each other than this, 30 degrees, are one face that bends: its mirror particles would count twice.
 constexpr double kSameFace = 0.866;
 /// Of a side's length and of a height [1]: so far crossings beyond a side's end count, so that nothing passes
 /// between two faces by round-off.
@@ -233,7 +233,7 @@ int Prism::within_it(const Vec3& x, double cell, Contact* list) const {
     if (nearest == kNone) return count;
     const Edge& edge = edges_[static_cast<std::size_t>(nearest)];
     const double thick = thickness(x, level(-edge.normal));
-    const bool thin = depth + thick < image_reach(level(edge.normal)) * cell;
+    const bool thin = depth + thick < mirror_reach(level(edge.normal)) * cell;
     if (count == 0 || thin) list[count++] = side(nearest);
     if (thin) {
         Entry out;
@@ -320,7 +320,7 @@ double least_wall_thickness(const Polyline& line, double cell) {
     double least = 0.0;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
         const Vec2 way = line[k + 1] - line[k];
-        if (way.norm() > 0.0) least = std::max(least, image_reach(level(way.normalized())) * cell);
+        if (way.norm() > 0.0) least = std::max(least, mirror_reach(level(way.normalized())) * cell);
     }
     return least;
 }

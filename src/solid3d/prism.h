@@ -18,7 +18,7 @@ public:
     Prism(const Polygons& outline, Raster top);
 
     /// Faces that a point can meet, the nearest first, at most kMostContacts of them no farther than a point
-    /// and its image reach. Before an edge that stands out the one direction to it; in a corner that stands
+    /// and its mirror particle reach. Before an edge that stands out the one direction to it; in a corner that stands
     /// in both of its planes, which a point inside sees as well. Where the solid is so thin that material of
     /// both sides shares nodes (3 (|n_x| + |n_y|) cells) a place inside meets both sides and the top.
     int contacts(const Vec3& x, double cell, Contact* list) const;

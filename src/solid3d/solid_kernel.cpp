@@ -8,24 +8,24 @@
 #include "base/error.h"
 #include "base/touch.h"
 #include "solid3d/batch_sums.h"
-#include "solid3d/image_batch.h"
+#include "solid3d/mirror_batch.h"
 #include "solid3d/point_batch.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 
 namespace frana {
 namespace {
 
-/// Of an image from its point along an axis [cells], for the distances of colours (solid_flow.cpp).
-constexpr double kFarthestImage = 9.0;
+/// Of an mirror particle from its point along an axis [cells], for the distances of colours (mpm3d.cpp).
+constexpr double kFarthestMirror = 9.0;
 constexpr double kLongestShift = 1.0;  ///< of a point in a step [cells]: the time step allows its cfl
 
-/// A point's 27 nodes in the grid, for images: they lie anywhere.
+/// A point's 27 nodes in the grid, for mirror particles: they lie anywhere.
 template <Affine affine>
-struct SpaceStencil {
+struct Stencil3d {
     Index place[3][3];  ///< shares of the nodes' storage indices
     double w[3][3], slope[3][3], d[3][3];
 
-    [[gnu::always_inline]] SpaceStencil(const SpaceGrid& grid, const Vec3& x) {
+    [[gnu::always_inline]] Stencil3d(const Grid3d& grid, const Vec3& x) {
         for (int axis = 0; axis < 3; ++axis) {
             const double first = std::floor(x[axis] - 0.5);
             const Spline<affine, double> s(x[axis] - first, grid.cell());
@@ -38,13 +38,13 @@ struct SpaceStencil {
 [[gnu::always_inline]] inline Double4 lanes(double m, const Vec3& v) { return Double4{m, v[0], v[1], v[2]}; }
 
 /// What a point gives its nodes: w (base + affine d) + force grad w; lanes are mass and momentum.
-struct Gift {
+struct Contribution {
     Double4 base, affine[3], force[3];
 };
 
-/// keeps: points keep their velocities and learn how those of the nodes change (solid_flow.h).
-template <class Law, Affine affine, bool keeps>
-class Kernel final : public SolidKernel {
+/// flip: points keep their velocities and learn how those of the nodes change (mpm3d.h).
+template <class Law, Affine affine, bool flip>
+class Kernel final : public Mpm3dKernel {
 public:
     explicit Kernel(const Law& law) : law_(law) {}
 
@@ -63,8 +63,8 @@ public:
     void clear(SolidBody& body) const override {
         for_each_work_tile(body.active, [&](Index, Index tile) {
             std::fill_n(&body.nodes[tile * kTileNodes], kTileNodes, SolidBody::Node{});
-            if constexpr (keeps)
-                std::fill_n(&body.kept[tile * kTileNodes], kTileNodes, SolidBody::Node{});
+            if constexpr (flip)
+                std::fill_n(&body.flip_sums[tile * kTileNodes], kTileNodes, SolidBody::Node{});
             else if constexpr (Law::kAverages)
                 std::fill_n(&body.mass_j[tile * kTileNodes], kTileNodes, 0.0);
         });
@@ -74,40 +74,40 @@ public:
     void scatter(SolidBody& body, double dt) const override {
         for_each_tile_coloured(body.active, [&](Index n) {
             const Index begin = body.active.begin[n], end = body.active.begin[n + 1];
-            const SpaceBox box = box_of(body.points, begin, end);
+            const Box3d box = box_of(body.points, begin, end);
             body.boxes[static_cast<std::size_t>(n)] = box;
             NodeBlock block;
-            block.clear<Law::kAverages, keeps>(box);
+            block.clear<Law::kAverages, flip>(box);
             scatter_points(body, begin, end, dt, box, block);
-            block.add_to<Law::kAverages, keeps>(body.grid, box, body.nodes.data(), body.kept.data(),
+            block.add_to<Law::kAverages, flip>(body.grid, box, body.nodes.data(), body.flip_sums.data(),
                                                 body.mass_j.data());
         });
     }
 
-    /// Images lie on the far side of surfaces: tiles that scatter them at once stand four apart. Those
-    /// further off than kFarthestImage, deep in a corner, reach no node that material touches.
-    void scatter_images(SolidBody& body, double dt) const override {
+    /// Mirror particles lie on the far side of surfaces: tiles that scatter them at once stand four apart. Those
+    /// further off than kFarthestMirror, deep in a corner, reach no node that material touches.
+    void scatter_mirrors(SolidBody& body, double dt) const override {
         for_each_work_tile(body.active, [&](Index n, Index tile) {
             if (body.near_nodes[static_cast<std::size_t>(n)] != 0)
                 std::copy_n(&body.nodes[tile * kTileNodes], kTileNodes, &body.real[tile * kTileNodes]);
         });
         const double h = body.grid.cell();
         const Vec3& origin = body.grid.geometry().origin;
-        for_each_listed(body.image_colour, body.active.count() >= kTilesForThreads, [&](Index n) {
-            ImageBatch batch;
+        for_each_listed(body.mirror_colour, body.active.count() >= kTilesForThreads, [&](Index n) {
+            MirrorBatch batch;
             for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
                 const Vec3 x = position(body, p);
-                const Images images(body.surfaces, body.near_points[static_cast<std::size_t>(n)],
+                const MirrorParticles mirrors(body.surfaces, body.near_points[static_cast<std::size_t>(n)],
                                     origin + h * x, h);
-                for (const Image& image : images) {
-                    const Vec3 place = (image.place - origin) / h;
-                    const bool far = (place - x).cwiseAbs().maxCoeff() > kFarthestImage;
+                for (const MirrorParticle& mirror : mirrors) {
+                    const Vec3 place = (mirror.place - origin) / h;
+                    const bool far = (place - x).cwiseAbs().maxCoeff() > kFarthestMirror;
                     if (far || !seen(body, place)) continue;
-                    if (image.cuts > 0) {
-                        show_before_cuts(body, p, image, place, dt);
+                    if (mirror.cuts > 0) {
+                        show_before_cuts(body, p, mirror, place, dt);
                         continue;
                     }
-                    batch.add(p, place, image, h);
+                    batch.add(p, place, mirror, h);
                     if (batch.count == 4) show(body, batch, dt);
                 }
             }
@@ -116,26 +116,26 @@ public:
     }
 
     /// One thread: it is a thin layer. Nodes keep apart what the points alone gave them.
-    void scatter_beside(SolidBody& body, double time, double dt) const override {
-        SolidBody::Beside& beside = body.beside;
-        beside.reaches.assign(body.active.work.size(), 0);
-        beside.tile_impulse.assign(body.active.work.size(), Vec3::Zero());
-        list_beside(body, time, dt);
-        for (const auto* list : {&beside.seeds, &beside.images})
-            for (const auto& shown : *list) mark_reached(body, shown.place, beside.reaches);
+    void scatter_ghosts(SolidBody& body, double time, double dt) const override {
+        SolidBody::Ghosts& ghosts = body.ghosts;
+        ghosts.reaches.assign(body.active.work.size(), 0);
+        ghosts.tile_impulse.assign(body.active.work.size(), Vec3::Zero());
+        list_ghosts(body, time, dt);
+        for (const auto* list : {&ghosts.seeds, &ghosts.mirrors})
+            for (const auto& shown : *list) mark_reached(body, shown.place, ghosts.reaches);
         const auto copy = [&](LazyArray<SolidBody::Node>& to) {
             for_each_work_tile(body.active, [&](Index n, Index tile) {
-                if (beside.reaches[static_cast<std::size_t>(n)])
+                if (ghosts.reaches[static_cast<std::size_t>(n)])
                     std::copy_n(&body.nodes[tile * kTileNodes], kTileNodes, &to[tile * kTileNodes]);
             });
         };
-        copy(beside.own);
-        for (const auto& shown : beside.seeds) give_beside(body, shown);
+        copy(ghosts.own);
+        for (const auto& shown : ghosts.seeds) add_ghost(body, shown);
         copy(body.real);
     }
 
-    void scatter_images_beside(SolidBody& body) const override {
-        for (const auto& shown : body.beside.images) give_beside(body, shown);
+    void scatter_ghost_mirrors(SolidBody& body) const override {
+        for (const auto& shown : body.ghosts.mirrors) add_ghost(body, shown);
     }
 
     void move_nodes(SolidBody& body) const override {
@@ -145,29 +145,29 @@ public:
             Vec3* const impulse = body.tile_impulse.data() + n * static_cast<Index>(body.surfaces.size());
             std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
             const Given given{
-                impulse, near & body.barriers ? &body.node_pushes[static_cast<std::size_t>(n)] : nullptr,
+                impulse, near & body.barriers ? &body.node_impulses[static_cast<std::size_t>(n)] : nullptr,
                 &body.tile_work[static_cast<std::size_t>(n)]};
             *given.work = {};
             if (given.faces) given.faces->clear();
-            if (!body.beside.reaches.empty() && body.beside.reaches[static_cast<std::size_t>(n)])
-                return move_nodes_beside(body, n, tile, given);
+            if (!body.ghosts.reaches.empty() && body.ghosts.reaches[static_cast<std::size_t>(n)])
+                return move_nodes_near_ghosts(body, n, tile, given);
             for (Index k = first; k < first + kTileNodes; ++k) {
                 auto& node = body.nodes[k];
                 const double real = near ? body.real[k].m : node.m;
                 if (!(real > 0.0)) {
                     node = {};
-                    if constexpr (keeps) body.kept[k] = {};
+                    if constexpr (flip) body.flip_sums[k] = {};
                     continue;
                 }
                 double mean_j = 0.0;
-                if constexpr (Law::kAverages) mean_j = (keeps ? body.kept[k].m : body.mass_j[k]) / real;
+                if constexpr (Law::kAverages) mean_j = (flip ? body.flip_sums[k].m : body.mass_j[k]) / real;
                 Vec3 v = Vec3(node.x, node.y, node.z) / node.m;
                 if (near)
                     v = meet(body, near, place_of(body.grid, tile, k - first), body.real[k], v, had2(body, k), given);
                 node = {mean_j, v[0], v[1], v[2]};
-                if constexpr (keeps) {
-                    SolidBody::Node& had = body.kept[k];
-                    const double share = body.kept_share / real;
+                if constexpr (flip) {
+                    SolidBody::Node& had = body.flip_sums[k];
+                    const double share = body.flip_share / real;
                     had = {0.0, v[0] - share * had.x, v[1] - share * had.y, v[2] - share * had.z};
                 }
             }
@@ -179,10 +179,10 @@ public:
             Vec3* const impulse = body.point_impulse.data() + n * static_cast<Index>(body.surfaces.size());
             std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
             if (body.near_points[static_cast<std::size_t>(n)] & body.barriers)
-                body.point_pushes[static_cast<std::size_t>(n)].clear();
-            const SpaceBox& box = body.boxes[static_cast<std::size_t>(n)];
+                body.point_impulses[static_cast<std::size_t>(n)].clear();
+            const Box3d& box = body.boxes[static_cast<std::size_t>(n)];
             NodeBlock block;
-            block.take<keeps>(body.grid, box, body.nodes.data(), body.kept.data());
+            block.take<flip>(body.grid, box, body.nodes.data(), body.flip_sums.data());
             body.sums[static_cast<std::size_t>(n)] = gather_points(body, n, dt, block);
         });
     }
@@ -218,67 +218,69 @@ private:
         }
     };
 
-    [[gnu::always_inline]] static Gift gift_of(const Point& point, const Vec3& v, double dt) {
-        Gift gift;
-        gift.base = lanes(point.mass, point.mass * v);
+    [[gnu::always_inline]] static Contribution contribution_of(const Point& point, const Vec3& v, double dt) {
+        Contribution contribution;
+        contribution.base = lanes(point.mass, point.mass * v);
         for (int l = 0; l < 3; ++l) {
-            gift.affine[l] = lanes(0.0, point.mass * point.gradient.col(l));
-            gift.force[l] = lanes(0.0, -dt * point.stress.col(l));
+            contribution.affine[l] = lanes(0.0, point.mass * point.gradient.col(l));
+            contribution.force[l] = lanes(0.0, -dt * point.stress.col(l));
         }
-        return gift;
+        return contribution;
     }
 
-    /// The motion and the stress that an image shows; a point and it push each other alike.
-    static Point mirrored(const Point& p, const Image& image) {
+    /// The motion and the stress that an mirror particle shows; a point and it push each other alike.
+    static Point mirrored(const Point& p, const MirrorParticle& mirror) {
         Point other;
         other.mass = p.mass, other.j = p.j;
-        other.gradient = image.motion * image.without_shear(p.gradient) * image.turn.transpose();
-        other.stress = image.motion * p.stress * image.turn.transpose();
+        other.gradient = mirror.motion * mirror.without_shear(p.gradient) * mirror.turn.transpose();
+        other.stress = mirror.motion * p.stress * mirror.turn.transpose();
         return other;
     }
 
-    /// A point gives its image in a barrier to those nodes only that the image shows at.
-    [[gnu::noinline]] void show_before_cuts(SolidBody& body, Index p, const Image& image, const Vec3& place,
+    /// A point gives its mirror particle in a barrier to those nodes only that the mirror particle shows at.
+    [[gnu::noinline]] void show_before_cuts(SolidBody& body, Index p, const MirrorParticle& mirror, const Vec3& place,
                                             double dt) const {
         const Point point(*this, body, p);
-        const Gift gift = gift_of(mirrored(point, image), image.motion * (point.v + dt * body.gravity), dt);
-        const SpaceStencil<affine> s(body.grid, place);
+        const Contribution contribution =
+            contribution_of(mirrored(point, mirror), mirror.motion * (point.v + dt * body.gravity), dt);
+        const Stencil3d<affine> s(body.grid, place);
         const Vec3& origin = body.grid.geometry().origin;
         for (int n = 0; n < 27; ++n) {
             const int i = n % 3, j = n / 3 % 3, k = n / 9;
             const Vec3 d(s.d[0][i], s.d[1][j], s.d[2][k]);
-            if (!image.shows_at(origin + body.grid.cell() * place + d)) continue;
+            if (!mirror.shows_at(origin + body.grid.cell() * place + d)) continue;
             const double w = s.w[0][i] * s.w[1][j] * s.w[2][k];
             SolidBody::Node* const node = body.nodes.data() + s.place[0][i] + s.place[1][j] + s.place[2][k];
             store(node, load(node) +
-                            w * (gift.base + gift.affine[0] * d[0] + gift.affine[1] * d[1] +
-                                 gift.affine[2] * d[2]) +
-                            (s.slope[0][i] * s.w[1][j] * s.w[2][k]) * gift.force[0] +
-                            (s.w[0][i] * s.slope[1][j] * s.w[2][k]) * gift.force[1] +
-                            (s.w[0][i] * s.w[1][j] * s.slope[2][k]) * gift.force[2]);
+                            w * (contribution.base + contribution.affine[0] * d[0] + contribution.affine[1] * d[1] +
+                                 contribution.affine[2] * d[2]) +
+                            (s.slope[0][i] * s.w[1][j] * s.w[2][k]) * contribution.force[0] +
+                            (s.w[0][i] * s.slope[1][j] * s.w[2][k]) * contribution.force[1] +
+                            (s.w[0][i] * s.w[1][j] * s.slope[2][k]) * contribution.force[2]);
         }
     }
 
-    /// What material beside the points gives at `time`: itself, and its images in surfaces. Only where points may be.
-    static void list_beside(SolidBody& body, double time, double dt) {
-        SolidBody::Beside& beside = body.beside;
-        const SolidSeeds& seeds = beside.material.seeds;
+    /// What material beside the points gives at `time`: itself, and its mirror particles in surfaces. Only where points
+    /// may be.
+    static void list_ghosts(SolidBody& body, double time, double dt) {
+        SolidBody::Ghosts& ghosts = body.ghosts;
+        const SolidSeeds& seeds = ghosts.material.seeds;
         const Vec3& origin = body.grid.geometry().origin;
         const double h = body.grid.cell();
-        beside.seeds.clear(), beside.images.clear();
+        ghosts.seeds.clear(), ghosts.mirrors.clear();
         for (std::size_t p = 0; p < seeds.mass.size(); ++p) {
-            const Vec3 x = seeds.position[p] + (time - beside.material.time) * seeds.velocity[p];
+            const Vec3 x = seeds.position[p] + (time - ghosts.material.time) * seeds.velocity[p];
             const Vec3 momentum = seeds.mass[p] * (seeds.velocity[p] + dt * body.gravity);
-            const Mat3 motion = seeds.mass[p] * beside.material.gradient[p];
+            const Mat3 motion = seeds.mass[p] * ghosts.material.gradient[p];
             const Mat3 force = dt * seeds.pressure[p] * seeds.mass[p] / body.density * Mat3::Identity();
             const Vec3 place = (x - origin) / h;
-            if (felt(body, place)) beside.seeds.push_back({place, seeds.mass[p], momentum, motion, force, {}});
-            for (const Image& image : Images(body.surfaces, beside.near[p], x, h)) {
-                const Vec3 shown = (image.place - origin) / h;
-                if ((shown - place).cwiseAbs().maxCoeff() > kFarthestImage || !felt(body, shown)) continue;
-                beside.images.push_back({shown, seeds.mass[p], image.motion * momentum,
-                                         image.motion * image.without_shear(motion) * image.turn.transpose(),
-                                         image.motion * force * image.turn.transpose(), image});
+            if (felt(body, place)) ghosts.seeds.push_back({place, seeds.mass[p], momentum, motion, force, {}});
+            for (const MirrorParticle& mirror : MirrorParticles(body.surfaces, ghosts.near[p], x, h)) {
+                const Vec3 shown = (mirror.place - origin) / h;
+                if ((shown - place).cwiseAbs().maxCoeff() > kFarthestMirror || !felt(body, shown)) continue;
+                ghosts.mirrors.push_back({shown, seeds.mass[p], mirror.motion * momentum,
+                                         mirror.motion * mirror.without_shear(motion) * mirror.turn.transpose(),
+                                         mirror.motion * force * mirror.turn.transpose(), mirror});
             }
         }
     }
@@ -309,13 +311,13 @@ private:
         }
     }
 
-    static void give_beside(SolidBody& body, const SolidBody::Beside::Shown& shown) {
-        const SpaceStencil<affine> s(body.grid, shown.place);
+    static void add_ghost(SolidBody& body, const SolidBody::Ghosts::Shown& shown) {
+        const Stencil3d<affine> s(body.grid, shown.place);
         const Vec3& origin = body.grid.geometry().origin;
         for (int n = 0; n < 27; ++n) {
             const int i = n % 3, j = n / 3 % 3, k = n / 9;
             const Vec3 d(s.d[0][i], s.d[1][j], s.d[2][k]);
-            if (!shown.image.shows_at(origin + body.grid.cell() * shown.place + d)) continue;
+            if (!shown.mirror.shows_at(origin + body.grid.cell() * shown.place + d)) continue;
             const double w = s.w[0][i] * s.w[1][j] * s.w[2][k];
             const Vec3 slope(s.slope[0][i] * s.w[1][j] * s.w[2][k], s.w[0][i] * s.slope[1][j] * s.w[2][k],
                              s.w[0][i] * s.w[1][j] * s.slope[2][k]);
@@ -325,23 +327,24 @@ private:
         }
     }
 
-    /// Images give to their nodes, and the batch is empty again.
-    [[gnu::noinline]] void show(SolidBody& body, ImageBatch& batch, double dt) const {
+    /// Mirror particles give to their nodes, and the batch is empty again.
+    [[gnu::noinline]] void show(SolidBody& body, MirrorBatch& batch, double dt) const {
         batch.fill();
-        const BatchGift gift = mirrored_gift<!keeps>(law_, body.points, batch, body.gravity, dt);
-        const double ahead = static_cast<double>(kSpaceTile);  // places count from here: images may lie below zero
+        const BatchContribution contribution = mirrored_contribution<!flip>(law_, body.points, batch, body.gravity, dt);
+        const double ahead =
+            static_cast<double>(kTile3d);  // places count from here: mirror particles may lie below zero
         const Double4 from_there[3] = {batch.place[0] + ahead, batch.place[1] + ahead, batch.place[2] + ahead};
         const BatchPlace at(from_there);
-        const BatchShares<affine, false> shares(at, gift, body.grid.cell());
+        const BatchShares<affine, false> shares(at, contribution, body.grid.cell());
         double* const nodes = &body.nodes.data()->m;
         for (int lane = 0; lane < batch.count; ++lane)
-            give(body.grid, nodes,
-                 {at.first[0][lane] - kSpaceTile, at.first[1][lane] - kSpaceTile, at.first[2][lane] - kSpaceTile},
+            contribute(body.grid, nodes,
+                 {at.first[0][lane] - kTile3d, at.first[1][lane] - kTile3d, at.first[2][lane] - kTile3d},
                  shares, lane);
         batch.count = 0, batch.slides = 0;
     }
 
-    /// Whether any tile that an image's stencil touches is on the work list.
+    /// Whether any tile that an mirror particle's stencil touches is on the work list.
     static bool seen(const SolidBody& body, const Vec3& place) {
         std::array<Index, 3> first;
         for (int axis = 0; axis < 3; ++axis) first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5));
@@ -354,9 +357,9 @@ private:
         return listed;
     }
 
-    static Vec3 place_of(const SpaceGrid& grid, Index tile, Index within) {
+    static Vec3 place_of(const Grid3d& grid, Index tile, Index within) {
         const std::array<Index, 3> t = grid.tile_place(tile);
-        const Index i = within % kSpaceTile, j = within / kSpaceTile % kSpaceTile, k = within / (kSpaceTile * kSpaceTile);
+        const Index i = within % kTile3d, j = within / kTile3d % kTile3d, k = within / (kTile3d * kTile3d);
         const Vec3 node(static_cast<double>(grid.first_node(t[0]) + i), static_cast<double>(grid.first_node(t[1]) + j),
                         static_cast<double>(grid.first_node(t[2]) + k));
         return grid.geometry().origin + grid.cell() * node;
@@ -367,13 +370,13 @@ private:
         int surface;
         Contact contact;
         double least;         ///< speed away from the surface that it asks for [m/s]
-        double push = 0.0;    ///< along its normal, never below zero [m/s]
+        double normal_change = 0.0;    ///< along its normal, never below zero [m/s]
         Vec3 brake{0, 0, 0};  ///< along the surface [m/s]
     };
     static constexpr int kMostTouched = 6;
 
-    /// Surfaces that images of points at `x` can reach, with the speeds they ask for: what points and images
-    /// together have along the normal (`mixed`), and behind a surface none into it.
+    /// Surfaces that mirror particles of points at `x` can reach, with the speeds they ask for: what points and mirror
+    /// particles together have along the normal (`mixed`), and behind a surface none into it.
     static int touched(const SolidBody& body, SurfaceSet near, const Vec3& x, const Vec3& mixed,
                        Touch* list) {
         int count = 0;
@@ -384,7 +387,7 @@ private:
                 continue;
             }
             const Contact c = contact(body.surfaces[static_cast<std::size_t>(s)], x);
-            if (c.distance > 0.5 * image_reach(c.normal) * body.grid.cell()) continue;
+            if (c.distance > 0.5 * mirror_reach(c.normal) * body.grid.cell()) continue;
             const double asked = mixed.dot(c.normal);
             list[count++] = {s, c, c.distance <= 0.0 ? std::max(asked, 0.0) : asked};
         }
@@ -392,7 +395,7 @@ private:
     }
 
     /// The same for the faces of a barrier. In one so thin that material of both sides shares a node, neither
-    /// side knows what the other's images ask for: nothing goes into either.
+    /// side knows what the other's mirror particles ask for: nothing goes into either.
     [[gnu::noinline]] static int touched_barrier(const SolidBody& body, int s, const Vec3& x,
                                                  const Vec3& mixed, Touch* list, int count) {
         Contact found[kMostContacts];
@@ -402,7 +405,7 @@ private:
         thin = thin && found[0].distance <= 0.0;
         for (int n = 0; n < faces && count < kMostTouched; ++n) {
             const Contact& c = found[n];
-            if (c.distance > 0.5 * image_reach(c.normal) * body.grid.cell()) continue;
+            if (c.distance > 0.5 * mirror_reach(c.normal) * body.grid.cell()) continue;
             const double asked = thin ? 0.0 : mixed.dot(c.normal);
             list[count++] = {s, c, c.distance <= 0.0 ? std::max(asked, 0.0) : asked};
         }
@@ -411,49 +414,51 @@ private:
 
     /// Pushes that give each surface its speed, or none where the material leaves it faster: by turns
     /// (projected Gauss-Seidel), at once where surfaces are perpendicular to each other.
-    static void push_away(Touch* list, int count, Vec3& v) {
+    static void separate(Touch* list, int count, Vec3& v) {
         constexpr int kTurns =
             20;  // a corner of 60 degrees errs by a quarter of the turn before: 1e-12 of the start
         for (int turn = 0; turn < (count > 1 ? kTurns : 1); ++turn)
             for (Touch* t = list; t < list + count; ++t) {
-                const double change = std::max(t->least - v.dot(t->contact.normal), -t->push);
-                t->push += change;
+                const double change = std::max(t->least - v.dot(t->contact.normal), -t->normal_change);
+                t->normal_change += change;
                 v += change * t->contact.normal;
             }
     }
 
-    /// Surfaces at rest do no work: no push gives a node more energy than it had. What images ask for beyond that is
-    /// not the material's: in corners, and where few points shear, they show motion that is not there. The answer lies
-    /// between v and what is left where no push makes anything leave a surface, which is no faster than what came.
-    /// In oblique corners only: elsewhere the same would take from what rebounds, and from what spreads along a surface.
+    /// Surfaces at rest do no work: no push gives a node more energy than it had. What mirror particles ask for beyond
+    /// that is not the material's: in corners, and where few points shear, they show motion that is not there. The
+    /// answer lies between v and what is left where no push makes anything leave a surface, which is no faster than
+    /// what came. In oblique corners only: elsewhere the same would take from what rebounds, and from what spreads
+    /// along a surface.
     [[gnu::noinline]] static Vec3 without_gain(Touch* list, int count, const Vec3& came, const Vec3& v, double most2) {
         if (!oblique(list, count)) return v;
         Touch soft[kMostTouched];
         for (int n = 0; n < count; ++n) {
             soft[n] = list[n];
-            soft[n].push = 0.0;
+            soft[n].normal_change = 0.0;
             soft[n].least = std::min(soft[n].least, 0.0);
         }
         Vec3 slow = came;
-        push_away(soft, count, slow);
+        separate(soft, count, slow);
         // |slow + s (v - slow)|^2 = most2
         const Vec3 more = v - slow;
         const double a = more.squaredNorm(), b = slow.dot(more), c = most2 - slow.squaredNorm();
         const double root = std::sqrt(b * b + a * std::max(0.0, c));  // both forms are without cancellation
         const double s = c > 0.0 && a > 0.0 ? std::min(1.0, b > 0.0 ? c / (b + root) : (root - b) / a) : 0.0;
-        for (int n = 0; n < count; ++n) list[n].push = soft[n].push + s * (list[n].push - soft[n].push);
+        for (int n = 0; n < count; ++n)
+            list[n].normal_change = soft[n].normal_change + s * (list[n].normal_change - soft[n].normal_change);
         return slow + s * more;
     }
 
     struct Touches {
         const Touch *begin, *end;
     };
-    /// v, held by a stuck surface: along it, what points and images have, and nothing into others. Also behind it, where
-    /// images turn velocities round: with nodes at rest, material would stand still above a surface that lies between
-    /// them, and lose more to it at each step. But in a barrier images end halfway, and points that keep their velocities
-    /// would have each turn added to the one before.
+    /// v, held by a stuck surface: along it, what points and mirror particles have, and nothing into others. Also
+    /// behind it, where mirror particles turn velocities round: with nodes at rest, material would stand still above a
+    /// surface that lies between them, and lose more to it at each step. But in a barrier mirror particles end halfway,
+    /// and points that keep their velocities would have each turn added to the one before.
     static Vec3 held(const SolidBody& body, const Vec3& mixed, const Vec3& v, const Touch* by, const Touches& all) {
-        const bool still = by->contact.distance <= 0.0 && (keeps || (body.barriers >> by->surface & 1));
+        const bool still = by->contact.distance <= 0.0 && (flip || (body.barriers >> by->surface & 1));
         Vec3 kept = along_of(still ? Vec3::Zero() : mixed, v, by->contact.normal);
         for (const Touch* t = all.begin; t < all.end; ++t)
             if (t != by) kept += std::max(0.0, t->least - kept.dot(t->contact.normal)) * t->contact.normal;
@@ -478,21 +483,21 @@ private:
     /// Square of a node's speed before the step's impulses, where points that keep their velocities tell it; else zero.
     /// Stress beside a surface presses a node into it in the step, and the surface takes that back.
     static double had2(const SolidBody& body, Index k) {
-        if constexpr (!keeps) return 0.0;
-        const SolidBody::Node& had = body.kept[k];
+        if constexpr (!flip) return 0.0;
+        const SolidBody::Node& had = body.flip_sums[k];
         return Vec3(had.x, had.y, had.z).squaredNorm() / (body.real[k].m * body.real[k].m);
     }
 
-    /// Where impulses on the nodes of a tile are booked.
+    /// Where impulses on the nodes of a tile are recorded.
     struct Given {
         Vec3* impulse;                 ///< per surface
-        std::vector<FacePush>* faces;  ///< of barriers, where some are near
+        std::vector<FaceImpulse>* faces;  ///< of barriers, where some are near
         SurfaceWork* work;             ///< of all surfaces
     };
 
-    /// The velocity of a node near surfaces. `mixed` is what points and images gave it: free surfaces take
-    /// from it only what it has along their normal (along themselves images would brake material that
-    /// shears), and only as a push: surfaces never pull. Friction follows from the push. Books each surface's
+    /// The velocity of a node near surfaces. `mixed` is what points and mirror particles gave it: free surfaces take
+    /// from it only what it has along their normal (along themselves mirror particles would brake material that
+    /// shears), and only as a push: surfaces never pull. Friction follows from the push. Records each surface's
     /// impulse on the real material.
     static Vec3 meet(const SolidBody& body, SurfaceSet near, const Vec3& x, const SolidBody::Node& real,
                      const Vec3& mixed, double had2, const Given& given) {
@@ -501,63 +506,63 @@ private:
         Vec3 v = Vec3(real.x, real.y, real.z) / real.m;
         const Vec3 came = v;
         const double most2 = std::max(came.squaredNorm(), had2);
-        push_away(list, count, v);
+        separate(list, count, v);
         if (v.squaredNorm() > most2) v = without_gain(list, count, came, v, most2);
-        const Vec3 pushed = v;
+        const Vec3 contact_work = v;
         for (Touch* t = list; t < list + count; ++t) {
             const Surface& surface = body.surfaces[static_cast<std::size_t>(t->surface)];
             const Vec3& normal = t->contact.normal;
-            if (t->push > 0.0) {
+            if (t->normal_change > 0.0) {
                 const Vec3 before = v;
                 if (surface.hold == Hold::stuck)
                     v = no_faster(held(body, mixed, v, t, {list, list + count}),
                                   oblique(list, count) ? most2 : std::numeric_limits<double>::infinity());
                 else if (surface.friction > 0.0)
-                    v = braked(v, normal, surface.friction * t->push);
+                    v = braked(v, normal, surface.friction * t->normal_change);
                 t->brake = v - before;
             }
             if (body.barriers >> t->surface & 1)
-                list_push(body, t->surface, t->contact,
-                          {real.m, x, t->push * normal + t->brake, Vec3::Zero(), Vec3::Zero()}, *given.faces);
+                list_impulse(body, t->surface, t->contact,
+                          {real.m, x, t->normal_change * normal + t->brake, Vec3::Zero(), Vec3::Zero()}, *given.faces);
             else
-                given.impulse[t->surface] += real.m * (t->push * normal + t->brake);
+                given.impulse[t->surface] += real.m * (t->normal_change * normal + t->brake);
         }
         // At the speed after the step, as the work of stress and weight: with that before them a surface would lose
         // what it undoes of both at once.
-        given.work->pushed += real.m * (pushed - came).dot(v);
-        given.work->friction -= real.m * (v - pushed).dot(v);
+        given.work->contact_work += real.m * (contact_work - came).dot(v);
+        given.work->friction -= real.m * (v - contact_work).dot(v);
         return v;
     }
 
     /// What a barrier does to a node or a point: changes its speed, and moves it at the speed it then has.
-    struct PushAt {
+    struct ImpulseAt {
         double mass;
         Vec3 place, change, shift, v;
     };
-    /// Books it with the face. Not inlined, like all that barriers need, so that scenes without them have the
+    /// Records it with the face. Not inlined, like all that barriers need, so that scenes without them have the
     /// bits they had: in place, it would share sums with other code, and so change what is fused there.
-    [[gnu::noinline]] static void list_push(const SolidBody& body, int surface, const Contact& c,
-                                            const PushAt& push, std::vector<FacePush>& list) {
-        const Vec3 impulse = push.mass * push.change;
-        if (impulse.isZero(0.0) && push.shift.isZero(0.0)) return;
+    [[gnu::noinline]] static void list_impulse(const SolidBody& body, int surface, const Contact& c,
+                                            const ImpulseAt& source, std::vector<FaceImpulse>& list) {
+        const Vec3 impulse = source.mass * source.change;
+        if (impulse.isZero(0.0) && source.shift.isZero(0.0)) return;
         const int face = body.ledger.first(surface) + c.face;
         const Patches& patches = body.ledger.faces()[static_cast<std::size_t>(face)].patches;
-        list.push_back({face, patches.at(push.place - c.distance * c.normal), impulse,
-                        (push.place - body.grid.geometry().origin).cross(impulse) +
-                            push.mass * push.shift.cross(push.v)});
+        list.push_back({face, patches.at(source.place - c.distance * c.normal), impulse,
+                        (source.place - body.grid.geometry().origin).cross(impulse) +
+                            source.mass * source.shift.cross(source.v)});
     }
 
     /// The same as move_nodes, where material beside the points gave to the nodes: it and they have one velocity, on
     /// which surfaces then act. Of all impulses the points get the share of their mass, and what came to them from the
-    /// other material is booked apart. Sums of J are of points alone.
-    [[gnu::noinline]] static void move_nodes_beside(SolidBody& body, Index n, Index tile, const Given& given) {
+    /// other material is recorded apart. Sums of J are of points alone.
+    [[gnu::noinline]] static void move_nodes_near_ghosts(SolidBody& body, Index n, Index tile, const Given& given) {
         const SurfaceSet near = body.near_nodes[static_cast<std::size_t>(n)];
         for (Index k = tile * kTileNodes; k < (tile + 1) * kTileNodes; ++k) {
             SolidBody::Node& node = body.nodes[k];
-            const SolidBody::Node &own = body.beside.own[k], &both = body.real[k];
+            const SolidBody::Node &own = body.ghosts.own[k], &both = body.real[k];
             if (!(own.m > 0.0)) {
                 node = {};
-                if constexpr (keeps) body.kept[k] = {};
+                if constexpr (flip) body.flip_sums[k] = {};
                 continue;
             }
             const Vec3 shared = Vec3(both.x, both.y, both.z) / both.m;
@@ -568,20 +573,20 @@ private:
                                  own.m / both.m, given);
             }
             const Vec3 impulse = own.m * shared - Vec3(own.x, own.y, own.z);
-            body.beside.tile_impulse[static_cast<std::size_t>(n)] += impulse;
-            given.work->pushed += impulse.dot(v);
+            body.ghosts.tile_impulse[static_cast<std::size_t>(n)] += impulse;
+            given.work->contact_work += impulse.dot(v);
             double mean_j = 0.0;
-            if constexpr (Law::kAverages) mean_j = (keeps ? body.kept[k].m : body.mass_j[k]) / own.m;
+            if constexpr (Law::kAverages) mean_j = (flip ? body.flip_sums[k].m : body.mass_j[k]) / own.m;
             node = {mean_j, v[0], v[1], v[2]};
-            if constexpr (keeps) {
-                SolidBody::Node& had = body.kept[k];
-                const double share = body.kept_share / own.m;
+            if constexpr (flip) {
+                SolidBody::Node& had = body.flip_sums[k];
+                const double share = body.flip_share / own.m;
                 had = {0.0, v[0] - share * had.x, v[1] - share * had.y, v[2] - share * had.z};
             }
         }
     }
 
-    /// The same as meet, of which `share` is booked.
+    /// The same as meet, of which `share` is recorded.
     static Vec3 meet_in_part(const SolidBody& body, SurfaceSet near, const Vec3& x, const SolidBody::Node& real,
                              const Vec3& mixed, double share, const Given& given) {
         std::array<Vec3, kMostSurfaces> impulse;
@@ -590,7 +595,7 @@ private:
         const std::size_t before = given.faces ? given.faces->size() : 0;
         Vec3 v = meet(body, near, x, real, mixed, 0.0, {impulse.data(), given.faces, &work});
         for (std::size_t s = 0; s < body.surfaces.size(); ++s) given.impulse[s] += share * impulse[s];
-        given.work->pushed += share * work.pushed, given.work->friction += share * work.friction;
+        given.work->contact_work += share * work.contact_work, given.work->friction += share * work.friction;
         if (given.faces)
             for (std::size_t f = before; f < given.faces->size(); ++f)
                 (*given.faces)[f].impulse *= share, (*given.faces)[f].moment *= share;
@@ -614,8 +619,8 @@ private:
     }
 
     /// The nodes that the points begin to end - 1 touch.
-    static SpaceBox box_of(const MaterialPoints& q, Index begin, Index end) {
-        SpaceBox box;
+    static Box3d box_of(const MaterialPoints& q, Index begin, Index end) {
+        Box3d box;
         for (int axis = 0; axis < 3; ++axis) {
             const double* const x = q.x[axis].data();
             Double4 low = all(x[begin]), high = low;
@@ -630,10 +635,10 @@ private:
         return box;
     }
 
-    static void load_all(const Column* columns, int count, Index p, int lanes, Double4* to) {
+    static void load_all(const Array* columns, int count, Index p, int lanes, Double4* to) {
         for (int n = 0; n < count; ++n) to[n] = load(columns[n].data() + p, lanes);
     }
-    static void store_all(const Double4* from, int count, Index p, int lanes, Column* columns) {
+    static void store_all(const Double4* from, int count, Index p, int lanes, Array* columns) {
         for (int n = 0; n < count; ++n) store(columns[n].data() + p, from[n], lanes);
     }
 
@@ -643,7 +648,7 @@ private:
         if ((p - begin) % kAhead == 0) touch_points(q, p, std::min(p + kAhead, end));
     }
     [[gnu::noinline]] static void touch_points(const MaterialPoints& q, Index first, Index last) {
-        const auto ahead = [&](const Column* columns, int count) {
+        const auto ahead = [&](const Array* columns, int count) {
             for (int n = 0; n < count; ++n) touch(columns[n].data() + first, last - first);
         };
         ahead(q.x.data(), 3), ahead(q.v.data(), 3), ahead(q.gradient.data(), 9), ahead(q.state.data(), Law::kStates);
@@ -653,7 +658,7 @@ private:
     /// Not inlined: into the function that holds the block the compiler would find each node's address
     /// anew, two more instructions a node.
     [[gnu::noinline]] void scatter_points(const SolidBody& body, Index begin, Index end, double dt,
-                                          const SpaceBox& box, NodeBlock& block) const {
+                                          const Box3d& box, NodeBlock& block) const {
         Index p = begin;
         for (; p + 4 <= end; p += 4) {
             read_ahead(body.points, begin, p, end);
@@ -677,7 +682,7 @@ private:
     }
 
     [[gnu::always_inline]] void scatter_batch(const SolidBody& body, Index p, int lanes, double dt,
-                                              const SpaceBox& box, NodeBlock& block) const {
+                                              const Box3d& box, NodeBlock& block) const {
         const MaterialPoints& q = body.points;
         Double4 x[3], v[3], state[7];
         Mat3x4 gradient;
@@ -686,20 +691,20 @@ private:
         load_all(q.gradient.data(), 9, p, lanes, gradient.entry);
         load_all(q.state.data(), Law::kStates, p, lanes, state);
         const Double4 j = load(q.j.data() + p, lanes), mass = load(q.mass.data() + p, lanes);
-        const Double4 push = -dt * load(q.rest_volume.data() + p, lanes);
-        const Mat3x4 stress = (law_.stress(j, state, gradient) * push).matrix();
-        BatchGift gift;
-        gift.mass = mass, gift.mass_j = mass * j;
+        const Double4 impulse_scale = -dt * load(q.rest_volume.data() + p, lanes);
+        const Mat3x4 stress = (law_.stress(j, state, gradient) * impulse_scale).matrix();
+        BatchContribution contribution;
+        contribution.mass = mass, contribution.mass_j = mass * j;
         for (int k = 0; k < 3; ++k) {
-            gift.momentum[k] = mass * (keeps ? v[k] : v[k] + dt * body.gravity[k]);
-            if constexpr (keeps) gift.weight[k] = mass * (dt * body.gravity[k]);
+            contribution.momentum[k] = mass * (flip ? v[k] : v[k] + dt * body.gravity[k]);
+            if constexpr (flip) contribution.weight[k] = mass * (dt * body.gravity[k]);
             for (int l = 0; l < 3; ++l)
-                gift.affine[l][k] = mass * gradient(k, l), gift.force[l][k] = stress(k, l);
+                contribution.affine[l][k] = mass * gradient(k, l), contribution.force[l][k] = stress(k, l);
         }
         const BatchPlace place(x);
-        const BatchShares<affine, keeps> shares(place, gift, body.grid.cell());
+        const BatchShares<affine, flip> shares(place, contribution, body.grid.cell());
         const Int4 at = place.in_block(box);
-        for (int point = 0; point < lanes; ++point) give<Law::kAverages>(block, at[point], shares, point);
+        for (int point = 0; point < lanes; ++point) contribute<Law::kAverages>(block, at[point], shares, point);
     }
 
     [[gnu::always_inline]] void gather_batch(SolidBody& body, Index p, int lanes, double dt, Index tile,
@@ -722,8 +727,9 @@ private:
         for (int k = 0; k < 3; ++k) {
             now.x[k] = from[k] + dt / body.grid.cell() * taken.mean[k + 1];
             now.v[k] = taken.mean[k + 1];
-            if constexpr (keeps)
-                now.v[k] = body.kept_share * load(q.v[static_cast<std::size_t>(k)].data() + p, lanes) + taken.kept[k + 1];
+            if constexpr (flip)
+                now.v[k] =
+                    body.flip_share * load(q.v[static_cast<std::size_t>(k)].data() + p, lanes) + taken.flip_sums[k + 1];
         }
         now.mass = load(q.mass.data() + p, lanes);
         store_all(now.x, 3, p, lanes, q.x.data());
@@ -764,12 +770,12 @@ private:
         now.material = (contracted(mean, strain_of(d)) - (has - had)) * rest_volume;
     }
 
-    /// Looks whether points are sound, puts them back before surfaces, and books them.
+    /// Looks whether points are sound, puts them back before surfaces, and records them.
     [[gnu::always_inline]] static void finish(SolidBody& body, Index p, int lanes, BatchPoints& now,
                                               const Double4* from, Index tile, BatchSums& lane_sums,
                                               SolidSums& sums) {
         const Mask4 there = now.mass > 0.0;  // not beyond `lanes`
-        const Mask4 bad = there & ~sound(now, from);
+        const Mask4 bad = there & ~is_finite(now, from);
         if (any(bad)) {
             for (int n = 0; n < lanes; ++n)
                 if (bad[n]) sums.bad = p + n;
@@ -779,7 +785,7 @@ private:
         if (near != 0) {
             Vec3* const impulse = body.point_impulse.data() + tile * static_cast<Index>(body.surfaces.size());
             for (int n = 0; n < lanes; ++n) {
-                push_out(body, near & ~body.barriers, p + n, impulse);
+                move_out(body, near & ~body.barriers, p + n, impulse);
                 if (near & body.barriers) keep_out(body, tile, p + n, {from[0][n], from[1][n], from[2][n]});
             }
             Double4 gained{};
@@ -791,7 +797,7 @@ private:
                           body.gravity[k] * body.grid.cell() * (x - now.x[k]);
                 now.x[k] = x, now.v[k] = v;
             }
-            sums.pushed += sum(gained * now.mass);
+            sums.contact_work += sum(gained * now.mass);
         }
         const Mask4 inside = inside_of(body.grid, now.x), left = there & ~inside;
         if (any(left))
@@ -800,23 +806,24 @@ private:
         lane_sums.add(now, from, there & inside);
     }
 
-    static void take(const NodeBlock& block, const SpaceBox& box, const Double4* x, int lanes, double h,
+    static void take(const NodeBlock& block, const Box3d& box, const Double4* x, int lanes, double h,
                      BatchTaken& taken) {
         const BatchPlace place(x);
         const BatchWeights<affine> weights(place, h);
         const Int4 at = place.in_block(box);
         PointTaken one[4];
         for (int point = 0; point < 4; ++point)  // beyond `lanes`: any finite numbers
-            one[point] = weights.template take<keeps>(block, at[point < lanes ? point : 0], point);
+            one[point] = weights.template take<flip>(block, at[point < lanes ? point : 0], point);
         transpose(one[0].mean, one[1].mean, one[2].mean, one[3].mean, taken.mean);
         for (int l = 0; l < 3; ++l)
             transpose(one[0].slope[l], one[1].slope[l], one[2].slope[l], one[3].slope[l], taken.slope[l]);
-        if constexpr (keeps) transpose(one[0].kept, one[1].kept, one[2].kept, one[3].kept, taken.kept);
+        if constexpr (flip)
+            transpose(one[0].flip_sums, one[1].flip_sums, one[2].flip_sums, one[3].flip_sums, taken.flip_sums);
     }
 
     /// Points that came to lie behind a surface are put back on it, without their speed into it: it rarely
     /// happens.
-    static void push_out(SolidBody& body, SurfaceSet near, Index p, Vec3* impulse) {
+    static void move_out(SolidBody& body, SurfaceSet near, Index p, Vec3* impulse) {
         MaterialPoints& q = body.points;
         const double h = body.grid.cell();
         for (; near != 0; near &= near - 1) {
@@ -875,20 +882,20 @@ private:
             q.x[k][p] += (kHair - c.distance / h) * c.normal[k];
             q.v[k][p] += change[k];
         }
-        list_push(body, s, c, {q.mass[p], x, change, (kHair * h - c.distance) * c.normal, v + change},
-                  body.point_pushes[static_cast<std::size_t>(tile)]);
+        list_impulse(body, s, c, {q.mass[p], x, change, (kHair * h - c.distance) * c.normal, v + change},
+                  body.point_impulses[static_cast<std::size_t>(tile)]);
         return true;
     }
 
     /// Where numbers are finite, and points did not run away.
-    [[gnu::always_inline]] static Mask4 sound(const BatchPoints& now, const Double4* from) {
+    [[gnu::always_inline]] static Mask4 is_finite(const BatchPoints& now, const Double4* from) {
         const Double4 shift =
             max(max(abs(now.x[0] - from[0]), abs(now.x[1] - from[1])), abs(now.x[2] - from[2]));
         const Double4 size = abs(now.v[0]) + abs(now.v[1]) + abs(now.v[2]) + abs(now.volume);
         return (size <= std::numeric_limits<double>::max()) & (shift < kLongestShift);
     }
 
-    [[gnu::always_inline]] static Mask4 inside_of(const SpaceGrid& grid, const Double4* x) {
+    [[gnu::always_inline]] static Mask4 inside_of(const Grid3d& grid, const Double4* x) {
         Mask4 inside = x[0] >= 0.5;
         for (int k = 0; k < 3; ++k)
             inside &= (x[k] >= 0.5) & (x[k] <= static_cast<double>(grid.geometry().nodes[k]) - 1.5);
@@ -910,12 +917,12 @@ private:
 
 }  // namespace
 
-std::unique_ptr<SolidKernel> make_solid_kernel(const SolidLaw& law, Affine affine, bool keeps) {
+std::unique_ptr<Mpm3dKernel> make_mpm3d_kernel(const SolidLaw& law, Affine affine, bool flip) {
     return std::visit(
-        [&](const auto& chosen) -> std::unique_ptr<SolidKernel> {
+        [&](const auto& chosen) -> std::unique_ptr<Mpm3dKernel> {
             using Law = std::decay_t<decltype(chosen)>;
             if (affine == Affine::apic) return std::make_unique<Kernel<Law, Affine::apic, false>>(chosen);
-            if (keeps) return std::make_unique<Kernel<Law, Affine::tpic, true>>(chosen);
+            if (flip) return std::make_unique<Kernel<Law, Affine::tpic, true>>(chosen);
             return std::make_unique<Kernel<Law, Affine::tpic, false>>(chosen);
         },
         law);

@@ -1,5 +1,5 @@
 #pragma once
-// The weights of a point along one axis of the grid in space.
+// The weights of a point along one axis of the 3D grid.
 namespace frana {
 
 /// tpic: the velocity's gradient and the stress's divergence by the shape function's slopes; the quieter

@@ -59,7 +59,7 @@ Vec3 way_of_halves(const MaterialPoints& q, const PointCells& cells, Index p, In
 
 }  // namespace
 
-std::vector<SplitPoint> points_to_split(const MaterialPoints& points, const SpaceGrid& grid,
+std::vector<SplitPoint> points_to_split(const MaterialPoints& points, const Grid3d& grid,
                                         const std::vector<std::uint8_t>& gone) {
     const PointCells cells(points, grid, gone);
     const double least = 2.0 * kLeast * grid.cell() * grid.cell() * grid.cell();

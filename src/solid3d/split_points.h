@@ -1,5 +1,5 @@
 #pragma once
-// Where points in space have been drawn apart so far that one of them has to stand for two.
+// Where 3D points have been drawn apart so far that one of them has to stand for two.
 #include <vector>
 
 #include "solid3d/material_points.h"
@@ -13,8 +13,8 @@ struct SplitPoint {
 };
 
 /// Points with a gap of 0.8 to 1.75 cells to the nearest in one of six directions, which does not come closer; and half
-/// of which still has 1/64 of a cell's volume without stress. In their order. `gone`: as of SpaceSorter::sort.
-std::vector<SplitPoint> points_to_split(const MaterialPoints& points, const SpaceGrid& grid,
+/// of which still has 1/64 of a cell's volume without stress. In their order. `gone`: as of Sorter3d::sort.
+std::vector<SplitPoint> points_to_split(const MaterialPoints& points, const Grid3d& grid,
                                         const std::vector<std::uint8_t>& gone);
 
 }  // namespace frana

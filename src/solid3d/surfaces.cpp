@@ -90,7 +90,7 @@ SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, 
         bool near = false;
         if (surface.kind == Surface::Kind::plane) {
             const double span = surface.normal.cwiseAbs().dot(half);
-            near = contact(surface, centre).distance - span < image_reach(surface.normal) * cell + more;
+            near = contact(surface, centre).distance - span < mirror_reach(surface.normal) * cell + more;
         } else if (surface.is_barrier()) {
             const auto [least, most] =
                 surface.kind == Surface::Kind::prism ? surface.prism->box() : surface.shape->box();
@@ -101,7 +101,7 @@ SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, 
             for (double y = low.y(); y < high.y() + step && !near; y += step)
                 for (double x = low.x(); x < high.x() + step && !near; x += step) {
                     const Contact c = contact(surface, {x, y, low.z()});
-                    near = c.distance < image_reach(c.normal) * cell + more;
+                    near = c.distance < mirror_reach(c.normal) * cell + more;
                 }
         }
         if (near) set |= SurfaceSet{1} << s;
@@ -109,7 +109,7 @@ SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, 
     return set;
 }
 
-Images::Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell) {
+MirrorParticles::MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell) {
     Near list[kMostNear];
     int count = 0;
     for (; near != 0 && count < kMostNear; near &= near - 1) {
@@ -119,82 +119,84 @@ Images::Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3
             continue;
         }
         const Contact c = contact(surface, x);
-        if (c.distance < image_reach(c.normal) * cell)
+        if (c.distance < mirror_reach(c.normal) * cell)
             list[count++] = {c, surface.hold == Hold::stuck, std::numeric_limits<double>::infinity()};
     }
     if (count > 0) reflect(list, count, x);
 }
 
-int Images::near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count) {
+int MirrorParticles::near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count) {
     Contact found[kMostContacts];
     const int faces = contacts(surface, x, cell, found);
     for (const Contact* c = found; c < found + faces && count < kMostNear; ++c) {
-        if (c->distance < 0.0 || c->distance >= image_reach(c->normal) * cell) continue;
+        if (c->distance < 0.0 || c->distance >= mirror_reach(c->normal) * cell) continue;
         const double thick = thickness(surface, x - c->distance * c->normal, -c->normal);
         list[count++] = {*c, surface.hold == Hold::stuck, thick};
     }
     return count;
 }
 
-/// In a barrier an image shows only down to half of its thickness.
-void Images::cut_off(Image& image, const Near& near, const Vec3& from) {
+/// In a barrier an mirror particle shows only down to half of its thickness.
+void MirrorParticles::cut_off(MirrorParticle& mirror, const Near& near, const Vec3& from) {
     const Vec3& normal = near.contact.normal;
-    if (near.thick < std::numeric_limits<double>::infinity() && image.cuts < 2)
-        image.cut[image.cuts++] = {{normal[0], normal[1], normal[2]},
+    if (near.thick < std::numeric_limits<double>::infinity() && mirror.cuts < 2)
+        mirror.cut[mirror.cuts++] = {{normal[0], normal[1], normal[2]},
                                    normal.dot(from) - near.contact.distance - 0.5 * near.thick};
 }
 
 /// Whether surface n meets another one.
-bool Images::corner(const Near* near, int count, int n) {
+bool MirrorParticles::corner(const Near* near, int count, int n) {
     for (int m = 0; m < count; ++m)
         if (m != n && near[n].contact.normal.dot(near[m].contact.normal) >= kOpposite) return true;
     return false;
 }
 
-/// The next surface of a corner that an image is mirrored in, after those of `turn`.
-void Images::slide_along(Image& image, const Near& near, const Mat3& turn) {
-    if (!image.held) image.slide[image.slides++] = turn.transpose() * near.contact.normal;
+/// The next surface of a corner that an mirror particle is mirrored in, after those of `turn`.
+void MirrorParticles::slide_along(MirrorParticle& mirror, const Near& near, const Mat3& turn) {
+    if (!mirror.held) mirror.slide[mirror.slides++] = turn.transpose() * near.contact.normal;
 }
 
-/// Reflects a point in each of the surfaces, and these images in those listed behind; at most three times in a row.
-void Images::reflect(const Near* near, int count, const Vec3& x) {
+/// Reflects a point in each of the surfaces, and these mirror particles in those listed behind; at most three times in
+/// a row.
+void MirrorParticles::reflect(const Near* near, int count, const Vec3& x) {
     for (int n = 0; n < count && count_ < kMost; ++n) {
         const Vec3& normal = near[n].contact.normal;
-        Image& image = list_[static_cast<std::size_t>(count_++)];
-        image.place = x - 2.0 * near[n].contact.distance * normal;
-        image.turn = Mat3::Identity() - 2.0 * normal * normal.transpose();
-        image.motion = near[n].stuck ? Mat3(-Mat3::Identity()) : image.turn;
-        image.held_normal = near[n].bends() ? normal : Vec3(Vec3::Zero());
-        image.held_above = near[n].bends() ? near[n].contact.distance : 0.0;
-        image.held = near[n].stuck, image.slides = 0, image.cuts = 0;
-        if (corner(near, count, n)) slide_along(image, near[n], Mat3::Identity());
-        cut_off(image, near[n], x);
-        if (n + 1 < count) reflect_in_others(near, count, n, x, image, 0);
+        MirrorParticle& mirror = list_[static_cast<std::size_t>(count_++)];
+        mirror.place = x - 2.0 * near[n].contact.distance * normal;
+        mirror.turn = Mat3::Identity() - 2.0 * normal * normal.transpose();
+        mirror.motion = near[n].stuck ? Mat3(-Mat3::Identity()) : mirror.turn;
+        mirror.held_normal = near[n].bends() ? normal : Vec3(Vec3::Zero());
+        mirror.held_above = near[n].bends() ? near[n].contact.distance : 0.0;
+        mirror.held = near[n].stuck, mirror.slides = 0, mirror.cuts = 0;
+        if (corner(near, count, n)) slide_along(mirror, near[n], Mat3::Identity());
+        cut_off(mirror, near[n], x);
+        if (n + 1 < count) reflect_in_others(near, count, n, x, mirror, 0);
     }
 }
 
-/// The image of `from` in near[n], in the surfaces behind that one.
-void Images::reflect_in_others(const Near* near, int count, int n, const Vec3& from, const Image& image, int depth) {
+/// The mirror particle of `from` in near[n], in the surfaces behind that one.
+void MirrorParticles::reflect_in_others(const Near* near, int count, int n, const Vec3& from,
+                                        const MirrorParticle& mirror, int depth) {
     Near others[kMostNear];
     int left = 0;
     for (int m = n + 1; m < count; ++m) {
         if (near[n].contact.normal.dot(near[m].contact.normal) < kOpposite) continue;
         Near other = near[m];
-        other.contact.distance += other.contact.normal.dot(image.place - from);
+        other.contact.distance += other.contact.normal.dot(mirror.place - from);
         if (other.contact.distance > 0.0) others[left++] = other;  // in a wide corner it may lie behind already
     }
-    reflect(others, left, image, depth + 1);
+    reflect(others, left, mirror, depth + 1);
 }
 
-/// The same of an image. Surfaces are perpendicular to each other when the cosine of their angle is below kSquare,
-/// round-off.
-void Images::reflect(const Near* near, int count, const Image& from, int depth) {
+/// The same of an mirror particle. Surfaces are perpendicular to each other when the cosine of their angle is below
+/// kSquare, round-off.
+void MirrorParticles::reflect(const Near* near, int count, const MirrorParticle& from, int depth) {
     for (int n = 0; n < count && count_ < kMost; ++n) {
         const Vec3& normal = near[n].contact.normal;
-        const Mat3 mirror = Mat3::Identity() - 2.0 * normal * normal.transpose();
-        Image image{from.place - 2.0 * near[n].contact.distance * normal,
-                    mirror * from.turn,
-                    near[n].stuck ? Mat3(-from.motion) : Mat3(mirror * from.motion),
+        const Mat3 reflection = Mat3::Identity() - 2.0 * normal * normal.transpose();
+        MirrorParticle mirror{from.place - 2.0 * near[n].contact.distance * normal,
+                    reflection * from.turn,
+                    near[n].stuck ? Mat3(-from.motion) : Mat3(reflection * from.motion),
                     Vec3::Zero(),
                     0.0,
                     from.held || near[n].stuck,
@@ -204,13 +206,13 @@ void Images::reflect(const Near* near, int count, const Image& from, int depth) 
                     {from.cut[0], from.cut[1]}};
         const bool square = (from.turn * normal - normal).norm() < kSquare;  // to all mirrors before
         if (near[n].bends() && square && !from.held)
-            image.held_normal = normal, image.held_above = near[n].contact.distance;
+            mirror.held_normal = normal, mirror.held_above = near[n].contact.distance;
         else if (!near[n].stuck && std::abs(from.held_normal.dot(normal)) < kSquare)
-            image.held_normal = from.held_normal, image.held_above = from.held_above;
-        slide_along(image, near[n], from.turn);
-        cut_off(image, near[n], from.place);
-        list_[static_cast<std::size_t>(count_++)] = image;
-        if (depth < 2) reflect_in_others(near, count, n, from.place, image, depth);
+            mirror.held_normal = from.held_normal, mirror.held_above = from.held_above;
+        slide_along(mirror, near[n], from.turn);
+        cut_off(mirror, near[n], from.place);
+        list_[static_cast<std::size_t>(count_++)] = mirror;
+        if (depth < 2) reflect_in_others(near, count, n, from.place, mirror, depth);
     }
 }
 

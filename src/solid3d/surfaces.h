@@ -35,7 +35,7 @@ struct Surface {
                          double friction = 0.0);
     static Surface ground(Raster bed, Hold hold = Hold::free, double friction = 0.0);
     static Surface barrier(Prism prism, Hold hold = Hold::free, double friction = 0.0);
-    /// The field reaches image_reach() cells beyond the solid wherever material comes near.
+    /// The field reaches mirror_reach() cells beyond the solid wherever material comes near.
     static Surface barrier(DistanceField shape, Hold hold = Hold::free, double friction = 0.0);
 
     bool is_barrier() const { return kind == Kind::prism || kind == Kind::shape; }
@@ -59,27 +59,28 @@ double thickness(const Surface& barrier, const Vec3& from, const Vec3& way);
 using SurfaceSet = std::uint32_t;
 constexpr int kMostSurfaces = 32;
 
-/// Surfaces that a box from `low` to `high` [m] may come closer to than image_reach() cells and `more` [m].
+/// Surfaces that a box from `low` to `high` [m] may come closer to than mirror_reach() cells and `more` [m].
 SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
                          double more);
 
-/// A mirror image of a point and of what surrounds it: dx' = turn dx, v' = motion v. A free surface mirrors
+/// A mirror particle of a point and of what surrounds it: dx' = turn dx, v' = motion v. A free surface mirrors
 /// both; a stuck one turns velocities round, so that all of them vanish on it. In a barrier it shows only
 /// down to half of the barrier's thickness: the other half is for the other side's material.
-struct Image {
-    Vec3 place;  ///< of the point's image [m]
+struct MirrorParticle {
+    Vec3 place;  ///< of the point's mirror particle [m]
     Mat3 turn, motion;
-    /// Of the one stuck surface that it is an image in, and how far the point is above it: what flows there bends. Zero
-    /// in barriers, and in corners of which not all surfaces are perpendicular to that one.
+    /// Of the one stuck surface that it is an mirror particle in, and how far the point is above it: what flows there
+    /// bends. Zero in barriers, and in corners of which not all surfaces are perpendicular to that one.
     Vec3 held_normal;
     double held_above;  ///< [m]
     bool held;          ///< in a stuck surface, or more
-    /// In corners of free surfaces: normals of those that it is an image in, as its point sees them (see without_shear).
+    /// In corners of free surfaces: normals of those that it is an mirror particle in, as its point sees them (see
+    /// without_shear).
     int slides;
     Vec3 slide[3];
-    /// A free surface turns the shear beside it round: the image shows the speed along the surface with a kink there. The
-    /// surface itself asks for none of that. But the other one of a corner takes it for motion, and would drive what shears.
-    /// So an image in a corner shows its point's speed along the surface everywhere.
+    /// A free surface turns the shear beside it round: the mirror particle shows the speed along the surface with a
+    /// kink there. The surface itself asks for none of that. But the other one of a corner takes it for motion, and
+    /// would drive what shears. So an mirror particle in a corner shows its point's speed along the surface everywhere.
     Mat3 without_shear(Mat3 gradient) const {
         for (const Vec3* n = slide; n < slide + slides; ++n) {
             const Vec3 across = gradient * *n;
@@ -101,15 +102,15 @@ struct Image {
     }
 };
 
-/// The images of a point: one in each surface near it; in a corner also those of the images, which together
-/// leave no gap there, as long as they do not lie behind the other surface already. Surfaces whose normals
-/// are more than 120 degrees apart, such as both sides of a slice, have no common corner. The first four
-/// surfaces, or faces of barriers, of the list count.
-class Images {
+/// The mirror particles of a point: one in each surface near it; in a corner also those of the mirror particles, which
+/// together leave no gap there, as long as they do not lie behind the other surface already. Surfaces whose normals are
+/// more than 120 degrees apart, such as both sides of a slice, have no common corner. The first four surfaces, or faces
+/// of barriers, of the list count.
+class MirrorParticles {
 public:
-    Images(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell);
-    const Image* begin() const { return list_.data(); }
-    const Image* end() const { return list_.data() + count_; }
+    MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell);
+    const MirrorParticle* begin() const { return list_.data(); }
+    const MirrorParticle* end() const { return list_.data() + count_; }
 
 private:
     struct Near {
@@ -122,11 +123,12 @@ private:
     static int near_barrier(const Surface& surface, const Vec3& x, double cell, Near* list, int count);
     void reflect(const Near* near, int count, const Vec3& x);
     static bool corner(const Near* near, int count, int n);
-    static void slide_along(Image& image, const Near& near, const Mat3& turn);
-    void reflect(const Near* near, int count, const Image& from, int depth);
-    void reflect_in_others(const Near* near, int count, int n, const Vec3& from, const Image& image, int depth);
-    static void cut_off(Image& image, const Near& near, const Vec3& from);
-    std::array<Image, kMost> list_;
+    static void slide_along(MirrorParticle& mirror, const Near& near, const Mat3& turn);
+    void reflect(const Near* near, int count, const MirrorParticle& from, int depth);
+    void reflect_in_others(const Near* near, int count, int n, const Vec3& from, const MirrorParticle& mirror,
+                           int depth);
+    static void cut_off(MirrorParticle& mirror, const Near& near, const Vec3& from);
+    std::array<MirrorParticle, kMost> list_;
     int count_ = 0;
 };
 

@@ -45,7 +45,7 @@ Neighbours::Neighbours(const StructuredFlow& flow, double reach) {
     std::sort(pairs_.begin(), pairs_.end());
 }
 
-void Neighbours::keep(Archive& archive) {
+void Neighbours::serialize(Archive& archive) {
     std::vector<std::int64_t> ids;
     for (const auto& [first, second] : pairs_) ids.insert(ids.end(), {first, second});
     archive.array("neighbours", ids);
@@ -55,7 +55,7 @@ void Neighbours::keep(Archive& archive) {
 }
 
 Neighbours::Torn Neighbours::torn(const StructuredFlow& flow, double distance) const {
-    constexpr double kHalfBroken = 0.5;
+    constexpr double kHalfFragmented = 0.5;
     const StructuredPoints& q = flow.body().points;
     std::int64_t most = -1;
     for (const std::int64_t id : q.id) most = std::max(most, id);
@@ -67,7 +67,7 @@ Neighbours::Torn Neighbours::torn(const StructuredFlow& flow, double distance) c
         const Index a = where[static_cast<std::size_t>(first)], b = where[static_cast<std::size_t>(second)];
         if (a < 0 || b < 0 || (flow.position(a) - flow.position(b)).norm() <= distance) continue;
         ++torn.all;
-        if (q.damage[a] < kHalfBroken && q.damage[b] < kHalfBroken) ++torn.numerical;
+        if (q.damage[a] < kHalfFragmented && q.damage[b] < kHalfFragmented) ++torn.numerical;
     }
     return torn;
 }

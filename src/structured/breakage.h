@@ -10,7 +10,7 @@ class Neighbours {
 public:
     /// Pairs nearer than `reach` [m].
     Neighbours(const StructuredFlow& flow, double reach);
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
     Index pairs() const { return static_cast<Index>(pairs_.size()); }
 
     struct Torn {

@@ -45,18 +45,18 @@ struct Rankine {
 /// THEORY (6): K along the principal axes of the strain rate [1/s]: active where the layer extends or rests, passive
 /// where it is squeezed much faster than its own fall takes, sqrt(depth / pull) [s] / 10.
 template <class Real>
-[[gnu::always_inline]] inline Sym2Of<Real> earth_pressure_of(const Sym2Of<Real>& rate, Real depth, Real pull,
+[[gnu::always_inline]] inline Sym2Of<Real> earth_pressure_of(const Sym2Of<Real>& rate, Real depth, Real normal_gravity,
                                                              const Rankine& k) {
     const Real centre = 0.5 * (rate.xx + rate.yy), half = 0.5 * (rate.xx - rate.yy);
-    const Real radius = sqrt(half * half + rate.xy * rate.xy), fall = 10.0 * sqrt(depth / pull);
+    const Real radius = sqrt(half * half + rate.xy * rate.xy), fall = 10.0 * sqrt(depth / normal_gravity);
     const auto along = [&](Real r) { return k.active + (k.passive - k.active) * tanh_above_zero(-r * fall); };
     const Real first = along(centre + radius), second = along(centre - radius);
     const Real mean = 0.5 * (first + second), none = {};
     const Real spread = 0.5 * (first - second) / select(radius > 0.0, radius, none + 1.0);
     return {mean + spread * half, mean - spread * half, spread * rate.xy};
 }
-inline Sym2 earth_pressure(const Sym2& rate, double depth, double pull, const Rankine& k) {
-    return earth_pressure_of<double>(rate, depth, pull, k);
+inline Sym2 earth_pressure(const Sym2& rate, double depth, double normal_gravity, const Rankine& k) {
+    return earth_pressure_of<double>(rate, depth, normal_gravity, k);
 }
 
 }  // namespace frana

@@ -7,25 +7,25 @@ namespace frana {
 namespace {
 
 template <class Body>
-void for_each_touched(StructuredBody& body, Body&& visit) {
+void for_each_in_reach(StructuredBody& body, Body&& visit) {
     for_each_work_tile(body.active, [&](Index, Index tile) {
-        for_each_node_of(body.grid, tile, body.flow.touched[tile], [&](Index k, Index, Index) { visit(k); });
+        for_each_node_of(body.grid, tile, body.flow.in_reach[tile], [&](Index k, Index, Index) { visit(k); });
     });
 }
 
 /// Behind an obstacle's face, where next to nothing is open.
-bool blocked(const StructuredBody& body, Index k) { return body.pull[k].open <= kLeastOpen; }
+bool blocked(const StructuredBody& body, Index k) { return body.ground[k].open <= kLeastOpen; }
 
 /// Beside obstacles depth is what lies on the open share of a node.
-void widen_beside_obstacles(StructuredBody& body) {
-    for_each_touched(body, [&](Index k) { body.flow.nodes.column_mass[k] /= body.pull[k].open; });
+void widen_at_obstacles(StructuredBody& body) {
+    for_each_in_reach(body, [&](Index k) { body.flow.nodes.column_mass[k] /= body.ground[k].open; });
 }
 
 /// Behind obstacles the surface goes on as high as it is beside them: a face is no shore, and nothing pulls there.
 void level_behind_obstacles(StructuredBody& body) {
     Nodes& nodes = body.flow.nodes;
     const Index up = body.grid.stride();
-    for_each_touched(body, [&](Index k) {
+    for_each_in_reach(body, [&](Index k) {
         if (!blocked(body, k) || !(nodes.depth[k] > 0.0)) return;
         double sum = 0.0;
         int open = 0;
@@ -37,13 +37,13 @@ void level_behind_obstacles(StructuredBody& body) {
 }
 
 /// Beside obstacles the depth of blocked nodes is no depth to smooth with.
-void plain_beside_obstacles(StructuredBody& body) {
+void plain_at_obstacles(StructuredBody& body) {
     const Index up = body.grid.stride();
-    for_each_touched(body, [&](Index k) {
-        bool beside = false;
+    for_each_in_reach(body, [&](Index k) {
+        bool near_obstacle = false;
         for (Index row = k - 2 * up; row <= k + 2 * up; row += up)
-            for (Index n = row - 2; n <= row + 2; ++n) beside = beside || blocked(body, n);
-        if (beside) body.flow.nodes.law_depth[k] = body.flow.nodes.depth[k];
+            for (Index n = row - 2; n <= row + 2; ++n) near_obstacle = near_obstacle || blocked(body, n);
+        if (near_obstacle) body.flow.nodes.law_depth[k] = body.flow.nodes.depth[k];
     });
 }
 
@@ -52,13 +52,13 @@ void plain_beside_obstacles(StructuredBody& body) {
 void raise_surface(StructuredBody& body) {
     Flow& flow = body.flow;
     finish_deposit(flow);
-    if (!body.obstacles.empty()) widen_beside_obstacles(body);
+    if (!body.obstacles.empty()) widen_at_obstacles(body);
     depth_pass(flow, {0.0, Vec2(0, 0)});
     if (!body.obstacles.empty()) level_behind_obstacles(body);
     mark_margin(flow);
     shock_pass(flow);
     filter(flow);
-    if (!body.obstacles.empty()) plain_beside_obstacles(body);
+    if (!body.obstacles.empty()) plain_at_obstacles(body);
     shoreline(flow);
 }
 

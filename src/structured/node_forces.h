@@ -2,7 +2,7 @@
 // What drives and brakes the columns of a node (Real: double) or of four in a row (Double4).
 #include "base/simd.h"
 #include "law/bed/node_friction.h"
-#include "shallow/kick_bed.h"
+#include "shallow/grid_update_bed.h"
 #include "shallow/surface_gradient.h"
 #include "structured/structured_flow.h"
 
@@ -22,7 +22,7 @@ struct FlatOf {
 /// The ground there (StructuredBody::Pull).
 template <class Real>
 struct GroundOf {
-    FlatOf<Real> pull;  ///< gravity along the plane [m/s^2]
+    FlatOf<Real> plane_gravity;  ///< gravity along the plane [m/s^2]
     Real across;        ///< and on the ground
     FlatOf<Real> slope;
     Real elevation, open;
@@ -32,10 +32,10 @@ struct GroundOf {
         return a.dot(b) + slope.dot(a) * slope.dot(b);
     }
 };
-[[gnu::always_inline]] inline GroundOf<double> ground_at(const StructuredBody::Pull* p, double) {
+[[gnu::always_inline]] inline GroundOf<double> ground_at(const StructuredBody::NodeGround* p, double) {
     return {{p->x, p->y}, p->across, {p->slope_x, p->slope_y}, p->elevation, p->open};
 }
-[[gnu::always_inline]] inline GroundOf<Double4> ground_at(const StructuredBody::Pull* p, Double4) {
+[[gnu::always_inline]] inline GroundOf<Double4> ground_at(const StructuredBody::NodeGround* p, Double4) {
     Double4 a[4], b[4];
     transpose(load(&p[0].x), load(&p[1].x), load(&p[2].x), load(&p[3].x), a);
     transpose(load(&p[0].slope_y), load(&p[1].slope_y), load(&p[2].slope_y), load(&p[3].slope_y), b);
@@ -74,8 +74,8 @@ struct GrainsOf {
     FlatOf<Real> change;
 };
 [[gnu::always_inline]] inline GrainsOf<double> grains_at(const StructuredBody& body, Index k, double) {
-    const Double4 here = load(&body.push[k]);
-    const auto at = [&](Index n) { return body.node_mass[n] > 0.0 ? load(&body.push[n]) : here; };
+    const Double4 here = load(&body.grain_pressure[k]);
+    const auto at = [&](Index n) { return body.node_mass[n] > 0.0 ? load(&body.grain_pressure[n]) : here; };
     const Index up = body.grid.stride();
     const Double4 x = at(k + 1) - at(k - 1), y = at(k + up) - at(k - up);
     return {{here[0], here[1], here[2]}, here[3], {x[0] + y[2], x[2] + y[1]}};
@@ -83,7 +83,7 @@ struct GrainsOf {
 /// Of four nodes with wet ones around.
 [[gnu::always_inline]] inline GrainsOf<Double4> grains_at(const StructuredBody& body, Index k, Double4) {
     const Index up = body.grid.stride();
-    const StructuredBody::Push* const p = &body.push[k];
+    const StructuredBody::GrainPressure* const p = &body.grain_pressure[k];
     Double4 here[4], x[4], y[4], of[4];
     for (int n = 0; n < 4; ++n)
         here[n] = load(p + n), x[n] = load(p + n + 1) - load(p + n - 1), y[n] = load(p + n + up) - load(p + n - up);
@@ -103,14 +103,15 @@ struct GrainsOf {
     return {wide_gradients(flow, k, 1), wide_gradients(flow, k, flow.grid.stride())};
 }
 
-/// Acceleration by the artificial viscosity at bores (shallow/shock.h), as in the depth-averaged flow's kick [m/s^2].
-[[gnu::always_inline]] inline FlatOf<double> viscous_push(const Flow& flow, Index k, double) {
+/// Acceleration by the artificial viscosity at bores (shallow/shock.h), as in the depth-averaged flow's grid update
+/// [m/s^2].
+[[gnu::always_inline]] inline FlatOf<double> viscous_acceleration(const Flow& flow, Index k, double) {
     const double depth = flow.nodes.depth[k];
     if (!(depth > 1e-12 * flow.cell)) return {0.0, 0.0};
     const Pair *flux = &flow.nodes.viscous_flux[k], *below = flux - flow.grid.stride();
     return 1.0 / (flow.cell * depth) * FlatOf<double>{flux[-1].x - flux[0].x, below->y - flux[0].y};
 }
-[[gnu::always_inline]] inline FlatOf<Double4> viscous_push(const Flow& flow, Index k, Double4) {
+[[gnu::always_inline]] inline FlatOf<Double4> viscous_acceleration(const Flow& flow, Index k, Double4) {
     const Pair* const flux = &flow.nodes.viscous_flux[k];
     Double4 right, left, above, below, unused;
     unzip(flux, right, above), unzip(flux - 1, left, unused), unzip(flux - flow.grid.stride(), unused, below);
@@ -129,19 +130,19 @@ template <class Real>
     const GrainsOf<Real> grains = grains_at(body, k, Real{});
     const FlatOf<Real> surface = surface_at(flow, k, Real{});
     // Of the free surface less the weight that the node was given; of the surface less that of a uniform depth.
-    FlatOf<Real> drive = ground.across * surface, push = drive;
+    FlatOf<Real> drive = ground.across * surface, thrust = drive;
     if (body.mapped) {
         const SteepBed<Real, Curvature::none, false> bed(flow, k);
         const Real one = Real{} + 1.0, g = Real{} + flow.gravity;
         const Drive<Real> all = bed.drive(surface.x, surface.y, one), even = bed.drive(bed.bx, bed.by, one);
-        drive = {g * all.x + ground.pull.x, g * all.y + ground.pull.y};
-        push = {g * (all.x - even.x), g * (all.y - even.y)};
+        drive = {g * all.x + ground.plane_gravity.x, g * all.y + ground.plane_gravity.y};
+        thrust = {g * (all.x - even.x), g * (all.y - even.y)};
     }
     const Real half = 0.25 / flow.cell * read<Real>(&flow.nodes.depth[k]) * ground.across, s = grains.share;
     const Real xx = grains.k.xx - s, yy = grains.k.yy - s, xy = grains.k.xy;
-    const FlatOf<Real> beyond{xx * push.x + xy * push.y + half * grains.change.x,
-                              xy * push.x + yy * push.y + half * grains.change.y};
-    return (Real{} - bears) * (s * drive + beyond) + s * viscous_push(flow, k, Real{});
+    const FlatOf<Real> beyond{xx * thrust.x + xy * thrust.y + half * grains.change.x,
+                              xy * thrust.x + yy * thrust.y + half * grains.change.y};
+    return (Real{} - bears) * (s * drive + beyond) + s * viscous_acceleration(flow, k, Real{});
 }
 
 /// A bed law's friction over a step that would change `before` to `driven` (law/bed/node_friction.h); `across`: gravity
@@ -157,8 +158,8 @@ template <class Real, class Law>
                kappa = sqrt(1.0 + along * along), cosine = 1.0 / steep;
     const BedStateOf<Real> state{across * steep / kappa, max(depth * cosine, none + 1e-9), kappa, cosine,
                                  body.gravity, body.density};
-    const Real start = max(none, before.dot(unit)), left = speeds_after(law, state, start, speed, times.kick);
-    return mean_if_stopping(law, state, BrakedOf<Real>{start, speed, left, times.kick, times.drift}) * unit;
+    const Real start = max(none, before.dot(unit)), left = speeds_after(law, state, start, speed, times.velocity_dt);
+    return mean_if_stopping(law, state, BrakedOf<Real>{start, speed, left, times.velocity_dt, times.drift}) * unit;
 }
 
 }  // namespace frana

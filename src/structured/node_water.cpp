@@ -20,7 +20,7 @@ namespace {
 double water_surface_at(const StructuredBody& body, Index k, double otherwise) {
     const FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
-    const double open = body.pull[k].open;  // 0 where no column has been near
+    const double open = body.ground[k].open;  // 0 where no column has been near
     const double depth = open > 0.0 ? (bound.volume - bound.released) / (open * body.grid.cell() * body.grid.cell()) : 0.0;
     return has_water(body, k) ? water.bed[k] + water.h[k] + depth : otherwise;
 }
@@ -39,8 +39,8 @@ Vec2 surface_slope(const StructuredBody& body, Index k) {
 
 /// Rate at which water speeds up its slip where grains are not spread evenly over the depth (van den Bout et al. 2021, sec.
 /// 2.4; its share of mobile water, alpha_u, stands above and below): stable only where drag is stronger [1/s].
-double spread_rate(const WaterViscosity& viscosity, const Mixture& mixture, double whole) {
-    return viscosity.kinematic * viscosity.profile * mixture.grains() / (whole * whole);
+double spread_rate(const WaterViscosity& viscosity, const Mixture& mixture, double total) {
+    return viscosity.kinematic * viscosity.profile * mixture.grains() / (total * total);
 }
 
 /// What the columns of a node released in the last step joins the water at `to`, with the velocity that points brought the
@@ -58,7 +58,7 @@ void release_to(StructuredBody& body, Index k, Index to) {
 Met meet_water(const StructuredBody& body, Index k) {
     const FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
-    const StructuredBody::Pull& ground = body.pull[k];
+    const StructuredBody::NodeGround& ground = body.ground[k];
     const double area = ground.open * body.grid.cell() * body.grid.cell();
     Met met{body.node_mass[k] - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
     if (!has_water(body, k)) return met;
@@ -74,35 +74,35 @@ Vec2 drag(StructuredBody& body, Index k, const Met& met, const Vec2& before, con
     const StructuredBody::Bound& bound = body.bound[k];
     // Columns fill the open share of the water's cell. There they are as deep as elsewhere, and there alone both hold on to
     // one another; momentum is that of the whole cell, so that what one gives the other gets.
-    const double area = body.grid.cell() * body.grid.cell(), open = body.pull[k].open;
-    const double h = water.h[k], whole = met.depth + h, solids = bound.solids / (open * area);
+    const double area = body.grid.cell() * body.grid.cell(), open = body.ground[k].open;
+    const double h = water.h[k], total = met.depth + h, solids = bound.solids / (open * area);
     const double confined = std::max(0.0, met.depth - solids), fluid = confined + h;
-    const Mixture mixture{solids / whole, bound.structured / bound.solids, confined / fluid};
+    const Mixture mixture{solids / total, bound.structured / bound.solids, confined / fluid};
     Phase c{met.mass / area, before, (met.mass / area / dt) * (driven - before)};
     Phase u{water.by.material.fluid_density * h, Vec2(water.qx[k], water.qy[k]) / h};
     // Of what drives the water friction takes a part, and all of it at most.
-    const Vec2 falls = -body.pull[k].across * met.slope;
+    const Vec2 falls = -body.ground[k].across * met.slope;
     const double drive = falls.norm(),
                  brake = quadratic_drag(water.friction, {body.gravity, h, 1.0}) * u.velocity.squaredNorm() +
-                         linear_drag(water.viscosity, whole) * u.velocity.norm();
+                         linear_drag(water.viscosity, total) * u.velocity.norm();
     const Vec2 carried = drive > brake ? Vec2(falls * (1.0 - brake / drive)) : Vec2(0, 0);
     const double flux = (mixture.bound() * c.velocity + mixture.free() * u.velocity).norm();
-    const Exchange by{open * whole * water.drag.coefficient(mixture, flux), water.by.material.power,
-                      open * virtual_mass(water.by.virtual_mass, water.by.material, mixture, whole), carried};
+    const Exchange by{open * total * water.drag.coefficient(mixture, flux), water.by.material.power,
+                      open * virtual_mass(water.by.virtual_mass, water.by.material, mixture, total), carried};
     const Vec2 slip = before - u.velocity;
     if (water.viscosity.solid_gradient) {
-        const double rate = spread_rate(water.viscosity, mixture, whole), reduced = c.mass * u.mass / (c.mass + u.mass);
+        const double rate = spread_rate(water.viscosity, mixture, total), reduced = c.mass * u.mass / (c.mass + u.mass);
         const double holds = by.drag * (by.power == 2 ? slip.norm() : 1.0) / reduced;
         // It is a part of the viscous stress at the bed, which slows the water and does not drive it; and what that stops
         // within a step slips no more.
-        const double brakes = linear_drag(water.viscosity, whole), length = slip.norm();
+        const double brakes = linear_drag(water.viscosity, total), length = slip.norm();
         if (rate > holds)
             ++tally.outrun;
         else if (length > 0.0 && brakes * dt <= 1.0)
             u.force = -open * u.mass * std::min(rate, brakes * u.velocity.norm() / length) * slip;
     }
     exchange(by, dt, c, u);
-    tally.drag += met.mass * along_ground(body.pull[k], driven - c.velocity, 0.5 * (slip + c.velocity - u.velocity));
+    tally.drag += met.mass * along_ground(body.ground[k], driven - c.velocity, 0.5 * (slip + c.velocity - u.velocity));
     water.qx[k] = h * u.velocity.x(), water.qy[k] = h * u.velocity.y();
     return c.velocity;
 }

@@ -5,7 +5,7 @@
 namespace frana {
 
 /// Product of two velocities along the ground [m^2/s^2].
-inline double along_ground(const StructuredBody::Pull& ground, const Vec2& a, const Vec2& b) {
+inline double along_ground(const StructuredBody::NodeGround& ground, const Vec2& a, const Vec2& b) {
     const Vec2 slope(ground.slope_x, ground.slope_y);
     return a.dot(b) + slope.dot(a) * slope.dot(b);
 }

@@ -36,9 +36,9 @@ void require_inside(const StructuredSeeds& seeds, const GridGeometry& g) {
 StructuredBody::StructuredBody(const StructuredScene& scene)
     : flow({scene.grid, scene.density, scene.gravity, false, true, false, scene.scheme}, {}),
       law(scene.material),
-      push(grid.size()),
+      grain_pressure(grid.size()),
       moved(grid.size()),
-      pull(grid.size()),
+      ground(grid.size()),
       obstacles(scene.obstacles),
       rankine(scene.hydrostatic ? Rankine{} : Rankine{law.active(), law.passive()}),
       bed_law(scene.bed_law),
@@ -53,14 +53,14 @@ StructuredFlow::StructuredFlow(const StructuredScene& scene)
       bed_(scene.bed),
       rules_{scene.scheme.split_length, 0.0, scene.scheme.split, scene.scheme.reset_domains, 0.0},
       cfl_(scene.cfl),
-      sound_(scene.share > 0.0 || !scene.hydrostatic ? body_.law.sound_speed(scene.density) : 0.0),
+      sound_speed_(scene.share > 0.0 || !scene.hydrostatic ? body_.law.sound_speed(scene.density) : 0.0),
       hydrostatic_(scene.hydrostatic) {
     flush_denormals_on_all_threads();
     for (const double m : scene.points.mass) rules_.least_mass = std::max(rules_.least_mass, scene.scheme.split_min_mass * m);
     place(scene);
     if (body_.grains) begin_grains();
     sort();
-    look();
+    sample();
 }
 
 void StructuredFlow::place(const StructuredScene& scene) {
@@ -75,13 +75,13 @@ void StructuredFlow::place(const StructuredScene& scene) {
         const std::size_t n = static_cast<std::size_t>(p);
         q.x[p] = (seeds.x[n] - g.x0) / g.cell, q.y[p] = (seeds.y[n] - g.y0) / g.cell;
         q.vx[p] = seeds.vx[n], q.vy[p] = seeds.vy[n];
-        for (Column* column : {&q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.xx, &q.yy, &q.xy, &q.strain})
+        for (Array* column : {&q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.xx, &q.yy, &q.xy, &q.strain})
             (*column)[p] = 0.0;
         q.mass[p] = seeds.mass[n], q.volume[p] = seeds.mass[n] / body_.density;
         q.depth[p] = q.layer[p] = seeds.depth[n];
         q.damage[p] = seeds.damage[n], q.cohesion[p] = seeds.cohesion[n];
-        q.pull[p] = ground_(seeds.x[n], seeds.y[n]).across;
-        q.zz[p] = -0.5 * body_.density * q.pull[p] * q.depth[p];
+        q.normal_gravity[p] = ground_(seeds.x[n], seeds.y[n]).across;
+        q.zz[p] = -0.5 * body_.density * q.normal_gravity[p] * q.depth[p];
         q.confined[p] = scene.confined * q.volume[p], q.solids[p] = q.volume[p] - q.confined[p];
         q.released[p] = 0.0;
         q.r1x[p] = q.r2y[p] = std::sqrt(q.volume[p] / q.depth[p]) / g.cell, q.r1y[p] = q.r2x[p] = 0.0;
@@ -92,8 +92,8 @@ void StructuredFlow::place(const StructuredScene& scene) {
         status_.kinetic += 0.5 * q.mass[p] * v.squaredNorm();
         status_.damage += q.mass[p] * q.damage[p];
         status_.max_speed = std::max(status_.max_speed, v.norm());
-        wave_ = std::max(wave_, v.norm() + std::sqrt(2.0 * q.pull[p] * q.depth[p]));
-        signal_ = std::max(signal_, v.norm() + std::sqrt(q.pull[p] * q.depth[p]));
+        wave_ = std::max(wave_, v.norm() + std::sqrt(2.0 * q.normal_gravity[p] * q.depth[p]));
+        signal_ = std::max(signal_, v.norm() + std::sqrt(q.normal_gravity[p] * q.depth[p]));
         if (q.damage[p] > 0.0 || body_.share < 1.0) body_.grains = true;
     }
     status_.mass = mass.value();
@@ -127,7 +127,7 @@ void StructuredFlow::sort() {
     });
     order_.lay_out(body_.active);
     fields_.clear();
-    q.each([&](Column& column) { fields_.push_back(&column); });
+    q.each([&](Array& column) { fields_.push_back(&column); });
     fields_.push_back(&q.id);
     order_.permute(fields_);
     drift_ = 0.0;
@@ -137,7 +137,7 @@ void StructuredFlow::sort() {
 void StructuredFlow::meet(const FreeWater& water) {
     body_.water = water;
     if (!body_.bound) body_.bound = LazyArray<StructuredBody::Bound>(body_.grid.size());
-    look();
+    sample();
     if (status_.step == 0) press(body_);
 }
 
@@ -158,7 +158,7 @@ void StructuredFlow::take_tiles() {
     body_.gone.assign(static_cast<std::size_t>(q.count()), 0);
     body_.sums.resize(body_.active.tile.size());
     body_.tallies.resize(body_.active.work.size());
-    for (const Index tile : body_.active.work) body_.flow.rest.stirred[tile] = 1;
+    for (const Index tile : body_.active.work) body_.flow.rest.active[tile] = 1;
     learn_ground();
 }
 
@@ -167,15 +167,15 @@ void StructuredFlow::learn_ground() {
     const GridGeometry& g = body_.grid.geometry();
     for (const Index tile : body_.active.work) {
         const Index i0 = body_.grid.tile_i(tile), j0 = body_.grid.tile_j(tile);
-        if (body_.pull[body_.grid.at(i0, j0)].open > 0.0) continue;
+        if (body_.ground[body_.grid.at(i0, j0)].open > 0.0) continue;
         for (Index j = j0; j < j0 + kTile; ++j)
             for (Index i = i0; i < i0 + kTile; ++i) {
-                const GroundPull pull = ground_(g.x(i), g.y(j));
-                body_.has_exits = body_.has_exits || pull.exit;
+                const GroundGravity ground = ground_(g.x(i), g.y(j));
+                body_.has_exits = body_.has_exits || ground.exit;
                 const double open = open_share(body_.obstacles, {g.x(i), g.y(j)}, g.cell, kLeastOpen);
-                body_.pull[body_.grid.at(i, j)] = {pull.x,       pull.y,         pull.across, pull.slope_x,
-                                                   pull.slope_y, pull.elevation, open,
-                                                   pull.hole ? 2.0 : pull.exit ? 1.0 : 0.0};
+                body_.ground[body_.grid.at(i, j)] = {ground.x,       ground.y,         ground.across, ground.slope_x,
+                                                   ground.slope_y, ground.elevation, open,
+                                                   ground.hole ? 2.0 : ground.exit ? 1.0 : 0.0};
             }
     }
 }
@@ -188,8 +188,8 @@ double StructuredFlow::step_length(double until) const {
 /// grows so fast with the rate of squeezing (earth_pressure.h) that it needs steps below cell^2 / (5 (Kp -
 /// Ka) sqrt(g_z h^3)), or is noisy; the elastic step is mostly near that. Hydrostatic grains do not.
 double StructuredFlow::longest_step() const {
-    const bool flows = sound_ == 0.0 || (hydrostatic_ && status_.damage >= 1.0);  // all grains, to the last bit
-    return flows ? flow_step(wave_) : cfl_ * body_.grid.cell() / (sound_ + wave_);
+    const bool flows = sound_speed_ == 0.0 || (hydrostatic_ && status_.damage >= 1.0);  // all grains, to the last bit
+    return flows ? flow_step(wave_) : cfl_ * body_.grid.cell() / (sound_speed_ + wave_);
 }
 
 /// The step if nothing were elastic. Grains at rest have no speed to go by, but fall (DepthAveraged::longest_step).
@@ -212,30 +212,30 @@ void StructuredFlow::advance(double until) {
     if (body_.grains) timed_("surface", [&] { raise_surface(body_); });
     timed_("nodes", [&] { move_nodes(body_, times); });
     timed_("gather", [&] { gather(body_, dt); });
-    book(dt);
+    accumulate(dt);
     if (status_.time + dt >= until)
         status_.time = until;
     else
         status_.time += dt;
 }
 
-void StructuredFlow::look() {
+void StructuredFlow::sample() {
     clear_nodes(body_);
     scatter(body_);
     if (body_.grains) raise_surface(body_);
-    look_nodes(body_);
-    weigh();
+    sample_nodes(body_);
+    update_totals();
 }
 
 /// Energies along the bed, of the tallies.
-void StructuredFlow::weigh() {
+void StructuredFlow::update_totals() {
     status_.bed_kinetic = status_.potential = 0.0;
     for (const StructuredTally& tile : body_.tallies)
         status_.bed_kinetic += tile.kinetic, status_.potential += tile.potential;
 }
 
 /// Sums of the tiles, in their order; points that left are dropped, and points that moved far are sorted.
-void StructuredFlow::book(double dt) {
+void StructuredFlow::accumulate(double dt) {
     StructuredSums all;
     for (const StructuredSums& tile : body_.sums) {
         all.mass += tile.mass, all.kinetic += tile.kinetic, all.damaged += tile.damaged;
@@ -250,10 +250,10 @@ void StructuredFlow::book(double dt) {
     }
     for (const StructuredTally& tile : body_.tallies) {
         status_.impulse.add(tile.impulse);
-        status_.friction += tile.friction, status_.pushed += tile.obstacles, status_.dragged += tile.drag;
+        status_.friction += tile.friction, status_.obstacle_work += tile.obstacles, status_.dragged += tile.drag;
         status_.outrun += tile.outrun;
     }
-    weigh();
+    update_totals();
     if (all.bad >= 0)
         throw NumericsError(
             fmt::format("structured columns, step {}, t = {:.6g} s, dt = {:.3g} s: column {} has numbers "
@@ -285,7 +285,7 @@ Vec2 StructuredFlow::position(Index p) const {
 Index StructuredFlow::particle_bytes() const {
     const StructuredPoints& q = body_.points;
     Index sum = allocated(q.id) + order_.bytes();
-    q.each([&](const Column& column) { sum += allocated(column); });
+    q.each([&](const Array& column) { sum += allocated(column); });
     return sum;
 }
 

@@ -97,7 +97,7 @@ struct StructuredStatus {
     double speeds = 0.0;     ///< sum of m |v| [kg m/s]
     double bed_kinetic = 0.0, potential = 0.0;  ///< of the nodes, along the bed and above z = 0 [J]
     double stored = 0.0;                        ///< elastic, of the structure in the plane [J]
-    double friction = 0.0, pushed = 0.0;        ///< lost at the bed and to obstacles since the start [J]
+    double friction = 0.0, obstacle_work = 0.0;        ///< lost at the bed and to obstacles since the start [J]
     double dragged = 0.0;      ///< lost by columns and water to the drag between them since the start [J]
     Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
     double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
@@ -126,20 +126,20 @@ struct StructuredBody {
     StructuredPoints points;
     Deposit* nodes = flow.nodes.deposits();   ///< momentum, and the force of the structure's stress
     double* node_mass = flow.nodes.mass.data();  ///< [kg]
-    struct alignas(32) Push {
+    struct alignas(32) GrainPressure {
         double xx, yy, xy, share;  ///< sums of w m (1 - f) K and w m (1 - f), of grains
     };
     struct alignas(32) Moved {
-        double vx, vy, pull, depth;  ///< after the step
+        double vx, vy, normal_gravity, depth;  ///< after the step
     };
-    struct Pull {
+    struct NodeGround {
         double x, y, across, slope_x, slope_y, elevation;  ///< of the ground
         double open;  ///< share of the node that is open, 0 where nobody asked yet
         double exit;  ///< 1 where there is no ground, 2 in a hole of the terrain
     };
-    LazyArray<Push> push;
+    LazyArray<GrainPressure> grain_pressure;
     LazyArray<Moved> moved;
-    LazyArray<Pull> pull;
+    LazyArray<NodeGround> ground;
     /// What columns are made of, beside free water only [m^3].
     struct alignas(32) Bound {
         double volume, released, solids, structured;
@@ -161,7 +161,7 @@ struct StructuredBody {
 /// How long forces act in a step, and how long columns then drift [s]. With grains velocities stand half a step behind the
 /// places (leapfrog), as those of the depth-averaged flow; what is whole begins with a whole step.
 struct StepTimes {
-    double kick, drift;
+    double velocity_dt, drift;
 };
 
 /// Calls work(grains, water), types that say what there is in a run: asked once a loop, and not of every column.
@@ -187,8 +187,8 @@ void raise_surface(StructuredBody& body);
 void move_nodes(StructuredBody& body, const StepTimes& times);
 void gather(StructuredBody& body, double dt);
 /// The nodes as the columns are now, without a step: `moved`, and the energies of `tallies`.
-void look_nodes(StructuredBody& body);
-/// Columns without stress but for the weight that the nodes of look_nodes() leave them.
+void sample_nodes(StructuredBody& body);
+/// Columns without stress but for the weight that the nodes of sample_nodes() leave them.
 void press(StructuredBody& body);
 
 /// A body of columns, and its time loop.
@@ -204,7 +204,7 @@ public:
     /// Before the first step.
     void meet(const FreeWater& water);
     /// Brings nodes, and energies of the status, to the columns' present places; changes no column.
-    void look();
+    void sample();
     const StructuredStatus& status() const { return status_; }
     const StructuredBody& body() const { return body_; }
     std::vector<PhaseTime> timings() const { return timed_.times(); }
@@ -221,7 +221,7 @@ public:
     /// Momentum + carried out - given - impulses: round-off [kg m/s]
     Vec2 momentum_residual() const;
     /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
     void place(const StructuredScene& scene);
@@ -232,8 +232,8 @@ private:
     void split();
     double step_length(double until) const;
     double flow_step(double signal) const;
-    void book(double dt);
-    void weigh();
+    void accumulate(double dt);
+    void update_totals();
 
     StructuredBody body_;
     Ground ground_;
@@ -246,7 +246,7 @@ private:
     std::vector<Index> left_;  ///< tiles of the list before
     StepClock timed_;
     StructuredStatus status_;
-    double cfl_, sound_;
+    double cfl_, sound_speed_;
     bool hydrostatic_;
     double wave_ = 0.0;   ///< largest speed with which surfaces and columns run, both ways of the grid at once [m/s]
     double signal_ = 0.0;  ///< the same along one way: what the depth-averaged flow's steps go by [m/s]

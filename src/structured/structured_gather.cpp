@@ -32,7 +32,7 @@ struct Taken {
 
 /// Four columns after a step, number by number.
 struct Batch {
-    Double4 vx, vy, pull, layer, cxx, cyx, cxy, cyy;
+    Double4 vx, vy, normal_gravity, layer, cxx, cyx, cxy, cyy;
 };
 
 [[gnu::always_inline]] inline Batch take_four(const StructuredBody& body, Index p, int lanes) {
@@ -65,19 +65,19 @@ template <bool kWater, bool kHexagon>
     const Double4 half = (0.5 * dt) * (b.cxx + b.cyy), damage = load(&q.damage[p], lanes);
     const Double4 depth = load(&q.depth[p], lanes) * ((1.0 - half) / (1.0 + half));
     store(&q.depth[p], depth, lanes);
-    const Mask4 whole = damage < 1.0;
+    const Mask4 intact = damage < 1.0;
     const Double4 none = {};
-    if (!any(whole)) return none;
-    const auto if_whole = [&](Double4 a) { return select(whole, a, none); };
-    ColumnStateOf<Double4> state{{if_whole(load(&q.xx[p], lanes)), if_whole(load(&q.yy[p], lanes)),
-                                  if_whole(load(&q.zz[p], lanes)), if_whole(load(&q.xy[p], lanes))},
+    if (!any(intact)) return none;
+    const auto if_intact = [&](Double4 a) { return select(intact, a, none); };
+    ColumnStateOf<Double4> state{{if_intact(load(&q.xx[p], lanes)), if_intact(load(&q.yy[p], lanes)),
+                                  if_intact(load(&q.zz[p], lanes)), if_intact(load(&q.xy[p], lanes))},
                                  damage,
                                  load(&q.strain[p], lanes)};
     const auto step =
-        ColumnStepOf<Double4>::of(if_whole(b.cxx), if_whole(b.cxy), if_whole(b.cyx), if_whole(b.cyy), dt);
+        ColumnStepOf<Double4>::of(if_intact(b.cxx), if_intact(b.cxy), if_intact(b.cyx), if_intact(b.cyy), dt);
     Double4 density = all(body.density);
     if constexpr (kWater) density = load(&q.mass[p], lanes) / max(load(&q.volume[p], lanes), all(1e-300));
-    const Double4 weight = if_whole(-0.5 * density * b.pull * depth);
+    const Double4 weight = if_intact(-0.5 * density * b.normal_gravity * depth);
     const ColumnStressOf<Double4> old = state.stress;
     body.law.update_as<kHexagon>(step, weight, load(&q.cohesion[p], lanes), state);
     store(&q.xx[p], state.stress.xx, lanes), store(&q.yy[p], state.stress.yy, lanes);
@@ -98,8 +98,8 @@ void release(StructuredBody& body, Index p, double damage_before, StructuredSums
         q.depth[p] *= left / q.volume[p], q.volume[p] = left;
         sums.released += gone;
     }
-    const double whole = 1.0 - damage_before;
-    q.released[p] = whole > 0.0 ? q.confined[p] * ((q.damage[p] - damage_before) / whole) : 0.0;
+    const double intact = 1.0 - damage_before;
+    q.released[p] = intact > 0.0 ? q.confined[p] * ((q.damage[p] - damage_before) / intact) : 0.0;
     q.confined[p] -= q.released[p];
 }
 
@@ -127,24 +127,24 @@ struct Sums {
 }
 
 /// The ground at the node nearest to a column, of the grid's own nodes: beyond its sides that of its edge.
-const StructuredBody::Pull& ground_below(const StructuredBody& body, Index p) {
+const StructuredBody::NodeGround& ground_below(const StructuredBody& body, Index p) {
     const auto nearest = [](double u, Index count) {
         return static_cast<Index>(std::floor(std::clamp(u, 0.0, static_cast<double>(count - 1)) + 0.5));
     };
     const StructuredPoints& q = body.points;
-    return body.pull[body.grid.at(nearest(q.x[p], body.grid.nx()), nearest(q.y[p], body.grid.ny()))];
+    return body.ground[body.grid.at(nearest(q.x[p], body.grid.nx()), nearest(q.y[p], body.grid.ny()))];
 }
 
 /// What a column carries out: motion along the bed, and its own height above z = 0 [J].
 double energy_of(const StructuredBody& body, Index p) {
     const StructuredPoints& q = body.points;
-    const StructuredBody::Pull& ground = ground_below(body, p);
+    const StructuredBody::NodeGround& ground = ground_below(body, p);
     const double vz = ground.slope_x * q.vx[p] + ground.slope_y * q.vy[p];
     return q.mass[p] * (0.5 * (q.vx[p] * q.vx[p] + q.vy[p] * q.vy[p] + vz * vz) +
                         body.gravity * (ground.elevation + 0.5 * std::max(q.depth[p], 0.0)));
 }
 
-/// Columns leave beyond the outer nodes, and where there is no ground: whether this one does, which is then booked.
+/// Columns leave beyond the outer nodes, and where there is no ground: whether this one does, which is then recorded.
 bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     const StructuredPoints& q = body.points;
     const bool inside = q.x[p] >= 0.0 && q.y[p] >= 0.0 &&
@@ -181,8 +181,8 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     sums.mass += m, sums.kinetic += (0.5 * m) * speed2, sums.damaged += m * damage;
     sums.px += m * b.vx, sums.py += m * b.vy, sums.speeds += m * speed, sums.stored += held;
     sums.max_speed2 = max(sums.max_speed2, select(here, speed2, none));
-    sums.max_wave = max(sums.max_wave, select(here, speed + sqrt(2.0 * b.pull * high), none));
-    sums.max_signal = max(sums.max_signal, select(here, speed + sqrt(b.pull * high), none));
+    sums.max_wave = max(sums.max_wave, select(here, speed + sqrt(2.0 * b.normal_gravity * high), none));
+    sums.max_signal = max(sums.max_signal, select(here, speed + sqrt(b.normal_gravity * high), none));
 }
 
 /// Four columns at once.
@@ -194,7 +194,7 @@ template <bool kGrains, bool kWater, bool kHexagon>
     store(&q.vx[p], b.vx, lanes), store(&q.vy[p], b.vy, lanes);
     store(&q.cxx[p], b.cxx, lanes), store(&q.cxy[p], b.cxy, lanes);
     store(&q.cyx[p], b.cyx, lanes), store(&q.cyy[p], b.cyy, lanes);
-    store(&q.pull[p], b.pull, lanes), store(&q.layer[p], b.layer, lanes);
+    store(&q.normal_gravity[p], b.normal_gravity, lanes), store(&q.layer[p], b.layer, lanes);
     store(&q.x[p], load(&q.x[p], lanes) + cells * b.vx, lanes);
     store(&q.y[p], load(&q.y[p], lanes) + cells * b.vy, lanes);
     if constexpr (kGrains) {
@@ -211,9 +211,10 @@ template <bool kGrains, bool kWater, bool kHexagon>
 /// Reads ahead (base/touch.h) what a batch of columns changes.
 template <bool kGrains>
 void touch_columns(const StructuredPoints& q, Index first, Index end) {
-    const Column* const list[] = {&q.x,  &q.y,      &q.vx,     &q.vy,       &q.cxx,  &q.cxy,   &q.cyx,  &q.cyy, &q.pull,
-                                 &q.xx, &q.yy,     &q.zz,     &q.xy,       &q.mass, &q.layer, &q.depth, &q.volume,
-                                 &q.damage, &q.strain, &q.cohesion, &q.r1x, &q.r1y, &q.r2x,   &q.r2y};
+    const Array* const list[] = {
+        &q.x,      &q.y,        &q.vx,  &q.vy,  &q.cxx,  &q.cxy,   &q.cyx,   &q.cyy,    &q.normal_gravity,
+        &q.xx,     &q.yy,       &q.zz,  &q.xy,  &q.mass, &q.layer, &q.depth, &q.volume, &q.damage,
+        &q.strain, &q.cohesion, &q.r1x, &q.r1y, &q.r2x,  &q.r2y};
     constexpr int kWithGrains = sizeof list / sizeof list[0], kCount = kGrains ? kWithGrains : kWithGrains - 4;
     for (Index p = first; p < end; p += kCacheLine / sizeof(double))
         for (int n = 0; n < kCount; ++n) touch(list[n]->data() + p);
@@ -242,8 +243,8 @@ void press(StructuredBody& body) {
     StructuredPoints& q = body.points;
     for_each_tile(body.active, [&](Index n) {
         for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
-            q.pull[p] = take_four(body, p, 1).pull[0];
-            q.zz[p] = -0.5 * body.density * q.pull[p] * q.depth[p];
+            q.normal_gravity[p] = take_four(body, p, 1).normal_gravity[0];
+            q.zz[p] = -0.5 * body.density * q.normal_gravity[p] * q.depth[p];
         }
     });
 }

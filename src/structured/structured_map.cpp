@@ -27,7 +27,7 @@ Standing columns_on(const StructuredBody& body, Index k) {
     const StructuredBody::Moved& node = body.moved[k];
     const double depth = StructuredMap::depth_of(body, k);
     if (!(depth > 0.0)) return {};
-    return {depth, body.density * body.pull[k].across * depth, body.density * depth, Vec2(node.vx, node.vy)};
+    return {depth, body.density * body.ground[k].across * depth, body.density * depth, Vec2(node.vx, node.vy)};
 }
 
 /// With the water: velocities are those of both masses together.
@@ -36,13 +36,13 @@ Standing with_water(const Standing& columns, const WaterBody& water, double dens
     if (!(h > 0.0)) return columns;
     const double inertia = density * h;
     const Vec2 v = h > water.film ? Vec2(Vec2(water.now.qx[k], water.now.qy[k]) / h) : Vec2(0, 0);
-    return {columns.depth + h, columns.pressure + density * water.pull[k] * h, columns.inertia + inertia,
+    return {columns.depth + h, columns.pressure + density * water.normal_gravity[k] * h, columns.inertia + inertia,
             (columns.inertia * columns.velocity + inertia * v) / (columns.inertia + inertia)};
 }
 
 Standing on_node(const StructuredBody& body, const WaterFlow* water, Index i, Index j) {
     const Index k = body.grid.at(i, j);
-    const Standing columns = StructuredMap::touches(body, i, j) ? columns_on(body, k) : Standing{};
+    const Standing columns = StructuredMap::is_in_reach(body, i, j) ? columns_on(body, k) : Standing{};
     return water ? with_water(columns, water->body(), body.water->by.material.fluid_density, k) : columns;
 }
 
@@ -108,7 +108,7 @@ Index StructuredMap::fronts(const StructuredBody& body, const WaterFlow* water, 
     return count;
 }
 
-bool StructuredMap::touches(const StructuredBody& body, Index i, Index j) {
+bool StructuredMap::is_in_reach(const StructuredBody& body, Index i, Index j) {
     const Index tile = (j + kTile) / kTile * body.grid.tiles_x() + (i + kTile) / kTile;
     return body.active.in_work[static_cast<std::size_t>(tile)] != 0;
 }
@@ -131,7 +131,7 @@ void StructuredMap::sample(const StructuredBody& body, const WaterFlow* water, c
     velocity = depth > 0.0 ? Vec2(flux / depth) : Vec2(0, 0);
 }
 
-void StructuredMap::keep(Archive& archive) {
+void StructuredMap::serialize(Archive& archive) {
     const Archive::Part part(archive, "map");
     constexpr std::size_t kNumbers = 5;  // of a node
     const auto each = [&](auto&& body) {

@@ -41,11 +41,11 @@ public:
         return body.flow.nodes.column_mass[k] / (body.density * body.flow.area);
     }
     /// Whether the node is near material: elsewhere the body's nodes are of another time.
-    static bool touches(const StructuredBody& body, Index i, Index j);
+    static bool is_in_reach(const StructuredBody& body, Index i, Index j);
     /// Depth and velocity between the nodes, bilinear; beyond them the nearest. No elevation.
     static void sample(const StructuredBody& body, const WaterFlow* water, const Vec2& point, double& depth,
                        Vec2& velocity);
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
 
 private:
     SmoothSlopes path_;

@@ -20,13 +20,13 @@ double total(Double4 a) { return sum(a); }
 template <class Real>
 struct TallyOf {
     FlatOf<Real> weight, pressure, friction, obstacles;
-    Real braked{}, pushed{}, kinetic{}, potential{};
+    Real braked{}, obstacle_work{}, kinetic{}, potential{};
 
     void add_to(StructuredTally& t) const {
         const auto flat = [](const FlatOf<Real>& a) { return Vec2(total(a.x), total(a.y)); };
         t.impulse.weight += flat(weight), t.impulse.pressure += flat(pressure);
         t.impulse.friction += flat(friction), t.impulse.obstacles += flat(obstacles);
-        t.friction += total(braked), t.obstacles += total(pushed);
+        t.friction += total(braked), t.obstacles += total(obstacle_work);
         t.kinetic += total(kinetic), t.potential += total(potential);
     }
 };
@@ -52,10 +52,10 @@ struct NodeStep {
     auto& of(Double4) { return four; }
 };
 
-[[gnu::always_inline]] inline void keep(Moved* moved, const FlatOf<double>& v, double across, double depth) {
+[[gnu::always_inline]] inline void store_motion(Moved* moved, const FlatOf<double>& v, double across, double depth) {
     *moved = {v.x, v.y, across, depth};
 }
-[[gnu::always_inline]] inline void keep(Moved* moved, const FlatOf<Double4>& v, Double4 across, Double4 depth) {
+[[gnu::always_inline]] inline void store_motion(Moved* moved, const FlatOf<Double4>& v, Double4 across, Double4 depth) {
     Double4 of[4];
     transpose(v.x, v.y, across, depth, of);
     for (int n = 0; n < 4; ++n) store(moved + n, of[n]);
@@ -95,11 +95,11 @@ template <class Real, class Law>
     tally.braked += node.mass * ground.along(free - left, left);
     if (!body.obstacles.empty()) {
         tally.obstacles += node.mass * (free - node.driven);
-        tally.pushed += node.mass * ground.along(node.driven - free, left);
+        tally.obstacle_work += node.mass * ground.along(node.driven - free, left);
     }
     tally.kinetic += 0.5 * node.mass * ground.along(left, left);
     tally.potential += (body.gravity * node.mass) * (ground.elevation + 0.5 * node.depth);
-    keep(&step.body.moved[k], left, node.across, node.depth);
+    store_motion(&step.body.moved[k], left, node.across, node.depth);
 }
 
 /// Depth of a node's columns in the dry [m].
@@ -113,17 +113,17 @@ template <class Real>
 template <class Real, class Law>
 [[gnu::always_inline]] inline void move_dry(NodeStep<Law>& step, Index k) {
     const StructuredBody& body = step.body;
-    const Real mass = read<Real>(&body.node_mass[k]), dt = Real{} + step.times.kick;
-    const GroundOf<Real> ground = ground_at(&body.pull[k], Real{});
-    const FlatOf<Real> weight = dt * ground.pull, before = stressed(body, k, mass, step.times.kick);
+    const Real mass = read<Real>(&body.node_mass[k]), dt = Real{} + step.times.velocity_dt;
+    const GroundOf<Real> ground = ground_at(&body.ground[k], Real{});
+    const FlatOf<Real> weight = dt * ground.plane_gravity, before = stressed(body, k, mass, step.times.velocity_dt);
     const Real depth = dry_depth(body, k, mass, ground.open);
     const Real law_depth = body.grains ? read<Real>(&body.flow.nodes.law_depth[k]) : depth;
     DrivenOf<Real> node{mass, ground.across, depth, before, before + weight, law_depth};
     TallyOf<Real>& tally = step.of(Real{});
     tally.weight += mass * weight;
     if (body.grains) {
-        const FlatOf<Real> push = dt * grain_drive(body, k, ground, 1.0);
-        node.driven += push, tally.pressure += mass * push;
+        const FlatOf<Real> thrust = dt * grain_drive(body, k, ground, 1.0);
+        node.driven += thrust, tally.pressure += mass * thrust;
     }
     finish(step, k, ground, node);
 }
@@ -135,20 +135,20 @@ FlatOf<double> flat(const Vec2& a) { return {a.x(), a.y()}; }
 template <class Law>
 void move_wet(NodeStep<Law>& step, Index k) {
     StructuredBody& body = step.body;
-    const double dt = step.times.kick, mass = body.node_mass[k];
-    const GroundOf<double> ground = ground_at(&body.pull[k], 0.0);
+    const double dt = step.times.velocity_dt, mass = body.node_mass[k];
+    const GroundOf<double> ground = ground_at(&body.ground[k], 0.0);
     const Met met = meet_water(body, k);
     const bool releases = met.mass != mass;
     const FlatOf<double> before = releases ? stressed_part(body, k, mass, met.mass, dt) : stressed(body, k, mass, dt);
     StructuredImpulses& impulse = step.tally.impulse;
     if (releases) impulse.water -= (mass - met.mass) * vec(brought(body, k, mass));
-    const FlatOf<double> weight = dt * (ground.pull + flat(met.lift));
+    const FlatOf<double> weight = dt * (ground.plane_gravity + flat(met.lift));
     DrivenOf<double> node{met.mass, (1.0 - met.support) * ground.across, met.depth, before, before + weight, met.depth};
     impulse.weight += met.mass * vec(weight);
     if (body.grains) {
-        const FlatOf<double> push = dt * grain_drive(body, k, ground, 1.0 - met.support);
-        node.driven += push;
-        impulse.pressure += met.mass * vec(push);
+        const FlatOf<double> thrust = dt * grain_drive(body, k, ground, 1.0 - met.support);
+        node.driven += thrust;
+        impulse.pressure += met.mass * vec(thrust);
     }
     if (has_water(body, k)) {  // drag knows what friction holds, and friction then what drag does
         const FlatOf<double> held =
@@ -200,11 +200,11 @@ void move_nodes_by(const Law& law, StructuredBody& body, const StepTimes& times)
 /// Makes shares of what grains gave the nodes. Of grains alone it is 1, whatever round-off says.
 void share_out(StructuredBody& body) {
     for_each_work_tile(body.active, [&](Index, Index tile) {
-        for_each_node_of(body.grid, tile, body.flow.touched[tile], [&](Index k, Index, Index) {
+        for_each_node_of(body.grid, tile, body.flow.in_reach[tile], [&](Index k, Index, Index) {
             if (!(body.node_mass[k] > 0.0)) return;
             constexpr double kNearly = 1.0 - 1e-12;
-            const Double4 share = 1.0 / body.node_mass[k] * load(&body.push[k]);
-            store(&body.push[k], share[3] > kNearly ? share / share[3] : share);
+            const Double4 share = 1.0 / body.node_mass[k] * load(&body.grain_pressure[k]);
+            store(&body.grain_pressure[k], share[3] > kNearly ? share / share[3] : share);
         });
     });
 }
@@ -224,7 +224,7 @@ void move_nodes(StructuredBody& body, const StepTimes& times) {
         body.bed_law);
 }
 
-void look_nodes(StructuredBody& body) {
+void sample_nodes(StructuredBody& body) {
     const double area = body.grid.cell() * body.grid.cell();
     for_each_work_tile(body.active, [&](Index n, Index tile) {
         StructuredTally tally;
@@ -235,14 +235,14 @@ void look_nodes(StructuredBody& body) {
                 body.moved[k] = {};
                 const double mass = body.node_mass[k];
                 if (!(mass > 0.0)) continue;
-                const StructuredBody::Pull& pull = body.pull[k];
+                const StructuredBody::NodeGround& ground = body.ground[k];
                 const double depth =
-                    body.water ? body.bound[k].volume / (pull.open * area) : dry_depth(body, k, mass, pull.open);
+                    body.water ? body.bound[k].volume / (ground.open * area) : dry_depth(body, k, mass, ground.open);
                 const Vec2 v = Vec2(node.px, node.py) / mass;
                 const double support = body.water ? meet_water(body, k).support : 0.0;
-                body.moved[k] = {v.x(), v.y(), (1.0 - support) * pull.across, depth};
-                tally.kinetic += 0.5 * mass * along_ground(pull, v, v);
-                tally.potential += mass * body.gravity * (pull.elevation + 0.5 * depth);
+                body.moved[k] = {v.x(), v.y(), (1.0 - support) * ground.across, depth};
+                tally.kinetic += 0.5 * mass * along_ground(ground, v, v);
+                tally.potential += mass * body.gravity * (ground.elevation + 0.5 * depth);
             }
         body.tallies[static_cast<std::size_t>(n)] = tally;
     });

@@ -10,11 +10,11 @@
 namespace frana {
 namespace {
 
-using Push = StructuredBody::Push;
+using GrainPressure = StructuredBody::GrainPressure;
 
 /// Four numbers of a column on its nodes.
 template <class Four>
-[[gnu::always_inline]] inline void give(Four* nodes, Index stride, const Reach& r, Double4 k) {
+[[gnu::always_inline]] inline void add_to_nodes(Four* nodes, Index stride, const Reach& r, Double4 k) {
     Four* first = nodes + r.node;
     for (int j = 0; j < 3; ++j, first += stride) {
         const Double4 row = r.wy[j] * k;
@@ -34,24 +34,26 @@ Double4 bound_of(const StructuredBody& body, Index p) {
 }
 
 /// V s sigma / cell of four columns [N], s the share that is whole.
-[[gnu::always_inline]] inline PlaneOf<Double4> pull_of(const StructuredBody& body, Index p, int lanes, Double4 whole) {
+[[gnu::always_inline]] inline PlaneOf<Double4> internal_force_of(const StructuredBody& body, Index p, int lanes,
+                                                                 Double4 intact) {
     const StructuredPoints& q = body.points;
-    const Double4 scale = (1.0 / body.grid.cell()) * load(&q.volume[p], lanes) * whole;
+    const Double4 scale = (1.0 / body.grid.cell()) * load(&q.volume[p], lanes) * intact;
     return {scale * load(&q.xx[p], lanes), scale * load(&q.yy[p], lanes), scale * load(&q.xy[p], lanes)};
 }
 
 /// What the grains of four columns give their nodes, column by column: m (1 - f) K, m (1 - f). False if none has any.
-[[gnu::always_inline]] inline bool grain_pushes(const StructuredBody& body, Index p, int lanes, Double4 grains,
-                                                Double4 push[4]) {
+[[gnu::always_inline]] inline bool grain_pressures(const StructuredBody& body, Index p, int lanes, Double4 grains,
+                                                Double4 thrust[4]) {
     if (!any(grains != 0.0)) return false;
     const StructuredPoints& q = body.points;
     const Sym2Of<Double4> rate{load(&q.cxx[p], lanes), load(&q.cyy[p], lanes),
                                0.5 * (load(&q.cxy[p], lanes) + load(&q.cyx[p], lanes))};
-    const Double4 pull = load(&q.pull[p], lanes), none = {};
+    const Double4 normal_gravity = load(&q.normal_gravity[p], lanes), none = {};
     // Nothing presses on the bed where water bears all: then nothing pushes either.
-    const Double4 layer = select(pull > 0.0, load(&q.layer[p], lanes), none), across = select(pull > 0.0, pull, all(1.0));
+    const Double4 layer = select(normal_gravity > 0.0, load(&q.layer[p], lanes), none),
+                  across = select(normal_gravity > 0.0, normal_gravity, all(1.0));
     const Sym2Of<Double4> k = earth_pressure_of<Double4>(rate, layer, across, body.rankine);
-    transpose(grains * k.xx, grains * k.yy, grains * k.xy, grains, push);
+    transpose(grains * k.xx, grains * k.yy, grains * k.xy, grains, thrust);
     return true;
 }
 
@@ -76,7 +78,7 @@ template <bool kGrains, bool kWater>
     const Stencils sx(x), sy(y);
     Double4 cxx = load(&q.cxx[p], lanes), cxy = load(&q.cxy[p], lanes), cyx = load(&q.cyx[p], lanes),
             cyy = load(&q.cyy[p], lanes);
-    const Double4 whole = body.share * (1.0 - load(&q.damage[p], lanes));
+    const Double4 intact = body.share * (1.0 - load(&q.damage[p], lanes));
     Domains r{};
     if constexpr (kGrains) {
         r = domains(q, p, lanes);
@@ -85,24 +87,26 @@ template <bool kGrains, bool kWater>
     const Double4 mc = body.grid.cell() * m;
     scatter_four(body.flow.nodes, stride, lanes, sx, sy,
                  {m, m * load(&q.vx[p], lanes), m * load(&q.vy[p], lanes), mc * cxx, mc * cxy, mc * cyx, mc * cyy},
-                 pull_of(body, p, lanes, whole));
+                 internal_force_of(body, p, lanes, intact));
     if constexpr (kGrains) {
-        Double4 push[4];
-        if (grain_pushes(body, p, lanes, m * (1.0 - whole), push))
-            for (int n = 0; n < lanes; ++n) give(body.push.data(), stride, Reach(sx, sy, stride, n), push[n]);
+        Double4 thrust[4];
+        if (grain_pressures(body, p, lanes, m * (1.0 - intact), thrust))
+            for (int n = 0; n < lanes; ++n)
+                add_to_nodes(body.grain_pressure.data(), stride, Reach(sx, sy, stride, n), thrust[n]);
         marks.mark(sx.first, sy.first, lanes);
         spread<kWater>(body, p, lanes, at_side, x, y, m, r);
     }
     if constexpr (kWater)
         for (int n = 0; n < lanes; ++n)
-            give(body.bound.data(), stride, Reach(sx, sy, stride, n), bound_of(body, p + n));
+            add_to_nodes(body.bound.data(), stride, Reach(sx, sy, stride, n), bound_of(body, p + n));
 }
 
 /// Reads ahead (base/touch.h) what a batch of columns brings.
 template <bool kGrains>
 void touch_columns(const StructuredPoints& q, Index first, Index end) {
-    const Column* const list[] = {&q.x,      &q.y,  &q.mass, &q.vx, &q.vy,   &q.cxx,   &q.cxy, &q.cyx, &q.cyy, &q.damage,
-                                 &q.volume, &q.xx, &q.yy,   &q.xy, &q.pull, &q.layer, &q.r1x, &q.r1y, &q.r2x, &q.r2y};
+    const Array* const list[] = {
+        &q.x,  &q.y,  &q.mass,           &q.vx,    &q.vy,  &q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.damage, &q.volume, &q.xx,
+        &q.yy, &q.xy, &q.normal_gravity, &q.layer, &q.r1x, &q.r1y, &q.r2x, &q.r2y};
     constexpr int kWithGrains = sizeof list / sizeof list[0], kCount = kGrains ? kWithGrains : kWithGrains - 6;
     for (Index p = first; p < end; p += kCacheLine / sizeof(double))
         for (int n = 0; n < kCount; ++n) touch(list[n]->data() + p);
@@ -113,7 +117,8 @@ void touch_nodes(const StructuredBody& body, Index n) {
     for_each_row_of_full(body.grid, body.active, n, [&](Index k, Index count) {
         touch(body.nodes + k, count);
         touch(body.node_mass + k, count);
-        if constexpr (kGrains) touch(body.push.data() + k, count), touch(body.flow.nodes.column_mass.data() + k, count);
+        if constexpr (kGrains)
+            touch(body.grain_pressure.data() + k, count), touch(body.flow.nodes.column_mass.data() + k, count);
     });
 }
 
@@ -143,7 +148,7 @@ void clear_nodes(StructuredBody& body) {
             std::fill_n(&body.nodes[first + j * body.grid.stride()], kTile, Deposit{});
             std::fill_n(&body.node_mass[first + j * body.grid.stride()], kTile, 0.0);
             if (body.grains) {
-                std::fill_n(&body.push[first + j * body.grid.stride()], kTile, Push{});
+                std::fill_n(&body.grain_pressure[first + j * body.grid.stride()], kTile, GrainPressure{});
                 std::fill_n(&body.flow.nodes.column_mass[first + j * body.grid.stride()], kTile, 0.0);
             }
             if (body.water)

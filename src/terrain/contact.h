@@ -23,7 +23,7 @@ struct Entry {
 
 /// Cells from a surface within which the mirror image of a point touches nodes that material touches: a point
 /// reaches 3/2 cells along each axis, so its image counts up to 3 (|n_x| + |n_y| + |n_z|) cells from it.
-inline double image_reach(const Vec3& normal) { return 3.0 * normal.lpNorm<1>(); }
+inline double mirror_reach(const Vec3& normal) { return 3.0 * normal.lpNorm<1>(); }
 
 /// Of any normal.
 constexpr double kLongestReach = 5.2;

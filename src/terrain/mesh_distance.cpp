@@ -72,7 +72,7 @@ public:
     double signed_distance(const Vec3& x, double bound) const {
         Nearest best;
         best.square = bound * bound;
-        look(0, x, best);
+        search(0, x, best);
         const double side = normals_[best.triangle][best.part].dot(x - best.place);
         return side < 0.0 ? -std::sqrt(best.square) : std::sqrt(best.square);
     }
@@ -139,7 +139,7 @@ private:
         build(half, last);
     }
 
-    void look(std::size_t at, const Vec3& x, Nearest& best) const {
+    void search(std::size_t at, const Vec3& x, Nearest& best) const {
         const Box& box = boxes_[at];
         for (std::size_t n = box.first; n < box.last; ++n) {
             Nearest near = on_triangle(x, corners_[order_[n]]);
@@ -150,8 +150,8 @@ private:
         std::size_t near = at + 1, far = box.second;
         double to_near = boxes_[near].square_to(x), to_far = boxes_[far].square_to(x);
         if (to_far < to_near) std::swap(near, far), std::swap(to_near, to_far);
-        if (to_near < best.square) look(near, x, best);
-        if (to_far < best.square) look(far, x, best);
+        if (to_near < best.square) search(near, x, best);
+        if (to_far < best.square) search(far, x, best);
     }
 
     std::vector<std::array<Vec3, 3>> corners_;

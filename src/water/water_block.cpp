@@ -16,7 +16,7 @@ void beyond(WaterBlock& block, Index inside, Index step, WaterSide side, double*
     for (Index n = 1; n <= std::min(kHalo, room); ++n) {
         const Index to = inside - n * step, from = leaves ? inside : inside + (n - 1) * step;
         block.depth[to] = block.depth[from], block.u[to] = block.u[from], block.v[to] = block.v[from];
-        block.surface[to] = block.surface[from], block.pull[to] = block.pull[from];
+        block.surface[to] = block.surface[from], block.normal_gravity[to] = block.normal_gravity[from];
         if (leaves)
             block.surface[to] -= static_cast<double>(n) * fall;
         else
@@ -30,7 +30,7 @@ void load_row(const WaterBody& body, const WaterFields& from, const TilePart& pa
                 a1 = std::min(kRows, kHalo + body.grid.nx() - part.i0);
     const Index first = body.grid.at(part.i0 - kHalo, part.j0 + b - kHalo), row = b * kRow;
     if (a1 < kRows)
-        for (double* cells : {block.depth, block.surface, block.u, block.v, block.pull})
+        for (double* cells : {block.depth, block.surface, block.u, block.v, block.normal_gravity})
             std::fill_n(cells + row, kRow, 0.0);
     for (Index a = a0; a < a1; ++a) {
         const double h = from.h[first + a];
@@ -39,7 +39,7 @@ void load_row(const WaterBody& body, const WaterFields& from, const TilePart& pa
         block.depth[row + a] = moves ? h : 0.0;
         block.surface[row + a] = body.bed[first + a] + body.confined[first + a] + h;
         block.u[row + a] = per * from.qx[first + a], block.v[row + a] = per * from.qy[first + a];
-        block.pull[row + a] = body.pull[first + a];
+        block.normal_gravity[row + a] = body.normal_gravity[first + a];
     }
     if (a0 > 0) beyond(block, row + a0, 1, body.sides[0], block.u, -1.0, a0);
     if (a1 < kRows) beyond(block, row + a1 - 1, -1, body.sides[1], block.u, 1.0, kRows - a1);

@@ -18,7 +18,7 @@ struct TilePart {
 /// A tile with its surroundings; place a + kRow b.
 struct WaterBlock {
     alignas(32) BlockCells depth;  ///< that moves: 0 for films [m]
-    alignas(32) BlockCells surface, u, v, pull;
+    alignas(32) BlockCells surface, u, v, normal_gravity;
 };
 
 /// Changes over a cell; of velocities, half of it over the depth.

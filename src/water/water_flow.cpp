@@ -67,7 +67,7 @@ WaterBody::WaterBody(const WaterScene& scene)
       driven_y(grid.size()),
       bed(grid.size()),
       confined(grid.size()),
-      pull(grid.size()),
+      normal_gravity(grid.size()),
       rain(at_nodes(scene.rain, grid)),
       infiltration(at_nodes(scene.infiltration, grid)),
       sides(scene.sides),
@@ -86,7 +86,7 @@ WaterBody::WaterBody(const WaterScene& scene)
         for (Index i = 0; i < grid.nx(); ++i) {
             const Index k = grid.at(i, j);
             const Vec2 slope = per * Vec2(bed[k + 1] - bed[k - 1], bed[k + grid.stride()] - bed[k - grid.stride()]);
-            pull[k] = steep ? gravity / (1.0 + slope.squaredNorm()) : gravity;
+            normal_gravity[k] = steep ? gravity / (1.0 + slope.squaredNorm()) : gravity;
         }
 }
 
@@ -122,7 +122,7 @@ void WaterFlow::place(const WaterScene& scene) {
         for (Index ti = 0; ti * kTile < g.nx; ++ti) body_.work.push_back((tj + 1) * grid.tiles_x() + ti + 1);
     body_.sums.resize(body_.work.size());
     for (std::size_t n = 0; n < body_.work.size(); ++n) body_.sums[n] = tile_sums(body_, body_.work[n]);
-    book(0.0);
+    accumulate(0.0);
     status_.step = 0;
     status_.volume_given = status_.volume, status_.momentum_given = status_.momentum;
 }
@@ -182,7 +182,7 @@ void WaterFlow::advance(double until) {
     const double dt = step_length(until);
     timed_("first stage", [&] { first_stage(body_, dt); });
     timed_("second stage", [&] { second_stage(body_, dt); });
-    timed_("book", [&] { book(dt); });
+    timed_("book", [&] { accumulate(dt); });
     if (status_.time + dt >= until)
         status_.time = until;
     else
@@ -207,7 +207,7 @@ WaterSums WaterFlow::summed(double dt) const {
 }
 
 /// The sums of a step.
-void WaterFlow::book(double dt) {
+void WaterFlow::accumulate(double dt) {
     const WaterSums all = summed(dt);
     ++status_.step;
     status_.dt = dt;

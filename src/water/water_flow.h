@@ -92,7 +92,7 @@ struct WaterBody {
     LazyArray<double> driven_x, driven_y;  ///< discharge after the first stage, before friction [m^2/s]
     LazyArray<double> bed;      ///< elevation above `datum` [m], two nodes beyond the grid as well
     LazyArray<double> confined; ///< depth of confined mass [m]: may be changed between steps
-    LazyArray<double> pull;     ///< gravity across the ground [m/s^2]
+    LazyArray<double> normal_gravity;     ///< gravity across the ground [m/s^2]
     /// With WaterViscosity::solid_gradient, as confined: confined mass's share of the volume [1], its velocity [m/s].
     LazyArray<double> share, bound_x, bound_y;
     LazyArray<double> rain, infiltration;  ///< [m/s]; empty without
@@ -143,7 +143,7 @@ public:
     void take_changes(const std::vector<Index>& tiles);
     /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene. Confined
     /// mass is not part of it.
-    void keep(Archive& archive);
+    void serialize(Archive& archive);
     /// State of the cell around a node; elevation of its surface [m]
     WaterState at(Index i, Index j) const;
     double surface(Index i, Index j) const;
@@ -157,7 +157,7 @@ private:
     void list_tiles();
     void clear_tiles();
     double step_length(double until) const;
-    void book(double dt);
+    void accumulate(double dt);
     WaterSums summed(double dt) const;
     void take(const WaterSums& all);
 

@@ -61,7 +61,8 @@ void find_fluxes(const WaterBlock& block, const double* along, const double* acr
             auto low = at_face(block, along, across, slopes, k - step, 1.0);
             auto high = at_face(block, along, across, slopes, k, -1.0);
             let_fall(block, k - step, k, low, high);
-            f = face_flux<Double4>(low, high, 0.5 * (load(block.pull + k) + load(block.pull + k - step)));
+            f = face_flux<Double4>(low, high,
+                                   0.5 * (load(block.normal_gravity + k) + load(block.normal_gravity + k - step)));
         }
         store(to.mass + k, f.mass), store(to.along + k, f.along), store(to.across + k, f.across);
         store(to.low + k, f.low), store(to.high + k, f.high);
@@ -140,7 +141,7 @@ void find_drains(const TilePart& part, double cells, Stage& s) {
 struct ViscousFace {
     const double *along, *across;  ///< velocities of the block through it and along it [m/s]
     Index step;                    ///< from the cell before it to the one behind it
-    bool at_side, counts;          ///< of the grid; among those whose energy the tile books
+    bool at_side, counts;          ///< of the grid; among those whose energy the tile records
 };
 
 /// Products of the confined mass's gradient of share and the slip of the water over it, over a face's cell.
@@ -208,17 +209,18 @@ double add_viscosity(const WaterBody& body, const TilePart& part, Stage& s) {
 /// What one stage changes in a cell.
 struct Change {
     double h, qx, qy;
-    Vec2 push;  ///< of it, what is not carried
+    Vec2 pressure_force;  ///< of it, what is not carried
 };
 
 Change change_of(const Stage& s, Index k, double cells) {
     const WaterFaces &x = s.x, &y = s.y;
-    const double weight = s.block.pull[k] * s.block.depth[k];
-    const Vec2 push = -cells * Vec2(x.low[k + 1] - x.high[k] + weight * s.across_x.surface[k],
+    const double weight = s.block.normal_gravity[k] * s.block.depth[k];
+    const Vec2 pressure_force = -cells * Vec2(x.low[k + 1] - x.high[k] + weight * s.across_x.surface[k],
                                     y.low[k + kRow] - y.high[k] + weight * s.across_y.surface[k]);
     return {-cells * (x.mass[k + 1] - x.mass[k] + y.mass[k + kRow] - y.mass[k]),
-            push.x() - cells * (x.along[k + 1] - x.along[k] + y.across[k + kRow] - y.across[k]),
-            push.y() - cells * (x.across[k + 1] - x.across[k] + y.along[k + kRow] - y.along[k]), push};
+            pressure_force.x() - cells * (x.along[k + 1] - x.along[k] + y.across[k + kRow] - y.across[k]),
+            pressure_force.y() - cells * (x.across[k + 1] - x.across[k] + y.along[k + kRow] - y.along[k]),
+            pressure_force};
 }
 
 /// Energy over mass of water that leaves: of its surface's height, which is pressure below it, and of motion along the
@@ -233,10 +235,10 @@ double head_of(const WaterBody& body, const WaterBlock& block, Index k) {
 }
 
 /// One side of the grid in a tile's ledger: `k` is the face, `inside` the cell at it.
-void book_side(const WaterBody& body, const Stage& s, const WaterFaces& faces, const WaterSlopes& slopes, Index k,
+void accumulate_side(const WaterBody& body, const Stage& s, const WaterFaces& faces, const WaterSlopes& slopes, Index k,
                Index inside, int axis, double outward, double cells, WaterLedger& ledger) {
     const double h = s.block.depth[inside] + 0.5 * outward * slopes.depth[inside];
-    const double force = (outward > 0.0 ? faces.low[k] : faces.high[k]) + 0.5 * s.block.pull[inside] * h * h;
+    const double force = (outward > 0.0 ? faces.low[k] : faces.high[k]) + 0.5 * s.block.normal_gravity[inside] * h * h;
     ledger.walls[axis] -= outward * cells * force;
     ledger.left += outward * cells * faces.mass[k];
     ledger.momentum_left[axis] += outward * cells * faces.along[k];
@@ -245,24 +247,24 @@ void book_side(const WaterBody& body, const Stage& s, const WaterFaces& faces, c
 }
 
 /// All sides of the grid that a tile touches; in cells of unit area.
-void book_sides(const WaterBody& body, const TilePart& part, const Stage& s, double cells, WaterLedger& ledger) {
+void accumulate_sides(const WaterBody& body, const TilePart& part, const Stage& s, double cells, WaterLedger& ledger) {
     const TileGrid& grid = body.grid;
     for (Index b = kHalo; b < part.rows; ++b) {
         const Index low = b * kRow + kHalo, high = b * kRow + part.columns;
-        if (part.i0 == 0) book_side(body, s, s.x, s.across_x, low, low, 0, -1.0, cells, ledger);
+        if (part.i0 == 0) accumulate_side(body, s, s.x, s.across_x, low, low, 0, -1.0, cells, ledger);
         if (part.i0 + kTile >= grid.nx())
-            book_side(body, s, s.x, s.across_x, high, high - 1, 0, 1.0, cells, ledger);
+            accumulate_side(body, s, s.x, s.across_x, high, high - 1, 0, 1.0, cells, ledger);
     }
     for (Index a = kHalo; a < part.columns; ++a) {
         const Index low = kHalo * kRow + a, high = part.rows * kRow + a;
-        if (part.j0 == 0) book_side(body, s, s.y, s.across_y, low, low, 1, -1.0, cells, ledger);
+        if (part.j0 == 0) accumulate_side(body, s, s.y, s.across_y, low, low, 1, -1.0, cells, ledger);
         if (part.j0 + kTile >= grid.ny())
-            book_side(body, s, s.y, s.across_y, high, high - kRow, 1, 1.0, cells, ledger);
+            accumulate_side(body, s, s.y, s.across_y, high, high - kRow, 1, 1.0, cells, ledger);
     }
 }
 
 /// Runs a stage from fields on a tile: each(storage index, i, j, change) for its cells, and the half of what
-/// it books.
+/// it records.
 template <class Each>
 void run_stage(const WaterBody& body, const WaterFields& from, Index tile, double dt, WaterLedger& ledger,
                Each&& each) {
@@ -271,23 +273,23 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
     Stage s;
     s.first = body.grid.at(part.i0 - kHalo, part.j0 - kHalo);
     const bool moves = load_block(body, from, part, s.block);
-    WaterLedger booked;
+    WaterLedger tile_ledger;
     if (moves) {
         find_faces(body, part, s);
         find_drains(part, cells, s);
-        if (body.viscosity.kinematic > 0.0) booked.sheared += cells * add_viscosity(body, part, s);
-        book_sides(body, part, s, cells, booked);
+        if (body.viscosity.kinematic > 0.0) tile_ledger.sheared += cells * add_viscosity(body, part, s);
+        accumulate_sides(body, part, s, cells, tile_ledger);
     }
     for (Index b = kHalo; b < part.rows; ++b)
         for (Index a = kHalo; a < part.columns; ++a) {
             const Index i = part.i0 + a - kHalo, j = part.j0 + b - kHalo;
             const Change change =
                 moves ? change_of(s, b * kRow + a, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
-            booked.ground += change.push;
+            tile_ledger.ground += change.pressure_force;
             each(body.grid.at(i, j), i, j, change);
         }
-    booked.ground -= booked.walls;
-    ledger.add(booked, 0.5 * body.grid.cell() * body.grid.cell());
+    tile_ledger.ground -= tile_ledger.walls;
+    ledger.add(tile_ledger, 0.5 * body.grid.cell() * body.grid.cell());
 }
 
 /// Water of one cell.
@@ -323,7 +325,8 @@ void brake(const WaterBody& body, Index k, double dt, Water& w) {
     WaterBed bed{body.gravity, w.h, 1.0};
     double whole = w.h + body.confined[k];
     if (body.steep) {
-        const double along = direction.dot(bed_slope(body, k)), cosine = std::sqrt(body.pull[k] / body.gravity);
+        const double along = direction.dot(bed_slope(body, k)),
+                     cosine = std::sqrt(body.normal_gravity[k] / body.gravity);
         bed.thickness *= cosine, whole *= cosine, bed.kappa = std::sqrt(1.0 + along * along);
     }
     const double start = std::max(0.0, velocity_before(body, k).dot(direction));
@@ -339,7 +342,7 @@ double along_ground(const WaterBody& body, Index k, const Vec2& a, const Vec2& b
     return a.dot(b) + slope.dot(a) * slope.dot(b);
 }
 
-/// Rain and infiltration, booked in cells of unit area. Rain falls onto the surface and takes up the speed of what it
+/// Rain and infiltration, recorded in cells of unit area. Rain falls onto the surface and takes up the speed of what it
 /// falls into.
 void rain_and_soak(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
     const double ground = body.bed[k] + body.confined[k];
@@ -361,7 +364,7 @@ void rain_and_soak(const WaterBody& body, Index k, double dt, Water& w, WaterLed
     }
 }
 
-/// Rain, infiltration and friction at the end of a step, booked in cells of unit area. Friction's work is its impulse
+/// Rain, infiltration and friction at the end of a step, recorded in cells of unit area. Friction's work is its impulse
 /// times the mean of the velocities at the start and at the end: what it holds at rest or at one speed loses no more than
 /// it falls.
 void finish_cell(const WaterBody& body, Index k, double dt, Water& w, WaterLedger& ledger) {
@@ -397,7 +400,7 @@ void count(const WaterBody& body, Index k, Index i, Index j, const Water& w, Wat
     sums.near |= std::uint16_t{1} << 4;
     sums.momentum += Vec2(w.qx, w.qy);  // of films too, which columns may have given some
     if (w.h <= body.film) return;
-    const double u = w.qx / w.h, v = w.qy / w.h, c = std::sqrt(body.pull[k] * w.h);
+    const double u = w.qx / w.h, v = w.qy / w.h, c = std::sqrt(body.normal_gravity[k] * w.h);
     if (!std::isfinite(u + v + w.h)) sums.bad = k;
     sums.kinetic += 0.5 * (w.qx * u + w.qy * v);
     sums.max_speed2 = std::max(sums.max_speed2, u * u + v * v);

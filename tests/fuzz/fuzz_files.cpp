@@ -46,7 +46,7 @@ struct State {
     Status status;
     std::vector<PhaseTime> phases;
 
-    void keep(Archive& archive) {
+    void serialize(Archive& archive) {
         const Archive::Part part(archive, "state");
         archive.array("reals", reals);
         archive.array("wholes", wholes);
@@ -54,8 +54,8 @@ struct State {
         archive.texts("texts", texts);
         archive.number("number", number);
         archive.number("count", count);
-        frana::keep(archive, "status", status);
-        frana::keep(archive, "phases", phases);
+        frana::serialize(archive, "status", status);
+        frana::serialize(archive, "phases", phases);
     }
 };
 
@@ -63,7 +63,7 @@ void load(const Input& bytes) {
     const DiskFile file("checkpoint.h5", bytes);
     refused_fairly([&] {
         State state;
-        CheckpointFile(file.path()).load([&](Archive& archive) { state.keep(archive); });
+        CheckpointFile(file.path()).load([&](Archive& archive) { state.serialize(archive); });
     });
 }
 
@@ -90,7 +90,7 @@ void make_checkpoint(const std::string& file) {
     state.octets = {0, 255};
     state.texts = {"", "a"};
     state.phases = {{"kick", 0.5, 0.25, 3}};
-    write_checkpoint(file, {{"case", "x = 1"}}, [&](Archive& archive) { state.keep(archive); });
+    write_checkpoint(file, {{"case", "x = 1"}}, [&](Archive& archive) { state.serialize(archive); });
 }
 
 void table(const Input& bytes) {

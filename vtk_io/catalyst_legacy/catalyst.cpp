@@ -25,7 +25,7 @@ public:
         if (started_) processor_->Finalize();
     }
 
-    void look(const Frame& frame, Index number) override {
+    void sample(const Frame& frame, Index number) override {
         if (!started_) start();
         vtkNew<vtkCPDataDescription> description;
         description->SetTimeData(frame.status.time, static_cast<vtkIdType>(number));

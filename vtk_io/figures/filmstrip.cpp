@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The map alone, by way of a file that does not stay.
-bool drawn(const MapFigure& map, const fs::path& beside, Pixels& pixels, std::string& why_not) {
-    const fs::path file = fs::path(beside).replace_extension(".part.png");
+bool drawn(const MapFigure& map, const fs::path& next_to, Pixels& pixels, std::string& why_not) {
+    const fs::path file = fs::path(next_to).replace_extension(".part.png");
     const bool done = render_map(map, file, why_not);
     if (done) pixels = read_png(file);
     std::error_code ignored;

@@ -17,7 +17,7 @@
 #include "vtk_io/figures/map_figure_paint.h"
 #include "vtk_io/figures/map_figure_piece.h"
 #include "vtk_io/figures/offscreen.h"
-#include "vtk_io/figures/space_actors.h"
+#include "vtk_io/figures/actors_3d.h"
 #include "vtk_io/hillshade.h"
 #include "vtk_io/level_lines.h"
 
@@ -31,7 +31,7 @@ using Vec3 = Eigen::Vector3d;
 Eigen::Vector4d with_one(const Vec3& p) { return {p.x(), p.y(), p.z(), 1.0}; }
 
 /// Few drops that are thrown up need not be in view.
-double height_of_most(const std::vector<SpaceObjects::Ball>& balls) {
+double height_of_most(const std::vector<Objects3d::Ball>& balls) {
     if (balls.empty()) return 0.0;
     std::vector<double> heights;
     heights.reserve(balls.size());
@@ -240,7 +240,7 @@ void BlockDrawing::scene(vtkRenderer* renderer) {
     renderer->AddActor(skin_actor(surface_, skin_, origin_));
     renderer->AddActor(wall_actor(surface_, foot_, origin_));
     lines(renderer);
-    const SpaceObjects& objects = figure_.objects;
+    const Objects3d& objects = figure_.objects;
     if (!objects.facets.empty()) renderer->AddActor(facets_actor(objects.facets, origin_));
     if (!objects.edges.empty()) renderer->AddActor(edges_actor(objects.edges, origin_, 0.1 * unit_));
     if (!objects.balls.empty()) renderer->AddActor(balls_actor(objects.balls, origin_));

@@ -1,7 +1,7 @@
 #pragma once
 // A field on its terrain in a view up the slope, as a block cut out of the landscape.
 #include "vtk_io/figures/map_figure.h"
-#include "vtk_io/figures/space_objects.h"
+#include "vtk_io/figures/objects_3d.h"
 
 namespace frana {
 
@@ -28,7 +28,7 @@ struct PerspectiveFigure {
         double view_angle_deg = 30.0;  ///< upright
     };
     std::optional<Eye> eye;
-    SpaceObjects objects;  ///< stand on the terrain and have to be in view as well
+    Objects3d objects;  ///< stand on the terrain and have to be in view as well
     int width = 1600;                            ///< [px]
     int height = 1100;                           ///< [px]
 

@@ -7,11 +7,11 @@
 namespace frana::bench {
 namespace {
 
-constexpr double kCell = 0.5, kDensity = 1500.0, kSound = 40.0, kSpeed = 4.0;
+constexpr double kCell = 0.5, kDensity = 1500.0, kSoundSpeed = 40.0, kSpeed = 4.0;
 constexpr Index kRoom = 12;  ///< free cells around the block
 
 SolidLaw law_of(BodyLaw law) {
-    const double bulk = kDensity * kSound * kSound;
+    const double bulk = kDensity * kSoundSpeed * kSoundSpeed;
     switch (law) {
         case BodyLaw::fluid: return solid::Fluid{bulk, 0.0};
         case BodyLaw::bingham: return solid::Bingham{bulk, 5e4, 10.0, 500.0};
@@ -40,7 +40,7 @@ SolidScene body_scene(BodyLaw law, Index particles) {
     SolidScene scene;
     scene.law = law_of(law);
     scene.density = kDensity;
-    scene.keeps = law == BodyLaw::drucker_prager;  // as stages have sand
+    scene.flip = law == BodyLaw::drucker_prager;  // as stages have sand
     scene.blending = std::sqrt(kCell / 9.81);
     scene.grid.cell = kCell;
     const double room = kCell * static_cast<double>(kRoom);

@@ -1,9 +1,9 @@
 #pragma once
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 
 namespace frana::bench {
 
-/// What the points in space are made of.
+/// What the 3D points are made of.
 enum class BodyLaw { fluid, bingham, drucker_prager };
 const char* name_of(BodyLaw law);
 

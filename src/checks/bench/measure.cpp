@@ -41,7 +41,7 @@ public:
     double nodes() const {
         const Flow& flow = simulation_.flow();
         Index groups = 0;
-        for (const Index tile : flow.active.work) groups += __builtin_popcountll(flow.touched[tile]);
+        for (const Index tile : flow.active.work) groups += __builtin_popcountll(flow.in_reach[tile]);
         return 4.0 * static_cast<double>(groups);
     }
 
@@ -49,10 +49,10 @@ private:
     DepthAveraged simulation_;
 };
 
-/// The solver in space.
-class Space {
+/// The 3D solver.
+class Measured3d {
 public:
-    explicit Space(const SolidScene& scene) : flow_(scene) { flow_.count_cpu_time(); }
+    explicit Measured3d(const SolidScene& scene) : flow_(scene) { flow_.count_cpu_time(); }
 
     void advance() { flow_.advance(std::numeric_limits<double>::max()); }
     Index particles() const { return flow_.status().points; }
@@ -67,7 +67,7 @@ public:
     }
 
 private:
-    SolidFlow flow_;
+    Mpm3d flow_;
 };
 
 /// The solver of structured columns, alone or beside free water.
@@ -152,7 +152,7 @@ public:
         for (const PhaseTime& phase : between(before, solver_.timings())) {
             if (phase.calls == 0) continue;  // not every window sorts
             const Traffic traffic = solver_.traffic(phase.name);
-            // A phase of several clock readings a step (deposit, kick) still goes over its arrays once a step.
+            // A phase of several clock readings a step (deposit, grid update) still goes over its arrays once a step.
             const double calls = std::min<double>(static_cast<double>(phase.calls), plan_.window_steps);
             const double bytes = traffic.particle + traffic.node * solver_.nodes() / particles;
             phases.push_back({phase.name, phase.cpu_seconds * scale, phase.seconds * scale,
@@ -187,8 +187,8 @@ private:
 class Hash {
 public:
     void mix(std::uint64_t bits) { value_ = (value_ ^ bits) * 0x100000001b3u; }
-    template <class Column>
-    void mix_all(const Column& column) {
+    template <class Array>
+    void mix_all(const Array& column) {
         for (const double value : column) {
             std::uint64_t bits;
             std::memcpy(&bits, &value, sizeof bits);
@@ -207,7 +207,7 @@ private:
 }  // namespace
 
 Cost measure(const Scene& scene, const Plan& plan) { return Meter<Plane>(scene, plan).run(); }
-Cost measure(const SolidScene& scene, const Plan& plan) { return Meter<Space>(scene, plan).run(); }
+Cost measure(const SolidScene& scene, const Plan& plan) { return Meter<Measured3d>(scene, plan).run(); }
 
 std::vector<Cost> measure_in_turns(const std::vector<Scene>& scenes, const Plan& plan) {
     std::vector<std::unique_ptr<AnyMeter>> meters;
@@ -236,7 +236,7 @@ std::uint64_t hash_of(const Columns& columns) {
 std::uint64_t hash_of(const MaterialPoints& points) {
     Hash hash;
     const auto mix = [&](const auto& columns) {
-        for (const Column& column : columns) hash.mix_all(column);
+        for (const Array& column : columns) hash.mix_all(column);
     };
     mix(points.x), mix(points.v), mix(points.gradient), mix(points.state);
     hash.mix_all(points.j);
@@ -246,7 +246,7 @@ std::uint64_t hash_of(const MaterialPoints& points) {
 
 std::uint64_t hash_of(const StructuredPoints& points) {
     Hash hash;
-    points.each([&](const Column& column) { hash.mix_all(column); });
+    points.each([&](const Array& column) { hash.mix_all(column); });
     hash.mix_ids(points.id);
     return hash.value();
 }

@@ -6,7 +6,7 @@
 
 #include "scene/scene.h"
 #include "shallow/columns.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 #include "structured/structured_points.h"
 
 namespace frana::bench {
@@ -19,7 +19,7 @@ struct Plan {
     int window_steps = 6;  ///< a multiple of three, so that each has its share of sorting, splitting and merging
 };
 
-/// Cost of a phase, or of the whole step ("full"); "other" is what the solver books under no phase.
+/// Cost of a phase, or of the whole step ("full"); "other" is what the solver records under no phase.
 struct PhaseCost {
     std::string name;
     double cpu_ns = 0.0;    ///< CPU time per particle and step: whole step: team_clock.h; phase: stepping thread
@@ -47,7 +47,7 @@ Cost measure(const Scene& scene, const Plan& plan);
 /// The scenes in turns, a window each: what else the machine does meets all alike, and the fastest windows can be held
 /// against one another. With a structure a scene's steps are those of its columns.
 std::vector<Cost> measure_in_turns(const std::vector<Scene>& scenes, const Plan& plan);
-/// The same for points in space. They are sorted when they have moved far enough, which few windows see.
+/// The same for 3D points. They are sorted when they have moved far enough, which few windows see.
 Cost measure(const SolidScene& scene, const Plan& plan);
 
 /// Of every bit of every column, in storage order (FNV-1a, Fowler, Noll and Vo 1991, on 8 bytes at a time).

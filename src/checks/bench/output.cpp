@@ -76,7 +76,7 @@ std::vector<FrameCost> time_frames(Index particles, const std::vector<FrameWrite
     advance();
     const double step = least_seconds(kFrames, [&](int) { advance(); }) / kSteps;
     std::vector<FrameCost> costs;
-    const auto book = [&](const std::string& name, std::size_t fields, double seconds) {
+    const auto accumulate = [&](const std::string& name, std::size_t fields, double seconds) {
         costs.push_back({name, static_cast<Index>(fields), seconds, seconds / step});
     };
     Frame frame;
@@ -84,7 +84,7 @@ std::vector<FrameCost> time_frames(Index particles, const std::vector<FrameWrite
     expect(frame.particles.size() > kFields, "a frame has fewer fields than are to be timed");
     // The last is the effective stress, which depth and stress hold.
     frame.particles.resize(kFields);
-    book("fields", frame.particles.size() + frame.nodes.size(), made);
+    accumulate("fields", frame.particles.size() + frame.nodes.size(), made);
     for (const FrameWriter& writer : writers) {
         const std::filesystem::path own = room.path() / std::to_string(costs.size());
         std::filesystem::create_directory(own);
@@ -92,10 +92,10 @@ std::vector<FrameCost> time_frames(Index particles, const std::vector<FrameWrite
         Frame part = part_of(frame, writer);
         const double seconds = least_seconds(kFrames, [&](int n) {
             part.number = n;
-            observer->see(part);
+            observer->observe(part);
         });
         const std::size_t node_fields = part.nodes.size(), point_fields = writer.particles ? part.particles.size() : 0;
-        book(writer.name, node_fields + point_fields, seconds);
+        accumulate(writer.name, node_fields + point_fields, seconds);
     }
     return costs;
 }

@@ -20,7 +20,7 @@ struct Options {
 };
 
 /// A scene that was timed. `model` begins the contract's MODEL/PHASE/PRECISION: "depth_averaged" is the whole physics,
-/// with Voellmy, Bingham and topography; others have a suffix. "solid_flow": points in space, a fluid on a plane.
+/// with Voellmy, Bingham and topography; others have a suffix. "solid_flow": 3D points, a fluid on a plane.
 struct Timed {
     std::string model;
     std::string precision = "double";  ///< or "float": of what points carry

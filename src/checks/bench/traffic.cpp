@@ -29,7 +29,7 @@ Traffic carry(const Flow& flow) {
     return {gather(flow).particle, gather(flow).node + deposit(flow).node};
 }
 
-Traffic kick(const Flow& flow) {
+Traffic grid_update(const Flow& flow) {
     const double force = flow.nodes.forced ? kNode4 : 0.0;
     const double state = 4.0 * kRead + 2.0 * kRead + 2.0 * kRead + 1.0;  // mass, h, eta, z; v; flux; flags
     return {0.0, kNode4 + kNode4 + state + force + slopes(flow) + hessian(flow)};
@@ -59,7 +59,7 @@ Traffic traffic_of(const std::string& phase, const Flow& flow) {
     if (phase == "deposit") return deposit(flow);
     if (phase == "gather") return gather(flow);
     if (phase == "gather and deposit") return carry(flow);
-    if (phase == "kick and friction") return kick(flow);
+    if (phase == "kick and friction") return grid_update(flow);
     if (phase == "depth") return depth(flow);
     if (phase == "filter") return filter(flow);
     if (phase == "shoreline") return {0.0, 6.0};  // flags, three sweeps; margins are few
@@ -75,7 +75,7 @@ Traffic traffic_of(const std::string& phase, const SolidBody& body) {
     const double mean = body.mass_j ? 1.0 : 0.0, state = static_cast<double>(body.points.states);
     const double deposited = 3.0 + 3.0 + 9.0 + 3.0 + state;  // x, v, its gradient, m, V0, J
     const double gathered = 3.0 + 3.0 + 9.0 + 1.0 + state;
-    const double kept = body.kept ? kNode4 : 0.0;  // what nodes had, in the place of the mean
+    const double kept = body.flip_sums ? kNode4 : 0.0;  // what nodes had, in the place of the mean
     if (phase == "clear") return {0.0, kNode4 + kept + mean * kRead};
     if (phase == "scatter") return {deposited * kRead, 2.0 * (kNode4 + kept) + mean * kWrite};
     if (phase == "images") return {2.0, 2.0};  // most points are far from surfaces: they are not read again

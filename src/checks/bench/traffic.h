@@ -3,7 +3,7 @@
 #include <string>
 
 #include "shallow/flow.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 #include "structured/structured_flow.h"
 
 namespace frana::bench {
@@ -17,7 +17,7 @@ struct Traffic {
 
 /// Traffic of the phase that the solver's timings call `phase`; nothing for one that is not known.
 Traffic traffic_of(const std::string& phase, const Flow& flow);
-/// The same for points in space.
+/// The same for 3D points.
 Traffic traffic_of(const std::string& phase, const SolidBody& body);
 /// The same for structured columns.
 Traffic traffic_of(const std::string& phase, const StructuredBody& body);

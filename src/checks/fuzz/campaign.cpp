@@ -57,7 +57,7 @@ std::string json_of(const Failure& failure) {
 
 }  // namespace
 
-Campaign run(const Plan& plan, const std::function<void(const Failure&)>& see, const std::function<bool()>& stop) {
+Campaign run(const Plan& plan, const std::function<void(const Failure&)>& report, const std::function<bool()>& stop) {
     Campaign campaign;
     campaign.plan = plan;
     const auto judge = [](const Draft& draft) { return examine(draft); };
@@ -74,7 +74,7 @@ Campaign run(const Plan& plan, const std::function<void(const Failure&)>& see, c
         Failure failure{model, n, *verdict.broken, {draft, verdict, 0}};
         if (static_cast<Index>(campaign.failures.size()) < plan.most_shrunk)
             failure.shrunk = shrink(draft, judge, plan.shrink_trials);
-        see(failure);
+        report(failure);
         failure.shrunk.draft.rasters.clear();  // saved by now
         campaign.failures.push_back(std::move(failure));
     }

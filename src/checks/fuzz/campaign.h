@@ -40,8 +40,9 @@ struct Campaign {
     std::map<std::string, Index> broken; ///< cases by the invariant that broke
 };
 
-/// Runs the plan; `see` is told of each failure once it has been shrunk, `stop` is asked before each case.
-Campaign run(const Plan& plan, const std::function<void(const Failure&)>& see, const std::function<bool()>& stop = {});
+/// Runs the plan; `report` is told of each failure once it has been shrunk, `stop` is asked before each case.
+Campaign run(const Plan& plan, const std::function<void(const Failure&)>& report,
+             const std::function<bool()>& stop = {});
 
 /// For people: counts, the mix of models, worst values.
 std::string table_of(const Campaign& campaign);

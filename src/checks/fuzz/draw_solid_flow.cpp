@@ -1,11 +1,11 @@
-// Points in space from the start: what a random case of them is made of.
+// 3D points from the start: what a random case of them is made of.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "checks/fuzz/draw.h"
-#include "checks/fuzz/draw_space.h"
+#include "checks/fuzz/draw_3d.h"
 
 namespace frana::stress {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 /// The stage's table.
 std::string key(const std::string& stage, const char* name) { return stage + "." + name; }
 
-/// A law of material in space, as strong and stiff as its depth asks for within some powers of ten.
+/// A law of 3D material, as strong and stiff as its depth asks for within some powers of ten.
 void draw_law(Dice& dice, Draft& draft, const std::string& stage, const Scales& of) {
     const std::string law =
         dice.one_of({"fluid", "fluid", "fluid", "bingham", "herschel_bulkley", "drucker_prager", "drucker_prager", "elastic"});
@@ -60,7 +60,7 @@ void draw_walls(Dice& dice, Draft& draft, const std::string& stage) {
 
 }  // namespace
 
-double draw_space(Dice& dice, Draft& draft, const std::string& stage) {
+double draw_3d(Dice& dice, Draft& draft, const std::string& stage) {
     const Scales of = scales_of(draft);
     const double terrain_cell = draft.dem().geometry.cell, most = 2500.0;
     double cell = terrain_cell * dice.one_of({0.4, 0.5, 0.5, 0.7, 1.0});
@@ -84,7 +84,7 @@ double draw_space(Dice& dice, Draft& draft, const std::string& stage) {
 void draw_solid_flow(Dice& dice, Draft& draft) {
     draw_ground(dice, draft);
     draw_release(dice, draft, {0.15, 3.0, 120});
-    draw_space(dice, draft, "stage#0");
+    draw_3d(dice, draft, "stage#0");
 }
 
 }  // namespace frana::stress

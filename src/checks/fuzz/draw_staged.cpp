@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "checks/fuzz/draw.h"
-#include "checks/fuzz/draw_space.h"
+#include "checks/fuzz/draw_3d.h"
 
 namespace frana::stress {
 namespace {
@@ -38,7 +38,7 @@ void draw_staged(Dice& dice, Draft& draft) {
         say(draft, "stage#0.model", "depth_averaged");
         say(draft, "stage#0.until", begin);
     }
-    draw_space(dice, draft, stage);
+    draw_3d(dice, draft, stage);
     if (dice.chance(0.85)) draw_window(dice, draft, stage);
     if (!columns_again) return;
     say(draft, stage + ".until", begin + step * dice.between(0.2, 3.0));

@@ -28,14 +28,14 @@ Bends bends_of(const Flow& flow) {
     for (Index j = 0; j < flow.grid.ny(); ++j)
         for (Index i = 0; i < flow.grid.nx(); ++i) {
             const Index k = flow.grid.at(i, j);
-            const auto look = [&](Index step, double hessian) {
+            const auto sample = [&](Index step, double hessian) {
                 const double* z = flow.bed.z.data() + k;
                 const double bend = (z[step] - 2.0 * z[0] + z[-step]) / flow.cell;
                 worst.unresolved = std::max(worst.unresolved, std::abs(bend - hessian * flow.cell));
                 worst.sharpest = std::max(worst.sharpest, std::abs(hessian));
             };
-            look(1, bent ? flow.bed.hxx[k] : 0.0);
-            look(up, bent ? flow.bed.hyy[k] : 0.0);
+            sample(1, bent ? flow.bed.hxx[k] : 0.0);
+            sample(up, bent ? flow.bed.hyy[k] : 0.0);
         }
     return worst;
 }
@@ -44,7 +44,7 @@ Bends bends_of(const Flow& flow) {
 double depth_energy(const Flow& flow) {
     CompensatedSum sum;
     for (const Index tile : flow.active.work)
-        for_each_node_of(flow.grid, tile, flow.touched[tile], [&](Index k, Index i, Index j) {
+        for_each_node_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
             const double h = flow.nodes.depth[k];
             sum.add(0.5 * flow.share(i, j) * flow.density * flow.area * flow.gravity * h * h);
         });
@@ -81,7 +81,7 @@ void learn_bed(const Scene& scene, const Flow& flow, Facts& facts) {
 void learn_bed(const Raster& bed, Facts& facts) {
     const GridGeometry& g = bed.geometry;
     double steepest = 0.0;
-    const auto look = [&](double behind, double here, double ahead) {
+    const auto sample = [&](double behind, double here, double ahead) {
         const double up = ahead - here, down = here - behind;
         for (const double rise : {up, down})
             if (std::isfinite(rise)) facts.one_cell_drop = std::max(facts.one_cell_drop, std::abs(rise));
@@ -96,8 +96,8 @@ void learn_bed(const Raster& bed, Facts& facts) {
     };
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
-            look(at(i - 1, j), at(i, j), at(i + 1, j));
-            look(at(i, j - 1), at(i, j), at(i, j + 1));
+            sample(at(i - 1, j), at(i, j), at(i + 1, j));
+            sample(at(i, j - 1), at(i, j), at(i, j + 1));
         }
     facts.steepest = std::sqrt(2.0) * steepest;  // along both axes at once, at most
     facts.energy_law = facts.one_cell_bend / g.cell < kSmooth;
@@ -128,14 +128,14 @@ void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
 }
 
 /// No column ever stands in such a run: points from the start, and they may leave only where columns cannot stand.
-bool is_all_in_space(const Scene& scene) {
+bool is_all_in_3d(const Scene& scene) {
     const std::array<Index, 4>& w = scene.solid->window;
     const GridGeometry& g = scene.bed.geometry;
     return scene.solid->from == 0.0 && !scene.solid->until && w[0] == 0 && w[1] == 0 && w[2] == g.nx - 1 &&
            w[3] == g.ny - 1;
 }
 
-/// What columns have on nodes is no excuse for points in space.
+/// What columns have on nodes is no excuse for 3D points.
 void forget_columns(Facts& facts) {
     facts.energy_law = true, facts.stretch = 1.0;
     facts.linear = facts.carried_depth = false;
@@ -170,10 +170,10 @@ Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& c
     } else if (const auto* walled = dynamic_cast<const WalledColumns*>(&simulation)) {
         learn_columns(scene, walled->columns().flow(), facts);
     } else if (const auto* staged = dynamic_cast<const StagedRun*>(&simulation)) {
-        facts.space = facts.cancels = true, facts.all_in_points = false;
-        facts.space_cell = scene.solid->cell;
+        facts.in_3d = facts.cancels = true, facts.all_in_points = false;
+        facts.cell_3d = scene.solid->cell;
         learn_columns(scene, staged->columns().flow(), facts);
-        if (is_all_in_space(scene)) forget_columns(facts);
+        if (is_all_in_3d(scene)) forget_columns(facts);
     } else {
         facts.walls = scene.sides == Sides::wall;
         facts.affine = facts.cancels = true;

@@ -37,9 +37,9 @@ struct Facts {
     double one_cell_bend = 0.0;  ///< largest second difference of the bed between neighbouring nodes [m]
     double density = 0.0;        ///< of the columns or points [kg/m^3]
     bool all_in_points = true;   ///< no mass but that of points: no free water, nothing on its way between two models
-    bool space = false;          ///< points in space, some of the time
-    double space_cell = 0.0;     ///< of their grid [m]
-    bool cancels = false;        ///< impulses of weight and pressure are booked each, and cancel where material rests
+    bool in_3d = false;          ///< 3D points, some of the time
+    double cell_3d = 0.0;     ///< of their grid [m]
+    bool cancels = false;        ///< impulses of weight and pressure are recorded each, and cancel where material rests
     double displaces = 0.0;      ///< weight of the water that columns can displace [N]
     double bears = 1.0;          ///< share of that which bears them (WaterExchange::pore_pressure) [1]
     bool virtual_mass = false;   ///< columns carry water's inertia: they part from it by what a step gets wrong

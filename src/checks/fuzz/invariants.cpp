@@ -29,7 +29,7 @@ std::vector<double> numbers_of(const Status& s) {
 }
 
 /// Mass of points whose sub-points an open side may hold back [kg]: those within 3/4 of a cell (shallow/sub_points.h).
-double beside_open_sides(const Facts& facts, const PointStates& points) {
+double near_open_sides(const Facts& facts, const PointStates& points) {
     if (facts.walls) return 0.0;
     constexpr double kReach = 0.75;
     const double x_max = static_cast<double>(facts.nodes_x - 1), y_max = static_cast<double>(facts.nodes_y - 1);
@@ -56,7 +56,7 @@ Watch::Watch(const Facts& facts, const Snapshot& start) : facts_(facts), start_(
     at_hand_ = start.now.kinetic + facts.release_energy;
     deepest_ = facts.release_depth;
     for (std::size_t p = 0; p < start.points.mass.size(); ++p)
-        if (start.points.in_space[p]) highest_ = std::max(highest_, start.points.z[p]);
+        if (start.points.in_3d[p]) highest_ = std::max(highest_, start.points.z[p]);
     for (const NodeState& node : start.nodes)
         if (node.wet) highest_ = std::max({highest_, node.surface, node.bed + facts.release_depth});
     note_extremes(start);
@@ -93,7 +93,7 @@ std::optional<Violation> Watch::judged(const char* invariant, double value, doub
                      fmt::format("{}: found {:.6g}, at most {:.6g} is allowed", what, value, allowed)};
 }
 
-std::optional<Violation> Watch::see(const Snapshot& state) {
+std::optional<Violation> Watch::observe(const Snapshot& state) {
     if (auto broken = finite(state)) return broken;  // the others would compare with what is no number
     note_extremes(state);
     std::optional<Violation> first;
@@ -107,16 +107,16 @@ std::optional<Violation> Watch::see(const Snapshot& state) {
 
 std::optional<Violation> Watch::finite(const Snapshot& state) {
     Index bad = state.not_finite;
-    const auto look = [&](double value) { bad += !std::isfinite(value); };
+    const auto sample = [&](double value) { bad += !std::isfinite(value); };
     const PointStates& points = state.points;
     for (const auto* column : {&points.x, &points.y, &points.z, &points.vx, &points.vy, &points.speed, &points.mass,
                                &points.depth, &points.change})
-        for (const double value : *column) look(value);
+        for (const double value : *column) sample(value);
     for (const NodeState& node : state.nodes)
-        for (const double value : {node.depth, node.surface, node.vx, node.vy, node.speed}) look(value);
+        for (const double value : {node.depth, node.surface, node.vx, node.vy, node.speed}) sample(value);
     for (const Status* status : {&state.between, &state.now})
-        for (const double value : numbers_of(*status)) look(value);
-    look(state.max_speed);
+        for (const double value : numbers_of(*status)) sample(value);
+    sample(state.max_speed);
     return judged("finite", static_cast<double>(bad), 0.0, state, "numbers that are not finite");
 }
 
@@ -160,9 +160,9 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const Status &first = start_.now, &now = state.now;
     const double growth = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
                           (now.stored - first.stored) + (now.energy_left - first.energy_left);
-    // What leaves is booked with the bed of the nearest node, half a cell away at most.
-    const double held_back = beside_open_sides(facts_, start_.points) + beside_open_sides(facts_, state.points);
-    const double booked = facts_.gravity * (std::abs(now.mass_left) * (facts_.one_cell_drop + deepest_) +
+    // What leaves is recorded with the bed of the nearest node, half a cell away at most.
+    const double held_back = near_open_sides(facts_, start_.points) + near_open_sides(facts_, state.points);
+    const double recorded = facts_.gravity * (std::abs(now.mass_left) * (facts_.one_cell_drop + deepest_) +
                                             held_back * facts_.one_cell_drop);
     const double round_off = kEps * static_cast<double>(points_ + most_nodes_) * std::abs(first.potential);
     const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
@@ -171,8 +171,8 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     const double uphill = slope * slope / (1.0 + slope * slope) * (now.kinetic + std::max(0.0, gone));
     const double lifted = facts_.displaces * (facts_.one_cell_drop + (1.0 - facts_.bears) * (highest_ - lowest_));
     const double share = kEnergyShare * (at_hand_ + turned_over_);
-    return judged("energy", growth, facts_.hidden_energy + share + uphill + booked + bends + lifted + round_off, state,
-                  "mechanical energy gained beyond the work of gravity [J]");
+    return judged("energy", growth, facts_.hidden_energy + share + uphill + recorded + bends + lifted + round_off,
+                  state, "mechanical energy gained beyond the work of gravity [J]");
 }
 
 double Watch::beyond(double bound) const {
@@ -191,7 +191,7 @@ std::optional<Violation> Watch::speed(const Snapshot& state) {
 
 /// The point that is farthest beyond; in units of what its place allows.
 std::optional<Violation> Watch::head(const Snapshot& state) {
-    if (!facts_.space) return std::nullopt;
+    if (!facts_.in_3d) return std::nullopt;
     const double steep = facts_.stretch * facts_.stretch * (1.0 + kConvergence);
     constexpr double kBlow = 3.0;  // of the speed that heavy and light come with
     const double front = 2.0 * std::sqrt(facts_.gravity * deepest_), blow = kBlow * start_.fastest() + front;
@@ -199,10 +199,10 @@ std::optional<Violation> Watch::head(const Snapshot& state) {
     const double share = std::max(kEnergyShare, facts_.stretch > 1.0 ? steep * steep - 1.0 : 0.0);
     double worst = 0.0, found = 0.0, allowed = 1.0;
     for (std::size_t p = 0; p < state.points.mass.size(); ++p) {
-        if (!state.points.in_space[p]) continue;
+        if (!state.points.in_3d[p]) continue;
         const double z = state.points.z[p], fall = std::max(0.0, highest_ - z);
         const double above = z - highest_ + 0.5 * state.points.speed[p] * state.points.speed[p] / facts_.gravity;
-        const double most = 0.5 * wave * wave / facts_.gravity + share * fall + facts_.space_cell + facts_.one_cell_drop;
+        const double most = 0.5 * wave * wave / facts_.gravity + share * fall + facts_.cell_3d + facts_.one_cell_drop;
         if (above <= worst * most) continue;
         worst = above / most, found = above, allowed = most;
     }

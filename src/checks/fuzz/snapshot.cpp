@@ -40,7 +40,7 @@ PointStates points_of(const Frame& frame) {
         points.y.push_back((position.data[3 * p + 1] - frame.grid.y0) / frame.grid.cell);
         points.z.push_back(position.data[3 * p + 2]);
         points.vx.push_back(velocity.data[3 * p]), points.vy.push_back(velocity.data[3 * p + 1]);
-        points.in_space.push_back(model && model->data[p] == 1.0 ? 1 : 0);
+        points.in_3d.push_back(model && model->data[p] == 1.0 ? 1 : 0);
     }
     return points;
 }
@@ -63,7 +63,7 @@ double fastest_of(const Frame& frame, const PointStates& points) {
     double fastest = 0.0;
     for (Index p = 0; p < points.count(); ++p) {
         const double speed = points.speed[static_cast<std::size_t>(p)];
-        if (!points.in_space[static_cast<std::size_t>(p)] && !(speed <= fastest)) fastest = speed;
+        if (!points.in_3d[static_cast<std::size_t>(p)] && !(speed <= fastest)) fastest = speed;
     }
     const Field* water = frame.node("water_velocity");
     for (Index n = 0; water && n < water->count; ++n) {
@@ -93,7 +93,7 @@ void sharpen(const DepthAveraged& simulation, bool steep, Snapshot& shot) {
     for (const Index tile : flow.active.work)
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
             if (i < 0 || j < 0 || i >= flow.grid.nx() || j >= flow.grid.ny()) return;
-            if (!flow.touches(i, j)) return;  // holds what an earlier step left, which no pass reads
+            if (!flow.is_in_reach(i, j)) return;  // holds what an earlier step left, which no pass reads
             const Motion& motion = flow.nodes.motions()[k];
             const double vz = steep ? motion.vx * flow.bed.slope_x[k] + motion.vy * flow.bed.slope_y[k] : 0.0;
             const double along = std::sqrt(motion.vx * motion.vx + motion.vy * motion.vy + vz * vz);

@@ -18,14 +18,14 @@ struct NodeState {
 /// Points of any model, equal lengths.
 struct PointStates {
     std::vector<double> x, y;      ///< from the terrain's first node [cells]
-    std::vector<double> z;         ///< of points in space their height, of columns that of their surface [m]
+    std::vector<double> z;         ///< of 3D points their height, of columns that of their surface [m]
     std::vector<double> vx, vy;    ///< along the map; of the depth-averaged flow half a step behind [m/s]
     std::vector<double> speed;     ///< along the bed or in space [m/s]
     std::vector<double> mass;      ///< [kg]
     std::vector<double> depth;     ///< [m]
     std::vector<double> change;    ///< of the velocity across a cell, of columns; else empty [m/s]
     std::vector<double> id;
-    std::vector<std::uint8_t> in_space;  ///< 1: a point in space, 0: a column
+    std::vector<std::uint8_t> in_3d;  ///< 1: a 3D point, 0: a column
 
     Index count() const { return static_cast<Index>(mass.size()); }
 };

@@ -38,7 +38,7 @@ Bits run_with(const Scene& scene, int threads, Index steps) {
     const std::unique_ptr<Simulation> simulation = make_simulation(scene);
     go_on(*simulation, steps);
     omp_set_num_threads(before);
-    return kept_bits(*simulation);
+    return state_bits(*simulation);
 }
 
 /// The same, kept half way and taken up again.
@@ -47,12 +47,12 @@ Bits run_with_pause(const Scene& scene, Index steps) {
     {
         const std::unique_ptr<Simulation> first = make_simulation(scene);
         go_on(*first, steps / 2);
-        first->keep(kept);
+        first->serialize(kept);
     }
-    const std::unique_ptr<Simulation> second = make_simulation(scene, Start::kept);
-    second->keep(kept.rewind());
+    const std::unique_ptr<Simulation> second = make_simulation(scene, Start::resumed);
+    second->serialize(kept.rewind());
     go_on(*second, steps);
-    return kept_bits(*second);
+    return state_bits(*second);
 }
 
 void compare(const char* invariant, const Bits& a, const Bits& b, const char* what, Verdict& verdict) {
@@ -99,7 +99,7 @@ double disturbed_asymmetry(const Scene& scene, const Facts& facts, const Scale& 
 void excuse_growth(const Scene& scene, const Facts& facts, Watch& watch, Verdict& verdict) {
     if (verdict.broken->invariant != "symmetry") return;
     if (!has_grown(scene, facts, watch.scale(verdict.broken->step), *verdict.broken)) return;
-    watch.part();  // the last invariant that see() looks at: none other is broken
+    watch.part();  // the last invariant that observe() looks at: none other is broken
     verdict.broken.reset();
     verdict.parted = true;
 }
@@ -110,20 +110,20 @@ void run(const Scene& scene, const Claims& claims, Index steps, const Falsify& f
     Snapshot state = snapshot_of(*simulation, facts.steep);
     Watch watch(facts, state);
     const Status& status = simulation->status();
-    const auto see = [&] {
+    const auto observe = [&] {
         if (falsify) falsify(state);
         verdict.steps = status.step;
         verdict.time = status.time;
         verdict.particles = std::max(verdict.particles, status.particles);
-        verdict.broken = watch.see(state);
+        verdict.broken = watch.observe(state);
         if (verdict.broken) excuse_growth(scene, facts, watch, verdict);
         verdict.worst = watch.worst();
     };
-    see();
+    observe();
     while (!verdict.broken && status.step < steps && status.mass > 0.0 && status.particles < kMostPoints) {
         simulation->advance(kNever);
         state = snapshot_of(*simulation, facts.steep);
-        see();
+        observe();
     }
 }
 

@@ -28,7 +28,7 @@ void for_each_part(const Vec3& low, const Vec3& high, double cell, int per_cell,
                      size.prod());
 }
 
-SpaceGeometry grid_around(const Frame3& frame, const Vec3& low, const Vec3& high, double cell) {
+GridGeometry3d grid_around(const Frame3& frame, const Vec3& low, const Vec3& high, double cell) {
     constexpr double kRoom = 4.0;  // cells: what images of points on a surface reach
     Vec3 least = frame.at(low), most = least;
     for (int corner = 1; corner < 8; ++corner) {
@@ -36,7 +36,7 @@ SpaceGeometry grid_around(const Frame3& frame, const Vec3& low, const Vec3& high
             {corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
         least = least.cwiseMin(x), most = most.cwiseMax(x);
     }
-    SpaceGeometry g;
+    GridGeometry3d g;
     g.cell = cell;
     for (int axis = 0; axis < 3; ++axis) {
         g.origin[axis] = cell * (std::floor(least[axis] / cell) - kRoom);
@@ -50,7 +50,7 @@ void add_slice(SolidScene& scene, double width) {
     scene.surfaces.push_back(Surface::plane({0, width, 0}, {0, -1, 0}));
 }
 
-Measurement run_body(SolidFlow& flow, double end, const std::function<void(const SolidFlow&)>& each) {
+Measurement run_body(Mpm3d& flow, double end, const std::function<void(const Mpm3d&)>& each) {
     const auto start = std::chrono::steady_clock::now();
     const SolidStatus first = flow.status();
     // What momentum goes round: that of the points, whichever way they go, and what is given to them.
@@ -70,7 +70,7 @@ Measurement run_body(SolidFlow& flow, double end, const std::function<void(const
     return m;
 }
 
-void add_energies(Measurement& m, const SolidFlow& flow, double turned_over) {
+void add_energies(Measurement& m, const Mpm3d& flow, double turned_over) {
     const SolidStatus& now = flow.status();
     m.add("numerical_loss", now.numerical() / turned_over);
     m.add("material_loss", now.material / turned_over);

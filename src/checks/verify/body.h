@@ -1,9 +1,9 @@
 #pragma once
-// Building scenes in space for verification problems, and running them.
+// Building 3D scenes for verification problems, and running them.
 #include <functional>
 
 #include "checks/verify/problem.h"
-#include "solid3d/solid_flow.h"
+#include "solid3d/mpm3d.h"
 
 namespace frana::verify {
 
@@ -22,17 +22,17 @@ void for_each_part(const Vec3& low, const Vec3& high, double cell, int per_cell,
                    const std::function<void(const Vec3& place, double volume)>& take);
 
 /// A grid that holds a box given in the problem's axes, with room for images.
-SpaceGeometry grid_around(const Frame3& frame, const Vec3& low, const Vec3& high, double cell);
+GridGeometry3d grid_around(const Frame3& frame, const Vec3& low, const Vec3& high, double cell);
 
 /// The two planes at y = 0 and y = width that make a slice of a plane problem.
 void add_slice(SolidScene& scene, double width);
 
 /// A run to `end`, timed; calls each(flow) after every step. momentum_residual: what the ledger of surfaces
 /// and gravity leaves open, over all momentum that went round.
-Measurement run_body(SolidFlow& flow, double end, const std::function<void(const SolidFlow&)>& each = {});
+Measurement run_body(Mpm3d& flow, double end, const std::function<void(const Mpm3d&)>& each = {});
 
 /// Shares of an energy [J] that a run turned over, as extras: what the scheme lost of it, and what the law did.
-void add_energies(Measurement& m, const SolidFlow& flow, double turned_over);
+void add_energies(Measurement& m, const Mpm3d& flow, double turned_over);
 
 /// Runs of one problem as one: steps and times add up, and the larger residual counts; the rest is the later
 /// run's.

@@ -34,7 +34,7 @@ double BinghamSheet::mean_speed() const {
 }
 
 std::vector<Residual> BinghamSheet::residuals() const {
-    const double yields = thickness - plug(), pull = density * g * std::sin(slope);
+    const double yields = thickness - plug(), drive = density * g * std::sin(slope);
     const auto profile = [&](double z) { return speed(z); };
     const double mean =  // a parabola below, a plug above: Simpson's rule is exact on either
         (yields * mean_of(profile, 0.0, yields, 1) + plug() * speed(thickness)) / thickness;
@@ -42,7 +42,7 @@ std::vector<Residual> BinghamSheet::residuals() const {
     const double stress = yield_stress + viscosity * (speed(z + d) - speed(z - d)) / (2 * d);
     const BinghamSheet known{1500.0, 10.0, 100.0, 15 * kDegree, 0.3};
     return {{"mean of the profile / mean speed - 1", mean / mean_speed() - 1, 1e-14},
-            {"stress of the law / weight - 1", stress / (pull * (thickness - z)) - 1, 1e-13},
+            {"stress of the law / weight - 1", stress / (drive * (thickness - z)) - 1, 1e-13},
             {"published: 1500, 10, 100, 15 deg, .3 m: 9.929397 m/s", known.mean_speed() - 9.929397, 5e-7},
             {"published: its surface, 14.269635 m/s", known.speed(0.3) - 14.269635, 5e-7}};
 }

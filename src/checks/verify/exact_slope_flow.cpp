@@ -24,9 +24,9 @@ Balance balance(const Wave& wave, double x, double t, double step) {
     const double q_x = derivative([&](double d) { return flux(wave.at(x + d, t)); });
     const double u_x = derivative([&](double d) { return wave.at(x + d, t).velocity; });
     const double h_x = derivative([&](double d) { return wave.at(x + d, t).depth; });
-    const double carried = wave.at(x, t).velocity * u_x, push = wave.gravity * h_x;
-    return {h_t + q_x, u_t + carried + push - wave.drive, std::abs(h_t) + std::abs(q_x),
-            std::abs(u_t) + std::abs(carried) + std::abs(push)};
+    const double carried = wave.at(x, t).velocity * u_x, pressure_gradient = wave.gravity * h_x;
+    return {h_t + q_x, u_t + carried + pressure_gradient - wave.drive, std::abs(h_t) + std::abs(q_x),
+            std::abs(u_t) + std::abs(carried) + std::abs(pressure_gradient)};
 }
 
 /// The worst balance over places inside a moving flow, relative to the largest terms.

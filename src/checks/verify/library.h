@@ -20,7 +20,7 @@ std::vector<Problem> slope_flow_problems();  // problems_slope_flow.cpp
 std::vector<Problem> similarity_problems();  // problems_similarity.cpp
 std::vector<Problem> block_problems();       // problems_blocks.cpp
 std::vector<Problem> track_problems();       // problems_tracks.cpp
-std::vector<Problem> bank_problems();        // problems_bank.cpp
+std::vector<Problem> bed_step_problems();        // problems_bed_step.cpp
 std::vector<Problem> sheet_problems();       // problems_sheet.cpp
 std::vector<Problem> deposit_problems();     // problems_deposit.cpp
 std::vector<Problem> spreading_problems();   // problems_spreading.cpp

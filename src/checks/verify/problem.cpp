@@ -38,7 +38,7 @@ std::vector<Measurement> measure(const Problem& problem, Setup setup, const std:
         m.preset = setup.preset;
         m.cells = cells;
         m.per_side = setup.per_side;
-        m.dimensions = problem.in_space ? 3 : 2;
+        m.dimensions = problem.in_3d ? 3 : 2;
         if (!results.empty() && results.back().cells != cells) {
             const double coarse = std::abs(results.back().value(problem.order_of));
             const double fine = std::abs(m.value(problem.order_of));

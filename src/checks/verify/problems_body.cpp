@@ -1,4 +1,4 @@
-// Solids in space: a bar that vibrates, a disc that turns, a bar that strikes a wall, a block that slides.
+// 3D solids: a bar that vibrates, a disc that turns, a bar that strikes a wall, a block that slides.
 #include <algorithm>
 #include <cmath>
 
@@ -38,7 +38,7 @@ Measurement run_bar(const Setup& setup) {
     const SolidScene s = bar.scene(setup, [&](double x) { return 1e-3 * bar.wave() * mode(x); });
     std::vector<double> shape;
     for (const Vec3& x : s.points.position) shape.push_back(mode(x.x()));
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     const double kinetic = flow.status().kinetic;
     const auto amplitude = [&] {
         double sum = 0.0, all = 0.0;
@@ -53,7 +53,7 @@ Measurement run_bar(const Setup& setup) {
     std::vector<double> zeros;
     double before = amplitude(), before_time = 0.0;
     double most_stored = 0.0, lost = kNone, flowed = kNone;  // after two periods, when both energies stand still
-    Measurement m = run_body(flow, 2.2 * period, [&](const SolidFlow& now) {
+    Measurement m = run_body(flow, 2.2 * period, [&](const Mpm3d& now) {
         most_stored = std::max(most_stored, now.status().stored);
         if (now.status().time >= 2.0 * period && !std::isfinite(lost))
             lost = now.status().numerical() / kinetic, flowed = now.status().material / kinetic;
@@ -81,10 +81,10 @@ Measurement run_elastic_column(const Setup& setup) {
     s.surfaces.push_back(Surface::plane({0, 0, 0}, {1, 0, 0}, Hold::stuck));
     std::vector<double> height, mean(s.points.position.size(), 0.0);
     for (const Vec3& x : s.points.position) height.push_back(x.x());
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     const double period = 4.0 * bar.length / bar.wave(), side = 4.0 * bar.length / static_cast<double>(setup.cells);
     double before = 0.0;
-    Measurement m = run_body(flow, period, [&](const SolidFlow& now) {
+    Measurement m = run_body(flow, period, [&](const Mpm3d& now) {
         const double dt = now.status().time - before;
         before = now.status().time;
         for (Index p = 0; p < now.body().points.count(); ++p)
@@ -114,7 +114,7 @@ Measurement run_disc(const Setup& setup) {
         if (std::hypot(x.x(), x.y()) < kRadius)
             s.points.add(x, {-kSpin * x.y(), kSpin * x.x(), 0}, s.density * volume);
     });
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     flow.advance(1e-9);  // points learn the motion around them
     const Vec3 start = flow.angular_momentum();
     const double kinetic = flow.status().kinetic, learnt = flow.status().numerical();
@@ -140,14 +140,14 @@ BarImpact strike(const Setup& setup, double turn) {
     const double side = 4.0 * bar.length / static_cast<double>(setup.cells), v0 = 1e-3 * bar.wave();
     SolidScene s = bar.scene(setup, [&](double) { return -v0; }, frame);
     s.surfaces.push_back(Surface::plane({0, 0, 0}, along));
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     const double back = 2.0 * bar.length / bar.wave();
-    std::vector<std::pair<double, double>> push;
-    const Measurement m = run_body(flow, 1.5 * back, [&](const SolidFlow& now) {
-        push.emplace_back(now.status().time, now.body().impulse[0].dot(along));
+    std::vector<std::pair<double, double>> wall_impulse;
+    const Measurement m = run_body(flow, 1.5 * back, [&](const Mpm3d& now) {
+        wall_impulse.emplace_back(now.status().time, now.body().impulse[0].dot(along));
     });
     const auto at = [&](double t) {
-        const auto it = std::lower_bound(push.begin(), push.end(), std::make_pair(t, -1e300));
+        const auto it = std::lower_bound(wall_impulse.begin(), wall_impulse.end(), std::make_pair(t, -1e300));
         return *it;
     };
     const auto a = at(0.2 * back), b = at(0.8 * back);
@@ -192,17 +192,17 @@ Slide3 slide(const Setup& setup, double mu) {
     for_each_part({0.3, 0, 0}, {1.3, side, 0.5}, cell, setup.per_side, [&](const Vec3& x, double volume) {
         s.points.add(frame.at(x), kStart * along, s.density * volume);
     });
-    SolidFlow flow(s);
+    Mpm3d flow(s);
     const Vec3 start = flow.status().centre;
     const double height = flow.status().potential;
     Slide3 result;
     // Friction takes mu times the push on the way in a step; the way of the centre, since the sole's is nearly that.
-    double work = 0.0, pushed = 0.0, before = kStart;
-    result.run = run_body(flow, kEnd, [&](const SolidFlow& moved) {
-        const double push = moved.body().impulse[0].dot(across);
+    double work = 0.0, impulse_before = 0.0, before = kStart;
+    result.run = run_body(flow, kEnd, [&](const Mpm3d& moved) {
+        const double wall_impulse = moved.body().impulse[0].dot(across);
         const double speed = moved.status().momentum.dot(along) / moved.status().mass;
-        work += mu * (push - pushed) * 0.5 * (speed + before);
-        pushed = push, before = speed;
+        work += mu * (wall_impulse - impulse_before) * 0.5 * (speed + before);
+        impulse_before = wall_impulse, before = speed;
     });
     const SolidStatus& now = flow.status();
     const Vec3 v = now.momentum / now.mass;
@@ -273,7 +273,7 @@ std::vector<Problem> body_problems() {
         {0, "numerical_loss", 0.02, "of the height that it lost"},
         {0, "sunk", 0.25, "compression by its weight, and the points' own size"},
         closed};
-    for (Problem* problem : {&bar, &column, &disc, &impact, &block}) problem->in_space = true;
+    for (Problem* problem : {&bar, &column, &disc, &impact, &block}) problem->in_3d = true;
     return {bar, column, disc, impact, block};
 }
 

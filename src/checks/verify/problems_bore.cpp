@@ -46,8 +46,8 @@ struct Bore {
 /// across move alike, so that one in a cell is enough.
 SolidScene stream(const Bore& bore, double end, const Setup& setup) {
     const double cell = kDepth / static_cast<double>(setup.cells), width = kWidthCells * cell;
-    const double sound = 10.0 * std::max(bore.speed(), bore.wave());
-    const double bulk = kDensity * sound * sound, length = bore.length(end);
+    const double sound_speed = 10.0 * std::max(bore.speed(), bore.wave());
+    const double bulk = kDensity * sound_speed * sound_speed, length = bore.length(end);
     // The end falls back at 2 sqrt(g h_1) through the stream; jets rise as high as their speed carries them,
     // and splash.
     const double room = length + std::max(0.0, 2.0 * bore.wave() - bore.speed()) * end;
@@ -73,17 +73,17 @@ SolidScene stream(const Bore& bore, double end, const Setup& setup) {
 }
 
 /// The wall's mean force from kFrom to `end` over that of the bore, less one.
-struct Push {
+struct Thrust {
     double error;
     double left;  ///< out of the grid [m2]
     Measurement run;
 };
-Push push(const Bore& bore, double end, const Setup& setup) {
+Thrust thrust_of(const Bore& bore, double end, const Setup& setup) {
     const double width = kWidthCells * kDepth / static_cast<double>(setup.cells);
-    SolidFlow flow(stream(bore, end, setup));
+    Mpm3d flow(stream(bore, end, setup));
     double since = 0.0, before = 0.0;
-    Push result;
-    result.run = run_body(flow, end, [&](const SolidFlow& now) {
+    Thrust result;
+    result.run = run_body(flow, end, [&](const Mpm3d& now) {
         if (now.status().time <= kFrom) since = now.status().time, before = now.body().impulse[0].x();
     });
     const double force = (flow.body().impulse[0].x() - before) / (end - since) / width;
@@ -94,7 +94,7 @@ Push push(const Bore& bore, double end, const Setup& setup) {
 
 /// Two streams, each for so long [s].
 Measurement run_bores(const Setup& setup, const Bore& slow, double slow_end, const Bore& fast, double fast_end) {
-    const Push first = push(slow, slow_end, setup), second = push(fast, fast_end, setup);
+    const Thrust first = thrust_of(slow, slow_end, setup), second = thrust_of(fast, fast_end, setup);
     Measurement m = joined(first.run, second.run);
     m.add(fmt::format("force_error_{}", slow.froude), first.error);
     m.add(fmt::format("force_error_{}", fast.froude), second.error);
@@ -116,11 +116,11 @@ std::vector<Residual> bore_residuals() {
          {std::pair{1.0, 2.35464}, {2.0, 1.52597}, {3.0, 1.31436}, {5.0, 1.17038}}) {
         const Bore bore{froude};
         const double in = bore.speed() + bore.retreat(), out = bore.retreat(), h = bore.depth();
-        const double push_in = kDepth * in * in + 0.5 * kGravity * kDepth * kDepth;
+        const double thrust_in = kDepth * in * in + 0.5 * kGravity * kDepth * kDepth;
         list.push_back(
             {fmt::format("mass through a bore at Fr = {}", froude), h * out / (kDepth * in) - 1.0, 1e-12});
         list.push_back({fmt::format("momentum through a bore at Fr = {}", froude),
-                        (h * out * out + 0.5 * kGravity * h * h) / push_in - 1.0, 1e-12});
+                        (h * out * out + 0.5 * kGravity * h * h) / thrust_in - 1.0, 1e-12});
         list.push_back({fmt::format("listed force at Fr = {}", froude), bore.force() / listed - 1.0, 5e-6});
     }
     return list;
@@ -150,7 +150,7 @@ std::vector<Problem> bore_problems() {
     strong.gates = {{0, "force_error_3", 0.04, asked},
                     {0, "force_error_5", 0.04, asked},
                     {0, "momentum_residual", 1e-12, "round-off"}};
-    bore.in_space = strong.in_space = true;
+    bore.in_3d = strong.in_3d = true;
     return {bore, strong};
 }
 

@@ -13,7 +13,7 @@ constexpr double kDegree = M_PI / 180.0, kGravity = 9.81;
 constexpr double kWidthCells = 3.0;  // of a slice
 
 /// End of the deposit that holds together: the first gap of a cell.
-double tip(const SolidFlow& flow, double cell) {
+double tip(const Mpm3d& flow, double cell) {
     std::vector<double> x;
     for (Index p = 0; p < flow.body().points.count(); ++p) x.push_back(flow.position(p).x());
     std::sort(x.begin(), x.end());
@@ -51,7 +51,7 @@ struct Heap {
         SolidScene s = column(height, room, cell);
         s.density = density;
         s.surfaces[0].friction = std::tan(phi);
-        s.keeps = true;
+        s.flip = true;
         s.blending = std::sqrt(cell / kGravity);  // as stages have it (scene/scene_stages.cpp)
         s.law = solid::DruckerPrager::of(elastic, phi, 0.0, solid::Cone::plane_strain);
         for_each_part({0, 0, 0}, {length, kWidthCells * cell, height}, cell, per_side,
@@ -67,7 +67,7 @@ Measurement run_stiff_column(const Setup& setup, double stiffness, double& runou
     const solid::Elastic soft = stiff_enough(kDensity, kHeight);
     const Heap heap{kLength, kHeight, kDensity, 31.0 * kDegree, {stiffness * soft.lambda, stiffness * soft.shear},
                     0.3, 4.0 * std::sqrt(kHeight / kGravity) + 0.1};
-    SolidFlow flow(heap.scene(cell, setup.per_side));
+    Mpm3d flow(heap.scene(cell, setup.per_side));
     Measurement m = run_body(flow, heap.end);
     runout = tip(flow, cell) / kLength - 1.0;
     return m;
@@ -95,7 +95,7 @@ Measurement run_column_collapse(const Setup& setup) {
         const double cell = std::min(kLength, height) / static_cast<double>(setup.cells);
         const Heap heap{kLength, height, kDensity, kPhi, stiff_enough(kDensity, height),
                         (2.0 + 1.5 * law) * kLength, 4.0 * std::sqrt(height / kGravity) + 0.1};
-        SolidFlow flow(heap.scene(cell, setup.per_side));
+        Mpm3d flow(heap.scene(cell, setup.per_side));
         m = joined(m, run_body(flow, heap.end));
         const double runout = tip(flow, cell) / kLength - 1.0;
         found.emplace_back("runout_" + std::to_string(a).substr(0, 3), runout);
@@ -107,7 +107,7 @@ Measurement run_column_collapse(const Setup& setup) {
 }
 
 /// Height of what lies within a cell of a place: its volume without stress over that area [m].
-double surface(const SolidFlow& flow, double x, double cell) {
+double surface(const Mpm3d& flow, double x, double cell) {
     const double low = std::max(0.0, x - cell), high = x + cell;
     double volume = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p)
@@ -124,7 +124,7 @@ Measurement run_column_bars(const Setup& setup) {
     const double cell = kHeight / static_cast<double>(setup.cells);
     const Heap heap{kLength, kHeight, 2650.0, 19.8 * kDegree,
                     solid::Elastic::of(3.0 * 0.7e6 * (1.0 - 2.0 * kPoisson), kPoisson), 0.6, 0.8};
-    SolidFlow flow(heap.scene(cell, setup.per_side));
+    Mpm3d flow(heap.scene(cell, setup.per_side));
     Measurement m = run_body(flow, heap.end);
     double sum = 0.0;
     for (const auto& [x, z] : kMeasured) sum += std::abs(surface(flow, x, cell) - z);
@@ -135,7 +135,7 @@ Measurement run_column_bars(const Setup& setup) {
 }
 
 /// Mean depth between two places, by the volume without stress of what lies there [m].
-double mean_depth(const SolidFlow& flow, double low, double high, double cell) {
+double mean_depth(const Mpm3d& flow, double low, double high, double cell) {
     double volume = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p)
         if (flow.position(p).x() >= low && flow.position(p).x() < high) volume += flow.body().points.rest_volume[p];
@@ -164,7 +164,7 @@ Measurement run_column_grains(const Setup& setup) {
         const double height = g.aspect * kLength, cell = std::min(kLength, height) / static_cast<double>(setup.cells);
         const Heap heap{kLength, height, kDensity, std::atan(kFriction), stiff_enough(kDensity, height),
                         1.5 * g.half_length * height, 4.0 * std::sqrt(height / kGravity) + 0.1};
-        SolidFlow flow(heap.scene(cell, setup.per_side));
+        Mpm3d flow(heap.scene(cell, setup.per_side));
         m = joined(m, run_body(flow, heap.end));
         const double tenth = 0.1 * g.half_length * height;
         double between = mean_depth(flow, 10.0 * tenth, heap.room, cell) * (heap.room - 10.0 * tenth);
@@ -183,20 +183,20 @@ struct Slump {
     static constexpr double kYield = 1000.0, kDensity = 1000.0, kMiddle = 3.5;
     static constexpr double kFirst = 1.0;  ///< half its length [m]
     double cell;
-    SolidFlow flow;
+    Mpm3d flow;
 
     Slump(const Setup& setup, double viscosity)
         : cell(1.0 / static_cast<double>(setup.cells)), flow(scene(cell, setup.per_side, viscosity)) {}
 
     static SolidScene scene(double cell, int per_side, double viscosity) {
-        const double width = kWidthCells * cell, sound = 10.0 * std::sqrt(kGravity);
+        const double width = kWidthCells * cell, sound_speed = 10.0 * std::sqrt(kGravity);
         SolidScene s;
         s.gravity = {0, 0, -kGravity};
         s.grid = grid_around({}, {0, 0, 0}, {2.0 * kMiddle, width, 1.0}, cell);
         s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::stuck)};
         add_slice(s, width);
         s.density = kDensity;
-        const double bulk = kDensity * sound * sound;
+        const double bulk = kDensity * sound_speed * sound_speed;
         s.law = solid::Bingham{bulk, 100.0 * kYield, viscosity, kYield};
         for_each_part({kMiddle - kFirst, 0, 0}, {kMiddle + kFirst, width, 1}, cell, per_side,
                       [&](const Vec3& x, double volume) {
@@ -350,7 +350,7 @@ std::vector<Problem> column_problems() {
                   {0, "length_error", 0.1, "as of the slump"},
                   {0, "speed", 1e-2, "at rest but for what decays"},
                   closed};
-    for (Problem* problem : {&sand, &steps, &bars, &grains, &slump, &slow}) problem->in_space = true;
+    for (Problem* problem : {&sand, &steps, &bars, &grains, &slump, &slow}) problem->in_3d = true;
     return {sand, steps, bars, grains, slump, slow};
 }
 

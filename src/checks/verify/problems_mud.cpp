@@ -1,4 +1,4 @@
-// Sheets in space that flow down an incline which holds them: viscous fluid, Herschel and Bulkley's mud.
+// 3D sheets that flow down an incline which holds them: viscous fluid, Herschel and Bulkley's mud.
 #include <algorithm>
 #include <cmath>
 
@@ -14,11 +14,11 @@ constexpr double kMiddle = 1.0;  ///< half of what is looked at [m]
 struct Sheet {
     static constexpr double kGravity = 9.81, kDensity = 1000.0, kWidthCells = 3.0;
     double length = 12.0;
-    double sound = 10.0;  ///< over sqrt(g), of 1 m
+    double sound_speed = 10.0;  ///< over sqrt(g), of 1 m
     double floor = 0.0;   ///< how far above nodes [cells]
     SolidLaw law = solid::Fluid{};
 
-    double bulk() const { return kDensity * sound * sound * kGravity; }
+    double bulk() const { return kDensity * sound_speed * sound_speed * kGravity; }
     SolidScene scene(double cell, int per_side) const {
         const double width = kWidthCells * cell, low = floor * cell, along = kGravity * std::sqrt(0.5);
         SolidScene s;
@@ -46,10 +46,10 @@ double viscous_speed(double z) {
 /// crosses it.
 double viscous_error(const Setup& setup, double floor, Measurement& m) {
     Sheet sheet;
-    sheet.sound = 20.0, sheet.floor = floor;
+    sheet.sound_speed = 20.0, sheet.floor = floor;
     sheet.law = solid::Fluid{sheet.bulk(), kViscosity};
     const double cell = 1.0 / static_cast<double>(setup.cells);
-    SolidFlow flow(sheet.scene(cell, setup.per_side));
+    Mpm3d flow(sheet.scene(cell, setup.per_side));
     m = joined(m, run_body(flow, 8.0 * 4.0 * Sheet::kDensity / (M_PI * M_PI * kViscosity)));
     double off = 0.0, all = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p) {
@@ -79,17 +79,17 @@ struct Mud {
     double yield_share = 0.4;  ///< of the stress at the bed
     double consistency = 5250.0, exponent = 0.5;
 
-    double pull() const { return density * Sheet::kGravity * std::sqrt(0.5); }  ///< [Pa/m]
-    double yield_stress() const { return yield_share * pull() * thickness; }
+    double drive() const { return density * Sheet::kGravity * std::sqrt(0.5); }  ///< [Pa/m]
+    double yield_stress() const { return yield_share * drive() * thickness; }
     double sheared() const { return (1.0 - yield_share) * thickness; }  ///< z_y [m]
     double speed(double z) const {
         const double power = 1.0 + 1.0 / exponent;
-        return std::pow(pull() / consistency, 1.0 / exponent) / power *
+        return std::pow(drive() / consistency, 1.0 / exponent) / power *
                (std::pow(sheared(), power) - std::pow(std::max(0.0, sheared() - z), power));
     }
     /// Shear rate at a height, from the law: K rate^n = tau - tau_Y [1/s].
     double rate(double z) const {
-        return std::pow(std::max(0.0, pull() * (thickness - z) - yield_stress()) / consistency, 1.0 / exponent);
+        return std::pow(std::max(0.0, drive() * (thickness - z) - yield_stress()) / consistency, 1.0 / exponent);
     }
     /// d tau / d rate at the bed over the density: how fast shear spreads [m^2/s].
     double diffusivity() const { return exponent * consistency * std::pow(rate(0.0), exponent - 1.0) / density; }
@@ -104,7 +104,7 @@ Measurement run_mud_sheet(const Setup& setup) {
     sheet.length = 48.0;
     sheet.law = solid::HerschelBulkley{sheet.bulk(), 100.0 * mud.yield_stress(), mud.consistency, mud.exponent,
                                        mud.yield_stress()};
-    SolidFlow flow(sheet.scene(cell, setup.per_side));
+    Mpm3d flow(sheet.scene(cell, setup.per_side));
     const double crossing = 4.0 * mud.thickness * mud.thickness / (M_PI * M_PI * mud.diffusivity());
     Measurement m = run_body(flow, 8.0 * crossing);
     // The middle has moved; its depth and the ends have hardly changed it.
@@ -152,7 +152,7 @@ std::vector<Problem> mud_problems() {
                  {8, "profile_error", 0.023, own},
                  {8, "plug_error", 0.026, own},
                  {0, "momentum_residual", 1e-12, "round-off"}};
-    mud.in_space = true;
+    mud.in_3d = true;
     Problem viscous{"viscous_sheet",
                     "a sheet of viscous fluid flows down an incline that holds it: its profile",
                     {4, 8},
@@ -165,7 +165,7 @@ std::vector<Problem> mud_problems() {
                      {8, "profile_error", 0.0068, own},
                      {8, "error_between", 0.011, own},
                      {0, "momentum_residual", 1e-12, "round-off"}};
-    viscous.in_space = true;
+    viscous.in_3d = true;
     return {mud, viscous};
 }
 

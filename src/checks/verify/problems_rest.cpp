@@ -1,4 +1,4 @@
-// Columns at rest that become points in space and stay at rest.
+// Columns at rest that become 3D points and stay at rest.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr double kGravity = 10.0, kDensity = 1000.0, kDeepest = 1.0;  // [m/s^2]
 constexpr double kSlope = 20.0 * M_PI / 180.0;
 
 /// A wedge of water against a wall at x = 0, level at z = kDeepest over a bed of 20 degrees, as columns one
-/// cell wide, of which a stage in space from the start makes points half of that apart.
+/// cell wide, of which a 3D stage from the start makes points half of that apart.
 Scene wedge(const SolidLaw& law, double bed_friction, const Setup& setup) {
     constexpr Index kAcross = 4, kRoom = 4;  // nodes of the terrain
     const double cell = kDeepest / static_cast<double>(setup.cells);
@@ -36,7 +36,7 @@ Scene wedge(const SolidLaw& law, double bed_friction, const Setup& setup) {
     return scene;
 }
 
-std::vector<Vec3> places(const SolidFlow& flow) {
+std::vector<Vec3> places(const Mpm3d& flow) {
     std::vector<Vec3> x(static_cast<std::size_t>(flow.body().points.count()));
     for (Index p = 0; p < flow.body().points.count(); ++p)
         x[static_cast<std::size_t>(flow.body().points.id[p])] = flow.position(p);
@@ -50,7 +50,7 @@ double rms_apart(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 /// Root mean square of the pressure's error, over that on the deepest bed.
-double pressure_error(const SolidFlow& flow) {
+double pressure_error(const Mpm3d& flow) {
     double sum = 0.0;
     for (Index p = 0; p < flow.body().points.count(); ++p) {
         const double exact = kDensity * kGravity * std::max(0.0, kDeepest - flow.position(p).z());
@@ -63,11 +63,11 @@ double pressure_error(const SolidFlow& flow) {
 /// What bed and wall carry in some time: the bed the weight, the wall a triangle of pressure.
 struct Forces {
     double bed_error, wall_error;
-    Forces(const SolidFlow& flow, const std::vector<Vec3>& before, double since) {
+    Forces(const Mpm3d& flow, const std::vector<Vec3>& before, double since) {
         const SolidStatus& now = flow.status();
-        const double weight = now.mass * kGravity, push = weight * std::tan(kSlope), time = now.time - since;
+        const double weight = now.mass * kGravity, pressure_force = weight * std::tan(kSlope), time = now.time - since;
         bed_error = (flow.body().impulse[0].z() - before[0].z()) / time / weight - 1.0;
-        wall_error = (flow.body().impulse[1].x() - before[1].x()) / time / push - 1.0;
+        wall_error = (flow.body().impulse[1].x() - before[1].x()) / time / pressure_force - 1.0;
     }
 };
 
@@ -84,7 +84,7 @@ Rest rest(const SolidLaw& law, double bed_friction, bool stops, const Setup& set
     const double cell = kDeepest / static_cast<double>(setup.cells);
     const auto began = std::chrono::steady_clock::now();
     StagedRun run(wedge(law, bed_friction, setup));
-    const SolidFlow& flow = *run.points();
+    const Mpm3d& flow = *run.points();
     const std::vector<Vec3> start = places(flow);
     const auto worse = [](const Forces& f) {
         return std::max(std::abs(f.bed_error), std::abs(f.wall_error));
@@ -154,7 +154,7 @@ std::vector<Problem> rest_problems() {
                   {0, "later_rough", 5e-3, stops},
                   {0, "later_mud", 5e-3, stops},
                   {0, "momentum_residual", 1e-12, "round-off"}};
-    rest.in_space = true;
+    rest.in_3d = true;
     return {rest};
 }
 

@@ -14,7 +14,7 @@ constexpr double kDegree = M_PI / 180.0, kGravity = 9.81;
 constexpr double kUnbreakable = 1e12;  // cohesion [Pa]
 
 /// Nothing pulls: motion in the plane alone.
-GroundPull weightless(double, double) { return {0.0, 0.0, 0.0}; }
+GroundGravity weightless(double, double) { return {0.0, 0.0, 0.0}; }
 
 double larger(double a, double b) { return std::abs(a) > std::abs(b) ? a : b; }
 

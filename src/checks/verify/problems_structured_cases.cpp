@@ -11,37 +11,37 @@ namespace frana::verify {
 namespace {
 
 /// A run, and what the block came apart into.
-struct Broken {
+struct Fragmented {
     Measurement run;
     double coverage = 0.0, damage = 0.0;
-    std::vector<double> whole;  ///< shares of the mass in pieces that are not broken, the largest first
+    std::vector<double> intact;  ///< shares of the mass in pieces that are not broken, the largest first
     Neighbours::Torn torn;
-    double share(std::size_t n) const { return n < whole.size() ? whole[n] : 0.0; }
+    double share(std::size_t n) const { return n < intact.size() ? intact[n] : 0.0; }
 };
 
 /// What a scene has become at `end` [s].
-Broken broken(const StructuredScene& scene, double end) {
-    constexpr double kBroken = 0.9, kLeast = 0.02;  // damage; share of the mass
+Fragmented broken(const StructuredScene& scene, double end) {
+    constexpr double kFragmented = 0.9, kLeast = 0.02;  // damage; share of the mass
     constexpr double kTorn = 1.5, kLink = 1.25,
                      kReach = 0.55;  // cells; the last is 1.1 spacings of two a cell
     const double cell = scene.grid.cell;
     StructuredFlow flow(scene);
     const Neighbours neighbours(flow, kReach * cell);
-    Broken result;
+    Fragmented result;
     result.run = run_structured(flow, end);
     result.coverage = crack_coverage(flow, scene.points);
     result.damage = flow.status().damage;
-    result.whole = pieces(flow, {kLink * cell, kBroken, kLeast});
+    result.intact = pieces(flow, {kLink * cell, kFragmented, kLeast});
     result.torn = neighbours.torn(flow, kTorn * cell);
     return result;
 }
 
 /// Runs of one problem as one: steps and times add up, the larger residuals count.
-Measurement together(const std::vector<Broken>& runs) {
+Measurement together(const std::vector<Fragmented>& runs) {
     Measurement m;
     double residual = 0.0, numerical = 0.0;
     m.mass_error = 0.0;
-    for (const Broken& b : runs) {
+    for (const Fragmented& b : runs) {
         m.particles = b.run.particles;
         m.steps += b.run.steps, m.wall_seconds += b.run.wall_seconds;
         m.mass_error = std::max(m.mass_error, b.run.mass_error);
@@ -59,7 +59,7 @@ double short_of(double least, double value) { return std::max(0.0, least - value
 /// Both clays: the soft one cracks along about half its length, the stiff one is dented.
 Measurement run_clay_flume(const Setup& setup) {
     const double cell = 0.3 / static_cast<double>(setup.cells);
-    const Broken soft = broken(clay_flume(kSoftClay, cell, setup.per_side), 0.6),
+    const Fragmented soft = broken(clay_flume(kSoftClay, cell, setup.per_side), 0.6),
                  stiff = broken(clay_flume(kStiffClay, cell, setup.per_side), 0.6);
     Measurement m = together({soft, stiff});
     m.add("soft_coverage", soft.coverage);
@@ -76,7 +76,7 @@ Measurement run_blocks_2(const Setup& setup) {
     const auto run = [&](double cohesion) {
         return broken(convex_block(cohesion, cell, setup.per_side), 14.0);
     };
-    const Broken a = run(200e3), held = run(140e3), parted = run(80e3), b = run(60e3);
+    const Fragmented a = run(200e3), held = run(140e3), parted = run(80e3), b = run(60e3);
     Measurement m = together({a, held, parted, b});
     m.add("damage_2a", a.damage);
     m.add("held_missing", short_of(0.95, held.share(0)));
@@ -95,7 +95,7 @@ Measurement run_blocks_3(const Setup& setup) {
     const auto run = [&](double cohesion, double fan, double end) {
         return broken(valley_block(cohesion, fan, cell, setup.per_side), end);
     };
-    const Broken a = run(400e3, -0.2, 16.0), slope = run(28e3, -0.2, 10.0), b = run(28e3, -0.2, 16.0),
+    const Fragmented a = run(400e3, -0.2, 16.0), slope = run(28e3, -0.2, 10.0), b = run(28e3, -0.2, 16.0),
                  c = run(15e3, 0.1, 10.0);
     Measurement m = together({a, slope, b, c});
     m.add("damage_3a", a.damage);

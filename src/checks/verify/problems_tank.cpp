@@ -1,4 +1,4 @@
-// Fluid in space: a tank at rest, a dam that breaks.
+// 3D fluid: a tank at rest, a dam that breaks.
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +43,7 @@ struct Water {
 struct PressureFit {
     double at_bed, noise;
 };
-PressureFit fit_pressure(const SolidFlow& flow, const Frame3& frame) {
+PressureFit fit_pressure(const Mpm3d& flow, const Frame3& frame) {
     double n = 0.0, z = 0.0, p = 0.0, zz = 0.0, zp = 0.0, pp = 0.0;
     for (Index k = 0; k < flow.body().points.count(); ++k) {
         const double height = (frame.turn.transpose() * flow.position(k)).z(),
@@ -66,12 +66,12 @@ Measurement run_tank(const Setup& setup) {
     Measurement m;
     for (const double turn : {0.0, 20.0}) {
         const Water water{turned_about_y(turn), cell, {1.0, width, 1.0}, {1.0, width, 1.3}, setup.per_side};
-        SolidFlow flow(water.scene());
+        Mpm3d flow(water.scene());
         std::vector<Vec3> half;
         double since = 0.0;
         const Vec3 start = flow.status().centre;
         const double mass = flow.status().mass;
-        const Measurement run = run_body(flow, kEnd, [&](const SolidFlow& now) {
+        const Measurement run = run_body(flow, kEnd, [&](const Mpm3d& now) {
             if (half.empty() && now.status().time >= 0.5 * kEnd)
                 half = now.body().impulse, since = now.status().time;
         });
@@ -80,13 +80,13 @@ Measurement run_tank(const Setup& setup) {
             return (flow.body().impulse[s] - half[s]).norm() / (kEnd - since) / width;
         };
         const double weight = mass * kGravity / width,
-                     push = 0.5 * weight;  // a square of water: half its weight
+                     pressure_force = 0.5 * weight;  // a square of water: half its weight
         const PressureFit fit = fit_pressure(flow, water.frame);
         bed_pressure = std::max(bed_pressure, std::abs(fit.at_bed / weight - 1.0));
         noise = std::max(noise, fit.noise / weight);
         bed_force = std::max(bed_force, std::abs(force(0) / weight - 1.0));
         for (const std::size_t wall : {1u, 2u})
-            wall_force = std::max(wall_force, std::abs(force(wall) / push - 1.0));
+            wall_force = std::max(wall_force, std::abs(force(wall) / pressure_force - 1.0));
         speed = std::max(speed, flow.status().max_speed);
         centre = std::max(centre, (flow.status().centre - start).norm());
     }
@@ -100,7 +100,7 @@ Measurement run_tank(const Setup& setup) {
 }
 
 /// Where 99 % of the points lie short of: single ones run ahead [m].
-double front_of(const SolidFlow& flow) {
+double front_of(const Mpm3d& flow) {
     std::vector<double> x;
     for (Index p = 0; p < flow.body().points.count(); ++p) x.push_back(flow.position(p).x());
     const auto at = x.begin() + static_cast<std::ptrdiff_t>(x.size() * 99 / 100);
@@ -115,7 +115,7 @@ Measurement run_dam_front(const Setup& setup) {
     constexpr double kMeasured[][2] = {{0.849, 1.245}, {1.212, 1.443}, {1.602, 1.884}, {2.283, 2.689}, {2.950, 3.728}};
     const double cell = 1.0 / static_cast<double>(setup.cells), width = kWidthCells * cell;
     const Water water{{}, cell, {1.0, width, 2.0}, {4.5, width, 2.6}, setup.per_side};
-    SolidFlow flow(water.scene());
+    Mpm3d flow(water.scene());
     const double scale = std::sqrt(2.0 * kGravity);
     constexpr double kWeighed = 2.65;  // T at which its energies are looked at, all but the last
     Measurement m;
@@ -133,7 +133,7 @@ Measurement run_dam_front(const Setup& setup) {
     m.add("energy_lost", 1.0 - now.kinetic / fallen);
     m.add("numerical_loss", now.numerical() / fallen);
     m.add("material_loss", now.material / fallen);
-    m.add("wall_loss", -now.pushed / fallen);
+    m.add("wall_loss", -now.contact_work / fallen);
     m.add("stored_share", now.stored / fallen);
     return m;
 }
@@ -145,7 +145,7 @@ Measurement run_dam_far(const Setup& setup) {
     constexpr double kReservoir = 10.0, kSlab = 0.5;
     const double cell = 1.0 / static_cast<double>(setup.cells), width = kWidthCells * cell, c = std::sqrt(kGravity);
     const Water water{{}, cell, {kReservoir, width, 1.0}, {kReservoir + 22.0, width, 1.5}, setup.per_side};
-    SolidFlow flow(water.scene());
+    Mpm3d flow(water.scene());
     Measurement m;
     std::vector<std::pair<std::string, double>> found;
     for (const double t : {1.0, 2.0, 3.0}) {
@@ -168,10 +168,10 @@ Measurement run_dam_far(const Setup& setup) {
 
 std::vector<Residual> tank_residuals() {
     // Half the weight of a square of water is what it pushes sideways: the integral of rho g (H - z) over H.
-    double push = 0.0;
-    for (int k = 0; k < 1000; ++k) push += kDensity * kGravity * (1.0 - (k + 0.5) / 1000.0) / 1000.0;
+    double pressure_force = 0.0;
+    for (int k = 0; k < 1000; ++k) pressure_force += kDensity * kGravity * (1.0 - (k + 0.5) / 1000.0) / 1000.0;
     return {{"side force of a square of water over half its weight - 1",
-             push / (0.5 * kDensity * kGravity) - 1.0, 1e-12}};
+             pressure_force / (0.5 * kDensity * kGravity) - 1.0, 1e-12}};
 }
 
 }  // namespace
@@ -206,7 +206,7 @@ std::vector<Problem> tank_problems() {
                 run_dam_far};
     far.gates = {{0, "depth_error_3", 0.05, "the start is still felt: the front of a slice of the same scheme was 5 % short"},
                  {0, "momentum_residual", 1e-12, "round-off"}};
-    for (Problem* problem : {&tank, &dam, &far}) problem->in_space = true;
+    for (Problem* problem : {&tank, &dam, &far}) problem->in_3d = true;
     return {tank, dam, far};
 }
 

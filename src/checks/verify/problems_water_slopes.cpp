@@ -31,9 +31,9 @@ double normal_flow_error(double slope, bool steep, const WaterFriction& friction
     const double c = friction.coefficient, g = scene.gravity;
     const double k = friction.law == WaterFriction::Law::manning ? g * c * c / std::pow(thickness, 4.0 / 3.0)
                                                                  : c / (8.0 * thickness);
-    const double pull = g * slope * cosine * cosine;  // horizontally
-    const double normal = std::sqrt(pull / cosine / k) * cosine;
-    return flow.at(cells / 2, 1).u / (normal * std::tanh(pull * kTime / normal)) - 1.0;
+    const double drive = g * slope * cosine * cosine;  // horizontally
+    const double normal = std::sqrt(drive / cosine / k) * cosine;
+    return flow.at(cells / 2, 1).u / (normal * std::tanh(drive * kTime / normal)) - 1.0;
 }
 
 Measurement run_normal(const Setup& setup) {

@@ -37,12 +37,13 @@ Film even_film(double slope, bool steep, const WaterFriction& friction, double t
     Film film;
     film.add(run_water(flow, time), m);
     const double cosine = steep ? 1.0 / std::sqrt(1.0 + slope * slope) : 1.0, t = kDepth * cosine;
-    const double pull = scene.gravity * slope * cosine;  // along the bed; without steep slopes their sine is the tangent
-    const double nusselt = pull * t * t / (3.0 * kNu), rate = 3.0 * kNu / (t * t);
+    const double drive =
+        scene.gravity * slope * cosine;  // along the bed; without steep slopes their sine is the tangent
+    const double nusselt = drive * t * t / (3.0 * kNu), rate = 3.0 * kNu / (t * t);
     double exact = nusselt * -std::expm1(-rate * time);
     if (friction.law == WaterFriction::Law::manning) {  // of 0 = pull - rate V - k V^2, by the end of the run
         const double k = scene.gravity * friction.coefficient * friction.coefficient / std::pow(t, 4.0 / 3.0);
-        exact = 2.0 * pull / (rate + std::sqrt(rate * rate + 4.0 * k * pull));
+        exact = 2.0 * drive / (rate + std::sqrt(rate * rate + 4.0 * k * drive));
     }
     film.error = flow.at(kCells / 2, 1).u / (exact * cosine) - 1.0;
     return film;

@@ -22,7 +22,7 @@ SteepDam::SteepDam(const Plane& plane, double behind, double end, int parcels)
     }
 }
 
-double SteepDam::pull(double gradient) const {
+double SteepDam::drive(double gradient) const {
     const double fall = plane_.slope - gradient, slope2 = plane_.slope * plane_.slope;
     return plane_.gravity * (fall / (1.0 + plane_.slope * std::max(0.0, fall)) - plane_.friction / (1.0 + slope2));
 }
@@ -30,14 +30,14 @@ double SteepDam::pull(double gradient) const {
 /// The last edge behind the dam moves as an endless layer, the first edge in front has nothing before it.
 void SteepDam::accelerate(double dt) {
     const std::size_t last = x_.size() - 1;
-    u_[0] += dt * pull(0.0);
+    u_[0] += dt * drive(0.0);
     double behind = mass_ / (x_[1] - x_[0]);
     for (std::size_t k = 1; k < last; ++k) {
         const double before = mass_ / (x_[k + 1] - x_[k]);
-        u_[k] += dt * pull((before - behind) / (0.5 * (x_[k + 1] - x_[k - 1])));
+        u_[k] += dt * drive((before - behind) / (0.5 * (x_[k + 1] - x_[k - 1])));
         behind = before;
     }
-    u_[last] += dt * pull(-behind / (0.5 * (x_[last] - x_[last - 1])));
+    u_[last] += dt * drive(-behind / (0.5 * (x_[last] - x_[last - 1])));
 }
 
 std::size_t SteepDam::parcel_at(double x) const {

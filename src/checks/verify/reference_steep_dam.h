@@ -20,7 +20,7 @@ public:
     double front() const { return x_.back(); }
 
 private:
-    double pull(double gradient) const;  ///< acceleration along the map [m/s^2]
+    double drive(double gradient) const;  ///< acceleration along the map [m/s^2]
     void accelerate(double dt);
     std::size_t parcel_at(double x) const;
 

@@ -86,15 +86,15 @@ SteepPile::SteepPile(const Plane& plane, Form form, int degree, double end, doub
 }
 
 SteepPile::Motion SteepPile::rate(const Motion& now) const {
-    Eigen::VectorXd push_x(a_.size()), push_y(a_.size());
+    Eigen::VectorXd force_x(a_.size()), force_y(a_.size());
     const double fall = weight_.dot(basis_x_.value * now.u) / weight_.sum();
     for (Eigen::Index n = 0; n < a_.size(); ++n) {
         const Local here = local(now, n);
-        const Vec2 push = weight_[n] * (form_ == Form::steep ? steep(here) : linearised(here, fall));
-        push_x[n] = push.x(), push_y[n] = push.y();
+        const Vec2 force = weight_[n] * (form_ == Form::steep ? steep(here) : linearised(here, fall));
+        force_x[n] = force.x(), force_y[n] = force.y();
     }
-    return {now.u, now.v, mass_x_.solve(basis_x_.value.transpose() * push_x),
-            mass_y_.solve(basis_y_.value.transpose() * push_y)};
+    return {now.u, now.v, mass_x_.solve(basis_x_.value.transpose() * force_x),
+            mass_y_.solve(basis_y_.value.transpose() * force_y)};
 }
 
 /// Depth by the Jacobian of the map, h = h0 / J, and its gradient by the chain rule.
@@ -116,19 +116,19 @@ SteepPile::Local SteepPile::local(const Motion& now, Index n) const {
 /// At the start v / fall is what the pull and this friction make it: pull_y / (g cos^2 slope).
 Vec2 SteepPile::linearised(const Local& here, double fall) const {
     const double s = plane_.slope, gravity = plane_.gravity / (1.0 + s * s);
-    const Vec2 pull(gravity * (s - here.gradient.x() / (1.0 + s * s)), -gravity * here.gradient.y());
-    const double aside = fall > 0.0 ? here.velocity.y() / fall : pull.y() / (gravity * s);
-    return pull - plane_.friction * gravity * Vec2(1.0, aside);
+    const Vec2 drive(gravity * (s - here.gradient.x() / (1.0 + s * s)), -gravity * here.gradient.y());
+    const double aside = fall > 0.0 ? here.velocity.y() / fall : drive.y() / (gravity * s);
+    return drive - plane_.friction * gravity * Vec2(1.0, aside);
 }
 
 /// At the start friction points against the pull.
 Vec2 SteepPile::steep(const Local& here) const {
     const double s = plane_.slope, g = plane_.gravity, cosine = 1.0 / std::sqrt(1.0 + s * s);
     const Vec2 rise = here.gradient - Vec2(s, 0.0);
-    const Vec2 pull = -g / (1.0 + std::max(0.0, -s * rise.x())) * rise;
-    const Vec2 along = here.velocity.squaredNorm() > 0.0 ? here.velocity : pull;
+    const Vec2 drive = -g / (1.0 + std::max(0.0, -s * rise.x())) * rise;
+    const Vec2 along = here.velocity.squaredNorm() > 0.0 ? here.velocity : drive;
     const double speed = std::sqrt(along.squaredNorm() + s * s * along.x() * along.x());
-    return pull - plane_.friction * g * cosine / speed * along;
+    return drive - plane_.friction * g * cosine / speed * along;
 }
 
 /// The place of the start that has come to (x, y), by Newton's method from the linear part of the map.

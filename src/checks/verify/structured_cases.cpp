@@ -104,8 +104,8 @@ Function height_along_x(const Ground& ground) {
         double z = 0.0;
         const int parts = static_cast<int>(std::ceil(std::abs(x)));
         for (int n = 0; n < parts; ++n) {
-            const GroundPull pull = ground((n + 0.5) * x / parts, y);
-            z -= x / parts * pull.x / pull.across;
+            const GroundGravity ground_gravity = ground((n + 0.5) * x / parts, y);
+            z -= x / parts * ground_gravity.x / ground_gravity.across;
         }
         return z;
     };

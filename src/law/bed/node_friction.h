@@ -35,13 +35,13 @@ inline double speeds_after(const Law& law, const BedState& bed, double s0, doubl
     return law.speed_after(bed, s0, driven, dt);
 }
 
-/// A kick that friction braked, and the drift that follows it.
+/// A grid update that friction braked, and the drift that follows it.
 template <class Real>
 struct BrakedOf {
-    Real before;   ///< speed before the kick, along the driven direction [m/s]
-    Real driven;   ///< speed that the kick would give without friction [m/s]
+    Real before;   ///< speed before the grid update, along the driven direction [m/s]
+    Real driven;   ///< speed that the grid update would give without friction [m/s]
     Real speed;    ///< that friction left [m/s]
-    double kick, drift;  ///< [s]; no drift: nothing to correct
+    double velocity_dt, drift;  ///< [s]; no drift: nothing to correct
 };
 
 /// The speed, or the mean speed over the coming drift if friction ends the motion in it, and holds: the speed in the
@@ -50,9 +50,10 @@ template <class Real, class Law>
 [[gnu::always_inline]] inline Real mean_if_stopping(const Law& law, const BedStateOf<Real>& state, const BrakedOf<Real>& b) {
     if constexpr (std::is_same_v<Law, bed::None>) return b.speed;
     if (b.drift <= 0.0) return b.speed;
-    const Real friction = law.friction_at_rest() * state.normal_gravity, pull = (b.driven - b.before) / b.kick,
+    const Real friction = law.friction_at_rest() * state.normal_gravity, pull = (b.driven - b.before) / b.velocity_dt,
                brake = friction - pull;
-    const Real at_start = b.before + brake * (0.5 * b.drift - b.kick);  // of the drift, half of which the kick has covered
+    const Real at_start =
+        b.before + brake * (0.5 * b.drift - b.velocity_dt);  // of the drift, half of which the grid update has covered
     // A turning point is no stop.
     const auto stops = (b.before > 0.0) & (friction > abs(pull)) & (at_start < brake * b.drift);
     if (!any(stops)) return b.speed;

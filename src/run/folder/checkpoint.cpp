@@ -190,7 +190,7 @@ void CheckpointKeeper::save(double time, const State& state) {
         flush_new_files();
         write_checkpoint(run_dir_ / "checkpoint.h5", labels_, [&](Archive& archive) {
             Progress now{time, progress_.written + 1, progress_.failed, progress_.first_failure, progress_.resumed_at};
-            now.keep(archive);
+            now.serialize(archive);
             state(archive);
         });
         ++progress_.written;
@@ -205,7 +205,7 @@ void CheckpointKeeper::save(double time, const State& state) {
 bool CheckpointKeeper::load(const State& state) {
     if (!from_) return false;
     from_->load([&](Archive& archive) {
-        progress_.keep(archive);
+        progress_.serialize(archive);
         state(archive);
     });
     clear_for_resume(run_dir_);
@@ -214,7 +214,7 @@ bool CheckpointKeeper::load(const State& state) {
     return true;
 }
 
-void CheckpointKeeper::Progress::keep(Archive& archive) {
+void CheckpointKeeper::Progress::serialize(Archive& archive) {
     const Archive::Part part(archive, "checkpoints");
     archive.number("time", time);
     archive.number("written", written);

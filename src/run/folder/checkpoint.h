@@ -39,7 +39,7 @@ public:
         Index written = 0, failed = 0;
         std::string first_failure;
         std::vector<double> resumed_at;  ///< [s]
-        void keep(Archive& archive);
+        void serialize(Archive& archive);
     };
     const Progress& progress() const { return progress_; }
     /// States that could not be kept, and a build that changed, a sentence each.

@@ -46,10 +46,10 @@ bool Cutoff::asked() { return signal_arrived != 0; }
 
 void Cutoff::watch() {
     using std::chrono::milliseconds;
-    constexpr milliseconds kNone{0}, kLook{20}, kPatience{1000};
-    for (milliseconds waited = kNone; waited < kPatience; waited += asked() ? kLook : kNone) {
+    constexpr milliseconds kNone{0}, kCheck{20}, kPatience{1000};
+    for (milliseconds waited = kNone; waited < kPatience; waited += asked() ? kCheck : kNone) {
         if (over_) return;
-        std::this_thread::sleep_for(kLook);
+        std::this_thread::sleep_for(kCheck);
     }
     try {
         last_words_();

@@ -78,7 +78,7 @@ public:
         }
     }
 
-    void look(const Frame& frame, Index number) override {
+    void sample(const Frame& frame, Index number) override {
         const Scalar values = scalar(frame.nodes, entry_.fields.front(), "the grid");
         pictures_.add(number, [&](const fs::path& png, std::string& why_not) {
             if (perspective()) return fill(view_, frame, values), render_perspective(view_, png, why_not);
@@ -130,7 +130,7 @@ public:
     CutFigure(const Scene& scene, const Insitu& entry, const fs::path& folder)
         : scene_(scene), entry_(entry), pictures_(folder, entry.name) {}
 
-    void look(const Frame& frame, Index number) override {
+    void sample(const Frame& frame, Index number) override {
         const std::vector<Station> places = stations(entry_.line, 0.5 * frame.grid.cell);
         std::vector<double> x;
         x.reserve(places.size());

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "observe/table.h"
-#include "vtk_io/figures/space_figure.h"
+#include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/reader.h"
 
 namespace frana {
@@ -62,7 +62,7 @@ struct Seen {
     Extent extent;
 };
 
-void see_extent(const LoadedFrame& frame, Seen& seen, bool first) {
+void observe_extent(const LoadedFrame& frame, Seen& seen, bool first) {
     const auto& depth = frame.nodes.at("depth");
     const auto& elevation = frame.nodes.at("elevation");
     Place centre{};
@@ -82,7 +82,7 @@ void see_extent(const LoadedFrame& frame, Seen& seen, bool first) {
     if (first) seen.extent.first = centre;
 }
 
-void see_values(const LoadedFrame& frame, Seen& seen) {
+void observe_values(const LoadedFrame& frame, Seen& seen) {
     const auto& depth = frame.nodes.at("depth");
     for (const char* name : {"depth", "speed", "stress", "effective_stress", "cohesion"}) {
         if (!frame.has(name)) continue;
@@ -106,7 +106,7 @@ void see_values(const LoadedFrame& frame, Seen& seen) {
 }
 
 /// The time at which most is in motion.
-void see_motion(const LoadedFrame& frame, Seen& seen) {
+void observe_motion(const LoadedFrame& frame, Seen& seen) {
     if (!frame.has("speed")) return;
     const auto &depth = frame.nodes.at("depth"), &speed = frame.nodes.at("speed");
     const double motion = std::inner_product(depth.begin(), depth.end(), speed.begin(), 0.0);
@@ -117,7 +117,7 @@ void see_motion(const LoadedFrame& frame, Seen& seen) {
 }
 
 /// Looks at no more than seven frames: ranges need no more, and a long run has hundreds.
-Seen see_frames(const fs::path& run_dir) {
+Seen observe_frames(const fs::path& run_dir) {
     Seen seen;
     const std::vector<double> times = frame_times(run_dir);
     const Index frames = static_cast<Index>(times.size());
@@ -131,9 +131,9 @@ Seen see_frames(const fs::path& run_dir) {
         seen.grid = frame.grid;
         seen.deepest = std::max(seen.deepest, *std::max_element(depth.begin(), depth.end()));
         seen.thin = std::min(0.05, 0.02 * seen.deepest);
-        see_extent(frame, seen, number == 0);
-        see_values(frame, seen);
-        see_motion(frame, seen);
+        observe_extent(frame, seen, number == 0);
+        observe_values(frame, seen);
+        observe_motion(frame, seen);
     }
     seen.last_time = times.back();
     return seen;
@@ -238,18 +238,18 @@ double most_pressure(const std::vector<LoadedPatch>& patches) {
 
 /// The output with points and with the largest load on a barrier, with its loads; the last such one where there is never
 /// any.
-SpaceMoment hardest_moment(const fs::path& run_dir, const Raster& bed) {
+Moment3d hardest_moment(const fs::path& run_dir, const Raster& bed) {
     const std::vector<double> times = barrier_times(run_dir), frames = particle_times(run_dir);
     const BarrierMeshes meshes = read_barrier_meshes(run_dir);
-    SpaceMoment hardest;
+    Moment3d hardest;
     double most_load = -1.0;
     for (std::size_t k = 0; k < times.size(); ++k) {
-        SpaceMoment moment;
+        Moment3d moment;
         moment.barriers = barrier_solids(read_barriers(run_dir, static_cast<Index>(k)), {}, bed, meshes);
         const double load = moment.most_loaded() ? moment.most_loaded()->load.head<2>().norm() : 0.0;
         const auto frame = std::find(frames.begin(), frames.end(), times[k]);
         if (frame == frames.end() || load < most_load) continue;
-        moment = space_moment(read_particles(run_dir, frame - frames.begin()), moment.barriers);
+        moment = moment_3d(read_particles(run_dir, frame - frames.begin()), moment.barriers);
         if (moment.typical_size <= 0.0) continue;
         most_load = load;
         hardest = std::move(moment);
@@ -260,17 +260,17 @@ SpaceMoment hardest_moment(const fs::path& run_dir, const Raster& bed) {
 /// What the state "impact" shows.
 void look_at_impact(const fs::path& run_dir, Json& look) {
     const LoadedFrame terrain = read_terrain(run_dir);
-    SpaceFigure figure;
+    Figure3d figure;
     figure.bed = Raster{terrain.grid, terrain.nodes.at("elevation"), "", ""};
     figure.moment = hardest_moment(run_dir, figure.bed);
-    SharedSpace shared;
+    Shared3d shared;
     shared.add(figure.moment);
     if (shared.empty() || figure.moment.typical_size <= 0.0) {
         look["states"]["impact"] = "there were no points in space yet; run the case further";
         return;
     }
     figure.view = shared.view();
-    const SpaceLook eye = best_look(figure);
+    const ViewAngles3d eye = best_view(figure);
     Extent extent;
     const auto& box = figure.view.box;
     for (const auto& piece : figure.moment.material)
@@ -310,7 +310,7 @@ const std::vector<std::string>& state_names() {
 
 Json look_at_run(const fs::path& run_dir, const std::string& title) {
     Seen seen;
-    if (fs::exists(run_dir / "grid.pvd") && !frame_times(run_dir).empty()) seen = see_frames(run_dir);
+    if (fs::exists(run_dir / "grid.pvd") && !frame_times(run_dir).empty()) seen = observe_frames(run_dir);
     Json look;
     look["title"] = title;
     for (const std::string& name : state_names()) look["states"][name] = missing_for(name, run_dir, seen);

@@ -19,7 +19,7 @@ namespace frana {
 ///   up, angle [degree], scale, scale_wide, scale_tall [m]}, all over everything ever covered; scale is half the height
 ///   of a square view, the others those of a 3:2 and of a 3:5 one,
 ///   impact_time (the output with the largest load on a barrier), point_radius [m], range.point_speed, range.pressure
-///   [Pa], camera.impact (from the side of the flow): of a run with points in space and barriers,
+///   [Pa], camera.impact (from the side of the flow): of a run with 3D points and barriers,
 ///   states: {name: ""} for each state the run has the files for, or the sentence that says what it lacks.
 /// Throws UserError when a file that is there cannot be read.
 nlohmann::ordered_json look_at_run(const std::filesystem::path& run_dir, const std::string& title);

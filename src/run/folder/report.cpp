@@ -110,7 +110,7 @@ std::string budgets(const RunRecord& r) {
             "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",
             w.given, w.rained, w.free, w.confined, w.released, w.infiltrated, w.left, w.residual);
     }
-    const Status::InSpace& points = s.last.in_space;
+    const Status::In3d& points = s.last.in_3d;
     if (points.friction != 0.0 || points.walls != 0.0 || points.material != 0.0 || points.numerical != 0.0)
         text += fmt::format(
             "Points in space hold {:.4g} J by their deformation. Of what was dissipated they lost {:.4g} J by friction "

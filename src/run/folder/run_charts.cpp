@@ -115,14 +115,14 @@ ChartFigure energy_chart(const FigureSource& source, const Table& history) {
                      curve("left the domain", t, history.column("energy_left")),
                      curve("residual", t, history.column("energy_residual"))};
     // Where points are, what they hold and how they lost it: parts of "dissipated".
-    const std::vector<std::pair<const char*, const char*>> in_space = {{"stored in points", "stored"},
+    const std::vector<std::pair<const char*, const char*>> in_3d = {{"stored in points", "stored"},
                                                                        {"points' friction", "points_friction"},
                                                                        {"lost to walls", "points_walls"},
                                                                        {"lost in the material", "points_material"},
                                                                        {"lost by the scheme", "points_numerical"}};
     ChartPanel points{"energy of points [J]", {}, false, {}, 1.0};
     bool any = false;
-    for (const auto& [name, column] : in_space) {
+    for (const auto& [name, column] : in_3d) {
         const auto& known = history.columns;  // a run of an older version has none of these
         if (std::find(known.begin(), known.end(), column) == known.end()) continue;
         const Column& values = history.column(column);

@@ -9,7 +9,7 @@
 #include "run/folder/cutoff.h"
 #include "run/folder/run_charts.h"
 #include "run/folder/run_film.h"
-#include "run/folder/run_space.h"
+#include "run/folder/run_3d.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/figures/map_figure_perspective.h"
 
@@ -96,7 +96,7 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     draw_filmstrip(source, figures, warnings);
     for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
     draw_gauges(source, figures, warnings);
-    draw_space(source, figures, warnings);
+    draw_3d(source, figures, warnings);
     draw_barriers(source, figures, warnings);
     draw_budgets(source, figures, warnings);
     return figures;

@@ -9,7 +9,7 @@
 #include "run/folder/products.h"
 #include "run/folder/run_record.h"
 #include "scene/scene.h"
-#include "vtk_io/figures/space_barriers.h"
+#include "vtk_io/figures/barriers_3d.h"
 
 namespace frana {
 
@@ -25,7 +25,7 @@ struct FigureSource {
     Polyline runout_path;  ///< drawn in the overlay with the survey; empty: none
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
-    bool in_space = false;                 ///< the case has a stage of points in space
+    bool in_3d = false;                 ///< the case has a stage of 3D points
     std::vector<BarrierTop> barrier_tops;  ///< in the case's order
     std::optional<double> time;       ///< of the profiles besides the first and the last [s]
     int width = 1400, height = 1200;  ///< of the maps; charts are as wide and 0.6 as high [pixels]

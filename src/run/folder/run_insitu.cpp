@@ -20,20 +20,20 @@ public:
     Both(std::unique_ptr<InsituWork> one, std::unique_ptr<InsituWork> other)
         : one_(std::move(one)), other_(std::move(other)) {}
 
-    void look(const Frame& frame, Index number) override {
+    void sample(const Frame& frame, Index number) override {
         std::exception_ptr failure;
         try {
-            one_->look(frame, number);
+            one_->sample(frame, number);
         } catch (const std::exception&) {
             failure = std::current_exception();
         }
-        other_->look(frame, number);
+        other_->sample(frame, number);
         if (failure) std::rethrow_exception(failure);
     }
-    void keep(Archive& archive) override {
+    void serialize(Archive& archive) override {
         for (InsituWork* work : {one_.get(), other_.get()}) {
             const Archive::Part part(archive, work == one_.get() ? "one" : "other");
-            work->keep(archive);
+            work->serialize(archive);
         }
     }
 
@@ -42,14 +42,14 @@ private:
 };
 
 /// A work in a few words.
-template <class Look>
+template <class Sample>
 class Shapes final : public InsituWork {
 public:
-    explicit Shapes(Look look) : look_(std::move(look)) {}
-    void look(const Frame& frame, Index) override { look_(frame); }
+    explicit Shapes(Sample look) : sample_(std::move(look)) {}
+    void sample(const Frame& frame, Index) override { sample_(frame); }
 
 private:
-    Look look_;
+    Sample sample_;
 };
 
 std::unique_ptr<InsituWork> cut(const Scene& scene, const Insitu& entry, const fs::path& folder) {

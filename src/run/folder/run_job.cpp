@@ -15,7 +15,7 @@
 #include "run/folder/run_figures.h"
 #include "run/folder/run_film.h"
 #include "run/folder/run_folder.h"
-#include "run/folder/run_space.h"
+#include "run/folder/run_3d.h"
 #include "run/folder/run_insitu.h"
 #include "run/folder/states.h"
 #include "io/xdmf_writer.h"
@@ -112,7 +112,7 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     if (record.comparison) source.runout_path = record.comparison->path;
     source.profiles = scene.profiles;
     source.gauges = scene.gauges;
-    source.in_space = scene.solid.has_value();
+    source.in_3d = scene.solid.has_value();
     for (const Barrier& barrier : scene.barriers) source.barrier_tops.push_back({barrier.top, barrier.height});
     return source;
 }
@@ -148,7 +148,7 @@ void draw(const FigureSource& source, const Output& output, RunRecord& record) {
     if (output.png) record.figures = draw_figures(source, record.warnings);
     if (!output.film.empty()) {
         draw_film(source, output.film, record.figures, record.warnings);
-        draw_space_film(source, output.film, record.figures, record.warnings);
+        draw_film_3d(source, output.film, record.figures, record.warnings);
     }
     if (Cutoff::asked()) note_cutoff(record, run_dir);
 }

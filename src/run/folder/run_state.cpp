@@ -71,7 +71,7 @@ void require_fields(const Loaded& loaded, const fs::path& frames) {
                         frames.string(), missing));
 }
 
-/// From a stage in space on, particles are no columns any more.
+/// From a 3D stage on, particles are no columns any more.
 template <class Loaded>
 void require_columns(const Loaded& loaded, const fs::path& frames) {
     const auto model = loaded.columns.find("model");
@@ -84,7 +84,7 @@ void require_columns(const Loaded& loaded, const fs::path& frames) {
 }
 
 /// No file of ours has such numbers; one that was changed or damaged may.
-void require_sound(const FlowColumns& columns, const fs::path& frames) {
+void require_valid(const FlowColumns& columns, const fs::path& frames) {
     const auto refuse = [&](std::size_t p, const char* what, double found, const char* expected) {
         throw UserError(fmt::format("{}: {} of particle {} is {}; expected {}; run the case again", frames.string(), what,
                                     columns.id[p], found, expected));
@@ -133,7 +133,7 @@ FlowColumns columns_of(const Loaded& loaded, const fs::path& frames) {
     columns.id = component(loaded, "id");
     if (loaded.components.count("stress") && loaded.components.at("stress") == 3)
         columns.stress = loaded.columns.at("stress");
-    require_sound(columns, frames);
+    require_valid(columns, frames);
     return columns;
 }
 

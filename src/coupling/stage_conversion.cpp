@@ -1,0 +1,177 @@
+#include "coupling/stage_conversion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "particles/bed_points.h"
+
+namespace frana {
+namespace {
+
+bool marked(const std::vector<std::uint8_t>& marks, const GridGeometry& g, double x, double y) {
+    const auto near = [&](double at, double start, Index count) {
+        return std::clamp<Index>(static_cast<Index>(std::floor((at - start) / g.cell + 0.5)), 0, count - 1);
+    };
+    return marks[static_cast<std::size_t>(near(y, g.y0, g.ny) * g.nx + near(x, g.x0, g.nx))] != 0;
+}
+
+const double* numbers(const Frame& frame, const char* name) {
+    const Field* const field = frame.particle(name);
+    expect(field != nullptr, "columns have the quantities that points in space need");
+    return field->data;
+}
+
+}  // namespace
+
+FlowColumns columns_of(const Frame& frame, const Raster& bed, const std::vector<std::uint8_t>& marks) {
+    const double *position = numbers(frame, "position"), *velocity = numbers(frame, "velocity"),
+                 *depth = numbers(frame, "depth"), *mass = numbers(frame, "mass"),
+                 *volume = numbers(frame, "volume"), *pressure = numbers(frame, "pressure"),
+                 *id = numbers(frame, "id");
+    FlowColumns columns;
+    for (Index p = 0; p < frame.particle("mass")->count; ++p) {
+        if (!marked(marks, bed.geometry, position[3 * p], position[3 * p + 1])) continue;
+        columns.x.push_back(position[3 * p]);
+        columns.y.push_back(position[3 * p + 1]);
+        columns.bed.push_back(position[3 * p + 2] - depth[p]);
+        columns.depth.push_back(depth[p]);
+        columns.vx.push_back(velocity[3 * p]);
+        columns.vy.push_back(velocity[3 * p + 1]);
+        columns.mass.push_back(mass[p]);
+        columns.volume.push_back(volume[p]);
+        columns.bed_pressure.push_back(pressure[p]);
+        columns.id.push_back(id[p]);
+    }
+    take_slopes(columns, bed);
+    return columns;
+}
+
+FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector<std::uint8_t>& marks) {
+    FlowColumns columns;
+    for (std::size_t p = 0; p < seeds.x.size(); ++p) {
+        if (!marks.empty() && !marked(marks, scene.bed.geometry, seeds.x[p], seeds.y[p])) continue;
+        const Vec2 slope = bed_gradient(scene.bed, seeds.x[p], seeds.y[p]);
+        columns.x.push_back(seeds.x[p]);
+        columns.y.push_back(seeds.y[p]);
+        columns.bed.push_back(bed_below(scene.bed, seeds.x[p], seeds.y[p]));
+        columns.depth.push_back(seeds.depth[p]);
+        columns.vx.push_back(seeds.vx[p]);
+        columns.vy.push_back(seeds.vy[p]);
+        columns.mass.push_back(seeds.volume[p] * scene.density);
+        columns.volume.push_back(seeds.volume[p]);
+        columns.bed_pressure.push_back(scene.density * scene.gravity * seeds.depth[p] /
+                                       (1.0 + slope.squaredNorm()));
+        columns.id.push_back(static_cast<double>(p));
+    }
+    take_slopes(columns, scene.bed);
+    return columns;
+}
+
+namespace {
+
+/// Side of the square that a column stands on, and how many parts lie along it.
+struct Division { double width, count; };
+Division division_of(double volume, double depth, double spacing, double widest) {
+    constexpr double kLeast = 0.125;  // of a full point's volume
+    const double width = depth > 0.0 ? std::min(std::sqrt(volume / depth), widest) : widest;
+    const double layers = static_cast<double>(layer_count(depth, spacing));
+    const double most = std::sqrt(volume / (layers * kLeast * spacing * spacing * spacing));
+    return {width, std::max(1.0, std::min(std::round(width / spacing), std::floor(most)))};
+}
+
+}  // namespace
+
+PartsForecast forecast_parts(const FlowColumns& columns, double spacing, double widest) {
+    PartsForecast sum;
+    for (std::size_t k = 0; k < columns.count(); ++k) {
+        const double n = division_of(columns.volume[k], columns.depth[k], spacing, widest).count;
+        sum.columns += n * n;
+        sum.points += n * n * static_cast<double>(layer_count(columns.depth[k], spacing));
+    }
+    return sum;
+}
+
+FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
+                     const std::array<double, 4>& extent) {
+    FlowColumns parts;
+    for (std::size_t k = 0; k < columns.count(); ++k) {
+        const auto division = division_of(columns.volume[k], columns.depth[k], spacing, widest);
+        const double width = division.width;
+        const auto n = static_cast<Index>(division.count);
+        const double share = 1.0 / static_cast<double>(n * n);
+        for (Index j = 0; j < n; ++j)
+            for (Index i = 0; i < n; ++i) {
+                const auto place = [&](double middle, Index m, double low, double high) {
+                    const double at = (static_cast<double>(m) + 0.5) / static_cast<double>(n) - 0.5;
+                    return std::clamp(middle + width * at, low, high);
+                };
+                parts.take(columns, k);
+                parts.x.back() = place(columns.x[k], i, extent[0], extent[2]);
+                parts.y.back() = place(columns.y[k], j, extent[1], extent[3]);
+                const double ground = bed_below(bed, parts.x.back(), parts.y.back());
+                if (std::isfinite(ground)) parts.bed.back() = ground;
+                parts.mass.back() *= share;
+                parts.volume.back() *= share;
+            }
+    }
+    take_slopes(parts, bed);
+    return parts;
+}
+
+MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ColumnsAt& at) {
+    struct Sum {
+        double mass = 0.0;
+        Vec2 moment{0, 0}, momentum{0, 0};
+        Mat2 gradient = Mat2::Zero();  // times mass
+    };
+    const GridGeometry& g = scene.bed.geometry;
+    const double size = 0.5 * g.cell;
+    std::map<std::pair<Index, Index>, Sum> quarters;  // row after row from the south
+    for (const DepartedPoint& point : points) {
+        const Vec2 v = point.velocity.head<2>();
+        const Vec2 x = at.place(point, point.position.head<2>() + (at.time - point.time) * v);
+        Sum& sum = quarters[{static_cast<Index>(std::floor((x.y() - g.y0) / size)),
+                             static_cast<Index>(std::floor((x.x() - g.x0) / size))}];
+        sum.mass += point.mass;
+        sum.moment += point.mass * x;
+        sum.momentum += point.mass * v;
+        sum.gradient += point.mass * point.gradient.topLeftCorner<2, 2>();
+    }
+    MovingColumns columns;
+    Seeds& seeds = columns.seeds;
+    for (const auto& [quarter, sum] : quarters) {
+        const Vec2 x = sum.moment / sum.mass, v = sum.momentum / sum.mass;
+        const double volume = sum.mass / scene.density;
+        seeds.x.push_back(x.x()), seeds.y.push_back(x.y());
+        seeds.vx.push_back(v.x()), seeds.vy.push_back(v.y());
+        seeds.volume.push_back(volume), seeds.size.push_back(size);
+        seeds.depth.push_back(std::max(at.depth(x), volume / (size * size)));
+        columns.gradient.push_back(sum.gradient / sum.mass);
+    }
+    return columns;
+}
+
+SolidSeeds seeds_of(const FlowColumns& columns, const SolidStage& stage) {
+    ConversionChoice choice;
+    choice.spacing = stage.spacing;
+    choice.profile = stage.profile;
+    choice.vertical = stage.along_bed ? Vertical::along_bed : Vertical::zero;
+    const SolidPoints points = columns_to_points(columns, choice);
+    SolidSeeds seeds;
+    for (std::size_t k = 0; k < points.count(); ++k) {
+        const double *x = &points.position[3 * k], *v = &points.velocity[3 * k];
+        seeds.add({x[0], x[1], x[2]}, {v[0], v[1], v[2]}, points.mass[k], points.pressure[k]);
+    }
+    return seeds;
+}
+
+std::vector<std::size_t> parts_of_seeds(const FlowColumns& columns, const SolidStage& stage) {
+    std::vector<std::size_t> parts;
+    for (std::size_t k = 0; k < columns.count(); ++k)
+        parts.insert(parts.end(), static_cast<std::size_t>(layer_count(columns.depth[k], stage.spacing)), k);
+    return parts;
+}
+
+}  // namespace frana

@@ -1,0 +1,53 @@
+#pragma once
+// Columns that become 3D points, and points that become columns.
+#include <array>
+#include <functional>
+
+#include "convert/solid_points.h"
+#include "scene/scene.h"
+#include "solid3d/mpm3d.h"
+
+namespace frana {
+
+/// The columns of a frame of the depth-averaged model that stand in marked nodes' cells.
+FlowColumns columns_of(const Frame& frame, const Raster& bed, const std::vector<std::uint8_t>& marks);
+
+/// The seeds of a release as columns, at rest or not; those in marked nodes' cells, or without `marks` all, in their order.
+FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector<std::uint8_t>& marks);
+
+/// Each column as n x n of them side by side on the square of its volume / depth, n such that they are about
+/// `spacing` apart; fewer where the parts would weigh less than an eighth of a full point. Beds and slopes
+/// are those of `bed` below each part. Parts stay within `extent`. Mass, volume and momentum are those of the
+/// column.
+FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
+                     const std::array<double, 4>& extent);
+
+/// How many parts in_parts() makes, and how many 3D points they become: asked before either takes memory.
+struct PartsForecast { double columns = 0.0, points = 0.0; };
+PartsForecast forecast_parts(const FlowColumns& columns, double spacing, double widest);
+
+/// When points become columns, and what is there. Places are on the map [m].
+struct ColumnsAt {
+    double time;                                                        ///< [s]
+    std::function<Vec2(const DepartedPoint&, const Vec2&)> place;  ///< of a column of a point that has come there
+    std::function<double(const Vec2&)> depth;                           ///< of what is there already [m]
+};
+
+/// Columns that were points, with the gradients of their velocities, dv_k/dx_l at (k, l) [1/s].
+struct MovingColumns {
+    Seeds seeds;
+    std::vector<Mat2> gradient;
+};
+
+/// Points that left as columns: one for all of them in each quarter of a cell of the terrain, at their centre of mass, with
+/// their mass and momentum. Until then they went on at the speed that they had; so their velocities are half a step behind their places, as those of columns are. They are as deep as what is there, and at least
+/// as all that is new on their quarter.
+MovingColumns columns_of(const std::vector<DepartedPoint>& points, const Scene& scene, const ColumnsAt& at);
+
+/// The points of columns (convert/solid_points.h) for the solver.
+SolidSeeds seeds_of(const FlowColumns& columns, const SolidStage& stage);
+
+/// Of which of the columns each of them is.
+std::vector<std::size_t> parts_of_seeds(const FlowColumns& columns, const SolidStage& stage);
+
+}  // namespace frana

@@ -1,0 +1,207 @@
+#include "run/folder/run_3d.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "run/folder/run_film.h"
+#include "vtk_io/figures/film.h"
+#include "vtk_io/figures/figure_3d.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// The outputs of a run that has 3D points.
+class Run3d {
+public:
+    explicit Run3d(const FigureSource& source)
+        : source_(source), times_(particle_times(source.run_dir)), loads_(barrier_times(source.run_dir)),
+          meshes_(read_barrier_meshes(source.run_dir)) {
+        if (!times_.empty()) named_ = read_particles(source.run_dir, -1).columns.count("model") > 0;
+    }
+
+    Index count() const { return static_cast<Index>(times_.size()); }
+    double time(Index number) const { return times_[static_cast<std::size_t>(number)]; }
+
+    Index nearest(double time) const {
+        Index best = 0;
+        for (Index k = 1; k < count(); ++k)
+            if (std::abs(this->time(k) - time) < std::abs(this->time(best) - time)) best = k;
+        return best;
+    }
+
+    /// The last output with points, or the last.
+    Index last() const {
+        for (Index number = count() - 1; named_ && number >= 0; --number)
+            if (moment(number).typical_size > 0.0) return number;
+        return count() - 1;
+    }
+
+    /// The output with points and with the largest horizontal load on one barrier; nothing without any.
+    std::optional<Index> hardest() const {
+        double most = 0.0;
+        std::optional<Index> number;
+        for (const double time : loads_) {
+            Moment3d loaded;
+            loaded.barriers = barriers(time);
+            const BarrierSolid* barrier = loaded.most_loaded();
+            if (!barrier || barrier->load.head<2>().norm() <= most) continue;
+            if (moment(nearest(time)).typical_size <= 0.0) continue;
+            most = barrier->load.head<2>().norm();
+            number = nearest(time);
+        }
+        return number;
+    }
+
+    Moment3d moment(Index number) const {
+        LoadedParticles particles = read_particles(source_.run_dir, number);
+        if (named_ && particles.columns.count("model") == 0)
+            particles.columns["model"].assign(static_cast<std::size_t>(particles.count), 0.0);
+        return moment_3d(particles, barriers(time(number)));
+    }
+
+    Figure3d figure(Index number, const View3d& view, int digits) const {
+        Figure3d figure;
+        figure.bed = source_.bed;
+        figure.moment = moment(number);
+        figure.view = view;
+        figure.title = fmt::format("{}: points in space, t = {:.{}f} s", source_.title, time(number), digits);
+        figure.footer =
+            figure.moment.typical_size > 0.0
+                ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
+                : source_.footer;
+        figure.width = source_.width;
+        figure.height = std::max(source_.width * 7 / 10, 300);
+        return figure;
+    }
+
+    int digits() const { return decimals_of(times_); }
+
+private:
+    /// At that time; before the first loads, and between, the faces that are known without any.
+    std::vector<BarrierSolid> barriers(double time) const {
+        if (loads_.empty()) return {};
+        const auto found = std::find(loads_.begin(), loads_.end(), time);
+        const bool known = found != loads_.end();
+        std::vector<LoadedPatch> patches = read_barriers(source_.run_dir, known ? found - loads_.begin() : 0);
+        if (!known)
+            for (LoadedPatch& patch : patches) patch.pressure = 0.0;
+        return barrier_solids(patches, source_.barrier_tops, source_.bed, meshes_);
+    }
+
+    const FigureSource& source_;
+    std::vector<double> times_, loads_;
+    BarrierMeshes meshes_;
+    bool named_ = false;  ///< the last frame says which are points; then frames that do not have columns only
+};
+
+bool has_points(const FigureSource& source) {
+    return source.in_3d && !source.bed.values.empty() && fs::exists(source.run_dir / "particles.pvd");
+}
+
+/// A moment of a run to be drawn, and what it is called.
+struct Wanted {
+    Index number;
+    std::string name, caption;
+};
+
+std::vector<Wanted> wanted_moments(const Run3d& run, const FigureSource& source) {
+    std::vector<Wanted> wanted;
+    if (const auto hardest = run.hardest())
+        wanted.push_back(
+            {*hardest, "impact",
+             fmt::format("at {:.4g} s, the output with the largest load on a barrier", run.time(*hardest))});
+    const Index last = run.last();
+    wanted.push_back({last, "points",
+                      last + 1 == run.count() ? "at the end" : fmt::format("at {:.4g} s, the last", run.time(last))});
+    if (source.time) {
+        const Index number = run.nearest(*source.time);
+        const std::string moment = fmt::format("{:.6g}", run.time(number));
+        wanted.push_back({number, "points_t" + moment + "s", "at " + moment + " s"});
+    }
+    return wanted;
+}
+
+/// Where points are, but for the highest per cent: single drops.
+void add_some(const Moment3d& moment, std::vector<Vec3>& places) {
+    constexpr std::size_t kMost = 500;
+    std::vector<Vec3> all;
+    for (const auto& piece : moment.material)
+        if (!piece.is_column) all.push_back(piece.place);
+    std::sort(all.begin(), all.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
+    const std::size_t count = all.size() - all.size() / 100, step = count / kMost + 1;
+    for (std::size_t k = 0; k < count; k += step) places.push_back(all[k]);
+}
+
+}  // namespace
+
+void draw_3d(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                std::vector<std::string>& warnings) {
+    if (!has_points(source)) return;
+    try {
+        const Run3d run(source);
+        if (run.count() == 0) return;
+        const std::vector<Wanted> wanted = wanted_moments(run, source);
+        Shared3d shared;
+        for (const Wanted& one : wanted) shared.add(run.moment(one.number));
+        if (shared.empty()) return;  // it ended before there were any
+        for (const Wanted& one : wanted) {
+            Figure3d figure = run.figure(one.number, shared.view(), run.digits());
+            if (figure.moment.typical_size <= 0.0) {
+                if (one.name != "points")
+                    warnings.push_back(fmt::format("figures/view_{}.png was not drawn: there are no points in space {}",
+                                                   one.name, one.caption));
+                continue;
+            }
+            attempt(source, {"figures/view_" + one.name + ".png", "points in space " + one.caption}, figures,
+                    warnings, [&](const fs::path& png, std::string& why_not) {
+                        return render_3d(figure, png, why_not);
+                    });
+            figure.title += ", section along the flow";
+            attempt(source, {"figures/section_" + one.name + ".png", "section along the flow " + one.caption},
+                    figures, warnings, [&](const fs::path& png, std::string& why_not) {
+                        return render_section(figure, png, why_not);
+                    });
+        }
+    } catch (const UserError& error) {
+        warnings.push_back(fmt::format("figures/view_points.png was not drawn: {}", error.what()));
+    }
+}
+
+void draw_film_3d(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
+                     std::vector<std::string>& warnings) {
+    if (!has_points(source)) return;
+    attempt(
+        source, {"figures/film_points." + kind, "points in space through time"}, figures, warnings,
+        [&](const fs::path& film, std::string& why_not) {
+            why_not = no_film_reason();
+            if (!why_not.empty()) return false;
+            const Run3d run(source);
+            Shared3d shared;  // every output is read twice, so that they need not fit the memory together
+            std::vector<Index> shown;
+            std::vector<Vec3> room;
+            for (Index number = 0; number < run.count(); ++number) {
+                const Moment3d moment = run.moment(number);
+                if (moment.typical_size <= 0.0) continue;
+                shared.add(moment);
+                shown.push_back(number);
+                add_some(moment, room);
+            }
+            if (shown.empty()) return why_not = "no output has points in space", false;
+            const ViewAngles3d look =
+                best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
+            return make_film(
+                film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
+                    const Index number = shown[static_cast<std::size_t>(k)];
+                    Figure3d figure = run.figure(number, shared.view(), run.digits());
+                    figure.look = look;  // one for all, and one scale
+                    figure.room = room;
+                    return render_3d(figure, png, why_not);
+                });
+        });
+}
+
+}  // namespace frana

@@ -1,0 +1,144 @@
+// The state of a depth-averaged run between two steps, as it is kept and taken up again. Kept are the points in their
+// order, the tiles they are sorted by (they have moved since), the sums of the run, the peaks, and what the points
+// have deposited on the nodes: a second deposit would add in another order where points have left in between. What
+// else nodes have follows from the deposit.
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "mpm/stored_points.h"
+#include "shallow/depth_averaged.h"
+
+namespace frana {
+namespace {
+
+constexpr Index kNodes = kTile * kTile;  ///< of a tile
+
+constexpr const char* kColumnNames[] = {"x",   "y",   "mass", "vx",  "vy",  "cxx", "cxy",
+                                        "cyx", "cyy", "r1x",  "r1y", "r2x", "r2y", "depth"};
+
+void serialize_array(Archive& archive, const char* name, Array& column) { archive.array(name, column); }
+
+/// Every float is a double.
+void serialize_array(Archive& archive, const char* name, ArrayOf<float>& column) {
+    Array wide(column.begin(), column.end());
+    archive.array(name, wide);
+    if (!archive.loading()) return;
+    column.resize(wide.size());
+    std::transform(wide.begin(), wide.end(), column.begin(), [](double value) { return static_cast<float>(value); });
+}
+
+/// `components` numbers at every node of the tiles; at(storage index) is where they lie.
+template <class At>
+void serialize_tiles(Archive& archive, const std::string& name, const Flow& flow, const std::vector<Index>& tiles,
+                Index components, const At& at) {
+    std::vector<double> values;
+    if (!archive.loading()) values.reserve(tiles.size() * static_cast<std::size_t>(kNodes * components));
+    if (!archive.loading())
+        for (const Index tile : tiles)
+            for_each_node_of(flow.grid, tile,
+                             [&](Index k, Index, Index) { values.insert(values.end(), at(k), at(k) + components); });
+    archive.array(name, values);
+    if (!archive.loading()) return;
+    if (values.size() != tiles.size() * static_cast<std::size_t>(kNodes * components))
+        throw misfit("its nodes are not those of the tiles");
+    const double* from = values.data();
+    for (const Index tile : tiles)
+        for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+            std::copy(from, from + components, at(k));
+            from += components;
+        });
+}
+
+}  // namespace
+
+void DepthAveraged::serialize(Archive& archive) {
+    serialize_points(archive);
+    serialize_sums(archive);
+    serialize_nodes(archive);
+    serialize_peaks(archive);
+    timed_.serialize(archive);
+    if (!archive.loading()) return;
+    flow_.rest.some_asleep = false;  // what sleeps is found again; it changes no bit
+    activate_all(flow_);
+    raise_surface();
+}
+
+void DepthAveraged::serialize_points(Archive& archive) {
+    const Archive::Part part(archive, "points");
+    Columns& c = flow_.columns;
+    std::size_t n = 0;
+    c.each([&](auto& column) { serialize_array(archive, kColumnNames[n++], column); });
+    archive.array("id", c.id);
+    archive.array("tile", flow_.active.tile);
+    archive.array("begin", flow_.active.begin);
+    if (!archive.loading()) return;
+    c.each([&](const auto& column) {
+        if (column.size() != c.id.size()) throw misfit("its columns differ in length");
+    });
+    require_whole(flow_.active, flow_.grid.tiles(), c.count());
+    sorter_.list_tiles(flow_.grid, flow_.active);
+    for (const Index tile : flow_.active.tile) flow_.active.quiet[tile] = 0;
+}
+
+void DepthAveraged::serialize_sums(Archive& archive) {
+    frana::serialize(archive, "status", status_);
+    archive.numbers("sums", {&signal_, &since_split_, &drift_, &stress_power_, &lost_in_holes_, &start_momentum_[0],
+                             &start_momentum_[1], &centre_.x(), &centre_.y()});
+    Index next_id = splitter_.next_id(), most = merger_ ? merger_->most() : 0, fitted = fit_ ? 1 : 0;
+    archive.number("next_id", next_id);
+    archive.number("most_in_a_square", most);
+    archive.number("fitted", fitted);
+    MassFit fit = fit_.value_or(MassFit{});
+    archive.number("fit_rows", fit.rows);
+    archive.number("fit_iterations", fit.iterations);
+    archive.number("fit_largest_change", fit.largest_change);
+    archive.number("fit_clipped", fit.clipped);
+    archive.number("fit_level_error", fit.level_error);
+    if (!archive.loading()) return;
+    splitter_.set_next_id(next_id);
+    if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(most);
+    if (fitted) fit_ = fit;
+}
+
+void DepthAveraged::serialize_nodes(Archive& archive) {
+    const Archive::Part part(archive, "nodes");
+    Nodes& nodes = flow_.nodes;
+    const std::vector<Index>& tiles = flow_.active.work;
+    std::vector<std::uint64_t> in_reach;
+    in_reach.reserve(tiles.size());
+    for (const Index tile : tiles) in_reach.push_back(flow_.in_reach[tile]);
+    archive.array("touched", in_reach);
+    if (in_reach.size() != tiles.size()) throw misfit("its nodes are not those of the tiles");
+    for (std::size_t n = 0; n < tiles.size(); ++n) flow_.in_reach[tiles[n]] = in_reach[n];
+    serialize_tiles(archive, "mass", flow_, tiles, 1, [&](Index k) { return &nodes.mass[k]; });
+    serialize_tiles(archive, "momentum", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].px; });
+    serialize_tiles(archive, "column_mass", flow_, tiles, 1, [&](Index k) { return &nodes.column_mass[k]; });
+    if (nodes.forced)
+        serialize_tiles(archive, "force", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].fx; });
+}
+
+/// Where nothing ever was, peaks are zero and are not kept. A step changes those of the work list.
+void DepthAveraged::serialize_peaks(Archive& archive) {
+    const Archive::Part part(archive, "peaks");
+    std::vector<Index> tiles;
+    if (archive.aside() && !archive.loading()) tiles = flow_.active.work;
+    for (Index tile = 0; !archive.aside() && !archive.loading() && tile < flow_.grid.tiles(); ++tile) {
+        bool reached = false;
+        for_each_node_of(flow_.grid, tile, [&](Index k, Index, Index) { reached |= peaks_.depth[k] > 0.0; });
+        if (reached) tiles.push_back(tile);
+    }
+    archive.array("tile", tiles);
+    for (const Index tile : tiles)
+        if (tile < 0 || tile >= flow_.grid.tiles()) throw misfit("its peaks lie outside the grid");
+    const auto serialize_peak = [&](const char* name, LazyArray<double>& peak) {
+        serialize_tiles(archive, name, flow_, tiles, 1, [&](Index k) { return &peak[k]; });
+    };
+    serialize_peak("depth", peaks_.depth);
+    serialize_peak("speed", peaks_.speed);
+    serialize_peak("pressure", peaks_.pressure);
+    serialize_peak("dynamic_pressure", peaks_.dynamic_pressure);
+    serialize_peak("arrival", peaks_.arrival);
+}
+
+}  // namespace frana

@@ -1,0 +1,46 @@
+// The state of structured columns between two steps, as it is kept and taken up again: the columns in their order
+// with the tiles they are sorted by, and the sums of the run. Nodes start empty in every step.
+#include "mpm/stored_points.h"
+#include "structured/structured_flow.h"
+
+namespace frana {
+namespace {
+
+void serialize_status(Archive& archive, StructuredStatus& s) {
+    const Archive::Part part(archive, "status");
+    archive.number("step", s.step);
+    archive.number("points", s.points);
+    archive.number("outrun", s.outrun);
+    std::vector<double*> numbers = {&s.time,     &s.dt,        &s.mass,          &s.mass_left,     &s.kinetic,
+                                    &s.damage,   &s.max_speed, &s.speeds,        &s.potential,     &s.bed_kinetic,
+                                    &s.stored,   &s.friction,  &s.obstacle_work, &s.worked,        &s.energy_left,
+                                    &s.released, &s.dragged,   &s.confined_left, &s.lost_in_holes, &s.flow_steps};
+    StructuredImpulses& i = s.impulse;
+    for (Vec2* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &i.weight, &i.pressure, &i.friction, &i.obstacles, &i.water})
+        for (int k = 0; k < 2; ++k) numbers.push_back(&(*v)[k]);
+    archive.numbers("sums", numbers);
+}
+
+}  // namespace
+
+void StructuredFlow::serialize(Archive& archive) {
+    serialize_points(archive, body_.points);
+    serialize_status(archive, status_);
+    archive.numbers("bounds", {&wave_, &signal_, &drift_, &rules_.least_mass});
+    Index grains = body_.grains ? 1 : 0;
+    archive.number("grains", grains);
+    archive.number("next_id", halves_.next_id);
+    archive.array("tile", body_.active.tile);
+    archive.array("begin", body_.active.begin);
+    timed_.serialize(archive);
+    if (!archive.loading()) return;
+    if (grains != 0 && !body_.grains) begin_grains();
+    body_.grains = grains != 0;  // they may have begun since the state that is taken up again
+    require_whole(body_.active, body_.grid.tiles(), body_.points.count());
+    take_tiles();
+    const StructuredStatus kept = status_;
+    sample();
+    status_ = kept;
+}
+
+}  // namespace frana
