@@ -77,7 +77,7 @@ TEST_CASE("The ledger of energy in space has each loss under its name", "[solid]
         // Nothing is lost in free fall; velocity first, so that a step's m g^2 dt t is not.
         CHECK(fall.stored == Approx(0.0).margin(1e-12 * gained));
         CHECK(fall.material == Approx(0.0).margin(1e-12 * gained));
-        CHECK(fall.pushed == 0.0);
+        CHECK(fall.contact_work == 0.0);
         CHECK(fall.friction == 0.0);
         CHECK(std::abs(fall.numerical()) < 0.02 * gained);
     }

@@ -74,9 +74,9 @@ std::string in_message(const Values& values, const std::string& value) {
 }
 
 /// The sentence of a row with these values.
-std::string sentence(const Combination& row, const Values& beside, const std::string& value, const std::string& other) {
+std::string sentence(const Combination& row, const Values& partner, const std::string& value, const std::string& other) {
     const bool table = row.refused.are == Are::tables;
-    const std::string with = row.said.empty() ? " with " + beside.key + " = " + in_message(beside, other) : row.said;
+    const std::string with = row.said.empty() ? " with " + partner.key + " = " + in_message(partner, other) : row.said;
     return (table ? "case.toml:7: " + row.refused.key + ".0" : "--set " + row.refused.key) + ": found " +
            in_message(row.refused, value) + with + "; " + row.expected + "; " + row.way_out;
 }
@@ -86,19 +86,19 @@ std::string sentence(const Combination& row, const Values& beside, const std::st
 TEST_CASE("What cannot go together is refused in the words of its row, and only together", "[case][combinations]") {
     for (const Combination& row : combinations()) {
         const bool table = row.refused.are == Are::tables;
-        for (const Values& beside : row.beside)
-            for (const std::string& other : examples(beside)) {
-                Sets sets{{beside.key, other}};
+        for (const Values& partner : row.with)
+            for (const std::string& other : examples(partner)) {
+                Sets sets{{partner.key, other}};
                 for (const std::string& value : examples(row.refused)) {
                     Sets both = sets;
                     if (!table) both[row.refused.key] = value;
-                    CAPTURE(row.refused.key, value, beside.key, other);
+                    CAPTURE(row.refused.key, value, partner.key, other);
                     CHECK(only_problem([&] { parse(both, table ? row.refused.key : ""); }) ==
-                          sentence(row, beside, value, other));
+                          sentence(row, partner, value, other));
                 }
                 for (const std::string& value : examples(row.refused, false)) {
                     if (!table) sets[row.refused.key] = value;
-                    CAPTURE(row.refused.key, value, beside.key, other);
+                    CAPTURE(row.refused.key, value, partner.key, other);
                     CHECK_NOTHROW(parse(sets, ""));
                 }
             }
@@ -113,6 +113,6 @@ TEST_CASE("Every combination that is refused is listed for people", "[case][comb
             CHECK(list.find(row.refused.text()) != std::string::npos);
             CHECK(list.find(row.expected) != std::string::npos);
             CHECK(list.find(row.way_out) != std::string::npos);
-            for (const Values& values : row.beside) CHECK(list.find(values.text()) != std::string::npos);
+            for (const Values& values : row.with) CHECK(list.find(values.text()) != std::string::npos);
         }
 }

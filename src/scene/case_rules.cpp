@@ -225,7 +225,7 @@ void CaseReader::check_combinations() {
     const auto unread = [&](const Values& values) { return misread_.count(values.key) > 0; };
     for (const Combination& row : combinations()) {
         const std::string& key = row.refused.key;
-        if (unread(row.refused) || std::any_of(row.beside.begin(), row.beside.end(), unread)) continue;
+        if (unread(row.refused) || std::any_of(row.with.begin(), row.with.end(), unread)) continue;
         if (!row.found(case_) || unused(key) || !done.insert(key + row.expected).second) continue;
         if (row.refused.are != Values::Are::tables) {
             wrong(key, row.found_text(case_), row.expected, row.way_out);

@@ -95,9 +95,9 @@ void add_schemes(std::vector<Combination>& table) {
                      " with another preset, shape or transfer than the default"});
 }
 
-std::string beside_text(const Combination& row) {
+std::string with_text(const Combination& row) {
     std::string text;
-    for (const Values& values : row.beside) text += (text.empty() ? "" : ", or ") + values.text();
+    for (const Values& values : row.with) text += (text.empty() ? "" : ", or ") + values.text();
     return text;
 }
 
@@ -133,12 +133,12 @@ std::string Values::text() const {
 bool Combination::found(const CaseFile& file) const {
     if (refused.are != Are::tables && !file.given(refused.key)) return false;
     return refused.hold(file) &&
-           std::any_of(beside.begin(), beside.end(), [&](const Values& values) { return values.hold(file); });
+           std::any_of(with.begin(), with.end(), [&](const Values& values) { return values.hold(file); });
 }
 
 std::string Combination::found_text(const CaseFile& file) const {
     const std::string with =
-        said.empty() ? fmt::format(" with {} = {}", beside.front().key, value_text(file, beside.front())) : said;
+        said.empty() ? fmt::format(" with {} = {}", with.front().key, value_text(file, with.front())) : said;
     return "found " + value_text(file, refused) + with;
 }
 
@@ -159,7 +159,7 @@ const std::vector<Combination>& combinations() {
 std::string describe_combinations() {
     std::string text = "Combinations that are refused\n";
     for (const Combination& row : combinations())
-        text += fmt::format("\n{}\n    with {}\n    {}\n    {}\n", row.refused.text(), beside_text(row), row.expected,
+        text += fmt::format("\n{}\n    with {}\n    {}\n    {}\n", row.refused.text(), with_text(row), row.expected,
                             row.way_out);
     return text;
 }
@@ -169,7 +169,7 @@ std::string combinations_in_markdown() {
         "\n## Combinations that are refused\n\nAlso printed by `frana describe --combinations`.\n\n"
         "| Given | With | Expected | What to do |\n|---|---|---|---|\n";
     for (const Combination& row : combinations())
-        text += fmt::format("| {} | {} | {} | {} |\n", row.refused.text(), beside_text(row), row.expected, row.way_out);
+        text += fmt::format("| {} | {} | {} | {} |\n", row.refused.text(), with_text(row), row.expected, row.way_out);
     return text;
 }
 

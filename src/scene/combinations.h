@@ -21,12 +21,12 @@ struct Values {
     std::string text() const;
 };
 
-/// A row: what is refused when the case gives it, and beside what.
+/// A row: what is refused when the case gives it, and with what.
 struct Combination {
     Values refused;
-    std::vector<Values> beside;  ///< any of these
+    std::vector<Values> with;  ///< any of these
     std::string expected, way_out;
-    std::string said = {};       ///< `beside` in the message where it is not " with KEY = VALUE"
+    std::string said = {};       ///< `with` in the message where it is not " with KEY = VALUE"
 
     bool found(const CaseFile& file) const;
     /// "found "cubic" with scheme.preset = "paper"".

@@ -50,12 +50,12 @@ template <class Real, class Law>
 [[gnu::always_inline]] inline Real mean_if_stopping(const Law& law, const BedStateOf<Real>& state, const BrakedOf<Real>& b) {
     if constexpr (std::is_same_v<Law, bed::None>) return b.speed;
     if (b.drift <= 0.0) return b.speed;
-    const Real friction = law.friction_at_rest() * state.normal_gravity, pull = (b.driven - b.before) / b.velocity_dt,
-               brake = friction - pull;
-    const Real at_start =
-        b.before + brake * (0.5 * b.drift - b.velocity_dt);  // of the drift, half of which the grid update has covered
+    const Real friction = law.friction_at_rest() * state.normal_gravity, drive = (b.driven - b.before) / b.velocity_dt,
+               brake = friction - drive;
+    // The speed at the start of the drift, half of which the grid update has covered.
+    const Real at_start = b.before + brake * (0.5 * b.drift - b.velocity_dt);
     // A turning point is no stop.
-    const auto stops = (b.before > 0.0) & (friction > abs(pull)) & (at_start < brake * b.drift);
+    const auto stops = (b.before > 0.0) & (friction > abs(drive)) & (at_start < brake * b.drift);
     if (!any(stops)) return b.speed;
     const Real mean = select(at_start > 0.0, 0.5 * at_start * at_start / (abs(brake) * b.drift + 1e-300), Real{});
     return select(stops, mean, b.speed);
