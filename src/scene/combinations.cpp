@@ -138,7 +138,7 @@ bool Combination::found(const CaseFile& file) const {
 
 std::string Combination::found_text(const CaseFile& file) const {
     const std::string with =
-        said.empty() ? fmt::format(" with {} = {}", with.front().key, value_text(file, with.front())) : said;
+        said.empty() ? fmt::format(" with {} = {}", this->with.front().key, value_text(file, this->with.front())) : said;
     return "found " + value_text(file, refused) + with;
 }
 
