@@ -29,7 +29,7 @@ TEST_CASE("The lateral drag at a node is that of its faces, and takes momentum f
     flow.columns.resize(1);
     flow.columns.x[0] = flow.columns.y[0] = 20.0;
     TileSorter().sort(flow.columns, flow.grid, {}, flow.active);
-    activate_all(flow);
+    reach_all(flow);
     const auto each = [&](auto&& body) {
         for (Index j = 12; j <= 28; ++j)
             for (Index i = 12; i <= 28; ++i) body(flow.grid.at(i, j), static_cast<double>(i), static_cast<double>(j));

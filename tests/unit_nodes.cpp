@@ -73,7 +73,7 @@ TEST_CASE("Peaks hold the speed and the pressure along the bed, and when the flo
     flow.columns.resize(1);
     flow.columns.x[0] = flow.columns.y[0] = 20.0;
     TileSorter().sort(flow.columns, flow.grid, {}, flow.active);
-    activate_all(flow);
+    reach_all(flow);
     const Index k = flow.grid.at(20, 20);
     flow.nodes.depth[k] = 2.0;
     flow.nodes.before[k] = {3.0, 4.0};
@@ -101,7 +101,7 @@ TEST_CASE("Speeds are along the bed smoothed to the curvature's length, with and
     flow.columns.resize(1);
     flow.columns.x[0] = 45.0, flow.columns.y[0] = 20.0;
     TileSorter().sort(flow.columns, flow.grid, {}, flow.active);
-    activate_all(flow);
+    reach_all(flow);
     const Index k = flow.grid.at(45, 20);
     flow.nodes.depth[k] = 2.0;
     flow.nodes.before[k] = {20.0, 5.0};
