@@ -64,7 +64,7 @@ TEST_CASE("A run of a block keeps mass and momentum, and loses energy to what it
                                         (first.mass * now.max_speed));
     }
     CHECK(worst < 1e-12);
-    const std::optional<Breakage> breakage = run->breakage();
+    const std::optional<Breakage> breakage = run->extras().breakage;
     REQUIRE(breakage.has_value());
     CHECK(breakage->damage > 0.0);
     CHECK(breakage->pairs > 500);
@@ -81,15 +81,15 @@ TEST_CASE("What elastic waves cost is the depth-averaged flow's step over theirs
     // All at 2 m/s: elastic steps count sqrt(2 g h) besides, those of the depth-averaged flow sqrt(g h).
     const double signal = 2.0 + (wave - 2.0) / std::sqrt(2.0);
     const double flow = 2.0 * reach / (signal + std::sqrt(signal * signal + 2.0 * scene.gravity * reach));
-    CHECK(whole.breakage()->sub_cycling == Approx(flow / whole.status().dt).epsilon(1e-14));
-    CHECK(whole.breakage()->sub_cycling > 5.0);
+    CHECK(whole.breakage().sub_cycling == Approx(flow / whole.status().dt).epsilon(1e-14));
+    CHECK(whole.breakage().sub_cycling > 5.0);
     // Hydrostatic grains alone take no elastic steps: what is left of it is the wave speed.
     scene.structure->hydrostatic = true;
     scene.structure->share = 0.0;
     StructuredRun grains(scene);
     grains.advance(1.0);
-    CHECK(grains.breakage()->sub_cycling == Approx(flow / grains.status().dt).epsilon(1e-14));
-    CHECK((grains.breakage()->sub_cycling > 1.0 && grains.breakage()->sub_cycling < std::sqrt(2.0)));
+    CHECK(grains.breakage().sub_cycling == Approx(flow / grains.status().dt).epsilon(1e-14));
+    CHECK((grains.breakage().sub_cycling > 1.0 && grains.breakage().sub_cycling < std::sqrt(2.0)));
 }
 
 TEST_CASE("Energy of a whole block on a plane: what it loses is friction", "[structured]") {
@@ -208,8 +208,8 @@ TEST_CASE("A kept run of structured columns goes on with the same bits", "[struc
     go_to(whole, scene.end);
     go_to(resumed, scene.end);
     CHECK(state_bits(whole) == state_bits(resumed));
-    CHECK(whole.breakage()->pairs == resumed.breakage()->pairs);
-    CHECK(whole.breakage()->torn == resumed.breakage()->torn);
+    CHECK(whole.breakage().pairs == resumed.breakage().pairs);
+    CHECK(whole.breakage().torn == resumed.breakage().torn);
 }
 
 TEST_CASE("Walls hold structured columns back, open sides and ground without data let them go", "[structured]") {

@@ -81,7 +81,7 @@ room(src/run base observe)
 room(src/mpm base terrain observe)
 room(src/scene base terrain law law/bed particles convert)
 # The models.
-room(src/shallow base law law/bed run mpm scene)
+room(src/shallow base law law/bed observe run mpm scene)
 room(src/solid3d base terrain law observe mpm)
 room(src/water base law observe mpm)
 room(src/structured base law law/bed observe mpm shallow water)

@@ -88,55 +88,45 @@ void FlowMap::sample(const Mpm3d& flow, double time) {
 }
 
 void FlowMap::note_peaks(double time) {
-    max_depth_ = covered_area_ = front_ = 0.0;
+    extent_ = {};
     for (Index k = 0; k < grid_.size(); ++k) {
         const double h = depth(k);
         if (!(h > 0.0)) continue;
-        Peak& peak = peaks_[static_cast<std::size_t>(k)];
-        max_depth_ = std::max(max_depth_, h);
-        peak.depth = std::max(peak.depth, h);
-        peak.pressure = std::max(peak.pressure, pressure(k));
-        if (h >= 0.1 * footprint_depth_) {
-            const double speed = velocity(k).norm();
-            peak.speed = std::max(peak.speed, speed);
-            peak.dynamic_pressure = std::max(peak.dynamic_pressure, density_ * speed * speed);
-        }
-        if (!(h > footprint_depth_)) continue;
-        if (peak.arrival < 0.0) peak.arrival = time;
-        covered_area_ += areas_[static_cast<std::size_t>(k)];
-        front_ = std::max(front_, (Vec2(grid_.x(k % grid_.nx), grid_.y(k / grid_.nx)) - centre_).norm());
+        const NodeState now{h, velocity(k).norm(), pressure(k), density_};
+        peaks_[static_cast<std::size_t>(k)].note(now, time, footprint_depth_);
+        extent_.note(now, footprint_depth_, areas_[static_cast<std::size_t>(k)],
+                     (Vec2(grid_.x(k % grid_.nx), grid_.y(k / grid_.nx)) - centre_).norm());
     }
 }
 
 Index FlowMap::fronts(double since, double speed) const {
     Index count = 0;
     for (Index k = 0; k < grid_.size(); ++k) {
-        const Peak& peak = peaks_[static_cast<std::size_t>(k)];
-        count += peak.arrival >= since && velocity(k).norm() > speed;
+        const NodePeak& peak = peaks_[static_cast<std::size_t>(k)];
+        count += peak.covered(footprint_depth_) && peak.arrival >= since && velocity(k).norm() > speed;
     }
     return count;
 }
 
 void FlowMap::serialize(Archive& archive) {
     const Archive::Part part(archive, "map");
-    constexpr std::size_t kNumbers = 9;  // of a node and its peak
+    constexpr std::size_t kNumbers = 4 + NodePeak::kNumbers;
     std::vector<double> all;
     if (!archive.loading())
         for (std::size_t k = 0; k < nodes_.size(); ++k) {
             const Node& n = nodes_[k];
-            const Peak& q = peaks_[k];
-            all.insert(all.end(), {n.mass, n.momentum[0], n.momentum[1], n.momentum[2], q.depth, q.speed,
-                                   q.pressure, q.dynamic_pressure, q.arrival});
+            all.insert(all.end(), {n.mass, n.momentum[0], n.momentum[1], n.momentum[2]});
+            for (const double number : peaks_[k].numbers()) all.push_back(number);
         }
     archive.array("nodes", all);
-    archive.numbers("sums", {&max_depth_, &covered_area_, &front_});
+    archive.numbers("sums", {&extent_.max_depth, &extent_.max_speed, &extent_.covered_area, &extent_.front});
     if (all.size() != kNumbers * nodes_.size())
         Archive::wrong_length("nodes", all.size(), kNumbers * nodes_.size());
     if (!archive.loading()) return;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
         const double* const v = &all[kNumbers * k];
         nodes_[k] = {v[0], {v[1], v[2], v[3]}};
-        peaks_[k] = {v[4], v[5], v[6], v[7], v[8]};
+        peaks_[k] = NodePeak::of(v + 4);
     }
 }
 

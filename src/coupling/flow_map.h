@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mpm/node_peak.h"
 #include "observe/archive.h"
 #include "observe/observer.h"
 #include "scene/scene.h"
@@ -17,12 +18,6 @@ public:
     struct Node {
         double mass = 0.0;       ///< [kg]
         Vec3 momentum{0, 0, 0};  ///< [kg m/s]
-    };
-    /// What a node ever saw; the same quantities as of the depth-averaged model (shallow/peaks.h). The
-    /// pressure is the weight of what stands there, normal to the bed.
-    struct Peak {
-        double depth = 0.0, speed = 0.0, pressure = 0.0, dynamic_pressure = 0.0;
-        double arrival = -1.0;  ///< first time deeper than the footprint depth [s]
     };
 
     explicit FlowMap(const Scene& scene);
@@ -46,11 +41,11 @@ public:
     }  ///< of the slope
     /// Depth and velocity between the nodes, bilinear; beyond them the nearest. No elevation.
     Sample at(const Vec2& point) const;
-    const Peak& peak(Index k) const { return peaks_[static_cast<std::size_t>(k)]; }
+    /// The pressure is the weight of what stands there, normal to the bed.
+    const NodePeak& peak(Index k) const { return peaks_[static_cast<std::size_t>(k)]; }
 
-    double max_depth() const { return max_depth_; }        ///< [m]
-    double covered_area() const { return covered_area_; }  ///< deeper than the footprint depth [m2]
-    double front() const { return front_; }  ///< of these nodes the farthest from the release's centre [m]
+    const FlowExtent& extent() const { return extent_; }
+    double footprint_depth() const { return footprint_depth_; }  ///< [m]
     /// Nodes that are covered since a time at most, and where material is faster than `speed` (MovingMass::fronts).
     Index fronts(double since, double speed) const;
     void serialize(Archive& archive);
@@ -64,8 +59,8 @@ private:
     std::vector<double> areas_;       ///< of the nodes' cells, half of one at a wall [m2]
     std::vector<double> steepening_;  ///< 1 + |grad Z|^2 at the nodes
     std::vector<Node> nodes_;
-    std::vector<Peak> peaks_;
-    double max_depth_ = 0.0, covered_area_ = 0.0, front_ = 0.0;
+    std::vector<NodePeak> peaks_;
+    FlowExtent extent_;
 };
 
 }  // namespace frana

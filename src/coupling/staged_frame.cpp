@@ -17,18 +17,10 @@ void each_node(double* values, Index count, At&& at) {
 
 }  // namespace
 
-double* StagedRun::add_field(std::vector<Field>& fields, const Field& like, int components, Index count) {
-    if (frame_used_ == frame_storage_.size()) frame_storage_.emplace_back();
-    std::vector<double>& storage = frame_storage_[frame_used_++];
-    storage.assign(static_cast<std::size_t>(count * components), 0.0);
-    fields.push_back({like.name, like.unit, components, storage.data(), count});
-    return storage.data();
-}
-
 Frame StagedRun::frame() {
     if (!points_) return columns_->frame();
     Frame frame = columns_->frame();
-    frame_used_ = 0;
+    store_.begin();
     timed_("frame", [&] {
         const Status now = status_;
         const double mach = largest_mach_;
@@ -53,15 +45,15 @@ void StagedRun::particle_fields(Frame& frame) {
         const auto found = std::find_if(columns.begin(), columns.end(),
                                         [&](const Field& field) { return field.name == name; });
         expect(found != columns.end(), "columns have the quantities that points share");
-        double* const values = add_field(frame.particles, *found, found->components, count);
+        double* const values = store_.zeros(frame.particles, found->name, found->unit, found->components, count);
         std::copy_n(found->data, before * found->components, values);
         return values + before * found->components;
     };
     double *position = take("position"), *velocity = take("velocity"), *speed = take("speed"),
            *depth = take("depth"), *elevation = take("elevation"), *surface = take("surface"),
            *pressure = take("pressure"), *mass = take("mass"), *volume = take("volume"), *id = take("id");
-    double* const model = add_field(frame.particles, {"model", "1"}, 1, count) + before;
-    double* const stress = add_field(frame.particles, {"stress", "Pa"}, 6, count) + 6 * before;
+    double* const model = store_.zeros(frame.particles, "model", "1", 1, count) + before;
+    double* const stress = store_.zeros(frame.particles, "stress", "Pa", 6, count) + 6 * before;
     const MaterialPoints& q = points_->body().points;
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < more; ++p) {
@@ -91,25 +83,25 @@ void StagedRun::node_fields(Frame& frame) {
     double* depth = nullptr;
     const double* depth_of_columns = nullptr;
     for (const Field& field : columns) {
-        double* const values = add_field(frame.nodes, field, field.components, count);
+        double* const values = store_.raw(frame.nodes, field.name, field.unit, field.components, count);
         std::copy_n(field.data, count * field.components, values);
         const auto more = [&](const auto& at) {
             each_node(values, count, [&](Index k) { return values[k] + at(k); });
         };
-        const auto most = [&](double FlowMap::Peak::*peak) {
+        const auto most = [&](double NodePeak::*peak) {
             each_node(values, count, [&](Index k) { return std::max(values[k], map_.peak(k).*peak); });
         };
         if (field.name == "depth") depth = values, depth_of_columns = field.data;
         if (field.name == "depth" || field.name == "surface") more([&](Index k) { return map_.depth(k); });
         if (field.name == "thickness") more([&](Index k) { return map_.depth(k) * map_.cosine(k); });
         if (field.name == "pressure") more([&](Index k) { return map_.pressure(k); });
-        if (field.name == "peak_depth") most(&FlowMap::Peak::depth);
-        if (field.name == "peak_speed") most(&FlowMap::Peak::speed);
-        if (field.name == "peak_pressure") most(&FlowMap::Peak::pressure);
-        if (field.name == "peak_dynamic_pressure") most(&FlowMap::Peak::dynamic_pressure);
+        if (field.name == "peak_depth") most(&NodePeak::depth);
+        if (field.name == "peak_speed") most(&NodePeak::speed);
+        if (field.name == "peak_pressure") most(&NodePeak::pressure);
+        if (field.name == "peak_dynamic_pressure") most(&NodePeak::dynamic_pressure);
         if (field.name == "arrival_time")
             each_node(values, count, [&](Index k) {
-                const double here = map_.peak(k).arrival;
+                const double here = map_.peak(k).arrival_time(map_.footprint_depth());
                 return values[k] < 0.0 ? here : here < 0.0 ? values[k] : std::min(values[k], here);
             });
         if (field.name == "velocity")

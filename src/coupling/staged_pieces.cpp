@@ -16,9 +16,10 @@ void StagedRun::find_pieces() {
     });
 }
 
-std::optional<PointsApart> StagedRun::points_apart() const {
-    if (!points_) return {};
-    return apart_;
+Extras StagedRun::extras() const {
+    Extras extras;
+    if (points_) extras.points_apart = apart_;
+    return extras;
 }
 
 /// Drops and ends of less than a hundredth of the mass change no result that a run has.

@@ -218,13 +218,13 @@ void StagedRun::accumulate(const Status& columns) {
     status_.in_3d = {s.friction, -s.contact_work, s.material, s.numerical() + returned_.lost, s.volume};
     status_.dissipated += s.energy_given - s.kinetic - s.potential - s.stored - s.energy_left + returned_.lost;
     status_.energy_left += s.energy_left - converted_.energy - energy_back - returned_.lost;
-    status_.max_depth = std::max(columns.max_depth, map_.max_depth());
+    status_.max_depth = std::max(columns.max_depth, map_.extent().max_depth);
     status_.max_speed = std::max(columns.max_speed, s.max_speed);
     status_.max_speed_on_map = std::max(columns.max_speed_on_map, s.max_speed);
     status_.mean_speed =
         status_.mass > 0.0 ? (columns.mean_speed * columns.mass + s.speeds) / status_.mass : 0.0;
-    status_.covered_area += map_.covered_area();
-    status_.front = std::max(columns.front, map_.front());
+    status_.covered_area += map_.extent().covered_area;
+    status_.front = std::max(columns.front, map_.extent().front);
     if (start_.sound_speed > 0.0) largest_mach_ = std::max(largest_mach_, s.max_speed / start_.sound_speed);
 }
 

@@ -13,6 +13,7 @@
 #include "coupling/stage_conversion.h"
 #include "coupling/solid_scene.h"
 #include "coupling/spray.h"
+#include "observe/frame_store.h"
 #include "shallow/depth_averaged.h"
 
 namespace frana {
@@ -38,7 +39,7 @@ public:
     Sample at(const Vec2& point) const override;
     const BarrierLoads* loads() const override { return watch_ ? &watch_->loads() : nullptr; }
     std::vector<std::string> remarks() const override;
-    std::optional<PointsApart> points_apart() const override;
+    Extras extras() const override;
     std::vector<PhaseTime> timings() const override;
     void serialize(Archive& archive) override;
 
@@ -89,7 +90,6 @@ private:
     void serialize_returning(Archive& archive);
     void particle_fields(Frame& frame);
     void node_fields(Frame& frame);
-    double* add_field(std::vector<Field>& fields, const Field& like, int components, Index count);
 
     Scene scene_;
     std::unique_ptr<DepthAveraged> columns_;
@@ -111,8 +111,7 @@ private:
     PointsApart apart_;
     Spray spray_;
     double largest_mach_ = 0.0;  ///< fastest point over the speed of sound [1]
-    std::vector<std::vector<double>> frame_storage_;
-    std::size_t frame_used_ = 0;
+    FrameStore store_;
 };
 
 }  // namespace frana

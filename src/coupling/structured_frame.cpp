@@ -35,18 +35,9 @@ void for_each_node(const TileGrid& grid, const std::vector<Index>& tiles, Each&&
 
 }  // namespace
 
-double* StructuredRun::add_field(std::vector<Field>& fields, const char* name, const char* unit, int components,
-                                 Index count) {
-    if (frame_used_ == frame_storage_.size()) frame_storage_.emplace_back();
-    std::vector<double>& storage = frame_storage_[frame_used_++];
-    storage.assign(static_cast<std::size_t>(count * components), 0.0);
-    fields.push_back({name, unit, components, storage.data(), count});
-    return storage.data();
-}
-
 Frame StructuredRun::frame() {
     Frame frame;
-    frame_used_ = 0;
+    store_.begin();
     timed_("frame", [&] {
         if (alone_) alone_->sample();
         accumulate();
@@ -65,7 +56,7 @@ void StructuredRun::particle_fields(Frame& frame) {
     const StructuredPoints& q = body.points;
     const Index count = q.count();
     const auto column = [&](const char* name, const char* unit, int components) {
-        return add_field(frame.particles, name, unit, components, count);
+        return store_.zeros(frame.particles, name, unit, components, count);
     };
     double *position = column("position", "m", 3), *depth = column("depth", "m", 1),
            *thickness = column("thickness", "m", 1), *velocity = column("velocity", "m/s", 3),
@@ -105,7 +96,7 @@ void StructuredRun::node_fields(Frame& frame) {
     const StructuredBody& body = flow().body();
     const GridGeometry& g = bed_.geometry;
     const auto column = [&](const char* name, const char* unit, int components) {
-        return add_field(frame.nodes, name, unit, components, g.size());
+        return store_.zeros(frame.nodes, name, unit, components, g.size());
     };
     double *elevation = column("elevation", "m", 1), *depth = column("depth", "m", 1),
            *thickness = column("thickness", "m", 1), *surface = column("surface", "m", 1),
@@ -118,10 +109,10 @@ void StructuredRun::node_fields(Frame& frame) {
         for (Index i = 0; i < g.nx; ++i) {
             const Index n = j * g.nx + i;
             elevation[n] = surface[n] = bed_.at(i, j);
-            const StructuredMap::Peak& peak = map_.peak(body.grid.at(i, j));
+            const NodePeak& peak = map_.peak(body.grid.at(i, j));
             peak_depth[n] = peak.depth, peak_speed[n] = peak.speed, peak_pressure[n] = peak.pressure;
             peak_dynamic[n] = peak.dynamic_pressure;
-            arrival[n] = peak.depth > map_.footprint_depth() ? peak.arrival : -1.0;
+            arrival[n] = peak.arrival_time(map_.footprint_depth());
         }
     for_each_node(body.grid, body.active.work, [&](Index k, Index n) {
         const StructuredBody::Moved& node = body.moved[k];
@@ -163,7 +154,7 @@ void StructuredRun::inner_fields(Frame& frame) {
     });
     const GridGeometry& g = bed_.geometry;
     const auto column = [&](const char* name, const char* unit, int components) {
-        return add_field(frame.nodes, name, unit, components, g.size());
+        return store_.zeros(frame.nodes, name, unit, components, g.size());
     };
     double *stress_to = column("stress", "Pa", 3), *effective_to = column("effective_stress", "Pa", 3),
            *damage_to = column("damage", "1", 1), *cohesion_to = column("cohesion", "Pa", 1);
@@ -186,8 +177,8 @@ void StructuredRun::water_fields(Frame& frame) {
     double *depth = find("depth"), *thickness = find("thickness"), *surface = find("surface"),
            *velocity = find("velocity"), *speed = find("speed"), *pressure = find("pressure");
     const double* elevation = find("elevation");
-    double *water_depth = add_field(frame.nodes, "water_depth", "m", 1, g.size()),
-           *water_velocity = add_field(frame.nodes, "water_velocity", "m/s", 3, g.size());
+    double *water_depth = store_.zeros(frame.nodes, "water_depth", "m", 1, g.size()),
+           *water_velocity = store_.zeros(frame.nodes, "water_velocity", "m/s", 3, g.size());
     const double per = 0.5 / g.cell;
     for_each_node(water.grid, water.work, [&](Index k, Index n) {
         const double h = water.now.h[k];

@@ -87,11 +87,11 @@ void StructuredRun::accumulate() {
     status_.stored = s.stored;
     status_.dissipated = s.friction + s.obstacle_work + (s.worked - s.stored);
     status_.energy_left = s.energy_left;
-    status_.max_speed = map_.sums().max_speed, status_.max_speed_on_map = s.max_speed;
+    status_.max_speed = map_.extent().max_speed, status_.max_speed_on_map = s.max_speed;
     status_.mean_speed = s.mass > 0.0 ? s.speeds / s.mass : 0.0;
-    status_.max_depth = map_.sums().max_depth;
-    status_.covered_area = map_.sums().covered_area;
-    status_.front = map_.sums().front;
+    status_.max_depth = map_.extent().max_depth;
+    status_.covered_area = map_.extent().covered_area;
+    status_.front = map_.extent().front;
     if (both_) accumulate_water();
 }
 
@@ -140,7 +140,14 @@ Sample StructuredRun::at(const Vec2& point) const {
     return sample;
 }
 
-std::optional<Breakage> StructuredRun::breakage() const {
+Extras StructuredRun::extras() const {
+    Extras extras;
+    extras.breakage = breakage();
+    extras.water = water_budget();
+    return extras;
+}
+
+Breakage StructuredRun::breakage() const {
     const double cell = flow().body().grid.cell();
     PieceRule rule = kPieces;
     rule.link *= cell;
@@ -165,7 +172,7 @@ std::optional<WaterBudget> StructuredRun::water_budget() const {
 }
 
 std::vector<std::string> StructuredRun::remarks() const {
-    const Breakage now = *breakage();
+    const Breakage now = breakage();
     const StructuredStatus& s = flow().status();
     std::vector<std::string> remarks = remarks_on_lost(s.lost_in_holes, s.mass + s.mass_left);
     if (s.outrun > 0)

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "coupling/two_phase_flow.h"
+#include "observe/frame_store.h"
 #include "run/simulation.h"
 #include "scene/scene.h"
 #include "structured/breakage.h"
@@ -32,8 +33,10 @@ public:
     Frame frame() override;
     Sample at(const Vec2& point) const override;
     std::vector<std::string> remarks() const override;
-    std::optional<Breakage> breakage() const override;
-    std::optional<WaterBudget> water_budget() const override;
+    Extras extras() const override;
+    Breakage breakage() const;
+    /// Nothing in a dry run.
+    std::optional<WaterBudget> water_budget() const;
     std::vector<PhaseTime> timings() const override;
     void serialize(Archive& archive) override;
 
@@ -48,7 +51,6 @@ private:
     void node_fields(Frame& frame);
     void inner_fields(Frame& frame);
     void water_fields(Frame& frame);
-    double* add_field(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
 
     Raster bed_;
     double water_density_ = 0.0;
@@ -63,8 +65,7 @@ private:
         double stress[3], effective[3], damage, cohesion, mass;
     };
     LazyArray<Inner> inner_;
-    std::vector<std::vector<double>> frame_storage_;
-    std::size_t frame_used_ = 0;
+    FrameStore store_;
 };
 
 }  // namespace frana

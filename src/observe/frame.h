@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/types.h"
 #include "terrain/raster.h"
 
@@ -20,10 +21,7 @@ struct Field {
 
 /// Scalars of one step: budgets and extremes. Sums run over all material still in the domain. Between frames
 /// velocities (momentum, kinetic energy, speeds) stand half a step behind the time; in a frame they are at it.
-struct Status {
-    Index step = 0;
-    double time = 0.0;               ///< [s]
-    double dt = 0.0;                 ///< last step [s]
+struct Status : Clock {
     Index particles = 0;
     double mass = 0.0;               ///< [kg]
     double mass_left = 0.0;          ///< left through open sides or exits since the start [kg]

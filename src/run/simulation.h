@@ -13,6 +13,13 @@ namespace frana {
 
 struct Scene;
 
+/// What only some models can tell of a run; nothing of the others.
+struct Extras {
+    std::optional<Breakage> breakage;         ///< what structured material has come apart into
+    std::optional<PointsApart> points_apart;  ///< what 3D points have come apart into
+    std::optional<WaterBudget> water;         ///< where the water is and has gone
+};
+
 class Simulation : public Probe {
 public:
     /// One time step, never past `until` [s]. Throws NumericsError when a number stops being finite.
@@ -30,12 +37,8 @@ public:
     virtual const Raster* ground() const { return nullptr; }
     /// What the user should know of how the run was set up.
     virtual std::vector<std::string> remarks() const { return {}; }
-    /// What the material has come apart into; nothing of material that has no structure.
-    virtual std::optional<Breakage> breakage() const { return {}; }
-    /// What 3D points have come apart into; nothing without any.
-    virtual std::optional<PointsApart> points_apart() const { return {}; }
-    /// Where the water is and has gone; nothing without any.
-    virtual std::optional<WaterBudget> water_budget() const { return {}; }
+    /// What only some models can tell.
+    virtual Extras extras() const { return {}; }
     /// Wall time by phase since the start.
     virtual std::vector<PhaseTime> timings() const = 0;
     /// Saves the state between two steps, or takes it up again with all its bits, in a simulation of the same scene

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/flush_denormals.h"
-#include "base/step_length.h"
+#include "base/clock.h"
 #include "mpm/stencil.h"
 #include "shallow/lateral.h"
 #include "shallow/shock.h"
@@ -139,9 +139,7 @@ void DepthAveraged::advance(double until) {
                : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_velocity_dt); });
     require_finite(points);
     accumulate_points(points);
-    status_.step += 1;
-    status_.time = dt >= until - status_.time ? until : status_.time + dt;
-    status_.dt = dt;
+    status_.tick(dt, until);
     if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0);
     if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
@@ -239,7 +237,7 @@ double DepthAveraged::share_of_ordinary_step() const {
 
 /// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
 double DepthAveraged::step_length(double until) const {
-    return step_towards(until - status_.time, longest_step());
+    return status_.step_towards(until, longest_step());
 }
 
 void DepthAveraged::accumulate_grid_update(const GridUpdateSums& sums, double velocity_dt) {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "mpm/step_clock.h"
+#include "observe/frame_store.h"
 #include "run/simulation.h"
 #include "shallow/grid_update.h"
 #include "shallow/mass_fit.h"
@@ -104,9 +105,6 @@ private:
     template <class Law>
     void stress_at_points(const Law& law, double* stresses) const;
     void stress_on_nodes(const double* stresses);
-    /// A new field's numbers: left over from the last frame; or zero.
-    double* add_column(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
-    double* add_field(std::vector<Field>& fields, const char* name, const char* unit, int components, Index count);
 
     Flow flow_;
     std::unique_ptr<TransferKernel> transfer_;
@@ -134,8 +132,7 @@ private:
     struct StressSum { double stress[3], mass; };
     LazyArray<StressSum> stress_sums_;  ///< per node, of the points' stress times mass [Pa kg], and mass [kg]
     TransferKernel::Probe probe_;
-    std::vector<std::vector<double>> frame_storage_;  ///< what the last frame's fields point to
-    std::size_t frame_used_ = 0;                      ///< of them
+    FrameStore store_;
 };
 
 }  // namespace frana

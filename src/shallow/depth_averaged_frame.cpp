@@ -58,26 +58,10 @@ BedHere bed_at(const Flow& flow, bool steep, bool curved, double x, double y) {
 
 }  // namespace
 
-double* DepthAveraged::add_column(std::vector<Field>& fields, const char* name, const char* unit, int components,
-                                  Index count) {
-    if (frame_used_ == frame_storage_.size()) frame_storage_.emplace_back();
-    std::vector<double>& storage = frame_storage_[frame_used_++];  // frames come alike: memory is asked for once
-    storage.resize(static_cast<std::size_t>(count * components));
-    fields.push_back({name, unit, components, storage.data(), count});
-    return storage.data();
-}
-
-double* DepthAveraged::add_field(std::vector<Field>& fields, const char* name, const char* unit, int components,
-                                 Index count) {
-    double* const column = add_column(fields, name, unit, components, count);
-    std::fill_n(column, count * components, 0.0);
-    return column;
-}
-
 /// Velocities are half a step behind: nodes are updated by the missing half on a copy, points gather from it.
 Frame DepthAveraged::frame() {
     Frame frame;
-    frame_used_ = 0;
+    store_.begin();
     timed_("frame", [&] {
         const GridUpdateSums sums = grid_update_->update(flow_, 0.5 * status_.dt, 0.0);
         mirror_motion(flow_);
@@ -112,7 +96,7 @@ void DepthAveraged::particle_fields(Frame& frame) {
     const Index count = c.count();
     const GridGeometry& g = flow_.grid.geometry();
     const auto column = [&](const char* name, const char* unit, int components) {
-        return add_column(frame.particles, name, unit, components, count);
+        return store_.raw(frame.particles, name, unit, components, count);
     };
     double* position = column("position", "m", 3);
     double* depth = column("depth", "m", 1);
@@ -152,7 +136,7 @@ void DepthAveraged::particle_fields(Frame& frame) {
 void DepthAveraged::node_fields(Frame& frame) {
     const Index count = shown_.nx * shown_.ny;
     const auto column = [&](const char* name, const char* unit, int components) {
-        return add_field(frame.nodes, name, unit, components, count);
+        return store_.zeros(frame.nodes, name, unit, components, count);
     };
     double* elevation = column("elevation", "m", 1);
     double* depth = column("depth", "m", 1);
@@ -199,10 +183,10 @@ void DepthAveraged::node_fields(Frame& frame) {
 /// pressure: sigma - rho g h / 2 (Fois et al. 2024, before eq. 10).
 void DepthAveraged::stress_fields(Frame& frame) {
     const Index count = flow_.columns.count(), nodes = shown_.nx * shown_.ny;
-    double* at_points = add_column(frame.particles, "stress", "Pa", 3, count);
-    double* effective = add_column(frame.particles, "effective_stress", "Pa", 3, count);
-    double* at_nodes = add_field(frame.nodes, "stress", "Pa", 3, nodes);
-    double* effective_nodes = add_field(frame.nodes, "effective_stress", "Pa", 3, nodes);
+    double* at_points = store_.raw(frame.particles, "stress", "Pa", 3, count);
+    double* effective = store_.raw(frame.particles, "effective_stress", "Pa", 3, count);
+    double* at_nodes = store_.zeros(frame.nodes, "stress", "Pa", 3, nodes);
+    double* effective_nodes = store_.zeros(frame.nodes, "effective_stress", "Pa", 3, nodes);
     std::visit([&](const auto& law) { stress_at_points(law, at_points); }, rheology_);
     stress_on_nodes(at_points);
     const double half_weight = 0.5 * flow_.density * flow_.gravity;

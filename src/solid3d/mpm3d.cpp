@@ -9,7 +9,7 @@
 #include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
-#include "base/step_length.h"
+#include "base/clock.h"
 
 namespace frana {
 namespace {
@@ -226,7 +226,7 @@ double Mpm3d::step_length(double until) const {
     constexpr double kViscous =
         0.1;  // of rho h^2 / mu: half of what a slice was stable with, for the third direction
     if (viscosity > 0.0) longest = std::min(longest, kViscous * density_ * h * h / viscosity);
-    return step_towards(until - status_.time, longest);
+    return status_.step_towards(until, longest);
 }
 
 /// One step: points give mass, momentum and stress to the nodes, surfaces show their mirror particles, nodes meet the
@@ -243,8 +243,8 @@ void Mpm3d::advance(double until) {
     if (ghosts) timed_("beside", [&] { kernel_->scatter_ghost_mirrors(body_); });
     timed_("nodes", [&] { kernel_->move_nodes(body_); });
     timed_("gather", [&] { kernel_->gather(body_, dt); });
-    status_.time = dt >= until - status_.time ? until : status_.time + dt;
-    accumulate(dt);
+    status_.tick(dt, until);
+    accumulate();
     if (notes_ && status_.points != body_.points.count())
         for (Index p = 0; p < body_.points.count(); ++p)
             if (body_.gone[static_cast<std::size_t>(p)]) departed_.push_back(departed(p));
@@ -255,7 +255,7 @@ void Mpm3d::advance(double until) {
 }
 
 /// Sums in the order of the tiles: the same bits for any number of threads.
-void Mpm3d::accumulate(double dt) {
+void Mpm3d::accumulate() {
     const GridGeometry3d& g = body_.grid.geometry();
     SolidSums all;
     Index left = 0;
@@ -276,9 +276,7 @@ void Mpm3d::accumulate(double dt) {
         for (std::size_t n = 0; n < list->size(); ++n) body_.impulse[n % body_.surfaces.size()] += (*list)[n];
     if (body_.barriers != 0) accumulate_barrier_impulses();
     for (const Vec3& given : body_.ghosts.tile_impulse) status_.ghost_impulse += given;
-    status_.weight_impulse += dt * (all.mass + all.left_mass) * body_.gravity;
-    status_.step += 1;
-    status_.dt = dt;
+    status_.weight_impulse += status_.dt * (all.mass + all.left_mass) * body_.gravity;
     require_finite(all);
     status_.points = body_.points.count() - left;
     status_.mass = all.mass;

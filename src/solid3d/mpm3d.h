@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/clock.h"
 #include "law/solid_law.h"
 #include "mpm/step_clock.h"
 #include "observe/frame.h"
@@ -66,9 +67,7 @@ struct SolidScene {
 };
 
 /// Sums over the points after a step.
-struct SolidStatus {
-    Index step = 0;
-    double time = 0.0, dt = 0.0;  ///< [s]
+struct SolidStatus : Clock {
     Index points = 0;
     double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
     Vec3 momentum{0, 0, 0};              ///< [kg m/s]
@@ -245,7 +244,7 @@ private:
     void note_near(std::size_t seed);
     void make_room_for_impulses();
     double step_length(double until) const;
-    void accumulate(double dt);
+    void accumulate();
     void accumulate_barrier_impulses();
     void require_finite(const SolidSums& sums) const;
     DepartedPoint departed(Index p) const;

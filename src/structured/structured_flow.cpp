@@ -8,7 +8,7 @@
 #include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
-#include "base/step_length.h"
+#include "base/clock.h"
 
 namespace frana {
 namespace {
@@ -181,7 +181,7 @@ void StructuredFlow::learn_ground() {
 }
 
 double StructuredFlow::step_length(double until) const {
-    return step_towards(until - status_.time, longest_step());
+    return status_.step_towards(until, longest_step());
 }
 
 /// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone: their earth pressure
@@ -212,11 +212,8 @@ void StructuredFlow::advance(double until) {
     if (body_.grains) timed_("surface", [&] { raise_surface(body_); });
     timed_("nodes", [&] { move_nodes(body_, times); });
     timed_("gather", [&] { gather(body_, dt); });
-    accumulate(dt);
-    if (status_.time + dt >= until)
-        status_.time = until;
-    else
-        status_.time += dt;
+    status_.tick(dt, until);
+    accumulate();
 }
 
 void StructuredFlow::sample() {
@@ -235,7 +232,7 @@ void StructuredFlow::update_totals() {
 }
 
 /// Sums of the tiles, in their order; points that left are dropped, and points that moved far are sorted.
-void StructuredFlow::accumulate(double dt) {
+void StructuredFlow::accumulate() {
     StructuredSums all;
     for (const StructuredSums& tile : body_.sums) {
         all.mass += tile.mass, all.kinetic += tile.kinetic, all.damaged += tile.damaged;
@@ -258,9 +255,7 @@ void StructuredFlow::accumulate(double dt) {
         throw NumericsError(
             fmt::format("structured columns, step {}, t = {:.6g} s, dt = {:.3g} s: column {} has numbers "
                         "that are not finite; a smaller cfl may help",
-                        status_.step, status_.time, dt, body_.points.id[all.bad]));
-    ++status_.step;
-    status_.dt = dt;
+                        status_.step, status_.time, status_.dt, body_.points.id[all.bad]));
     status_.mass = all.mass, status_.momentum = all.momentum, status_.kinetic = all.kinetic;
     status_.speeds = all.speeds, status_.stored = all.stored, status_.worked += all.worked;
     status_.energy_left += all.left_energy;
@@ -271,7 +266,7 @@ void StructuredFlow::accumulate(double dt) {
     status_.released += all.released, status_.confined_left += all.left_confined;
     status_.lost_in_holes += all.lost_in_holes;
     status_.mass_left += all.left_mass, status_.momentum_left += all.left_momentum;
-    drift_ += dt * status_.max_speed / body_.grid.cell();
+    drift_ += status_.dt * status_.max_speed / body_.grid.cell();
     if (all.left_mass > 0.0 || drift_ > kDriftLimit - 1.0) sort();
     if (body_.grains && status_.step % kStepsBetweenSplits == 0) split();
     status_.points = body_.points.count();

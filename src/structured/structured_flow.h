@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/clock.h"
 #include "law/bed/laws.h"
 #include "law/structured_law.h"
 #include "observe/frame.h"
@@ -80,9 +81,7 @@ struct StructuredTally {
 };
 
 /// Sums over the points after a step.
-struct StructuredStatus {
-    Index step = 0;
-    double time = 0.0, dt = 0.0;  ///< [s]
+struct StructuredStatus : Clock {
     Index points = 0;
     double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
     double lost_in_holes = 0.0;          ///< of what is gone, in holes of the terrain [kg]
@@ -232,7 +231,7 @@ private:
     void split();
     double step_length(double until) const;
     double flow_step(double signal) const;
-    void accumulate(double dt);
+    void accumulate();
     void update_totals();
 
     StructuredBody body_;

@@ -60,7 +60,7 @@ void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, dou
     const Index count = static_cast<Index>(tiles_.size());
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) {
-        Sums sums;
+        FlowExtent extent;
         const Index tile = tiles_[static_cast<std::size_t>(n)];
         const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
         for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, ny_); ++j)
@@ -68,30 +68,16 @@ void StructuredMap::note(const StructuredBody& body, const WaterFlow* water, dou
                 const Standing node = on_node(body, water, i, j);
                 if (!(node.depth > 0.0)) continue;
                 const Index k = body.grid.at(i, j);
-                Peak& peak = peaks_[k];
-                if (node.depth > footprint_depth_ && !(peak.depth > footprint_depth_)) peak.arrival = time;
-                peak.depth = std::max(peak.depth, node.depth);
-                peak.pressure = std::max(peak.pressure, node.pressure);
-                if (node.depth >= 0.1 * footprint_depth_) {
-                    const double up = climb(k, node.velocity.x(), node.velocity.y());
-                    const double speed = std::sqrt(node.velocity.squaredNorm() + up * up);
-                    peak.speed = std::max(peak.speed, speed), sums.max_speed = std::max(sums.max_speed, speed);
-                    peak.dynamic_pressure = std::max(peak.dynamic_pressure, node.inertia / node.depth * speed * speed);
-                }
-                sums.max_depth = std::max(sums.max_depth, node.depth);
-                if (!(node.depth > footprint_depth_)) continue;
-                sums.covered_area += g.cell * g.cell;
-                sums.front = std::max(sums.front, (Vec2(g.x(i), g.y(j)) - centre_).norm());
+                const double up = climb(k, node.velocity.x(), node.velocity.y());
+                const NodeState now{node.depth, std::sqrt(node.velocity.squaredNorm() + up * up), node.pressure,
+                                    node.inertia / node.depth};
+                peaks_[k].note(now, time, footprint_depth_);
+                extent.note(now, footprint_depth_, g.cell * g.cell, (Vec2(g.x(i), g.y(j)) - centre_).norm());
             }
-        of_tile_[static_cast<std::size_t>(n)] = sums;
+        of_tile_[static_cast<std::size_t>(n)] = extent;
     }
-    sums_ = {};
-    for (const Sums& tile : of_tile_) {
-        sums_.max_depth = std::max(sums_.max_depth, tile.max_depth);
-        sums_.max_speed = std::max(sums_.max_speed, tile.max_speed);
-        sums_.covered_area += tile.covered_area;
-        sums_.front = std::max(sums_.front, tile.front);
-    }
+    extent_ = {};
+    for (const FlowExtent& tile : of_tile_) extent_.add(tile);
 }
 
 Index StructuredMap::fronts(const StructuredBody& body, const WaterFlow* water, double since, double speed) const {
@@ -100,8 +86,8 @@ Index StructuredMap::fronts(const StructuredBody& body, const WaterFlow* water, 
         const Index i0 = body.grid.tile_i(tile), j0 = body.grid.tile_j(tile);
         for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, ny_); ++j)
             for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, nx_); ++i) {
-                const Peak& peak = peaks_[body.grid.at(i, j)];
-                if (!(peak.depth > footprint_depth_) || peak.arrival < since) continue;
+                const NodePeak& peak = peaks_[body.grid.at(i, j)];
+                if (!peak.covered(footprint_depth_) || peak.arrival < since) continue;
                 count += on_node(body, water, i, j).velocity.norm() > speed;
             }
     }
@@ -133,23 +119,22 @@ void StructuredMap::sample(const StructuredBody& body, const WaterFlow* water, c
 
 void StructuredMap::serialize(Archive& archive) {
     const Archive::Part part(archive, "map");
-    constexpr std::size_t kNumbers = 5;  // of a node
     const auto each = [&](auto&& body) {
         for (Index j = 0; j < ny_; ++j)
             for (Index i = 0; i < nx_; ++i) body(peaks_[(j + kTile) * stride_ + i + kTile]);
     };
     std::vector<double> all;
     if (!archive.loading())
-        each([&](const Peak& q) {
-            all.insert(all.end(), {q.depth, q.speed, q.pressure, q.dynamic_pressure, q.arrival});
+        each([&](const NodePeak& q) {
+            for (const double number : q.numbers()) all.push_back(number);
         });
     archive.array("peaks", all);
-    archive.numbers("sums", {&sums_.max_depth, &sums_.max_speed, &sums_.covered_area, &sums_.front});
-    const std::size_t expected = kNumbers * static_cast<std::size_t>(nx_ * ny_);
+    archive.numbers("sums", {&extent_.max_depth, &extent_.max_speed, &extent_.covered_area, &extent_.front});
+    const std::size_t expected = NodePeak::kNumbers * static_cast<std::size_t>(nx_ * ny_);
     if (all.size() != expected) Archive::wrong_length("peaks", all.size(), expected);
     if (!archive.loading()) return;
     const double* v = all.data();
-    each([&](Peak& q) { q = {v[0], v[1], v[2], v[3], v[4]}, v += kNumbers; });
+    each([&](NodePeak& q) { q = NodePeak::of(v), v += NodePeak::kNumbers; });
 }
 
 }  // namespace frana

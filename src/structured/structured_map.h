@@ -1,5 +1,6 @@
 #pragma once
 // Structured solids and their free water seen from above: depth and velocity on the nodes, and what each node ever saw.
+#include "mpm/node_peak.h"
 #include "observe/archive.h"
 #include "structured/structured_flow.h"
 #include "shallow/bed_geometry.h"
@@ -9,31 +10,19 @@ namespace frana {
 
 class StructuredMap {
 public:
-    /// What a node ever saw; the same quantities as of the depth-averaged model (shallow/peaks.h).
-    struct Peak {
-        double depth, speed, pressure, dynamic_pressure;  ///< [m], [m/s], [Pa], [Pa]
-        double arrival;  ///< first time deeper than the footprint depth; valid where depth is [s]
-    };
-    struct Sums {
-        double max_depth = 0.0;     ///< [m]
-        double max_speed = 0.0;     ///< along the bed, where deeper than a tenth of the footprint depth [m/s]
-        double covered_area = 0.0;  ///< deeper than the footprint depth [m2]
-        double front = 0.0;         ///< farthest of these nodes from `centre` [m]
-    };
-
     /// `centre` of the release [m], from which the front is measured; `path`: slopes that velocities follow, on the grid.
     StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, SmoothSlopes path);
 
     /// Takes what the nodes are now into the peaks; visits tiles near material only. Same bits for any number of
     /// threads.
     void note(const StructuredBody& body, const WaterFlow* water, double time);
-    const Sums& sums() const { return sums_; }
+    const FlowExtent& extent() const { return extent_; }
     /// Nodes that are covered since a time at most, and where material is faster than `speed` (MovingMass::fronts).
     Index fronts(const StructuredBody& body, const WaterFlow* water, double since, double speed) const;
     double footprint_depth() const { return footprint_depth_; }
     /// How fast what moves along the map with (vx, vy) at a node climbs [m/s].
     double climb(Index node, double vx, double vy) const { return vx * path_.x[node] + vy * path_.y[node]; }
-    const Peak& peak(Index node) const { return peaks_[node]; }
+    const NodePeak& peak(Index node) const { return peaks_[node]; }
     /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. Beside water it
     /// is spread by shape functions, and nothing lies beyond them.
     static double depth_of(const StructuredBody& body, Index k) {
@@ -49,10 +38,10 @@ public:
 
 private:
     SmoothSlopes path_;
-    LazyArray<Peak> peaks_;
+    LazyArray<NodePeak> peaks_;
     std::vector<Index> tiles_;  ///< with columns or water near
-    std::vector<Sums> of_tile_;
-    Sums sums_;
+    std::vector<FlowExtent> of_tile_;
+    FlowExtent extent_;
     Index nx_, ny_, stride_;
     Vec2 centre_;
     double footprint_depth_;

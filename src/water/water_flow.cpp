@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/flush_denormals.h"
-#include "base/step_length.h"
+#include "base/clock.h"
 
 namespace frana {
 namespace {
@@ -122,8 +122,7 @@ void WaterFlow::place(const WaterScene& scene) {
         for (Index ti = 0; ti * kTile < g.nx; ++ti) body_.work.push_back((tj + 1) * grid.tiles_x() + ti + 1);
     body_.sums.resize(body_.work.size());
     for (std::size_t n = 0; n < body_.work.size(); ++n) body_.sums[n] = tile_sums(body_, body_.work[n]);
-    accumulate(0.0);
-    status_.step = 0;
+    accumulate();
     status_.volume_given = status_.volume, status_.momentum_given = status_.momentum;
 }
 
@@ -173,8 +172,8 @@ double WaterFlow::longest_step() const {
 }
 
 double WaterFlow::step_length(double until) const {
-    const double left = until - status_.time, longest = longest_step();
-    return longest > 0.0 ? step_towards(left, longest) : left;
+    const double longest = longest_step();
+    return longest > 0.0 ? status_.step_towards(until, longest) : until - status_.time;
 }
 
 void WaterFlow::advance(double until) {
@@ -182,15 +181,12 @@ void WaterFlow::advance(double until) {
     const double dt = step_length(until);
     timed_("first stage", [&] { first_stage(body_, dt); });
     timed_("second stage", [&] { second_stage(body_, dt); });
-    timed_("book", [&] { accumulate(dt); });
-    if (status_.time + dt >= until)
-        status_.time = until;
-    else
-        status_.time += dt;
+    status_.tick(dt, until);
+    timed_("book", [&] { accumulate(); });
 }
 
 /// Sums of the tiles, in their order.
-WaterSums WaterFlow::summed(double dt) const {
+WaterSums WaterFlow::summed() const {
     WaterSums all;
     for (const WaterSums& tile : body_.sums) {
         all.volume += tile.volume, all.momentum += tile.momentum, all.kinetic += tile.kinetic;
@@ -201,16 +197,14 @@ WaterSums WaterFlow::summed(double dt) const {
     if (all.bad >= 0)
         throw NumericsError(fmt::format("free water, step {}, t = {:.6g} s, dt = {:.3g} s: node ({}, {}) has numbers "
                                         "that are not finite, or a negative depth; a smaller cfl may help",
-                                        status_.step, status_.time, dt,
+                                        status_.step, status_.time, status_.dt,
                                         all.bad % body_.grid.stride() - kTile, all.bad / body_.grid.stride() - kTile));
     return all;
 }
 
 /// The sums of a step.
-void WaterFlow::accumulate(double dt) {
-    const WaterSums all = summed(dt);
-    ++status_.step;
-    status_.dt = dt;
+void WaterFlow::accumulate() {
+    const WaterSums all = summed();
     status_.ledger.add(all.ledger);
     take(all);
 }
@@ -237,7 +231,7 @@ void WaterFlow::take_changes(const std::vector<Index>& tiles) {
     const double volume = status_.volume;
     const Vec2 momentum = status_.momentum;
     for (std::size_t n = 0; n < body_.work.size(); ++n) body_.sums[n] = tile_sums(body_, body_.work[n]);
-    take(summed(0.0));
+    take(summed());
     status_.ledger.released += status_.volume - volume;
     status_.ledger.columns += status_.momentum - momentum;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/clock.h"
 #include "law/free_water.h"
 #include "law/water_friction.h"
 #include "mpm/step_clock.h"
@@ -58,9 +59,7 @@ struct WaterLedger {
 };
 
 /// After a step; all over the density.
-struct WaterStatus {
-    Index step = 0;
-    double time = 0.0, dt = 0.0;                 ///< [s]
+struct WaterStatus : Clock {
     double volume = 0.0, volume_given = 0.0;     ///< present, at the start [m^3]
     Vec2 momentum{0, 0}, momentum_given{0, 0};   ///< present, at the start [m^4/s]
     WaterLedger ledger;
@@ -157,8 +156,8 @@ private:
     void list_tiles();
     void clear_tiles();
     double step_length(double until) const;
-    void accumulate(double dt);
-    WaterSums summed(double dt) const;
+    void accumulate();
+    WaterSums summed() const;
     void take(const WaterSums& all);
 
     WaterBody body_;

@@ -39,8 +39,8 @@ std::string heading(const RunRecord& r) {
 
 /// Of two phases each has its own volume: that of the grains is without pores.
 std::string left_text(const RunRecord& r) {
-    if (!r.water) return fmt::format("{:.6g} m3", r.summary.last.mass_left / r.density);
-    return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.water->solids_left / r.density, r.water->left);
+    if (!r.extras.water) return fmt::format("{:.6g} m3", r.summary.last.mass_left / r.density);
+    return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.extras.water->solids_left / r.density, r.extras.water->left);
 }
 
 std::string results(const RunRecord& r) {
@@ -64,18 +64,18 @@ std::string results(const RunRecord& r) {
                     fmt::format("{:.4g} m, {:.3g} cells", r.flow_width, r.flow_width / r.grid.cell));
     text += row("deepest at the end", fmt::format("{:.4g} m", r.final_depth));
     text += row("mean speed at the end", fmt::format("{:.3g} m/s", s.last.mean_speed));
-    if (r.breakage) {
-        const Breakage& b = *r.breakage;
+    if (r.extras.breakage) {
+        const Breakage& b = *r.extras.breakage;
         std::string shares;
         for (const double share : b.pieces) shares += fmt::format("{}{:.3g}", shares.empty() ? "" : ", ", share);
         text += row("unbroken pieces, shares of the mass", shares.empty() ? "none" : shares);
         text += row("mean damage", fmt::format("{:.3g}; of {} pairs of neighbours {} parted, {} of them without damage",
                                                b.damage, b.pairs, b.torn, b.numerical));
     }
-    if (r.breakage)
-        text += row("steps for each that the depth-averaged flow would need", fmt::format("{:.3g}", r.breakage->sub_cycling));
-    if (r.points_apart) {
-        const PointsApart& a = *r.points_apart;
+    if (r.extras.breakage)
+        text += row("steps for each that the depth-averaged flow would need", fmt::format("{:.3g}", r.extras.breakage->sub_cycling));
+    if (r.extras.points_apart) {
+        const PointsApart& a = *r.extras.points_apart;
         text += row("pieces of points in space, more than a cell apart",
                     fmt::format("{}; {:.3g} % of the mass outside the largest, {:.3g} % out of its reach", a.pieces,
                                 100.0 * a.apart, 100.0 * a.alone));
@@ -103,8 +103,8 @@ std::string budgets(const RunRecord& r) {
         "\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated. Particles to grid, "
         "worst step: mass {:.1e}, momentum {:.1e} (relative).\n\n",
         s.last.kinetic, s.last.dissipated, s.extremes.p2g_mass_error, s.extremes.p2g_momentum_error);
-    if (r.water) {
-        const WaterBudget& w = *r.water;
+    if (r.extras.water) {
+        const WaterBudget& w = *r.extras.water;
         text += fmt::format(
             "Water [m3]: {:.8g} at the start and {:.4g} of rain; now {:.8g} free and {:.8g} in columns (these released {:.4g}), "
             "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",

@@ -197,11 +197,9 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest, record.end < record.whole_end,
                        scene.bed.geometry.cell, scene.rest_fraction};
     record.summary = run(simulation, plan, observers, interrupt, progress, keeper);
-    record.breakage = simulation.breakage();
-    record.points_apart = simulation.points_apart();
-    record.water = simulation.water_budget();
+    record.extras = simulation.extras();
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
-    if (!record.water) record.release_volume = record.summary.first.mass / scene.density;
+    if (!record.extras.water) record.release_volume = record.summary.first.mass / scene.density;
     if (keeper) {
         record.checkpoints = keeper->progress();
         for (const std::string& warning : keeper->warnings()) record.warnings.push_back(warning);

@@ -275,9 +275,9 @@ std::string run_json(const RunRecord& record) {
         {"remarks", record.warnings},
         {"warnings", record.warnings},  // their earlier name
         {"files", record.files}};
-    if (record.points_apart) json["points_apart"] = apart_json(*record.points_apart);
-    if (record.breakage) json["structure"] = breakage_json(*record.breakage);
-    if (record.water) json["budgets"]["water"] = water_json(*record.water);
+    if (record.extras.points_apart) json["points_apart"] = apart_json(*record.extras.points_apart);
+    if (record.extras.breakage) json["structure"] = breakage_json(*record.extras.breakage);
+    if (record.extras.water) json["budgets"]["water"] = water_json(*record.extras.water);
     return json.dump(2) + "\n";
 }
 

@@ -54,9 +54,7 @@ struct RunRecord {
     std::vector<InsituTally> insitu;
     std::vector<BarrierSummary> barriers;
     CheckpointKeeper::Progress checkpoints;
-    std::optional<Breakage> breakage;  ///< of material that holds together
-    std::optional<PointsApart> points_apart;
-    std::optional<WaterBudget> water;  ///< beside it
+    Extras extras;
     std::vector<std::string> warnings;
     std::vector<std::string> files;  ///< that the run made, relative to its folder: run/folder/run_folder.h
 };

@@ -1,0 +1,32 @@
+#pragma once
+// The clock of every flow: where it is in time, and how its steps meet the times that are asked for.
+#include <algorithm>
+
+#include "base/types.h"
+
+namespace frana {
+
+/// A step of at most `longest` towards a time that is `left` away, both [s]. The time is hit exactly, and the steps
+/// before it are not shorter than half of `longest`: a crumb would cost as much as a whole step.
+inline double step_towards(double left, double longest) {
+    if (left <= longest) return left;
+    return left < 2.0 * longest ? 0.5 * left : longest;
+}
+
+/// Steps since the start. The status of each model begins with it.
+struct Clock {
+    Index step = 0;     ///< steps taken
+    double time = 0.0;  ///< [s]
+    double dt = 0.0;    ///< last step [s]
+
+    /// The next step, at most `longest` [s], towards `until` [s].
+    double step_towards(double until, double longest) const { return frana::step_towards(until - time, longest); }
+    /// After a step of `length` [s] that was not to pass `until` [s]: round-off neither passes nor misses it.
+    void tick(double length, double until) {
+        step += 1;
+        time = length >= until - time ? until : std::min(time + length, until);
+        dt = length;
+    }
+};
+
+}  // namespace frana
