@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/layer_name.h"
-#include "law/bed/catalogue.h"
+#include "law/catalogue.h"
 #include "law/bed/laws.h"
 #include "scene/case_reader.h"
 #include "scene/combinations.h"
@@ -210,7 +210,7 @@ void CaseReader::check_meaning() {
                   "expected [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax",
                   "put the smaller coordinates first");
     }
-    for (const bed::SharedKey& key : bed::Catalogue<BedLaw>::keys()) {
+    for (const laws::SharedKey& key : laws::Catalogue<BedLaw>::keys()) {
         const std::string name = "material.bed." + key.name, smaller = "material.bed." + key.more_than;
         if (!key.more_than.empty() && case_.given(name) && case_.given(smaller) &&
             case_.number(name) <= case_.number(smaller))

@@ -1,7 +1,7 @@
 // The table itself: every key a case file can have. The order is that of the documentation.
 #include <cmath>
 
-#include "law/bed/catalogue.h"
+#include "law/catalogue.h"
 #include "law/bed/laws.h"
 #include "scene/parameter_makers.h"
 
@@ -87,30 +87,25 @@ void add_release(Table& table) {
                            "lattice; r2: quasi-random sequence; slope: denser where the bed is steeper"));
 }
 
-/// The bed laws bring their own keys.
-void add_bed_law(Table& table) {
-    using Laws = bed::Catalogue<BedLaw>;
-    const std::string law = "material.bed.law", meaning = "friction between the mass and its bed" + Laws::other_names();
+/// Laws bring their own keys.
+template <class Law>
+void add_law(Table& table, const std::string& of, const std::string& is) {
+    using Laws = laws::Catalogue<Law>;
+    const std::string law = of + ".law", meaning = is + Laws::other_names();
     table.push_back(choice(law.c_str(), Laws::words(), "none", meaning.c_str()));
-    for (const bed::SharedKey& key : Laws::keys()) {
-        const std::string name = "material.bed." + key.name;
+    for (const laws::SharedKey& key : Laws::keys()) {
+        const std::string name = of + "." + key.name;
         Parameter row = number(name.c_str(), key.unit.c_str(), key.range, key.meaning.c_str());
         if (key.usual) row.fallback = *key.usual;
-        if (!key.instead_of.empty()) row.instead_of = "material.bed." + key.instead_of;
+        if (!key.instead_of.empty()) row.instead_of = of + "." + key.instead_of;
         table.push_back(with(row, law.c_str(), key.used_by, key.needed_by));
     }
 }
 
 void add_material(Table& table) {
     table.push_back(number("material.density", "kg/m^3", positive, 1000.0, "density of the mass"));
-    add_bed_law(table);
-    const char* rheology = "material.rheology.law";
-    table.push_back(choice(rheology, {"none", "newtonian", "bingham"}, "none", "stress inside the mass"));
-    table.push_back(with(number("material.rheology.viscosity", "Pa s", not_negative, "viscosity"), rheology,
-                         {"newtonian", "bingham"}, {"newtonian", "bingham"}));
-    table.push_back(with(number("material.rheology.yield_stress", "Pa", not_negative,
-                                "stress below which the mass does not flow"),
-                         rheology, {"bingham"}, {"bingham"}));
+    add_law<BedLaw>(table, "material.bed", "friction between the mass and its bed");
+    add_law<Rheology>(table, "material.rheology", "stress inside the mass");
     add_structure(table);
     add_water(table);
 }

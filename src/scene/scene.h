@@ -12,7 +12,7 @@
 #include "convert/profile.h"
 #include "law/bed/laws.h"
 #include "law/free_water.h"
-#include "law/rheology_parameters.h"
+#include "law/rheology/laws.h"
 #include "law/solid_law.h"
 #include "law/structured_law.h"
 #include "law/water_friction.h"

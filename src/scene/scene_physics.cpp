@@ -1,26 +1,19 @@
 #include <optional>
 
 #include "base/error.h"
-#include "law/bed/catalogue.h"
+#include "law/catalogue.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
 
-BedLaw bed_law(const CaseFile& file) {
-    return bed::Catalogue<BedLaw>::make(file.word("material.bed.law"), [&](const std::string& name) {
-        const std::string key = "material.bed." + name;
+/// The law of a table whose key `law` names it, from its other keys.
+template <class Law>
+Law law_of(const CaseFile& file, const std::string& table) {
+    return laws::Catalogue<Law>::make(file.word(table + ".law"), [&](const std::string& name) {
+        const std::string key = table + "." + name;
         return file.has(key) ? std::optional<double>(file.number(key)) : std::nullopt;
     });
-}
-
-Rheology rheology_of(const CaseFile& file) {
-    const std::string& law = file.word("material.rheology.law");
-    if (law == "none") return rheology::None{};
-    const double viscosity = file.number("material.rheology.viscosity");
-    if (law == "newtonian") return rheology::Newtonian{viscosity};
-    expect(law == "bingham", "a rheology of the parameter table that the scene does not know");
-    return rheology::Bingham{viscosity, file.number("material.rheology.yield_stress")};
 }
 
 Transfer transfer_of(const std::string& word) {
@@ -105,8 +98,8 @@ void set_physics(const CaseFile& file, Scene& scene) {
     scene.terrain = terrain_of(file.word("terrain.model"));
     scene.curvature = curvature_of(file.word("terrain.curvature"));
     scene.sides = file.word("boundary.sides") == "wall" ? Sides::wall : Sides::open;
-    scene.bed_law = bed_law(file);
-    scene.rheology = rheology_of(file);
+    scene.bed_law = law_of<BedLaw>(file, "material.bed");
+    scene.rheology = law_of<Rheology>(file, "material.rheology");
     scene.scheme = scheme_of(file);
     scene.end = file.number("time.end");
     scene.stop_at_rest = file.flag("time.stop_at_rest");

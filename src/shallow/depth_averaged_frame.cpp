@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "base/simd.h"
-#include "law/rheology.h"
+#include "law/rheology/laws.h"
 #include "mpm/stencil.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/sheet.h"
@@ -220,7 +220,7 @@ void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
             const Sheet<Double4> sheet = sheet_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy,
                                                        max(depth, all(flow_.dry_depth())));
             const PlaneOf<Double4> sigma =
-                stress(law, StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow_.scheme.strain_rate_floor, cap});
+                law.stress(StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow_.scheme.strain_rate_floor, cap});
             const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none), xy = select(wet, sigma.xy, none);
             for (int n = 0; n < lanes; ++n)
                 stresses[3 * (p + n)] = xx[n], stresses[3 * (p + n) + 1] = yy[n], stresses[3 * (p + n) + 2] = xy[n];

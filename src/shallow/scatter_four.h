@@ -1,6 +1,6 @@
 #pragma once
 // Four points at once: their masses, momenta and stresses on the nodes, point after point.
-#include "law/rheology.h"
+#include "law/rheology/laws.h"
 #include "mpm/stencils.h"
 #include "shallow/nodes.h"
 

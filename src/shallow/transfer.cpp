@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "base/simd.h"
-#include "law/rheology.h"
+#include "law/rheology/laws.h"
 #include "mpm/domain.h"
 #include "mpm/stencil.h"
 #include "shallow/sheet.h"
@@ -189,7 +189,7 @@ private:
                 const Plane rate{c.cxx[p], c.cyy[p], 0.5 * (c.cxy[p] + c.cyx[p])};
                 const Sheet<double> sheet = sheet_at(flow, sx, sy, vx, vy, c.depth[p]);
                 const StrainState<double> state{rate, sheet.speed, sheet.thickness, flow.scheme.strain_rate_floor, cap};
-                const Plane sigma = stress(law_, state);
+                const Plane sigma = law_.stress(state);
                 deposit_stress(flow, sx, sy, volume, sigma);
                 sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
             }

@@ -5,7 +5,7 @@
 
 #include "base/simd.h"
 #include "base/touch.h"
-#include "law/rheology.h"
+#include "law/rheology/laws.h"
 #include "mpm/domain.h"
 #include "mpm/stencils.h"
 #include "mpm/tile_points.h"
@@ -226,7 +226,7 @@ private:
         const Sheet<Double4> sheet = sheet_of_four(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), lanes, vx, vy,
                                                    max(depth, all(flow.dry_depth())));
         const PlaneOf<Double4> sigma =
-            stress(law_, StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow.scheme.strain_rate_floor, cap});
+            law_.stress(StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow.scheme.strain_rate_floor, cap});
         const Double4 volume = depth > flow.dry_depth() ? per_density * load(&c.mass[p], lanes) : zero;
         sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
         return scaled(sigma, per_cell * volume);

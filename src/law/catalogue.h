@@ -1,5 +1,5 @@
 #pragma once
-// What a list of bed laws says to those who read and describe cases: words, keys, and a law from the values of its keys.
+// What a list of laws says to those who read and describe cases: words, keys, and a law from the values of its keys.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "law/bed/key.h"
+#include "law/key.h"
 
-namespace frana::bed {
+namespace frana::laws {
 
 /// A key as all laws of a list have it.
 struct SharedKey {
@@ -48,7 +48,7 @@ struct Catalogue<std::variant<Laws...>> {
     static Any make(const std::string& word, const Value& value) {
         std::optional<Any> law;
         ((word == Laws::name ? void(law = filled<Laws>(value)) : void()), ...);
-        expect(law.has_value(), "a bed law that the list of laws does not have");
+        expect(law.has_value(), "a law that the list does not have");
         return *law;
     }
 
@@ -62,7 +62,7 @@ private:
             if (row == all.end()) row = all.insert(row, mine);
             expect(row->unit == mine.unit && row->meaning == mine.meaning && row->range == mine.range &&
                        row->instead_of == mine.instead_of && row->more_than == mine.more_than && row->usual == mine.usual,
-                   "a key that two bed laws have must be the same in both");
+                   "a key that two laws have must be the same in both");
             row->used_by.push_back(Law::name);
             if (key.missing == Missing::refused) row->needed_by.push_back(Law::name);
         }
@@ -77,4 +77,4 @@ private:
     }
 };
 
-}  // namespace frana::bed
+}  // namespace frana::laws

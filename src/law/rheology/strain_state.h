@@ -1,0 +1,36 @@
+#pragma once
+// What a rheology sees of a point, and what it answers. Pressure is not part of it. Numbers of equations:
+// src/shallow/THEORY.md, section 7.
+#include <cmath>
+
+#include "base/simd.h"
+
+namespace frana {
+
+/// Symmetric plane tensor: stress [Pa] or strain rate [1/s]. Real: double, or Double4 for four points at once.
+template <class Real>
+struct PlaneOf { Real xx{}, yy{}, xy{}; };
+using Plane = PlaneOf<double>;
+
+/// What a rheology sees of a point.
+template <class Real>
+struct StrainState {
+    PlaneOf<Real> rate;  ///< sym grad v [1/s]
+    Real speed;          ///< along the bed [m/s]
+    Real depth;          ///< across the bed, > 0 [m]
+    double floor;        ///< regularisation of the yield stress [1/s]
+    double cap;          ///< largest 2 mu_eff that is stable explicitly [Pa s]
+};
+
+template <class Real>
+[[gnu::always_inline]] inline PlaneOf<Real> scaled(const PlaneOf<Real>& rate, Real factor) {
+    return {factor * rate.xx, factor * rate.yy, factor * rate.xy};
+}
+
+/// Newton's stress: sigma = 2 mu eps, as far as that is stable.
+template <class Real>
+[[gnu::always_inline]] inline PlaneOf<Real> viscous_stress(double viscosity, const StrainState<Real>& s) {
+    return scaled(s.rate, Real{} + std::fmin(2.0 * viscosity, s.cap));
+}
+
+}  // namespace frana
