@@ -195,9 +195,9 @@ TEST_CASE("The plug's share from three Newton steps is the cubic's root to round
         CAPTURE(d);
         const double exact = bed::bingham_sheet(0.0, d).plug;
         // Five roundings of numbers near one, divided by a slope of the equation that is small only with its terms.
-        CHECK(plug_share(d) == Approx(exact).margin(1e-15).epsilon(0.0));
+        CHECK(rheology::plug_share(d) == Approx(exact).margin(1e-15).epsilon(0.0));
     }
-    CHECK(plug_share(0.0) == 1.0);
+    CHECK(rheology::plug_share(0.0) == 1.0);
 }
 
 TEST_CASE("Bingham stress in plane strain equals 2 mu eps plus the yield stress over sqrt(I2)", "[law]") {

@@ -1,6 +1,7 @@
 #pragma once
 // How the outside sees a state: named columns with units. Writers and figures know frames, never the solver.
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,13 @@ struct WaterBudget {
     double residual = 0.0;                               ///< of all these: round-off [m3]
     double bed = 0.0, viscosity = 0.0, drag = 0.0;       ///< energy lost there [J]
     double steps = 0.0;                                  ///< of the columns for each of the water
+};
+
+/// What only some models can tell of a run; nothing of the others.
+struct Extras {
+    std::optional<Breakage> breakage;         ///< what structured material has come apart into
+    std::optional<PointsApart> points_apart;  ///< what 3D points have come apart into
+    std::optional<WaterBudget> water;         ///< where the water is and has gone
 };
 
 /// A face of a barrier in patches, and what material gave to each since the start.

@@ -13,13 +13,6 @@ namespace frana {
 
 struct Scene;
 
-/// What only some models can tell of a run; nothing of the others.
-struct Extras {
-    std::optional<Breakage> breakage;         ///< what structured material has come apart into
-    std::optional<PointsApart> points_apart;  ///< what 3D points have come apart into
-    std::optional<WaterBudget> water;         ///< where the water is and has gone
-};
-
 class Simulation : public Probe {
 public:
     /// One time step, never past `until` [s]. Throws NumericsError when a number stops being finite.

@@ -1,8 +1,9 @@
 // The table itself: every key a case file can have. The order is that of the documentation.
 #include <cmath>
 
-#include "law/catalogue.h"
 #include "law/bed/laws.h"
+#include "law/catalogue.h"
+#include "law/rheology/laws.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
