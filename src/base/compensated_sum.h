@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 
 namespace frana {
@@ -14,6 +15,8 @@ public:
         sum_ = next;
     }
     double value() const { return sum_ + lost_; }
+    /// Both of its numbers, to be kept with all their bits.
+    std::array<double*, 2> parts() { return {&sum_, &lost_}; }
 
 private:
     double sum_, lost_ = 0.0;

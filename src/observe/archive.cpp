@@ -86,7 +86,13 @@ void serialize(Archive& archive, const std::string& name, Status& s) {
                                 &s.in_3d.walls,
                                 &s.in_3d.material,
                                 &s.in_3d.numerical,
-                                &s.in_3d.volume});
+                                &s.in_3d.volume,
+                                &s.bed.initial,
+                                &s.bed.mass,
+                                &s.bed.eroded,
+                                &s.bed.deposited,
+                                &s.bed.energy,
+                                &s.bed.deepest});
 }
 
 void serialize(Archive& archive, const std::string& name, std::vector<PhaseTime>& phases) {

@@ -43,6 +43,15 @@ struct Status : Clock {
         double numerical = 0.0;  ///< what is left: of the scheme
         double volume = 0.0;     ///< of the points now, compressed as they are [m3]; not a part, but a diagnostic
     } in_3d;
+    /// Of an erodible bed; all zero without one.
+    struct Bed {
+        double initial = 0.0;    ///< that could be taken at the start [kg]
+        double mass = 0.0;       ///< that is left of it, counted anew [kg]
+        double eroded = 0.0;     ///< what the flow gained, since the start [kg]
+        double deposited = 0.0;  ///< what it gave to the bed, since the start [kg]
+        double energy = 0.0;     ///< potential energy that came with what was taken, since the start [J]
+        double deepest = 0.0;    ///< largest depth taken, along gravity [m]
+    } bed;
     double p2g_mass_error = 0.0;     ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
     double p2g_momentum_error = 0.0; ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]
     double max_depth = 0.0;          ///< [m]

@@ -42,7 +42,9 @@ const std::vector<std::string>& columns() {
                                                    "points_material",
                                                    "points_numerical",
                                                    "points_volume",
-                                                   "max_speed_on_map"};
+                                                   "max_speed_on_map",
+                                                   "eroded_mass",
+                                                   "deposited_mass"};
     return names;
 }
 
@@ -101,7 +103,9 @@ void History::add(const Status& now) {
                                      now.in_3d.material,
                                      now.in_3d.numerical,
                                      now.in_3d.volume,
-                                     now.max_speed_on_map};
+                                     now.max_speed_on_map,
+                                     now.bed.eroded,
+                                     now.bed.deposited};
     for (std::size_t i = 0; i < row.size(); ++i)
         if (!std::isfinite(row[i]))
             throw NumericsError(

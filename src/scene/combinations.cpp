@@ -74,6 +74,24 @@ void add_water(std::vector<Combination>& table) {
                      " without water.solid_gradient"});
 }
 
+/// What an erodible bed is not designed for.
+void add_erodible_bed(std::vector<Combination>& table) {
+    const Values erodible = is_not("erodible.law", {"none"});
+    table.push_back({is_not("scheme.shape", {"quadratic"}), {erodible},
+                     "expected \"quadratic\", the shapes that share out a bed", "remove it, or the erodible bed"});
+    table.push_back({is_not("scheme.preset", {"default"}), {erodible},
+                     "expected \"default\": particles of the other carry a depth that no mass can join",
+                     "remove it, or the erodible bed"});
+    table.push_back({is_not("material.structure.law", {"none"}), {erodible},
+                     "expected \"none\": a mass that holds together takes up no bed", "remove one of them"});
+    table.push_back({is("water.model", {"free"}), {erodible}, "expected \"none\": free water takes up no bed",
+                     "remove one of them"});
+    table.push_back({{"stage", Are::tables}, {erodible}, "expected none: points in 3D take up no bed",
+                     "remove the stage, or the erodible bed"});
+    table.push_back({{"barrier", Are::tables}, {erodible}, "expected none: no barrier's footing is known to hold",
+                     "raise the elevation model there, or remove the erodible bed"});
+}
+
 /// What the schemes of the depth-averaged flow do not know of.
 void add_schemes(std::vector<Combination>& table) {
     const Values paper = is("scheme.preset", {"paper"});
@@ -148,6 +166,7 @@ const std::vector<Combination>& combinations() {
         add_schemes(table);
         add_structure(table);
         add_water(table);
+        add_erodible_bed(table);
         table.push_back({is_not("output.film", {"none"}), {{"output.formats", Are::without, {"vtk"}}},
                          "expected the frames that a film is made of", "add \"vtk\" to output.formats, or remove film",
                          " without \"vtk\" in output.formats"});

@@ -16,6 +16,9 @@ void add_insitu(Table& table);
 /// The keys of [material.structure] (parameter_table_structure.cpp).
 void add_structure(Table& table);
 
+/// The keys of [erodible] (parameter_table_erodible.cpp).
+void add_erodible(Table& table);
+
 /// The keys of [water] (parameter_table_water.cpp).
 void add_water(Table& table);
 

@@ -108,6 +108,7 @@ void add_material(Table& table) {
     add_law<BedLaw>(table, "material.bed", "friction between the mass and its bed");
     add_law<Rheology>(table, "material.rheology", "stress inside the mass");
     add_structure(table);
+    add_erodible(table);
     add_water(table);
 }
 
@@ -193,7 +194,8 @@ void add_run(Table& table) {
                       "mass",        "volume",           "pressure",      "id",
                       "peak_depth",  "peak_speed",       "peak_pressure", "peak_dynamic_pressure",
                       "arrival_time", "damage",           "cohesion",
-                      "water_depth",  "water_velocity"};
+                      "water_depth",  "water_velocity",   "bed_change",    "eroded_depth",
+                      "deposited_depth"};
     fields.fallback = std::vector<std::string>{};
     table.push_back(fields);
     table.push_back(choice("output.film", {"none", "mp4", "gif"}, "none",

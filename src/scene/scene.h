@@ -11,6 +11,7 @@
 
 #include "convert/profile.h"
 #include "law/bed/laws.h"
+#include "law/erosion/laws.h"
 #include "law/free_water.h"
 #include "law/rheology/laws.h"
 #include "law/solid_law.h"
@@ -127,6 +128,16 @@ struct WaterPhase {
     Raster rain, infiltration;    ///< on the nodes of the terrain, without values where there is none [m/s]
 };
 
+/// Loose material on the bed that the flow can take up (shallow/erosion.h).
+struct ErodibleBed {
+    Raster depth;              ///< on the nodes of the terrain, along gravity; 0: rock [m]
+    double density = 1000.0;   ///< [kg/m^3]
+    ErosionLaw law;
+    double momentum = 0.0;     ///< kappa: share of the flow's velocity that what is taken brings along [1]
+    double min_depth = 0.05;   ///< of a flow that takes anything [m]
+    bool evolves = true;       ///< the ground sinks by what is taken; otherwise it is only counted
+};
+
 /// What is written, and when.
 struct Output {
     double every = 1.0;                ///< [s]; frames are hit exactly
@@ -181,6 +192,7 @@ struct Scene {
     std::vector<Barrier> barriers;
     std::optional<Structure> structure;  ///< when the material holds together
     std::optional<WaterPhase> water;        ///< beside a structure
+    std::optional<ErodibleBed> erodible;  ///< nothing: the bed is rock
     std::optional<SolidStage> solid;   ///< where and when the run goes into space
 
     std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)

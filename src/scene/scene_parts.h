@@ -43,6 +43,9 @@ void read_barriers(const CaseFile& file, const GisReader& reader, const MeshRead
 /// [material.structure] of a scene that has its terrain and its barriers. What does not fit together goes to `problems`.
 std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems);
 
+/// [erodible] of a scene that has its terrain. What is wrong with its files goes to `problems`, remarks to the scene's log.
+std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
+
 /// [water] of a scene that has its structure. What does not fit together, or is wrong with its rasters, goes to `problems`,
 /// remarks to the scene's log.
 std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);

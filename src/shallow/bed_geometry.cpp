@@ -139,6 +139,32 @@ LazyArray<double> smoothed_bed(const Scene& scene, const TileGrid& grid, const s
     return smoothed;
 }
 
+struct Curved { double xx, xy, yy; };
+Curved curvature_at(const double* c, Index up, double cell) {
+    const auto held = [&](double h) { return std::clamp(h, -kSharpest / cell, kSharpest / cell); };
+    return {held((c[1] - 2.0 * c[0] + c[-1]) / (cell * cell)),
+            held((c[up + 1] - c[up - 1] - c[-up + 1] + c[-up - 1]) / (4.0 * cell * cell)),
+            held((c[up] - 2.0 * c[0] + c[-up]) / (cell * cell))};
+}
+
+double least_around(const double* c, Index up) {
+    double least = c[0];
+    for (Index dj = -2; dj <= 2; ++dj)
+        for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);
+    return least;
+}
+
+/// Calls body(storage index) for the nodes of a tile that are so many nodes away from the storage's ends.
+template <class Body>
+void for_each_of_tile(const TileGrid& grid, Index tile, Index margin, Body&& body) {
+    const Window window{grid};
+    const Index i0 = std::max(grid.tile_i(tile), window.i0() + margin), j0 = std::max(grid.tile_j(tile), window.j0() + margin);
+    const Index i1 = std::min(grid.tile_i(tile) + kTile, window.i1() - margin);
+    const Index j1 = std::min(grid.tile_j(tile) + kTile, window.j1() - margin);
+    for (Index j = j0; j < j1; ++j)
+        for (Index i = i0; i < i1; ++i) body(grid.at(i, j));
+}
+
 SmoothSlopes slopes_of(const TileGrid& grid, const LazyArray<double>& smoothed) {
     SmoothSlopes slopes{LazyArray<double>(grid.size()), LazyArray<double>(grid.size())};
     for_each_node(grid, 3, [&](Index, Index, Index k) {
@@ -157,10 +183,8 @@ void fill_curvature(const TileGrid& grid, const LazyArray<double>& smoothed, Bed
     const Index up = grid.stride();
     for_each_node(grid, 3, [&](Index, Index, Index k) {
         const double* c = smoothed.data() + k;
-        bed.hxx[k] = (c[1] - 2.0 * c[0] + c[-1]) / (cell * cell);
-        bed.hyy[k] = (c[up] - 2.0 * c[0] + c[-up]) / (cell * cell);
-        bed.hxy[k] = (c[up + 1] - c[up - 1] - c[-up + 1] + c[-up - 1]) / (4.0 * cell * cell);
-        for (auto* h : {&bed.hxx, &bed.hxy, &bed.hyy}) (*h)[k] = std::clamp((*h)[k], -kSharpest / cell, kSharpest / cell);
+        const Curved h = curvature_at(c, up, cell);
+        bed.hxx[k] = h.xx, bed.hxy[k] = h.xy, bed.hyy[k] = h.yy;
     });
 }
 
@@ -209,17 +233,37 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
         const double* c = bed.z.data() + k;
         bed.slope_x[k] = slope_at(c, 1, grid.cell());
         bed.slope_y[k] = slope_at(c, up, grid.cell());
-        double least = c[0];
-        for (Index dj = -2; dj <= 2; ++dj)
-            for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);
-        bed.z_min[k] = least;
+        bed.z_min[k] = least_around(c, up);
     });
     if (scene.terrain == TerrainModel::shallow) return bed;
-    const LazyArray<double> smoothed = smoothed_bed(scene, grid, z);
+    LazyArray<double> smoothed = smoothed_bed(scene, grid, z);
     SmoothSlopes slopes = slopes_of(grid, smoothed);
     bed.smooth_x = std::move(slopes.x), bed.smooth_y = std::move(slopes.y);
     if (scene.curvature != Curvature::none) fill_curvature(grid, smoothed, bed);
+    if (scene.erodible && scene.erodible->evolves) bed.smoothed = std::move(smoothed);
     return bed;
+}
+
+void refresh_slopes(const TileGrid& grid, BedGeometry& bed, Index tile) {
+    const Index up = grid.stride();
+    for_each_of_tile(grid, tile, 4, [&](Index k) {
+        const double* c = bed.z.data() + k;
+        bed.slope_x[k] = slope_at(c, 1, grid.cell());
+        bed.slope_y[k] = slope_at(c, up, grid.cell());
+        bed.z_min[k] = least_around(c, up);
+    });
+}
+
+void refresh_path(const TileGrid& grid, BedGeometry& bed, Index tile) {
+    const Index up = grid.stride();
+    for_each_of_tile(grid, tile, 3, [&](Index k) {
+        const double* c = bed.smoothed.data() + k;
+        bed.smooth_x[k] = slope_at(c, 1, grid.cell());
+        bed.smooth_y[k] = slope_at(c, up, grid.cell());
+        if (!bed.hxx) return;
+        const Curved h = curvature_at(c, up, grid.cell());
+        bed.hxx[k] = h.xx, bed.hxy[k] = h.xy, bed.hyy[k] = h.yy;
+    });
 }
 
 BedGeometry level_bed(const TileGrid& grid) {

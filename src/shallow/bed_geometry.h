@@ -1,5 +1,6 @@
 #pragma once
-// The bed as the solver sees it: static, computed once, one number per node and quantity. THEORY (5) to (7).
+// The bed as the solver sees it, one number per node and quantity: computed once, and anew where it is eroded.
+// THEORY (5) to (7).
 #include <array>
 
 #include "mpm/tile_grid.h"
@@ -24,6 +25,7 @@ struct BedGeometry {
     LazyArray<double> slope_y;  ///< [1]
     LazyArray<double> hxx, hxy, hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
     LazyArray<double> smooth_x, smooth_y;  ///< slopes of that smoothed bed, which the flow's path has [1]; empty on gentle terrain
+    LazyArray<double> smoothed;       ///< that smoothed bed, where an erodible one may change it; otherwise empty [m]
     LazyArray<std::uint8_t> exit;     ///< 0, or what kind of node it is
     bool has_exits = false;           ///< some node is of such a kind
 };
@@ -37,6 +39,11 @@ SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid);
 /// direction; cubic: (1, 26, 66, 26, 1)/120; linear: z is the nodal elevation itself, as Fois et al. 2024 have it).
 /// Throws UserError when scene.bed holds no data at all.
 BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid);
+
+/// Slopes and least elevations of a tile's nodes anew, from z up to two nodes around.
+void refresh_slopes(const TileGrid& grid, BedGeometry& bed, Index tile);
+/// Slopes and curvature of the smoothed bed of a tile's nodes anew, from up to two nodes around; bed.smoothed is there.
+void refresh_path(const TileGrid& grid, BedGeometry& bed, Index tile);
 
 /// A level bed at zero, without curvature.
 BedGeometry level_bed(const TileGrid& grid);

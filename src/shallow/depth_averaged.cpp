@@ -49,6 +49,10 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     expect(!scene.wider, "on a part of a terrain columns grow it (coupling/growing_columns.h)");
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
+    if (scene.erodible) {
+        erosion_.emplace(scene, flow_);
+        status_.bed = erosion_->status();
+    }
     flow_.columns.single = scene.scheme.precision == Precision::single;
     if (start == Start::resumed) return;
     flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
@@ -133,15 +137,16 @@ void DepthAveraged::advance(double until) {
     const bool due = since_split_ >= (1.0 - 1e-9) * kStepsBetweenSplits;
     timed_("kick and friction", [&] { mirror_motion(flow_); });
     const double next_velocity_dt = 0.5 * (dt + longest_step());
-    const bool adapts = due || drift_ > drift_before_carry(flow_.scheme);
+    const bool adapts = due || drift_ > drift_before_carry(flow_.scheme), apart = adapts || erosion_;
     PointSums points =
-        adapts ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
+        apart ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
                : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_velocity_dt); });
     require_finite(points);
     accumulate_points(points);
     status_.tick(dt, until);
     if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0);
-    if (adapts) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
+    if (erosion_) timed_("erosion", [&] { erode(dt); });
+    if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
 }
 
@@ -220,6 +225,16 @@ void DepthAveraged::adapt_points(bool deposit_follows, bool due, bool points_lef
         timed_("order", [&] { sorter_.leave_out(transfer_->gone(), flow_.active); });
     timed_("sort", [&] { sorter_.carry_out(flow_.columns); });
     drift_ = 0.0;
+}
+
+/// Points that have arrived take up bed; what they deposit then has it.
+void DepthAveraged::erode(double dt) {
+    const ExchangeSums sums = erosion_->exchange(flow_, dt);
+    status_.bed = erosion_->status();
+    drift_ += sums.max_shift;
+    status_.dissipated += sums.lost;
+    status_.impulse[0] += sums.px;
+    status_.impulse[1] += sums.py;
 }
 
 /// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs

@@ -6,6 +6,7 @@
 #include "mpm/step_clock.h"
 #include "observe/frame_store.h"
 #include "run/simulation.h"
+#include "shallow/erosion.h"
 #include "shallow/grid_update.h"
 #include "shallow/mass_fit.h"
 #include "shallow/merge.h"
@@ -69,6 +70,8 @@ public:
     std::vector<Birth> take_births();
 
     const Flow& flow() const { return flow_; }
+    /// Nothing when the bed is rock.
+    const Erosion* erosion() const { return erosion_ ? &*erosion_ : nullptr; }
     /// timings() tell CPU time too from now on.
     void count_cpu_time() { timed_.count_cpu_time(); }
     /// Memory that grows with the points, sort buffers included [bytes].
@@ -91,6 +94,7 @@ private:
     void serialize_nodes(Archive& archive);
     void serialize_peaks(Archive& archive);
     void adapt_points(bool deposit_follows, bool due, bool points_left);
+    void erode(double dt);
     double step_length(double until) const;
     double longest_step(double cfl, double signal) const;
     double share_of_ordinary_step() const;
@@ -111,6 +115,7 @@ private:
     std::unique_ptr<GridUpdateKernel> grid_update_;
     Splitter splitter_;
     std::optional<Merger> merger_;  ///< nothing when the scheme does not merge
+    std::optional<Erosion> erosion_;  ///< nothing when the bed is rock
     TileSorter sorter_;
     Peaks peaks_;
     StepClock timed_;

@@ -150,7 +150,18 @@ void DepthAveraged::node_fields(Frame& frame) {
     double* peak_pressure = column("peak_pressure", "Pa", 1);
     double* peak_dynamic = column("peak_dynamic_pressure", "Pa", 1);
     double* arrival = column("arrival_time", "s", 1);
+    double *change = nullptr, *eroded = nullptr, *deposited = nullptr;
+    if (erosion_) {
+        change = column("bed_change", "m", 1);
+        eroded = column("eroded_depth", "m", 1);
+        deposited = column("deposited_depth", "m", 1);
+    }
     for_all_output_nodes(flow_, shown_, [&](Index k, Index n) {
+        if (erosion_) {
+            change[n] = erosion_->bed_change(k);
+            eroded[n] = erosion_->eroded_depth(k);
+            deposited[n] = 0.0;
+        }
         elevation[n] = has_no_data(flow_.bed.exit[k]) ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
         surface[n] = elevation[n];
         peak_depth[n] = peaks_.depth[k];

@@ -57,6 +57,7 @@ void DepthAveraged::serialize(Archive& archive) {
     serialize_sums(archive);
     serialize_nodes(archive);
     serialize_peaks(archive);
+    if (erosion_) erosion_->serialize(archive, flow_);
     timed_.serialize(archive);
     if (!archive.loading()) return;
     flow_.rest.some_asleep = false;  // what sleeps is found again; it changes no bit

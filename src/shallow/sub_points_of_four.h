@@ -22,7 +22,9 @@ struct Domains { Double4 r1x, r1y, r2x, r2y; };
 
 /// The sub-points of four points of masses m. All of a point's lie within four nodes each way if none is farther than half
 /// a cell; their weights are summed there first. Otherwise nothing is done, and returns false.
-[[gnu::always_inline]] inline bool spread_four(Flow& flow, int lanes, Double4 x, Double4 y, Double4 m, const Domains& r) {
+/// `into`: an array on the grid's storage.
+[[gnu::always_inline]] inline bool spread_four(const Flow& flow, double* into, int lanes, Double4 x, Double4 y, Double4 m,
+                                               const Domains& r) {
     const double reach = flow.scheme.sub_point_reach;
     const Double4 ax = reach * (r.r1x + r.r2x), bx = reach * (r.r1x - r.r2x);
     const Double4 ay = reach * (r.r1y + r.r2y), by = reach * (r.r1y - r.r2y);
@@ -49,7 +51,7 @@ struct Domains { Double4 r1x, r1y, r2x, r2y; };
     const Int4 i = floor_positive(left), j = floor_positive(below);
     const Double4 share = 1.0 / 256.0 * m;  // a quarter each, weights come eightfold
     for (int lane = 0; lane < lanes; ++lane) {
-        double* row = flow.nodes.column_mass.data() + j[lane] * stride + i[lane];
+        double* row = into + j[lane] * stride + i[lane];
         for (int b = 0; b < 4; ++b, row += stride) store(row, load(row) + share[lane] * of_lane[b][lane]);
     }
     return true;

@@ -181,7 +181,7 @@ private:
                 flow.nodes.mass[first + i] += sx.w[i] * sy.w[j] * m;
             }
         }
-        if constexpr (kPaper) deposit_column(flow, sx, sy, m);
+        if constexpr (kPaper) deposit_column(flow.grid, flow.nodes.column_mass.data(), sx, sy, m);
         if constexpr (!kPaper) deposit_sub_points<S, double>(flow, p);
         if constexpr (kStress) {
             if (c.depth[p] > flow.dry_depth()) {

@@ -211,7 +211,7 @@ private:
     /// Those that lie farther from their points than half a cell, or beside the grid's sides, one by one.
     static void deposit_columns(Flow& flow, Index p, int lanes, Double4 x, Double4 y, Double4 m, const Domains& r,
                                 bool at_side) {
-        if (!at_side && spread_four(flow, lanes, x, y, m, r)) return;
+        if (!at_side && spread_four(flow, flow.nodes.column_mass.data(), lanes, x, y, m, r)) return;
         for (int lane = 0; lane < lanes; ++lane) deposit_quadratic_sub_points<Real>(flow, p + lane);
     }
 

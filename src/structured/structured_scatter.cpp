@@ -63,9 +63,9 @@ template <bool kWater>
                                           Double4 mass, const Domains& r) {
     const StructuredPoints& q = body.points;
     if constexpr (kWater) mass = body.density * (load(&q.volume[p], lanes) - load(&q.released[p], lanes));
-    if (!at_side && spread_four(body.flow, lanes, x, y, mass, r)) return;
+    if (!at_side && spread_four(body.flow, body.flow.nodes.column_mass.data(), lanes, x, y, mass, r)) return;
     for (int n = 0; n < lanes; ++n)
-        spread_column<Quadratic>(body.flow, {x[n], y[n], mass[n]}, edges_of(q, p + n));
+        spread_column<Quadratic>(body.flow, body.flow.nodes.column_mass.data(), {x[n], y[n], mass[n]}, edges_of(q, p + n));
 }
 
 /// Four columns at once.

@@ -26,6 +26,7 @@ const std::vector<Problem>& library() {
                                  body_problems,
                                  column_problems,
                                  mud_problems,
+                                 erosion_problems,
                                  structured_problems,
                                  structured_case_problems,
                                  water_problems,

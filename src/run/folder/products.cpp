@@ -30,6 +30,10 @@ constexpr ProductRule rules[] = {
     {"final_depth", "depth", 0, "m", "depth at the end of the run, along gravity"},
     {"final_velocity_x", "velocity", 0, "m/s", "velocity to the east at the end of the run"},
     {"final_velocity_y", "velocity", 1, "m/s", "velocity to the north at the end of the run"},
+    {"eroded_depth", "eroded_depth", 0, "m", "depth of the bed that the flow took, along gravity"},
+    {"deposited_depth", "deposited_depth", 0, "m", "depth that the flow gave to the bed, along gravity"},
+    {"bed_change", "bed_change", 0, "m", "deposited depth less eroded depth"},
+    {"final_elevation", "elevation", 0, "m", "elevation of the bed at the end of the run"},
     {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies"},
     {"final_water_depth", "water_depth", 0, "m", "depth of free water at the end of the run, along gravity"},
 };
@@ -58,7 +62,16 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
 
 /// Not every solver knows it; all others must be there.
 bool needed(const std::string& name) {
-    return name != "peak_dynamic_pressure" && name != "final_damage" && name != "final_water_depth";
+    for (const char* other : {"peak_dynamic_pressure", "final_damage", "final_water_depth", "eroded_depth", "deposited_depth",
+                              "bed_change", "final_elevation"})
+        if (name == other) return false;
+    return true;
+}
+
+/// The bed is shown again where it may have changed.
+bool is_of(const Frame& last, const ProductRule& rule) {
+    if (std::string(rule.name) == "final_elevation") return last.node("bed_change") != nullptr;
+    return last.node(rule.field) != nullptr || needed(rule.name);
 }
 
 fs::path raster_file(const fs::path& run_dir, const std::string& name) {
@@ -72,7 +85,7 @@ void LastFields::end(const Frame& last) { into_ = product_rasters(last, crs_wkt_
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt) {
     std::vector<ProductRaster> rasters;
     for (const ProductRule& rule : rules)
-        if (last.node(rule.field) != nullptr || needed(rule.name))
+        if (is_of(last, rule))
             rasters.push_back({rule.name, rule.unit, rule.description, raster_of(last, rule, crs_wkt)});
     return rasters;
 }

@@ -32,8 +32,9 @@ private:
 };
 
 /// The rasters of a run as its frame has them: peak_depth, peak_speed, peak_pressure, peak_dynamic_pressure
-/// (when the solver has it), arrival_time, final_depth, final_velocity_x, final_velocity_y, final_damage of what can break, final_water_depth beside it. Negative arrival
-/// times and all nodes without terrain become nodata.
+/// (when the solver has it), arrival_time, final_depth, final_velocity_x, final_velocity_y, final_damage of what can break,
+/// final_water_depth beside it, eroded_depth, deposited_depth, bed_change and final_elevation of an erodible bed. Negative
+/// arrival times and all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
 
 /// The raster of that name, or nullptr.

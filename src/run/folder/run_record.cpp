@@ -98,6 +98,13 @@ Json energy_json(const RunSummary& s) {
             {"residual", budget(s.first, s.last).energy_residual}};
 }
 
+Json bed_json(const RunSummary& s) {
+    const Status::Bed& bed = s.last.bed;
+    return {{"unit", "kg"},          {"initial", bed.initial},          {"eroded", bed.eroded},
+            {"deposited", bed.deposited}, {"final", bed.mass},          {"relative_error", budget(s.first, s.last).bed_error},
+            {"deepest", {{"unit", "m"}, {"eroded", bed.deepest}}}};
+}
+
 Json insitu_json(const std::vector<InsituTally>& tallies) {
     Json result = Json::array();
     for (const InsituTally& tally : tallies)
@@ -278,6 +285,7 @@ std::string run_json(const RunRecord& record) {
     if (record.extras.points_apart) json["points_apart"] = apart_json(*record.extras.points_apart);
     if (record.extras.breakage) json["structure"] = breakage_json(*record.extras.breakage);
     if (record.extras.water) json["budgets"]["water"] = water_json(*record.extras.water);
+    if (s.last.bed.initial > 0.0) json["budgets"]["bed"] = bed_json(s);
     return json.dump(2) + "\n";
 }
 

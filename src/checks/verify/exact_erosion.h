@@ -1,0 +1,52 @@
+#pragma once
+// Flows that take up their bed: slabs on a plane, the trench behind a block, a cap that spreads as it grows. Lengths run along
+// the slope and normal to it. kappa is the share of the flow's velocity that what is taken brings along.
+#include "checks/verify/problem.h"
+
+namespace frana::verify {
+
+/// Speed along the bed, way along it and thickness of a slab.
+struct SlabState { double speed, way, thickness; };
+
+/// An infinite layer on a plane with Coulomb friction: h du/dt = a h - (1 - kappa) E u, dh/dt = E.
+struct ErodingSlab {
+    double slope_deg = 30.0, mu = 0.3, gravity = 9.81;
+    double thickness = 1.0, speed = 0.0;  ///< at the start [m], [m/s]
+    double kappa = 0.0;
+    double drive() const;  ///< a = g (sin - mu cos) [m/s^2]
+
+    /// E constant [m/s].
+    SlabState at_rate(double rate, double t) const;
+    /// E = growth h u, from rest: u = sqrt(a / ((1 - kappa) growth)) tanh(w t).
+    SlabState grown(double growth, double t) const;
+    /// The same with Voellmy's drag g u^2 / (xi h), by integration.
+    SlabState grown_voellmy(double growth, double xi, double t) const;
+    /// The time in which it goes so far from rest, of grown().
+    double time_to(double growth, double way) const;
+};
+
+/// Depth that a rigid block of uniform thickness h0 and length L takes at x behind its first front, after the way S, by
+/// E = growth h u.
+struct Trench {
+    double growth = 2e-3, length = 50.0, thickness = 1.0, way = 300.0;
+    double depth(double x) const;
+    double volume() const;  ///< per width: h0 L (exp(growth S) - 1) [m^2]
+};
+
+/// A parabolic cap from rest that grows by E = eps h and spreads by its pressure: h = h_m (1 - (X/L)^2), u = u_c + X L'/L,
+/// L'' = 2 g cos(slope) h_m / L - (1 - kappa) eps L', u_c' = a - (1 - kappa) eps u_c.
+struct GrowingCap {
+    double slope_deg = 35.0, friction_deg = 25.0, gravity = 9.81;
+    double height = 4.0, half_length = 80.0, eps = 0.05, kappa = 0.0;
+    struct State { double half_length, spreading, centre, speed, height; };
+    State at(double t) const;
+};
+
+/// Equations of all of them, and published figures.
+std::vector<Residual> eroding_slab_residuals();
+std::vector<Residual> growing_slab_residuals();
+std::vector<Residual> voellmy_slab_residuals();
+std::vector<Residual> trench_residuals();
+std::vector<Residual> growing_cap_residuals();
+
+}  // namespace frana::verify

@@ -1,0 +1,28 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "law/key.h"
+#include "law/erosion/state.h"
+
+namespace frana::erosion {
+
+/// What the flow's base drags with more than the bed can bear goes into what is set in motion (Fraccarollo and Capart 2002,
+/// J. Fluid Mech. 461; Medina et al. 2008, Landslides 5): E = (tau - tau_c) / (rho u).
+struct Jump {
+    double threshold = 1000.0;  ///< tau_c [Pa]
+
+    static constexpr const char* name = "jump";
+    static constexpr const char* is = "";
+    static constexpr bool kProportional = false;
+    static constexpr bool kSeesEroded = false;
+    static std::vector<laws::Key<Jump>> keys() {
+        return {{&Jump::threshold, "threshold", "Pa", ranges::not_negative, "basal stress up to which the bed resists",
+                 laws::Missing::usual}};
+    }
+
+    /// src/shallow/THEORY.md (68)
+    double rate(const State& s) const { return std::max(0.0, s.stress - threshold) / (s.density * s.speed); }
+};
+
+}  // namespace frana::erosion

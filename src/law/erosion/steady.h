@@ -1,0 +1,27 @@
+#pragma once
+#include <vector>
+
+#include "law/key.h"
+#include "law/erosion/state.h"
+
+namespace frana::erosion {
+
+/// The flow's mass grows by the same share in each second: E = eps (rho / rho_b) h, so that m = m_0 exp(eps t). As Growth
+/// at one speed. A parabolic cap stays one, which makes it the law of an exact answer.
+struct Steady {
+    double growth_per_second = 0.0;  ///< eps [1/s]
+
+    static constexpr const char* name = "steady";
+    static constexpr const char* is = "";
+    static constexpr bool kProportional = true;
+    static constexpr bool kSeesEroded = false;
+    static std::vector<laws::Key<Steady>> keys() {
+        return {{&Steady::growth_per_second, "growth_per_second", "1/s", ranges::positive,
+                 "share of its mass that the moving flow takes up in a second"}};
+    }
+
+    /// src/shallow/THEORY.md (65)
+    double rate(const State& s) const { return growth_per_second * s.density / s.bed_density * s.thickness; }
+};
+
+}  // namespace frana::erosion

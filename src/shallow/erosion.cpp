@@ -1,0 +1,581 @@
+#include "shallow/erosion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "law/bed/node_friction.h"
+#include "mpm/domain.h"
+#include "mpm/stored_points.h"
+#include "mpm/tile_points.h"
+#include "scene/bed_smoothing.h"
+#include "shallow/sub_points_of_four.h"
+
+namespace frana {
+namespace {
+
+/// A node never gives its last billionth of a thousandth: rounding must not take more than there is.
+constexpr double kCrumb = 1e-12;
+/// Change of the bed, in cells, from which on its curvature follows.
+constexpr double kFollows = 0.01;
+constexpr double kSlowest = 1e-30;  ///< below any speed [m/s]
+
+/// One half, middle first, of the weights of so many passes of (1, 2, 1)/4, without tails below 1e-10.
+std::vector<double> half_filter(Index passes) {
+    std::vector<double> w(static_cast<std::size_t>(passes) + 1, 0.0);
+    w[0] = 1.0;
+    for (Index pass = 0; pass < passes; ++pass) {
+        const std::vector<double> before = w;
+        const auto at = [&](Index n) { return n < static_cast<Index>(w.size()) ? before[static_cast<std::size_t>(n)] : 0.0; };
+        for (Index n = 0; n < static_cast<Index>(w.size()); ++n)
+            w[static_cast<std::size_t>(n)] = 0.5 * at(n) + 0.25 * (at(n + 1) + at(std::abs(n - 1)));
+    }
+    while (w.size() > 1 && w.back() < 1e-10) w.pop_back();
+    return w;
+}
+
+/// Calls body(tile) for those among a tile and its eight neighbours that are of the domain.
+template <class Body>
+void for_each_around(const TileGrid& grid, Index tile, Body&& body) {
+    const Index width = grid.tiles_x(), column = tile % width;
+    for (Index dj = -1; dj <= 1; ++dj)
+        for (Index di = -1; di <= 1; ++di) {
+            const Index to = tile + dj * width + di;
+            if (column + di >= 0 && column + di < width && to >= 0 && to < grid.tiles()) body(to);
+        }
+}
+
+template <class Body>
+void for_each_in_parallel(const std::vector<Index>& tiles, Body&& body) {
+    const Index count = static_cast<Index>(tiles.size());
+#pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
+    for (Index n = 0; n < count; ++n) body(tiles[static_cast<std::size_t>(n)]);
+}
+
+/// What the bed law sees below a point; on gentle ground that of the map.
+struct Ground {
+    double bx = 0.0, by = 0.0, hxx = 0.0, hxy = 0.0, hyy = 0.0;
+    Ground(const Flow& flow, bool curved, const Quadratic& sx, const Quadratic& sy) {
+        if (!flow.steep) return;
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const double w = sx.w[i] * sy.w[j];
+                const Index k = flow.grid.at(sx.base + i, sy.base + j);
+                bx += w * flow.bed.slope_x[k], by += w * flow.bed.slope_y[k];
+                if (!curved) continue;
+                hxx += w * flow.bed.hxx[k], hxy += w * flow.bed.hxy[k], hyy += w * flow.bed.hyy[k];
+            }
+    }
+};
+
+}  // namespace
+
+Erosion::Erosion(const Scene& scene, Flow& flow)
+    : law_(scene.erodible->law), friction_(scene.bed_law), momentum_(scene.erodible->momentum),
+      min_depth_(scene.erodible->min_depth), density_(scene.erodible->density), per_area_(1.0 / (density_ * flow.area)),
+      evolves_(scene.erodible->evolves),
+      curved_(scene.terrain != TerrainModel::shallow && scene.curvature == Curvature::full),
+      bent_path_(flow.bed.smoothed), left_(flow.grid.size()), initial_(flow.grid.size()),
+      demand_(flow.grid.size()), taken_(flow.grid.size()), share_(flow.grid.size()), holds_(flow.grid.tiles()),
+      changed_(flow.grid.tiles()), tile_mass_(flow.grid.tiles()), tile_deepest_(flow.grid.tiles()),
+      marked_(static_cast<std::size_t>(flow.grid.tiles()), 0), tile_energy_(flow.grid.tiles()) {
+    const TileGrid& grid = flow.grid;
+    expect(flow.scheme.shape == Shape::quadratic && !flow.scheme.paper_pressure, "an erodible bed needs quadratic shapes");
+    for (Index j = 0; j < grid.ny(); ++j)
+        for (Index i = 0; i < grid.nx(); ++i) {
+            const Index k = grid.at(i, j);
+            if (flow.bed.exit[k] == 0) initial_[k] = scene.erodible->depth.at(i, j) / per_area_;
+        }
+    if (flow.walls)  // beyond them lies the mirror image
+        for (Index j = -kGhosts; j < grid.ny() + kGhosts; ++j)
+            for (Index i = -kGhosts; i < grid.nx() + kGhosts; ++i) {
+                const auto mirror = [](Index n, Index count) { return n < 0 ? -n : n >= count ? 2 * (count - 1) - n : n; };
+                initial_[grid.at(i, j)] = initial_[grid.at(mirror(i, grid.nx()), mirror(j, grid.ny()))];
+            }
+    for (Index tile = 0; tile < grid.tiles(); ++tile) {
+        bool any = false;
+        for_each_node_of(grid, tile, [&](Index k, Index, Index) {
+            left_[k] = initial_[k];
+            any = any || initial_[k] > 0.0;
+        });
+        if (!any) continue;
+        ledger_tiles_.push_back(tile);
+        count_tile(flow, tile);
+    }
+    status_changed();
+    initial_mass_ = mass_;
+    if (!evolves_) return;
+    // Steps compute these anew, tile by tile: all of it comes from the same lines.
+    for (Index tile = 0; tile < grid.tiles(); ++tile) refresh_slopes(grid, flow.bed, tile);
+    if (!bent_path_) return;
+    pending_ = LazyArray<double>(grid.size()), tile_pending_ = LazyArray<double>(grid.tiles());
+    rows_ = LazyArray<double>(grid.size());
+    filter_ = half_filter(smoothing_passes(scene.scheme, grid.cell()));
+    for (Index tile = 0; tile < grid.tiles(); ++tile) refresh_path(grid, flow.bed, tile);
+}
+
+void Erosion::count_tile(const Flow& flow, Index tile) {
+    CompensatedSum mass;
+    bool any = false;
+    double deepest = 0.0;
+    for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+        if (!(initial_[k] > 0.0)) return;
+        mass.add(flow.share(i, j) * left_[k]);
+        any = any || left_[k] > kCrumb * initial_[k];
+        deepest = std::max(deepest, eroded_depth(k));
+    });
+    tile_mass_[tile] = mass.value(), holds_[tile] = any, tile_deepest_[tile] = deepest;
+}
+
+/// Sums of all tiles, in their order.
+void Erosion::status_changed() {
+    CompensatedSum mass;
+    deepest_ = 0.0;
+    for (const Index tile : ledger_tiles_) {
+        mass.add(tile_mass_[tile]);
+        deepest_ = std::max(deepest_, tile_deepest_[tile]);
+    }
+    mass_ = mass.value();
+}
+
+Status::Bed Erosion::status() const { return {initial_mass_, mass_, eroded_.value(), 0.0, energy_.value(), deepest_}; }
+
+template <class Body>
+void Erosion::for_each_eroding(const Flow& flow, Body&& body) const {
+    for_each_tile(flow.active, [&](Index n) {
+        if (eroding_[static_cast<std::size_t>(n)]) body(n);
+    });
+}
+
+template <class Body>
+void Erosion::for_each_eroding_coloured(const Flow& flow, Body&& body) const {
+    for_each_tile_coloured(flow.active, [&](Index n) {
+        if (eroding_[static_cast<std::size_t>(n)]) body(n);
+    });
+}
+
+ExchangeSums Erosion::exchange(Flow& flow, double dt) {
+    ExchangeSums all;
+    if (!(dt > 0.0) || !choose(flow)) return all;
+    make_room(flow);
+    find_demand(flow, dt);
+    scarce_ = find_shares(flow);
+    if (scarce_) share_out(flow);
+    flow.columns.with_real([&](auto real) {
+        for_each_eroding(flow, [&](Index n) { grow<decltype(real)>(flow, n); });
+    });
+    lower(flow);
+    CompensatedSum taken;
+    for (Index n = 0; n < flow.active.count(); ++n) {
+        if (!eroding_[static_cast<std::size_t>(n)]) continue;
+        const ExchangeSums& of = sums_[static_cast<std::size_t>(n)];
+        taken.add(of.taken), all.px += of.px, all.py += of.py, all.lost += of.lost;
+        all.max_shift = std::max(all.max_shift, of.max_shift);
+    }
+    for (const Index tile : nodes_) energy_.add(tile_energy_[tile]);
+    all.taken = taken.value();
+    eroded_.add(all.taken);
+    status_changed();
+    return all;
+}
+
+/// Which tiles' points may take something, and which tiles' nodes they reach.
+bool Erosion::choose(const Flow& flow) {
+    const ActiveTiles& active = flow.active;
+    eroding_.assign(static_cast<std::size_t>(active.count()), 0);
+    nodes_.clear();
+    bool any = false;
+    for (Index n = 0; n < active.count(); ++n) {
+        const Index tile = active.tile[n];
+        if (active.quiet[tile] >= kAsleep) continue;
+        bool near = false;
+        for_each_around(flow.grid, tile, [&](Index to) { near = near || holds_[to]; });
+        if (!near) continue;
+        any = true, eroding_[static_cast<std::size_t>(n)] = 1;
+        for_each_around(flow.grid, tile, [&](Index to) { marked_[static_cast<std::size_t>(to)] = 1; });
+    }
+    for (const Index tile : active.work)
+        if (marked_[static_cast<std::size_t>(tile)] || flow.walls) nodes_.push_back(tile), marked_[static_cast<std::size_t>(tile)] = 0;
+    return any;
+}
+
+void Erosion::make_room(const Flow& flow) {
+    const std::size_t count = static_cast<std::size_t>(flow.columns.count());
+    for (Array* column : {&wanted_, &gained_, &speed_, &braked_}) resize_sparingly(*column, count);
+    sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
+}
+
+/// THEORY (69): what each point wants, and their sum on the nodes.
+void Erosion::find_demand(Flow& flow, double dt) {
+    flow.columns.with_real([&](auto real) {
+        using Real = decltype(real);
+        for_each_eroding_coloured(flow, [&](Index n) {
+            std::visit(
+                [&](const auto& law, const auto& friction) {
+                    using Law = std::decay_t<decltype(law)>;
+                    demand_of_tile<Law, std::decay_t<decltype(friction)>, Real>(flow, n, dt, law, friction);
+                },
+                law_, friction_);
+            spread<Real>(flow, n, wanted_, demand_);
+        });
+    });
+    fold(flow, demand_);
+}
+
+/// Velocities are those of the step's momentum over the mass before it (leapfrog). In the middle of the step, where the
+/// way and the law are taken, half of the gain shares it: such points have come too far, and are set back.
+template <class Law, class Friction, class Real>
+void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction) {
+    Columns& c = flow.columns;
+    const Carried<Real>& held = c.carried<Real>();
+    double farthest = 0.0;
+    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+        wanted_[p] = speed_[p] = braked_[p] = 0.0;
+        const double depth = held.depth[p], vx = held.vx[p], vy = held.vy[p], on_map = std::sqrt(vx * vx + vy * vy);
+        if (!(on_map > kSlowest) || !(depth >= min_depth_) || !(depth > flow.dry_depth())) continue;
+        const Quadratic sx(c.x[p]), sy(c.y[p]);
+        const Ground ground(flow, curved_, sx, sy);
+        const double rise = vx * ground.bx + vy * ground.by, speed = std::sqrt(on_map * on_map + rise * rise);
+        const double cosine = 1.0 / std::sqrt(1.0 + ground.bx * ground.bx + ground.by * ground.by);
+        const double kappa = speed / on_map, bend = vx * vx * ground.hxx + 2.0 * vx * vy * ground.hxy + vy * vy * ground.hyy;
+        const BedState below{std::max(0.0, flow.gravity + bend) * cosine / kappa, std::max(depth * cosine, 1e-9), kappa,
+                             cosine, flow.gravity, flow.density};
+        erosion::State state;
+        state.thickness = below.thickness, state.dt = dt;
+        state.density = flow.density, state.bed_density = density_;
+        if constexpr (Law::kSeesEroded)
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i)
+                    state.eroded += cosine * sx.w[i] * sy.w[j] * eroded_depth(flow.grid.at(sx.base + i, sy.base + j));
+        double at_middle = 1.0, next = 1.0, brake = 0.0, gain = 0.0;  // the speed in the middle, over that at hand
+        for (int pass = 0; pass < 2; ++pass) {
+            at_middle = next;
+            brake = deceleration(friction, below, at_middle * on_map);
+            state.speed = at_middle * speed;
+            state.stress = flow.density * below.thickness * kappa * brake;
+            double rate = law.rate(state);
+            if (!Law::kProportional) rate = std::min(rate, state.speed);  // no faster than the flow slides over the bed
+            const double share = rate * dt * density_ / (flow.density * below.thickness);
+            gain = Law::kProportional ? std::expm1(share) : share;
+            next = std::sqrt(speed_left(gain, brake * dt / on_map));
+        }
+        if (!(gain > 0.0)) continue;
+        wanted_[p] = c.mass[p] * gain, speed_[p] = speed, braked_[p] = brake * dt / on_map;
+        farthest = std::max(farthest, set_back(flow, p, (1.0 - at_middle) * dt * vx, (1.0 - at_middle) * dt * vy));
+    }
+    sums_[static_cast<std::size_t>(n)].max_shift = farthest;
+}
+
+/// Moves a point back by (dx, dy) [m] unless ground ends there; returns how far [cells].
+double Erosion::set_back(Flow& flow, Index p, double dx, double dy) const {
+    Columns& c = flow.columns;
+    const double x = c.x[p] - dx / flow.cell, y = c.y[p] - dy / flow.cell;
+    const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
+    if (!(x >= 0.0 && x <= x_max && y >= 0.0 && y <= y_max)) return 0.0;
+    if (flow.bed.has_exits && flow.bed.exit[flow.grid.nearest(x, y)] != 0) return 0.0;
+    const double shift = std::max(std::abs(x - c.x[p]), std::abs(y - c.y[p]));
+    c.x[p] = x, c.y[p] = y;
+    return shift;
+}
+
+/// THEORY (73): the share of its velocity that a point keeps when it grows by `gain` of its mass. What is taken brings at
+/// most the momentum that friction takes meanwhile, `braked` of the flow's own.
+double Erosion::speed_left(double gain, double braked) const {
+    const double grown = 1.0 + gain;
+    if (momentum_ == 0.0) return 1.0 / grown;
+    return std::min(std::pow(grown, momentum_), 1.0 + braked) / grown;
+}
+
+/// Adds numbers of points to nodes as their columns are: by sub-points.
+template <class Real>
+void Erosion::spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into) const {
+    const Columns& c = flow.columns;
+    const Carried<Real>& held = c.carried<Real>();
+    const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
+    for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
+        const Double4 m = load(&masses[p], lanes), none = {};
+        if (!any(m > none)) return;
+        const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
+                        load(&held.r2y[p], lanes)};
+        if (!at_side && spread_four(flow, into.data(), lanes, load(&c.x[p], lanes), load(&c.y[p], lanes), m, r)) return;
+        for (Index q = p; q < p + lanes; ++q)
+            spread_column<Quadratic>(flow, into.data(), {c.x[q], c.y[q], masses[q]}, edges_of(held, q));
+    });
+}
+
+/// Closes the domain at walls: adds what mirror images bring, and gives the nodes beyond what their images have.
+void Erosion::fold(const Flow& flow, LazyArray<double>& field) const {
+    if (!flow.walls) return;
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 0, [&](Index ghost, Index mirror) { field[mirror] += field[ghost]; });
+    for (int axis = 0; axis < 2; ++axis)
+        for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) { field[ghost] = field[mirror]; });
+}
+
+/// THEORY (70): the share of the demand that each node can give. Whether some node has too little.
+bool Erosion::find_shares(Flow& flow) {
+    next_.assign(nodes_.size(), 0);
+    const Index count = static_cast<Index>(nodes_.size());
+#pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
+    for (Index n = 0; n < count; ++n) {
+        bool scarce = false;
+        for_each_node_of(flow.grid, nodes_[static_cast<std::size_t>(n)], [&](Index k, Index, Index) {
+            const double can = std::max(0.0, left_[k] - kCrumb * initial_[k]);
+            share_[k] = demand_[k] > can ? can / demand_[k] : 1.0;
+            scarce = scarce || share_[k] < 1.0;
+        });
+        next_[static_cast<std::size_t>(n)] = scarce;
+    }
+    return std::any_of(next_.begin(), next_.end(), [](Index scarce) { return scarce != 0; });
+}
+
+/// THEORY (71) and (72): each point gets by its poorest node, then what nodes have left over goes round.
+void Erosion::share_out(Flow& flow) {
+    flow.columns.with_real([&](auto real) {
+        using Real = decltype(real);
+        for_each_eroding_coloured(flow, [&](Index n) {
+            take_shares<Real>(flow, n);
+            spread<Real>(flow, n, gained_, taken_);
+        });
+        fold(flow, taken_);
+        for_each_in_parallel(nodes_, [&](Index tile) {
+            for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+                const double can = left_[k] - kCrumb * initial_[k];
+                const double more = std::max(0.0, std::min(demand_[k], can) - taken_[k]);
+                share_[k] = demand_[k] > 0.0 ? more / demand_[k] : 0.0;
+                taken_[k] += share_[k] * demand_[k];
+            });
+        });
+        for_each_eroding(flow, [&](Index n) { take_left_over<Real>(flow, n); });
+    });
+}
+
+template <class Real>
+void Erosion::take_shares(const Flow& flow, Index n) {
+    const Columns& c = flow.columns;
+    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+        gained_[p] = 0.0;
+        if (!(wanted_[p] > 0.0)) continue;
+        double least = 1.0;
+        for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges_of(c.carried<Real>(), p), [&](const auto& sx, const auto& sy) {
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i) least = std::min(least, share_[flow.grid.at(sx.base + i, sy.base + j)]);
+        });
+        gained_[p] = least * wanted_[p];
+    }
+}
+
+template <class Real>
+void Erosion::take_left_over(const Flow& flow, Index n) {
+    const Columns& c = flow.columns;
+    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+        if (!(wanted_[p] > 0.0)) continue;
+        double more = 0.0;
+        for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges_of(c.carried<Real>(), p), [&](const auto& sx, const auto& sy) {
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i)
+                    more += sx.w[i] * sy.w[j] * share_[flow.grid.at(sx.base + i, sy.base + j)];
+        });
+        gained_[p] += 0.25 * more * wanted_[p];
+    }
+}
+
+/// Points take what they gained into their motion.
+template <class Real>
+void Erosion::grow(Flow& flow, Index n) {
+    Columns& c = flow.columns;
+    Carried<Real>& held = c.carried<Real>();
+    ExchangeSums& sums = sums_[static_cast<std::size_t>(n)];
+    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+        const double gain = scarce_ ? gained_[p] : wanted_[p], mass = c.mass[p];
+        if (!(gain > 0.0)) continue;
+        const double vx = held.vx[p], vy = held.vy[p];
+        const double grown = 1.0 + gain / mass, factor = speed_left(gain / mass, braked_[p]);
+        for (auto* column : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy})
+            (*column)[p] = static_cast<Real>(factor * (*column)[p]);
+        c.mass[p] = mass + gain;
+        sums.taken += c.mass[p] - mass;
+        sums.px += c.mass[p] * held.vx[p] - mass * vx, sums.py += c.mass[p] * held.vy[p] - mass * vy;
+        sums.lost += 0.5 * mass * speed_[p] * speed_[p] * (1.0 - grown * factor * factor);
+    }
+}
+
+/// The bed loses what the points gained.
+void Erosion::lower(Flow& flow) {
+    for_each_in_parallel(nodes_, [&](Index tile) { lower_tile(flow, tile); });
+    if (evolves_) follow_bed(flow);
+}
+
+void Erosion::lower_tile(Flow& flow, Index tile) {
+    double energy = 0.0;
+    bool any = false;
+    for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+        const double taken = std::min(scarce_ ? taken_[k] : demand_[k], left_[k]);
+        demand_[k] = taken_[k] = 0.0;
+        if (!(taken > 0.0)) return;
+        const double sinks = evolves_ ? taken * per_area_ : 0.0, rises = taken / (flow.density * flow.area);
+        const double z = flow.bed.z[k], h = flow.nodes.depth[k];
+        energy += flow.share(i, j) * flow.gravity *
+                  (taken * (z - sinks + 0.5 * rises) + flow.density * flow.area * h * (rises - sinks));
+        left_[k] -= taken;
+        any = true;
+        if (!evolves_) return;
+        flow.bed.z[k] -= sinks;
+        flow.bed.ground[k] -= sinks;
+        if (bent_path_) pending_[k] -= sinks;
+    });
+    tile_energy_[tile] = energy;
+    if (!any) return;
+    if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);
+    changed_[tile] = 1;
+    marked_[static_cast<std::size_t>(tile)] = evolves_;
+    count_tile(flow, tile);
+}
+
+double Erosion::most_pending(const Flow& flow, Index tile) const {
+    double most = 0.0;
+    for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { most = std::max(most, -pending_[k]); });
+    return most;
+}
+
+/// Slopes follow at once, curvature once the bed has sunk far enough.
+void Erosion::follow_bed(Flow& flow) {
+    const TileGrid& grid = flow.grid;
+    next_.clear();
+    for (const Index tile : nodes_) {
+        if (!marked_[static_cast<std::size_t>(tile)]) continue;
+        for_each_around(grid, tile, [&](Index to) {
+            if (marked_[static_cast<std::size_t>(to)] & 2) return;
+            marked_[static_cast<std::size_t>(to)] |= 2;
+            next_.push_back(to);
+        });
+    }
+    for_each_in_parallel(next_, [&](Index tile) { refresh_slopes(grid, flow.bed, tile); });
+    for (const Index tile : next_) marked_[static_cast<std::size_t>(tile)] = 0, changed_[tile] = 1;
+    if (!bent_path_) return;
+    double most = 0.0;  // of all tiles, or what is symmetric would part at their edges
+    for (const Index tile : ledger_tiles_) most = std::max(most, tile_pending_[tile]);
+    if (!(most > kFollows * grid.cell())) return;
+    smooth_into_path(flow);
+}
+
+/// Smoothing is linear: that of the change is added to the smoothed bed, as far as it reaches.
+void Erosion::smooth_into_path(Flow& flow) {
+    const TileGrid& grid = flow.grid;
+    const Index reach = static_cast<Index>(filter_.size()) - 1, up = grid.stride();
+    list_reached(grid, (reach + 2 + kTile - 1) / kTile);
+    const Index i_end = grid.tiles_x() * kTile - kTile, j_end = grid.tiles() / grid.tiles_x() * kTile - kTile;
+    for_each_in_parallel(next_, [&](Index tile) {
+        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+        for (Index j = j0; j < j0 + kTile; ++j)
+            for (Index a = -reach; a <= reach; ++a) {
+                const double w = filter_[static_cast<std::size_t>(std::abs(a))];
+                const Index first = std::max<Index>(0, -kTile - i0 - a), past = std::min(kTile, i_end - i0 - a);
+                double* to = &rows_[grid.at(i0, j)];
+                const double* from = pending_.data() + grid.at(i0, j) + a;
+                for (Index i = first; i < past; ++i) to[i] += w * from[i];
+            }
+    });
+    for_each_in_parallel(next_, [&](Index tile) {
+        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
+        for (Index j = j0; j < j0 + kTile; ++j)
+            for (Index b = std::max(-reach, -kTile - j); b <= std::min(reach, j_end - 1 - j); ++b) {
+                const double w = filter_[static_cast<std::size_t>(std::abs(b))];
+                double* to = &flow.bed.smoothed[grid.at(i0, j)];
+                const double* from = rows_.data() + grid.at(i0, j) + b * up;
+                for (Index i = 0; i < kTile; ++i) to[i] += w * from[i];
+            }
+    });
+    for_each_in_parallel(next_, [&](Index tile) {
+        for_each_node_of(grid, tile, [&](Index k, Index, Index) { pending_[k] = rows_[k] = 0.0; });
+        refresh_path(grid, flow.bed, tile);
+    });
+    for (const Index tile : next_) {
+        marked_[static_cast<std::size_t>(tile)] = 0, changed_[tile] = 1;
+        tile_pending_[tile] = 0.0;
+    }
+}
+
+/// Lists the tiles that are so many away from one whose bed has sunk.
+void Erosion::list_reached(const TileGrid& grid, Index far) {
+    next_.clear();
+    for (const Index tile : ledger_tiles_) {
+        if (!(tile_pending_[tile] > 0.0)) continue;
+        const Index width = grid.tiles_x(), column = tile % width;
+        for (Index dj = -far; dj <= far; ++dj)
+            for (Index di = -far; di <= far; ++di) {
+                const Index to = tile + dj * width + di;
+                if (column + di < 0 || column + di >= width || to < 0 || to >= grid.tiles()) continue;
+                if (marked_[static_cast<std::size_t>(to)]) continue;
+                marked_[static_cast<std::size_t>(to)] = 1;
+                next_.push_back(to);
+            }
+    }
+}
+
+/// All that have changed; aside those that a step may change.
+std::vector<Index> Erosion::tiles_to_keep(const Flow& flow, bool aside) const {
+    const TileGrid& grid = flow.grid;
+    std::vector<std::uint8_t> kept(static_cast<std::size_t>(grid.tiles()), 0);
+    const Index reach = static_cast<Index>(filter_.size()), far = 2 + (reach + 2) / kTile, width = grid.tiles_x();
+    const auto add = [&](Index tile) {
+        for (Index dj = -far; dj <= far; ++dj)
+            for (Index di = -far; di <= far; ++di) {
+                const Index to = tile + dj * width + di, column = tile % width + di;
+                if (column >= 0 && column < width && to >= 0 && to < grid.tiles()) kept[static_cast<std::size_t>(to)] = 1;
+            }
+    };
+    if (aside)
+        for (const Index tile : flow.active.work) add(tile);
+    if (aside && bent_path_)
+        for (const Index tile : ledger_tiles_)
+            if (tile_pending_[tile] > 0.0) add(tile);
+    std::vector<Index> tiles;
+    for (Index tile = 0; tile < grid.tiles(); ++tile)
+        if (aside ? kept[static_cast<std::size_t>(tile)] != 0 : changed_[tile] != 0) tiles.push_back(tile);
+    return tiles;
+}
+
+void Erosion::serialize(Archive& archive, Flow& flow) {
+    const Archive::Part part(archive, "bed");
+    std::vector<Index> tiles;
+    if (!archive.loading()) tiles = tiles_to_keep(flow, archive.aside());
+    archive.array("tile", tiles);
+    for (const Index tile : tiles)
+        if (tile < 0 || tile >= flow.grid.tiles()) throw misfit("its erodible bed lies outside the grid");
+    const auto numbers = [&](const char* name, LazyArray<double>& field) {
+        if (!field) return;
+        std::vector<double> values;
+        if (!archive.loading())
+            for (const Index tile : tiles)
+                for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { values.push_back(field[k]); });
+        archive.array(name, values);
+        if (!archive.loading()) return;
+        const std::size_t expected = tiles.size() * static_cast<std::size_t>(kTile * kTile);
+        if (values.size() != expected) throw misfit("its erodible bed is not that of the tiles");
+        const double* from = values.data();
+        for (const Index tile : tiles) for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { field[k] = *from++; });
+    };
+    numbers("left", left_);
+    if (evolves_) {
+        numbers("z", flow.bed.z);
+        numbers("ground", flow.bed.ground);
+        numbers("pending", pending_);
+        numbers("smoothed", flow.bed.smoothed);
+    }
+    const auto eroded = eroded_.parts(), energy = energy_.parts();
+    archive.numbers("sums", {eroded[0], eroded[1], energy[0], energy[1]});
+    if (!archive.loading()) return;
+    for (const Index tile : tiles) {
+        changed_[tile] = 1;
+        count_tile(flow, tile);
+        if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);
+    }
+    status_changed();
+    if (!evolves_) return;
+    for (const Index tile : tiles) for_each_around(flow.grid, tile, [&](Index to) { refresh_slopes(flow.grid, flow.bed, to); });
+    if (bent_path_)
+        for (const Index tile : tiles) for_each_around(flow.grid, tile, [&](Index to) { refresh_path(flow.grid, flow.bed, to); });
+}
+
+}  // namespace frana

@@ -1,0 +1,273 @@
+// A flow that takes up its bed: nothing is lost, nothing is taken that is not there, and rock stays as it was.
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "checks/verify/placement.h"
+#include "law/bed/node_friction.h"
+#include "observe/budget.h"
+#include "observe/memory_archive.h"
+#include "shallow/depth_averaged.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+ErodibleBed loose(const Scene& scene, ErosionLaw law, const std::function<double(double, double)>& depth) {
+    ErodibleBed bed;
+    bed.law = law;
+    bed.density = 1.2 * scene.density;
+    bed.depth = Raster::filled(scene.bed.geometry, 0.0);
+    const GridGeometry& g = scene.bed.geometry;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) bed.depth.at(i, j) = depth(g.x(i), g.y(j));
+    return bed;
+}
+
+/// A slide into a gully with a bump; loose ground lies in a band across it, less than the flow would take.
+Scene slide(const std::function<void(Scene&)>& edit = {}) {
+    Scene scene = scene_on(90, 60, 2.0, [](double x, double y) {
+        return 90 - 0.5 * x + 0.01 * (y - 59) * (y - 59) + 3 * std::exp(-((x - 90) * (x - 90) + (y - 59) * (y - 59)) / 60);
+    });
+    scene.bed_law = bed::Voellmy{0.2, 400};
+    verify::place(scene, [](double x, double y) { return std::hypot(x - 35, y - 59) < 20 ? 3.0 : 0.0; },
+                  verify::Placement::r2, 2);
+    scene.erodible = loose(scene, erosion::Growth{0.01},
+                           [](double x, double y) { return x > 50 && x < 130 && y > 40 && y < 78 ? 0.3 : 0.0; });
+    if (edit) edit(scene);
+    return scene;
+}
+
+void run(DepthAveraged& simulation, double end) {
+    while (simulation.status().time < end) simulation.advance(end);
+}
+
+std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
+    MemoryArchive archive;
+    simulation.serialize(archive);
+    auto entries = archive.entries();
+    for (auto entry = entries.begin(); entry != entries.end();)
+        entry = entry->first.rfind("clock/", 0) == 0 ? entries.erase(entry) : std::next(entry);
+    return entries;
+}
+
+void check_same(DepthAveraged& a, DepthAveraged& b) {
+    const auto of_a = bits(a), of_b = bits(b);
+    REQUIRE(of_a.size() == of_b.size());
+    REQUIRE(of_a.count("bed/left") == 1);
+    for (const auto& [name, entry] : of_a) {
+        INFO(name);
+        CHECK((of_b.at(name) == entry));
+    }
+    const BedGeometry &x = a.flow().bed, &y = b.flow().bed;
+    const auto size = static_cast<std::size_t>(a.flow().grid.size()) * sizeof(double);
+    for (const auto field : {&BedGeometry::z, &BedGeometry::ground, &BedGeometry::z_min, &BedGeometry::slope_x,
+                             &BedGeometry::slope_y, &BedGeometry::hxx, &BedGeometry::hxy, &BedGeometry::smooth_x})
+        CHECK(std::memcmp((x.*field).data(), (y.*field).data(), size) == 0);
+}
+
+const ErosionLaw kLaws[] = {erosion::Growth{0.02}, erosion::Steady{0.2}, erosion::Shear{0.2, 500.0, 1e-4},
+                            erosion::Energy{300.0}, erosion::Jump{300.0}};
+
+}  // namespace
+
+TEST_CASE("Flow, bed and what left have the mass of the start, and no node lies below its rock", "[erosion]") {
+    for (const ErosionLaw& law : kLaws)
+        for (const double kappa : {0.0, 0.7})
+            for (const Sides sides : {Sides::open, Sides::wall}) {
+                INFO("law " << law.index() << ", kappa " << kappa << ", walls " << (sides == Sides::wall));
+                const Scene scene = slide([&](Scene& s) {
+                    s.erodible->law = law;
+                    s.erodible->momentum = kappa;
+                    s.sides = sides;
+                });
+                DepthAveraged simulation(scene);
+                const Status first = simulation.frame().status;
+                run(simulation, 12.0);
+                const Frame frame = simulation.frame();
+                const Budget left_over = budget(first, frame.status);
+                CHECK(std::abs(left_over.mass_error) <= 1e-13);
+                CHECK(std::abs(left_over.bed_error) <= 1e-13);
+                REQUIRE(frame.status.bed.eroded > 1e-3 * first.mass);
+                double momentum = 0.0;
+                for (const double part : frame.status.impulse) momentum = std::max(momentum, std::abs(part));
+                for (const double residual : left_over.momentum_residual) CHECK(std::abs(residual) <= 1e-11 * momentum);
+                const double *eroded = frame.node("eroded_depth")->data, *z = frame.node("elevation")->data;
+                const DepthAveraged rock([&] { Scene s = scene; s.erodible.reset(); return s; }());
+                const Flow& before = rock.flow();
+                double worst = 0.0, off = 0.0;
+                for (Index j = 0; j < frame.grid.ny; ++j)
+                    for (Index i = 0; i < frame.grid.nx; ++i) {
+                        const Index n = j * frame.grid.nx + i;
+                        worst = std::max({worst, eroded[n] - scene.erodible->depth.at(i, j), -eroded[n]});
+                        off = std::max(off, std::abs(z[n] + eroded[n] - before.bed.z[before.grid.at(i, j)]));
+                    }
+                CHECK(worst <= 0.0);
+                CHECK(off <= 1e-12);  // of 90 m, in some hundred steps
+            }
+}
+
+TEST_CASE("A bed without anything loose changes no bit of a run", "[erosion]") {
+    DepthAveraged rock(slide([](Scene& s) { s.erodible.reset(); }));
+    DepthAveraged bare(slide([](Scene& s) { std::fill(s.erodible->depth.values.begin(), s.erodible->depth.values.end(), 0.0); }));
+    run(rock, 6.0);
+    run(bare, 6.0);
+    auto of_bare = bits(bare);
+    for (const auto& [name, entry] : bits(rock)) {
+        INFO(name);
+        if (name != "status/numbers") CHECK((of_bare.at(name) == entry));
+    }
+    CHECK(bare.status().kinetic == rock.status().kinetic);
+    CHECK(bare.status().potential == rock.status().potential);
+}
+
+TEST_CASE("An eroding run has the same bits on any number of threads and after it is taken up again", "[erosion][threads]") {
+    const int before = omp_get_max_threads();
+    const Scene scene = slide();
+    omp_set_num_threads(1);
+    DepthAveraged straight(scene);
+    MemoryArchive kept;
+    run(straight, 5.0);
+    straight.serialize(kept);
+    run(straight, 10.0);
+    REQUIRE(straight.status().bed.eroded > 0.0);
+    for (const int threads : {2, 4}) {
+        omp_set_num_threads(threads);
+        DepthAveraged again(scene);
+        run(again, 5.0);
+        run(again, 10.0);
+        check_same(again, straight);
+    }
+    DepthAveraged resumed(scene, Start::resumed);
+    resumed.serialize(kept.rewind());
+    run(resumed, 10.0);
+    check_same(resumed, straight);
+    omp_set_num_threads(before);
+}
+
+TEST_CASE("A hungry flow takes all of a thin layer where it passes, and no more", "[erosion]") {
+    const Scene scene = slide([](Scene& s) {
+        s.erodible = loose(s, erosion::Growth{1.0},
+                           [](double x, double y) { return x > 60 && x < 80 && y > 50 && y < 70 ? 0.02 : 0.0; });
+    });
+    DepthAveraged simulation(scene);
+    run(simulation, 15.0);
+    const Flow& flow = simulation.flow();
+    double left = 0.0, had = 0.0;
+    for (Index j = 0; j < flow.grid.ny(); ++j)
+        for (Index i = 0; i < flow.grid.nx(); ++i) {
+            left += simulation.erosion()->left(flow.grid.at(i, j));
+            had += scene.erodible->depth.at(i, j) * flow.area * scene.erodible->density;
+        }
+    REQUIRE(had > 0.0);
+    CHECK(left <= 2e-12 * had);  // a node keeps a 1e-12 of what it had
+    CHECK(left >= 0.0);
+}
+
+TEST_CASE("The surface of flow and bed does not move when mass changes sides", "[erosion]") {
+    Scene scene = scene_on(60, 50, 1.0, [](double x, double y) { return 0.3 * std::sin(0.2 * x) * std::cos(0.15 * y); });
+    scene.bed_law = bed::Coulomb{0.5};
+    verify::place(scene, [](double x, double y) { return std::hypot(x - 30, y - 25) < 12 ? 2.0 : 0.0; },
+                  verify::Placement::full_jitter, 2);
+    scene.erodible = loose(scene, erosion::Growth{0.05}, [](double, double) { return 1.0; });
+    scene.erodible->density = scene.density;
+    scene.erodible->momentum = 1.0;  // points are not set back: what is looked at is the exchange alone
+    Flow flow(scene);
+    Erosion erosion(scene, flow);
+    Columns& c = flow.columns;
+    const Seeds& seeds = scene.particles;
+    c.resize(seeds.count());
+    for (Index p = 0; p < seeds.count(); ++p) {
+        c.x[p] = seeds.x[p], c.y[p] = seeds.y[p], c.id[p] = p, c.mass[p] = seeds.volume[p] * flow.density;
+        c.r1x[p] = c.r2y[p] = 0.5, c.depth[p] = seeds.depth[p];
+        c.vx[p] = 2.0 + 0.1 * seeds.y[p], c.vy[p] = -1.0;
+    }
+    TileSorter sorter;
+    sorter.sort(c, flow.grid, {}, flow.active);
+    const auto transfer = make_transfer(scene);
+    const auto levels = [&] {
+        transfer->deposit(flow, 0.1);
+        std::vector<double> all;
+        for (Index j = 0; j < flow.grid.ny(); ++j)
+            for (Index i = 0; i < flow.grid.nx(); ++i) {
+                const Index k = flow.grid.at(i, j);
+                all.push_back(flow.bed.z[k] + flow.nodes.column_mass[k] / (flow.density * flow.area));
+            }
+        return all;
+    };
+    const std::vector<double> before = levels();
+    REQUIRE(erosion.exchange(flow, 0.2).taken > 100.0);
+    const std::vector<double> after = levels();
+    double moved = 0.0;
+    for (std::size_t n = 0; n < before.size(); ++n) moved = std::max(moved, std::abs(after[n] - before[n]));
+    CHECK(moved <= 4e-15);  // round-off of 2 m
+}
+
+TEST_CASE("A flow down the middle of a valley takes as much on both sides", "[erosion]") {
+    Scene scene = slide([](Scene& s) {
+        s.particles = {};
+        verify::place(s, [](double x, double y) { return std::hypot(x - 35, y - 59) < 20 ? 3.0 : 0.0; },
+                      verify::Placement::aligned, 2);
+    });
+    scene.erodible = loose(scene, erosion::Growth{0.01}, [](double x, double) { return x > 50 && x < 130 ? 0.3 : 0.0; });
+    DepthAveraged simulation(scene);
+    run(simulation, 6.0);
+    const Frame frame = simulation.frame();
+    const double* eroded = frame.node("eroded_depth")->data;
+    double most = 0.0, apart = 0.0;
+    for (Index j = 0; j < frame.grid.ny; ++j)
+        for (Index i = 0; i < frame.grid.nx; ++i) {
+            const double here = eroded[j * frame.grid.nx + i];
+            most = std::max(most, here);
+            apart = std::max(apart, std::abs(here - eroded[(frame.grid.ny - 1 - j) * frame.grid.nx + i]));
+        }
+    REQUIRE(most > 0.1);
+    CHECK(apart <= 1e-10 * most);  // round-off, as it grows in some sixty steps
+}
+
+TEST_CASE("What rests on loose ground sleeps and takes nothing", "[erosion][sleep]") {
+    Scene scene = scene_on(80, 60, 1.0, [](double x, double) { return 0.05 * x; });
+    scene.bed_law = bed::Coulomb{0.6};
+    verify::place(scene, [](double x, double y) { return std::max(0.0, 2.0 - 0.1 * std::hypot(x - 40, y - 30)); },
+                  verify::Placement::r2, 2);
+    scene.erodible = loose(scene, erosion::Shear{0.1, 0.0, 1.0}, [](double, double) { return 1.0; });
+    DepthAveraged simulation(scene);
+    for (int step = 0; step < 12; ++step) simulation.advance(100.0);
+    CHECK(simulation.status().bed.eroded == 0.0);
+    CHECK(simulation.status().max_speed_on_map == 0.0);
+    const ActiveTiles& active = simulation.flow().active;
+    REQUIRE(active.count() > 4);
+    for (const Index tile : active.tile) CHECK(active.quiet[tile] == kAsleep);
+}
+
+TEST_CASE("Erosion laws give what their papers' numbers say", "[erosion]") {
+    erosion::State s;
+    s.thickness = 2.0, s.speed = 5.0, s.stress = 3000.0, s.density = 2000.0, s.bed_density = 1600.0, s.dt = 1.0;
+    CHECK(erosion::Growth{1e-3}.rate(s) == Approx(1e-3 * 2.0 * 5.0 * 1.25));
+    CHECK(erosion::Steady{0.05}.rate(s) == Approx(0.05 * 2.0 * 1.25));
+    CHECK(erosion::Energy{5000.0}.rate(s) == Approx(3000.0 * 5.0 / (1600.0 * 5000.0)));
+    CHECK(erosion::Jump{1000.0}.rate(s) == Approx(2000.0 / (2000.0 * 5.0)));
+    CHECK(erosion::Jump{4000.0}.rate(s) == 0.0);
+    // Frank et al. 2015: 0.025 m/s down to 0.1 m for each kilopascal above 1 kPa, here 0.2 m.
+    CHECK(erosion::Shear{}.rate(s) == Approx(0.025));
+    s.eroded = 0.19;
+    CHECK(erosion::Shear{}.rate(s) == Approx(0.01));
+    s.eroded = 0.21;
+    CHECK(erosion::Shear{}.rate(s) == 0.0);
+    s.eroded = 0.0, s.stress = 900.0;
+    CHECK(erosion::Shear{}.rate(s) == 0.0);
+}
+
+TEST_CASE("The traction that erosion sees is that of the bed law", "[erosion]") {
+    const BedState bed{7.0, 1.5, 1.1, 0.9, 9.81, 1800.0};
+    // A difference over a ten-millionth: drag changes by as much, and rounding is of 1e-9.
+    CHECK(deceleration(bed::Coulomb{0.3}, bed, 8.0) == Approx(0.3 * 7.0).epsilon(1e-7));
+    CHECK(deceleration(bed::Voellmy{0.3, 500.0}, bed, 8.0) ==
+          Approx(0.3 * 7.0 + 9.81 * 1.1 * 64.0 / (500.0 * 1.5)).epsilon(1e-6));
+    CHECK(deceleration(bed::None{}, bed, 8.0) == 0.0);
+}
