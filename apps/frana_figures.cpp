@@ -74,6 +74,10 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         const std::vector<double>& point = run_case.numbers(table + "point");
         source.gauges.push_back({run_case.word(table + "name"), Vec2(point[0], point[1])});
     }
+    for (Index i = 0; i < run_case.count("section"); ++i) {
+        const std::string table = fmt::format("section.{}.", i);
+        source.sections.push_back({run_case.word(table + "name"), run_case.points(table + "line"), true});
+    }
     for (Index i = 0; i < run_case.count("stage"); ++i)
         source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
     for (Index i = 0; i < run_case.count("barrier"); ++i) {

@@ -8,7 +8,6 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "checks/verify/placement.h"
-#include "law/bed/node_friction.h"
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "shallow/depth_averaged.h"
@@ -261,13 +260,4 @@ TEST_CASE("Erosion laws give what their papers' numbers say", "[erosion]") {
     CHECK(erosion::Shear{}.rate(s) == 0.0);
     s.eroded = 0.0, s.stress = 900.0;
     CHECK(erosion::Shear{}.rate(s) == 0.0);
-}
-
-TEST_CASE("The traction that erosion sees is that of the bed law", "[erosion]") {
-    const BedState bed{7.0, 1.5, 1.1, 0.9, 9.81, 1800.0};
-    // A difference over a ten-millionth: drag changes by as much, and rounding is of 1e-9.
-    CHECK(deceleration(bed::Coulomb{0.3}, bed, 8.0) == Approx(0.3 * 7.0).epsilon(1e-7));
-    CHECK(deceleration(bed::Voellmy{0.3, 500.0}, bed, 8.0) ==
-          Approx(0.3 * 7.0 + 9.81 * 1.1 * 64.0 / (500.0 * 1.5)).epsilon(1e-6));
-    CHECK(deceleration(bed::None{}, bed, 8.0) == 0.0);
 }

@@ -21,10 +21,13 @@ struct Clock {
 
     /// The next step, at most `longest` [s], towards `until` [s].
     double step_towards(double until, double longest) const { return frana::step_towards(until - time, longest); }
-    /// After a step of `length` [s] that was not to pass `until` [s]: round-off neither passes nor misses it.
+    /// The time after a step of `length` that was not to pass `until`, both [s]: round-off neither passes nor misses it.
+    double after(double length, double until) const {
+        return length >= until - time ? until : std::min(time + length, until);
+    }
     void tick(double length, double until) {
         step += 1;
-        time = length >= until - time ? until : std::min(time + length, until);
+        time = after(length, until);
         dt = length;
     }
 };

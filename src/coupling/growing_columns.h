@@ -16,6 +16,10 @@ public:
     /// Of the nodes that material has come near to, and of places that are always shown.
     Frame frame() override;
     Sample at(const Vec2& point) const override { return columns_->at(point); }
+    bool may_rest() const override { return columns_->may_rest(); }
+    bool more_comes() const override { return columns_->more_comes(); }
+    Extras extras() const override { return columns_->extras(); }
+    std::vector<double> passed() const override { return columns_->passed(); }
     std::vector<std::string> remarks() const override;
     std::vector<PhaseTime> timings() const override { return columns_->timings(); }
     const Raster* ground() const override { return &scene_.bed; }

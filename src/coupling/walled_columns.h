@@ -15,6 +15,10 @@ public:
     MovingMass motion(const MotionQuery& query) const override { return columns_->motion(query); }
     Frame frame() override { return columns_->frame(); }
     Sample at(const Vec2& point) const override { return columns_->at(point); }
+    bool may_rest() const override { return columns_->may_rest(); }
+    bool more_comes() const override { return columns_->more_comes(); }
+    Extras extras() const override { return columns_->extras(); }
+    std::vector<double> passed() const override { return columns_->passed(); }
     /// Without faces: no force is known.
     const BarrierLoads* loads() const override { return &watch_.loads(); }
     std::vector<std::string> remarks() const override { return columns_->remarks(); }

@@ -63,6 +63,7 @@ void serialize(Archive& archive, const std::string& name, Status& s) {
                                 &s.dt,
                                 &s.mass,
                                 &s.mass_left,
+                                &s.mass_in,
                                 &s.momentum[0],
                                 &s.momentum[1],
                                 &s.impulse[0],

@@ -10,17 +10,16 @@ namespace frana {
 /// Residuals (src/shallow/THEORY.md, 60 and 61) of the three balances between a first status and a later one of the
 /// same run.
 struct Budget {
-    double mass_error = 0.0;                    ///< (m + m_left + m_bed - m_0) / m_0, m_0 with that of the bed [1]
-    double bed_error = 0.0;                     ///< of the erodible bed alone, over what it had at the start [1]
+    double mass_error = 0.0;  ///< (m + m_left + m_bed - m_0 - m_in) / (m_0 + m_in), m_0 with that of the bed [1]
+    double bed_error = 0.0;   ///< of the erodible bed alone, over what it had at the start [1]
     std::array<double, 2> momentum_residual{};  ///< P + P_left - P_0 - impulse [kg m/s]
     double energy_residual = 0.0;               ///< (K + E_p + E_s + D + E_left) - (K_0 + E_p0) [J]
 };
 
 inline Budget budget(const Status& first, const Status& now) {
     Budget result;
-    const double lost =
-        (now.mass - first.mass) + (now.mass_left - first.mass_left) + (now.bed.mass - first.bed.mass);
-    const double had = first.mass + first.bed.mass;
+    const double came = now.mass_in - first.mass_in, had = first.mass + first.bed.mass + came;
+    const double lost = (now.mass - first.mass) + (now.mass_left - first.mass_left) + (now.bed.mass - first.bed.mass) - came;
     result.mass_error = had > 0.0 ? lost / had : 0.0;
     const double of_bed = (now.bed.mass - now.bed.initial) + (now.bed.eroded - now.bed.deposited);
     if (now.bed.initial > 0.0) result.bed_error = of_bed / now.bed.initial;

@@ -42,6 +42,8 @@ public:
     virtual Sample at(const Vec2& point) const = 0;  ///< bilinear between nodes; beyond them the nearest
     /// nullptr where nothing measures loads.
     virtual const BarrierLoads* loads() const { return nullptr; }
+    /// What passed each section of the scene since the start, by the paths of the columns [m3]; none where that is not known.
+    virtual std::vector<double> passed() const { return {}; }
 };
 
 /// Looks on while a case runs; never changes it.

@@ -24,6 +24,8 @@ public:
     virtual MovingMass motion(const MotionQuery& query) const = 0;
     /// Whether what stands still may be taken for rest: not while something is still to begin.
     virtual bool may_rest() const { return true; }
+    /// Whether material is still to come, so that a run without any is not over.
+    virtual bool more_comes() const { return false; }
     /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
     virtual Frame frame() = 0;
     /// The ground that the run works on now, where that has grown beyond the scene's; frames lie within it.

@@ -36,13 +36,15 @@ public:
         read_releases();
         read_survey();
         read_profiles_and_gauges();
+        scene_.sections = read_sections(case_, scene_, problems_);
+        read_inflows(case_, scene_, problems_);
         scene_.solid = read_solid_stage(case_, scene_, problems_);
         read_barriers(case_, reader_, meshes_, scene_, problems_);
         scene_.structure = read_structure(case_, scene_, problems_);
         scene_.erodible = read_erodible(case_, reader_, scene_, problems_);
         scene_.water = read_water(case_, reader_, scene_, problems_);
         scene_.insitu = read_insitu(case_, scene_, problems_);
-        if (problems_.empty() && require_room_for_particles()) make_particles();
+        if (problems_.empty() && !releases_.empty() && require_room_for_particles()) make_particles();
         wall_holes(case_, scene_, problems_);
         problems_.throw_if_any();
         require_room_for_all();

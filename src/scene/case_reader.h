@@ -43,6 +43,7 @@ private:
     void check_release(const std::string& prefix);
     void check_layer(const std::string& prefix);
     void check_barrier(const std::string& prefix);
+    void check_inflow(const std::string& prefix);
     void check_line_names(const std::string& table);
     void check_meaning();
     void check_combinations();

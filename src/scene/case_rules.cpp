@@ -56,13 +56,13 @@ void CaseReader::missing(const std::string& key, const Parameter& parameter, con
 
 void CaseReader::check_rules() {
     check_tables();
-    for (const char* table : {"profile", "gauge", "barrier", "insitu", "camera"}) check_line_names(table);
+    for (const char* table : {"inflow", "profile", "gauge", "section", "barrier", "insitu", "camera"}) check_line_names(table);
     check_meaning();
     check_combinations();
 }
 
 void CaseReader::check_tables() {
-    if (case_.count("release") == 0 && !misread_.count("release"))
+    if (case_.count("release") == 0 && case_.count("inflow") == 0 && !misread_.count("release") && !misread_.count("inflow"))
         problems_.add(1, place_of("release", 1), "not given", "expected at least one [[release]]",
                       "add [[release]] with outline and depth below");
     std::set<std::string> done;
@@ -77,6 +77,7 @@ void CaseReader::check_tables() {
             check_unused(prefix, table);
             if (table == "release") check_release(prefix);
             if (table == "barrier") check_barrier(prefix);
+            if (table == "inflow") check_inflow(prefix);
         }
     }
 }
@@ -188,6 +189,17 @@ void CaseReader::check_barrier(const std::string& prefix) {
     for (const char* name : {"thickness", "wet"})
         if (said(name))
             wrong(prefix + name, "found together with outline", "expected it with line only", "remove it");
+}
+
+void CaseReader::check_inflow(const std::string& prefix) {
+    const auto there = [&](const char* name) {
+        return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
+    };
+    if (!there("table") && !there("volume"))
+        wrong(prefix + "table", "not given, and no volume either", "expected the discharge over time, or its volume [m3]",
+              "add table = ... or volume = ... under [[inflow]]");
+    if (case_.given(prefix + "peak") && there("table"))
+        wrong(prefix + "peak", "found together with table", "expected it with volume only", "remove one of them");
 }
 
 void CaseReader::check_line_names(const std::string& table) {

@@ -27,7 +27,7 @@ bool of_words(Are are) { return are == Are::words || are == Are::others; }
 std::string value_text(const CaseFile& file, const Values& values) {
     if (of_words(values.are)) return "\"" + file.word(values.key) + "\"";
     if (values.are == Are::on) return "true";
-    if (values.are == Are::tables) return "a " + values.key;
+    if (values.are == Are::tables) return (values.key[0] == 'i' ? "an " : "a ") + values.key;
     return fmt::format("{:.6g}", file.number(values.key));
 }
 
@@ -46,6 +46,12 @@ void add_structure(std::vector<Combination>& table) {
     table.push_back({is_not("terrain.model", {"steep"}), {structure}, "expected \"steep\"", "remove it"});
     table.push_back({is_not("scheme.preset", {"default"}), {structure}, "expected \"default\"", "remove it"});
     table.push_back({is_not("scheme.shape", {"quadratic"}), {structure}, "expected \"quadratic\"", "remove it"});
+    table.push_back({{"inflow", Are::tables}, {structure},
+                     "expected none: material comes in to the depth-averaged flow alone",
+                     "remove it, or give a [[release]]"});
+    table.push_back({{"section", Are::tables}, {structure},
+                     "expected none: what passes a line is known of the depth-averaged flow alone",
+                     "remove it, or use [[gauge]] or [[profile]]"});
     table.push_back({{"stage", Are::tables}, {structure},
                      "expected none: structured columns go from the start to the end", "remove it"});
 }
@@ -83,9 +89,7 @@ void add_erodible_bed(std::vector<Combination>& table) {
                      "expected \"default\": particles of the other carry a depth that no mass can join",
                      "remove it, or the erodible bed"});
     table.push_back({is_not("material.structure.law", {"none"}), {erodible},
-                     "expected \"none\": a mass that holds together takes up no bed", "remove one of them"});
-    table.push_back({is("water.model", {"free"}), {erodible}, "expected \"none\": free water takes up no bed",
-                     "remove one of them"});
+                     "expected \"none\": a mass that holds together, and water beside it, take up no bed", "remove one of them"});
     table.push_back({{"stage", Are::tables}, {erodible}, "expected none: points in 3D take up no bed",
                      "remove the stage, or the erodible bed"});
     table.push_back({{"barrier", Are::tables}, {erodible}, "expected none: no barrier's footing is known to hold",
@@ -111,6 +115,18 @@ void add_schemes(std::vector<Combination>& table) {
                      "expected \"double\", since only the default kernels have the other",
                      "remove it, or use the default preset, shape and transfer",
                      " with another preset, shape or transfer than the default"});
+}
+
+/// What runs that go into space do not know of.
+void add_space(std::vector<Combination>& table) {
+    table.push_back({{"inflow", Are::tables}, {{"stage", Are::tables}},
+                     "expected none: material comes in to the depth-averaged flow alone", "remove one of them",
+                     " with a stage"});
+    table.push_back({{"inflow", Are::tables}, {is("scheme.preset", {"paper"})},
+                     "expected \"default\": that preset has no rows that come in", "remove one of them"});
+    table.push_back({{"section", Are::tables}, {{"stage", Are::tables}},
+                     "expected none: points in space that pass a line are not counted",
+                     "remove it, or use [[gauge]] or [[profile]]", " with a stage"});
 }
 
 std::string with_text(const Combination& row) {
@@ -155,9 +171,8 @@ bool Combination::found(const CaseFile& file) const {
 }
 
 std::string Combination::found_text(const CaseFile& file) const {
-    const std::string with =
-        said.empty() ? fmt::format(" with {} = {}", this->with.front().key, value_text(file, this->with.front())) : said;
-    return "found " + value_text(file, refused) + with;
+    const std::string beyond = said.empty() ? fmt::format(" with {} = {}", with.front().key, value_text(file, with.front())) : said;
+    return "found " + value_text(file, refused) + beyond;
 }
 
 const std::vector<Combination>& combinations() {
@@ -167,6 +182,7 @@ const std::vector<Combination>& combinations() {
         add_structure(table);
         add_water(table);
         add_erodible_bed(table);
+        add_space(table);
         table.push_back({is_not("output.film", {"none"}), {{"output.formats", Are::without, {"vtk"}}},
                          "expected the frames that a film is made of", "add \"vtk\" to output.formats, or remove film",
                          " without \"vtk\" in output.formats"});

@@ -4,6 +4,7 @@
 #include "law/bed/laws.h"
 #include "law/catalogue.h"
 #include "law/rheology/laws.h"
+#include "scene/inflow_table.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
@@ -86,6 +87,40 @@ void add_release(Table& table) {
     table.push_back(absent(instead(count, "particles.per_cell"), "particles.per_cell decides"));
     table.push_back(choice("particles.placement", {"lattice", "r2", "slope"}, "lattice",
                            "lattice; r2: quasi-random sequence; slope: denser where the bed is steeper"));
+}
+
+void add_inflow(Table& table) {
+    table.push_back(required(make("inflow.name", Kind::name, "", "name of the inflow in reports")));
+    Parameter line = make("inflow.line", Kind::points, "m",
+                          "line through which material comes in, across the flow and as wide as that: [[x, y], [x, y], ...]");
+    line.length = 2;
+    table.push_back(required(line));
+    Parameter towards =
+        make("inflow.towards", Kind::numbers, "m", "a point on the side of the line that the flow goes to: [x, y]");
+    towards.length = 2;
+    table.push_back(absent(towards, "down the slope"));
+    table.push_back(absent(instead(make("inflow.table", Kind::path, "",
+                                        "CSV of the discharge over time, linear between its rows: a header with units, such "
+                                        "as t [s], discharge [m3/s] and, if wanted, velocity [m/s]; or t_min, t_h"),
+                                   "inflow.volume"),
+                           "volume is needed"));
+    table.push_back(absent(instead(number("inflow.volume", "m3", positive,
+                                          "volume of a triangle of discharge that begins at 0 s and is highest after a tenth "
+                                          "of its time"),
+                                   "inflow.table"),
+                           "table is needed"));
+    Parameter peak = make("inflow.peak", Kind::choice, "",
+                          "highest discharge of that triangle from its volume V, m3/s and m3: mizuyama-granular: 0.135 V^0.78, "
+                          "mizuyama-muddy: 0.0188 V^0.79 (Mizuyama et al. 1992), rickenmann: 0.1 V^0.833 (1999)");
+    peak.choices = peak_formulas();
+    table.push_back(absent(peak, "mizuyama-granular"));
+    Parameter velocity = make("inflow.velocity", Kind::number_or_choice, "m/s",
+                              "speed along the bed at the line; normal: that of uniform flow by the bed law, on the slope "
+                              "under the line; column: the table's");
+    velocity.range = positive;
+    velocity.choices = {"normal", "column"};
+    velocity.fallback = text("normal");
+    table.push_back(velocity);
 }
 
 /// Laws bring their own keys.
@@ -218,6 +253,11 @@ void add_run(Table& table) {
     Parameter point = make("gauge.point", Kind::numbers, "m", "where the gauge stands: [x, y]");
     point.length = 2;
     table.push_back(required(point));
+    table.push_back(required(make("section.name", Kind::name, "", "name of the section's file")));
+    Parameter through = make("section.line", Kind::points, "m",
+                             "line through which the discharge is recorded, down the slope as positive: [[x, y], [x, y], ...]");
+    through.length = 2;
+    table.push_back(required(through));
     add_barriers(table);
     add_stages(table);
     add_insitu(table);
@@ -231,6 +271,7 @@ Table make_table() {
     Table table;
     add_terrain(table);
     add_release(table);
+    add_inflow(table);
     add_material(table);
     add_scheme(table);
     add_run(table);
@@ -245,8 +286,8 @@ const std::vector<Parameter>& parameters() {
 }
 
 const std::vector<std::string>& repeated_tables() {
-    static const std::vector<std::string> names = {"release", "profile", "gauge", "barrier",
-                                                   "stage",   "insitu",  "camera"};
+    static const std::vector<std::string> names = {"release", "inflow", "profile", "gauge", "section",
+                                                   "barrier", "stage",  "insitu",  "camera"};
     return names;
 }
 

@@ -106,6 +106,8 @@ std::string Parameter::expected() const {
             return "the name of a file in quotes";
         case Kind::number_or_path:
             return "a number" + in_range + in_unit + " or the name of a raster";
+        case Kind::number_or_choice:
+            return "a number" + in_range + in_unit + " or one of \"" + joined(choices, "\", \"") + "\"";
         case Kind::numbers:
             return (length > 0 ? fmt::format("a list of {} numbers", length) : "a list of numbers") + in_unit;
         case Kind::numbers_or_paths:

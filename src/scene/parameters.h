@@ -23,6 +23,7 @@ enum class Kind {
     choice,            ///< std::string, one of Parameter::choices
     path,              ///< std::string
     number_or_path,    ///< double or std::string (a raster)
+    number_or_choice,  ///< double or std::string, one of Parameter::choices
     numbers,           ///< Parameter::length doubles; length 0: one or more
     numbers_or_paths,  ///< Parameter::length doubles or as many std::string (rasters)
     points,            ///< Vec2, at least Parameter::length

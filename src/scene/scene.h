@@ -69,6 +69,31 @@ struct Profile { std::string name; Polyline line; };
 /// A named point at which the flow is recorded every step.
 struct Gauge { std::string name; Vec2 point{0, 0}; };
 
+/// A named line through which the discharge is recorded.
+struct Section {
+    std::string name;
+    Polyline line;
+    bool to_right = true;  ///< what goes from its left to its right counts as positive; otherwise the other way
+};
+
+/// Material that comes in through a line. Between the times of its table all is linear, before and after it nothing comes.
+struct Inflow {
+    std::string name;
+    Polyline line;
+    bool to_right = true;           ///< it flows to the right of the line; otherwise to its left
+    double slope = 0.0;             ///< of the bed under the line, down the flow's direction; below 0: it climbs [1]
+    double spacing = 1.0;           ///< of rows, and of columns in them [m]
+    std::vector<double> time;       ///< [s]
+    std::vector<double> discharge;  ///< [m3/s]
+    std::vector<double> speed;      ///< along the map, across the line [m/s]
+
+    double width() const {
+        double sum = 0.0;
+        for (std::size_t k = 0; k + 1 < line.size(); ++k) sum += (line[k + 1] - line[k]).norm();
+        return sum;
+    }
+};
+
 /// From a time on, the material in a window of the map is 3D points (solid3d/mpm3d.h); what flows into the
 /// window later becomes points as it crosses the edge, and what flows out of it columns.
 struct SolidStage {
@@ -175,6 +200,7 @@ struct Scene {
     std::optional<double> hole_top;    ///< of walls there, above the ground beside them [m]; nothing: material leaves there
 
     Seeds particles;                   ///< material at the start
+    std::vector<Inflow> inflows;       ///< material that comes in later
     std::optional<double> still_surface;  ///< level of a release given as one horizontal surface at rest [m]: the
                                           ///< points' masses are then fitted so that it starts at exact rest
     BedLaw bed_law;
@@ -187,6 +213,7 @@ struct Scene {
     Output output;
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
+    std::vector<Section> sections;
     std::vector<Insitu> insitu;        ///< looked at while the case runs
     std::optional<Polygons> survey;    ///< surveyed footprint, to compare with
     std::vector<Barrier> barriers;

@@ -69,13 +69,14 @@ void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Ra
     Raster covered = Raster::filled(scene.bed.geometry, 0.0);
     covered.crs_wkt = scene.bed.crs_wkt;
     const double inside = cut_release(unit, covered), all = area_of(*unit.outline);
-    if (!(inside > 0.0))
-        throw UserError("found no part of it on the terrain; expected polygons within it; correct the outline or its CRS");
     if (inside < 0.999 * all)
         scene.log.push_back(fmt::format("{}: {:.3g} % of its area lie outside of the terrain",
                                         file.place("erodible.outline"), 100.0 * (1.0 - inside / all)));
-    for (std::size_t k = 0; k < depth.values.size(); ++k)
-        depth.values[k] *= std::min(1.0, -covered.values[k]);
+    const GridGeometry& g = depth.geometry;
+    const auto within = [](Index n, Index count) { return n == 0 || n == count - 1 ? 0.5 : 1.0; };  // outer nodes bound it
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i)
+            depth.at(i, j) *= std::min(1.0, -covered.at(i, j) / (within(i, g.nx) * within(j, g.ny)));
 }
 
 /// What looks like a mistake.

@@ -97,6 +97,7 @@ void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>&
         remark_on(scene.log, Remark::release_slope, place, {release.slope_max_deg});
         remark_on(scene.log, Remark::release_depth, place, {release.max_depth});
     }
+    if (scene.particles.count() == 0 && !scene.inflows.empty()) return;  // all is still to come in
     remark_on(scene.log, Remark::few_particles, file.place("particles.per_cell"), {double(scene.particles.count())});
 }
 

@@ -27,7 +27,7 @@ bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
     return true;
 }
 
-std::vector<Vec2> corners_of_releases(const CaseFile& file, const GisReader& reader, const Raster& whole) {
+std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& reader, const Raster& whole) {
     std::vector<Vec2> points;
     std::vector<std::string> said_later;
     for (Index i = 0; i < file.count("release"); ++i) {
@@ -36,6 +36,8 @@ std::vector<Vec2> corners_of_releases(const CaseFile& file, const GisReader& rea
         if (file.given(table + "layer")) name += kLayerMark + file.word(table + "layer");
         take_corners(reader.read_polygons(name, whole.crs_wkt, said_later), points);
     }
+    for (Index i = 0; i < file.count("inflow"); ++i)
+        for (const Vec2& point : file.points(fmt::format("inflow.{}.line", i))) points.push_back(point);
     return points;
 }
 
@@ -63,7 +65,7 @@ std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene&
     const NodeBox all = NodeBox::all(whole.geometry);
     TerrainPart part;
     try {
-        part.box = common(cells_of(corners_of_releases(file, reader, whole), whole.geometry), all);
+        part.box = common(cells_of(corners_of_material(file, reader, whole), whole.geometry), all);
         part.shown = shown_places(file, reader, whole);
     } catch (const UserError&) {
         return {};  // told when it is read for good
@@ -75,6 +77,8 @@ std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene&
         const auto& xy = file.numbers(fmt::format("gauge.{}.point", i));
         others.emplace_back(xy[0], xy[1]);
     }
+    for (Index i = 0; i < file.count("section"); ++i)
+        for (const Vec2& point : file.points(fmt::format("section.{}.line", i))) others.push_back(point);
     part.box = common(united(part.box, common(widened(cells_of(others, whole.geometry), 2), all)), all);
     if (part.box == all) return {};
     return part;

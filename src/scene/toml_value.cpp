@@ -34,6 +34,8 @@ public:
                 return wrapped(path(node));
             case Kind::number_or_path:
                 return node.is_string() ? wrapped(path(node)) : wrapped(number(node));
+            case Kind::number_or_choice:
+                return node.is_string() ? wrapped(chosen(node)) : wrapped(number(node));
             case Kind::numbers:
                 return wrapped(list(node, &Converter::number, parameter_.length));
             case Kind::numbers_or_paths:

@@ -29,6 +29,7 @@ double drift_before_carry(const Scheme& scheme) { return scheme.shape == Shape::
 double least_split_mass(const Scene& scene) {
     double largest = 0.0;
     for (const double volume : scene.particles.volume) largest = std::max(largest, volume);
+    if (!scene.inflows.empty()) largest = std::max(largest, Feed(scene.inflows).largest_column());
     return scene.scheme.split_min_mass * largest * scene.density;
 }
 
@@ -54,6 +55,9 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
         status_.bed = erosion_->status();
     }
     flow_.columns.single = scene.scheme.precision == Precision::single;
+    if (!scene.sections.empty()) passages_.emplace(scene.sections, flow_.grid);
+    if (!scene.inflows.empty()) feed_.emplace(scene.inflows);
+    choose_sleep();
     if (start == Start::resumed) return;
     flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
     if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
@@ -65,7 +69,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
         while (split()) sort();
         for (fit_ = fit_masses(flow_, *scene.still_surface); split(); fit_ = fit_masses(flow_, *scene.still_surface)) sort();
     }
-    if (flow_.scheme.merge && !flow_.scheme.paper_pressure) merger_.emplace(flow_);
+    if (flow_.scheme.merge && !flow_.scheme.paper_pressure) make_merger();
     const double longest = longest_step();
     arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest); }));
     if (fit_) fit_->level_error = off_level(flow_, *scene.still_surface);
@@ -109,6 +113,7 @@ void DepthAveraged::place(const Seeds& seeds) {
     }
     signal_ = status_.max_speed_on_map;
     if (mass > 0.0) centre_ /= mass;
+    else if (feed_) centre_ = (feed_->middle() - Vec2(flow_.grid.geometry().x0, flow_.grid.geometry().y0)) / flow_.cell;
     splitter_.set_next_id(seeds.count());
     sorter_.sort(c, flow_.grid, {}, flow_.active);
 }
@@ -137,14 +142,19 @@ void DepthAveraged::advance(double until) {
     const bool due = since_split_ >= (1.0 - 1e-9) * kStepsBetweenSplits;
     timed_("kick and friction", [&] { mirror_motion(flow_); });
     const double next_velocity_dt = 0.5 * (dt + longest_step());
-    const bool adapts = due || drift_ > drift_before_carry(flow_.scheme), apart = adapts || erosion_;
+    const bool rows = feed_ && feed_->due(status_.after(dt, until));
+    // Rows wait until points are sorted anyway: a sort of its own for each would cost a fifth of a step.
+    const bool adapts = due || drift_ > drift_before_carry(flow_.scheme) || (rows && flow_.columns.count() == 0);
+    const bool fed = rows && adapts, apart = adapts || erosion_;
+    if (passages_) timed_("sections", [&] { passages_->note(flow_); });
     PointSums points =
         apart ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
                : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_velocity_dt); });
     require_finite(points);
+    if (passages_) timed_("sections", [&] { passages_->count_moved(flow_); });
     accumulate_points(points);
     status_.tick(dt, until);
-    if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0);
+    if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0, fed);
     if (erosion_) timed_("erosion", [&] { erode(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
@@ -179,6 +189,7 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.p2g_mass_error = points.mass > 0.0 ? std::abs(nodes.mass - points.mass) / points.mass : 0.0;
     status_.p2g_momentum_error =
         points.p_abs > 0.0 ? std::hypot(nodes.px - points.px, nodes.py - points.py) / points.p_abs : 0.0;
+    if (feed_) timed_("inflow", [&] { support_inflows(); });
     timed_("depth", [&] { fold_walls(flow_); });
     const NodeSums sums = raise_surface();
     status_.max_speed = timed_("peaks", [&] {
@@ -190,7 +201,7 @@ void DepthAveraged::arrive(const PointSums& points) {
     status_.mass = points.mass;
     status_.momentum = {points.px, points.py};
     status_.mean_speed = points.mass > 0.0 ? points.p_abs / points.mass : 0.0;
-    status_.potential = sums.potential;
+    status_.potential = sums.potential - potential_of_support();
     status_.max_depth = sums.max_depth;
     status_.covered_area = sums.covered_area;
     status_.front = std::sqrt(sums.front2);
@@ -210,18 +221,19 @@ NodeSums DepthAveraged::raise_surface() {
 }
 
 /// Every few steps points split where they spread; points that left are dropped; tiles are kept up to date.
-void DepthAveraged::adapt_points(bool deposit_follows, bool due, bool points_left) {
+void DepthAveraged::adapt_points(bool deposit_follows, bool due, bool points_left, bool fed) {
     const bool has_domains = !flow_.scheme.paper_pressure;
     if (due) since_split_ = 0.0;
     const std::vector<std::uint8_t> none;
     // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
     if (points_left) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
     if (!deposit_follows) return;
+    if (fed) take_rows();
     Index born = 0;
-    if (has_domains && due) born = timed_("split", [&] { return splitter_.split(flow_); });
-    if (born == 0 && drift_ <= kDriftLimit && !due) return;
+    if (has_domains && due) born = timed_("split", [&] { return split_points(); });
+    if (born == 0 && drift_ <= kDriftLimit && !due && !fed) return;
     timed_("order", [&] { sorter_.plan(flow_.columns, flow_.grid, none, flow_.active); });
-    if (merger_ && due && timed_("merge", [&] { return merger_->merge(flow_, sorter_.order(), transfer_->gone()); }) > 0)
+    if (merger_ && due && timed_("merge", [&] { return merge_points(); }))
         timed_("order", [&] { sorter_.leave_out(transfer_->gone(), flow_.active); });
     timed_("sort", [&] { sorter_.carry_out(flow_.columns); });
     drift_ = 0.0;
@@ -229,12 +241,38 @@ void DepthAveraged::adapt_points(bool deposit_follows, bool due, bool points_lef
 
 /// Points that have arrived take up bed; what they deposit then has it.
 void DepthAveraged::erode(double dt) {
+    if (passages_) passages_->note(flow_);
     const ExchangeSums sums = erosion_->exchange(flow_, dt);
+    if (passages_) passages_->count_moved(flow_);
     status_.bed = erosion_->status();
     drift_ += sums.max_shift;
     status_.dissipated += sums.lost;
     status_.impulse[0] += sums.px;
     status_.impulse[1] += sums.py;
+}
+
+/// What comes in counts as at the start.
+void DepthAveraged::make_merger() {
+    merger_.emplace(flow_);
+    if (feed_) merger_.emplace(std::max(merger_->most(), feed_->in_a_square(flow_.cell)));
+}
+
+Index DepthAveraged::split_points() {
+    if (!passages_) return splitter_.split(flow_);
+    splitter_.note_parents();
+    passages_->note(flow_);
+    const Index born = splitter_.split(flow_);
+    if (born > 0) passages_->count_halved(flow_, flow_.columns.count() - born, splitter_.parents());
+    if (!births_wanted_) splitter_.forget_parents();
+    return born;
+}
+
+/// Whether there was something to merge.
+bool DepthAveraged::merge_points() {
+    if (passages_) merger_->note_unions(), passages_->note(flow_, &sorter_.order());
+    const Index merged = merger_->merge(flow_, sorter_.order(), transfer_->gone());
+    if (passages_ && merged > 0) passages_->count_merged(flow_, transfer_->gone(), merger_->into());
+    return merged > 0;
 }
 
 /// dt = 2 C dx / (S + sqrt(S^2 + 2 g C dx)), S the fastest signal: what a signal that also accelerates by g needs
@@ -243,15 +281,21 @@ double DepthAveraged::longest_step(double cfl, double signal) const {
     const double reach = cfl * flow_.cell;
     return 2.0 * reach / (signal + std::sqrt(signal * signal + 2.0 * flow_.gravity * reach));
 }
-double DepthAveraged::longest_step() const { return longest_step(flow_.scheme.cfl, signal_); }
+double DepthAveraged::longest_step() const { return longest_step(flow_.scheme.cfl, fastest_signal()); }
+/// What comes in next counts as if it were there already.
+double DepthAveraged::fastest_signal() const {
+    return feed_ ? std::max(signal_, feed_->signal(flow_.gravity)) : signal_;
+}
 
 /// How much of an ordinary step the scheme's steps are now, 1 at most. Those that an end shortens count as whole ones.
 double DepthAveraged::share_of_ordinary_step() const {
-    return std::min(1.0, longest_step() / longest_step(kOrdinaryCfl, signal_));
+    return std::min(1.0, longest_step() / longest_step(kOrdinaryCfl, fastest_signal()));
 }
 
 /// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
 double DepthAveraged::step_length(double until) const {
+    // Where nothing is yet, the clock goes on to what comes first.
+    if (feed_ && flow_.columns.count() == 0 && !feed_->over()) until = std::min(until, feed_->next());
     return status_.step_towards(until, longest_step());
 }
 
@@ -311,6 +355,13 @@ Sample DepthAveraged::at(const Vec2& point) const {
             sample.velocity += w * Vec2(flow_.nodes.before[k].x, flow_.nodes.before[k].y);
         }
     return sample;
+}
+
+std::vector<double> DepthAveraged::passed() const {
+    std::vector<double> volumes;
+    if (!passages_) return volumes;
+    for (const double mass : passages_->passed()) volumes.push_back(mass / flow_.density);
+    return volumes;
 }
 
 Index DepthAveraged::particle_bytes() const {

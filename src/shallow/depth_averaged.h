@@ -7,9 +7,11 @@
 #include "observe/frame_store.h"
 #include "run/simulation.h"
 #include "shallow/erosion.h"
+#include "shallow/feed.h"
 #include "shallow/grid_update.h"
 #include "shallow/mass_fit.h"
 #include "shallow/merge.h"
+#include "shallow/passages.h"
 #include "shallow/peaks.h"
 #include "shallow/split.h"
 #include "shallow/surface.h"
@@ -25,9 +27,13 @@ public:
     const Status& status() const override { return status_; }
     double longest_step() const override;
     MovingMass motion(const MotionQuery& query) const override;
+    bool may_rest() const override { return !more_comes(); }
+    bool more_comes() const override { return feed_ && !feed_->over(); }
     Frame frame() override;
     std::vector<PhaseTime> timings() const override { return timed_.times(); }
     Sample at(const Vec2& point) const override;
+    std::vector<double> passed() const override;
+    Extras extras() const override;
     std::vector<std::string> remarks() const override;
     void serialize(Archive& archive) override;
 
@@ -63,7 +69,10 @@ public:
     void take_over(DepthAveraged& from, Index east, Index north);
 
     /// From now on columns that are split are noted.
-    void note_parents() { splitter_.note_parents(); }
+    void note_parents() {
+        splitter_.note_parents();
+        births_wanted_ = true;
+    }
     /// A column that another one was split into, and that one, by id.
     struct Birth { Index child, parent; };
     /// All since the last call, the oldest first.
@@ -93,8 +102,16 @@ private:
     void serialize_sums(Archive& archive);
     void serialize_nodes(Archive& archive);
     void serialize_peaks(Archive& archive);
-    void adapt_points(bool deposit_follows, bool due, bool points_left);
+    void adapt_points(bool deposit_follows, bool due, bool points_left, bool fed);
     void erode(double dt);
+    void take_rows();
+    void support_inflows();
+    double potential_of_support() const;
+    void choose_sleep();
+    void make_merger();
+    double fastest_signal() const;
+    Index split_points();
+    bool merge_points();
     double step_length(double until) const;
     double longest_step(double cfl, double signal) const;
     double share_of_ordinary_step() const;
@@ -117,6 +134,11 @@ private:
     std::optional<Merger> merger_;  ///< nothing when the scheme does not merge
     std::optional<Erosion> erosion_;  ///< nothing when the bed is rock
     TileSorter sorter_;
+    std::optional<Feed> feed_;          ///< nothing without inflows
+    struct Supported { Index k; double before; };
+    std::vector<Supported> supported_;  ///< nodes with depth of what is still to come in; their mass without [kg]
+    std::optional<Passages> passages_;  ///< nothing without sections
+    bool births_wanted_ = false;
     Peaks peaks_;
     StepClock timed_;
     Status status_;

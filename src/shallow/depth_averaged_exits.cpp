@@ -105,6 +105,40 @@ double DepthAveraged::take_in(const Seeds& seeds, const std::vector<Mat2>& gradi
     return came.left_energy;
 }
 
+/// Rows of inflows that are complete now, behind the columns that are there; a sort and a deposit have to follow.
+void DepthAveraged::take_rows() {
+    const Feed::Columns& rows = feed_->take(status_.time);
+    Columns& c = flow_.columns;
+    const Index before = c.count();
+    const GridGeometry& g = flow_.grid.geometry();
+    PointSums came;
+    double kinetic = 0.0;
+    c.with_real([&](auto real) {
+        using Real = decltype(real);
+        append<Real>(rows.seeds, splitter_.next_id());
+        Carried<Real>& held = c.carried<Real>();
+        for (Index p = before; p < c.count(); ++p) {
+            for (auto* zero : {&held.cxx, &held.cxy, &held.cyx, &held.cyy, &held.r1y, &held.r2x}) (*zero)[p] = Real{0};
+            const Index k = flow_.grid.nearest(c.x[p], c.y[p]);
+            kinetic += kinetic_of<Real>(flow_, p, k);
+            leave<Real>(flow_, p, k, came);
+            const Vec2 from = (rows.from[static_cast<std::size_t>(p - before)] - Vec2(g.x0, g.y0)) / g.cell;
+            if (passages_) passages_->count(from, {c.x[p], c.y[p]}, c.mass[p]);
+        }
+    });
+    splitter_.set_next_id(splitter_.next_id() + rows.seeds.count());
+    status_.mass_in += came.left_mass;
+    status_.momentum_left[0] -= came.left_px;
+    status_.momentum_left[1] -= came.left_py;
+    status_.energy_left -= came.left_energy;
+    status_.kinetic += kinetic;  // of nodes, and to the next grid update only
+    for (Index n = 0; n < rows.seeds.count(); ++n)
+        signal_ = std::max(signal_, std::hypot(rows.seeds.vx[n], rows.seeds.vy[n]) +
+                                        std::sqrt(flow_.gravity * rows.seeds.depth[n]));
+    if (before == 0) status_.dt = 0.0, since_split_ = 0.0;  // as at a start
+    if (feed_->over()) wake_all(flow_), choose_sleep();
+}
+
 /// Drops the points at exits and deposits the others again, recording what left as at other exits.
 void DepthAveraged::leave_at_exits() {
     wake_all(flow_);

@@ -39,6 +39,8 @@ void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
     splitter_ = std::move(from.splitter_), merger_ = std::move(from.merger_), timed_ = std::move(from.timed_);
     store_ = std::move(from.store_);
     status_ = from.status_, fit_ = from.fit_, start_momentum_ = from.start_momentum_;
+    if (feed_) feed_->take_over(*from.feed_), choose_sleep();
+    if (passages_) passages_->take_over(*from.passages_);
     lost_in_holes_ = from.lost_in_holes_;
     signal_ = from.signal_, since_split_ = from.since_split_, stress_power_ = from.stress_power_;
     centre_ = from.centre_ + Vec2(static_cast<double>(east), static_cast<double>(north));

@@ -59,6 +59,8 @@ void DepthAveraged::serialize(Archive& archive) {
     serialize_peaks(archive);
     if (erosion_) erosion_->serialize(archive, flow_);
     timed_.serialize(archive);
+    if (feed_) feed_->serialize(archive), choose_sleep();
+    if (passages_) archive.array("passed", passages_->passed());
     if (!archive.loading()) return;
     flow_.rest.some_asleep = false;  // what sleeps is found again; it changes no bit
     activate_all(flow_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "law/bed/node_friction.h"
@@ -26,7 +27,8 @@ std::vector<double> half_filter(Index passes) {
     w[0] = 1.0;
     for (Index pass = 0; pass < passes; ++pass) {
         const std::vector<double> before = w;
-        const auto at = [&](Index n) { return n < static_cast<Index>(w.size()) ? before[static_cast<std::size_t>(n)] : 0.0; };
+        const Index size = static_cast<Index>(w.size());
+        const auto at = [&](Index n) { return n < size ? before[static_cast<std::size_t>(n)] : 0.0; };
         for (Index n = 0; n < static_cast<Index>(w.size()); ++n)
             w[static_cast<std::size_t>(n)] = 0.5 * at(n) + 0.25 * (at(n + 1) + at(std::abs(n - 1)));
     }
@@ -52,21 +54,60 @@ void for_each_in_parallel(const std::vector<Index>& tiles, Body&& body) {
     for (Index n = 0; n < count; ++n) body(tiles[static_cast<std::size_t>(n)]);
 }
 
-/// What the bed law sees below a point; on gentle ground that of the map.
-struct Ground {
-    double bx = 0.0, by = 0.0, hxx = 0.0, hxy = 0.0, hyy = 0.0;
-    Ground(const Flow& flow, bool curved, const Quadratic& sx, const Quadratic& sy) {
-        if (!flow.steep) return;
-        for (int j = 0; j < 3; ++j)
-            for (int i = 0; i < 3; ++i) {
-                const double w = sx.w[i] * sy.w[j];
-                const Index k = flow.grid.at(sx.base + i, sy.base + j);
-                bx += w * flow.bed.slope_x[k], by += w * flow.bed.slope_y[k];
-                if (!curved) continue;
-                hxx += w * flow.bed.hxx[k], hxy += w * flow.bed.hxy[k], hyy += w * flow.bed.hyy[k];
-            }
+/// Means of node values at four points.
+class MeansOfFour {
+public:
+    MeansOfFour(const TileGrid& grid, Double4 x, Double4 y) : stride_(grid.stride()) {
+        const Stencils sx(x), sy(y);
+        for (int lane = 0; lane < 4; ++lane) {
+            node_[lane] = sy.first[lane] * stride_ + sx.first[lane];
+            along_[lane] = Double4{sx.w[0][lane], sx.w[1][lane], sx.w[2][lane], 0.0};
+            for (int j = 0; j < 3; ++j) across_[lane][j] = sy.w[j][lane];
+        }
+    }
+    Double4 of(const LazyArray<double>& nodes, int lanes) const {
+        Double4 rows[4] = {}, parts[4];
+        for (int lane = 0; lane < lanes; ++lane) {
+            const double* row = nodes.data() + node_[lane];
+            for (int j = 0; j < 3; ++j, row += stride_) rows[lane] += across_[lane][j] * load(row);
+            rows[lane] *= along_[lane];
+        }
+        transpose(rows[0], rows[1], rows[2], rows[3], parts);
+        return parts[0] + parts[1] + parts[2];
+    }
+
+private:
+    Index stride_, node_[4];
+    Double4 along_[4];
+    double across_[4][3];
+};
+
+/// What the bed law sees below four points, and their speed along it; on gentle ground that of the map.
+struct GroundOfFour {
+    BedStateOf<Double4> below;
+    Double4 speed;
+    GroundOfFour(const Flow& flow, bool curved, const MeansOfFour& means, int lanes, Double4 vx, Double4 vy,
+                 Double4 depth) {
+        const Double4 one = all(1.0), none = {};
+        Double4 bx = none, by = none, gravity = all(flow.gravity);
+        if (flow.steep) bx = means.of(flow.bed.slope_x, lanes), by = means.of(flow.bed.slope_y, lanes);
+        if (curved)
+            gravity = max(none, gravity + vx * vx * means.of(flow.bed.hxx, lanes) +
+                                    2.0 * vx * vy * means.of(flow.bed.hxy, lanes) +
+                                    vy * vy * means.of(flow.bed.hyy, lanes));
+        const Double4 on_map2 = vx * vx + vy * vy, rise = vx * bx + vy * by;
+        const Double4 kappa = sqrt(one + rise * rise / on_map2), cosine = one / sqrt(one + bx * bx + by * by);
+        speed = kappa * sqrt(on_map2);
+        below = {gravity * cosine / kappa, max(depth * cosine, all(1e-9)), kappa, cosine, flow.gravity, flow.density};
     }
 };
+
+/// What the law alone takes of the speeds of four points on the map [m/s^2]: over a time in which no flow changes much.
+template <class Law>
+Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 speed) {
+    constexpr double kShort = 2e-5;  // [s]; shorter, rounding would part mirror images
+    return (speed - speeds_after(law, bed, speed, speed, kShort)) * (1.0 / kShort);
+}
 
 }  // namespace
 
@@ -80,7 +121,8 @@ Erosion::Erosion(const Scene& scene, Flow& flow)
       changed_(flow.grid.tiles()), tile_mass_(flow.grid.tiles()), tile_deepest_(flow.grid.tiles()),
       marked_(static_cast<std::size_t>(flow.grid.tiles()), 0), tile_energy_(flow.grid.tiles()) {
     const TileGrid& grid = flow.grid;
-    expect(flow.scheme.shape == Shape::quadratic && !flow.scheme.paper_pressure, "an erodible bed needs quadratic shapes");
+    expect(flow.scheme.shape == Shape::quadratic && !flow.scheme.paper_pressure,
+           "an erodible bed needs quadratic shapes");
     for (Index j = 0; j < grid.ny(); ++j)
         for (Index i = 0; i < grid.nx(); ++i) {
             const Index k = grid.at(i, j);
@@ -89,7 +131,9 @@ Erosion::Erosion(const Scene& scene, Flow& flow)
     if (flow.walls)  // beyond them lies the mirror image
         for (Index j = -kGhosts; j < grid.ny() + kGhosts; ++j)
             for (Index i = -kGhosts; i < grid.nx() + kGhosts; ++i) {
-                const auto mirror = [](Index n, Index count) { return n < 0 ? -n : n >= count ? 2 * (count - 1) - n : n; };
+                const auto mirror = [](Index n, Index count) {
+                    return n < 0 ? -n : n >= count ? 2 * (count - 1) - n : n;
+                };
                 initial_[grid.at(i, j)] = initial_[grid.at(mirror(i, grid.nx()), mirror(j, grid.ny()))];
             }
     for (Index tile = 0; tile < grid.tiles(); ++tile) {
@@ -195,7 +239,7 @@ bool Erosion::choose(const Flow& flow) {
         for_each_around(flow.grid, tile, [&](Index to) { marked_[static_cast<std::size_t>(to)] = 1; });
     }
     for (const Index tile : active.work)
-        if (marked_[static_cast<std::size_t>(tile)] || flow.walls) nodes_.push_back(tile), marked_[static_cast<std::size_t>(tile)] = 0;
+        if (std::exchange(marked_[static_cast<std::size_t>(tile)], std::uint8_t{0}) || flow.walls) nodes_.push_back(tile);
     return any;
 }
 
@@ -205,7 +249,7 @@ void Erosion::make_room(const Flow& flow) {
     sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
 }
 
-/// THEORY (69): what each point wants, and their sum on the nodes.
+/// THEORY (72): what each point wants, and their sum on the nodes.
 void Erosion::find_demand(Flow& flow, double dt) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
@@ -228,41 +272,47 @@ template <class Law, class Friction, class Real>
 void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction) {
     Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
+    const bool feels = !Law::kProportional || momentum_ > 0.0;  // E over T does not hang on the stress
     double farthest = 0.0;
-    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-        wanted_[p] = speed_[p] = braked_[p] = 0.0;
-        const double depth = held.depth[p], vx = held.vx[p], vy = held.vy[p], on_map = std::sqrt(vx * vx + vy * vy);
-        if (!(on_map > kSlowest) || !(depth >= min_depth_) || !(depth > flow.dry_depth())) continue;
-        const Quadratic sx(c.x[p]), sy(c.y[p]);
-        const Ground ground(flow, curved_, sx, sy);
-        const double rise = vx * ground.bx + vy * ground.by, speed = std::sqrt(on_map * on_map + rise * rise);
-        const double cosine = 1.0 / std::sqrt(1.0 + ground.bx * ground.bx + ground.by * ground.by);
-        const double kappa = speed / on_map, bend = vx * vx * ground.hxx + 2.0 * vx * vy * ground.hxy + vy * vy * ground.hyy;
-        const BedState below{std::max(0.0, flow.gravity + bend) * cosine / kappa, std::max(depth * cosine, 1e-9), kappa,
-                             cosine, flow.gravity, flow.density};
-        erosion::State state;
-        state.thickness = below.thickness, state.dt = dt;
-        state.density = flow.density, state.bed_density = density_;
+    for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
+        const Double4 depth = load(&held.depth[p], lanes), none = {};
+        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), on_map = sqrt(vx * vx + vy * vy);
+        const Mask4 moves = (on_map > kSlowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
+        for (Array* column : {&wanted_, &speed_, &braked_}) store(&(*column)[p], none, lanes);
+        if (!any(moves)) return;
+        const MeansOfFour means(flow.grid, load(&c.x[p], lanes), load(&c.y[p], lanes));
+        // Those that rest do as if they moved: nothing comes of it.
+        const Double4 one = all(1.0), u = select(moves, on_map, one);
+        const Double4 ux = select(moves, vx, one), uy = select(moves, vy, none);
+        const GroundOfFour ground(flow, curved_, means, lanes, ux, uy, select(moves, depth, one));
+        Double4 eroded = none;
         if constexpr (Law::kSeesEroded)
-            for (int j = 0; j < 3; ++j)
-                for (int i = 0; i < 3; ++i)
-                    state.eroded += cosine * sx.w[i] * sy.w[j] * eroded_depth(flow.grid.at(sx.base + i, sy.base + j));
-        double at_middle = 1.0, next = 1.0, brake = 0.0, gain = 0.0;  // the speed in the middle, over that at hand
+            eroded = per_area_ * ground.below.cosine * (means.of(initial_, lanes) - means.of(left_, lanes));
+        Double4 at_middle = all(1.0), gain = none, brake = none;  // the speed in the middle, over that at hand
         for (int pass = 0; pass < 2; ++pass) {
-            at_middle = next;
-            brake = deceleration(friction, below, at_middle * on_map);
-            state.speed = at_middle * speed;
-            state.stress = flow.density * below.thickness * kappa * brake;
-            double rate = law.rate(state);
-            if (!Law::kProportional) rate = std::min(rate, state.speed);  // no faster than the flow slides over the bed
-            const double share = rate * dt * density_ / (flow.density * below.thickness);
-            gain = Law::kProportional ? std::expm1(share) : share;
-            next = std::sqrt(speed_left(gain, brake * dt / on_map));
+            if (pass == 1)
+                for (int lane = 0; lane < lanes; ++lane)
+                    at_middle[lane] = std::sqrt(speed_left(gain[lane], brake[lane] * dt / u[lane]));
+            if (feels) brake = decelerations(friction, ground.below, at_middle * u);
+            for (int lane = 0; lane < lanes; ++lane) {
+                if (!moves[lane]) continue;
+                const double thickness = ground.below.thickness[lane], speed = at_middle[lane] * ground.speed[lane];
+                const double stress = flow.density * thickness * ground.below.kappa[lane] * brake[lane];
+                double rate = law.rate({thickness, speed, stress, eroded[lane], flow.density, density_, dt});
+                if (!Law::kProportional) rate = std::min(rate, speed);  // no faster than the flow slides over the bed
+                const double share = rate * dt * density_ / (flow.density * thickness);
+                gain[lane] = !Law::kProportional ? share : pass == 0 ? share + 0.5 * share * share : std::expm1(share);
+            }
         }
-        if (!(gain > 0.0)) continue;
-        wanted_[p] = c.mass[p] * gain, speed_[p] = speed, braked_[p] = brake * dt / on_map;
-        farthest = std::max(farthest, set_back(flow, p, (1.0 - at_middle) * dt * vx, (1.0 - at_middle) * dt * vy));
-    }
+        store(&wanted_[p], gain * load(&c.mass[p], lanes), lanes);
+        store(&speed_[p], ground.speed, lanes);
+        store(&braked_[p], dt * brake / u, lanes);
+        for (int lane = 0; lane < lanes; ++lane)
+            if (gain[lane] > 0.0) {
+                const double back = (1.0 - at_middle[lane]) * dt;
+                farthest = std::max(farthest, set_back(flow, p + lane, back * vx[lane], back * vy[lane]));
+            }
+    });
     sums_[static_cast<std::size_t>(n)].max_shift = farthest;
 }
 
@@ -278,7 +328,7 @@ double Erosion::set_back(Flow& flow, Index p, double dx, double dy) const {
     return shift;
 }
 
-/// THEORY (73): the share of its velocity that a point keeps when it grows by `gain` of its mass. What is taken brings at
+/// THEORY (76): the share of its velocity that a point keeps when it grows by `gain` of its mass. What is taken brings at
 /// most the momentum that friction takes meanwhile, `braked` of the flow's own.
 double Erosion::speed_left(double gain, double braked) const {
     const double grown = 1.0 + gain;
@@ -312,7 +362,7 @@ void Erosion::fold(const Flow& flow, LazyArray<double>& field) const {
         for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) { field[ghost] = field[mirror]; });
 }
 
-/// THEORY (70): the share of the demand that each node can give. Whether some node has too little.
+/// THEORY (73): the share of the demand that each node can give. Whether some node has too little.
 bool Erosion::find_shares(Flow& flow) {
     next_.assign(nodes_.size(), 0);
     const Index count = static_cast<Index>(nodes_.size());
@@ -329,7 +379,7 @@ bool Erosion::find_shares(Flow& flow) {
     return std::any_of(next_.begin(), next_.end(), [](Index scarce) { return scarce != 0; });
 }
 
-/// THEORY (71) and (72): each point gets by its poorest node, then what nodes have left over goes round.
+/// THEORY (74) and (75): each point gets by its poorest node, then what nodes have left over goes round.
 void Erosion::share_out(Flow& flow) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
@@ -357,7 +407,8 @@ void Erosion::take_shares(const Flow& flow, Index n) {
         gained_[p] = 0.0;
         if (!(wanted_[p] > 0.0)) continue;
         double least = 1.0;
-        for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges_of(c.carried<Real>(), p), [&](const auto& sx, const auto& sy) {
+        const Edges edges = edges_of(c.carried<Real>(), p);
+        for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges, [&](const auto& sx, const auto& sy) {
             for (int j = 0; j < 3; ++j)
                 for (int i = 0; i < 3; ++i) least = std::min(least, share_[flow.grid.at(sx.base + i, sy.base + j)]);
         });
@@ -371,7 +422,8 @@ void Erosion::take_left_over(const Flow& flow, Index n) {
     for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
         if (!(wanted_[p] > 0.0)) continue;
         double more = 0.0;
-        for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges_of(c.carried<Real>(), p), [&](const auto& sx, const auto& sy) {
+        const Edges edges = edges_of(c.carried<Real>(), p);
+        for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges, [&](const auto& sx, const auto& sy) {
             for (int j = 0; j < 3; ++j)
                 for (int i = 0; i < 3; ++i)
                     more += sx.w[i] * sy.w[j] * share_[flow.grid.at(sx.base + i, sy.base + j)];

@@ -148,6 +148,7 @@ void Merger::make_room(const ActiveTiles& active) {
 
 Index Merger::merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone) {
     assign_sparingly(gone, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
+    if (notes_) resize_sparingly(into_, gone.size());
     make_room(flow.active);
     merged_.assign(static_cast<std::size_t>(flow.active.count()), 0);
     for_each_tile(flow.active, [&](Index n) {
@@ -197,6 +198,7 @@ bool Merger::unite(Flow& flow, Index a, Index b, double longest, std::vector<std
     c.mass[a] = mass;
     set_edges(held, a, edges);
     gone[static_cast<std::size_t>(b)] = 1;
+    if (notes_) into_[static_cast<std::size_t>(b)] = static_cast<std::int32_t>(a);
     return true;
 }
 

@@ -19,6 +19,10 @@ public:
     /// Needs tiles that are up to date; `sorted`: the point at each place of them (TileSorter::order). Marks merged-away
     /// points in `gone` (resized); returns how many. The caller drops them.
     Index merge(Flow& flow, const std::vector<std::int32_t>& sorted, std::vector<std::uint8_t>& gone);
+    /// From now on merge() tells where points went.
+    void note_unions() { notes_ = true; }
+    /// The point that each one marked in `gone` went into; others have no meaning.
+    const std::vector<std::int32_t>& into() const { return into_; }
     /// Memory that grows with a tile's points [bytes].
     Index bytes() const { return allocated(order_) + allocated(square_); }
 
@@ -26,13 +30,15 @@ private:
     void make_room(const ActiveTiles& active);
     Index merge_tile(Flow& flow, Index n, const std::int32_t* sorted, std::vector<std::uint8_t>& gone);
     template <class Real>
-    static bool unite(Flow& flow, Index a, Index b, double longest, std::vector<std::uint8_t>& gone);
+    bool unite(Flow& flow, Index a, Index b, double longest, std::vector<std::uint8_t>& gone);
 
     Index most_ = 2;  ///< points that a half-cell square may hold
     Index largest_ = 0;  ///< points of the fullest tile: each thread has room for so many
     std::vector<std::int32_t> order_;   ///< a tile's points by square
     std::vector<std::int16_t> square_;  ///< of the point at each of the tile's places, as it was found
     std::vector<Index> merged_;  ///< per tile
+    bool notes_ = false;
+    std::vector<std::int32_t> into_;
 };
 
 }  // namespace frana

@@ -22,6 +22,9 @@ public:
     void note_parents() { halves_.notes = true; }
     /// Numbers of the points that were split, for each new one since the last call; theirs end at next_id().
     std::vector<Index> take_parents() { return std::exchange(halves_.parents, {}); }
+    /// The same, which stay.
+    const std::vector<Index>& parents() const { return halves_.parents; }
+    void forget_parents() { halves_.parents.clear(); }
     Index next_id() const { return halves_.next_id; }
     void set_next_id(Index id) { halves_.next_id = id; }
 

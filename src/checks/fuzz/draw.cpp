@@ -116,6 +116,15 @@ void draw_lake(Dice& dice, Draft& draft) {
     draft.claims.rests = true;
 }
 
+namespace {
+
+/// Numbers of a series of its own: every model draws other scenes from one seed.
+std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) { return Dice(seed ^ (salt * 0x9fb21c651e98df25u)).bits(); }
+
+constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kScene = 16;  // salts
+
+}  // namespace
+
 Draft draw(std::uint64_t seed, std::uint64_t n) {
     Dice dice(seed, n);
     Draft draft;
@@ -133,6 +142,8 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
             draw_material(dice, draft);
             draw_scheme(dice, draft);
             if (kind < 0.27) mirror(draft, dice.one_of({Mirror::x, Mirror::y, Mirror::diagonal}));
+            Dice loose(salted(seed, kLoose), n);
+            if (loose.chance(0.2)) draw_erodible(loose, draft);
         }
     }
     draft.keys["time.end"] = "1.0e6";
@@ -141,11 +152,6 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
 }
 
 namespace {
-
-/// Numbers of a series of its own: every model draws other scenes from one seed.
-std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) { return Dice(seed ^ (salt * 0x9fb21c651e98df25u)).bits(); }
-
-constexpr std::uint64_t kModel = 1, kBits = 2, kScene = 16;  // salts
 
 void draw_other(Dice& dice, Draft& draft) {
     draft.steps = 25 + dice.below(50);

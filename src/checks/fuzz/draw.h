@@ -32,6 +32,8 @@ void draw_scheme(Dice& dice, Draft& draft);
 void draw_pile(Dice& dice, Draft& draft);
 /// Still water over any ground; in place of draw_release and draw_material.
 void draw_lake(Dice& dice, Draft& draft);
+/// Loose ground under what is drawn so far, where the scheme knows that.
+void draw_erodible(Dice& dice, Draft& draft);
 /// Makes every raster, and velocity, its own mirror image.
 void mirror(Draft& draft, Mirror mirror);
 

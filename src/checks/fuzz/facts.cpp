@@ -113,8 +113,22 @@ void learn_release(const Scene& scene, Facts& facts) {
     }
 }
 
+/// A bed that sinks may become steeper, and bends that no Hessian of the start has.
+void learn_erodible(const ErodibleBed& bed, const Flow& flow, Facts& facts) {
+    facts.erodes = true;
+    facts.energy_law = false;
+    const double deepest = *std::max_element(bed.depth.values.begin(), bed.depth.values.end());
+    if (bed.evolves) facts.loose = deepest;
+    // What swells, or comes from ground that stays, lifts the surface.
+    facts.release_depth += std::max(0.0, deepest * bed.density / flow.density - facts.loose);
+    if (!facts.steep) return;
+    facts.steepest += 2.0 * facts.loose / flow.cell;
+    facts.stretch = std::hypot(1.0, facts.steepest);
+}
+
 void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
     learn_bed(scene, flow, facts);
+    if (scene.erodible) learn_erodible(*scene.erodible, flow, facts);
     if (scene.still_surface) {
         facts.lake = true;
         facts.level_error = off_level(flow, *scene.still_surface);

@@ -25,7 +25,8 @@ std::vector<double> numbers_of(const Status& s) {
     return {s.time,       s.dt,           s.mass,        s.mass_left,   s.momentum[0],      s.momentum[1],
             s.impulse[0], s.impulse[1],   s.kinetic,     s.potential,   s.momentum_left[0], s.momentum_left[1],
             s.dissipated, s.energy_left,  s.max_depth,   s.max_speed,   s.p2g_mass_error,   s.p2g_momentum_error,
-            s.mean_speed, s.covered_area, s.front,       s.stored};
+            s.mean_speed, s.covered_area, s.front,       s.stored,      s.bed.mass,        s.bed.eroded,
+            s.bed.energy, s.bed.deepest};
 }
 
 /// Mass of points whose sub-points an open side may hold back [kg]: those within 3/4 of a cell (shallow/sub_points.h).
@@ -124,15 +125,20 @@ std::optional<Violation> Watch::positive(const Snapshot& state) {
     Index bad = 0;
     for (const double m : state.points.mass) bad += !(m > 0.0);
     for (const NodeState& node : state.nodes) bad += node.wet ? !(node.depth > 0.0) : !(node.depth >= 0.0);
+    const Status::Bed& bed = state.between.bed;  // what gave more than it had lies below its rock
+    bad += !(bed.mass >= 0.0 && bed.eroded >= 0.0);
     return judged("positive", static_cast<double>(bad), 0.0, state, "masses or depths that are not positive");
 }
 
 std::optional<Violation> Watch::mass(const Snapshot& state) {
     const double present = facts_.all_in_points ? sum_of(state.points.mass) : state.between.mass;
-    const double error = std::abs(present + state.between.mass_left - mass_);
+    const Status::Bed& bed = state.between.bed;
+    const double of_bed = bed.mass - bed.initial;
+    const double error = std::abs(present + state.between.mass_left + of_bed - mass_);
     double share = 0.5 * kEps * static_cast<double>(points_ + state.between.step);
     if (!facts_.all_in_points) share = std::max(share, kMassShare);
-    const double allowed = share * (most_mass_ + std::abs(state.between.mass_left));
+    if (facts_.erodes) share = std::max(share, kMassShare);  // nodes lose what points gain, to round-off of the sums
+    const double allowed = share * (most_mass_ + std::abs(state.between.mass_left) + bed.initial);
     return judged("mass", error, allowed, state, "mass lost or gained [kg]");
 }
 

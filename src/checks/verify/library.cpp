@@ -29,6 +29,7 @@ const std::vector<Problem>& library() {
                                  erosion_problems,
                                  structured_problems,
                                  structured_case_problems,
+                                 inflow_problems,
                                  water_problems,
                                  water_slope_problems,
                                  water_viscous_problems})

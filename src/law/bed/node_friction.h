@@ -35,13 +35,6 @@ inline double speeds_after(const Law& law, const BedState& bed, double s0, doubl
     return law.speed_after(bed, s0, driven, dt);
 }
 
-/// What the law alone takes of a speed on the map, at that speed [m/s^2]: over a time in which it changes by 1e-7 or so.
-template <class Law>
-double deceleration(const Law& law, const BedState& bed, double speed) {
-    const double dt = 1e-7 * speed / bed.gravity;
-    return (speed - law.speed_after(bed, speed, speed, dt)) / dt;
-}
-
 /// A grid update that friction braked, and the drift that follows it.
 template <class Real>
 struct BrakedOf {

@@ -19,7 +19,7 @@ struct Energy {
                  laws::Missing::usual}};
     }
 
-    /// src/shallow/THEORY.md (67)
+    /// src/shallow/THEORY.md (70)
     double rate(const State& s) const { return s.stress * s.speed / (s.bed_density * energy); }
 };
 

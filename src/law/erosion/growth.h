@@ -20,7 +20,7 @@ struct Growth {
                  "share of its mass that the flow takes up on a metre of its way along the bed"}};
     }
 
-    /// src/shallow/THEORY.md (64)
+    /// src/shallow/THEORY.md (67)
     double rate(const State& s) const { return growth * s.density / s.bed_density * s.thickness * s.speed; }
 };
 

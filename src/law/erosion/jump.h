@@ -21,7 +21,7 @@ struct Jump {
                  laws::Missing::usual}};
     }
 
-    /// src/shallow/THEORY.md (68)
+    /// src/shallow/THEORY.md (71)
     double rate(const State& s) const { return std::max(0.0, s.stress - threshold) / (s.density * s.speed); }
 };
 

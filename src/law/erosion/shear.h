@@ -28,7 +28,7 @@ struct Shear {
                  "depth that can be taken at most, for each pascal above the threshold", laws::Missing::usual}};
     }
 
-    /// src/shallow/THEORY.md (66)
+    /// src/shallow/THEORY.md (69)
     double rate(const State& s) const {
         const double deepest = depth_per_stress * (s.stress - threshold);
         return std::clamp((deepest - s.eroded) / s.dt, 0.0, erosion_rate);

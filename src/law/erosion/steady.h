@@ -20,7 +20,7 @@ struct Steady {
                  "share of its mass that the moving flow takes up in a second"}};
     }
 
-    /// src/shallow/THEORY.md (65)
+    /// src/shallow/THEORY.md (68)
     double rate(const State& s) const { return growth_per_second * s.density / s.bed_density * s.thickness; }
 };
 

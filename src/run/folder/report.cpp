@@ -57,6 +57,9 @@ std::string results(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
     text += row("release volume", fmt::format("{:.6g} m3", r.release_volume));
+    if (r.extras.inflow)
+        text += row("came in through lines", fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", r.extras.inflow->volume,
+                                                         r.extras.inflow->expected, r.extras.inflow->volume - r.extras.inflow->expected));
     text += row("simulated time", fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end,
                                               s.steps, s.frames));
     text += row("deepest flow",
@@ -103,6 +106,8 @@ std::string budgets(const RunRecord& r) {
         "|---|---|---|---|---|\n";
     text += fmt::format("| mass [kg] | {:.8g} | {:.8g} | {:.4g} | {:.1e} of the initial mass |\n",
                         s.first.mass, s.last.mass, s.last.mass_left, b.mass_error);
+    if (s.last.mass_in > 0.0)
+        text += fmt::format("| of it came in [kg] | 0 | {:.8g} | | |\n", s.last.mass_in);
     for (const std::size_t axis : {0, 1})
         text += fmt::format("| momentum {} [kg m/s] | {:.4g} | {:.4g} (impulse {:.4g}) | {:.4g} | {:.1e} |\n",
                             axis == 0 ? "x" : "y", s.first.momentum[axis], s.last.momentum[axis],
@@ -211,6 +216,20 @@ std::string barriers(const RunRecord& r) {
     return text + "\n";
 }
 
+std::string sections(const RunRecord& r) {
+    if (r.sections.empty()) return "";
+    std::string text =
+        "## Sections\n\n| Section | Positive towards | Volume that passed | Largest discharge | Integral of the discharge |\n"
+        "|---|---|---|---|---|\n";
+    for (const SectionSummary& s : r.sections) {
+        constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+        const double azimuth = std::fmod(std::atan2(s.towards.x(), s.towards.y()) * kDegrees + 360.0, 360.0);
+        text += fmt::format("| {} | {:.0f} degrees from north | {:.6g} m3 | {:.4g} m3/s at {:.4g} s | {:.4g} m3 |\n", s.name,
+                            azimuth, s.volume, s.peak, s.peak_time, s.integral);
+    }
+    return text + "\nThe volume is counted by the columns that passed and is exact; the discharge is that of the nodes.\n\n";
+}
+
 std::string times(const RunSummary& s) {
     std::string text = "## Wall time\n\n| Part | Seconds | Share |\n|---|---|---|\n";
     const double total = std::max(s.wall_seconds, 1e-9);
@@ -237,7 +256,7 @@ std::string remarks(const RunRecord& r) {
 std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir) {
     const std::vector<Product> products = products_in(run_dir);
     const std::string survey = record.comparison ? comparison_section(*record.comparison) : "";
-    return heading(record) + remarks(record) + results(record) + survey + barriers(record) + budgets(record) +
+    return heading(record) + remarks(record) + results(record) + survey + sections(record) + barriers(record) + budgets(record) +
            figures(record) + parameter_table(record) + files(record, products) + times(record.summary);
 }
 

@@ -162,6 +162,18 @@ ChartFigure gauge_chart(const FigureSource& source) {
     return figure;
 }
 
+ChartFigure section_chart(const FigureSource& source) {
+    ChartFigure figure = chart(source, "sections", "time [s]");
+    ChartPanel discharge{"discharge [m3/s]", {}, false, {}, 1.4}, volume{"volume passed [m3]", {}, false, {}, 1.0};
+    for (const Section& section : source.sections) {
+        const Table table = read_table(source.run_dir / "sections" / (section.name + ".csv"));
+        discharge.curves.push_back(curve(section.name, table.column("t"), table.column("discharge")));
+        volume.curves.push_back(curve(section.name, table.column("t"), table.column("volume")));
+    }
+    figure.panels = {discharge, volume};
+    return figure;
+}
+
 ChartFigure barrier_chart(const FigureSource& source, const std::string& name, const Table& table) {
     ChartFigure figure = chart(source, "barrier " + name, "time [s]");
     figure.height = std::max(source.width * 4 / 5, 300);
@@ -200,6 +212,14 @@ void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures,
     attempt(source, {"figures/gauges_flow.png", "depth and speed at the gauges"}, figures, warnings,
             [&](const fs::path& png, std::string& why_not) {
                 return render_chart(gauge_chart(source), png, why_not);
+            });
+}
+
+void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+    if (source.sections.empty()) return;
+    attempt(source, {"figures/sections_discharge.png", "discharge through the sections, and the volume that passed"}, figures,
+            warnings, [&](const fs::path& png, std::string& why_not) {
+                return render_chart(section_chart(source), png, why_not);
             });
 }
 

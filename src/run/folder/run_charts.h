@@ -16,6 +16,9 @@ void draw_profile(const FigureSource& source, const std::string& name, std::vect
 void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures,
                  std::vector<std::string>& warnings);
 
+/// figures/sections_discharge.png: discharge through all sections over time, and the volume that passed; nothing without.
+void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+
 /// figures/barrier_<name>.png: force, run-up and what went over each barrier with a table in barriers/.
 void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
 

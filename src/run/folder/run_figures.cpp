@@ -40,6 +40,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
         fmt::format("{} [{}]", what.substr(0, what.find(" at ")), pascal ? "kPa" : product.unit);  // the title has the moment
     map.survey = source.survey;
     for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
+    for (const Section& section : source.sections) map.profiles.push_back({section.name, section.line});
     for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});
     map.footer = source.footer;
     map.width = source.width;
@@ -96,6 +97,7 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     draw_filmstrip(source, figures, warnings);
     for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
     draw_gauges(source, figures, warnings);
+    draw_sections(source, figures, warnings);
     draw_3d(source, figures, warnings);
     draw_barriers(source, figures, warnings);
     draw_budgets(source, figures, warnings);

@@ -25,6 +25,7 @@ struct FigureSource {
     Polyline runout_path;  ///< drawn in the overlay with the survey; empty: none
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
+    std::vector<Section> sections;
     bool in_3d = false;                 ///< the case has a stage of 3D points
     std::vector<BarrierTop> barrier_tops;  ///< in the case's order
     std::optional<double> time;       ///< of the profiles besides the first and the last [s]

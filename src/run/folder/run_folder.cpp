@@ -42,8 +42,9 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
+        {"sections", "[^.].*\\.csv", "discharge through a line and the volume that passed it, after every step", false},
         {"barriers", "[^.].*\\.csv", "forces and moments on a barrier, run-up and what went over, after every step", false},
-        {"figures", "((map|view|section|filmstrip|profile|gauges|barrier|budget)_[^.].*|compare)\\.png", "figure", false},
+        {"figures", "((map|view|section|filmstrip|profile|gauges|sections|barrier|budget)_[^.].*|compare)\\.png", "figure", false},
         {"figures", "film_[^.].*\\.(mp4|gif)", "film", false},
         {"insitu", "[^.].*\\.csv", "looked at while the case ran", false},
         {"insitu", "[^.].*\\.pvd", "looked at while the case ran, for ParaView", false},
@@ -136,7 +137,7 @@ bool has_list(const Json& record) {
 
 /// Whether files of a kind are written while the run goes on, and not at its end.
 bool grows(const ProductKind& kind) {
-    for (const char* folder : {"particles", "grid", "profiles", "gauges", "barriers", "insitu", "insitu/*"})
+    for (const char* folder : {"particles", "grid", "profiles", "gauges", "sections", "barriers", "insitu", "insitu/*"})
         if (kind.folder == folder) return true;
     static const std::regex growing("(history|particles|grid|profiles|barrier|run|terrain|checkpoint|case|resolved).*");
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);

@@ -23,6 +23,7 @@
 #include "observe/history.h"
 #include "observe/only_fields.h"
 #include "observe/profiles.h"
+#include "observe/sections.h"
 #include "run/simulation.h"
 #include "terrain/part_of.h"
 #include "vtk_io/survey_vtp.h"
@@ -112,6 +113,7 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     if (record.comparison) source.runout_path = record.comparison->path;
     source.profiles = scene.profiles;
     source.gauges = scene.gauges;
+    source.sections = scene.sections;
     source.in_3d = scene.solid.has_value();
     for (const Barrier& barrier : scene.barriers) source.barrier_tops.push_back({barrier.top, barrier.height});
     return source;
@@ -128,6 +130,15 @@ void close_record(RunRecord& record, const fs::path& run_dir) {
     write_text(run_dir / "report.md", report_markdown(record, run_dir));
     record.files = files_made(run_dir);
     write_text(run_dir / "run.json", run_json(record));  // last: until then it says which files are not the run's
+}
+
+/// What passes the sections of the scene; nothing without any.
+std::unique_ptr<Observer> make_sections(const Scene& scene, const fs::path& run_dir,
+                                        std::vector<SectionSummary>& summaries) {
+    std::vector<SectionLine> lines;
+    for (const Section& section : scene.sections) lines.push_back({section.name, section.line, section.to_right});
+    if (lines.empty()) return {};
+    return std::make_unique<Sections>(run_dir, lines, 0.5 * scene.bed.geometry.cell, summaries);
 }
 
 void note_cutoff(RunRecord& record, const fs::path& run_dir) {
@@ -191,6 +202,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
                     const Interrupt& interrupt, Progress& progress, CheckpointKeeper* keeper) {
     std::vector<ProductRaster> rasters;
     Observers observers = make_observers(scene, run_dir, record.barriers, rasters);
+    if (auto sections = make_sections(scene, run_dir, record.sections)) observers.push_back(std::move(sections));
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 

@@ -71,6 +71,7 @@ Json mass_json(const RunSummary& s) {
     return {{"unit", "kg"},
             {"initial", s.first.mass},
             {"final", s.last.mass},
+            {"came_in", s.last.mass_in},
             {"left_domain", s.last.mass_left},
             {"relative_error", budget(s.first, s.last).mass_error}};
 }
@@ -207,6 +208,23 @@ Json barriers_json(const std::vector<BarrierSummary>& barriers) {
     return list;
 }
 
+Json inflow_json(const InflowBudget& inflow) {
+    const double error = inflow.expected > 0.0 ? (inflow.volume - inflow.expected) / inflow.expected : 0.0;
+    return {{"unit", "m3"}, {"volume", inflow.volume}, {"expected", inflow.expected}, {"relative_error", error}};
+}
+
+Json sections_json(const std::vector<SectionSummary>& sections) {
+    Json list = Json::array();
+    for (const SectionSummary& s : sections)
+        list.push_back({{"name", s.name},
+                        {"towards", {s.towards.x(), s.towards.y()}},
+                        {"volume", s.volume},
+                        {"discharge_integral", s.integral},
+                        {"peak_discharge", s.peak},
+                        {"peak_discharge_time", s.peak_time}});
+    return list;
+}
+
 Json breakage_json(const Breakage& b) {
     return {{"mean_damage", b.damage},
             {"pieces", b.pieces},
@@ -285,7 +303,9 @@ std::string run_json(const RunRecord& record) {
     if (record.extras.points_apart) json["points_apart"] = apart_json(*record.extras.points_apart);
     if (record.extras.breakage) json["structure"] = breakage_json(*record.extras.breakage);
     if (record.extras.water) json["budgets"]["water"] = water_json(*record.extras.water);
+    if (record.extras.inflow) json["budgets"]["inflow"] = inflow_json(*record.extras.inflow);
     if (s.last.bed.initial > 0.0) json["budgets"]["bed"] = bed_json(s);
+    if (!record.sections.empty()) json["sections"] = sections_json(record.sections);
     return json.dump(2) + "\n";
 }
 

@@ -8,6 +8,7 @@
 #include "compare/comparison.h"
 #include "observe/barriers.h"
 #include "observe/insitu.h"
+#include "observe/sections.h"
 #include "run/folder/checkpoint.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
@@ -53,6 +54,7 @@ struct RunRecord {
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
     std::vector<BarrierSummary> barriers;
+    std::vector<SectionSummary> sections;
     CheckpointKeeper::Progress checkpoints;
     Extras extras;
     std::vector<std::string> warnings;

@@ -1,0 +1,48 @@
+// [[section]] of the case file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/scene_parts.h"
+
+namespace frana {
+
+double rise_across(const Polyline& line, const Raster& bed) {
+    const GridGeometry& g = bed.geometry;
+    double sum = 0.0, length = 0.0;
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        const Vec2 piece = line[k + 1] - line[k], right(piece.y(), -piece.x());
+        const auto parts = static_cast<Index>(std::ceil(2.0 * piece.norm() / g.cell));
+        for (Index part = 0; part < parts; ++part) {
+            const double share = (static_cast<double>(part) + 0.5) / static_cast<double>(parts);
+            const Vec2 at = line[k] + share * piece;
+            const auto i = static_cast<Index>(std::lround((at.x() - g.x0) / g.cell));
+            const auto j = static_cast<Index>(std::lround((at.y() - g.y0) / g.cell));
+            if (i < 0 || j < 0 || i >= g.nx || j >= g.ny || std::isnan(bed.at(i, j))) continue;
+            sum += node_gradient(bed, i, j).dot(right) / static_cast<double>(parts);
+            length += piece.norm() / static_cast<double>(parts);
+        }
+    }
+    return length > 0.0 ? sum / length : 0.0;
+}
+
+std::vector<Section> read_sections(const CaseFile& file, const Scene& scene, Problems& problems) {
+    std::vector<Section> sections;
+    const auto e = (scene.wider ? scene.wider->grid : scene.bed.geometry).pixel_extent();
+    for (Index i = 0; i < file.count("section"); ++i) {
+        const std::string prefix = fmt::format("section.{}.", i);
+        const Polyline& line = file.points(prefix + "line");
+        const bool there = std::any_of(line.begin(), line.end(), [&](const Vec2& point) {
+            return point.x() >= e[0] && point.x() <= e[2] && point.y() >= e[1] && point.y() <= e[3];
+        });
+        if (!there)
+            problems.add(file.place(prefix + "line"), "found no point of it on the terrain",
+                         fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1], e[3]),
+                         "correct the coordinates, or widen terrain.window");
+        sections.push_back({file.word(prefix + "name"), line, rise_across(line, scene.bed) <= 0.0});
+    }
+    return sections;
+}
+
+}  // namespace frana

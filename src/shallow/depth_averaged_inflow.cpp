@@ -1,0 +1,92 @@
+// What holds an inflow up behind its line: the depth of the rows that follow, without mass or motion.
+#include <algorithm>
+#include <cmath>
+
+#include "shallow/depth_averaged.h"
+#include "shallow/sub_points.h"
+
+namespace frana {
+namespace {
+
+constexpr double kSupport = 4.0;  ///< behind the line, beyond what passes over nodes look at [cells]
+
+/// Calls body(i, j) for the nodes that a column's sub-points may touch, of any shape; places in cells.
+template <class Body>
+void for_each_touched(double x, double y, double half, Body&& body) {
+    const auto first = [half](double u) { return static_cast<Index>(std::floor(u - half)) - 1; };
+    const auto last = [half](double u) { return static_cast<Index>(std::floor(u + half)) + 2; };
+    for (Index j = first(y); j <= last(y); ++j)
+        for (Index i = first(x); i <= last(x); ++i) body(i, j);
+}
+
+Index tile_of_node(const TileGrid& grid, Index i, Index j) {
+    return (j + kTile) / kTile * grid.tiles_x() + (i + kTile) / kTile;
+}
+
+void spread(Flow& flow, const ColumnAt& column, const Edges& edges) {
+    double* const into = flow.nodes.column_mass.data();
+    switch (flow.scheme.shape) {
+        case Shape::linear: return spread_column<Linear>(flow, into, column, edges);
+        case Shape::quadratic: return spread_column<Quadratic>(flow, into, column, edges);
+        case Shape::cubic: return spread_column<Cubic>(flow, into, column, edges);
+    }
+}
+
+/// [J]
+double potential(const Flow& flow, Index k, double mass) {
+    return flow.gravity * mass * (flow.bed.z[k] + 0.5 * mass / (flow.density * flow.area));
+}
+
+}  // namespace
+
+/// Beside what may come in nothing sleeps: its nodes have depth that no column tells of.
+void DepthAveraged::choose_sleep() { flow_.scheme.sleep = sleeps_ && !more_comes(); }
+
+/// Before walls fold the deposit and the surface is made. Its nodes count as touched.
+void DepthAveraged::support_inflows() {
+    supported_.clear();
+    if (feed_->over()) return;
+    const Seeds& behind = feed_->behind(status_.time, kSupport * flow_.cell);
+    const GridGeometry& g = flow_.grid.geometry();
+    const auto each = [&](auto&& body) {
+        for (Index n = 0; n < behind.count(); ++n) {
+            const double x = (behind.x[n] - g.x0) / g.cell, y = (behind.y[n] - g.y0) / g.cell;
+            const double edge = behind.size[n] / g.cell, half = edge * flow_.scheme.sub_point_reach;
+            bool near = true;  // otherwise no column is
+            for_each_touched(x, y, half, [&](Index i, Index j) {
+                near = near && flow_.active.in_work[tile_of_node(flow_.grid, i, j)];
+            });
+            if (near) body(ColumnAt{x, y, behind.volume[n] * flow_.density}, edge, half);
+        }
+    };
+    each([&](const ColumnAt& column, double, double half) {
+        for_each_touched(column.x, column.y, half, [&](Index i, Index j) {
+            const Index k = flow_.grid.at(i, j);
+            flow_.in_reach[tile_of_node(flow_.grid, i, j)] |= group_of((i + kTile) % kTile, (j + kTile) % kTile);
+            supported_.push_back({k, flow_.nodes.column_mass[k]});
+        });
+    });
+    if (supported_.empty()) return;
+    std::sort(supported_.begin(), supported_.end(), [](const Supported& a, const Supported& b) { return a.k < b.k; });
+    supported_.erase(std::unique(supported_.begin(), supported_.end(),
+                                 [](const Supported& a, const Supported& b) { return a.k == b.k; }),
+                     supported_.end());
+    each([&](const ColumnAt& column, double edge, double) { spread(flow_, column, {edge, 0.0, 0.0, edge}); });
+    activate_all(flow_);
+}
+
+/// It is not of the flow.
+double DepthAveraged::potential_of_support() const {
+    double sum = 0.0;
+    for (const Supported& node : supported_)
+        sum += potential(flow_, node.k, flow_.nodes.column_mass[node.k]) - potential(flow_, node.k, node.before);
+    return sum;
+}
+
+Extras DepthAveraged::extras() const {
+    Extras extras;
+    if (feed_) extras.inflow = InflowBudget{status_.mass_in / flow_.density, feed_->expected()};
+    return extras;
+}
+
+}  // namespace frana

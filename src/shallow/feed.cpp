@@ -1,0 +1,195 @@
+#include "shallow/feed.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frana {
+namespace {
+
+/// Integrals over time, exact for a discharge and a speed that are linear between the times of a table.
+struct Through {
+    double time = 0.0;
+    double way = 0.0;       ///< of the speed [m]
+    double volume = 0.0;    ///< of the discharge [m3]
+    double moment = 0.0;    ///< of the discharge times the time [m3 s]
+    double momentum = 0.0;  ///< of the discharge times the speed [m4/s]
+
+    /// Goes on by `s` within the n-th interval of the table, from `since` after its beginning.
+    void go(const Inflow& of, std::size_t n, double since, double s) {
+        const double length = of.time[n + 1] - of.time[n];
+        const double dq = (of.discharge[n + 1] - of.discharge[n]) / length, dv = (of.speed[n + 1] - of.speed[n]) / length;
+        const double q = of.discharge[n] + dq * since, v = of.speed[n] + dv * since, at = of.time[n] + since;
+        const double more = s * (q + 0.5 * dq * s);
+        way += s * (v + 0.5 * dv * s);
+        volume += more;
+        moment += at * more + s * s * (0.5 * q + dq * s / 3.0);
+        momentum += s * (q * v + s * (0.5 * (q * dv + v * dq) + dq * dv * s / 3.0));
+        time = at + s;
+    }
+};
+
+/// Time in which something of speed v that grows by dv in each second goes so far; infinite: never.
+double time_for(double way, double v, double dv) {
+    const double square = v * v + 2.0 * dv * way, sum = v + std::sqrt(std::max(square, 0.0));
+    return square >= 0.0 && sum > 0.0 ? 2.0 * way / sum : std::numeric_limits<double>::infinity();
+}
+
+/// Of the table, up to a time [m3].
+double volume_until(const Inflow& of, double time) {
+    double sum = 0.0;
+    for (std::size_t n = 0; n + 1 < of.time.size() && of.time[n] < time; ++n) {
+        const double length = of.time[n + 1] - of.time[n], share = std::min(1.0, (time - of.time[n]) / length);
+        const double end = of.discharge[n] + share * (of.discharge[n + 1] - of.discharge[n]);
+        sum += 0.5 * share * length * (of.discharge[n] + end);
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::vector<InflowRow> rows_of(const Inflow& of) {
+    std::vector<InflowRow> rows;
+    Through now, begun;
+    now.time = begun.time = of.time.front();
+    const auto close = [&] {
+        const double volume = now.volume - begun.volume;
+        if (volume > 0.0)
+            rows.push_back({now.time, (now.moment - begun.moment) / volume, volume,
+                            (now.momentum - begun.momentum) / volume, now.way - begun.way, begun.time, begun.way});
+        begun = now;
+    };
+    for (std::size_t n = 0; n + 1 < of.time.size(); ++n) {
+        const double length = of.time[n + 1] - of.time[n], dv = (of.speed[n + 1] - of.speed[n]) / length;
+        double since = 0.0;
+        for (;;) {
+            const double left = begun.way + of.spacing - now.way;
+            const double s = time_for(left, of.speed[n] + dv * since, dv);
+            if (!(since + s < length)) break;
+            now.go(of, n, since, s);
+            since += s;
+            close();
+        }
+        now.go(of, n, since, length - since);
+        now.time = of.time[n + 1];
+    }
+    close();
+    return rows;
+}
+
+Feed::Feed(const std::vector<Inflow>& inflows) : next_(inflows.size(), 0) {
+    for (const Inflow& inflow : inflows) {
+        Source source{inflow, rows_of(inflow), {}, inflow.width()};
+        for (std::size_t k = 0; k + 1 < inflow.line.size(); ++k) {
+            const Vec2 piece = inflow.line[k + 1] - inflow.line[k];
+            const double length = piece.norm();
+            const Vec2 right = Vec2(piece.y(), -piece.x()) / length;
+            const Index parts = std::max<Index>(1, std::lround(length / inflow.spacing));
+            for (Index part = 0; part < parts; ++part) {
+                const double at = (static_cast<double>(part) + 0.5) / static_cast<double>(parts);
+                source.stations.push_back({inflow.line[k] + at * piece, inflow.to_right ? right : Vec2(-right),
+                                           length / source.width / static_cast<double>(parts)});
+            }
+        }
+        sources_.push_back(std::move(source));
+    }
+}
+
+double Feed::next() const {
+    double first = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < sources_.size(); ++n)
+        if (next_[n] < static_cast<Index>(sources_[n].rows.size()))
+            first = std::min(first, sources_[n].rows[static_cast<std::size_t>(next_[n])].complete);
+    return first;
+}
+
+double Feed::signal(double gravity) const {
+    double fastest = 0.0;
+    for (std::size_t n = 0; n < sources_.size(); ++n) {
+        if (next_[n] >= static_cast<Index>(sources_[n].rows.size())) continue;
+        const InflowRow& row = sources_[n].rows[static_cast<std::size_t>(next_[n])];
+        const double depth = row.volume / (sources_[n].width * row.length);
+        fastest = std::max(fastest, row.speed + std::sqrt(gravity * depth));
+    }
+    return fastest;
+}
+
+void Feed::add_row(const Source& source, const InflowRow& row, double way, Columns& columns) {
+    Seeds& seeds = columns.seeds;
+    for (const Station& station : source.stations) {
+        const Vec2 place = station.at + way * station.towards, velocity = row.speed * station.towards;
+        seeds.x.push_back(place.x()), seeds.y.push_back(place.y());
+        seeds.vx.push_back(velocity.x()), seeds.vy.push_back(velocity.y());
+        seeds.volume.push_back(station.share * row.volume);
+        seeds.depth.push_back(row.volume / (source.width * row.length));
+        seeds.size.push_back(source.inflow.spacing);
+        columns.from.push_back(station.at);
+    }
+}
+
+void Feed::Columns::clear() {
+    for (auto* column : {&seeds.x, &seeds.y, &seeds.vx, &seeds.vy, &seeds.volume, &seeds.depth, &seeds.size}) column->clear();
+    from.clear();
+}
+
+const Seeds& Feed::behind(double time, double reach) {
+    behind_.clear();
+    for (std::size_t n = 0; n < sources_.size(); ++n) {
+        const std::vector<InflowRow>& rows = sources_[n].rows;
+        auto k = static_cast<std::size_t>(next_[n]);
+        if (k >= rows.size() || time < rows[k].begin) continue;
+        const InflowRow& row = rows[k];
+        const double at = row.before + row.length * (time - row.begin) / (row.complete - row.begin);
+        for (; k < rows.size() && rows[k].before - at < reach; ++k)
+            add_row(sources_[n], rows[k], at - rows[k].before - 0.5 * rows[k].length, behind_);
+    }
+    return behind_.seeds;
+}
+
+const Feed::Columns& Feed::take(double time) {
+    columns_.clear();
+    for (std::size_t n = 0; n < sources_.size(); ++n) {
+        const std::vector<InflowRow>& rows = sources_[n].rows;
+        Index& next = next_[n];
+        for (; next < static_cast<Index>(rows.size()); ++next) {
+            const InflowRow& row = rows[static_cast<std::size_t>(next)];
+            if (row.complete > time) break;
+            add_row(sources_[n], row, row.speed * (time - row.mean_time), columns_);
+        }
+    }
+    return columns_;
+}
+
+double Feed::expected() const {
+    double sum = 0.0;
+    for (std::size_t n = 0; n < sources_.size(); ++n)
+        if (next_[n] > 0)
+            sum += volume_until(sources_[n].inflow, sources_[n].rows[static_cast<std::size_t>(next_[n] - 1)].complete);
+    return sum;
+}
+
+double Feed::largest_column() const {
+    double largest = 0.0;
+    for (const Source& source : sources_)
+        for (const Station& station : source.stations)
+            for (const InflowRow& row : source.rows) largest = std::max(largest, station.share * row.volume);
+    return largest;
+}
+
+Index Feed::in_a_square(double cell) const {
+    double most = 0.0;
+    for (const Source& source : sources_) most = std::max(most, 0.5 * cell / source.inflow.spacing);
+    return std::lround(most * most);
+}
+
+Vec2 Feed::middle() const {
+    Vec2 sum(0, 0);
+    for (const Station& station : sources_.front().stations) sum += station.share * station.at;
+    return sum;
+}
+
+void Feed::serialize(Archive& archive) {
+    const Archive::Part part(archive, "feed");
+    archive.array("next", next_);
+}
+
+}  // namespace frana

@@ -1,0 +1,272 @@
+// Material that comes in through lines: volume, momentum, the same bits whatever the steps, threads and resumes.
+#include <omp.h>
+
+#include <sstream>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "coupling/growing_columns.h"
+#include "coupling/walled_columns.h"
+#include "observe/memory_archive.h"
+#include "run/run_loop.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+Inflow flood() {
+    Inflow inflow;
+    inflow.name = "flood";
+    inflow.line = {{12, 14}, {20, 22}, {20, 30}};
+    inflow.spacing = 0.5;
+    inflow.time = {0.5, 2.0, 3.0, 6.0}, inflow.discharge = {0.0, 60.0, 25.0, 0.0}, inflow.speed = {1.0, 6.0, 4.0, 2.0};
+    return inflow;
+}
+constexpr double kFlood = 45.0 + 42.5 + 37.5;  // [m3]
+
+/// A flood onto a slope where nothing is, or where a slab slides already.
+Scene slope(bool slab) {
+    Scene scene = scene_on(90, 45, 1.0, [](double x, double y) { return 40.0 - 0.3 * x + 0.004 * (y - 22) * (y - 22); });
+    scene.bed_law = bed::Voellmy{0.1, 300.0};
+    scene.inflows = {flood()};
+    if (slab) fill(scene, [](double x, double y) { return std::hypot(x - 35, y - 22) < 8 ? 1.0 : 0.0; });
+    return scene;
+}
+
+double residual(const Status& first, const Status& now) {
+    const Budget b = budget(first, now);
+    return std::hypot(b.momentum_residual[0], b.momentum_residual[1]);
+}
+
+std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
+    MemoryArchive archive;
+    simulation.serialize(archive);
+    auto entries = archive.entries();
+    for (auto entry = entries.begin(); entry != entries.end();)
+        entry = entry->first.rfind("clock/", 0) == 0 ? entries.erase(entry) : std::next(entry);
+    return entries;
+}
+
+class Threads {
+public:
+    ~Threads() { omp_set_num_threads(before_); }
+
+private:
+    int before_ = omp_get_max_threads();
+};
+
+}  // namespace
+
+TEST_CASE("The volume of an inflow is its table's at each step, up to one row, and all of it at the end", "[inflow]") {
+    for (const bool slab : {false, true}) {
+        const Scene scene = slope(slab);
+        DepthAveraged run(scene);
+        const Status first = run.status();
+        const std::vector<InflowRow> rows = rows_of(scene.inflows[0]);
+        CHECK(run.more_comes());
+        CHECK_FALSE(run.may_rest());
+        double row = 0.0;
+        constexpr double kMost = 60.0;  // discharge [m3/s]; rows wait for three ordinary steps at most
+        for (const InflowRow& one : rows) row = std::max(row, one.volume);
+        while (run.status().time < 6.5) {
+            run.advance(6.5);
+            const Status& now = run.status();
+            CHECK(std::abs(budget(first, now).mass_error) < 1e-13);
+            const InflowBudget budget = run.extras().inflow.value();
+            CHECK(budget.volume == Approx(budget.expected).epsilon(1e-13));
+            double by_now = 0.0;  // of the table
+            for (std::size_t n = 0; n + 1 < 4; ++n) {
+                const auto& of = scene.inflows[0];
+                const double s = std::clamp(now.time, of.time[n], of.time[n + 1]) - of.time[n];
+                const double dq = (of.discharge[n + 1] - of.discharge[n]) / (of.time[n + 1] - of.time[n]);
+                by_now += s * (of.discharge[n] + 0.5 * dq * s);
+            }
+            CHECK(budget.volume <= by_now + 1e-9);
+            const double wait = 3.0 * std::max(now.dt, 0.5 * 1.0 / 6.0);  // half a cell at the inflow's speed
+            CHECK(budget.volume > by_now - row - kMost * wait);
+        }
+        CHECK_FALSE(run.more_comes());
+        CHECK(run.status().mass_in / scene.density == Approx(kFlood).epsilon(1e-14));
+    }
+}
+
+TEST_CASE("A jet brings the momentum of its discharge and speed", "[inflow]") {
+    Scene scene = scene_on(140, 160, 1.0, [](double, double) { return 3.0; }, -40.0, -80.0);  // nothing comes to its edge
+    scene.inflows = {flood()};
+    double east = 0.0, north = 0.0;  // density times the integral of discharge, speed and direction
+    for (const InflowRow& row : rows_of(scene.inflows[0])) {
+        const double along = scene.density * row.volume * row.speed, first = std::hypot(8.0, 8.0), all = first + 8.0;
+        east += along * (first / all / std::sqrt(2.0) + 8.0 / all), north -= along * first / all / std::sqrt(2.0);
+    }
+    SECTION("without weight nothing changes it") {
+        scene.gravity = 1e-9;
+        scene.scheme.viscosity_linear = scene.scheme.viscosity_quadratic = 0.0;  // it pushes too, where rows of the bend meet
+        DepthAveraged run(scene);
+        run_to(run, 6.5);
+        const Status now = run.frame().status;
+        CHECK(now.momentum[0] == Approx(east).epsilon(1e-8));
+        CHECK(now.momentum[1] == Approx(north).epsilon(1e-8));
+        REQUIRE(now.mass_left == 0.0);
+    }
+    SECTION("with weight the balance closes") {
+        DepthAveraged run(scene);
+        const Status first = run.status();
+        run_to(run, 6.5);
+        REQUIRE(run.status().mass_left == 0.0);
+        CHECK(residual(first, run.status()) < 1e-12 * std::hypot(east, north));
+        CHECK(run.status().momentum_left[0] == Approx(-east).epsilon(1e-12));
+        CHECK(run.status().momentum_left[1] == Approx(-north).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("Rows do not hang on the steps", "[inflow]") {
+    Scene scene = slope(true);
+    const auto volumes = [&](double cfl) {
+        scene.scheme.cfl = cfl;
+        Feed feed(scene.inflows);
+        std::vector<double> all;
+        for (double t = 0.0; t < 6.0 + cfl; t += 0.3 * cfl) {
+            const Seeds& seeds = feed.take(t).seeds;
+            all.insert(all.end(), seeds.volume.begin(), seeds.volume.end());
+        }
+        DepthAveraged run(scene);
+        run_to(run, 6.5);
+        CHECK(run.status().mass_in / scene.density == Approx(kFlood).epsilon(1e-14));
+        return all;
+    };
+    const std::vector<double> whole = volumes(0.5), half = volumes(0.25);
+    CHECK(whole.size() > 500);
+    CHECK(whole == half);
+}
+
+TEST_CASE("An inflow goes on in the middle of its table with the same bits, on any number of threads", "[inflow][resume]") {
+    const Threads restored;
+    for (const bool slab : {false, true}) {
+        const Scene scene = slope(slab);
+        omp_set_num_threads(1);
+        DepthAveraged straight(scene);
+        std::vector<MemoryArchive> kept;
+        while (straight.status().time < 7.0) {
+            if (straight.status().step % 9 == 0) straight.serialize(kept.emplace_back());
+            straight.advance(7.0);
+        }
+        REQUIRE(kept.size() > 4);
+        const auto expected = bits(straight);
+        for (std::size_t n = 0; n < kept.size(); ++n) {
+            omp_set_num_threads(n % 2 == 0 ? 4 : 2);
+            DepthAveraged resumed(scene, Start::resumed);
+            resumed.serialize(kept[n].rewind());
+            INFO("kept at " << resumed.status().time << " s");
+            run_to(resumed, 7.0);
+            CHECK((bits(resumed) == expected));
+        }
+    }
+}
+
+TEST_CASE("Whether material sleeps changes no bit of an inflow beside it", "[inflow]") {
+    Scene scene = slope(false);
+    fill(scene, [](double x, double y) { return x > 60 && x < 80 && y > 10 && y < 30 ? 0.5 : 0.0; });
+    scene.bed_law = bed::Voellmy{0.4, 300.0};  // the slab stays
+    scene.inflows[0].time = {3.0, 5.0, 8.0, 20.0}, scene.inflows[0].discharge = {0.0, 90.0, 60.0, 0.0};
+    scene.inflows[0].speed = {2.0, 9.0, 9.0, 3.0};
+    DepthAveraged sleeper(scene);
+    scene.scheme.sleep = false;
+    DepthAveraged awake(scene);
+    bool slept = false;
+    for (const double t : {2.5, 6.0, 10.0, 32.0}) {
+        run_to(sleeper, t), run_to(awake, t);
+        slept = slept || some_asleep(sleeper.flow());
+        CHECK(sleeper.flow().columns.x == awake.flow().columns.x);
+        CHECK(sleeper.status().kinetic == awake.status().kinetic);
+    }
+    CHECK(slept);
+}
+
+TEST_CASE("A run waits for what is still to come in", "[inflow]") {
+    Scene scene = scene_on(60, 45, 1.0, [](double x, double) { return 40.0 - 0.1 * x; });
+    scene.bed_law = bed::Coulomb{0.6};
+    Inflow inflow = flood();
+    inflow.time = {2.0, 3.0, 20.0, 21.0}, inflow.discharge = {10.0, 0.0, 0.0, 10.0}, inflow.speed = {2.0, 2.0, 2.0, 2.0};
+    scene.inflows = {inflow};
+    DepthAveraged simulation(scene);
+    Observers observers;
+    std::ostringstream stream;
+    Progress progress(stream, Progress::Style::silent, scene.density);
+    RunPlan plan{200.0, 1.0, true};
+    plan.cell = 1.0;
+    const RunSummary summary = run(simulation, plan, observers, Interrupt(), progress);
+    CHECK(summary.reason == "rest");
+    CHECK(summary.last.time > 21.0);
+    CHECK(summary.last.time < 200.0);
+    CHECK(summary.first.mass == 0.0);
+    CHECK(summary.last.mass / scene.density == Approx(10.0).epsilon(1e-13));
+    CHECK(std::abs(budget(summary.first, summary.last).mass_error) < 1e-13);
+}
+
+TEST_CASE("What a row passes on its way from the line counts", "[inflow][sections]") {
+    Scene scene = slope(false);
+    const Polyline line = scene.inflows[0].line;  // a tenth of a cell down of it
+    scene.sections = {{"mouth", {{11.9, 13.8}, {20.1, 21.9}, {20.1, 30.2}}, true}};
+    DepthAveraged run(scene);
+    run_to(run, 6.5);
+    // What spreads upstream of the line and stays there has not passed.
+    double behind = 0.0;
+    const Columns& c = run.flow().columns;
+    for (Index p = 0; p < c.count(); ++p)
+        if (c.y[p] > 13.0 && c.x[p] < (c.y[p] < 21.9 ? 11.9 + (c.y[p] - 13.8) * 8.2 / 8.1 : 20.1)) behind += c.mass[p];
+    CHECK(run.passed()[0] == Approx(kFlood - behind / scene.density).epsilon(1e-9));
+}
+
+TEST_CASE("An inflow goes on where the terrain grows in the middle of its table, with sections", "[inflow][terrain]") {
+    const GridGeometry terrain{400, 200, 0.0, 0.0, 4.0};
+    const auto ground = [terrain](const NodeBox& box) {
+        Raster bed = Raster::filled(box.of(terrain), 0.0);
+        for (Index j = 0; j < bed.geometry.ny; ++j)
+            for (Index i = 0; i < bed.geometry.nx; ++i) bed.at(i, j) = 0.5 * bed.geometry.x(i);
+        return bed;
+    };
+    const NodeBox begin{240, 40, 120, 120};
+    Scene scene;
+    scene.bed = ground(begin);
+    scene.wider = std::make_shared<WiderTerrain>(WiderTerrain{terrain, begin, ground, {}});
+    scene.bed_law = bed::Voellmy{0.1, 1000.0};
+    Inflow inflow = flood();
+    inflow.line = {{1240, 390}, {1240, 420}}, inflow.to_right = false, inflow.spacing = 2.0;
+    inflow.time = {0.0, 60.0}, inflow.discharge = {120.0, 0.0}, inflow.speed = {10.0, 5.0};
+    scene.inflows = {inflow};
+    scene.sections = {{"below", {{1200, 100}, {1200, 700}}, false}};
+    GrowingColumns part(scene);
+    const Status first = part.status();
+    bool grew_meanwhile = false;
+    while (part.status().time < 62.0) {
+        const Index before = part.held().i0;
+        part.advance(62.0);
+        grew_meanwhile = grew_meanwhile || (part.held().i0 < before && part.more_comes() && part.status().mass_in > 0.0);
+        CHECK(std::abs(budget(first, part.status()).mass_error) < 1e-13);
+    }
+    CHECK(grew_meanwhile);
+    CHECK(part.extras().inflow->volume == Approx(3600.0).epsilon(1e-13));
+    const Frame frame = part.frame();
+    const Field &position = *frame.particle("position"), &volume = *frame.particle("volume");
+    double below = 0.0;
+    for (Index p = 0; p < volume.count; ++p)
+        if (position.data[3 * p] < 1200.0) below += volume.data[p];
+    CHECK(below > 3000.0);
+    CHECK(part.passed()[0] == Approx(below).epsilon(1e-12));
+}
+
+TEST_CASE("An inflow beside a barrier", "[inflow]") {
+    Scene scene = slope(false);
+    Barrier wall;
+    wall.name = "wall";
+    wall.line = {{50, 10}, {50, 35}};
+    wall.height = 2.0;
+    scene.barriers = {wall};
+    WalledColumns run(scene);
+    CHECK_FALSE(run.may_rest());
+    run_to(run, 9.0);
+    CHECK(run.may_rest());
+    CHECK(run.extras().inflow->volume == Approx(kFlood).epsilon(1e-13));
+    CHECK(run.loads()->barriers[0].run_up > 0.0);
+}

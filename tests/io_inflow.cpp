@@ -1,0 +1,89 @@
+// A flood through a line, and what passes another, by the program: files, record, report, resume.
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "observe/table.h"
+#include "plane_case.h"
+
+using namespace frana;
+namespace fs = std::filesystem;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+const char* const kFlood = R"(
+[terrain]
+dem = "dem.asc"
+[[inflow]]
+name = "torrent"
+line = [[40, 35], [40, 65]]
+table = "q.csv"
+[material.bed]
+law = "voellmy"
+mu = 0.05
+xi = 400
+[time]
+end = 12
+[output]
+every = 2
+formats = ["vtk", "geotiff", "png"]
+[[section]]
+name = "bridge"
+line = [[55, 5], [55, 95]]
+)";
+constexpr double kVolume = 0.5 * (1.0 * 60.0 + 7.0 * 60.0);
+
+/// The release of the plane is not used.
+struct Flood : PlaneCase {
+    Flood() {
+        write_text(file(), kFlood);
+        write_text(folder() / "q.csv", "t [s], discharge [m3/s]\n1, 0\n2, 60\n9, 0\n");
+    }
+};
+
+Json record_of(const fs::path& run_dir) { return Json::parse(text_of(run_dir / "run.json")); }
+
+}  // namespace
+
+TEST_CASE("A flood leaves its budget, and a section its table, figure and lines in the report", "[program][inflow]") {
+    const Flood plane;
+    const Outcome check = plane.frana("check CASE");
+    CHECK(check.code == 0);
+    CHECK_THAT(check.out, Contains("inflow torrent: 240 m3 until 9 s, at most 60 m3/s at 2 s; the line is 30 m wide"));
+    const fs::path dir = plane.folder() / "out";
+    const Outcome run = plane.frana("run CASE --quiet --out " + dir.string());
+    CHECK(run.code == 0);
+    const Json json = record_of(dir);
+    CHECK(json["budgets"]["inflow"]["volume"].get<double>() == Approx(kVolume).epsilon(1e-13));
+    CHECK(json["budgets"]["inflow"]["expected"].get<double>() == Approx(kVolume).epsilon(1e-13));
+    CHECK(std::abs(json["budgets"]["inflow"]["relative_error"].get<double>()) < 1e-13);
+    CHECK(json["budgets"]["mass"]["initial"] == 0.0);
+    CHECK(json["budgets"]["mass"]["came_in"].get<double>() == Approx(1000.0 * kVolume).epsilon(1e-13));
+    CHECK(std::abs(json["budgets"]["mass"]["relative_error"].get<double>()) < 1e-13);
+    const Table table = read_table(dir / "sections" / "bridge.csv");
+    CHECK(table.columns == std::vector<std::string>{"t", "discharge", "volume"});
+    CHECK(table.rows() == json["steps"].get<std::size_t>() + 1);
+    const double passed = json["sections"][0]["volume"].get<double>();
+    CHECK(passed == table.column("volume").back());
+    CHECK(passed > 0.3 * kVolume);
+    CHECK(passed < kVolume);
+    CHECK(json["sections"][0]["towards"][0] == 1.0);
+    const std::string report = text_of(dir / "report.md");
+    for (const char* text : {"## Sections", "| bridge | 90 degrees from north |", "came in through lines",
+                             "figures/sections_discharge.png", "inflow torrent: 240 m3"})
+        CHECK_THAT(report, Contains(text));
+    CHECK(fs::file_size(dir / "figures" / "sections_discharge.png") > 1000);
+}
+
+TEST_CASE("A flood that is stopped in the middle of its table goes on with the same bits", "[program][inflow]") {
+    const Flood plane;
+    const std::string straight = (plane.folder() / "straight").string(), parts = (plane.folder() / "parts").string();
+    CHECK(plane.frana("run CASE --quiet --set output.formats=[] --threads 1 --out " + straight).code == 0);
+    CHECK(plane.frana("run CASE --quiet --set output.formats=[] --until 5 --threads 2 --out " + parts).code == 0);
+    CHECK(record_of(parts)["budgets"]["inflow"]["volume"].get<double>() < kVolume);
+    CHECK(plane.frana("run CASE --quiet --set output.formats=[] --resume --threads 2 --out " + parts).code == 0);
+    CHECK(text_of(fs::path(parts) / "sections" / "bridge.csv") == text_of(fs::path(straight) / "sections" / "bridge.csv"));
+    CHECK(text_of(fs::path(parts) / "history.csv") == text_of(fs::path(straight) / "history.csv"));
+    CHECK(record_of(parts)["budgets"]["inflow"] == record_of(straight)["budgets"]["inflow"]);
+}

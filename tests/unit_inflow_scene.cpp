@@ -1,0 +1,118 @@
+// [[inflow]] and [[section]] of a case: what they become, and what is refused.
+#include <fstream>
+
+#include "catch.h"
+#include "fresh_folder.h"
+#include "scene/build_scene.h"
+#include "scene/inflow_facts.h"
+#include "slope_case.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+/// On the slope of 1 in 2, which falls to the west. A line from south to north; no release.
+const std::string kLine = "line = [[1100, 2050], [1100, 2080]]\n";
+
+std::string with(const std::string& inflow, const std::string& bed = "law = \"voellmy\"\nmu = 0.1\nxi = 400\n") {
+    return "[terrain]\ndem = \"dem.tif\"\n[material.bed]\n" + bed + "[time]\nend = 20\n[[inflow]]\nname = \"torrent\"\n" + inflow;
+}
+
+Scene built(const std::string& text, const std::filesystem::path& folder = "slide") {
+    return build_scene(CaseFile::parse(text, folder / "case.toml"), slope_gis());
+}
+
+/// After its place in the case.
+std::string problem_of(const std::string& text) {
+    return only_problem([&] { built(text); });
+}
+
+bool says(const std::string& problem, const std::string& key, const std::string& begin) {
+    CAPTURE(problem);
+    const std::size_t at = problem.find(": inflow.0." + key + ": " + begin);
+    return at != std::string::npos && problem.find("; expected") != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("An inflow without a release is a scene", "[scene][inflow]") {
+    const Scene scene = built(with(kLine + "volume = 1000\npeak = \"rickenmann\"\n"));
+    CHECK(scene.particles.count() == 0);
+    REQUIRE(scene.inflows.size() == 1);
+    const Inflow& inflow = scene.inflows[0];
+    CHECK(inflow.name == "torrent");
+    CHECK_FALSE(inflow.to_right);  // to the west of a line to the north
+    CHECK(inflow.slope == Approx(0.5));
+    CHECK(inflow.spacing == 2.5);
+    const InflowFacts facts = facts_of(inflow, scene.gravity);
+    CHECK(facts.volume == Approx(1000.0));
+    CHECK(facts.peak == Approx(31.6).epsilon(2e-3));
+    CHECK(facts.peak_time == Approx(0.1 * facts.end));
+    CHECK(facts.width == 30.0);
+    // Voellmy: h^3 = q^2 / (xi (sin - mu cos)), q the discharge per width.
+    const double cosine = 1.0 / std::sqrt(1.25), q = facts.peak / 30.0;
+    CHECK(facts.thickness == Approx(std::cbrt(q * q / (400.0 * (0.5 - 0.1) * cosine))).epsilon(1e-10));
+    CHECK(facts.speed == Approx(q / facts.thickness).epsilon(1e-10));
+    CHECK(facts.froude == Approx(facts.speed / std::sqrt(9.81 * cosine * facts.thickness)).epsilon(1e-10));
+    const auto& log = scene.log;
+    CHECK(std::any_of(log.begin(), log.end(), [](const std::string& line) {
+        return line.rfind("inflow torrent: 1000 m3 until ", 0) == 0 && line.find("Froude number") != std::string::npos;
+    }));
+}
+
+TEST_CASE("The side and the speed of an inflow may be given", "[scene][inflow]") {
+    const FreshFolder folder;
+    std::ofstream(folder.path() / "q.csv") << "t_min, discharge [m3/s], velocity [m/s]\n0, 2, 3\n1, 4, 5\n";
+    const Scene up = built(with(kLine + "table = \"q.csv\"\nvelocity = \"column\"\ntowards = [1190, 2060]\n"), folder.path());
+    CHECK(up.inflows[0].to_right);
+    CHECK(up.inflows[0].slope == Approx(-0.5));
+    CHECK(up.inflows[0].time == std::vector<double>{0.0, 60.0});
+    CHECK(up.inflows[0].speed[1] == Approx(5.0 / std::sqrt(1.25)));
+    const Scene number = built(with(kLine + "table = \"q.csv\"\nvelocity = 7\n"), folder.path());
+    CHECK(number.inflows[0].speed == std::vector<double>(2, 7.0 / std::sqrt(1.25)));
+}
+
+TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
+    const std::string volume = "volume = 1000\n";
+    CHECK(says(problem_of(with(kLine)), "table", "not given, and no volume either"));
+    CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\npeak = \"rickenmann\"\n")), "peak", "found together with table"));
+    CHECK(says(problem_of(with(kLine + volume + "area = 3\n")), "area", "found an unknown key"));
+    CHECK(says(problem_of(with(kLine + volume + "velocity = 0\n")), "velocity", "found 0"));
+    CHECK(says(problem_of(with("line = [[1100, 2050], [1100, 2053]]\n" + volume)), "line", "found a line of 3 m"));
+    CHECK(says(problem_of(with("line = [[900, 2050], [900, 2080]]\n" + volume)), "line", "found 900, 2050 outside of the terrain"));
+    CHECK(says(problem_of(with("line = [[1010, 2050], [1010, 2080]]\n" + volume)), "line", "found 1010, 2050 outside"));
+    CHECK(says(problem_of(with("line = [[1050, 2060], [1100, 2060]]\n" + volume)), "line", "found flat ground under the line"));
+    CHECK(says(problem_of(with(kLine + volume + "towards = [1100, 2200]\n")), "towards", "found towards on the line"));
+    CHECK(says(problem_of(with(kLine + volume + "towards = [1190, 2060]\n")), "velocity",
+               "found velocity = \"normal\" on ground that rises by 26.6 degrees"));
+    CHECK(says(problem_of(with(kLine + volume, "law = \"voellmy\"\nmu = 0.6\nxi = 400\n")), "velocity",
+               "found velocity = \"normal\" where the material stops"));
+    CHECK(says(problem_of(with(kLine + volume, "law = \"coulomb\"\nmu = 0.2\n")), "velocity",
+               "found velocity = \"normal\" with a bed law by which the flow gets faster for ever"));
+    CHECK(says(problem_of(with(kLine + volume + "velocity = \"column\"\n")), "velocity",
+               "found velocity = \"column\" and a table without one"));
+    CHECK(says(problem_of(with(kLine + "volume = 1e9\n")), "volume", "found 1e+09 m3, more than 100 m of depth"));
+    CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\n")), "table", "slide/q.csv: found no file"));
+}
+
+TEST_CASE("A line across a ridge has no side to flow to", "[scene][inflow]") {
+    FakeGis gis = slope_gis();
+    gis.rasters["dem.tif"] = sampled({40, 30, 1002.5, 2002.5, 5.0}, [](double x, double) { return 200.0 - std::abs(x - 1101.0); });
+    const auto problem = only_problem([&] {
+        build_scene(CaseFile::parse(with("line = [[1080, 2050], [1125, 2052]]\nvolume = 100\n"), "slide/case.toml"), gis);
+    });
+    CHECK(says(problem, "line", "found "));
+}
+
+TEST_CASE("A section counts down the slope as positive", "[scene][sections]") {
+    const std::string rest = "volume = 1000\n[[section]]\nname = \"a\"\n" + kLine +
+                             "[[section]]\nname = \"b\"\nline = [[1100, 2080], [1100, 2050]]\n";
+    const Scene scene = built(with(kLine + rest));
+    REQUIRE(scene.sections.size() == 2);
+    CHECK_FALSE(scene.sections[0].to_right);
+    CHECK(scene.sections[1].to_right);
+    const std::string problem = only_problem(
+        [&] { built(with(kLine + "volume = 1000\n[[section]]\nname = \"a\"\nline = [[0, 0], [1, 0]]\n")); });
+    CHECK(problem.find("section.0.line: found no point of it on the terrain; expected it within") != std::string::npos);
+}
