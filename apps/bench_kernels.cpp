@@ -77,8 +77,12 @@ void gather(benchmark::State& state) {
 void update_nodes(benchmark::State& state) {
     sweep(state, [](Bed& b) { benchmark::DoNotOptimize(b.grid_update->update(b.flow, b.step, b.step)); });
 }
-void depth_to_shoreline(benchmark::State& state) { sweep(state, [](Bed& b) { b.surface(); }); }
-void shock(benchmark::State& state) { sweep(state, [](Bed& b) { shock_pass(b.flow); }); }
+void depth_to_shoreline(benchmark::State& state) {
+    sweep(state, [](Bed& b) { b.surface(); });
+}
+void shock(benchmark::State& state) {
+    sweep(state, [](Bed& b) { shock_pass(b.flow); });
+}
 void sort_by_tile(benchmark::State& state) {
     sweep(state, [](Bed& b) { b.sorter.sort(b.flow.columns, b.flow.grid, {}, b.flow.active); });
 }

@@ -34,8 +34,8 @@ void measure(const std::string& name, Placement placement) {
         for (Index i = 0; i < 101; ++i) bed.at(i, j) = 20.0 * std::exp(-bed.geometry.x(i) / 30.0);
     Release release;
     release.depth_field = hump();
-    fmt::print("{} placement\n{:>9} {:>9} {:>9} {:>9} {:>16} {:>13}\n", name, "asked", "placed", "wall [s]",
-               "cpu [s]", "cpu ns/particle", "volume error");
+    fmt::print("{} placement\n{:>9} {:>9} {:>9} {:>9} {:>16} {:>13}\n", name, "asked", "placed", "wall [s]", "cpu [s]",
+               "cpu ns/particle", "volume error");
     for (const Index count : {10000, 100000, 1000000, 4000000}) {
         double wall = 1e300, cpu = 1e300;  // the least of three: the machine may have other work
         std::vector<ReleaseReport> reports;

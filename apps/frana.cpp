@@ -53,22 +53,20 @@ void add_run(CLI::App& app, RunOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("run", "run a case");
     add_case(*command, options.case_file, options.sets);
     command->add_option("--out", options.out, "folder of the results; default out/<case name>");
-    command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")
-        ->check(CLI::Range(1, 4096));
+    command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
     command->add_option("--until", options.until, "stop at this simulated time [s]");
     command->add_flag("--resume", options.resume, "go on, bit for bit, from the checkpoint.h5 that a run left");
     command->add_flag("--overwrite", options.overwrite, "replace the files of an earlier run in the folder");
     command->add_flag("--quiet", options.quiet, "no progress");
-    command->callback([&] {
-        action = [&] { return run_command(options); };
-    });
+    command->callback([&] { action = [&] { return run_command(options); }; });
 }
 
 void add_converge(CLI::App& app, ConvergeOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("converge", "the same case on several cells: has the answer converged?");
     add_case(*command, options.case_file, options.sets);
     command->add_option("--cells", options.cells, "cells [m]: N,N,...; two or more")->required();
-    command->add_option("--per-cell", options.per_cell, "also run the finest cell with each particles.per_cell: N,N,...");
+    command->add_option("--per-cell", options.per_cell,
+                        "also run the finest cell with each particles.per_cell: N,N,...");
     command->add_option("--cfl", options.cfl, "also run the finest cell with each scheme.cfl: N,N,...");
     command->add_option("--out", options.out, "folder of the runs and the tables; default out/<case name>_converge");
     command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
@@ -86,7 +84,8 @@ void add_check(CLI::App& app, CheckOptions& options, Action& action) {
 
 void add_describe(CLI::App& app, DescribeOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("describe", "case keys: meaning, unit, range, default");
-    CLI::Option* wanted = command->add_option("key", options.key, "a key, a table or the beginning of either; default all");
+    CLI::Option* wanted =
+        command->add_option("key", options.key, "a key, a table or the beginning of either; default all");
     CLI::Option* page =
         command->add_flag("--markdown", options.markdown, "the whole table as a page of Markdown (cases/KEYS.md)");
     page->excludes(wanted);
@@ -129,8 +128,7 @@ void read_size(const std::string& text, FiguresOptions& options) {
     int end = 0;
     const int read = std::sscanf(text.c_str(), "%5dx%5d%n", &options.width, &options.height, &end);
     const bool whole = read == 2 && end == static_cast<int>(text.size());
-    if (!whole || options.width < 100 || options.height < 100 || options.width > 16384 ||
-        options.height > 16384)
+    if (!whole || options.width < 100 || options.height < 100 || options.width > 16384 || options.height > 16384)
         throw UserError(
             fmt::format("--size: found \"{}\"; expected WIDTHxHEIGHT in pixels, each 100 to 16384; write it "
                         "like 1600x1200",
@@ -160,14 +158,17 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
     command->add_option("--deposit", options.deposit, "raster of the surveyed deposit's thickness [m]");
     command->add_option("--path", options.path, "line for the runout; default the steepest from the release");
     command->add_option("--json", options.json, "file of the scores; default RUN_DIR/compare.json");
-    command->callback([&] { action = [&] { return adding_to(options.run_dir, [&] { return compare_command(options); }); }; });
+    command->callback(
+        [&] { action = [&] { return adding_to(options.run_dir, [&] { return compare_command(options); }); }; });
 }
 
 void add_states(CLI::App& app, StatesOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("states", "write the ParaView states of a run again, after it was moved");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
-    command->add_option("NAME", options.names, "states that must be there: overview, stress, profiles, survey, impact, structure, budgets");
-    command->callback([&] { action = [&] { return adding_to(options.run_dir, [&] { return states_command(options); }); }; });
+    command->add_option("NAME", options.names,
+                        "states that must be there: overview, stress, profiles, survey, impact, structure, budgets");
+    command->callback(
+        [&] { action = [&] { return adding_to(options.run_dir, [&] { return states_command(options); }); }; });
 }
 
 void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
@@ -176,7 +177,9 @@ void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     command->add_flag("--list", options.list, "list the problems");
     command->add_option("--cells", options.cells, "grids: N,N,...")->delimiter(',')->check(CLI::Range(4, 100000));
     command->add_flag("--coarse", options.coarse, "leave out finest grids that take half a minute or more");
-    command->add_option("--preset", options.preset, "default, paper, or float: the default with scheme.precision = \"float\"")
+    command
+        ->add_option("--preset", options.preset,
+                     "default, paper, or float: the default with scheme.precision = \"float\"")
         ->check(CLI::IsMember({"default", "paper", "float"}));
     command->add_option("--points", options.per_cell, "points a cell")->check(CLI::IsMember({1, 4, 9, 16}));
     command->add_option("--threads", options.threads, "threads; default OMP_NUM_THREADS")->check(CLI::Range(1, 4096));
@@ -184,9 +187,10 @@ void add_verify(CLI::App& app, VerifyOptions& options, Action& action) {
     command->add_option("--table", options.table, "write the table as text, without times");
     command->add_option("--against", options.against, "compare with a table written before: fails where one differs")
         ->check(CLI::ExistingFile);
-    command->add_option("--figure", options.figure,
-                        "draw error over run time beside other codes; of clay_flume, blocks_2, blocks_3: how their blocks "
-                        "end (PNG)");
+    command->add_option(
+        "--figure", options.figure,
+        "draw error over run time beside other codes; of clay_flume, blocks_2, blocks_3: how their blocks "
+        "end (PNG)");
     command->add_flag("--study", options.study, "change one component of the scheme at a time");
     command->callback([&] { action = [&] { return verify_command(options); }; });
 }
@@ -204,9 +208,10 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("stress", "random hostile scenes; invariants checked each step");
     command->add_option("--seconds", options.seconds, "wall time for running scenes; default 60")
         ->check(CLI::PositiveNumber);
-    command->add_option("--model", options.models,
-                        "what carries the scenes: all (the default), or with commas between them depth_averaged, solid_flow "
-                        "(points in space), structured, water, mixture (structured columns and water), staged");
+    command->add_option(
+        "--model", options.models,
+        "what carries the scenes: all (the default), or with commas between them depth_averaged, solid_flow "
+        "(points in space), structured, water, mixture (structured columns and water), staged");
     command->add_option("--seed", options.seed, "of the series; default 1")->check(CLI::NonNegativeNumber);
     command->add_option("--scenes", options.scenes, "at most so many; default as many as the time allows")
         ->check(CLI::PositiveNumber);
@@ -216,7 +221,8 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
         ->check(CLI::NonNegativeNumber);
     command->add_option("--json", options.json, "write the results as JSON");
     command->add_option("--out", options.out, "folder for cases of failing scenes; default out/stress");
-    command->add_option("--known", options.known, "list of known failures (SEED MODEL SCENE INVARIANT): only others count");
+    command->add_option("--known", options.known,
+                        "list of known failures (SEED MODEL SCENE INVARIANT): only others count");
     command->add_flag("--cfl-map", options.cfl_map, "find the largest stable scheme.cfl of each scheme instead");
     command->add_option("--figure", options.figure, "draw that map (PNG)");
     command->add_option("--case", options.case_file, "watch this case instead");
@@ -224,7 +230,8 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     command->add_flag("--rests", options.rests, "nothing in that case may move");
     command->add_option("--mirror", options.mirror, "that case is its own mirror image: x, y or diagonal");
     command->add_flag("--same-threads", options.same_threads, "one thread and two must give that case the same bits");
-    command->add_flag("--same-resumed", options.same_resumed, "kept half way and taken up again it must end with the same bits");
+    command->add_flag("--same-resumed", options.same_resumed,
+                      "kept half way and taken up again it must end with the same bits");
     command->callback([&] { action = [&] { return stress_command(options); }; });
 }
 
@@ -251,8 +258,7 @@ void refuse_unknown(const CLI::App& app, const std::string& word) {
     const bool known = std::find(names.begin(), names.end(), word) != names.end();
     if (known || word.empty() || word[0] == '-') return;
     const std::string near = closest(word, names);
-    throw UserError(fmt::format("command line: found the unknown command \"{}\"; expected one of {}; {}",
-                                word, listed,
+    throw UserError(fmt::format("command line: found the unknown command \"{}\"; expected one of {}; {}", word, listed,
                                 near.empty() ? "see `frana --help`" : "did you mean " + near + "?"));
 }
 
@@ -325,16 +331,18 @@ bool tells_of_shortage(const std::exception& error) {
     const std::string text = error.what();
     for (const std::errc code : {std::errc::resource_unavailable_try_again, std::errc::not_enough_memory}) {
         const std::string words = std::make_error_code(code).message();
-        if (text.size() >= words.size() && text.compare(text.size() - words.size(), words.size(), words) == 0) return true;
+        if (text.size() >= words.size() && text.compare(text.size() - words.size(), words.size(), words) == 0)
+            return true;
     }
     return false;
 }
 
 int short_of(const std::exception& error) {
-    return complain(fmt::format("{}; expected a system with memory, threads and file handles to spare; free some, or raise "
-                                "the limits of the process",
-                                error.what()),
-                    2);
+    return complain(
+        fmt::format("{}; expected a system with memory, threads and file handles to spare; free some, or raise "
+                    "the limits of the process",
+                    error.what()),
+        2);
 }
 
 int mistake(const std::exception& error) {
@@ -359,7 +367,8 @@ int main(int argc, char** argv) {
         return complain(fmt::format("{}; check the folder, its permissions and free space", error.what()), 2);
     } catch (const std::bad_alloc&) {
         return complain(
-            "memory: found too little; expected what `frana check` tells of the case; use fewer particles or points, or "
+            "memory: found too little; expected what `frana check` tells of the case; use fewer particles or points, "
+            "or "
             "a larger grid.cell",
             2);
     } catch (const std::system_error& error) {

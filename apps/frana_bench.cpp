@@ -20,9 +20,7 @@ int bench_command(const BenchOptions& options) {
         {"VTK, grid", false, true, [](const auto& folder) { return make_grid_writer(folder); }},
         {"HDF5, particles and grid", true, true, [](const auto& folder) { return make_xdmf_writer(folder); }},
     };
-    const bench::Report report = bench::run(wanted, [](const std::string& text) {
-        fmt::print(stderr, "{}\n", text);
-    });
+    const bench::Report report = bench::run(wanted, [](const std::string& text) { fmt::print(stderr, "{}\n", text); });
     fmt::print("{}", bench::table_of(report));
     if (!options.json.empty()) write_text(options.json, bench::json_of(report));
     return bench::same_bits(report) ? 0 : 1;

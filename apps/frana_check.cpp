@@ -53,9 +53,9 @@ std::string release_text(const ReleaseSummary& release) {
     std::string text = fmt::format("{}\n", release.name);
     text += fmt::format("            {} particles on {:.6g} m2, depth up to {:.4g} m\n", r.count, r.area,
                         release.max_depth);
-    text += fmt::format(
-        "            volume {:.9g} m3 from raster or polygon, {:.9g} m3 in particles, difference {:.1e}\n",
-        r.volume, r.particle_volume, r.relative_error);
+    text +=
+        fmt::format("            volume {:.9g} m3 from raster or polygon, {:.9g} m3 in particles, difference {:.1e}\n",
+                    r.volume, r.particle_volume, r.relative_error);
     return text + fmt::format("            bed slope {:.1f} to {:.1f} degrees, {:.1f} on average\n",
                               release.slope_min_deg, release.slope_max_deg, release.slope_mean_deg);
 }
@@ -68,11 +68,11 @@ std::string total_text(const BuiltScene& built) {
         particle_volume += release.report.particle_volume;
     }
     const auto& water = built.scene.water;
-    const double density = water ? (1.0 - water->share) * built.scene.density +
-                                       water->share * water->exchange.material.fluid_density
-                                 : built.scene.density;
-    return fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n",
-                       built.scene.particles.count(), particle_volume, volume, particle_volume * density);
+    const double density =
+        water ? (1.0 - water->share) * built.scene.density + water->share * water->exchange.material.fluid_density
+              : built.scene.density;
+    return fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n", built.scene.particles.count(),
+                       particle_volume, volume, particle_volume * density);
 }
 
 struct Forecast {
@@ -91,10 +91,10 @@ Forecast forecast(const Scene& scene) {
     double depth = 0.0;
     double top = lowest;
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
-        const auto i = std::clamp<Index>(std::lround((seeds.x[p] - bed.geometry.x0) / bed.geometry.cell), 0,
-                                         bed.geometry.nx - 1);
-        const auto j = std::clamp<Index>(std::lround((seeds.y[p] - bed.geometry.y0) / bed.geometry.cell), 0,
-                                         bed.geometry.ny - 1);
+        const auto i =
+            std::clamp<Index>(std::lround((seeds.x[p] - bed.geometry.x0) / bed.geometry.cell), 0, bed.geometry.nx - 1);
+        const auto j =
+            std::clamp<Index>(std::lround((seeds.y[p] - bed.geometry.y0) / bed.geometry.cell), 0, bed.geometry.ny - 1);
         speed = std::max(speed, std::hypot(seeds.vx[p], seeds.vy[p]));
         depth = std::max(depth, seeds.depth[p]);
         if (!std::isnan(bed.at(i, j))) top = std::max(top, bed.at(i, j) + seeds.depth[p]);
@@ -124,8 +124,7 @@ std::string width_text(const Scene& scene) {
 
 std::string seconds_text(double seconds) {
     if (seconds < 120.0) return fmt::format("{:.2g} s", seconds);
-    return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0)
-                            : fmt::format("{:.1f} h", seconds / 3600.0);
+    return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
 /// The 3D stage: sound is ten times as fast as the material.
@@ -148,16 +147,15 @@ std::string stage_text(const Scene& scene) {
 std::string forecast_text(const Scene& scene) {
     const Forecast f = forecast(scene);
     const double per_step = double(scene.particles.count()) * seconds_per_particle_step;
-    std::string text = fmt::format(
-        "steps       {:.0f} (as fast as at the start) to {:.0f} (in free fall, {:.3g} m/s), for {} s\n",
-        f.fewest_steps, f.most_steps, f.fall_speed, scene.end);
+    std::string text =
+        fmt::format("steps       {:.0f} (as fast as at the start) to {:.0f} (in free fall, {:.3g} m/s), for {} s\n",
+                    f.fewest_steps, f.most_steps, f.fall_speed, scene.end);
     text += fmt::format("memory      about {:.3g} MB, as long as particles do not split\n",
                         memory_need(scene).total() / 1e6);
     return text +
-           fmt::format(
-               "time        {} to {} on one core, assuming {:.0f} ns per particle and step, output apart\n",
-               seconds_text(f.fewest_steps * per_step), seconds_text(f.most_steps * per_step),
-               seconds_per_particle_step * 1e9);
+           fmt::format("time        {} to {} on one core, assuming {:.0f} ns per particle and step, output apart\n",
+                       seconds_text(f.fewest_steps * per_step), seconds_text(f.most_steps * per_step),
+                       seconds_per_particle_step * 1e9);
 }
 
 }  // namespace
@@ -171,9 +169,8 @@ int check_command(const CheckOptions& options) {
     std::cout << total_text(built) << width_text(built.scene) << forecast_text(built.scene);
     for (const Barrier& barrier : built.scene.barriers)
         std::cout << (barrier.shape ? fmt::format("barrier     {}, a mesh\n", barrier.name)
-                      : barrier.top
-                          ? fmt::format("barrier     {}, up to {:.6g} m\n", barrier.name, *barrier.top)
-                          : fmt::format("barrier     {}, {:.6g} m high\n", barrier.name, barrier.height));
+                      : barrier.top ? fmt::format("barrier     {}, up to {:.6g} m\n", barrier.name, *barrier.top)
+                                    : fmt::format("barrier     {}, {:.6g} m high\n", barrier.name, barrier.height));
     if (built.scene.solid) std::cout << stage_text(built.scene);
     check_insitu(built.scene);
     for (const Insitu& entry : built.scene.insitu)

@@ -31,8 +31,8 @@ struct ConvergeOptions {
     std::filesystem::path out;      ///< empty: out/<case name>_converge
     std::vector<std::string> sets;  ///< "key=value" overrides of all runs
     int threads = 0;
-    bool resume = false;            ///< take finished runs as they are, and go on with the others
-    bool overwrite = false;         ///< replace the files of an earlier study
+    bool resume = false;     ///< take finished runs as they are, and go on with the others
+    bool overwrite = false;  ///< replace the files of an earlier study
     bool quiet = false;
 };
 
@@ -86,7 +86,7 @@ struct ConvertOptions {
     std::optional<double> spacing;       ///< vertical, between points [m]
     std::filesystem::path points, back;  ///< the other way: 3D points to read, folder of the rasters
     std::string layers = "centres", vertical = "along-bed", profile = "plug";
-    std::vector<double> window;          ///< map coordinates; empty: everything
+    std::vector<double> window;  ///< map coordinates; empty: everything
 };
 
 /// `frana verify [NAME...] [--list] [--cells N,N,...] [--preset P] [--points N] [--json FILE] [--table FILE]
@@ -95,10 +95,10 @@ struct ConvertOptions {
 struct VerifyOptions {
     std::vector<std::string> names;  ///< empty: all
     bool list = false;
-    bool coarse = false;             ///< finest grids that take long are left out
-    std::vector<long long> cells;    ///< empty: each problem's own grids
+    bool coarse = false;           ///< finest grids that take long are left out
+    std::vector<long long> cells;  ///< empty: each problem's own grids
     std::string preset = "default";
-    int per_cell = 4;                ///< points a cell: 1, 4, 9 or 16
+    int per_cell = 4;  ///< points a cell: 1, 4, 9 or 16
     int threads = 0;
     std::filesystem::path json, table;  ///< files to write, or empty
     std::filesystem::path against;      ///< table to compare with, or empty
@@ -118,13 +118,13 @@ struct BenchOptions {
 /// [--model WORDS] [--cfl-map [--figure FILE.png]]
 /// [--case CASE --steps N [--rests] [--mirror x|y|diagonal] [--same-threads] [--same-resumed]]`
 struct StressOptions {
-    double seconds = 60.0;            ///< of running scenes; shrinking comes on top
-    std::string models = "all";       ///< to draw of: all, or words with commas
+    double seconds = 60.0;       ///< of running scenes; shrinking comes on top
+    std::string models = "all";  ///< to draw of: all, or words with commas
     long long seed = 1;
-    long long scenes = 0;             ///< at most so many; 0: as many as the time allows
-    long long first = 0;              ///< number of the first
-    long long shrunk = 20;            ///< failures that are shrunk and saved; the others are counted
-    std::filesystem::path json;       ///< file to write, or empty
+    long long scenes = 0;                      ///< at most so many; 0: as many as the time allows
+    long long first = 0;                       ///< number of the first
+    long long shrunk = 20;                     ///< failures that are shrunk and saved; the others are counted
+    std::filesystem::path json;                ///< file to write, or empty
     std::filesystem::path out = "out/stress";  ///< where cases of failing scenes go
     std::filesystem::path known;      ///< list of failures that are known (lines: seed model scene invariant), or empty
     bool cfl_map = false;             ///< instead: the largest stable scheme.cfl of each scheme

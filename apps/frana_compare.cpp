@@ -25,9 +25,10 @@ void require_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& 
                         (run_dir / "rasters" / "peak_depth.tif").string()));
     for (const ProductRaster& product : rasters)
         if (!(product.raster.geometry == peak->raster.geometry))
-            throw UserError(fmt::format("{}: has other pixels than peak_depth.tif; expected the rasters of one run; "
-                                        "run the case again",
-                                        (run_dir / "rasters" / (product.name + ".tif")).string()));
+            throw UserError(
+                fmt::format("{}: has other pixels than peak_depth.tif; expected the rasters of one run; "
+                            "run the case again",
+                            (run_dir / "rasters" / (product.name + ".tif")).string()));
 }
 
 /// compare.md: the comparison on one page, with its picture.

@@ -36,8 +36,8 @@ struct NumberList {
 
 std::vector<double> NumberList::read(const std::string& text) const {
     const auto complain = [&](const std::string& what) {
-        return UserError(fmt::format("{}: {}; expected two or more different {}, each above 0; write them like {}", option,
-                                     what, meaning, example));
+        return UserError(fmt::format("{}: {}; expected two or more different {}, each above 0; write them like {}",
+                                     option, what, meaning, example));
     };
     std::vector<double> numbers;
     std::istringstream words(text);
@@ -76,9 +76,9 @@ std::vector<Varied> read_varied(const ConvergeOptions& options) {
 
 /// How the folder of a run is found.
 enum class Standing {
-    fresh,        ///< without a run's files, or with those that are to be replaced
-    unfinished,   ///< with a state to go on from
-    broken,       ///< a run died in it before its first state
+    fresh,       ///< without a run's files, or with those that are to be replaced
+    unfinished,  ///< with a state to go on from
+    broken,      ///< a run died in it before its first state
     finished
 };
 
@@ -153,13 +153,15 @@ void require_room_for_tables(const fs::path& out, const ConvergeOptions& options
         const bool listed = record.is_object() && record.contains("files") && record["files"].is_array() &&
                             std::find(record["files"].begin(), record["files"].end(), name) != record["files"].end();
         if (!listed)
-            throw UserError(fmt::format("{}: found a file that no study left there; expected a folder without files of "
-                                        "such names; choose another one with --out, or move it away",
-                                        (out / name).string()));
+            throw UserError(
+                fmt::format("{}: found a file that no study left there; expected a folder without files of "
+                            "such names; choose another one with --out, or move it away",
+                            (out / name).string()));
         if (!options.overwrite && !options.resume)
-            throw UserError(fmt::format("{}: found {} of an earlier study; expected a folder without; choose another "
-                                        "one with --out, give --overwrite to replace that study, or --resume to go on with it",
-                                        out.string(), name));
+            throw UserError(
+                fmt::format("{}: found {} of an earlier study; expected a folder without; choose another "
+                            "one with --out, give --overwrite to replace that study, or --resume to go on with it",
+                            out.string(), name));
     }
 }
 
@@ -202,8 +204,7 @@ int carry_out(const std::vector<PlannedRun>& runs, bool quiet) {
     const Interrupt interrupt(Interrupt::Listen::signals);
     for (PlannedRun run : runs) {
         if (run.standing == Standing::finished) {
-            if (!quiet)
-                std::cout << fmt::format("{}: finished, in {}\n", run.name, run.options.out.string());
+            if (!quiet) std::cout << fmt::format("{}: finished, in {}\n", run.name, run.options.out.string());
             continue;
         }
         run.options.interrupt = &interrupt;
@@ -236,9 +237,10 @@ int converge_command(const ConvergeOptions& options) {
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
     const fs::path out = options.out.empty() ? fs::path("out") / (file.name() + "_converge") : options.out;
     if (fs::exists(out) && !fs::is_directory(out))
-        throw UserError(fmt::format("{}: this is a file; expected a folder that can be written to; choose another one "
-                                    "with --out",
-                                    out.string()));
+        throw UserError(
+            fmt::format("{}: this is a file; expected a folder that can be written to; choose another one "
+                        "with --out",
+                        out.string()));
     std::optional<RunLock> lock;
     if (fs::is_directory(out)) lock.emplace(out);
     require_room_for_tables(out, options);
@@ -257,7 +259,8 @@ int converge_command(const ConvergeOptions& options) {
     for (; study.runs.size() < cells.size(); ++run) study.runs.push_back({run->cell, run->options.out});
     for (const Varied& one : varied) {
         study.variations.push_back({one.key, one.values, {}, {}, ""});
-        for (std::size_t k = 0; k < one.values.size(); ++k, ++run) study.variations.back().folders.push_back(run->options.out);
+        for (std::size_t k = 0; k < one.values.size(); ++k, ++run)
+            study.variations.back().folders.push_back(run->options.out);
     }
     if (const std::string remark = remark_on_count(file); !remark.empty()) study.remarks.push_back(remark);
     measure_runs(study, bed_of_finest(finest, runs[cells.size() - 1].options.out));

@@ -82,7 +82,9 @@ Json variations_of(const ConvergenceStudy& study) {
 }
 
 std::string json_of(const ConvergenceStudy& study) {
-    Json json = {{"version", FRANA_VERSION}, {"title", study.title}, {"case_file", study.case_file},
+    Json json = {{"version", FRANA_VERSION},
+                 {"title", study.title},
+                 {"case_file", study.case_file},
                  {"overrides", study.overrides}};
     for (const char* list : {"cells", "folders"}) json[list] = Json::array();
     for (const StudiedRun& run : study.runs) {
@@ -208,14 +210,17 @@ ChartFigure chart_of(const ConvergenceStudy& study) {
 std::string page_of(const ConvergenceStudy& study, bool drawn) {
     std::string text = fmt::format("# {}: on several cells\n\n", study.title) + study_section(study);
     if (drawn) text += "![What changes with the cell](converge.png)\n\n*What changes with the cell*\n\n";
-    text += study.rule.text() + fmt::format(
-        " The finest cell is held against nothing: where its own error is large, agreement says little.\n\n"
-        "The footprint is everything ever deeper than {0:g} m, the deposit's area what is deeper at the end; its "
-        "volume is all that is left. Footprints and deposits are overlaid as their pixels lie. The runout is the "
-        "horizontal length along the steepest path on the finest grid, the same for all. Cells across: the flow's "
-        "median width, over its length. The order is that of the three finest cells; it is left out where values go to "
-        "and fro, do not approach, or differ by less than the raster tells.\n\n",
-        study.footprint_depth);
+    text +=
+        study.rule.text() +
+        fmt::format(
+            " The finest cell is held against nothing: where its own error is large, agreement says little.\n\n"
+            "The footprint is everything ever deeper than {0:g} m, the deposit's area what is deeper at the end; its "
+            "volume is all that is left. Footprints and deposits are overlaid as their pixels lie. The runout is the "
+            "horizontal length along the steepest path on the finest grid, the same for all. Cells across: the flow's "
+            "median width, over its length. The order is that of the three finest cells; it is left out where values "
+            "go to "
+            "and fro, do not approach, or differ by less than the raster tells.\n\n",
+            study.footprint_depth);
     text += "| Run | |\n|---|---|\n";
     for (const StudiedRun& run : study.runs) {
         const std::string folder = run.folder.lexically_relative(study.folder).generic_string();
@@ -224,7 +229,8 @@ std::string page_of(const ConvergenceStudy& study, bool drawn) {
     for (const Variation& varied : study.variations)
         for (std::size_t k = 0; k < varied.values.size(); ++k) {
             const std::string folder = varied.folders[k].lexically_relative(study.folder).generic_string();
-            text += fmt::format("| {} = {:g} | [{}/report.md]({}/report.md) |\n", varied.key, varied.values[k], folder, folder);
+            text += fmt::format("| {} = {:g} | [{}/report.md]({}/report.md) |\n", varied.key, varied.values[k], folder,
+                                folder);
         }
     const std::string by = study.overrides.empty() ? "" : fmt::format(", overridden by `{}`", study.overrides);
     return text + fmt::format("\nCase `{}`{}, frana {}.\n", study.case_file, by, FRANA_VERSION);

@@ -25,9 +25,10 @@ struct RunFiles {
     const Raster& raster(const char* name) const {
         const ProductRaster* product = find_product(rasters, name);
         if (product == nullptr)
-            throw UserError(fmt::format("{}: is not there; expected the rasters of a finished run; run the study again "
-                                        "with --overwrite",
-                                        (folder / "rasters" / name).string() + ".tif"));
+            throw UserError(
+                fmt::format("{}: is not there; expected the rasters of a finished run; run the study again "
+                            "with --overwrite",
+                            (folder / "rasters" / name).string() + ".tif"));
         return product->raster;
     }
 };
@@ -37,9 +38,10 @@ RunFiles read_run(const fs::path& folder) {
     RunFiles run{nlohmann::json::parse(stream, nullptr, false), {}, folder};
     for (const char* key : {"results", "wall_seconds", "exit_reason", "flow_width_cells"})
         if (!run.record.is_object() || !run.record.contains(key))
-            throw UserError(fmt::format("{}: has no \"{}\"; expected the record of a finished run; run the study again "
-                                        "with --overwrite",
-                                        (folder / "run.json").string(), key));
+            throw UserError(
+                fmt::format("{}: has no \"{}\"; expected the record of a finished run; run the study again "
+                            "with --overwrite",
+                            (folder / "run.json").string(), key));
     run.rasters = read_rasters(folder);
     return run;
 }
@@ -98,9 +100,10 @@ CellFigures figures_of(const RunFiles& run, const RunFiles& finest, const Path& 
 void remark_on_ends(ConvergenceStudy& study) {
     for (std::size_t k = 0; k < study.runs.size(); ++k)
         if (study.ends[k] == "end")
-            study.remarks.push_back(fmt::format("on cells of {:g} m the simulated time ended the run: what it has for "
-                                                "a deposit may still move; raise time.end",
-                                                study.runs[k].cell));
+            study.remarks.push_back(
+                fmt::format("on cells of {:g} m the simulated time ended the run: what it has for "
+                            "a deposit may still move; raise time.end",
+                            study.runs[k].cell));
 }
 
 /// A flow that runs up an opposite slope leaves the path that water would take.

@@ -31,7 +31,7 @@ struct ConvergenceStudy {
     std::vector<CellFigures> figures;
     std::vector<std::string> ends;  ///< why each run ended
     std::vector<Variation> variations;
-    double footprint_depth = 0.1;   ///< [m]
+    double footprint_depth = 0.1;  ///< [m]
     ConvergenceRule rule;
     Verdict verdict;
     std::vector<std::string> remarks;

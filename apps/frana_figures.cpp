@@ -12,9 +12,9 @@
 #include "frana_figures.h"
 #include "io/gdal_reader.h"
 #include "run/folder/cutoff.h"
+#include "run/folder/run_3d.h"
 #include "run/folder/run_film.h"
 #include "run/folder/run_folder.h"
-#include "run/folder/run_3d.h"
 #include "terrain/part_of.h"
 #include "vtk_io/reader.h"
 
@@ -39,17 +39,19 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
     const fs::path file = run_dir / "run.json";
     const auto json = nlohmann::json::parse(text_of(file), nullptr, false);
     if (json.is_object() && json.value("exit_reason", nlohmann::json()) == "running")
-        throw UserError(fmt::format("{}: found a run that has not ended; expected a finished one; wait for its end or, "
-                                    "where it was killed, let it go on with `frana run CASE --out {} --resume`",
-                                    run_dir.string(), run_dir.string()));
+        throw UserError(
+            fmt::format("{}: found a run that has not ended; expected a finished one; wait for its end or, "
+                        "where it was killed, let it go on with `frana run CASE --out {} --resume`",
+                        run_dir.string(), run_dir.string()));
     try {
         source.title = json.at("title").get<std::string>();
         source.footer = json.at("caption").get<std::string>();
         source.footprint_depth = json.at("results").at("footprint_depth").get<double>();
     } catch (const nlohmann::json::exception&) {
-        throw UserError(fmt::format("{}: is not what a run leaves there; expected the record of a finished run; "
-                                    "run the case again",
-                                    file.string()));
+        throw UserError(
+            fmt::format("{}: is not what a run leaves there; expected the record of a finished run; "
+                        "run the case again",
+                        file.string()));
     }
 }
 
@@ -83,15 +85,16 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
     for (Index i = 0; i < run_case.count("barrier"); ++i) {
         const std::string table = fmt::format("barrier.{}.", i);
         BarrierTop top;
-        if (run_case.has(table + "top")) top.level = run_case.number(table + "top");
-        else if (run_case.has(table + "height")) top.height = run_case.number(table + "height");
+        if (run_case.has(table + "top"))
+            top.level = run_case.number(table + "top");
+        else if (run_case.has(table + "height"))
+            top.height = run_case.number(table + "height");
         source.barrier_tops.resize(source.barrier_tops.size() + made_by(run_case, table, source), top);
     }
     if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;
     const fs::path survey = run_case.path("survey.footprint");
     if (!fs::exists(survey)) {
-        warnings.push_back(
-            fmt::format("{}: the survey is not there any more and is left out", survey.string()));
+        warnings.push_back(fmt::format("{}: the survey is not there any more and is left out", survey.string()));
         return;
     }
     source.survey = GdalReader().read_survey(survey, source.bed.geometry.pixel_extent(), source.bed.crs_wkt, warnings);
@@ -215,9 +218,10 @@ FigureSource read_finished_run(const fs::path& run_dir, std::vector<std::string>
 
 int figures_command(const FiguresOptions& options) {
     const auto interrupted = [&] {
-        std::cerr << fmt::format("interrupted; the pictures that are there are whole; `frana figures {}` "
-                                 "draws all again\n",
-                                 options.run_dir.string())
+        std::cerr << fmt::format(
+                         "interrupted; the pictures that are there are whole; `frana figures {}` "
+                         "draws all again\n",
+                         options.run_dir.string())
                   << std::flush;
     };
     const Cutoff cutoff([&, add = adding_to_files(options.run_dir)] {

@@ -33,8 +33,7 @@ void shorten(Scene& scene, const std::optional<double>& until) {
 
 std::string overrides(const RunOptions& options) {
     std::string text;
-    for (const std::string& set : options.sets)
-        text += fmt::format("{}--set {}", text.empty() ? "" : " ", set);
+    for (const std::string& set : options.sets) text += fmt::format("{}--set {}", text.empty() ? "" : " ", set);
     if (options.until) text += fmt::format("{}--until {}", text.empty() ? "" : " ", *options.until);
     return text;
 }
@@ -42,8 +41,7 @@ std::string overrides(const RunOptions& options) {
 /// A failed run folder must not lose the case it was made from, so both come before the first step.
 void keep_case(const CaseFile& file, const fs::path& run_dir) {
     std::error_code not_there;
-    if (!fs::equivalent(file.file(), run_dir / "case.toml", not_there))
-        write_text(run_dir / "case.toml", file.text());
+    if (!fs::equivalent(file.file(), run_dir / "case.toml", not_there)) write_text(run_dir / "case.toml", file.text());
     write_text(run_dir / "resolved.toml", resolved_toml(file));
 }
 
@@ -64,10 +62,10 @@ void keep_meshes(const CaseFile& file, const Scene& scene, const fs::path& run_d
 }
 
 void say_what_runs(const RunRecord& record, const fs::path& run_dir) {
-    std::cout << fmt::format(
-        "{}: {} x {} nodes of {:.6g} m, {} particles, {:.6g} m3, {:.6g} s, {} thread{}; into {}\n",
-        record.title, record.grid.nx, record.grid.ny, record.grid.cell, record.particles,
-        record.release_volume, record.end, record.threads, record.threads == 1 ? "" : "s", run_dir.string());
+    std::cout << fmt::format("{}: {} x {} nodes of {:.6g} m, {} particles, {:.6g} m3, {:.6g} s, {} thread{}; into {}\n",
+                             record.title, record.grid.nx, record.grid.ny, record.grid.cell, record.particles,
+                             record.release_volume, record.end, record.threads, record.threads == 1 ? "" : "s",
+                             run_dir.string());
     for (const std::string& remark : record.warnings) std::cout << "  " << remark << '\n';
     std::cout << std::flush;
 }

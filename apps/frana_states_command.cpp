@@ -16,9 +16,10 @@ namespace {
 void refuse_unknown(const std::vector<std::string>& names) {
     for (const std::string& name : names)
         if (std::find(state_names().begin(), state_names().end(), name) == state_names().end())
-            throw UserError(fmt::format("states: found \"{}\"; expected overview, stress, profiles, survey, impact, "
-                                        "structure, phases or budgets; leave the name away for all that the run has",
-                                        name));
+            throw UserError(
+                fmt::format("states: found \"{}\"; expected overview, stress, profiles, survey, impact, "
+                            "structure, phases or budgets; leave the name away for all that the run has",
+                            name));
 }
 
 }  // namespace

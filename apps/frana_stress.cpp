@@ -59,7 +59,8 @@ void report(const Failure& failure, const StressOptions& options) {
     fmt::print(stderr, "{} scene {}: {}\n", word_of(failure.model), failure.n, text_of(failure.found));
     const Shrunk& shrunk = failure.shrunk;
     if (shrunk.trials == 0 || !shrunk.verdict.broken) return;
-    const std::filesystem::path folder = options.out / fmt::format("stress-{}-{}-{}", word_of(failure.model), options.seed, failure.n);
+    const std::filesystem::path folder =
+        options.out / fmt::format("stress-{}-{}-{}", word_of(failure.model), options.seed, failure.n);
     save_draft(folder, shrunk.draft, *shrunk.verdict.broken);
     fmt::print(stderr, "  shrunk in {} trials to {} particles, {} steps: frana stress --case {}/case.toml {}\n",
                shrunk.trials, shrunk.verdict.particles, shrunk.draft.steps, folder.string(),
@@ -72,8 +73,8 @@ std::set<std::string> known_failures(const std::filesystem::path& file) {
     if (file.empty()) return known;
     std::ifstream in(file);
     if (!in)
-        throw UserError(fmt::format("{}: cannot be read; expected lines of SEED MODEL SCENE INVARIANT; give another --known",
-                                    file.string()));
+        throw UserError(fmt::format(
+            "{}: cannot be read; expected lines of SEED MODEL SCENE INVARIANT; give another --known", file.string()));
     for (std::string line; std::getline(in, line);)
         if (!line.empty() && line[0] != '#') known.insert(line);
     return known;
@@ -85,7 +86,8 @@ Index new_failures(const Campaign& campaign, const StressOptions& options) {
     Index found = 0;
     for (const Failure& failure : campaign.failures)
         if (known.erase(fmt::format("{} {} {} {}", options.seed, word_of(failure.model), failure.n,
-                                    failure.found.invariant)) == 0) ++found;
+                                    failure.found.invariant)) == 0)
+            ++found;
     for (const std::string& mended : known) {
         unsigned long long seed = 0, n = 0;
         std::string model;
@@ -93,7 +95,8 @@ Index new_failures(const Campaign& campaign, const StressOptions& options) {
         const bool ran = seed == campaign.plan.seed && n >= campaign.plan.first &&
                          n < campaign.plan.first + static_cast<unsigned long long>(campaign.scenes) &&
                          model == word_of(model_of(campaign.plan.models, seed, n));
-        if (ran) fmt::print(stderr, "{}: {} does not fail any more; take the line out\n", options.known.string(), mended);
+        if (ran)
+            fmt::print(stderr, "{}: {} does not fail any more; take the line out\n", options.known.string(), mended);
     }
     return found;
 }
@@ -111,8 +114,8 @@ int stress_command(const StressOptions& options) {
     plan.seconds = options.seconds;
     plan.most_shrunk = options.shrunk;
     const Interrupt interrupt(Interrupt::Listen::signals);
-    const Campaign campaign = run(plan, [&](const Failure& failure) { report(failure, options); },
-                                  [&] { return interrupt.requested(); });
+    const Campaign campaign = run(
+        plan, [&](const Failure& failure) { report(failure, options); }, [&] { return interrupt.requested(); });
     fmt::print("{}", table_of(campaign));
     if (!options.json.empty()) write_text(options.json, json_of(campaign));
     if (interrupt.requested()) throw Interrupted("interrupted; the scenes so far are above");

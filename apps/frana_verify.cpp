@@ -32,9 +32,10 @@ std::vector<const Problem*> chosen(const std::vector<std::string>& names) {
         std::vector<std::string> known;
         for (const Problem& problem : verify::library()) known.push_back(problem.name);
         const std::string near = closest(name, known);
-        throw UserError(fmt::format("command line: found the unknown problem \"{}\"; expected one that `frana verify "
-                                    "--list` names; {}",
-                                    name, near.empty() ? "see the list" : "did you mean " + near + "?"));
+        throw UserError(
+            fmt::format("command line: found the unknown problem \"{}\"; expected one that `frana verify "
+                        "--list` names; {}",
+                        name, near.empty() ? "see the list" : "did you mean " + near + "?"));
     }
     if (names.empty())
         for (const Problem& problem : verify::library()) problems.push_back(&problem);
@@ -52,9 +53,10 @@ std::vector<std::string> wrong_references(const Problem& problem) {
     if (!problem.residuals) return wrong;
     for (const verify::Residual& r : problem.residuals())
         if (!(std::abs(r.value) <= r.bound))
-            wrong.push_back(fmt::format("{}: the exact answer fails its own check: {} is {:.3g}, at most {:.3g} is "
-                                        "allowed",
-                                        problem.name, r.what, r.value, r.bound));
+            wrong.push_back(
+                fmt::format("{}: the exact answer fails its own check: {} is {:.3g}, at most {:.3g} is "
+                            "allowed",
+                            problem.name, r.what, r.value, r.bound));
     return wrong;
 }
 
@@ -64,8 +66,9 @@ std::string today() {
 }
 
 /// Runs one problem, prints its rows and adds them to the table, gates that it misses below them.
-std::vector<Measurement> run_problem(const Problem& problem, const verify::Setup& setup, const std::vector<Index>& grids,
-                                     std::string& table, std::vector<std::string>& complaints) {
+std::vector<Measurement> run_problem(const Problem& problem, const verify::Setup& setup,
+                                     const std::vector<Index>& grids, std::string& table,
+                                     std::vector<std::string>& complaints) {
     for (std::string& text : wrong_references(problem)) complaints.push_back(std::move(text));
     auto measured = verify::measure(problem, setup, grids);
     for (const Measurement& m : measured) {
@@ -154,8 +157,8 @@ int verify_command(const VerifyOptions& options) {
     for (const Problem* problem : problems) {
         if (problem->takes_minutes && options.names.empty()) continue;
         if ((problem->in_3d || !problem->has_presets) && options.names.empty() && options.preset != "default") continue;
-        const auto measured = run_problem(*problem, setup, grids.empty() ? verify::grids_of(*problem, options.coarse) : grids, table,
-                                          complaints);
+        const auto measured = run_problem(
+            *problem, setup, grids.empty() ? verify::grids_of(*problem, options.coarse) : grids, table, complaints);
         all.insert(all.end(), measured.begin(), measured.end());
     }
     if (!options.json.empty()) write_text(options.json, verify::json_of(all));

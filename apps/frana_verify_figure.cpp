@@ -22,7 +22,11 @@ namespace {
 using verify::Measurement;
 using verify::Problem;
 
-struct Way { std::string name, preset; int per_side; double split_length; };
+struct Way {
+    std::string name, preset;
+    int per_side;
+    double split_length;
+};
 
 /// Presets and points a cell that the figure compares.
 const std::vector<Way>& ways() {
@@ -81,7 +85,8 @@ void draw_work_precision(std::vector<const Problem*> problems, const std::filesy
     figure.log_x = true;
     figure.width = 1400;
     figure.height = 250 + 500 * static_cast<int>(problems.size());
-    figure.footer = "frana " FRANA_VERSION ", least of three runs; other codes measured on the same kind of machine, "
+    figure.footer = "frana " FRANA_VERSION
+                    ", least of three runs; other codes measured on the same kind of machine, "
                     "relative errors on the same exact solutions";
     for (const Problem* problem : problems) {
         const std::string quantity = quantity_of(*problem);
@@ -154,8 +159,8 @@ MapFigure block_figure(const verify::ShownBlock& shown) {
     figure.title = shown.title;
     figure.field_label = "damage [1]";
     figure.range = {0.0, 1.0};
-    figure.footer = fmt::format("frana {}: structured columns, cells of {:g} m, {} columns, mean damage {:.3f}", FRANA_VERSION,
-                                shown.scene.grid.cell, flow.status().points, flow.status().damage);
+    figure.footer = fmt::format("frana {}: structured columns, cells of {:g} m, {} columns, mean damage {:.3f}",
+                                FRANA_VERSION, shown.scene.grid.cell, flow.status().points, flow.status().damage);
     return figure;
 }
 

@@ -33,7 +33,8 @@ int main(int argc, char** argv) try {
         return app.exit(error) == 0 ? 0 : 2;
     }
     if (list || name.empty() || out.empty()) {
-        for (const frana::NamedScene& scene : frana::made_scenes()) std::printf("%-16s %s\n", scene.name, scene.meaning);
+        for (const frana::NamedScene& scene : frana::made_scenes())
+            std::printf("%-16s %s\n", scene.name, scene.meaning);
         if (list) return 0;
         throw frana::UserError("frana_terrain: give a NAME of the list above and --out DIR");
     }

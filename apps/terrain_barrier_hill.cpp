@@ -27,9 +27,7 @@ double passing(double s, double begin, double end, double from, double to) {
 }
 
 /// Slopes along the radius from the summit, at a distance s from the release's centre towards the foot [1].
-double slope_above(double s) {
-    return passing(s, -170.0, -120.0, 0.0, 0.55) * passing(s, -60.0, -30.0, 1.0, 0.0);
-}
+double slope_above(double s) { return passing(s, -170.0, -120.0, 0.0, 0.55) * passing(s, -60.0, -30.0, 1.0, 0.0); }
 double ramp_slope(double s) {
     const double terrace = passing(s, -60.0, -30.0, 0.0, 0.31), ramp = passing(s, 98.0, 116.0, 0.0, 0.85);
     const double apron = passing(s, 132.0, 150.0, 0.0, -1.04), plain = passing(s, 155.0, 180.0, 0.0, -0.10);
@@ -45,8 +43,7 @@ class Fall {
 public:
     template <class Slope>
     explicit Fall(const Slope& slope) {
-        for (double s = kEnd; s > kBegin; s -= kStep)
-            z_.push_back(z_.back() + kStep * slope(s - 0.5 * kStep));
+        for (double s = kEnd; s > kBegin; s -= kStep) z_.push_back(z_.back() + kStep * slope(s - 0.5 * kStep));
     }
     double at(double s) const {
         const double place = std::clamp((kEnd - s) / kStep, 0.0, static_cast<double>(z_.size()) - 2.0);
@@ -66,13 +63,11 @@ public:
         const Vec2 out = Vec2(x, y) - kSummit, way = (kRelease - kSummit).normalized();
         const double s = out.norm() - (kRelease - kSummit).norm();
         const double across = out.dot(way) > 0.0 ? out.x() * way.y() - out.y() * way.x() : 1e3;
-        const double flank =
-            smooth_step((std::abs(across) - 28.0) / 40.0);  // 0 on the ramp, 1 on the cliffs
-        const double spurs = 4.0 * std::sin(std::atan2(out.y(), out.x()) * 23.0) *
-                             smooth_step((s - 30.0) / 60.0) * smooth_step((190.0 - s) / 60.0);
+        const double flank = smooth_step((std::abs(across) - 28.0) / 40.0);  // 0 on the ramp, 1 on the cliffs
+        const double spurs = 4.0 * std::sin(std::atan2(out.y(), out.x()) * 23.0) * smooth_step((s - 30.0) / 60.0) *
+                             smooth_step((190.0 - s) / 60.0);
         const double swells = std::sin(x / 23.0) * std::sin(y / 31.0 + 0.7);
-        const double hollow =
-            1.5 * std::min(1.0, across * across / (28.0 * 28.0)) * smooth_step((170.0 - s) / 40.0);
+        const double hollow = 1.5 * std::min(1.0, across * across / (28.0 * 28.0)) * smooth_step((170.0 - s) / 40.0);
         return (1.0 - flank) * ramp_.at(s) + flank * (cliff_.at(s) + spurs + swells) + hollow;
     }
 
@@ -114,8 +109,7 @@ MadeScene barrier_hill() {
     Raster dem = on_nodes(kWidth, kHeight, kCell, [&](double x, double y) { return level + hill.at(x, y); });
     Raster depth = dem;
     for (double& h : depth.values) h *= kShare;
-    return {{{"dem.tif", std::move(dem)}, {"depth.tif", std::move(depth)}},
-            {{"release.geojson", release_outline()}}};
+    return {{{"dem.tif", std::move(dem)}, {"depth.tif", std::move(depth)}}, {{"release.geojson", release_outline()}}};
 }
 
 }  // namespace frana

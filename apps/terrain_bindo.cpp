@@ -12,23 +12,22 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kWidth = 1500.0, kHeight = 1350.0, kCell = 2.0;  // [m]; the slope falls to the south
-constexpr double kMiddle = 675.0;     // x of the mass's axis: the paper's profile line [m]
-constexpr double kToe = 520.0;        // y of the mass's lower end [m]
-constexpr double kLength = 400.0;     // of the mass along the slope, on the map [m]
-constexpr double kVolume = 1.2e6;     // [m^3]
-constexpr double kDepth = 38.0;       // [m]
-constexpr double kShape = 1.7;        // depth = kDepth (1 - r^kShape)
-constexpr double kDeepest = 0.15;     // where it is deepest, in lengths from the toe
-constexpr double kFloor = 480.0;      // elevation of the valley floor [m]
-constexpr double kFloorEdge = 440.0;  // y where the slope meets the floor, +- 40 m
-constexpr double kRiver = 365.0;      // y of the river's axis at kMiddle [m]
+constexpr double kMiddle = 675.0;                                 // x of the mass's axis: the paper's profile line [m]
+constexpr double kToe = 520.0;                                    // y of the mass's lower end [m]
+constexpr double kLength = 400.0;                                 // of the mass along the slope, on the map [m]
+constexpr double kVolume = 1.2e6;                                 // [m^3]
+constexpr double kDepth = 38.0;                                   // [m]
+constexpr double kShape = 1.7;                                    // depth = kDepth (1 - r^kShape)
+constexpr double kDeepest = 0.15;                                 // where it is deepest, in lengths from the toe
+constexpr double kFloor = 480.0;                                  // elevation of the valley floor [m]
+constexpr double kFloorEdge = 440.0;                              // y where the slope meets the floor, +- 40 m
+constexpr double kRiver = 365.0;                                  // y of the river's axis at kMiddle [m]
 
 /// Slope along the fall line [1].
 double slope_at(double y) {
     const double s = (y - kToe) / kLength;
     const double front = std::tan(31.5 * kDegree), back = std::tan(25.0 * kDegree);
-    const double slope =
-        front + (back - front) * smooth_step((s - 0.2) / 0.4) - 0.25 * smooth_step((s - 1.4) / 0.6);
+    const double slope = front + (back - front) * smooth_step((s - 0.2) / 0.4) - 0.25 * smooth_step((s - 1.4) / 0.6);
     return 0.01 + (slope - 0.01) * smooth_step((y - (kFloorEdge - 40.0)) / 80.0);
 }
 
@@ -36,8 +35,7 @@ double slope_at(double y) {
 class FallLine {
 public:
     FallLine() {
-        for (int k = 0; k * kCell < kHeight + 100.0; ++k)
-            z_.push_back(z_.back() + kCell * slope_at((k + 0.5) * kCell));
+        for (int k = 0; k * kCell < kHeight + 100.0; ++k) z_.push_back(z_.back() + kCell * slope_at((k + 0.5) * kCell));
     }
     double at(double y) const {
         const double place = std::max(0.0, y / kCell);
@@ -80,8 +78,7 @@ double ground(const FallLine& line, double x, double y) {
 /// Depth of the standing mass, up to the factor that makes the volume right.
 double mass_shape(double x, double y) {
     // Width such that the integral over the ellipse, kDepth * area * kShape/(kShape + 2), is the volume.
-    const double width =
-        4.0 * kVolume * (kShape + 2.0) / (kDepth * kShape * 3.14159265358979323846 * kLength);
+    const double width = 4.0 * kVolume * (kShape + 2.0) / (kDepth * kShape * 3.14159265358979323846 * kLength);
     const double s = (y - kToe) / kLength;
     const double along = s < kDeepest ? 1.0 - s / kDeepest : (s - kDeepest) / (1.0 - kDeepest);
     const double across = (x - kMiddle) / (0.5 * width);

@@ -17,8 +17,8 @@ struct CloseDataset {
 };
 
 [[noreturn]] void fail(const std::filesystem::path& file) {
-    throw UserError(fmt::format("{}: cannot be written ({}); check the folder and the space on the disk",
-                                file.string(), CPLGetLastErrorMsg()));
+    throw UserError(fmt::format("{}: cannot be written ({}); check the folder and the space on the disk", file.string(),
+                                CPLGetLastErrorMsg()));
 }
 
 }  // namespace
@@ -29,12 +29,10 @@ void write_made_raster(const std::filesystem::path& file, const Raster& raster) 
     const int nx = static_cast<int>(grid.nx), ny = static_cast<int>(grid.ny);
     AtomicFile target(file);
     const char* options[] = {"COMPRESS=DEFLATE", "PREDICTOR=3", nullptr};
-    std::unique_ptr<GDALDataset, CloseDataset> dataset(
-        GetGDALDriverManager()->GetDriverByName("GTiff")->Create(target.path().c_str(), nx, ny, 1,
-                                                                 GDT_Float64, const_cast<char**>(options)));
+    std::unique_ptr<GDALDataset, CloseDataset> dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+        target.path().c_str(), nx, ny, 1, GDT_Float64, const_cast<char**>(options)));
     if (!dataset) fail(file);
-    double transform[6] = {grid.x0 - 0.5 * grid.cell,      grid.cell, 0.0,
-                           grid.y_max() + 0.5 * grid.cell, 0.0,       -grid.cell};
+    double transform[6] = {grid.x0 - 0.5 * grid.cell, grid.cell, 0.0, grid.y_max() + 0.5 * grid.cell, 0.0, -grid.cell};
     if (dataset->SetGeoTransform(transform) != CE_None) fail(file);
     GDALRasterBand* band = dataset->GetRasterBand(1);
     band->SetNoDataValue(Raster::nodata);
@@ -64,8 +62,8 @@ void write_scene(const MadeScene& scene, const std::filesystem::path& folder) {
     std::error_code problem;
     std::filesystem::create_directories(folder, problem);
     if (problem)
-        throw UserError(fmt::format("{}: the folder cannot be made ({}); choose another with --out",
-                                    folder.string(), problem.message()));
+        throw UserError(fmt::format("{}: the folder cannot be made ({}); choose another with --out", folder.string(),
+                                    problem.message()));
     for (const MadeRaster& made : scene.rasters) write_made_raster(folder / made.file, made.raster);
     for (const MadeOutline& made : scene.outlines) write_made_outline(folder / made.file, made.ring);
 }

@@ -27,9 +27,7 @@ std::vector<Vec2> ellipse(const Vec2& centre, double half_x, double half_y) {
 }  // namespace
 
 MadeScene lake_z1() {
-    const auto z = [](double x, double y) {
-        return 5.0 * std::exp(-0.4 * (squared(x - 5.0) + squared(y - 5.0)));
-    };
+    const auto z = [](double x, double y) { return 5.0 * std::exp(-0.4 * (squared(x - 5.0) + squared(y - 5.0))); };
     return {{{"z1.tif", on_nodes(10.0, 10.0, 0.2, z)}}, {{"lake.geojson", rectangle(0.0, 0.0, 10.0, 10.0)}}};
 }
 
@@ -44,8 +42,7 @@ MadeScene obstacle() {
     const auto z = [](double x, double y) {
         return 60.0 - x / 3.0 + 15.0 * std::exp(-(squared(x - 50.0) + squared(y - 10.0)) / 7.0);
     };
-    return {{{"dem.tif", on_nodes(150.0, 20.0, 1.0, z)}},
-            {{"release.geojson", rectangle(5.0, 3.0, 42.5, 17.0)}}};
+    return {{{"dem.tif", on_nodes(150.0, 20.0, 1.0, z)}}, {{"release.geojson", rectangle(5.0, 3.0, 42.5, 17.0)}}};
 }
 
 MadeScene wall() {
@@ -126,7 +123,8 @@ MadeScene debris_flow() {
         drop.push_back(drop.back() + cell * (head_slope + (mouth_slope - head_slope) * smooth_step(x / mouth)));
     }
     const auto z = [&](double x, double y) {
-        const double across = y - middle, bend = 25.0 * std::sin(x / 140.0) * smooth_step(x / 200.0) * smooth_step((1000.0 - x) / 200.0);
+        const double across = y - middle,
+                     bend = 25.0 * std::sin(x / 140.0) * smooth_step(x / 200.0) * smooth_step((1000.0 - x) / 200.0);
         // Flanks of 27 degrees that round off at the bottom; they are gone 150 m below the mouth, where a cone begins.
         const double flank = std::sqrt(squared(0.5 * (across - bend)) + 9.0) - 3.0;
         const double share = smooth_step((mouth + 150.0 - x) / 300.0), cone = 0.04 * std::abs(across);

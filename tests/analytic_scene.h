@@ -19,6 +19,8 @@ inline void run_to(Simulation& simulation, double end) {
 }
 
 /// |V_end + V_left - V_0| / V_0 from the masses.
-inline double mass_error(const Status& now, double initial) { return std::abs(now.mass + now.mass_left - initial) / initial; }
+inline double mass_error(const Status& now, double initial) {
+    return std::abs(now.mass + now.mass_left - initial) / initial;
+}
 
 }  // namespace frana::test

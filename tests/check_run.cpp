@@ -62,8 +62,7 @@ double from_history(const std::filesystem::path& run, const Row& path) {
     if (path.at(2) == "last") return std::stod(rows.back().at(place));
     if (path.at(2) != "max") throw std::runtime_error(path.at(2) + ": expected max or last");
     double largest = 0.0;
-    for (std::size_t i = 1; i < rows.size(); ++i)
-        largest = std::max(largest, std::abs(std::stod(rows[i].at(place))));
+    for (std::size_t i = 1; i < rows.size(); ++i) largest = std::max(largest, std::abs(std::stod(rows[i].at(place))));
     return largest;
 }
 
@@ -106,8 +105,8 @@ struct Pixels {
 Pixels read_raster(const std::filesystem::path& run, const std::string& name) {
     GDALAllRegister();
     const std::string file = (run / "rasters" / (name + ".tif")).string();
-    const std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> raster(
-        GDALDataset::Open(file.c_str()), [](GDALDataset* dataset) { GDALClose(dataset); });
+    const std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> raster(GDALDataset::Open(file.c_str()),
+                                                                      [](GDALDataset* dataset) { GDALClose(dataset); });
     if (!raster) throw std::runtime_error(file + ": cannot be read");
     Pixels p;
     p.nx = raster->GetRasterXSize(), p.ny = raster->GetRasterYSize();
@@ -131,7 +130,8 @@ double quantile_x(const Pixels& p, double share) {
     const double wanted = share * sums.back();
     std::size_t n = 0;
     while (n + 2 < sums.size() && sums[n + 1] < wanted) ++n;
-    if (!(sums[n + 1] > sums[n])) throw std::runtime_error("quantile_x: expected a raster with material and a share above 0");
+    if (!(sums[n + 1] > sums[n]))
+        throw std::runtime_error("quantile_x: expected a raster with material and a share above 0");
     return p.x0 + p.width * (static_cast<double>(n) + (wanted - sums[n]) / (sums[n + 1] - sums[n]));
 }
 
@@ -163,8 +163,7 @@ double obtained(const std::filesystem::path& run, const std::string& quantity) {
     if (path[0] == "profile") return from_profile(run, path);
     if (path[0] == "raster") return from_raster(run, path);
     if (path[0] == "table") return from_table(run, path);
-    if (path[0] == "convert")
-        return from_json(run / "convert" / (path.at(1) + ".conservation.json"), path.at(2));
+    if (path[0] == "convert") return from_json(run / "convert" / (path.at(1) + ".conservation.json"), path.at(2));
     if (path[0] == "compare") return from_json(run / "compare.json", path.at(1));
     return from_json(run / "run.json", quantity);
 }

@@ -95,7 +95,8 @@ TEST_CASE("Material that is let go where a barrier stands is on it, and gains no
         const Status first = run.frame().status;
         run_to(run, 0.1);
         const Status now = run.frame().status;
-        const double gained = (now.kinetic - first.kinetic) + (now.potential - first.potential) + (now.stored - first.stored);
+        const double gained =
+            (now.kinetic - first.kinetic) + (now.potential - first.potential) + (now.stored - first.stored);
         // Points inside were put on top of it: a quarter of them gained up to 2 m.
         CHECK(gained < 0.02 * now.mass * 9.81);
         const MaterialPoints& q = run.points()->body().points;
@@ -346,7 +347,8 @@ TEST_CASE("A barrier's mean force begins within a step, and its raw peak is hori
     CHECK(read_table(scratch.path() / "barriers" / "dam.csv").column("mean_force").back() == Approx(1.0));
 }
 
-TEST_CASE("A barrier's mean force goes on from what was measured before the run was taken up again", "[barrier][resume]") {
+TEST_CASE("A barrier's mean force goes on from what was measured before the run was taken up again",
+          "[barrier][resume]") {
     const FreshFolder scratch;
     std::vector<BarrierSummary> summaries, summaries_after;
     Barriers whole(scratch.path() / "whole", {"dam"}, summaries), cut(scratch.path() / "cut", {"dam"}, summaries_after);
@@ -406,8 +408,9 @@ TEST_CASE("Points that leave their window before a wall become columns on their 
     for (const std::string& remark : run.remarks()) CHECK(remark.find("on ground that barriers") == std::string::npos);
 }
 
-TEST_CASE("Points that no cell of columns lies before are remarked upon when they stand where barriers raise the ground",
-          "[barrier]") {
+TEST_CASE(
+    "Points that no cell of columns lies before are remarked upon when they stand where barriers raise the ground",
+    "[barrier]") {
     // A lane of 0.5 m between two walls, all along: columns on cells of 0.5 m see no lane.
     Scene scene = channel(1.0);
     scene.particles = {};
@@ -421,7 +424,8 @@ TEST_CASE("Points that no cell of columns lies before are remarked upon when the
     run_to(run, 0.1);
     REQUIRE(run.points()->status().points == 0);
     CHECK(run.columns().status().mass == Approx(mass).epsilon(1e-13));
-    const std::string expected = fmt::format("{:.6g} m3 became columns on ground that barriers or walls in holes raise", mass / scene.density);
+    const std::string expected =
+        fmt::format("{:.6g} m3 became columns on ground that barriers or walls in holes raise", mass / scene.density);
     const std::vector<std::string> remarks = run.remarks();
     CHECK(std::any_of(remarks.begin(), remarks.end(),
                       [&](const std::string& remark) { return remark.rfind(expected, 0) == 0; }));

@@ -69,7 +69,8 @@ double worst_momentum(StagedRun& run, double end, double start, double speed) {
         run.advance(end);
         const Status& now = run.status();
         for (std::size_t axis = 0; axis < 2; ++axis) {
-            const double left = now.momentum[axis] + now.momentum_left[axis] - now.impulse[axis] - (axis == 0 ? start : 0.0);
+            const double left =
+                now.momentum[axis] + now.momentum_left[axis] - now.impulse[axis] - (axis == 0 ? start : 0.0);
             worst = std::max(worst, std::abs(left) / ((now.mass + now.mass_left) * speed));
         }
     }
@@ -126,7 +127,8 @@ TEST_CASE("A window in the middle of a lake rests between the columns around it,
     run_to(run, 1.05);
     REQUIRE(q.count() == 28 * 20 * 4);
     double worst = 0.0;
-    for (Index p = 0; p < q.count(); ++p) worst = std::max(worst, (run.points()->position(p) - start.at(q.id[p])).norm());
+    for (Index p = 0; p < q.count(); ++p)
+        worst = std::max(worst, (run.points()->position(p) - start.at(q.id[p])).norm());
     CHECK(worst < 0.02 * kCell);  // 1.5 cells without what both sides show each other
 }
 
@@ -144,7 +146,8 @@ TEST_CASE("A uniform flow crosses the window's edge within 2 % of its depth", "[
     for (double time = 0.4; time < 1.45; time += 0.2) {
         momentum = std::max(momentum, worst_momentum(run, time, start, 4.0));
         const std::vector<Row> rows = rows_of(run, 60);
-        for (Index k = 16; k <= 26; ++k) worst = std::max(worst, std::abs(rows[static_cast<std::size_t>(k)].mass / full - 1.0));
+        for (Index k = 16; k <= 26; ++k)
+            worst = std::max(worst, std::abs(rows[static_cast<std::size_t>(k)].mass / full - 1.0));
     }
     CHECK(worst < 0.02);
     CHECK(momentum < 1e-12);
@@ -169,7 +172,8 @@ TEST_CASE("Columns that flow in have their pressure at the bed within 5 % right 
     CHECK(pressure / (points * whole) == Approx(1.0).epsilon(slope > 0.0 ? 0.05 : 0.01));
 }
 
-TEST_CASE("Momentum closes to round-off at an edge with a barrier across it, with every transfer, and for sand", "[stages]") {
+TEST_CASE("Momentum closes to round-off at an edge with a barrier across it, with every transfer, and for sand",
+          "[stages]") {
     Scene scene = sheet(0.2, 1.0, 4.0);
     Barrier post;
     post.outline.parts.emplace_back();
@@ -291,7 +295,8 @@ TEST_CASE("Where a 3D stage ends while columns go on beside it, none of them get
     CHECK(run.frame().status.momentum[0] == Approx(then + mass * g * (1.7 - before)).epsilon(2e-3));
 }
 
-TEST_CASE("Points that lie against a barrier when their stage ends become columns before it, and gain no energy", "[stages]") {
+TEST_CASE("Points that lie against a barrier when their stage ends become columns before it, and gain no energy",
+          "[stages]") {
     Scene scene = tank(
         40, [](double, double) { return 0.0; }, [](double x, double) { return x > 8.0 && x < 18.0 ? 1.0 : 0.0; }, 0.0);
     scene.particles.vx.assign(scene.particles.x.size(), 6.0);

@@ -37,8 +37,8 @@ Structure grains(bool hydrostatic) {
 
 /// What two runs differ by.
 struct Apart {
-    double depth;     ///< sum |h - h'| / sum h [1]
-    double momentum;  ///< sum |h v - h' v'| / sum |h v| [1]
+    double depth;               ///< sum |h - h'| / sum h [1]
+    double momentum;            ///< sum |h v - h' v'| / sum |h v| [1]
     Index points, points_more;  ///< of the flow; of the columns beyond those
 };
 
@@ -67,7 +67,8 @@ Apart apart(Scene scene, double dt, int steps) {
             depth += std::abs(x[0] - y[0]), depths += x[0];
             momentum += (x - y).tail<2>().norm(), momenta += x.tail<2>().norm();
         }
-    return {depth / depths, momentum / momenta, flow.status().particles, columns.status().points - flow.status().particles};
+    return {depth / depths, momentum / momenta, flow.status().particles,
+            columns.status().points - flow.status().particles};
 }
 
 void go_to(Simulation& run, double time) {
@@ -118,7 +119,8 @@ TEST_CASE("Steps are counted for each of a flow whose waves run at sqrt(g h)", "
         for (Index p = 0; p < q.count(); ++p)
             signal = std::max(signal, std::hypot(q.vx[p], q.vy[p]) + std::sqrt(q.normal_gravity[p] * q.layer[p]));
         // THEORY (56) of the depth-averaged flow.
-        steps += flow.longest_step() * (signal + std::sqrt(signal * signal + 2.0 * scene.gravity * reach)) / (2.0 * reach);
+        steps +=
+            flow.longest_step() * (signal + std::sqrt(signal * signal + 2.0 * scene.gravity * reach)) / (2.0 * reach);
         flow.advance(1e9);
         CHECK(flow.sub_cycling() == Approx(n / steps).epsilon(1e-13));
     }
@@ -144,7 +146,8 @@ TEST_CASE("A pile of grains below its angle of friction does not move by one bit
     CHECK(std::equal(y.begin(), y.end(), q.y.begin(), q.y.end()));
 }
 
-TEST_CASE("Grains that spread, split and meet a wall have the same bits for any number of threads", "[structured][grains][threads]") {
+TEST_CASE("Grains that spread, split and meet a wall have the same bits for any number of threads",
+          "[structured][grains][threads]") {
     Scene scene = box_on(0.4, 0.2);
     scene.sides = Sides::wall;
     scene.structure = grains(GENERATE(true, false));
@@ -198,11 +201,13 @@ TEST_CASE("A kept run of grains splits no lighter columns than it did before", "
     CHECK(state_bits(whole) == state_bits(resumed));
 }
 
-TEST_CASE("The mass at the start is as exact as the later ones, however many columns there are", "[structured][grains]") {
+TEST_CASE("The mass at the start is as exact as the later ones, however many columns there are",
+          "[structured][grains]") {
     Scene scene = box_on(0.4, 0.2);
     scene.structure = grains(true);
     scene.particles = {};
-    fill(scene, [](double x, double y) { return x > 15 && x < 35 && y > 15 && y < 35 ? 2.0 : 0.0; }, 16);
+    fill(
+        scene, [](double x, double y) { return x > 15 && x < 35 && y > 15 && y < 35 ? 2.0 : 0.0; }, 16);
     REQUIRE(scene.particles.count() > 90000);
     StructuredFlow flow(structured_scene(scene));
     const double first = flow.status().mass;

@@ -46,8 +46,15 @@ double energy(const Status& s) { return s.kinetic + s.potential + s.dissipated +
 
 TEST_CASE("Holes are nodes without data that the terrain surrounds, by corners too", "[holes]") {
     Raster bed = Raster::filled({9, 7, 0.0, 0.0, 1.0}, 1.0);
-    for (const auto& [i, j] : {std::pair<Index, Index>{0, 3}, {1, 3}, {2, 4},           // reaches the side by a corner
-                               {4, 1}, {5, 2}, {4, 4}, {7, 5}, {6, 5}, {7, 4}})
+    for (const auto& [i, j] : {std::pair<Index, Index>{0, 3},
+                               {1, 3},
+                               {2, 4},  // reaches the side by a corner
+                               {4, 1},
+                               {5, 2},
+                               {4, 4},
+                               {7, 5},
+                               {6, 5},
+                               {7, 4}})
         bed.at(i, j) = Raster::nodata;
     const Holes holes = holes_of(bed);
     CHECK(holes.count == 3);
@@ -129,9 +136,10 @@ TEST_CASE("What is lost in open holes is a remark with its number, what leaves t
     run_to(simulation, 2.0);
     const double in_hole = simulation.status().mass_left;  // nothing has come to the end of the terrain yet
     REQUIRE(in_hole > 0.0);
-    const std::string expected =
-        fmt::format("boundary.holes: {:.6g} kg, {:.3g} % of the mass, left where the elevation model has no data inside "
-                    "the terrain", in_hole, 100.0 * in_hole / mass);
+    const std::string expected = fmt::format(
+        "boundary.holes: {:.6g} kg, {:.3g} % of the mass, left where the elevation model has no data inside "
+        "the terrain",
+        in_hole, 100.0 * in_hole / mass);
     REQUIRE(simulation.remarks().size() == 1);
     CHECK(simulation.remarks()[0].find(expected) == 0);
     run_to(simulation, 6.0);

@@ -27,7 +27,8 @@ constexpr double kFlood = 45.0 + 42.5 + 37.5;  // [m3]
 
 /// A flood onto a slope where nothing is, or where a slab slides already.
 Scene slope(bool slab) {
-    Scene scene = scene_on(90, 45, 1.0, [](double x, double y) { return 40.0 - 0.3 * x + 0.004 * (y - 22) * (y - 22); });
+    Scene scene =
+        scene_on(90, 45, 1.0, [](double x, double y) { return 40.0 - 0.3 * x + 0.004 * (y - 22) * (y - 22); });
     scene.bed_law = bed::Voellmy{0.1, 300.0};
     scene.inflows = {flood()};
     if (slab) fill(scene, [](double x, double y) { return std::hypot(x - 35, y - 22) < 8 ? 1.0 : 0.0; });
@@ -92,7 +93,8 @@ TEST_CASE("The volume of an inflow is its table's at each step, up to one row, a
 }
 
 TEST_CASE("A jet brings the momentum of its discharge and speed", "[inflow]") {
-    Scene scene = scene_on(140, 160, 1.0, [](double, double) { return 3.0; }, -40.0, -80.0);  // nothing comes to its edge
+    Scene scene = scene_on(
+        140, 160, 1.0, [](double, double) { return 3.0; }, -40.0, -80.0);  // nothing comes to its edge
     scene.inflows = {flood()};
     double east = 0.0, north = 0.0;  // density times the integral of discharge, speed and direction
     for (const InflowRow& row : rows_of(scene.inflows[0])) {
@@ -101,7 +103,8 @@ TEST_CASE("A jet brings the momentum of its discharge and speed", "[inflow]") {
     }
     SECTION("without weight nothing changes it") {
         scene.gravity = 1e-9;
-        scene.scheme.viscosity_linear = scene.scheme.viscosity_quadratic = 0.0;  // it pushes too, where rows of the bend meet
+        scene.scheme.viscosity_linear = scene.scheme.viscosity_quadratic =
+            0.0;  // it pushes too, where rows of the bend meet
         DepthAveraged run(scene);
         run_to(run, 6.5);
         const Status now = run.frame().status;
@@ -140,7 +143,8 @@ TEST_CASE("Rows do not hang on the steps", "[inflow]") {
     CHECK(whole == half);
 }
 
-TEST_CASE("An inflow goes on in the middle of its table with the same bits, on any number of threads", "[inflow][resume]") {
+TEST_CASE("An inflow goes on in the middle of its table with the same bits, on any number of threads",
+          "[inflow][resume]") {
     const Threads restored;
     for (const bool slab : {false, true}) {
         const Scene scene = slope(slab);
@@ -187,7 +191,8 @@ TEST_CASE("A run waits for what is still to come in", "[inflow]") {
     Scene scene = scene_on(60, 45, 1.0, [](double x, double) { return 40.0 - 0.1 * x; });
     scene.bed_law = bed::Coulomb{0.6};
     Inflow inflow = flood();
-    inflow.time = {2.0, 3.0, 20.0, 21.0}, inflow.discharge = {10.0, 0.0, 0.0, 10.0}, inflow.speed = {2.0, 2.0, 2.0, 2.0};
+    inflow.time = {2.0, 3.0, 20.0, 21.0}, inflow.discharge = {10.0, 0.0, 0.0, 10.0},
+    inflow.speed = {2.0, 2.0, 2.0, 2.0};
     scene.inflows = {inflow};
     DepthAveraged simulation(scene);
     Observers observers;
@@ -242,7 +247,8 @@ TEST_CASE("An inflow goes on where the terrain grows in the middle of its table,
     while (part.status().time < 62.0) {
         const Index before = part.held().i0;
         part.advance(62.0);
-        grew_meanwhile = grew_meanwhile || (part.held().i0 < before && part.more_comes() && part.status().mass_in > 0.0);
+        grew_meanwhile =
+            grew_meanwhile || (part.held().i0 < before && part.more_comes() && part.status().mass_in > 0.0);
         CHECK(std::abs(budget(first, part.status()).mass_error) < 1e-13);
     }
     CHECK(grew_meanwhile);

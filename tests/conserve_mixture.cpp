@@ -36,7 +36,8 @@ struct Basin {
         std::vector<double> bound(static_cast<std::size_t>(g.size()));
         for (Index j = 0; j < g.ny; ++j)
             for (Index i = 0; i < g.nx; ++i)
-                if (body.active.in_work[static_cast<std::size_t>((j + kTile) / kTile * body.grid.tiles_x() + (i + kTile) / kTile)])
+                if (body.active.in_work[static_cast<std::size_t>((j + kTile) / kTile * body.grid.tiles_x() +
+                                                                 (i + kTile) / kTile)])
                     bound[static_cast<std::size_t>(j * g.nx + i)] = body.moved[body.grid.at(i, j)].depth;
         scene.water.start = [=, bed = scene.water.bed](double x, double y) {
             const Index i = std::lround((x - g.x0) / g.cell), j = std::lround((y - g.y0) / g.cell);
@@ -76,7 +77,8 @@ TEST_CASE("V14: a lake rests over a bumpy bed with a body in it, its columns at 
     Basin basin(0.8, 1000.0, 0.0);
     const auto bed = [](double x, double y) { return 0.15 * std::sin(1.1 * x + 0.4) * std::cos(0.7 * y); };
     const auto slope = [](double x, double y) {
-        return Vec2(0.165 * std::cos(1.1 * x + 0.4) * std::cos(0.7 * y), -0.105 * std::sin(1.1 * x + 0.4) * std::sin(0.7 * y));
+        return Vec2(0.165 * std::cos(1.1 * x + 0.4) * std::cos(0.7 * y),
+                    -0.105 * std::sin(1.1 * x + 0.4) * std::sin(0.7 * y));
     };
     basin.scene.columns.ground = terrain_ground(slope);
     basin.scene.columns.bed_law = bed::Coulomb{0.3};
@@ -113,7 +115,8 @@ TEST_CASE("V13: a body below water slides down with its weight in it", "[mixture
     CHECK(inside >= 16);
 }
 
-TEST_CASE("V8: columns and water exchange momentum exactly, and what breaks gives its water to the nodes", "[mixture]") {
+TEST_CASE("V8: columns and water exchange momentum exactly, and what breaks gives its water to the nodes",
+          "[mixture]") {
     Basin basin(0.8, 1900.0, 0.3);
     StructuredScene& s = basin.scene.columns;
     s.confined = 0.3;
@@ -145,7 +148,8 @@ TEST_CASE("V10: drag alone brings columns and water together with their momentum
     Basin basin(0.8, 1000.0, 2.0);
     basin.scene.columns.points = {};
     verify::StructuredBlock block;
-    block.low = {-3.5, -3.5}, block.high = {13.5, 13.5}, block.depth = 0.8, block.cohesion = 1e9, block.velocity = {0.5, 0.0};
+    block.low = {-3.5, -3.5}, block.high = {13.5, 13.5}, block.depth = 0.8, block.cohesion = 1e9,
+    block.velocity = {0.5, 0.0};
     verify::add_block(basin.scene.columns, block);
     basin.fill(2.0);
     basin.scene.water.sides = {WaterSide::open, WaterSide::open, WaterSide::wall, WaterSide::wall};
@@ -158,7 +162,8 @@ TEST_CASE("V10: drag alone brings columns and water together with their momentum
     const TwoPhaseDrag law(basin.scene.exchange.material);
     const double m_c = 800.0, m_u = 1200.0, mu = m_c * m_u / (m_c + m_u);
     const double rate = 2.0 * law.coefficient(mixture, mixture.bound() * 0.5) / mu;
-    const WaterState middle = flow.water().at(static_cast<Index>(9.0 / basin.cell) + 2, static_cast<Index>(9.0 / basin.cell) + 2);
+    const WaterState middle =
+        flow.water().at(static_cast<Index>(9.0 / basin.cell) + 2, static_cast<Index>(9.0 / basin.cell) + 2);
     double slip = 0.0;
     const StructuredPoints& q = flow.columns().body().points;
     for (Index p = 0; p < q.count(); ++p)
@@ -196,9 +201,11 @@ TEST_CASE("Drag slows columns beside a wall as it slows those in the open", "[mi
         columns.advance(0.01);
         // With grains the first grid update is half a step.
         const double velocity_dt = columns.status().dt * (share < 1.0 ? 0.5 : 1.0);
-        const double per_speed = 2.0 * law.coefficient({0.8 / 2.0, share, 0.0}, 0.4 * 0.5);  // h_w C, with the flux of the start
+        const double per_speed =
+            2.0 * law.coefficient({0.8 / 2.0, share, 0.0}, 0.4 * 0.5);  // h_w C, with the flux of the start
         const auto check_node = [&](double x, double y, double open) {
-            const Index k = body.grid.at(std::lround((x - s.grid.x0) / s.grid.cell), std::lround((y - s.grid.y0) / s.grid.cell));
+            const Index k =
+                body.grid.at(std::lround((x - s.grid.x0) / s.grid.cell), std::lround((y - s.grid.y0) / s.grid.cell));
             const double m_c = 800.0 * open, m_u = 1200.0, mu = m_c * m_u / (m_c + m_u);
             const double slip = 0.5 * std::exp(-open * per_speed * velocity_dt / mu);
             CAPTURE(share, y, open, slip);
@@ -221,7 +228,8 @@ TEST_CASE("xi feeds the slip at its own rate, and is left out where drag is weak
         StructuredScene& s = basin.scene.columns;
         s.points = {};
         verify::StructuredBlock block;
-        block.low = {-3.5, -3.5}, block.high = {13.5, 13.5}, block.depth = 0.8, block.cohesion = 0.0, block.velocity = {1.0, 0.0};
+        block.low = {-3.5, -3.5}, block.high = {13.5, 13.5}, block.depth = 0.8, block.cohesion = 0.0,
+        block.velocity = {1.0, 0.0};
         verify::add_block(s, block);
         s.share = 0.0;  // grains
         basin.fill(2.0);
@@ -363,8 +371,8 @@ double dam_differs(double cell) {
 TEST_CASE("V14: a dam of water and of a body as dense and without strength breaks as one of water", "[mixture]") {
     const double coarse = dam_differs(1.0), fine = dam_differs(0.5);
     CAPTURE(coarse, fine);
-    CHECK(fine < 0.01);           // of 1 m of water
-    CHECK(fine < 0.7 * coarse);   // at least first order, but for the bore
+    CHECK(fine < 0.01);          // of 1 m of water
+    CHECK(fine < 0.7 * coarse);  // at least first order, but for the bore
 }
 
 TEST_CASE("Virtual mass holds back no solids that fall as fast as their water", "[mixture]") {
@@ -387,7 +395,8 @@ TEST_CASE("Virtual mass holds back no solids that fall as fast as their water", 
     const double fall = 0.05 * kGravity * slope / (1.0 + slope * slope);
     CHECK(middle.u == Approx(fall).epsilon(0.02));
     for (Index p = 0; p < q.count(); ++p)
-        if ((flow.columns().position(p) - Vec2(5.0, 5.0)).norm() < 0.3) CHECK(q.vx[p] == Approx(middle.u).epsilon(0.02));
+        if ((flow.columns().position(p) - Vec2(5.0, 5.0)).norm() < 0.3)
+            CHECK(q.vx[p] == Approx(middle.u).epsilon(0.02));
 }
 
 TEST_CASE("What breaks at a wall and at an open side gives all its water, and no momentum is made", "[mixture]") {
@@ -395,7 +404,8 @@ TEST_CASE("What breaks at a wall and at an open side gives all its water, and no
     StructuredScene& s = basin.scene.columns;
     s.points = {};
     verify::StructuredBlock block;
-    block.low = {s.grid.x0, s.grid.y0}, block.high = {s.grid.x0 + 5.0, s.grid.y0 + 5.0}, block.depth = 0.8, block.cohesion = 300.0;
+    block.low = {s.grid.x0, s.grid.y0}, block.high = {s.grid.x0 + 5.0, s.grid.y0 + 5.0}, block.depth = 0.8,
+    block.cohesion = 300.0;
     block.velocity = {0.0, -3.0};
     verify::add_block(s, block);
     s.confined = 0.3;

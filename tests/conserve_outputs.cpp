@@ -66,7 +66,11 @@ Outcome run_with(const Scene& scene, double every, double end) {
 
 TEST_CASE("A run has the same bits whatever the time between its frames, which are hit exactly", "[conserve]") {
     constexpr double kEnd = 40.0;
-    for (const Scheme& scheme : {Scheme{}, [] { Scheme s; s.precision = Precision::single; return s; }()}) {
+    for (const Scheme& scheme : {Scheme{}, [] {
+                                     Scheme s;
+                                     s.precision = Precision::single;
+                                     return s;
+                                 }()}) {
         Scene scene = gully();
         scene.scheme = scheme;
         const Outcome seldom = run_with(scene, 1000.0, kEnd);

@@ -22,7 +22,8 @@ double noise_of(Index i, Index j) {
 
 /// Noise with a standard deviation of kNoise at the pixels of an elevation model, bilinear between them.
 double roughness(double x, double y) {
-    const double u = x / kPixel, v = y / kPixel, at_x = std::floor(u), at_y = std::floor(v), fx = u - at_x, fy = v - at_y;
+    const double u = x / kPixel, v = y / kPixel, at_x = std::floor(u), at_y = std::floor(v), fx = u - at_x,
+                 fy = v - at_y;
     const Index i = static_cast<Index>(at_x), j = static_cast<Index>(at_y);
     const double low = (1 - fx) * noise_of(i, j) + fx * noise_of(i + 1, j);
     const double high = (1 - fx) * noise_of(i, j + 1) + fx * noise_of(i + 1, j + 1);
@@ -38,7 +39,8 @@ double track(double x, double y) {
 
 Scene rough_path(double cell) {
     const auto nodes = [&](double length) { return static_cast<Index>(length / cell) + 1; };
-    Scene scene = scene_on(nodes(800), nodes(200), cell, [](double x, double y) { return track(x, y) + roughness(x, y); });
+    Scene scene =
+        scene_on(nodes(800), nodes(200), cell, [](double x, double y) { return track(x, y) + roughness(x, y); });
     scene.density = 250.0;
     scene.bed_law = bed::Voellmy{0.2, 2000.0};
     fill(scene, [](double x, double y) {
@@ -48,8 +50,9 @@ Scene rough_path(double cell) {
 }
 
 struct Outcome {
-    double high_speed = 0.0;   ///< 99.9th percentile of the peak speed, of nodes ever deeper than the footprint depth [m/s]
-    double over_line = 0.0;    ///< worst peak speed over what the energy line allows at the node [1]
+    double high_speed =
+        0.0;  ///< 99.9th percentile of the peak speed, of nodes ever deeper than the footprint depth [m/s]
+    double over_line = 0.0;              ///< worst peak speed over what the energy line allows at the node [1]
     double fastest = 0.0, raster = 0.0;  ///< of the status, of the peaks [m/s]
 };
 
@@ -58,7 +61,8 @@ Outcome run_down(double cell) {
     DepthAveraged simulation(scene);
     const Frame start = simulation.frame();
     double top = 0.0;
-    for (Index p = 0; p < start.particle("surface")->count; ++p) top = std::max(top, start.particle("surface")->data[p]);
+    for (Index p = 0; p < start.particle("surface")->count; ++p)
+        top = std::max(top, start.particle("surface")->data[p]);
     Outcome outcome;
     while (simulation.status().time < 40.0) {
         simulation.advance(40.0);
@@ -84,7 +88,8 @@ Outcome run_down(double cell) {
 TEST_CASE("Peak speeds on a rough path do not grow with finer cells, nor beyond the energy line", "[conserve]") {
     const Outcome coarse = run_down(10.0), middle = run_down(5.0), fine = run_down(2.5);
     CAPTURE(coarse.high_speed, middle.high_speed, fine.high_speed, coarse.over_line, middle.over_line, fine.over_line);
-    CHECK(std::abs(middle.high_speed - coarse.high_speed) < 0.03 * middle.high_speed);  // a figure that a dam is designed by
+    CHECK(std::abs(middle.high_speed - coarse.high_speed) <
+          0.03 * middle.high_speed);  // a figure that a dam is designed by
     CHECK(std::abs(fine.high_speed - middle.high_speed) < 0.03 * fine.high_speed);
     for (const Outcome& of : {coarse, middle, fine}) {
         CHECK(of.over_line < 1.01);

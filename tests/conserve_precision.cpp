@@ -1,6 +1,6 @@
 // scheme.precision = "float": what points carry is held in single precision.
-#include <catch2/catch.hpp>
 #include <omp.h>
+#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>

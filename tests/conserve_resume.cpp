@@ -17,8 +17,9 @@ Scene slide(const std::function<void(Scene&)>& edit = {}) {
         return 60 - 0.5 * x + 0.02 * y + 4 * std::exp(-((x - 55) * (x - 55) + (y - 30) * (y - 30)) / 30);
     });
     scene.bed_law = bed::Voellmy{0.2, 400};
-    verify::place(scene, [](double x, double y) { return std::hypot(x - 35, y - 33) < 14 ? 3.0 : 0.0; },
-                  verify::Placement::r2, 2);
+    verify::place(
+        scene, [](double x, double y) { return std::hypot(x - 35, y - 33) < 14 ? 3.0 : 0.0; }, verify::Placement::r2,
+        2);
     if (edit) edit(scene);
     return scene;
 }
@@ -133,7 +134,8 @@ TEST_CASE("A kept state goes on with the same bits whatever the scheme", "[resum
         check_resume(slide([](Scene& scene) {
                          scene.scheme.transfer = Transfer::flip;
                          scene.scheme.shape = Shape::linear;
-                     }), 1.5, 1, 1);
+                     }),
+                     1.5, 1, 1);
     }
     SECTION("neither splits nor merges") {
         check_resume(slide([](Scene& scene) { scene.scheme.split = scene.scheme.merge = false; }), 1.5, 1, 1);
@@ -142,7 +144,7 @@ TEST_CASE("A kept state goes on with the same bits whatever the scheme", "[resum
         const auto end = check_resume(slide([](Scene& scene) { scene.sides = Sides::wall; }), 4.0, 1, 1);
         double furthest = 0.0;
         for (const double x : end->flow().columns.x) furthest = std::max(furthest, x);
-        CHECK(furthest > 64.0);  // the mass came to a wall
+        CHECK(furthest > 64.0);                   // the mass came to a wall
         const auto& id = end->flow().columns.id;  // nothing left, so fewer points than ids ever given have merged
         CHECK(end->flow().columns.count() < 1 + *std::max_element(id.begin(), id.end()));
     }
@@ -153,7 +155,8 @@ TEST_CASE("A kept state goes on with the same bits whatever the scheme", "[resum
         check_resume(slide([](Scene& scene) {
                          scene.rheology = rheology::Bingham{50, 200};
                          scene.sides = Sides::wall;
-                     }), 4.0, 1, 1);
+                     }),
+                     4.0, 1, 1);
     }
 }
 

@@ -195,7 +195,8 @@ TEST_CASE("Splitting follows scheme.split_length also beyond one cell", "[conser
     for (const double length : {1.2, 1.0, 0.8}) {
         Scene scene = scene_on(60, 60, 1.0, [](double, double) { return 0.0; });
         scene.scheme.split_length = length;
-        fill(scene, [](double x, double y) { return std::hypot(x - 30, y - 30) < 6 ? 2.0 : 0.0; }, 1);
+        fill(
+            scene, [](double x, double y) { return std::hypot(x - 30, y - 30) < 6 ? 2.0 : 0.0; }, 1);
         DepthAveraged simulation(scene);
         run_to(simulation, 2.0);
         CHECK(simulation.status().particles > 2 * scene.particles.count());

@@ -34,7 +34,8 @@ Scene gully() {
         return 1.1e-3 * rest * rest + 0.02 * across * across;
     });
     scene.bed_law = bed::Voellmy{0.2, 400.0};
-    scene.sections = {{"bent", {{90, -10}, {110, 60}, {95, 135}}, true}, {"back", {{90, -10}, {110, 60}, {95, 135}}, false}};
+    scene.sections = {{"bent", {{90, -10}, {110, 60}, {95, 135}}, true},
+                      {"back", {{90, -10}, {110, 60}, {95, 135}}, false}};
     fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 40 && y < 80 ? 1.5 : 0.0; });
     return scene;
 }
@@ -94,7 +95,8 @@ TEST_CASE("A whole release passes a line: its volume to round-off", "[sections]"
     CHECK(run.passed()[0] == Approx(whole).epsilon(1e-12));
 }
 
-TEST_CASE("Sums through lines go on after a resume and on any number of threads, with the same bits", "[sections][threads]") {
+TEST_CASE("Sums through lines go on after a resume and on any number of threads, with the same bits",
+          "[sections][threads]") {
     const Threads restored;
     const Scene scene = slide();
     omp_set_num_threads(1);

@@ -139,14 +139,12 @@ TEST_CASE("Tiles that work side by side do not meet, in a long corner", "[solid]
     CHECK(places[0] == places[2]);
 }
 
-TEST_CASE("Each surface is credited with what it gives: a rough floor's friction is not its wall's push",
-          "[solid]") {
+TEST_CASE("Each surface is credited with what it gives: a rough floor's friction is not its wall's push", "[solid]") {
     // A block slides along a rough floor beside a smooth wall, which it never presses.
     SolidScene s;
     s.grid = {{-0.4, -0.4, -0.4}, 0.1, {31, 15, 15}};
     s.law = solid::Elastic::of(4e5, 0.0);
-    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::free, 0.3),
-                  Surface::plane({0, 0, 0}, {1, 0, 0})};
+    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::free, 0.3), Surface::plane({0, 0, 0}, {1, 0, 0})};
     verify::for_each_part({0.05, 0, 0}, {0.85, 0.6, 0.4}, 0.1, 2, [&](const Vec3& x, double volume) {
         s.points.add(x, {1.5, 0, 0}, s.density * volume);  // away from the wall, within its reach
     });
@@ -190,8 +188,7 @@ TEST_CASE("A mirrored 3D scene gives the mirrored flow", "[solid]") {
     Mpm3d one(s), two(mirror);
     steps(one, 60), steps(two, 60);
     const auto a = by_id(one, s), b = by_id(two, mirror);
-    for (std::size_t p = 0; p < a.size(); ++p)
-        REQUIRE((a[p] - Vec3(b[p].y(), b[p].x(), b[p].z())).norm() < 1e-9);
+    for (std::size_t p = 0; p < a.size(); ++p) REQUIRE((a[p] - Vec3(b[p].y(), b[p].x(), b[p].z())).norm() < 1e-9);
 }
 
 TEST_CASE("Points that leave the grid are counted and gone", "[solid]") {
@@ -212,8 +209,7 @@ TEST_CASE("No point is found behind a surface, and one that is not finite is tol
     for (int n = 0; n < 200; ++n) {
         flow.advance(1e9);
         for (Index p = 0; p < flow.body().points.count(); ++p)
-            for (const Surface& surface : s.surfaces)
-                REQUIRE(contact(surface, flow.position(p)).distance > -1e-12);
+            for (const Surface& surface : s.surfaces) REQUIRE(contact(surface, flow.position(p)).distance > -1e-12);
     }
     s.points.velocity[7].x() = std::nan("");
     for (const bool ground : {false, true}) {

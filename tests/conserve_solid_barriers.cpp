@@ -15,9 +15,7 @@ namespace {
 constexpr double kGravity = 10.0, kDensity = 1000.0;
 
 Polygons ring(const std::vector<Vec2>& corners) { return {{Polygon{{corners}}}, "", ""}; }
-Polygons box(double x0, double y0, double x1, double y1) {
-    return ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
-}
+Polygons box(double x0, double y0, double x1, double y1) { return ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}); }
 
 /// A scene's axes, turned about z.
 struct Turn {
@@ -32,9 +30,7 @@ struct Turn {
                 for (Vec2& p : corners) p = at(Vec3(p.x(), p.y(), 0.0)).head<2>();
         return outline;
     }
-    Surface plane(const Vec3& through, const Vec3& normal) const {
-        return Surface::plane(at(through), at(normal));
-    }
+    Surface plane(const Vec3& through, const Vec3& normal) const { return Surface::plane(at(through), at(normal)); }
 };
 
 /// Water in a box of the turned axes, at rest with its pressure, and a grid that holds `room`.
@@ -83,17 +79,15 @@ Index inside_barriers(const Mpm3d& flow) {
 
 }  // namespace
 
-TEST_CASE(
-    "Water at rest pushes a wall by rho g h^2 / 2, low down more than high up, along the grid and turned",
-    "[solid][barriers]") {
+TEST_CASE("Water at rest pushes a wall by rho g h^2 / 2, low down more than high up, along the grid and turned",
+          "[solid][barriers]") {
     constexpr double kSpan = 0.2;  // s, from 0.15 on: over one period of its slowest sound, 4 H / c
     const double cell = 0.125, width = 3 * cell, height = 1.0;
     const double degrees = GENERATE(0.0, 20.0);
     const Turn turn{degrees};
     SolidScene s = water(turn, {1, width, height}, {1.6, width, 1.4}, cell);
-    s.surfaces = {turn.plane({0, 0, 0}, {0, 0, 1}), turn.plane({0, 0, 0}, {1, 0, 0}),
-                  turn.plane({0, 0, 0}, {0, 1, 0}), turn.plane({0, width, 0}, {0, -1, 0}),
-                  Surface::barrier(Prism(turn.at(box(1, -1, 1.6, 2)), 3.0))};
+    s.surfaces = {turn.plane({0, 0, 0}, {0, 0, 1}), turn.plane({0, 0, 0}, {1, 0, 0}), turn.plane({0, 0, 0}, {0, 1, 0}),
+                  turn.plane({0, width, 0}, {0, -1, 0}), Surface::barrier(Prism(turn.at(box(1, -1, 1.6, 2)), 3.0))};
     SolidScene planes = s;
     planes.surfaces[4] = turn.plane({1, 0, 0}, {-1, 0, 0});
     Mpm3d flow(s), other(planes);
@@ -115,8 +109,7 @@ TEST_CASE(
     CHECK(inside_barriers(flow) == 0);
     // Its moment about the foot of the wall is rho g h^3 / 6, a third of the height times the push.
     const Vec3 foot = turn.at({1, 0.5 * width, 0}) - s.grid.origin;
-    const Vec3 moment =
-        (FaceLedger::moment_about(front, foot) - FaceLedger::moment_about(early, foot)) / kSpan;
+    const Vec3 moment = (FaceLedger::moment_about(front, foot) - FaceLedger::moment_about(early, foot)) / kSpan;
     CHECK(moment.norm() == Approx(exact * height / 3.0).epsilon(0.01));
     // Patches: all of the impulse, and from row to row upwards ever less of it.
     std::vector<double> rows(static_cast<std::size_t>(front.patches.count[1]), 0.0);
@@ -136,8 +129,7 @@ TEST_CASE("Not one point of a block of water that strikes a wall gets into it or
     struct Blow {
         double cells, speed;  ///< thickness of the wall; of the water [m/s], whose sound runs at 22 m/s
     };
-    const Blow blow =
-        GENERATE(Blow{1, 3}, Blow{2, 3}, Blow{3, 3}, Blow{0.05, 3}, Blow{1, 40}, Blow{0.05, 40});
+    const Blow blow = GENERATE(Blow{1, 3}, Blow{2, 3}, Blow{3, 3}, Blow{0.05, 3}, Blow{1, 40}, Blow{0.05, 40});
     const double degrees = GENERATE(0.0, 20.0);
     CAPTURE(blow.cells, blow.speed, degrees);
     const double cell = 1.0 / 16.0, width = 3 * cell, face = 0.55;
@@ -152,9 +144,7 @@ TEST_CASE("Not one point of a block of water that strikes a wall gets into it or
     Index leaked = 0;
     while (flow.status().time < 0.6 / blow.speed) {
         flow.advance(0.6 / blow.speed);
-        leaked += count_points(flow, [&](const Vec3& x) {
-            return x.dot(turn.at({1, 0, 0})) > face || wall.inside(x);
-        });
+        leaked += count_points(flow, [&](const Vec3& x) { return x.dot(turn.at({1, 0, 0})) > face || wall.inside(x); });
     }
     CHECK(leaked == 0);
     CHECK(flow.body().ledger.face(3, 3).impulse.norm() > 0.5 * start);  // it did strike
@@ -169,10 +159,9 @@ TEST_CASE("Water at rest in the inner corner of an angle stays quiet, and pushes
     CAPTURE(degrees);
     SolidScene s = water(turn, {side, side, height}, {side, side, height + 0.3}, cell);
     // The angle holds the water at x = 0 and y = 0; planes do at the other ends.
-    s.surfaces = {turn.plane({0, 0, 0}, {0, 0, 1}), turn.plane({side, 0, 0}, {-1, 0, 0}),
-                  turn.plane({0, side, 0}, {0, -1, 0}),
-                  Surface::barrier(Prism(
-                      turn.at(ring({{0, 0}, {0, 3}, {-0.5, 3}, {-0.5, -0.5}, {3, -0.5}, {3, 0}})), 2.0))};
+    s.surfaces = {
+        turn.plane({0, 0, 0}, {0, 0, 1}), turn.plane({side, 0, 0}, {-1, 0, 0}), turn.plane({0, side, 0}, {0, -1, 0}),
+        Surface::barrier(Prism(turn.at(ring({{0, 0}, {0, 3}, {-0.5, 3}, {-0.5, -0.5}, {3, -0.5}, {3, 0}})), 2.0))};
     Mpm3d flow(s);
     run_to(flow, 0.5);
     // The gate of the tank in `frana verify`, 0.8 cm/s for water 1 m deep, where waves run 1.4 times as fast.
@@ -200,9 +189,9 @@ TEST_CASE("A blow on one side of a wall of the least thickness is not felt at al
     s.law = solid::Elastic::of(4e5, 0.3);
     for (Vec3& v : s.points.velocity) v = turn.at({4, 0, 0});
     const std::size_t struck = s.points.mass.size();
-    verify::for_each_part(
-        {1 + thick, 0, 0}, {1.6 + thick, 0.6, 0.6}, cell, 2,
-        [&](const Vec3& x, double volume) { s.points.add(turn.at(x), Vec3::Zero(), kDensity * volume); });
+    verify::for_each_part({1 + thick, 0, 0}, {1.6 + thick, 0.6, 0.6}, cell, 2, [&](const Vec3& x, double volume) {
+        s.points.add(turn.at(x), Vec3::Zero(), kDensity * volume);
+    });
     s.surfaces = {Surface::barrier(Prism(wall_outline(face, WetSide::left, thick), 3.0))};
     Mpm3d flow(s);
     run_to(flow, 0.15);
@@ -214,8 +203,7 @@ TEST_CASE("A blow on one side of a wall of the least thickness is not felt at al
     CHECK(fastest == 0.0);
 }
 
-TEST_CASE("Water poured over a low wall ends on both sides of it, and its mass adds up",
-          "[solid][barriers]") {
+TEST_CASE("Water poured over a low wall ends on both sides of it, and its mass adds up", "[solid][barriers]") {
     const double cells = GENERATE(1.0, 4.0);
     CAPTURE(cells);
     const double cell = 0.1, width = 3 * cell, face = 1.0, back = face + cells * cell, top = 0.3;
@@ -242,8 +230,7 @@ TEST_CASE("Water poured over a low wall ends on both sides of it, and its mass a
     CHECK(flow.body().ledger.face(5, wall.top_face()).impulse.z() > 0.0);  // the crest
 }
 
-TEST_CASE("What a barrier gives a spinning block is in its ledger: momentum and moment",
-          "[solid][barriers]") {
+TEST_CASE("What a barrier gives a spinning block is in its ledger: momentum and moment", "[solid][barriers]") {
     SolidScene s;
     s.gravity.setZero();
     s.affine = Affine::apic;  // keeps angular momentum exactly
@@ -275,10 +262,10 @@ TEST_CASE("Flow around barriers has the same bits for any number of threads, led
           "[solid][barriers][threads]") {
     const int threads = omp_get_max_threads();
     SolidScene s = water({}, {1.2, 2.4, 0.8}, {3.0, 2.4, 1.2}, 0.1);
-    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}), Surface::plane({0, 0, 0}, {1, 0, 0}),
-                  Surface::plane({0, 0, 0}, {0, 1, 0}), Surface::plane({0, 2.4, 0}, {0, -1, 0}),
-                  Surface::barrier(Prism(
-                      ring({{1.3, 0.3}, {2.2, 0.5}, {2.2, 2.0}, {1.9, 2.0}, {1.9, 0.9}, {1.3, 1.1}}), 0.6))};
+    s.surfaces = {
+        Surface::plane({0, 0, 0}, {0, 0, 1}), Surface::plane({0, 0, 0}, {1, 0, 0}),
+        Surface::plane({0, 0, 0}, {0, 1, 0}), Surface::plane({0, 2.4, 0}, {0, -1, 0}),
+        Surface::barrier(Prism(ring({{1.3, 0.3}, {2.2, 0.5}, {2.2, 2.0}, {1.9, 2.0}, {1.9, 0.9}, {1.3, 1.1}}), 0.6))};
     for (Vec3& v : s.points.velocity) v.x() = 3.0;
     std::vector<std::vector<Vec3>> kept;
     for (const int count : {1, 2, 4}) {

@@ -89,8 +89,7 @@ TEST_CASE("A 3D frame has the mass of both models on its particles and on its no
     StagedRun run(scene);
     run_to(run, 0.6);
     Frame frame = run.frame();
-    const Field *mass = frame.particle("mass"), *model = frame.particle("model"),
-                *depth = frame.node("depth");
+    const Field *mass = frame.particle("mass"), *model = frame.particle("model"), *depth = frame.node("depth");
     REQUIRE(mass->count == frame.status.particles);
     const double points = total(model, 0, model->count);
     CHECK(points == static_cast<double>(run.points()->status().points));
@@ -119,7 +118,8 @@ TEST_CASE("A window that nothing has reached yet waits with sound and room for w
     CHECK(run.points()->status().volume == Approx(run.points()->status().mass / scene.density).epsilon(0.02));
 }
 
-TEST_CASE("Points that have more energy than the release could give are remarked upon, with what the others did", "[stages]") {
+TEST_CASE("Points that have more energy than the release could give are remarked upon, with what the others did",
+          "[stages]") {
     Scene scene = slide(0.0);
     StagedRun within(scene);
     run_to(within, 0.2);
@@ -132,7 +132,8 @@ TEST_CASE("Points that have more energy than the release could give are remarked
         return low;
     }());
     less.sample(*within.points());
-    CHECK(less.available() == Approx(Spray(scene).available() - 8.0 * 8.0 * (1.0 + 0.25 * 0.25) / (2.0 * scene.gravity)));
+    CHECK(less.available() ==
+          Approx(Spray(scene).available() - 8.0 * 8.0 * (1.0 + 0.25 * 0.25) / (2.0 * scene.gravity)));
     CHECK(less.most_share() > 0.0);
     REQUIRE(less.remark());
     CHECK(less.remark()->find("more energy than a fall from the release's highest head") != std::string::npos);
@@ -228,8 +229,7 @@ void take_up_again(const Scene& scene, const std::vector<double>& stops, double 
 
 }  // namespace
 
-TEST_CASE("Runs in stages have the same bits for any number of threads, and when taken up again",
-          "[stages][threads]") {
+TEST_CASE("Runs in stages have the same bits for any number of threads, and when taken up again", "[stages][threads]") {
     take_up_again(slide(), {0.3, 0.55}, 0.7, false);
 }
 
@@ -255,7 +255,8 @@ TEST_CASE("3D points begin with the same bits whatever the time between the fram
     for (const double every : {0.0031, 0.07}) CHECK((begun(every) == seldom));
 }
 
-TEST_CASE("A hand-over that is refused on the way ends the run as refused, and the last frame is of its step", "[stages]") {
+TEST_CASE("A hand-over that is refused on the way ends the run as refused, and the last frame is of its step",
+          "[stages]") {
     // Thin in front; what follows stands 3 m high, above the top over the window's edge at 17.1 m.
     Scene scene = slide();
     scene.particles = {};
@@ -314,7 +315,8 @@ TEST_CASE("Points that leave their window onto a wall in a hole become columns b
     CHECK(behind > 0.0);  // some went round it
 }
 
-TEST_CASE("Points that leave their window onto the wall of a hole as wide as the window are remarked upon", "[stages][holes]") {
+TEST_CASE("Points that leave their window onto the wall of a hole as wide as the window are remarked upon",
+          "[stages][holes]") {
     Scene scene = slide();
     scene.solid->window = {12, 0, 18, 12};
     for (Index i = 19; i <= 28; ++i)
@@ -358,7 +360,8 @@ TEST_CASE("The map of points follows whenever they may have moved by a quarter o
     REQUIRE(run.points() != nullptr);
     const auto seen = [&] {
         std::vector<double> depths;
-        for (double x = 12.0; x <= 30.0; x += 1.0) depths.push_back(run.at({x, 6.0}).depth - run.columns().at({x, 6.0}).depth);
+        for (double x = 12.0; x <= 30.0; x += 1.0)
+            depths.push_back(run.at({x, 6.0}).depth - run.columns().at({x, 6.0}).depth);
         return depths;
     };
     std::vector<double> before = seen();

@@ -47,7 +47,7 @@ TEST_CASE("What the nodes cannot hold of a motion is lost by time and not by the
     const Transfer transfer = GENERATE(Transfer::tpic, Transfer::apic);
     constexpr double kEnd = 10.0, kOrdinary = 20.0;  // [s], steps of half a cell in this time
     const double start = wave_after(gliding(0.5, transfer), 0.0), usual = wave_after(gliding(0.5, transfer), kEnd);
-    CHECK(start > 0.005);  // a frame shows what the nodes hold: about half of a wave of four cells
+    CHECK(start > 0.005);        // a frame shows what the nodes hold: about half of a wave of four cells
     CHECK(usual < 0.5 * start);  // it is a loss that matters
     // An ordinary step leaves k, one of a share a of it 1 - a (1 - k). The first and last steps are not ordinary: 2 of 20.
     const double left = std::pow(usual / start, 1.0 / kOrdinary);

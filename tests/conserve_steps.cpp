@@ -52,7 +52,8 @@ TEST_CASE("Where nothing is driven far, a step is what its signal asks for", "[c
     DepthAveraged simulation(scene);
     const double reach = scene.scheme.cfl * 1.0, c = std::sqrt(scene.gravity * simulation.status().max_depth);
     simulation.advance(1e9);
-    CHECK(simulation.status().dt == Approx(2 * reach / (c + std::sqrt(c * c + 2 * scene.gravity * reach))).epsilon(1e-14));
+    CHECK(simulation.status().dt ==
+          Approx(2 * reach / (c + std::sqrt(c * c + 2 * scene.gravity * reach))).epsilon(1e-14));
 }
 
 TEST_CASE("A step that is shortened ends at its time, and looking at the run changes nothing", "[conserve][steps]") {
@@ -65,13 +66,16 @@ TEST_CASE("A step that is shortened ends at its time, and looking at the run cha
     CHECK(one.status().step == other.status().step);
 }
 
-TEST_CASE("Friction drives no point of flip: what it takes of the nodes' velocity it takes of the points'", "[conserve][flip]") {
+TEST_CASE("Friction drives no point of flip: what it takes of the nodes' velocity it takes of the points'",
+          "[conserve][flip]") {
     // A light film runs against a heavy block that the bed stops in a few steps.
     Scene scene = scene_on(24, 12, 1.0, [](double, double) { return 0.0; });
     scene.scheme.transfer = Transfer::flip;
     scene.scheme.flip_ratio = 1.0;
     scene.bed_law = bed::Voellmy{0.4, 1.0};
-    fill(scene, [](double x, double y) { return y < 4 || y > 8 ? 0.0 : x > 6 && x < 9 ? 0.2 : x > 9 && x < 13 ? 2e-4 : 0.0; });
+    fill(scene, [](double x, double y) {
+        return y < 4 || y > 8 ? 0.0 : x > 6 && x < 9 ? 0.2 : x > 9 && x < 13 ? 2e-4 : 0.0;
+    });
     for (Index p = 0; p < scene.particles.count(); ++p) scene.particles.vx[p] = scene.particles.x[p] < 9 ? 30.0 : -30.0;
     DepthAveraged simulation(scene);
     double fastest = 0.0;
@@ -91,8 +95,9 @@ TEST_CASE("Friction drives no point of flip: what it takes of the nodes' velocit
 }
 
 TEST_CASE("Linear shapes, PIC and FLIP take no more viscosity in a step than is stable for them", "[conserve][steps]") {
-    const auto [shape, transfer] = GENERATE(std::pair(Shape::linear, Transfer::tpic), std::pair(Shape::quadratic, Transfer::pic),
-                                            std::pair(Shape::quadratic, Transfer::flip));
+    const auto [shape, transfer] =
+        GENERATE(std::pair(Shape::linear, Transfer::tpic), std::pair(Shape::quadratic, Transfer::pic),
+                 std::pair(Shape::quadratic, Transfer::flip));
     const auto run = [&, shape = shape, transfer = transfer](double cap) {
         Scene scene = scene_on(24, 24, 1.0, [](double, double) { return 0.0; });
         scene.scheme.shape = shape;
@@ -117,7 +122,8 @@ TEST_CASE("Viscosity gives lone columns of any transfer no energy", "[conserve][
     scene.scheme.flip_ratio = 1.0;
     scene.scheme.stress_cap = 0.5;
     scene.rheology = rheology::Newtonian{1e7};
-    fill(scene, [](double x, double y) { return std::abs(x - 12) < 1 && std::abs(y - 12) < 1 ? 1e-3 : 0.0; }, 1, at, at);
+    fill(
+        scene, [](double x, double y) { return std::abs(x - 12) < 1 && std::abs(y - 12) < 1 ? 1e-3 : 0.0; }, 1, at, at);
     for (Index p = 0; p < scene.particles.count(); ++p) {
         scene.particles.vx[p] = scene.particles.y[p] > 12 ? 1.0 : -1.0;
         scene.particles.vy[p] = scene.particles.x[p] > 12 ? 1.0 : -1.0;
@@ -132,7 +138,8 @@ TEST_CASE("Viscosity gives lone columns of any transfer no energy", "[conserve][
     }
 }
 
-TEST_CASE("Between nodes the flow is what it is on them, linearly; the outer half pixel shows its rim", "[conserve][steps]") {
+TEST_CASE("Between nodes the flow is what it is on them, linearly; the outer half pixel shows its rim",
+          "[conserve][steps]") {
     // A sheet that falls with the bed: depth and velocity are the same on all its nodes.
     Scene scene = scene_on(24, 16, 2.0, [](double x, double y) { return 3.0 + 0.25 * x - 0.5 * y; });
     scene.bed_law = bed::Coulomb{2.0};
@@ -159,8 +166,7 @@ TEST_CASE("A stop by gravity and friction together lets no difference of flip's 
         scene.scheme.flip_ratio = 1.0;
         scene.bed_law = bed::Coulomb{0.6};
         fill(scene, [](double x, double y) { return std::abs(x - 12) < 1 && std::abs(y - 12) < 1 ? 1e-3 : 0.0; });
-        for (Index p = 0; p < scene.particles.count(); ++p)
-            scene.particles.vx[p] = uphill + (p % 2 == 0 ? own : -own);
+        for (Index p = 0; p < scene.particles.count(); ++p) scene.particles.vx[p] = uphill + (p % 2 == 0 ? own : -own);
         DepthAveraged simulation(scene);
         simulation.advance(1e9);
         for (const double v : simulation.flow().columns.vx) fastest = std::max(fastest, std::abs(v) - uphill - own);

@@ -31,8 +31,7 @@ StructuredScene breaking(double cohesion = 2e3) {
 
 }  // namespace
 
-TEST_CASE("A block that breaks keeps its mass, and its momentum is what it was given, to round-off",
-          "[structured]") {
+TEST_CASE("A block that breaks keeps its mass, and its momentum is what it was given, to round-off", "[structured]") {
     StructuredFlow flow(breaking());
     const double given = flow.status().momentum.norm();
     for (int step = 0; step < 300; ++step) flow.advance(10.0);
@@ -68,8 +67,7 @@ TEST_CASE("Structured solids have the same bits for any number of threads", "[st
         StructuredFlow flow(breaking());
         for (int step = 0; step < 200; ++step) flow.advance(10.0);
         const StructuredPoints& q = flow.body().points;
-        std::vector<double> bits = {flow.status().kinetic, flow.status().impulse.friction.x(),
-                                    flow.status().damage};
+        std::vector<double> bits = {flow.status().kinetic, flow.status().impulse.friction.x(), flow.status().damage};
         for (const Array* column : {&q.x, &q.y, &q.vx, &q.xx, &q.damage})
             bits.insert(bits.end(), column->begin(), column->end());
         CHECK(flow.body().active.count() >= kTilesForThreads);
@@ -81,8 +79,7 @@ TEST_CASE("Structured solids have the same bits for any number of threads", "[st
     CHECK(damage > 0.0);
 }
 
-TEST_CASE("A column that spreads becomes thinner as its area grows, and stands on its own weight",
-          "[structured]") {
+TEST_CASE("A column that spreads becomes thinner as its area grows, and stands on its own weight", "[structured]") {
     StructuredScene s;
     s.grid = verify::grid_over({-3, -2}, {3, 2}, 0.1);
     s.ground = [](double, double) { return GroundGravity{0, 0, 2.0}; };
@@ -100,16 +97,14 @@ TEST_CASE("A column that spreads becomes thinner as its area grows, and stands o
     int inside = 0;
     for (Index p = 0; p < q.count(); ++p) {
         if (flow.position(p).cwiseAbs().maxCoeff() > 0.5) continue;
-        CHECK(q.depth[p] ==
-              Approx(depth).epsilon(0.01));  // the step is a fiftieth of the time, of first order
+        CHECK(q.depth[p] == Approx(depth).epsilon(0.01));  // the step is a fiftieth of the time, of first order
         CHECK(q.zz[p] == Approx(-0.5 * 1700.0 * 2.0 * q.depth[p]).epsilon(1e-12));
         ++inside;
     }
     CHECK(inside > 100);
 }
 
-TEST_CASE("Neighbours that part unbroken are numerical fracture, and pieces are counted by mass",
-          "[structured]") {
+TEST_CASE("Neighbours that part unbroken are numerical fracture, and pieces are counted by mass", "[structured]") {
     StructuredScene s;
     s.grid = verify::grid_over({-1, -1}, {6, 3}, 0.1);
     s.ground = [](double, double) { return GroundGravity{0, 0, 0}; };
@@ -135,8 +130,7 @@ TEST_CASE("Neighbours that part unbroken are numerical fracture, and pieces are 
     CHECK(pieces(flow, {0.125, 0.0, 0.02}).empty());  // nothing is that whole
 }
 
-TEST_CASE("An obstacle's corner lets by what leaves it, and takes what enters by the nearest face",
-          "[structured]") {
+TEST_CASE("An obstacle's corner lets by what leaves it, and takes what enters by the nearest face", "[structured]") {
     Obstacle box;
     box.low = {0.0, 0.0}, box.high = {2.0, 1.0}, box.friction = 0.5;
     CHECK(box.met({-0.1, 0.5}, {1.0, 0.0}, 1e-9) == Vec2(1.0, 0.0));          // outside
@@ -153,8 +147,7 @@ TEST_CASE("The open share of nodes beside walls is the integral of their shape f
     CHECK(open_share(walls, {0.0, 5.0}, 1.0, 0.0) == Approx(0.5).epsilon(1e-14));
     CHECK(open_share(walls, {1.0, 5.0}, 1.0, 0.0) == Approx(47.0 / 48.0).epsilon(1e-14));
     CHECK(open_share(walls, {-1.0, 5.0}, 1.0, 0.0) == Approx(1.0 / 48.0).epsilon(1e-12));
-    CHECK(open_share(walls, {0.0, 0.0}, 1.0, 0.0) ==
-          Approx(0.25).epsilon(1e-14));  // the corner is covered once
+    CHECK(open_share(walls, {0.0, 0.0}, 1.0, 0.0) == Approx(0.25).epsilon(1e-14));  // the corner is covered once
     CHECK(open_share(walls, {5.0, 5.0}, 1.0, 0.0) == 1.0);
     CHECK(open_share(walls, {-5.0, 5.0}, 1.0, 0.25) == 0.25);
 }
@@ -162,8 +155,7 @@ TEST_CASE("The open share of nodes beside walls is the integral of their shape f
 TEST_CASE("Grains push by Ka where they spread and towards Kp where they are squeezed, along principal axes",
           "[structured]") {
     const Rankine k{1.0 / 3.0, 3.0};
-    const Sym2 rest = earth_pressure({0, 0, 0}, 1.0, 9.81, k),
-               spread = earth_pressure({1.0, 2.0, 0.0}, 1.0, 9.81, k),
+    const Sym2 rest = earth_pressure({0, 0, 0}, 1.0, 9.81, k), spread = earth_pressure({1.0, 2.0, 0.0}, 1.0, 9.81, k),
                fast = earth_pressure({-50.0, 1.0, 0.0}, 1.0, 9.81, k),
                shear = earth_pressure({0, 0, 50.0}, 1.0, 9.81, k);
     CHECK(rest.xx == k.active);
@@ -192,8 +184,7 @@ TEST_CASE("What a step costs beside the depth-averaged flow's", "[.cost]") {
     omp_set_num_threads(1);
     const auto cost = [](const char* what, double per, const verify::Measurement& m) {
         const double ns = 1e9 * m.wall_seconds / static_cast<double>(m.particles * m.steps);
-        fmt::print("{}: {:.0f} ns a column and step, {:.2f} of the flow's\n", what, ns,
-                   per > 0.0 ? ns / per : 1.0);
+        fmt::print("{}: {:.0f} ns a column and step, {:.2f} of the flow's\n", what, ns, per > 0.0 ? ns / per : 1.0);
         return ns;
     };
     verify::Setup setup;

@@ -102,13 +102,14 @@ TEST_CASE("Energy of a whole block on a plane: what it loses is friction", "[str
     go_to(*run, scene.end);
     const Status now = run->frame().status;
     CHECK(now.dissipated > 0.1 * first.kinetic);
-    const double left = (now.kinetic - first.kinetic) + (now.potential - first.potential) + (now.stored - first.stored) +
-                        (now.dissipated - first.dissipated);
+    const double left = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
+                        (now.stored - first.stored) + (now.dissipated - first.dissipated);
     // Work is recorded with the velocity at a step's end: half a step's share of the time.
     CHECK(std::abs(left) < 0.5 * step / scene.end * (first.potential - now.potential));
 }
 
-TEST_CASE("Friction on a block is Coulomb's along its way: mu g cos^2 down a slope, mu g cos across it", "[structured]") {
+TEST_CASE("Friction on a block is Coulomb's along its way: mu g cos^2 down a slope, mu g cos across it",
+          "[structured]") {
     const double g = 9.81, slope = 0.5, mu = 0.3, cosine2 = 1.0 / (1.0 + slope * slope);
     Scene scene = scene_on(81, 31, 0.5, [=](double x, double) { return 30.0 - slope * x; });
     scene.particles = {};
@@ -420,7 +421,8 @@ TEST_CASE("Columns beside ground without data stand on the ground that there is"
     for (Index p = 0; p < elevation->count; ++p) CHECK(elevation->data[p] == Approx(500.0).epsilon(1e-15));
 }
 
-TEST_CASE("Frames of a wet run show water and columns on all of their tiles, and nothing elsewhere", "[structured][mixture]") {
+TEST_CASE("Frames of a wet run show water and columns on all of their tiles, and nothing elsewhere",
+          "[structured][mixture]") {
     Scene scene = wet_slide();
     scene.water->rain = {};
     StructuredRun run(scene);
@@ -438,7 +440,8 @@ TEST_CASE("Frames of a wet run show water and columns on all of their tiles, and
         }
     CHECK(wet > 200);
     const double* depth = frame.node("depth")->data;
-    for (Index n = 0; n < 81 * 31; ++n) CHECK(frame.node("surface")->data[n] - frame.node("elevation")->data[n] == Approx(depth[n]).margin(1e-14));
+    for (Index n = 0; n < 81 * 31; ++n)
+        CHECK(frame.node("surface")->data[n] - frame.node("elevation")->data[n] == Approx(depth[n]).margin(1e-14));
 }
 
 TEST_CASE("Energy of a wet run: most of what is lost is recorded, and the rest is no gain", "[structured][mixture]") {

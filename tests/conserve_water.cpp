@@ -55,8 +55,7 @@ WaterScene heap_at(Index i0, Index j0) {
 
 }  // namespace
 
-TEST_CASE("Water keeps its volume, and its momentum is what it was given, to round-off",
-          "[water][conserve]") {
+TEST_CASE("Water keeps its volume, and its momentum is what it was given, to round-off", "[water][conserve]") {
     WaterFlow flow(down_a_slope());
     double speed = 0.0;
     for (int step = 0; step < 500; ++step) {
@@ -87,8 +86,7 @@ TEST_CASE("Level ground gives water no momentum, walls take what there is", "[wa
     const double given = flow.status().momentum_given.norm();
     CHECK(flow.status().ledger.ground.norm() < 1e-13 * given);
     CHECK(flow.status().ledger.friction.norm() == 0.0);
-    CHECK((flow.status().momentum - flow.status().momentum_given - flow.status().ledger.walls).norm() <
-          1e-13 * given);
+    CHECK((flow.status().momentum - flow.status().momentum_given - flow.status().ledger.walls).norm() < 1e-13 * given);
     CHECK(flow.status().ledger.walls.norm() > 0.1 * given);
     CHECK(flow.status().ledger.left == 0.0);
     CHECK(std::abs(flow.volume_residual()) < 1e-14 * flow.status().volume_given);
@@ -131,9 +129,8 @@ TEST_CASE("Water has the same bits for any number of threads", "[water][conserve
         CHECK(static_cast<Index>(flow.body().work.size()) >= kTilesForThreads);
         std::vector<double> bits = bits_of(flow);
         const WaterStatus& now = flow.status();
-        for (const double sum :
-             {now.time, now.volume, now.momentum.x(), now.kinetic, now.ledger.left, now.ledger.ground.y(),
-              now.ledger.braked, now.ledger.sheared, now.ledger.energy_out})
+        for (const double sum : {now.time, now.volume, now.momentum.x(), now.kinetic, now.ledger.left,
+                                 now.ledger.ground.y(), now.ledger.braked, now.ledger.sheared, now.ledger.energy_out})
             bits.push_back(sum);
         if (count == 1) first = bits;
         CHECK(bits == first);
@@ -162,8 +159,7 @@ TEST_CASE("It does not matter where the borders of tiles are, and only tiles nea
     }
 }
 
-TEST_CASE("Tiles that dry up are dropped, and water comes back to them as to dry ground",
-          "[water][conserve]") {
+TEST_CASE("Tiles that dry up are dropped, and water comes back to them as to dry ground", "[water][conserve]") {
     // It swings along a valley whose sides soak up what it leaves there.
     WaterScene s;
     s.grid = verify::cells_over(110, 3, 1.0);
@@ -171,9 +167,7 @@ TEST_CASE("Tiles that dry up are dropped, and water comes back to them as to dry
     s.start = [](double x, double) { return WaterState{x < 14.0 ? 3.0 : 0.0}; };
     s.infiltration = [](double x, double) { return std::abs(x - 55.0) > 20.0 ? 2e-3 : 0.0; };
     WaterFlow flow(s);
-    s.rain = [](double, double) {
-        return 3e-308;
-    };  // all tiles are always visited; a step's rain rounds to none
+    s.rain = [](double, double) { return 3e-308; };  // all tiles are always visited; a step's rain rounds to none
     WaterFlow everywhere(s);
     const Index first = flow.body().grid.tiles_x() + 1;
     int dropped = 0, back = 0;
@@ -203,9 +197,7 @@ TEST_CASE("Thin water on rugged ground is never taken below nothing", "[water][c
     WaterScene s;
     s.grid = verify::cells_over(48, 48, 0.5);
     s.bed = [](double x, double y) { return 2.0 * std::sin(7.0 * x) * std::sin(5.0 * y) - 0.5 * x; };
-    s.start = [](double x, double y) {
-        return WaterState{0.02 + 0.02 * std::sin(3.0 * x) * std::sin(11.0 * y)};
-    };
+    s.start = [](double x, double y) { return WaterState{0.02 + 0.02 * std::sin(3.0 * x) * std::sin(11.0 * y)}; };
     s.sides[1] = WaterSide::open;
     s.cfl = 0.49;
     WaterFlow flow(s);
@@ -218,7 +210,9 @@ TEST_CASE("Thin water on rough steep ground runs off, and gains no more than it 
     // Bends of the ground of up to 4 cm beside a depth of 3 cm: slopes limited from them put steps at faces.
     WaterScene s;
     s.grid = verify::cells_over(8, 60, 5.0);
-    s.bed = [](double x, double y) { return 200.0 - 0.5 * y + 0.01 * std::sin(1.7 * x + 2.9 * y) + 0.01 * std::cos(0.61 * y); };
+    s.bed = [](double x, double y) {
+        return 200.0 - 0.5 * y + 0.01 * std::sin(1.7 * x + 2.9 * y) + 0.01 * std::cos(0.61 * y);
+    };
     s.start = [](double, double y) { return WaterState{y > 20.0 && y < 50.0 ? 0.03 : 0.0, 0.0, 0.0}; };
     WaterFlow flow(s);
     const auto height = [&] {
@@ -233,7 +227,8 @@ TEST_CASE("Thin water on rough steep ground runs off, and gains no more than it 
     const double start = height();
     while (flow.status().time < 6.0) {
         flow.advance(6.0);
-        CHECK(flow.status().kinetic <= 1.001 * (start - height()));  // of motion along the map, less than along the ground
+        CHECK(flow.status().kinetic <=
+              1.001 * (start - height()));  // of motion along the map, less than along the ground
     }
     double stays = 0.0;
     for (Index j = 0; j < 10; ++j)
@@ -251,9 +246,8 @@ TEST_CASE("A cell that runs off on all sides keeps none and is not overdrawn", "
     s.start = [](double x, double y) { return WaterState{x == 16.5 && y == 16.5 ? 8.0 : 0.0}; };
     s.steep = false;
     WaterFlow flow(s);
-    flow.advance(10.0);  // four dam breaks at once take 1.17 of it in a step
-    CHECK(flow.at(16, 16).depth ==
-          Approx(4.0).epsilon(1e-6));  // the mean of a stage that emptied it and the start
+    flow.advance(10.0);                                         // four dam breaks at once take 1.17 of it in a step
+    CHECK(flow.at(16, 16).depth == Approx(4.0).epsilon(1e-6));  // the mean of a stage that emptied it and the start
     for (const auto& [i, j] : {std::pair<Index, Index>{15, 16}, {17, 16}, {16, 15}, {16, 17}})
         CHECK(flow.at(i, j).depth == Approx(flow.at(15, 16).depth).epsilon(1e-12));
     for (int step = 0; step < 50; ++step) flow.advance(10.0);
@@ -309,17 +303,13 @@ TEST_CASE("A lake high in the mountains rests as one at the sea, and rests when 
     s.grid = verify::cells_over(30, 20, 0.5);
     s.bed = [](double x, double y) { return 3017.3 + rough(x, y); };
     s.confined = [](double x, double) { return x > 7.0 ? 0.2 : 0.0; };
-    s.start = [&s](double x, double y) {
-        return WaterState{std::max(0.0, 3018.0 - s.bed(x, y) - s.confined(x, y))};
-    };
+    s.start = [&s](double x, double y) { return WaterState{std::max(0.0, 3018.0 - s.bed(x, y) - s.confined(x, y))}; };
     WaterFlow flow(s);
     for (int step = 0; step < 100; ++step) flow.advance(1e3);
-    CHECK(flow.status().max_speed <
-          1e-12);  // 3018 m have 5e-13 m of round-off, and sqrt(g/h) of that are 1e-12 m/s
+    CHECK(flow.status().max_speed < 1e-12);  // 3018 m have 5e-13 m of round-off, and sqrt(g/h) of that are 1e-12 m/s
     const double before = flow.surface(10, 10);
     for (Index j = 0; j < 20; ++j)
-        for (Index i = 0; i < 30; ++i)
-            flow.confine(i, j, 0.25 + (flow.body().confined[flow.body().grid.at(i, j)]));
+        for (Index i = 0; i < 30; ++i) flow.confine(i, j, 0.25 + (flow.body().confined[flow.body().grid.at(i, j)]));
     for (int step = 0; step < 100; ++step) flow.advance(1e3);
     CHECK(flow.status().max_speed < 1e-12);
     CHECK(flow.surface(10, 10) == Approx(before + 0.25).margin(1e-12));
@@ -345,14 +335,15 @@ TEST_CASE("Water turns with its scene: x and y are alike", "[water][conserve]") 
     for (Index j = 0; j < 45; ++j)
         for (Index i = 0; i < 70; ++i) {
             const WaterState p = a.at(i, j), q = b.at(j, i);
-            worst = std::max({worst, std::abs(p.depth - q.depth), p.depth * std::abs(p.u - q.v),
-                              p.depth * std::abs(p.v - q.u)});
+            worst = std::max(
+                {worst, std::abs(p.depth - q.depth), p.depth * std::abs(p.u - q.v), p.depth * std::abs(p.v - q.u)});
         }
     CHECK(worst < 1e-10);  // round-off, grown by 40 steps over a rough bed
     CHECK(a.status().ledger.left == Approx(b.status().ledger.left).epsilon(1e-9));
 }
 
-TEST_CASE("Viscous water keeps volume and momentum over rough ground, at walls and at open sides", "[water][conserve]") {
+TEST_CASE("Viscous water keeps volume and momentum over rough ground, at walls and at open sides",
+          "[water][conserve]") {
     WaterScene s = down_a_slope();
     s.viscosity.kinematic = 0.02;
     WaterFlow flow(s);
@@ -365,7 +356,8 @@ TEST_CASE("Viscous water keeps volume and momentum over rough ground, at walls a
     CHECK(l.left > 0.1 * flow.status().volume_given);
 }
 
-TEST_CASE("A wave of stretching dies at twice the rate of one of shear, until its neighbours are dry", "[water][conserve]") {
+TEST_CASE("A wave of stretching dies at twice the rate of one of shear, until its neighbours are dry",
+          "[water][conserve]") {
     const double nu = 0.05, cell = 0.25, dt = 0.01, k = M_PI / 10.0;
     const double discrete = 2.0 * (1.0 - std::cos(k * cell)) / (cell * cell);
     for (const bool dry : {false, true}) {
@@ -447,7 +439,8 @@ TEST_CASE("Slip along a gradient of the columns' share is sheared as eq. 30 has 
         flow.advance(dt);
         const WaterState here = flow.at(20, 20);
         // du/dt = -nu (2 d_xx a (u - u_c)), dv/dt = -nu d_xx a (v - v_c) for a gradient along x
-        const double du = -nu * bend * (axis == 0 ? 2.0 : 1.0) * (u - 0.2) * dt, dv = -nu * bend * (axis == 0 ? 1.0 : 2.0) * (v - 0.1) * dt;
+        const double du = -nu * bend * (axis == 0 ? 2.0 : 1.0) * (u - 0.2) * dt,
+                     dv = -nu * bend * (axis == 0 ? 1.0 : 2.0) * (v - 0.1) * dt;
         CHECK(here.u - u == Approx(du).epsilon(1e-4));
         CHECK(here.v - v == Approx(dv).epsilon(1e-4));
         CHECK(flow.momentum_residual().norm() < 1e-12 * flow.status().momentum.norm());
@@ -599,7 +592,8 @@ TEST_CASE("Water that leaves takes the energy of its height, its pressure and al
         const WaterLedger& l = flow.status().ledger;
         CAPTURE(slope);
         REQUIRE(l.left == Approx(0.5 * 6.0 * 12.0 * time).epsilon(1e-5));
-        const double surface = 50.0 - slope * 39.5 + 0.5, motion = 0.5 * 36.0 * (1.0 + slope * slope);  // of the last cell
+        const double surface = 50.0 - slope * 39.5 + 0.5,
+                     motion = 0.5 * 36.0 * (1.0 + slope * slope);  // of the last cell
         CHECK(l.energy_out / l.left + 9.81 * flow.body().datum == Approx(9.81 * surface + motion).epsilon(1e-5));
     }
 }

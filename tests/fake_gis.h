@@ -19,12 +19,12 @@ public:
                            std::vector<std::string>&) const override {
         return raster(file);
     }
-    frana::Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>&,
-                              const std::string&, std::vector<std::string>&) const override {
+    frana::Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>&, const std::string&,
+                              std::vector<std::string>&) const override {
         return raster(file);
     }
-    frana::Raster read_onto(const std::filesystem::path& file, const frana::GridGeometry& grid,
-                            const std::string&, std::vector<std::string>&) const override {
+    frana::Raster read_onto(const std::filesystem::path& file, const frana::GridGeometry& grid, const std::string&,
+                            std::vector<std::string>&) const override {
         const frana::Raster source = raster(file);
         frana::Raster result = frana::Raster::filled(grid, frana::Raster::nodata);
         for (frana::Index j = 0; j < grid.ny; ++j) {
@@ -63,8 +63,7 @@ private:
 };
 
 /// A raster of f(x, y) at the nodes.
-inline frana::Raster sampled(const frana::GridGeometry& grid,
-                             const std::function<double(double, double)>& f) {
+inline frana::Raster sampled(const frana::GridGeometry& grid, const std::function<double(double, double)>& f) {
     frana::Raster raster = frana::Raster::filled(grid, 0.0);
     for (frana::Index j = 0; j < grid.ny; ++j)
         for (frana::Index i = 0; i < grid.nx; ++i) raster.at(i, j) = f(grid.x(i), grid.y(j));

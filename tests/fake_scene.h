@@ -5,13 +5,12 @@
 
 namespace frana {
 
-inline const char* const utm32 =
-    R"(PROJCS["WGS 84 / UTM zone 32N",GEOGCS["WGS 84",DATUM["WGS_1984",)"
-    R"(SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],)"
-    R"(UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],)"
-    R"(PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],)"
-    R"(PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],)"
-    R"(PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","32632"]])";
+inline const char* const utm32 = R"(PROJCS["WGS 84 / UTM zone 32N",GEOGCS["WGS 84",DATUM["WGS_1984",)"
+                                 R"(SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],)"
+                                 R"(UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],)"
+                                 R"(PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],)"
+                                 R"(PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],)"
+                                 R"(PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","32632"]])";
 
 inline Scene fake_scene(const FakeSimulation& simulation) {
     Scene scene;

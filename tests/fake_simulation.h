@@ -28,8 +28,7 @@ public:
     explicit FakeSimulation(FakeScript script = {}) : script_(std::move(script)) {
         grid_ = {41, 31, 1000.5, 2000.5, 1.0};
         const auto nodes = static_cast<std::size_t>(grid_.size());
-        for (auto* field :
-             {&elevation_, &depth_, &surface_, &speed_, &peak_depth_, &peak_speed_, &peak_pressure_})
+        for (auto* field : {&elevation_, &depth_, &surface_, &speed_, &peak_depth_, &peak_speed_, &peak_pressure_})
             field->assign(nodes, 0.0);
         arrival_.assign(nodes, -1.0);  // never
         velocity_.assign(3 * nodes, 0.0);
@@ -62,8 +61,10 @@ public:
     std::vector<PhaseTime> timings() const override { return {{"deposit", 0.25}, {"kick", 0.5}}; }
     void serialize(Archive& archive) override {
         frana::serialize(archive, "status", status_);
-        for (const auto& [name, peak] : {std::pair{"depth", &peak_depth_}, {"speed", &peak_speed_},
-                                         {"pressure", &peak_pressure_}, {"arrival", &arrival_}})
+        for (const auto& [name, peak] : {std::pair{"depth", &peak_depth_},
+                                         {"speed", &peak_speed_},
+                                         {"pressure", &peak_pressure_},
+                                         {"arrival", &arrival_}})
             archive.array(name, *peak);
         if (archive.loading()) update();
     }
@@ -157,8 +158,7 @@ private:
     GridGeometry grid_;
     Status status_;
     std::vector<Vec2> start_;
-    std::vector<double> elevation_, depth_, surface_, speed_, peak_depth_, peak_speed_, peak_pressure_,
-        arrival_;
+    std::vector<double> elevation_, depth_, surface_, speed_, peak_depth_, peak_speed_, peak_pressure_, arrival_;
     std::vector<double> velocity_, position_, particle_depth_, particle_velocity_, particle_mass_;
 };
 

@@ -18,7 +18,9 @@ namespace {
 
 using namespace run_cases;
 
-struct Tally { int tried = 0, whole = 0, refused = 0, bad = 0; };
+struct Tally {
+    int tried = 0, whole = 0, refused = 0, bad = 0;
+};
 
 class Faults {
 public:
@@ -36,8 +38,9 @@ public:
     double wall() const { return wall_; }
 
     /// One try. `mend` makes the machine well again before the run that follows.
-    void attempt(const std::string& fault, const Disturbance& disturbance, const std::function<void()>& mend = [] {},
-                 const std::set<int>& expected = {}) {
+    void attempt(
+        const std::string& fault, const Disturbance& disturbance, const std::function<void()>& mend = [] {},
+        const std::set<int>& expected = {}) {
         const Ending ending = runner_.run(false, 1, disturbance);
         Tally& tally = tallies_[fault];
         ++tally.tried;

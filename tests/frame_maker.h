@@ -39,8 +39,7 @@ public:
             for (frana::Index k = 0; k < field.count * field.components; ++k) {
                 const frana::Index node = k / field.components;
                 if (node % frame.grid.nx >= frame.grid.nx / 2 && node / frame.grid.nx >= frame.grid.ny / 2)
-                    values[static_cast<std::size_t>(k)] =
-                        height ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+                    values[static_cast<std::size_t>(k)] = height ? std::numeric_limits<double>::quiet_NaN() : 0.0;
             }
         }
     }
@@ -53,8 +52,8 @@ public:
 private:
     std::deque<std::vector<double>> storage_;  ///< a deque keeps its elements where they are
 
-    void add(std::vector<frana::Field>& fields, const std::string& name, const std::string& unit,
-             int components, std::vector<double> values) {
+    void add(std::vector<frana::Field>& fields, const std::string& name, const std::string& unit, int components,
+             std::vector<double> values) {
         storage_.push_back(std::move(values));
         const auto count = static_cast<frana::Index>(storage_.back().size()) / components;
         fields.push_back({name, unit, components, storage_.back().data(), count});

@@ -25,8 +25,11 @@ Draft mound() {
     for (Index j = 7; j < 13; ++j)
         for (Index i = 7; i < 13; ++i) depth.at(i, j) = 1.5;
     draft.rasters = {{"dem.tif", dem}, {"depth.tif", depth}};
-    draft.keys = {{"terrain.dem", "\"dem.tif\""}, {"release.depth", "\"depth.tif\""}, {"time.end", "1.0"},
-                  {"material.bed.law", "\"coulomb\""}, {"material.bed.mu", "0.3"}};
+    draft.keys = {{"terrain.dem", "\"dem.tif\""},
+                  {"release.depth", "\"depth.tif\""},
+                  {"time.end", "1.0"},
+                  {"material.bed.law", "\"coulomb\""},
+                  {"material.bed.mu", "0.3"}};
     draft.steps = 12;
     return draft;
 }
@@ -138,7 +141,11 @@ TEST_CASE("A column hundreds of cells high on a bent bed falls no faster than gr
 }
 
 TEST_CASE("Scenes that once broke an invariant break none", "[stress]") {
-    struct Past { std::uint64_t seed, n; const char* key; const char* value; };  // the key tells that it is still that scene
+    struct Past {
+        std::uint64_t seed, n;
+        const char* key;
+        const char* value;
+    };  // the key tells that it is still that scene
     const std::vector<Past> past = {
         // The flank of a pile at rest was extrapolated under its bed, steeper than friction holds.
         {41, 715, "material.bed.mu", "1.3021982360178923"},

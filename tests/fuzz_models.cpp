@@ -24,7 +24,9 @@ Draft mound(Model model) {
     for (Index j = 6; j < 10; ++j)
         for (Index i = 6; i < 10; ++i) depth.at(i, j) = 1.5;
     draft.rasters = {{"dem.tif", dem}, {"depth.tif", depth}};
-    draft.keys = {{"terrain.dem", "\"dem.tif\""}, {"release.depth", "\"depth.tif\""}, {"time.end", "1000.0"},
+    draft.keys = {{"terrain.dem", "\"dem.tif\""},
+                  {"release.depth", "\"depth.tif\""},
+                  {"time.end", "1000.0"},
                   {"boundary.sides", "\"wall\""}};
     draft.steps = 14;
     if (model == Model::solid_flow || model == Model::staged) {
@@ -39,8 +41,11 @@ Draft mound(Model model) {
         draft.keys["stage#1.window"] = "[2.7, 2.7, 8.3, 12.3]";
     }
     if (model == Model::structured || model == Model::water || model == Model::mixture) {
-        for (const auto& [key, value] : {std::pair{"law", "\"mohr_coulomb\""}, {"cohesion", "0.0"}, {"fraction", "0.0"},
-                                         {"friction_angle_deg", "20.0"}, {"young_modulus", "1.0e5"}})
+        for (const auto& [key, value] : {std::pair{"law", "\"mohr_coulomb\""},
+                                         {"cohesion", "0.0"},
+                                         {"fraction", "0.0"},
+                                         {"friction_angle_deg", "20.0"},
+                                         {"young_modulus", "1.0e5"}})
             draft.keys[std::string("material.structure.") + key] = value;
         draft.keys["material.density"] = "2000.0";
     }
@@ -102,7 +107,8 @@ TEST_CASE("Scenes are on level and on rough ground, some with threads and resump
             threads += draft.claims.threads, resumes += draft.claims.resumes;
             const Raster& dem = draft.dem();
             double rise = 0.0;
-            for (Index i = 0; i + 1 < dem.geometry.nx; ++i) rise = std::fmax(rise, std::abs(dem.at(i + 1, 2) - dem.at(i, 2)));
+            for (Index i = 0; i + 1 < dem.geometry.nx; ++i)
+                rise = std::fmax(rise, std::abs(dem.at(i + 1, 2) - dem.at(i, 2)));
             steep += rise > 0.7 * dem.geometry.cell;
         }
         CAPTURE(word_of(model), threads, resumes, steep);
@@ -117,14 +123,16 @@ TEST_CASE("Where several models are drawn each comes as often as the others", "[
     std::map<Model, Index> counts;
     for (std::uint64_t n = 0; n < 6000; ++n) counts[model_of(all_models(), 1, n)] += 1;
     REQUIRE(counts.size() == all_models().size());
-    for (const auto& [model, count] : counts) CHECK(std::abs(static_cast<double>(count) - 1000.0) < 5 * std::sqrt(1000.0));
+    for (const auto& [model, count] : counts)
+        CHECK(std::abs(static_cast<double>(count) - 1000.0) < 5 * std::sqrt(1000.0));
     for (std::uint64_t n = 0; n < 20; ++n) CHECK(model_of({Model::water}, 1, n) == Model::water);
 }
 
 TEST_CASE("Models are named on the command line", "[stress]") {
     CHECK(models_of("all").size() == 6);
     CHECK(models_of("water,staged") == std::vector<Model>{Model::water, Model::staged});
-    CHECK_THROWS_WITH(models_of("water,ice"), Catch::Contains("--model: found \"ice\"") && Catch::Contains("solid_flow"));
+    CHECK_THROWS_WITH(models_of("water,ice"),
+                      Catch::Contains("--model: found \"ice\"") && Catch::Contains("solid_flow"));
     CHECK_THROWS_AS(models_of(""), UserError);
 }
 
@@ -178,7 +186,12 @@ TEST_CASE("A 3D point that is too high, or too fast where it is, is seen", "[str
 }
 
 TEST_CASE("Scenes of other models that once broke an invariant break none", "[stress]") {
-    struct Past { Model model; std::uint64_t seed, n; const char* key; const char* value; };  // still that scene
+    struct Past {
+        Model model;
+        std::uint64_t seed, n;
+        const char* key;
+        const char* value;
+    };  // still that scene
     const std::vector<Past> past = {
         // The spread of grains over the depth drove thin, thick water at hundreds of m/s.
         {Model::water, 1, 224, "water.profile_factor", "3.0"},

@@ -6,8 +6,8 @@
 
 #include "catch.h"
 #include "fresh_folder.h"
-#include "io_figures_scene.h"
 #include "io_3d_pictures.h"
+#include "io_figures_scene.h"
 #include "vtk_io/figures/colours_3d.h"
 #include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/reader.h"
@@ -64,9 +64,7 @@ std::vector<LoadedPatch> written_and_read() {
     return read_barriers(folder.path(), 0);
 }
 
-std::vector<BarrierSolid> read_wall() {
-    return barrier_solids(written_and_read(), {{12.0, 0.0}}, floor_of_10());
-}
+std::vector<BarrierSolid> read_wall() { return barrier_solids(written_and_read(), {{12.0, 0.0}}, floor_of_10()); }
 
 /// Points of 0.25 m: a slow sheet before the wall, and a fast heap where `fast` says.
 Moment3d flow(const Vec3& fast, bool with_wall = true) {
@@ -105,9 +103,8 @@ Figure3d figure_of(const Moment3d& moment) {
 bool alike(const Colour& c, const Colour& colour) {
     const double bright = std::max({colour.r, colour.g, colour.b, std::uint8_t{1}});
     const double most = std::max({c.r, c.g, c.b, std::uint8_t{1}});
-    const double off =
-        std::max({std::abs(c.r / most - colour.r / bright), std::abs(c.g / most - colour.g / bright),
-                  std::abs(c.b / most - colour.b / bright)});
+    const double off = std::max({std::abs(c.r / most - colour.r / bright), std::abs(c.g / most - colour.g / bright),
+                                 std::abs(c.b / most - colour.b / bright)});
     return most > 60.0 && off < 0.1;
 }
 
@@ -121,7 +118,9 @@ int like(const Pixels& picture, const Colour& colour) {
 
 /// How wide the first of two things of one colour is, which stand `apart` of each other across the picture [m], and how
 /// wide a pixel is.
-struct Width { double wide = 0.0, pixel = 0.0; };
+struct Width {
+    double wide = 0.0, pixel = 0.0;
+};
 Width width_of_first(const Pixels& picture, const Colour& colour, double apart) {
     std::vector<int> from, to;
     bool within = false;
@@ -184,8 +183,7 @@ TEST_CASE("A barrier is put together again from the patches that a run writes", 
 TEST_CASE("A barrier of a height ends that much above the ground", "[space]") {
     Raster slope = floor_of_10();
     for (Index j = 0; j < slope.geometry.ny; ++j)
-        for (Index i = 0; i < slope.geometry.nx; ++i)
-            slope.at(i, j) = 10.0 + 0.1 * (slope.geometry.y(j) - 15.0);
+        for (Index i = 0; i < slope.geometry.nx; ++i) slope.at(i, j) = 10.0 + 0.1 * (slope.geometry.y(j) - 15.0);
     const auto solids = barrier_solids(written_and_read(), {{std::nullopt, 1.5}}, slope);
     REQUIRE(solids.size() == 1);
     double most = -1e300;
@@ -197,8 +195,7 @@ TEST_CASE("A barrier of a height ends that much above the ground", "[space]") {
     CHECK(most == Approx(11.5));  // at y = 15 m, the highest ground
 }
 
-TEST_CASE("What pictures of a run share: the flow goes where it pushes, and the load is in the middle",
-          "[space]") {
+TEST_CASE("What pictures of a run share: the flow goes where it pushes, and the load is in the middle", "[space]") {
     Shared3d shared;
     Moment3d before = flow({20, 10, 10.2}, false);
     before.momentum = {0.0, 5.0, 0.0};
@@ -286,12 +283,11 @@ TEST_CASE("Half a million points are drawn in seconds", "[space]") {
     if (cannot_draw()) return;
     Moment3d many = flow({24, 10, 10.2}, false);
     for (int k = 0; k < 500000; ++k)
-        many.material.push_back(
-            {{15.0 + 0.03 * (k % 500), 2.0 + 0.03 * (k / 500 % 500), 10.1 + 0.05 * (k / 250000)},
-             0.04,
-             0.01 * (k % 1000),
-             10.0,
-             false});
+        many.material.push_back({{15.0 + 0.03 * (k % 500), 2.0 + 0.03 * (k / 500 % 500), 10.1 + 0.05 * (k / 250000)},
+                                 0.04,
+                                 0.01 * (k % 1000),
+                                 10.0,
+                                 false});
     const Figure3d figure = figure_of(many);
     const std::clock_t start = std::clock();
     drawn(render_3d, figure);
@@ -300,8 +296,7 @@ TEST_CASE("Half a million points are drawn in seconds", "[space]") {
     CHECK(seconds < 30.0);  // of all threads; 0.9 s measured: only what is far slower fails, on any machine
 }
 
-TEST_CASE("Views and sections without a renderer, or with nothing to show, say so and leave no file",
-          "[space]") {
+TEST_CASE("Views and sections without a renderer, or with nothing to show, say so and leave no file", "[space]") {
     const figures::Folder folder;
     const Figure3d figure = figure_of(flow({24, 10, 10.2}));
     std::string view_reason, section_reason;

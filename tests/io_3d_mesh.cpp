@@ -8,8 +8,8 @@
 #include "catch.h"
 #include "frana_commands.h"
 #include "fresh_folder.h"
-#include "io_figures_scene.h"
 #include "io_3d_pictures.h"
+#include "io_figures_scene.h"
 #include "vtk_io/barrier_mesh.h"
 #include "vtk_io/figures/colours_3d.h"
 #include "vtk_io/figures/figure_3d.h"
@@ -127,8 +127,8 @@ int all(const std::vector<int>& rows) {
 void write_block(const std::filesystem::path& file) {
     std::ofstream out(file);
     for (int c = 0; c < 8; ++c) out << "v " << (c & 1) << ' ' << 7 * (c >> 1 & 1) << ' ' << 3 * (c >> 2) << '\n';
-    for (const char* side : {"1 3 2", "2 3 4", "5 6 7", "6 8 7", "1 2 5", "2 6 5", "3 7 4", "4 7 8", "1 5 3", "3 5 7",
-                             "2 4 6", "4 8 6"})
+    for (const char* side :
+         {"1 3 2", "2 3 4", "5 6 7", "6 8 7", "1 2 5", "2 6 5", "3 7 4", "4 7 8", "1 5 3", "3 5 7", "2 4 6", "4 8 6"})
         out << "f " << side << '\n';
 }
 
@@ -151,8 +151,7 @@ TEST_CASE("A run keeps its meshes in map coordinates, turned outwards, by the nu
     REQUIRE(read[1]->points.size() == 6);
     REQUIRE(read[1]->triangles.size() == 8);
     for (std::size_t n = 0; n < 8; ++n)
-        for (std::size_t k = 0; k < 3; ++k)
-            CHECK(corner_of(*read[1], n, k) == corner_of(*other, n, k));
+        for (std::size_t k = 0; k < 3; ++k) CHECK(corner_of(*read[1], n, k) == corner_of(*other, n, k));
     REQUIRE(read[2]->points.size() == 4);
     REQUIRE(read[2]->triangles.size() == 4);
     double volume = 0.0;
@@ -276,7 +275,8 @@ TEST_CASE("The oblique view and the section show a mesh and the pressure on it",
     CHECK(changed > 2000);
 }
 
-TEST_CASE("Figures of a finished run show its points and its mesh when both, and the mesh's file, have gone", "[space]") {
+TEST_CASE("Figures of a finished run show its points and its mesh when both, and the mesh's file, have gone",
+          "[space]") {
     if (cannot_draw()) return;
     const FreshFolder folder;
     const std::string data = std::string(FRANA_SOURCE_DIR) + "/cases/wall/data/";
@@ -284,7 +284,8 @@ TEST_CASE("Figures of a finished run show its points and its mesh when both, and
     std::ofstream(folder.path() / "case.toml")
         << "[case]\ntitle = \"A block\"\n[terrain]\ndem = \"" << data << "dem.tif\"\n[[release]]\noutline = \"" << data
         << "release.geojson\"\nsurface = 9.5\n[material]\ndensity = 1000.0\n[material.bed]\nlaw = \"none\"\n"
-           "[boundary]\nsides = \"wall\"\n[[stage]]\nmodel = \"depth_averaged\"\nuntil = 2.0\n[[stage]]\nmodel = \"solid_flow\"\n"
+           "[boundary]\nsides = \"wall\"\n[[stage]]\nmodel = \"depth_averaged\"\nuntil = 2.0\n[[stage]]\nmodel = "
+           "\"solid_flow\"\n"
            "cell = 0.5\nuntil = 2.6\n[[stage]]\nmodel = \"depth_averaged\"\n"
            "[[barrier]]\nmesh = \"block.obj\"\norigin = [20, -1, 5.67]\n[time]\nend = 2.8\n"
            "[output]\nevery = 0.1\nformats = [\"vtk\"]\n";

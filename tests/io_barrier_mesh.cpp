@@ -24,8 +24,7 @@ using Corners = std::vector<Vec3>;
 using Sides = std::vector<std::array<int, 3>>;
 
 /// An ASCII STL file, which repeats the corners of each triangle.
-std::filesystem::path write_stl(const std::filesystem::path& file, const Corners& corners,
-                                const Sides& sides) {
+std::filesystem::path write_stl(const std::filesystem::path& file, const Corners& corners, const Sides& sides) {
     std::ofstream out(file);
     out << "solid made\n";
     for (const auto& side : sides) {
@@ -40,18 +39,15 @@ std::filesystem::path write_stl(const std::filesystem::path& file, const Corners
     return file;
 }
 
-std::filesystem::path write_obj(const std::filesystem::path& file, const Corners& corners,
-                                const Sides& sides) {
+std::filesystem::path write_obj(const std::filesystem::path& file, const Corners& corners, const Sides& sides) {
     std::ofstream out(file);
     for (const Vec3& x : corners) out << "v " << x.x() << ' ' << x.y() << ' ' << x.z() << '\n';
-    for (const auto& side : sides)
-        out << "f " << side[0] + 1 << ' ' << side[1] + 1 << ' ' << side[2] + 1 << '\n';
+    for (const auto& side : sides) out << "f " << side[0] + 1 << ' ' << side[1] + 1 << ' ' << side[2] + 1 << '\n';
     return file;
 }
 
 /// By hand, so that the reader meets a file that VTK did not write.
-std::filesystem::path write_vtp(const std::filesystem::path& file, const Corners& corners,
-                                const Sides& sides) {
+std::filesystem::path write_vtp(const std::filesystem::path& file, const Corners& corners, const Sides& sides) {
     std::ofstream out(file);
     out << "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\"><PolyData><Piece "
            "NumberOfPoints=\""
@@ -69,8 +65,7 @@ std::filesystem::path write_vtp(const std::filesystem::path& file, const Corners
 Corners box_corners(const Vec3& low, const Vec3& high) {
     Corners corners;
     for (int c = 0; c < 8; ++c)
-        corners.push_back(
-            {c & 1 ? high.x() : low.x(), c & 2 ? high.y() : low.y(), c & 4 ? high.z() : low.z()});
+        corners.push_back({c & 1 ? high.x() : low.x(), c & 2 ? high.y() : low.y(), c & 4 ? high.z() : low.z()});
     return corners;
 }
 const Sides kBox = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
@@ -94,8 +89,7 @@ void check_box(const DistanceField& field) {
 
 }  // namespace
 
-TEST_CASE("A closed box in any of the formats gives its exact distances, whichever way its triangles run",
-          "[mesh]") {
+TEST_CASE("A closed box in any of the formats gives its exact distances, whichever way its triangles run", "[mesh]") {
     const FreshFolder fresh;
     const std::filesystem::path& folder = fresh.path();
     const Corners corners = box_corners(kLow, kHigh);
@@ -123,13 +117,11 @@ TEST_CASE("Around a sharp spike the field knows inside from outside", "[mesh]") 
     const Corners corners = {{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}, {0.1, 0.1, 2}};
     const Sides sides = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     const FreshFolder folder;
-    const DistanceField field =
-        read_barrier_mesh(write_obj(folder.path() / "spike.obj", corners, sides), {0.05, 0.4});
+    const DistanceField field = read_barrier_mesh(write_obj(folder.path() / "spike.obj", corners, sides), {0.05, 0.4});
     const auto inside = [&](const Vec3& x) {
         double least = 1e9;
         for (const auto& s : sides) {
-            const Vec3 a = corners[static_cast<std::size_t>(s[0])],
-                       b = corners[static_cast<std::size_t>(s[1])],
+            const Vec3 a = corners[static_cast<std::size_t>(s[0])], b = corners[static_cast<std::size_t>(s[1])],
                        c = corners[static_cast<std::size_t>(s[2])];
             least = std::min(least, -(b - a).cross(c - a).normalized().dot(x - a));
         }
@@ -213,8 +205,7 @@ TEST_CASE("A mesh that is no solid is refused with what was found and what to do
         CHECK_THROWS_WITH(read_barrier_mesh(file, sampling), Catch::Contains(what));
     };
     Sides open(kBox.begin() + 1, kBox.end());
-    refused(write_stl(folder / "open.stl", corners, open),
-            "3 edges of the mesh do not have exactly two triangles");
+    refused(write_stl(folder / "open.stl", corners, open), "3 edges of the mesh do not have exactly two triangles");
     Sides turned = kBox;
     std::swap(turned[4][0], turned[4][1]);
     refused(write_stl(folder / "turned.stl", corners, turned), "opposite sides outwards");
@@ -254,8 +245,8 @@ TEST_CASE("A sheet with two sides and nothing between them is refused, alone and
     Sides sides = two_sides;
     for (auto side : kBox) sides.push_back({side[0] + 4, side[1] + 4, side[2] + 4});
     const FreshFolder folder;
-    for (const auto& file : {write_obj(folder.path() / "sheet.obj", sheet, two_sides),
-                             write_obj(folder.path() / "both.obj", both, sides)})
+    for (const auto& file :
+         {write_obj(folder.path() / "sheet.obj", sheet, two_sides), write_obj(folder.path() / "both.obj", both, sides)})
         CHECK_THROWS_WITH(read_barrier_mesh(file, {0.25, 0.5}),
                           Catch::Contains("has two sides and nothing between them; expected a solid"));
 }
@@ -293,8 +284,7 @@ TEST_CASE("Parts that stand apart are one barrier", "[mesh]") {
     Sides both = kBox;
     for (auto side : kBox) both.push_back({side[0] + 8, side[1] + 8, side[2] + 8});
     const FreshFolder folder;
-    const DistanceField field =
-        read_barrier_mesh(write_vtp(folder.path() / "two.vtp", two, both), {0.125, 0.5});
+    const DistanceField field = read_barrier_mesh(write_vtp(folder.path() / "two.vtp", two, both), {0.125, 0.5});
     CHECK(field.inside({0.5, 0.5, 0.5}));
     CHECK(field.inside({2.5, 0.5, 0.5}));
     CHECK(!field.inside({1.5, 0.5, 0.5}));

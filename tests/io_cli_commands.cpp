@@ -27,12 +27,11 @@ TEST_CASE("--version names the libraries, --help the commands, and both leave wi
     const PlaneCase scene;
     const Outcome version = scene.frana("--version");
     CHECK(version.code == 0);
-    CHECK_THAT(version.out,
-               Contains("frana ") && Contains("VTK 9") && Contains("GDAL 3") && Contains("HDF5 1"));
+    CHECK_THAT(version.out, Contains("frana ") && Contains("VTK 9") && Contains("GDAL 3") && Contains("HDF5 1"));
     const Outcome help = scene.frana("--help");
     CHECK(help.code == 0);
-    CHECK_THAT(help.out, Contains("run") && Contains("check") && Contains("describe") &&
-                             Contains("particles") && Contains("figures") && Contains("compare"));
+    CHECK_THAT(help.out, Contains("run") && Contains("check") && Contains("describe") && Contains("particles") &&
+                             Contains("figures") && Contains("compare"));
 }
 
 TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr", "[cli]") {
@@ -162,15 +161,13 @@ TEST_CASE("check lists all problems of a bad case on stderr and is not ready", "
     CHECK(check.code == 2);
     CHECK(check.out.empty());
     const std::string name = scene.file().string();
-    CHECK(
-        check.err ==
-        name +
-            ":9: grid.cel: found an unknown key; expected a key of [grid]: cell; did you mean grid.cell?\n" +
-            name + ":11: survey.footprint: found no file \"" + (scene.folder() / "none.geojson").string() +
-            "\"; expected an existing file; correct the name (it is relative to the case file), or put "
-            "the file there\n"
-            "--set scheme.cfl: found 7; expected a number above 0 and at most 1; choose a value in this "
-            "range\n3 problems\n");
+    CHECK(check.err ==
+          name + ":9: grid.cel: found an unknown key; expected a key of [grid]: cell; did you mean grid.cell?\n" +
+              name + ":11: survey.footprint: found no file \"" + (scene.folder() / "none.geojson").string() +
+              "\"; expected an existing file; correct the name (it is relative to the case file), or put "
+              "the file there\n"
+              "--set scheme.cfl: found 7; expected a number above 0 and at most 1; choose a value in this "
+              "range\n3 problems\n");
 }
 
 TEST_CASE("particles writes every format, with the count asked for", "[cli]") {
@@ -191,7 +188,8 @@ TEST_CASE("particles writes every format, with the count asked for", "[cli]") {
     CHECK_THAT(wrong.err, Contains("expected .h5, .json, .csv or .vtp"));
 }
 
-TEST_CASE("verify names the problem that was meant, writes JSON with the contract's keys, and compares tables", "[cli]") {
+TEST_CASE("verify names the problem that was meant, writes JSON with the contract's keys, and compares tables",
+          "[cli]") {
     const PlaneCase scene;
     const Outcome unknown = scene.frana("verify stokr");
     CHECK(unknown.code == 2);

@@ -60,10 +60,18 @@ private:
     FreshFolder folder_;
 };
 
-const char* const contract[] = {"true_positive_area",   "false_positive_area",     "false_negative_area",
-                                "iou",                  "precision",               "recall",
-                                "f1",                   "area_ratio",              "area_difference_percent",
-                                "runout_difference",    "boundary_distance_mean",  "boundary_distance_p95"};
+const char* const contract[] = {"true_positive_area",
+                                "false_positive_area",
+                                "false_negative_area",
+                                "iou",
+                                "precision",
+                                "recall",
+                                "f1",
+                                "area_ratio",
+                                "area_difference_percent",
+                                "runout_difference",
+                                "boundary_distance_mean",
+                                "boundary_distance_p95"};
 
 Raster peak_depth(const fs::path& run_dir) {
     std::vector<std::string> log;
@@ -116,8 +124,8 @@ TEST_CASE("compare leaves the contract's scores, a page and a picture, and they 
 TEST_CASE("compare takes a path and a deposit, and writes where --json says", "[compare]") {
     const Slope slope;
     std::vector<std::string> log;
-    Raster deposit = GdalReader().read_raster(slope.run_dir() / "rasters" / "final_depth.tif",
-                                              {-1e9, -1e9, 1e9, 1e9}, "", log);
+    Raster deposit =
+        GdalReader().read_raster(slope.run_dir() / "rasters" / "final_depth.tif", {-1e9, -1e9, 1e9, 1e9}, "", log);
     for (double& h : deposit.values) h *= 2.0;
     write_geotiff(slope.path() / "deposit.tif", deposit, "m", "thickness");
     write_text(slope.path() / "path.geojson", feature("LineString", "[[10,50],[140,50]]"));

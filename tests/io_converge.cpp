@@ -164,5 +164,6 @@ TEST_CASE("converge varies particles a cell and the step on the finest cell, and
     }
     const Outcome wrong = call_frana(folder.path(), avalanche + "--cells 40,30 --per-cell 4 --overwrite");
     CHECK(wrong.code == 2);
-    CHECK_THAT(wrong.err, Contains("--per-cell: found \"4\"; expected two or more different numbers of particles a cell"));
+    CHECK_THAT(wrong.err,
+               Contains("--per-cell: found \"4\"; expected two or more different numbers of particles a cell"));
 }

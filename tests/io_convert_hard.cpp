@@ -1,9 +1,9 @@
 // `frana convert` where it is less easy: uneven terrain, runs that are being written, numbers that are none.
-#include <atomic>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <atomic>
 
 #include <cmath>
 #include <limits>
@@ -34,8 +34,9 @@ Numbers vtk_numbers(const fs::path& file, const char* name) {
 TEST_CASE("On uneven terrain points climb as the run says that its particles do, from VTK files and from run.h5",
           "[convert]") {
     const FreshFolder folder;
-    const std::string run = std::string("run ") + FRANA_SOURCE_DIR "/cases/maungawhau/case.toml --quiet --until 4 " +
-                            "--out out --set grid.cell=10 --set output.every=2 --set 'output.formats=[\"vtk\",\"xdmf\"]'";
+    const std::string run =
+        std::string("run ") + FRANA_SOURCE_DIR "/cases/maungawhau/case.toml --quiet --until 4 " +
+        "--out out --set grid.cell=10 --set output.every=2 --set 'output.formats=[\"vtk\",\"xdmf\"]'";
     REQUIRE(call_frana(folder.path(), run).code == 0);
     REQUIRE(call_frana(folder.path(), "convert out --time 4 --spacing 1000 --out vtk.h5").code == 0);
     fs::remove(folder.path() / "out/particles.pvd");
@@ -70,8 +71,8 @@ TEST_CASE("A run that is being written can be converted all the while", "[conver
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
             continue;
         }
-        const Outcome outcome = call_frana(folder.path(), "convert " + (scene.folder() / "out").string() +
-                                                              " --time 0.1 --spacing 1 --out a.csv");
+        const Outcome outcome = call_frana(
+            folder.path(), "convert " + (scene.folder() / "out").string() + " --time 0.1 --spacing 1 --out a.csv");
         // Until the frame at 0.1 s is there, its time is past the last one.
         if (outcome.err.find("is past the last frame") != std::string::npos) continue;
         CAPTURE(converted, outcome.err);
@@ -106,7 +107,8 @@ TEST_CASE("Two windows that share an edge hold each column once", "[convert]") {
         return hdf5_numbers(convert("part.h5", "--time 0 --spacing 9 --window " + window), "column").size();
     };
     CHECK(held(fmt::format("-1e4,-1e4,{:.17g},1e4", edge + 5.0)) < all.size());
-    CHECK(held(fmt::format("-1e4,-1e4,{:.17g},1e4", edge + 5.0)) + held(fmt::format("{:.17g},-1e4,1e4,1e4", edge + 5.0)) ==
+    CHECK(held(fmt::format("-1e4,-1e4,{:.17g},1e4", edge + 5.0)) +
+              held(fmt::format("{:.17g},-1e4,1e4,1e4", edge + 5.0)) ==
           all.size());
 }
 
@@ -114,5 +116,6 @@ TEST_CASE("The run's own files are not overwritten, and the way back takes none 
     CHECK(refused("out --time 1 --spacing 1 --out out/run.h5").err ==
           "--out out/run.h5: is a file of the run itself; expected another name; choose one\n");
     convert("there.h5");
-    CHECK_THAT(refused("out --points there.h5 --back rasters --window 0,0,1,1").err, Contains("found both ways at once"));
+    CHECK_THAT(refused("out --points there.h5 --back rasters --window 0,0,1,1").err,
+               Contains("found both ways at once"));
 }

@@ -95,8 +95,9 @@ TEST_CASE("Ctrl-C while a run draws its pictures leaves a whole run without the 
                                       [&](pid_t) { return !pictures_in(out).empty(); });
     CHECK(ending.code == 130);
     CHECK(ending.seconds < 2.0);
-    CHECK(ending.errors == "interrupted while pictures were drawn; all else of the run is in out; `frana figures out` "
-                           "draws the pictures\n");
+    CHECK(ending.errors ==
+          "interrupted while pictures were drawn; all else of the run is in out; `frana figures out` "
+          "draws the pictures\n");
     const auto record = nlohmann::json::parse(text_of(out / "run.json"));
     CHECK(record["exit_reason"] != "running");
     CHECK_THAT(text_of(out / "report.md"), Contains("interrupted while pictures were drawn; `frana figures out`"));

@@ -35,8 +35,7 @@ std::vector<int> black_rows(const Pixels& picture) {
     std::vector<int> rows;
     for (int y = 0; y < picture.height; ++y) {
         int black = 0;
-        for (int x = 0; x < picture.width; ++x)
-            black += figures::distance(picture.at(x, y), colours::black) < 100;
+        for (int x = 0; x < picture.width; ++x) black += figures::distance(picture.at(x, y), colours::black) < 100;
         if (black > 0.7 * picture.width && (rows.empty() || y > rows.back() + 3)) rows.push_back(y);
     }
     return rows;

@@ -112,8 +112,7 @@ TEST_CASE("The colour bar runs from the first to the last colour beside the map"
     x += 4;
     for (const double t : {0.02, 0.25, 0.5, 0.75, 0.98}) {
         const int y = static_cast<int>(frame.y0 + t * frame.height());
-        CHECK(figures::distance(picture.at(x, y), colour_at(Colormap::depth, t)) <=
-              6);  // one pixel of the bar
+        CHECK(figures::distance(picture.at(x, y), colour_at(Colormap::depth, t)) <= 6);  // one pixel of the bar
     }
 }
 
@@ -152,11 +151,11 @@ TEST_CASE("Small, large, narrow, dry, even and empty terrain all make a map", "[
         double cell, slope;
         bool wet, data;
     };
-    for (const Shape& shape : {Shape{2, 2, 1.0, 0.1, true, true}, Shape{87, 61, 10.0, 0.2, true, true},
-                               Shape{300, 40, 0.5, 0.5, true, true}, Shape{40, 300, 0.5, 0.5, true, true},
-                               Shape{500, 5, 1.0, 0.1, true, true}, Shape{1500, 1200, 2.0, 0.3, true, true},
-                               Shape{50, 50, 1.0, 0.2, false, true}, Shape{50, 50, 1.0, 0.0, true, true},
-                               Shape{50, 50, 1.0, 0.0, false, false}}) {
+    for (const Shape& shape :
+         {Shape{2, 2, 1.0, 0.1, true, true}, Shape{87, 61, 10.0, 0.2, true, true}, Shape{300, 40, 0.5, 0.5, true, true},
+          Shape{40, 300, 0.5, 0.5, true, true}, Shape{500, 5, 1.0, 0.1, true, true},
+          Shape{1500, 1200, 2.0, 0.3, true, true}, Shape{50, 50, 1.0, 0.2, false, true},
+          Shape{50, 50, 1.0, 0.0, true, true}, Shape{50, 50, 1.0, 0.0, false, false}}) {
         MapFigure figure;
         figure.width = 700;
         figure.height = 600;

@@ -20,7 +20,8 @@ int off_area(const Colour& seen, const Colour& area) {
 
 }  // namespace
 
-TEST_CASE("Nodes inside rings: holes are outside, and a node belongs to one of two boxes that share an edge", "[figures]") {
+TEST_CASE("Nodes inside rings: holes are outside, and a node belongs to one of two boxes that share an edge",
+          "[figures]") {
     const GridGeometry grid{10, 10, 0.5, 0.5, 1.0};
     const auto count = [&](const std::vector<Polyline>& rings) {
         const std::vector<char> inside = nodes_inside(rings, grid);

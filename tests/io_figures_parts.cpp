@@ -25,11 +25,9 @@ TEST_CASE("Ticks are multiples of 1, 2 or 5 within the range", "[figures]") {
     CHECK(ticks.labels == std::vector<std::string>{"0.0", "0.2", "0.4", "0.6", "0.8", "1.0"});
     CHECK(ticks_between(408391.0, 410695.0, 5).labels ==
           std::vector<std::string>{"408500", "409000", "409500", "410000", "410500"});
-    CHECK(ticks_between(-30.0, 30.0, 7).labels ==
-          std::vector<std::string>{"-30", "-20", "-10", "0", "10", "20", "30"});
+    CHECK(ticks_between(-30.0, 30.0, 7).labels == std::vector<std::string>{"-30", "-20", "-10", "0", "10", "20", "30"});
     CHECK(ticks_between(1.0, 1.0, 5).at.empty());
-    CHECK(log_ticks(1e-4, 1e2, 9).labels ==
-          std::vector<std::string>{"1e-4", "0.001", "0.01", "0.1", "1", "10", "100"});
+    CHECK(log_ticks(1e-4, 1e2, 9).labels == std::vector<std::string>{"1e-4", "0.001", "0.01", "0.1", "1", "10", "100"});
     CHECK(round_down_125(0.3) == Approx(0.2));
     CHECK(round_up_125(36.0) == Approx(50.0));
     CHECK(round_limit(4.01) == Approx(5.0));
@@ -73,8 +71,7 @@ TEST_CASE("Level ground is lit by the sine of the lamps' height, and slopes to t
     CHECK(shade(-0.5, 0.5) < 0.4);                                  // falls to the south-east
 }
 
-TEST_CASE("Resampling keeps a plane, also to the outer edge of the pixels, and leaves nodata out",
-          "[figures]") {
+TEST_CASE("Resampling keeps a plane, also to the outer edge of the pixels, and leaves nodata out", "[figures]") {
     Raster raster = plane(20, 15, 10.0, 0.3, -0.2);
     GridGeometry fine{80, 60, 0.0, 0.0, 2.5};
     fine.x0 = raster.geometry.x0 - 5.0 + 1.25;
@@ -102,8 +99,7 @@ TEST_CASE("The level line of a plane is one straight line at the level", "[figur
     const double level = 50.0 + 0.3 * 163.0;
     const auto lines = level_lines(raster, level);
     REQUIRE(lines.size() == 1);
-    for (const Vec2& p : lines[0])
-        CHECK(p.x() == Approx(163.0).margin(1e-4));  // node numbers in single precision
+    for (const Vec2& p : lines[0]) CHECK(p.x() == Approx(163.0).margin(1e-4));  // node numbers in single precision
     CHECK(std::abs(lines[0].front().y() - lines[0].back().y()) == Approx(140.0));
     CHECK(level_lines(raster, 1e6).empty());
     Raster holed = raster;

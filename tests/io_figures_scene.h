@@ -38,8 +38,7 @@ public:
     Folder& operator=(const Folder&) = delete;
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
     std::ptrdiff_t files() const {
-        return std::distance(std::filesystem::directory_iterator(path_),
-                             std::filesystem::directory_iterator());
+        return std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator());
     }
 
 private:
@@ -78,9 +77,7 @@ inline int distance(const frana::Colour& a, const frana::Colour& b) {
 }
 
 /// Grey, white and black have none.
-inline int saturation(const frana::Colour& c) {
-    return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b});
-}
+inline int saturation(const frana::Colour& c) { return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}); }
 
 /// Number of pixels within `tolerance` of the colour.
 inline int count(const frana::Pixels& picture, const frana::Colour& colour, int tolerance) {

@@ -93,7 +93,8 @@ TEST_CASE("a film holds its pictures in their order, whatever its folder is call
             std::string why_not;
             REQUIRE(reel.join(2.0, why_not));
         }
-        CHECK(std::distance(fs::directory_iterator(odd), fs::directory_iterator()) == (film.extension() == ".mp4" ? 1 : 2));
+        CHECK(std::distance(fs::directory_iterator(odd), fs::directory_iterator()) ==
+              (film.extension() == ".mp4" ? 1 : 2));
         for (int k = 0; k < 3; ++k) {
             const bool mp4 = film.extension() == ".mp4";  // 25 pictures a second, of which 12 or 13 are the same
             const Pixels picture = picture_of(film, mp4 ? 5 + 25 * k / 2 : k, plain.path());
@@ -154,8 +155,9 @@ TEST_CASE("without ffmpeg a run goes on and says so once", "[film]") {
     CHECK(record.figures.empty());
     int warnings = 0;
     for (const std::string& warning : record.warnings)
-        if (warning == "figures/film_depth.mp4 was not drawn: there is no program ffmpeg in PATH; install the package "
-                       "ffmpeg, then frana figures with --film makes it")
+        if (warning ==
+            "figures/film_depth.mp4 was not drawn: there is no program ffmpeg in PATH; install the package "
+            "ffmpeg, then frana figures with --film makes it")
             ++warnings;
     CHECK(warnings == 1);
     CHECK(fs::is_empty(folder.path() / "figures"));

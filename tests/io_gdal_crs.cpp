@@ -57,9 +57,8 @@ TEST_CASE("Degrees are refused with a gdalwarp to the UTM zone of the place, and
         run_gdal_line(cure_in(message));
         const Raster dem = read(folder.path() / "dem_utm.tif");
         CHECK(contains(dem.crs_wkt, "WGS 84 / UTM zone"));
-        CHECK(range(dem, false) >=
-              499.5);  // corners are nodata, not 0 m; one-sided kernels at the rim of a slope
-        CHECK(range(dem, true) <= 559.5);  // of 1 m a pixel stay within half a pixel
+        CHECK(range(dem, false) >= 499.5);  // corners are nodata, not 0 m; one-sided kernels at the rim of a slope
+        CHECK(range(dem, true) <= 559.5);   // of 1 m a pixel stay within half a pixel
     }
 }
 
@@ -107,8 +106,7 @@ TEST_CASE("Elevations declared in feet are refused and cured, with or without me
         const std::string line = cure_in(message);
         run_gdal_line(line);
         const Raster dem = read(line.substr(line.rfind(' ') + 1));
-        CHECK(range(dem, false) ==
-              Approx(1000.0 * kind.metres).margin(0.2));  // half a pixel of 1 ft, as above
+        CHECK(range(dem, false) == Approx(1000.0 * kind.metres).margin(0.2));  // half a pixel of 1 ft, as above
         CHECK(range(dem, true) == Approx(1039.0 * kind.metres).margin(0.2));
     }
 }

@@ -35,8 +35,7 @@ struct Read {
     std::vector<std::string> log;
 };
 
-Read read(const std::filesystem::path& file, std::optional<std::array<double, 4>> window,
-          std::optional<double> cell) {
+Read read(const std::filesystem::path& file, std::optional<std::array<double, 4>> window, std::optional<double> cell) {
     Read out;
     out.dem = GdalReader().read_dem(file, {window, cell}, out.log);
     return out;
@@ -58,8 +57,7 @@ double off_plane(const Raster& dem) {
 TEST_CASE("A window on pixel edges takes exactly its pixels", "[gdal]") {
     const FreshFolder folder;
     make_raster(folder.path() / "dem.tif", plane_spec());
-    const auto out =
-        read(folder.path() / "dem.tif", {{left + 10, bottom + 20, left + 60, bottom + 45}}, pixel);
+    const auto out = read(folder.path() / "dem.tif", {{left + 10, bottom + 20, left + 60, bottom + 45}}, pixel);
     CHECK(out.dem.geometry == GridGeometry{10, 5, left + 12.5, bottom + 22.5, pixel});
     CHECK(off_plane(out.dem) < 1e-10);  // doubles near 1000: not touched at all
     CHECK_FALSE(any_contains(out.log, "widened"));
@@ -82,8 +80,7 @@ TEST_CASE("A window that leaves the raster is refused with both extents", "[gdal
     });
     CHECK(contains(message, "[499990, 6000000, 500060, 6000045]"));
     CHECK(contains(message, "[500000, 6000000, 500200, 6000150]"));
-    CHECK_THROWS_AS(read(folder.path() / "dem.tif", {{left + 60, bottom, left + 10, bottom + 45}}, {}),
-                    UserError);
+    CHECK_THROWS_AS(read(folder.path() / "dem.tif", {{left + 60, bottom, left + 10, bottom + 45}}, {}), UserError);
 }
 
 TEST_CASE("A plane stays a plane under every cell size and window", "[gdal]") {
@@ -97,8 +94,8 @@ TEST_CASE("A plane stays a plane under every cell size and window", "[gdal]") {
             const auto out = read(folder.path() / "dem.tif", window, cell);
             CHECK(out.dem.geometry.cell == cell);
             CHECK(off_plane(out.dem) < 1e-9);  // round-off of weights times elevations near 1000
-            CHECK(any_contains(
-                out.log, cell < pixel ? "5 m pixels interpolated (cubic) to" : "5 m pixels averaged to"));
+            CHECK(
+                any_contains(out.log, cell < pixel ? "5 m pixels interpolated (cubic) to" : "5 m pixels averaged to"));
         }
 }
 
@@ -109,8 +106,7 @@ TEST_CASE("Cells of whole pixels hold the plain mean, and the volume under any t
     make_raster(folder.path() / "dem.tif", spec);
     const auto whole = read(folder.path() / "dem.tif", {}, 10.0);
     const auto& value = spec.value;
-    const double mean =
-        0.25 * (value(4, rows - 1) + value(5, rows - 1) + value(4, rows - 2) + value(5, rows - 2));
+    const double mean = 0.25 * (value(4, rows - 1) + value(5, rows - 1) + value(4, rows - 2) + value(5, rows - 2));
     CHECK(whole.dem.at(2, 0) == Approx(mean).epsilon(1e-14));
 
     double pixels = 0.0;
@@ -134,8 +130,7 @@ TEST_CASE("Cubic interpolation is exact for parabolas and passes through the pix
         return bowl(left + (column + 0.5) * pixel, bottom + (rows - row - 0.5) * pixel);
     };
     make_raster(folder.path() / "dem.tif", spec);
-    const auto out =
-        read(folder.path() / "dem.tif", {{left + 20, bottom + 20, left + 150, bottom + 120}}, 1.0);
+    const auto out = read(folder.path() / "dem.tif", {{left + 20, bottom + 20, left + 150, bottom + 120}}, 1.0);
     for (Index j = 0; j < out.dem.geometry.ny; ++j)
         for (Index i = 0; i < out.dem.geometry.nx; ++i)
             if (std::abs(out.dem.at(i, j) - bowl(out.dem.geometry.x(i), out.dem.geometry.y(j))) > 1e-9)
@@ -161,9 +156,7 @@ TEST_CASE("Nodata is never mixed into terrain, coarser or finer", "[gdal]") {
     RasterSpec spec = plane_spec();
     spec.nodata = -9999.0;
     const auto& terrain = plane_spec().value;
-    spec.value = [=](int column, int row) {
-        return column < 13 && row < 11 ? -9999.0 : terrain(column, row);
-    };
+    spec.value = [=](int column, int row) { return column < 13 && row < 11 ? -9999.0 : terrain(column, row); };
     make_raster(folder.path() / "dem.tif", spec);
     for (const double cell : {1.0, 2.5, 4.0, 5.0, 6.0, 10.0, 15.0}) {
         INFO("cell " << cell);
@@ -178,8 +171,7 @@ TEST_CASE("Nodata is never mixed into terrain, coarser or finer", "[gdal]") {
                 if (deep_inside && !std::isnan(z)) FAIL("terrain out of nothing at node " << i << " " << j);
                 // The plane's slopes move a one-sided mean by less than 0.65 of its reach.
                 const double reach = 0.65 * std::max(cell, pixel);
-                if (!std::isnan(z) && std::abs(z - plane(x, y)) > reach)
-                    FAIL("nodata in node " << i << " " << j);
+                if (!std::isnan(z) && std::abs(z - plane(x, y)) > reach) FAIL("nodata in node " << i << " " << j);
             }
         // A node is lost when half of it is: the gap of 65 m by 55 m keeps its area to half a cell all
         // around.

@@ -47,20 +47,17 @@ TEST_CASE("A field is read in its own pixels, cut to those that touch the extent
     const FreshFolder folder;
     make_raster(folder.path() / "depth.tif", hump());
     std::vector<std::string> log;
-    const Raster out = GdalReader().read_raster(folder.path() / "depth.tif",
-                                                {500031, 6000000, 500055, 6000035}, wkt_of(32632), log);
+    const Raster out =
+        GdalReader().read_raster(folder.path() / "depth.tif", {500031, 6000000, 500055, 6000035}, wkt_of(32632), log);
     CHECK(out.geometry == GridGeometry{3, 4, 500035.0, 6000005.0, 10.0});
     CHECK(out.at(0, 1) == hump().value(3, 4));
     CHECK(out.at(2, 3) == hump().value(5, 2));
     const double far = 1e300;
-    CHECK(GdalReader()
-              .read_raster(folder.path() / "depth.tif", {-far, -far, far, far}, "", log)
-              .geometry.size() == 48);
-    CHECK(contains(
-        user_error([&] {
-            GdalReader().read_raster(folder.path() / "depth.tif", {0, 0, 10, 10}, wkt_of(32632), log);
-        }),
-        "does not touch [0, 0, 10, 10]"));
+    CHECK(GdalReader().read_raster(folder.path() / "depth.tif", {-far, -far, far, far}, "", log).geometry.size() == 48);
+    CHECK(contains(user_error([&] {
+                       GdalReader().read_raster(folder.path() / "depth.tif", {0, 0, 10, 10}, wkt_of(32632), log);
+                   }),
+                   "does not touch [0, 0, 10, 10]"));
 }
 
 TEST_CASE("A field of pixels that are not square is refused with a gdalwarp that makes them so", "[gdal]") {
@@ -93,13 +90,11 @@ TEST_CASE("A depth on coarser, equal or shifted cells keeps its volume, and is n
             if (cell >= 10.0)
                 CHECK(volume(out) == Approx(exact).epsilon(1e-12));
             else
-                CHECK(volume(out) ==
-                      Approx(exact).epsilon(0.06));  // interpolation meets heights, not volumes
+                CHECK(volume(out) == Approx(exact).epsilon(0.06));  // interpolation meets heights, not volumes
             for (const double h : out.values)
                 if (h < 0.0) FAIL("negative depth " << h);
         }
-    const Raster same =
-        GdalReader().read_onto(folder.path() / "depth.tif", {8, 6, 500005.0, 6000005.0, 10.0}, "", log);
+    const Raster same = GdalReader().read_onto(folder.path() / "depth.tif", {8, 6, 500005.0, 6000005.0, 10.0}, "", log);
     CHECK(same.at(4, 2) == hump().value(4, 3));
     CHECK(volume(same) == exact);
 }
@@ -157,11 +152,9 @@ TEST_CASE("A field in degrees or another zone lands where the terrain has it", "
     CHECK(any_contains(log, "reprojected from EPSG:4326"));
     for (Index j = 0; j < grid.ny; ++j)
         for (Index i = 0; i < grid.nx; ++i)
-            if (!(std::abs(onto.at(i, j) - (grid.x(i) - 409000.0)) <
-                  0.01))  // bilinear on a field all but linear
+            if (!(std::abs(onto.at(i, j) - (grid.x(i) - 409000.0)) < 0.01))  // bilinear on a field all but linear
                 FAIL("node " << i << " " << j << ": " << onto.at(i, j));
-    const Raster own =
-        GdalReader().read_raster(folder.path() / "field.tif", grid.pixel_extent(), wkt_of(32632), log);
+    const Raster own = GdalReader().read_raster(folder.path() / "field.tif", grid.pixel_extent(), wkt_of(32632), log);
     CHECK(own.geometry.cell == Approx(10.8).margin(0.2));  // 10.5 m by 11.1 m
     CHECK(own.at(7, 9) == Approx(own.geometry.x(7) - 409000.0).margin(0.01));
 }

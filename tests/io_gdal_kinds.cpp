@@ -87,9 +87,8 @@ TEST_CASE("An ESRI ASCII grid reads like the GeoTIFF of the same terrain", "[gda
     make_raster(folder.path() / "dem.asc", spec);
     check_values(read(folder.path() / "dem.asc"), spec);
 
-    std::ofstream(folder.path() / "by_hand.asc")
-        << "ncols 3\nnrows 2\nxllcenter 10\nyllcenter 20\ncellsize 4\n"
-           "NODATA_value -1\n1 2 3\n4 -1 6\n";
+    std::ofstream(folder.path() / "by_hand.asc") << "ncols 3\nnrows 2\nxllcenter 10\nyllcenter 20\ncellsize 4\n"
+                                                    "NODATA_value -1\n1 2 3\n4 -1 6\n";
     const Raster dem = read(folder.path() / "by_hand.asc");
     CHECK(dem.geometry == GridGeometry{3, 2, 10.0, 20.0, 4.0});
     CHECK(dem.at(0, 0) == 4.0);
@@ -131,9 +130,7 @@ TEST_CASE("Scale and offset are applied to data and not to nodata", "[gdal]") {
 
 TEST_CASE("Nodata as value, NaN, mask band or alpha band becomes NaN, and only that", "[gdal]") {
     const FreshFolder folder;
-    const auto gap = [](int column, int row) {
-        return (column == 2 && row == 1) || (column == 7 && row == 5);
-    };
+    const auto gap = [](int column, int row) { return (column == 2 && row == 1) || (column == 7 && row == 5); };
     const auto with = [&](double nodata) {
         return [=](int column, int row) { return gap(column, row) ? nodata : stored(column, row); };
     };
@@ -232,13 +229,11 @@ TEST_CASE("A word in a raster of numbers in words is refused with its line, and 
     CHECK(dem.at(2, 0) == 0.5);
 }
 
-TEST_CASE("A file that is missing, no raster, cut off or without georeference is refused in one sentence",
-          "[gdal]") {
+TEST_CASE("A file that is missing, no raster, cut off or without georeference is refused in one sentence", "[gdal]") {
     const FreshFolder folder;
     const auto refused = [&](const char* name) {
         std::string message;
-        const std::string noise =
-            heard_on_stderr([&] { message = user_error([&] { read(folder.path() / name); }); });
+        const std::string noise = heard_on_stderr([&] { message = user_error([&] { read(folder.path() / name); }); });
         CHECK(noise == "");
         CHECK_FALSE(contains(message, "\n"));
         CHECK(contains(message, name));
@@ -256,8 +251,7 @@ TEST_CASE("A file that is missing, no raster, cut off or without georeference is
     make_raster(folder.path() / "cut.tif", spec);
     std::filesystem::resize_file(folder.path() / "cut.tif", 90000);
     CHECK(contains(refused("cut.tif"), "damaged or incomplete"));
-    std::ofstream(folder.path() / "cut.asc")
-        << "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 4\n1 2 3\n4";
+    std::ofstream(folder.path() / "cut.asc") << "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 4\n1 2 3\n4";
     CHECK(contains(refused("cut.asc"), "damaged or incomplete"));
 
     RasterSpec bare;

@@ -21,8 +21,8 @@ void fill(GDALDataset& dataset, const RasterSpec& spec) {
             mask.push_back(!spec.valid || spec.valid(column, row) ? 255 : 0);
         }
     const auto write = [&](GDALRasterBand& band, void* data, GDALDataType type) {
-        REQUIRE(band.RasterIO(GF_Write, 0, 0, spec.columns, spec.rows, data, spec.columns, spec.rows, type, 0,
-                              0, nullptr) == CE_None);
+        REQUIRE(band.RasterIO(GF_Write, 0, 0, spec.columns, spec.rows, data, spec.columns, spec.rows, type, 0, 0,
+                              nullptr) == CE_None);
     };
     for (int b = 1; b <= spec.bands; ++b) {
         GDALRasterBand& band = *dataset.GetRasterBand(b);
@@ -103,8 +103,8 @@ void make_raster(const std::filesystem::path& file, const RasterSpec& spec) {
     GDALDriver* maker = creates ? wanted : GetGDALDriverManager()->GetDriverByName("MEM");
     CPLStringList options = list_of(spec.options), none;
     CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", "YES");
-    GDALDataset* made = maker->Create(creates ? file.c_str() : "", spec.columns, spec.rows, spec.bands,
-                                      spec.type, creates ? options.List() : none.List());
+    GDALDataset* made = maker->Create(creates ? file.c_str() : "", spec.columns, spec.rows, spec.bands, spec.type,
+                                      creates ? options.List() : none.List());
     REQUIRE(made != nullptr);
     std::array<double, 6> transform = spec.transform;
     if (transform[1] != 0.0) made->SetGeoTransform(transform.data());
@@ -171,11 +171,8 @@ std::string heard_on_stderr(const std::function<void()>& act) {
     return text_of(file);
 }
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 bool any_contains(const std::vector<std::string>& lines, const std::string& part) {
-    return std::any_of(lines.begin(), lines.end(),
-                       [&](const std::string& line) { return contains(line, part); });
+    return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) { return contains(line, part); });
 }

@@ -24,8 +24,8 @@ struct RasterSpec {
     double scale = 1.0, offset = 0.0;
     std::string unit;
     std::function<double(int column, int row)> value = [](int, int) { return 0.0; };  ///< as stored
-    std::function<bool(int column, int row)> valid;  ///< a mask band, when given
-    bool alpha = false;                              ///< the last band is alpha
+    std::function<bool(int column, int row)> valid;                                   ///< a mask band, when given
+    bool alpha = false;                                                               ///< the last band is alpha
 };
 
 /// WKT of a CRS by its code, "EPSG:32632".

@@ -15,13 +15,12 @@ using namespace frana;
 namespace {
 
 std::string crs_member(const char* code) {
-    return std::string(R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)") + code +
-           "\"}},";
+    return std::string(R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)") + code + "\"}},";
 }
 
 std::string feature(const std::string& type, const std::string& coordinates) {
-    return R"({"type":"Feature","properties":{},"geometry":{"type":")" + type + R"(","coordinates":)" +
-           coordinates + "}}";
+    return R"({"type":"Feature","properties":{},"geometry":{"type":")" + type + R"(","coordinates":)" + coordinates +
+           "}}";
 }
 
 class GeoJson {
@@ -29,8 +28,7 @@ public:
     /// Writes a collection of the features, given with commas between them.
     std::filesystem::path write(const std::string& features, const std::string& crs = "") {
         const auto file = folder_.path() / "outline.geojson";
-        std::ofstream(file) << R"({"type":"FeatureCollection",)" << crs << R"("features":[)" << features
-                            << "]}";
+        std::ofstream(file) << R"({"type":"FeatureCollection",)" << crs << R"("features":[)" << features << "]}";
         return file;
     }
     std::filesystem::path path(const char* name) const { return folder_.path() / name; }
@@ -85,8 +83,8 @@ TEST_CASE("A polygon keeps its holes, and its rings are not closed", "[gdal]") {
 
 TEST_CASE("Multipolygons, collections and several features are flattened, Z is dropped", "[gdal]") {
     GeoJson json;
-    const std::string multi = feature(
-        "MultiPolygon", "[[[[0,0],[1,0],[1,1],[0,1],[0,0]]],[[[5,5,9],[7,5,9],[7,7,9],[5,7,9],[5,5,9]]]]");
+    const std::string multi =
+        feature("MultiPolygon", "[[[[0,0],[1,0],[1,1],[0,1],[0,0]]],[[[5,5,9],[7,5,9],[7,7,9],[5,7,9],[5,5,9]]]]");
     const std::string collection =
         R"({"type":"Feature","properties":{},"geometry":{"type":"GeometryCollection","geometries":[)"
         R"({"type":"Point","coordinates":[0,0]},)"
@@ -102,8 +100,8 @@ TEST_CASE("A GeoPackage with two layers is read by the layer that is named; curv
     GDALAllRegister();
     const auto file = folder.path("outlines.gpkg");
     {
-        const gdal::Dataset made(GetGDALDriverManager()->GetDriverByName("GPKG")->Create(
-            file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+        const gdal::Dataset made(
+            GetGDALDriverManager()->GetDriverByName("GPKG")->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
         REQUIRE(made);
         OGRSpatialReference crs;
         crs.importFromEPSG(32632);
@@ -125,8 +123,9 @@ TEST_CASE("A GeoPackage with two layers is read by the layer that is named; curv
     CHECK(area(of("round").polygons) == Approx(3.14159265 * 100.0).epsilon(1e-3));  // chords of 4 degrees
     CHECK_FALSE(any_contains(of("round").log, "reprojected"));
     const std::string message = user_error([&] { of(""); });
-    CHECK(contains(message, "outlines.gpkg: has 2 layers (\"square\", \"round\"); expected one, or its name; give "
-                            "outlines.gpkg|layername=square"));
+    CHECK(contains(message,
+                   "outlines.gpkg: has 2 layers (\"square\", \"round\"); expected one, or its name; give "
+                   "outlines.gpkg|layername=square"));
     CHECK(contains(user_error([&] { of("oval"); }),
                    "no layer \"oval\" with features; expected one of \"square\", \"round\""));
 }
@@ -159,11 +158,10 @@ TEST_CASE("Longitude and latitude are brought to the terrain's UTM zone within a
 
 TEST_CASE("A legacy crs member is honoured: zone 33 comes out in zone 32", "[gdal]") {
     GeoJson json;
-    const auto out = read(
-        json.write(
-            feature("Polygon", "[[[100000,6880000],[101000,6880000],[101000,6881000],[100000,6880000]]]"),
-            crs_member("32633")),
-        wkt_of("EPSG:32632"));
+    const auto out =
+        read(json.write(feature("Polygon", "[[[100000,6880000],[101000,6880000],[101000,6881000],[100000,6880000]]]"),
+                        crs_member("32633")),
+             wkt_of("EPSG:32632"));
     CHECK(any_contains(out.log, "reprojected from EPSG:32633"));
     CHECK(area(out.polygons) == Approx(5e5).epsilon(5e-3));  // scales of the two projections
     CHECK(out.polygons.parts[0].rings[0][0].x() > 400000.0);
@@ -174,8 +172,8 @@ TEST_CASE("A legacy crs member is honoured: zone 33 comes out in zone 32", "[gda
 
 TEST_CASE("Plain coordinates without a crs member are the terrain's own when they are no degrees", "[gdal]") {
     GeoJson json;
-    const auto file = json.write(
-        feature("Polygon", "[[[409000,6871000],[409100,6871000],[409100,6871100],[409000,6871000]]]"));
+    const auto file =
+        json.write(feature("Polygon", "[[[409000,6871000],[409100,6871000],[409100,6871100],[409000,6871000]]]"));
     const auto out = read(file, wkt_of("EPSG:32632"));
     CHECK(out.polygons.parts[0].rings[0][0] == Vec2(409000, 6871000));
     CHECK(any_contains(out.log, "terrain's own, since they are no degrees"));
@@ -231,9 +229,7 @@ TEST_CASE("Polygons come with the numbers of an attribute, and one without its n
 TEST_CASE("Features without a geometry are refused by their numbers", "[gdal]") {
     GeoJson json;
     const std::string none = R"({"type":"Feature","properties":{},"geometry":null})";
-    const auto message = [&](const std::string& features) {
-        return user_error([&] { read(json.write(features)); });
-    };
+    const auto message = [&](const std::string& features) { return user_error([&] { read(json.write(features)); }); };
     CHECK(contains(message(feature("Polygon", square) + "," + none),
                    "outline.geojson: 1 feature has no geometry (feature 1); expected one in each"));
     CHECK(contains(message(none + "," + feature("Polygon", square) + "," + none),
@@ -252,8 +248,7 @@ TEST_CASE("Files without an outline are refused with what they hold", "[gdal]") 
         return message;
     };
     CHECK(contains(refusal(""), "no features"));
-    CHECK(contains(refusal(feature("Point", "[1,2]") + "," + feature("MultiPoint", "[[1,2],[3,4]]")),
-                   "3 points only"));
+    CHECK(contains(refusal(feature("Point", "[1,2]") + "," + feature("MultiPoint", "[[1,2],[3,4]]")), "3 points only"));
     CHECK(contains(refusal(feature("LineString", "[[1,2],[3,4]]")), "1 line only"));
     CHECK(contains(refusal(feature("Polygon", "[[[0,0],[10,0],[20,0],[0,0]]]")), "encloses no area"));
     CHECK(contains(refusal(feature("Polygon", "[[[0,0],[10,0]")), "cannot be opened"));
@@ -263,18 +258,17 @@ TEST_CASE("Files without an outline are refused with what they hold", "[gdal]") 
 TEST_CASE("Lines are read and reprojected like outlines", "[gdal]") {
     GeoJson json;
     std::vector<std::string> log;
-    const auto file = json.write(feature("LineString", "[[0,0],[5,0],[5,0],[5,7]]") + "," +
-                                 feature("MultiLineString", "[[[1,1],[2,2]],[[3,3],[4,4]]]") + "," +
-                                 feature("Point", "[1,1]"));
+    const auto file =
+        json.write(feature("LineString", "[[0,0],[5,0],[5,0],[5,7]]") + "," +
+                   feature("MultiLineString", "[[[1,1],[2,2]],[[3,3],[4,4]]]") + "," + feature("Point", "[1,1]"));
     const auto lines = GdalReader().read_lines(file, "", log);
     REQUIRE(lines.size() == 3);
     CHECK(lines[0].size() == 3);
     CHECK(lines[0][2] == Vec2(5, 7));
     CHECK(any_contains(log, "only lines are used"));
-    CHECK(contains(
-        user_error([&] { GdalReader().read_lines(json.write(feature("Polygon", square)), "", log); }),
-        "1 polygon only"));
-    const auto degrees = GdalReader().read_lines(
-        json.write(feature("LineString", "[[7.26,61.96],[7.27,61.97]]")), wkt_of("EPSG:32632"), log);
+    CHECK(contains(user_error([&] { GdalReader().read_lines(json.write(feature("Polygon", square)), "", log); }),
+                   "1 polygon only"));
+    const auto degrees = GdalReader().read_lines(json.write(feature("LineString", "[[7.26,61.96],[7.27,61.97]]")),
+                                                 wkt_of("EPSG:32632"), log);
     CHECK(degrees.at(0).at(0).x() == Approx(408833.0).margin(2000.0));
 }

@@ -84,16 +84,14 @@ TEST_CASE("A written GeoTIFF reads back with the same pixels, values, gaps and C
     CHECK(back.geometry.x0 == Approx(raster.geometry.x0).epsilon(1e-15));
     CHECK(back.geometry.y0 == Approx(raster.geometry.y0).epsilon(1e-15));
     for (std::size_t k = 0; k < raster.values.size(); ++k)
-        if (!(back.values[k] == raster.values[k] ||
-              (std::isnan(back.values[k]) && std::isnan(raster.values[k]))))
+        if (!(back.values[k] == raster.values[k] || (std::isnan(back.values[k]) && std::isnan(raster.values[k]))))
             FAIL("value " << k);
     CHECK(std::isnan(back.at(3, 60)));
     CHECK(contains(back.crs_wkt, "ID[\"EPSG\",32632]"));
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);  // nothing beside it
 }
 
-TEST_CASE("A written GeoTIFF is float32, tiled, compressed, north-up, with unit, description and nodata",
-          "[gdal]") {
+TEST_CASE("A written GeoTIFF is float32, tiled, compressed, north-up, with unit, description and nodata", "[gdal]") {
     const FreshFolder folder;
     const auto file = folder.path() / "peak_depth.tif";
     Raster raster = field();
@@ -130,8 +128,7 @@ TEST_CASE("A written GeoTIFF is float32, tiled, compressed, north-up, with unit,
     CHECK(corner == -9999.0F);
 }
 
-TEST_CASE("A value that is infinite, or too large for float32, leaves no file and the old one whole",
-          "[gdal]") {
+TEST_CASE("A value that is infinite, or too large for float32, leaves no file and the old one whole", "[gdal]") {
     const FreshFolder folder;
     const auto file = folder.path() / "peak_depth.tif";
     write_geotiff(file, field(), "m", "");
@@ -178,8 +175,7 @@ TEST_CASE("A footprint has the area of its cells, keeps holes and carries the CR
     CHECK(out.epsg == 32632);
     OGREnvelope envelope;
     out.outlines[1]->getEnvelope(&envelope);
-    CHECK(envelope.MinX ==
-          Approx(408400.25 + 7.5 * 5.0).epsilon(1e-12));  // the bar at column 8, rows 2 and 3
+    CHECK(envelope.MinX == Approx(408400.25 + 7.5 * 5.0).epsilon(1e-12));  // the bar at column 8, rows 2 and 3
     CHECK(envelope.MinY == Approx(6870086.61 + 1.5 * 5.0).epsilon(1e-12));
     CHECK(envelope.MaxY == Approx(6870086.61 + 3.5 * 5.0).epsilon(1e-12));
 }

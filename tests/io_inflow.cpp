@@ -83,7 +83,8 @@ TEST_CASE("A flood that is stopped in the middle of its table goes on with the s
     CHECK(plane.frana("run CASE --quiet --set output.formats=[] --until 5 --threads 2 --out " + parts).code == 0);
     CHECK(record_of(parts)["budgets"]["inflow"]["volume"].get<double>() < kVolume);
     CHECK(plane.frana("run CASE --quiet --set output.formats=[] --resume --threads 2 --out " + parts).code == 0);
-    CHECK(text_of(fs::path(parts) / "sections" / "bridge.csv") == text_of(fs::path(straight) / "sections" / "bridge.csv"));
+    CHECK(text_of(fs::path(parts) / "sections" / "bridge.csv") ==
+          text_of(fs::path(straight) / "sections" / "bridge.csv"));
     CHECK(text_of(fs::path(parts) / "history.csv") == text_of(fs::path(straight) / "history.csv"));
     CHECK(record_of(parts)["budgets"]["inflow"] == record_of(straight)["budgets"]["inflow"]);
 }

@@ -156,8 +156,7 @@ TEST_CASE("a threshold keeps the cells all of whose nodes have terrain and lie i
         double at[3];
         kept->GetPoint(point, at);
         const Index i = std::lround((at[0] - grid.x0) / grid.cell), j = std::lround((at[1] - grid.y0) / grid.cell);
-        CHECK(depths->GetComponent(point, 0) ==
-              static_cast<double>(static_cast<float>(depth.data[j * grid.nx + i])));
+        CHECK(depths->GetComponent(point, 0) == static_cast<double>(static_cast<float>(depth.data[j * grid.nx + i])));
     }
     CHECK(found == expected);
     CHECK(found.size() > 20);

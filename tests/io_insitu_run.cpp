@@ -49,8 +49,8 @@ struct BareRun {
         scene.insitu = std::move(insitu);
         prepare_run_folder(dir());
         if (prepare) prepare(dir());
-        const CaseFile file = CaseFile::parse(
-            "[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = 2\n[time]\nend = 2\n", "hill/case.toml");
+        const CaseFile file = CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = 2\n[time]\nend = 2\n",
+                                              "hill/case.toml");
         std::ostringstream stream;
         Progress progress(stream, Progress::Style::silent, scene.density);
         record = carry_out(scene, simulation, dir(), begin_record(scene, file), Interrupt(), progress);
@@ -195,7 +195,8 @@ TEST_CASE("a disk that is full of pictures stops no run", "[insitu]") {
     CHECK(run.files("insitu/map") == 0);  // no halves either
 }
 
-TEST_CASE("lines and outlines for a GIS are those for ParaView, in the terrain's CRS and with their times", "[insitu]") {
+TEST_CASE("lines and outlines for a GIS are those for ParaView, in the terrain's CRS and with their times",
+          "[insitu]") {
     Insitu lines = entry("lines", Insitu::Kind::contour, {"depth"});
     lines.levels = {0.5, 1.0};
     Insitu deep = entry("deep", Insitu::Kind::threshold, {"depth"});
@@ -306,8 +307,8 @@ TEST_CASE("a camera that follows the flow sees it at the same place of the pictu
         return Vec2(blot.sum / blot.count);
     };
     const Vec2 start = middle("still", 0), later = middle("still", 4), followed = middle("there", 4);
-    CHECK((later - start).norm() > 20.0);     // 3.2 m at some 20 pixels a metre, with the bar's share
-    CHECK((followed - start).norm() < 3.0);   // the mesh of the terrain is cut at other places
+    CHECK((later - start).norm() > 20.0);    // 3.2 m at some 20 pixels a metre, with the bar's share
+    CHECK((followed - start).norm() < 3.0);  // the mesh of the terrain is cut at other places
     CHECK(later.x() > start.x() + 15.0);
     CHECK(later.y() < start.y() - 3.0);
 }

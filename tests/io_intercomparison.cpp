@@ -18,10 +18,10 @@ namespace {
 
 /// What the data set's reference_metrics.csv holds for each code.
 struct Figures {
-    double front = 0.0;           ///< farthest place with a peak thickness above 0.1 m, along the track from x = 1020 m
-    double area = 0.0;            ///< of such places [m2]
+    double front = 0.0;  ///< farthest place with a peak thickness above 0.1 m, along the track from x = 1020 m
+    double area = 0.0;   ///< of such places [m2]
     double thickness99 = 0.0, speed99 = 0.0;  ///< 99th percentiles of the peaks there [m], [m/s]
-    double centre = 0.0;          ///< x of the centre of mass at the end [m]
+    double centre = 0.0;                      ///< x of the centre of mass at the end [m]
 };
 
 double percentile99(std::vector<double> values) {
@@ -71,7 +71,8 @@ Figures run(const std::filesystem::path& folder, const std::string& law, const s
         mask = "{0}/release.tif"
         depth = 1.5
         thickness = "normal"
-    )", folder.string(), law, curvature, rest_fraction);
+    )",
+                                         folder.string(), law, curvature, rest_fraction);
     const Scene scene = build_scene(CaseFile::parse(text, folder / "case.toml", {}), GdalReader());
     const auto simulation = make_simulation(scene);
     RestRule rest(scene.bed.geometry.cell, scene.rest_fraction);
@@ -103,8 +104,8 @@ TEST_CASE("On ISeeSnow's track the flow ends beside the median of twelve codes, 
         const auto folder = shared_data(name);
         if (!folder) continue;
         const Figures f = run(*folder, law, "full", 0.05);
-        UNSCOPED_INFO(fmt::format("{}: front {} m, area {} m2, p99 thickness {:.2f} m, p99 speed {:.1f} m/s", name, f.front,
-                                  f.area, f.thickness99, f.speed99));
+        UNSCOPED_INFO(fmt::format("{}: front {} m, area {} m2, p99 thickness {:.2f} m, p99 speed {:.1f} m/s", name,
+                                  f.front, f.area, f.thickness99, f.speed99));
         CHECK(std::lround(std::abs(f.front - band(*folder, "front_s_m_pft>0.1")[0]) / 5.0) <= 2);  // cells
         check_within(f.area, band(*folder, "area_m2_pft>0.1"), "area");
         check_within(f.thickness99, band(*folder, "p99_pft_m"), "99th percentile of thickness");

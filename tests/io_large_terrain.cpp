@@ -46,8 +46,8 @@ public:
         outline << R"({"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name":
                    "urn:ogc:def:crs:EPSG::32632"}}, "features": [{"type": "Feature", "properties": {}, "geometry":
                    {"type": "Polygon", "coordinates": [[)"
-                << "[" << x << "," << y << "],[" << x + 50 << "," << y << "],[" << x + 50 << "," << y + 50 << "],["
-                << x << "," << y + 50 << "],[" << x << "," << y << "]]]}}]}";
+                << "[" << x << "," << y << "],[" << x + 50 << "," << y << "],[" << x + 50 << "," << y + 50 << "],[" << x
+                << "," << y + 50 << "],[" << x << "," << y << "]]]}}]}";
         frana::write_text(folder_.path() / "release.geojson", outline.str());
         frana::write_text(folder_.path() / "case.toml",
                           "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"

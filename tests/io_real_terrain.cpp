@@ -42,12 +42,15 @@ Scene ryggfonn(const std::filesystem::path& folder, double cell) {
         outline = "{0}/release.geojson"
         depth = 1.0
         thickness = "normal"
-    )", folder.string(), cell);
+    )",
+                                         folder.string(), cell);
     return build_scene(CaseFile::parse(text, folder / "case.toml", {}), GdalReader());
 }
 
 /// 99.9th percentile of the peak speed of nodes ever deeper than 0.1 m, and the worst over what the energy line allows.
-struct PeakSpeeds { double high = 0.0, over_line = 0.0; };
+struct PeakSpeeds {
+    double high = 0.0, over_line = 0.0;
+};
 PeakSpeeds peak_speeds(const Scene& scene) {
     const auto simulation = make_simulation(scene);
     const Frame start = simulation->frame();
@@ -105,7 +108,8 @@ TEST_CASE("The Ryggfonn avalanche of 2021 covers the mapped extent", "[real]") {
         outline = "{0}/release.geojson"
         depth = 1.0
         thickness = "normal"
-    )", folder->string(), curvature);
+    )",
+                                         folder->string(), curvature);
     const GdalReader reader;
     const Scene scene = build_scene(CaseFile::parse(text, *folder / "case.toml", {}), reader);
     const auto simulation = make_simulation(scene);

@@ -158,8 +158,9 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
     std::string arguments = "--resume", sentence;
     SECTION("another value of a key") {
         arguments += " --set material.bed.mu=0.3";
-        sentence = "found the state of another case: material.bed.mu is 0.2 there and 0.3 here; give the case and the "
-                   "--set it was left with, or run without --resume to start at the beginning";
+        sentence =
+            "found the state of another case: material.bed.mu is 0.2 there and 0.3 here; give the case and the "
+            "--set it was left with, or run without --resume to start at the beginning";
     }
     SECTION("another number of tables") {
         write_text(folder.path() / "case.toml", std::string(plane) + "[[gauge]]\nname = \"a\"\npoint = [20, 30]\n");
@@ -171,8 +172,9 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
     }
     SECTION("another terrain") {
         folder.write_dem(101.0);
-        sentence = "out/checkpoint.h5: found a state from before the file dem.asc was changed; put the file back as it "
-                   "was, or run without --resume to start at the beginning";
+        sentence =
+            "out/checkpoint.h5: found a state from before the file dem.asc was changed; put the file back as it "
+            "was, or run without --resume to start at the beginning";
     }
     SECTION("another release") {
         std::string outline = text_of(folder.path() / "release.geojson");
@@ -205,12 +207,12 @@ TEST_CASE("a state is refused when any file that the case names has changed sinc
         write_text(folder.path() / name,
                    fmt::format(R"({{"type": "FeatureCollection", "features": [{{"type": "Feature", "properties": {{}},
                                "geometry": {{"type": "Polygon", "coordinates": [[[{0}, 30], [{1}, 30], [{1}, 70],
-                               [{0}, 70], [{0}, 30]]]}}}}]}})", from, to));
+                               [{0}, 70], [{0}, 30]]]}}}}]}})",
+                               from, to));
     };
     const auto rain = [&](double rate) {
         write_text(folder.path() / "rain.asc",
-                   fmt::format("ncols 2\nnrows 2\nxllcorner -1\nyllcorner -1\ncellsize 100\n{0} {0}\n{0} {0}\n",
-                               rate));
+                   fmt::format("ncols 2\nnrows 2\nxllcorner -1\nyllcorner -1\ncellsize 100\n{0} {0}\n{0} {0}\n", rate));
     };
     outline("wall.geojson", 90, 95);
     outline("survey.geojson", 20, 100);
@@ -291,8 +293,9 @@ TEST_CASE("a state of another version or precision is refused", "[resume]") {
     CHECK_THAT(refused("version", "0.0.1"),
                Contains("checkpoint.h5: found a state of version 0.0.1; expected version " + here.at("version") +
                         "; use the program that left it, or run"));
-    CHECK_THAT(refused("precision", "float"),
-               Contains("found a state of precision float; expected precision double; give scheme.precision as it was"));
+    CHECK_THAT(
+        refused("precision", "float"),
+        Contains("found a state of precision float; expected precision double; give scheme.precision as it was"));
     CHECK(refused("build", "another compiler").empty());
     const CheckpointKeeper keeper(folder.path(), here, {}, open_checkpoint(folder.path(), here));
     REQUIRE(keeper.warnings().size() == 1);
@@ -308,12 +311,15 @@ TEST_CASE("Ctrl-C, SIGTERM, SIGHUP and SIGPIPE leave a state to go on from, and 
     const std::string program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
     const std::string script = "cd " + folder.path().string() + " && { " + program +
                                " run case.toml --quiet --threads 1 --out out & } && while ! test -e out/run.xdmf; do "
-                               "sleep 0.01; done; kill -" + std::string(name) + " $!; wait $!";
+                               "sleep 0.01; done; kill -" +
+                               std::string(name) + " $!; wait $!";
     const int status = std::system(("sh -c '" + script + "' 2> " + (folder.path() / "err.txt").string()).c_str());
     REQUIRE(WIFEXITED(status));
     // A run that was faster than the signal has ended as any other.
-    if (folder.json()["exit_reason"] == "interrupted") CHECK(WEXITSTATUS(status) == 130);
-    else CHECK(WEXITSTATUS(status) == 0);
+    if (folder.json()["exit_reason"] == "interrupted")
+        CHECK(WEXITSTATUS(status) == 130);
+    else
+        CHECK(WEXITSTATUS(status) == 0);
     CHECK(fs::exists(folder.out() / "report.md"));
     REQUIRE(folder.run("--resume").code == 0);
     check_same_files(folder.out(), folder.path() / "whole");

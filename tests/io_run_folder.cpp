@@ -38,14 +38,9 @@ TEST_CASE("preparing a run folder removes the files that the earlier run lists a
                                            "rasters/peak_depth.tif",
                                            "footprint.geojson",
                                            "compare.json"};
-    const std::vector<std::string> theirs = {"notes.txt",
-                                             "figures/mine.png",
-                                             "rasters/dem.tif",
-                                             "case.toml",
-                                             "particles/particles_best.vtp",
-                                             "gauges/station.csv",
-                                             "states/mine.pvsm",
-                                             "profiles/.hidden.csv"};
+    const std::vector<std::string> theirs = {
+        "notes.txt",          "figures/mine.png", "rasters/dem.tif",     "case.toml", "particles/particles_best.vtp",
+        "gauges/station.csv", "states/mine.pvsm", "profiles/.hidden.csv"};
     for (const auto& names : {ours, theirs})
         for (const std::string& name : names) touch(folder.path() / name);
     std::vector<std::string> made = ours;
@@ -67,8 +62,8 @@ TEST_CASE("a run folder that is a file is refused with a way out") {
 
 TEST_CASE("products are listed by name, frames by their folder and number") {
     const FreshFolder folder;
-    for (const char* name : {"grid/grid_000000.vti", "grid/grid_000001.vti", "rasters/final_depth.tif",
-                             "run.xdmf", "run.h5", "stranger.txt"})
+    for (const char* name : {"grid/grid_000000.vti", "grid/grid_000001.vti", "rasters/final_depth.tif", "run.xdmf",
+                             "run.h5", "stranger.txt"})
         touch(folder.path() / name);
     list_as_made(folder.path(), {"grid/grid_000000.vti", "grid/grid_000001.vti", "rasters/final_depth.tif", "run.xdmf",
                                  "run.h5", "run.json"});

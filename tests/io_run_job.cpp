@@ -78,19 +78,19 @@ struct FakeRun {
 TEST_CASE("a run leaves every product, and the report mentions each of them") {
     const FakeRun run({}, Interrupt(), Pictures::yes);
     const std::string report = text_of(run.dir() / "report.md");
-    for (const char* name : {"history.csv", "particles.pvd", "grid.pvd", "terrain.vti", "run.xdmf", "run.h5",
-                             "footprint.geojson", "rasters/peak_depth.tif", "rasters/peak_speed.tif",
-                             "rasters/peak_pressure.tif", "rasters/arrival_time.tif",
-                             "rasters/final_depth.tif", "rasters/final_velocity_x.tif",
-                             "rasters/final_velocity_y.tif", "profiles/along.csv", "gauges/bridge.csv"})
+    for (const char* name :
+         {"history.csv", "particles.pvd", "grid.pvd", "terrain.vti", "run.xdmf", "run.h5", "footprint.geojson",
+          "rasters/peak_depth.tif", "rasters/peak_speed.tif", "rasters/peak_pressure.tif", "rasters/arrival_time.tif",
+          "rasters/final_depth.tif", "rasters/final_velocity_x.tif", "rasters/final_velocity_y.tif",
+          "profiles/along.csv", "gauges/bridge.csv"})
         CHECK(fs::exists(run.dir() / name));
     std::size_t mentioned = 0;
     for (const auto& entry : fs::recursive_directory_iterator(run.dir())) {
         if (!entry.is_regular_file() || entry.path().filename() == "report.md") continue;
         const fs::path path = fs::relative(entry.path(), run.dir());
         const std::string folder = path.parent_path().generic_string();
-        const bool frame = folder == "particles" || folder == "grid" ||
-                           (folder == "profiles" && path.extension() == ".vtp");
+        const bool frame =
+            folder == "particles" || folder == "grid" || (folder == "profiles" && path.extension() == ".vtp");
         INFO(path);
         CHECK(report.find(frame ? "`" + folder + "/`" : path.generic_string()) != std::string::npos);
         ++mentioned;
@@ -115,8 +115,9 @@ TEST_CASE("run.json has the contract's keys with the simulation's numbers") {
     CHECK(json["rest"]["moving_mass_share"] == 1.0);
     CHECK(json["rest"]["faster_than"].get<double>() == Approx(1.0));  // two cells of 1 m in 2 s
     CHECK(json["rest"]["fastest"] == last.max_speed);
-    CHECK(text_of(run.dir() / "report.md").find("stopped by the rule time.end, the simulated time is over: "
-                                                "100 % of the mass is still faster than 1 m/s") != std::string::npos);
+    CHECK(text_of(run.dir() / "report.md")
+              .find("stopped by the rule time.end, the simulated time is over: "
+                    "100 % of the mass is still faster than 1 m/s") != std::string::npos);
     CHECK(json["case"] == "hill");
     CHECK(json["title"] == "A hill that slides");
     CHECK(json["steps"] == run.record.summary.steps);
@@ -236,8 +237,8 @@ TEST_CASE("only the fields that the case names reach the frames") {
     prepare_run_folder(folder.path());
     std::ostringstream stream;
     Progress progress(stream, Progress::Style::silent, scene.density);
-    carry_out(scene, simulation, folder.path(),
-              begin_record(scene, CaseFile::parse(case_text, "hill/case.toml")), Interrupt(), progress);
+    carry_out(scene, simulation, folder.path(), begin_record(scene, CaseFile::parse(case_text, "hill/case.toml")),
+              Interrupt(), progress);
     const LoadedFrame frame = read_frame(folder.path(), -1);
     CHECK(frame.has("depth"));
     CHECK(frame.has("elevation"));

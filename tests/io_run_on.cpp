@@ -40,7 +40,10 @@ TEST_CASE("Ryggfonn's avalanche is at rest when the rule says so", "[real][run_o
         [[release]]
         outline = "{0}/release.geojson"
         depth = 1.0
-    )", folder->string()), *folder), 800.0);
+    )",
+                                     folder->string()),
+                         *folder),
+                800.0);
 }
 
 TEST_CASE("Frank's rock avalanche is at rest when the rule says so", "[real][run_on]") {
@@ -54,5 +57,8 @@ TEST_CASE("Frank's rock avalanche is at rest when the rule says so", "[real][run
         [[release]]
         outline = "{0}/release.geojson"
         depth = "{0}/release.tif"
-    )", folder->string()), *folder), 400.0);
+    )",
+                                     folder->string()),
+                         *folder),
+                400.0);
 }

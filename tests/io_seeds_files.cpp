@@ -41,8 +41,7 @@ Made some_particles(const Raster& bed) {
     return make({release}, bed);
 }
 
-std::vector<double> dataset(hid_t file, const char* name, std::vector<hsize_t> shape,
-                            const std::string& unit) {
+std::vector<double> dataset(hid_t file, const char* name, std::vector<hsize_t> shape, const std::string& unit) {
     const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
     REQUIRE(set >= 0);
     const hid_t space = H5Dget_space(set);
@@ -180,19 +179,14 @@ TEST_CASE("JSON is valid and gives back every particle bit by bit", "[particles]
     }
 }
 
-TEST_CASE("Particles cannot be written into a folder that is not there, and the file is named",
-          "[particles]") {
+TEST_CASE("Particles cannot be written into a folder that is not there, and the file is named", "[particles]") {
     const FreshFolder folder;
     const Raster bed = sloping_bed();
     const Made made = some_particles(bed);
     const SeedsExport data = make_seeds_export(made.seeds, 1300.0, bed);
     const auto nowhere = folder.path() / "absent";
-    CHECK_THROWS_WITH(write_seeds_hdf5(nowhere / "a.h5", data),
-                      Catch::Contains("absent/a.h5: cannot be written"));
-    CHECK_THROWS_WITH(write_seeds_vtp(nowhere / "a.vtp", data),
-                      Catch::Contains("absent/a.vtp: cannot be written"));
-    CHECK_THROWS_WITH(write_seeds_json(nowhere / "a.json", data),
-                      Catch::Contains("absent/a.json: cannot be written"));
-    CHECK_THROWS_WITH(write_seeds_csv(nowhere / "a.csv", data),
-                      Catch::Contains("absent/a.csv: cannot be written"));
+    CHECK_THROWS_WITH(write_seeds_hdf5(nowhere / "a.h5", data), Catch::Contains("absent/a.h5: cannot be written"));
+    CHECK_THROWS_WITH(write_seeds_vtp(nowhere / "a.vtp", data), Catch::Contains("absent/a.vtp: cannot be written"));
+    CHECK_THROWS_WITH(write_seeds_json(nowhere / "a.json", data), Catch::Contains("absent/a.json: cannot be written"));
+    CHECK_THROWS_WITH(write_seeds_csv(nowhere / "a.csv", data), Catch::Contains("absent/a.csv: cannot be written"));
 }

@@ -11,19 +11,19 @@
 #include <set>
 
 #include "base/error.h"
-#include "read_polydata.h"
 #include "catch.h"
 #include "frana_commands.h"
-#include "run/folder/look.h"
-#include "run/folder/states.h"
 #include "fresh_folder.h"
 #include "observe/table.h"
+#include "read_polydata.h"
+#include "run/folder/look.h"
+#include "run/folder/states.h"
 #include "vtk_io/figures/offscreen.h"
 #include "vtk_io/reader.h"
 
 using namespace frana;
-using test::polydata;
 using Catch::Matchers::Contains;
+using test::polydata;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
@@ -117,8 +117,7 @@ std::set<std::string> arrays_named(const std::string& text) {
                                  "SelectOrientationVectors", "OrientationArray", "ScaleArray"})
         for (const auto& values : values_of(text, property))
             if (values.size() == 5) names.insert(values[4]);
-    for (const auto& values : values_of(text, "XArrayName"))
-        names.insert(values.begin(), values.end());
+    for (const auto& values : values_of(text, "XArrayName")) names.insert(values.begin(), values.end());
     for (const auto& values : values_of(text, "SeriesVisibility"))
         for (std::size_t k = 0; k + 1 < values.size(); k += 2)
             if (values[k + 1] == "1") names.insert(values[k]);
@@ -201,9 +200,10 @@ TEST_CASE("a run's states have its files, ranges and cameras, and no slot is lef
 
 TEST_CASE("slots take numbers, parts of ranges, texts and paths, with XML's own letters escaped") {
     const Json look = {{"range", {{"depth", {2.0, 10.0}}}}, {"title", "rock & \"roll\""}};
-    const std::string text = "<Element index=\"0\" value=\"1\" slot=\"/range/depth@0.25\" />"
-                             "<Element index=\"1\" value=\"x\" slot=\"/title\" /><Element value=\"keep\" />"
-                             "<Element value=\"a.pvd\" slot=\"file:a.pvd\" />";
+    const std::string text =
+        "<Element index=\"0\" value=\"1\" slot=\"/range/depth@0.25\" />"
+        "<Element index=\"1\" value=\"x\" slot=\"/title\" /><Element value=\"keep\" />"
+        "<Element value=\"a.pvd\" slot=\"file:a.pvd\" />";
     CHECK(filled_state(text, look, "/runs/<here>") ==
           "<Element index=\"0\" value=\"4\" /><Element index=\"1\" value=\"rock &amp; &quot;roll&quot;\" />"
           "<Element value=\"keep\" /><Element value=\"/runs/&lt;here&gt;/a.pvd\" />");
@@ -223,9 +223,9 @@ TEST_CASE("a state that the run lacks files for is not written, and asking for i
     CHECK(there("budgets"));
     CHECK(!there("stress"));
     CHECK(!there("survey"));
-    CHECK_THROWS_WITH(states_command({options.out, {"stress"}}),
-                      Contains("no state \"stress\": the frames of grid.pvd have no array stress") &&
-                          Contains("material.rheology"));
+    CHECK_THROWS_WITH(
+        states_command({options.out, {"stress"}}),
+        Contains("no state \"stress\": the frames of grid.pvd have no array stress") && Contains("material.rheology"));
     CHECK_THROWS_WITH(states_command({options.out, {"impact"}}), Contains("no points in space stood before a barrier"));
     CHECK_THROWS_WITH(states_command({options.out, {"structure"}}),
                       Contains("have no array damage; give a [material.structure]"));
@@ -270,7 +270,8 @@ TEST_CASE("the look of an impact has its time, the points' size and a camera on 
         if (then.columns.at("model")[k] == 1.0) volumes.push_back(then.columns.at("volume")[k]);
     std::sort(volumes.begin(), volumes.end());
     REQUIRE(volumes.size() > 100);
-    CHECK(look["point_radius"].get<double>() == Approx(0.62 * std::cbrt(volumes[(volumes.size() - 1) / 2])).epsilon(1e-9));
+    CHECK(look["point_radius"].get<double>() ==
+          Approx(0.62 * std::cbrt(volumes[(volumes.size() - 1) / 2])).epsilon(1e-9));
     const Json& camera = look["camera"]["impact"];
     double distance = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -15,11 +15,11 @@
 #include <cmath>
 
 #include "catch.h"
-#include "read_polydata.h"
 #include "compare/outline.h"
 #include "compare/overlap.h"
 #include "frame_maker.h"
 #include "fresh_folder.h"
+#include "read_polydata.h"
 #include "vtk_io/pvd.h"
 #include "vtk_io/survey_vtp.h"
 #include "vtk_io/writers.h"

@@ -88,8 +88,8 @@ TEST_CASE("frana stress runs scenes, counts them and writes JSON", "[stress][io]
 
 TEST_CASE("frana stress draws the models that it is told, and prints the mix", "[stress][io]") {
     const FreshFolder folder;
-    const Outcome outcome =
-        call_frana(folder.path(), "stress --model water,staged --scenes 4 --seed 12 --seconds 1e6 --shrunk 0 --json s.json");
+    const Outcome outcome = call_frana(
+        folder.path(), "stress --model water,staged --scenes 4 --seed 12 --seconds 1e6 --shrunk 0 --json s.json");
     CHECK(outcome.out.find("4 run") != std::string::npos);
     const auto json = nlohmann::json::parse(text_of(folder.path() / "s.json"));
     Index scenes = 0;
@@ -113,8 +113,7 @@ TEST_CASE("frana stress --case watches a case, and sees a claim that does not ho
     for (Index j = 6; j < 10; ++j)
         for (Index i = 6; i < 10; ++i) depth.at(i, j) = 1.0;
     draft.rasters = {{"dem.tif", Raster::filled(grid, 0.0)}, {"depth.tif", depth}};
-    draft.keys = {{"terrain.dem", "\"dem.tif\""}, {"release.depth", "\"depth.tif\""},
-                  {"time.end", "1.0"}};
+    draft.keys = {{"terrain.dem", "\"dem.tif\""}, {"release.depth", "\"depth.tif\""}, {"time.end", "1.0"}};
     save_draft(folder.path(), draft, {"none", 0.0, 0, 0.0, "nothing"});
     const Outcome sound = call_frana(folder.path(), "stress --case case.toml --steps 10 --mirror x");
     CHECK(sound.code == 0);

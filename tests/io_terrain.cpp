@@ -10,9 +10,7 @@ using namespace frana;
 
 namespace {
 
-std::filesystem::path made(const std::string& name) {
-    return std::filesystem::path(FRANA_SOURCE_DIR) / "cases" / name;
-}
+std::filesystem::path made(const std::string& name) { return std::filesystem::path(FRANA_SOURCE_DIR) / "cases" / name; }
 
 Raster read(const std::string& name) {
     std::vector<std::string> log;
@@ -41,8 +39,7 @@ constexpr double kRounding = 1e-11;
 
 }  // namespace
 
-TEST_CASE("The lakes' beds are those of Fois et al. (2024), eq. 34, on 50 x 50 cells of [0, 10]^2",
-          "[terrain]") {
+TEST_CASE("The lakes' beds are those of Fois et al. (2024), eq. 34, on 50 x 50 cells of [0, 10]^2", "[terrain]") {
     const Raster hill = read("lake_at_rest/data/z1.tif"), step = read("lake_at_rest/data/z2.tif");
     for (const Raster* bed : {&hill, &step}) {
         CHECK(bed->geometry.nx == 51);
@@ -55,9 +52,8 @@ TEST_CASE("The lakes' beds are those of Fois et al. (2024), eq. 34, on 50 x 50 c
               return 5.0 * std::exp(-0.4 * ((x - 5) * (x - 5) + (y - 5) * (y - 5)));
           }) < kRounding);
     // Beside the rim, the nodes on which lie at 4 and 8 only up to rounding.
-    CHECK(difference(step, [](double x, double y) {
-              return x > 3.9 && x < 8.1 && y > 3.9 && y < 8.1 ? 4.0 : 0.0;
-          }) == 0.0);
+    CHECK(difference(step, [](double x, double y) { return x > 3.9 && x < 8.1 && y > 3.9 && y < 8.1 ? 4.0 : 0.0; }) ==
+          0.0);
 }
 
 TEST_CASE("The obstacle's bed is eq. 37 of Fois et al. (2024), and its release is symmetric", "[terrain]") {
@@ -100,10 +96,9 @@ TEST_CASE("The rock slide has the paper's volume, depth, length and slope", "[te
             area += 1.0;
         }
     CHECK(deepest == Approx(38.0).margin(0.1));  // of the formula, whose top need not be a node
-    CHECK(static_cast<double>(last - first) * bed.geometry.cell ==
-          Approx(400.0).margin(2 * bed.geometry.cell));
+    CHECK(static_cast<double>(last - first) * bed.geometry.cell == Approx(400.0).margin(2 * bed.geometry.cell));
     CHECK(slope / area * 180.0 / 3.14159265358979 == Approx(28.0).margin(0.5));  // the paper says "about 28"
-    CHECK(area == Approx(6.9e4 / 4).epsilon(0.01));  // nodes of 4 m^2; 4 particles each
+    CHECK(area == Approx(6.9e4 / 4).epsilon(0.01));                              // nodes of 4 m^2; 4 particles each
 }
 
 TEST_CASE("The picture for particles is eq. 9 of Fois et al. (2025) on 100 x 100 pixels", "[terrain]") {

@@ -18,8 +18,8 @@ Raster plane(Index nx, Index ny, double slope_x, double slope_y) {
     Raster bed = Raster::filled(FrameMaker::utm(nx, ny), 0.0);
     for (Index j = 0; j < ny; ++j)
         for (Index i = 0; i < nx; ++i)
-            bed.at(i, j) = 1000.0 + bed.geometry.cell *
-                                        (slope_x * static_cast<double>(i) + slope_y * static_cast<double>(j));
+            bed.at(i, j) =
+                1000.0 + bed.geometry.cell * (slope_x * static_cast<double>(i) + slope_y * static_cast<double>(j));
     return bed;
 }
 
@@ -70,8 +70,7 @@ TEST_CASE("Holes in the terrain come back as NaN, and only there", "[io][vtk]") 
     CHECK(std::isnan(terrain.nodes.at("elevation")[4 * 9 + 4]));
     for (const char* name : {"slope", "hillshade"}) CHECK(worst(terrain.nodes.at(name), 0.0) < 90.0);
     // one-sided differences beside the hole: the plane's slope there too
-    CHECK(terrain.nodes.at("slope")[4 * 9 + 3] ==
-          Approx(std::atan(0.1) * 180.0 / std::acos(-1.0)).epsilon(1e-5));
+    CHECK(terrain.nodes.at("slope")[4 * 9 + 3] == Approx(std::atan(0.1) * 180.0 / std::acos(-1.0)).epsilon(1e-5));
 }
 
 TEST_CASE("Terrain of one node or one row has a flat or one-way slope", "[io][vtk]") {
@@ -113,10 +112,8 @@ TEST_CASE("read_frame gives back what the writers were shown", "[io][vtk]") {
         Index different = 0;
         for (std::size_t k = 0; k < found.size(); ++k) {
             const bool both_nan = std::isnan(found[k]) && std::isnan(field.data[k]);
-            const bool stand_in =
-                field.name == "surface" && std::isnan(field.data[k]) && std::isfinite(found[k]);
-            different +=
-                !both_nan && !stand_in && found[k] != static_cast<double>(static_cast<float>(field.data[k]));
+            const bool stand_in = field.name == "surface" && std::isnan(field.data[k]) && std::isfinite(found[k]);
+            different += !both_nan && !stand_in && found[k] != static_cast<double>(static_cast<float>(field.data[k]));
         }
         CHECK(different == 0);
     }

@@ -33,11 +33,9 @@ namespace {
 Index differences(const Field& field, vtkDataArray* array) {
     Index count = 0;
     for (Index k = 0; k < field.count * field.components; ++k) {
-        const double found =
-            array->GetComponent(k / field.components, static_cast<int>(k % field.components));
-        const double wanted = array->GetDataType() == VTK_FLOAT
-                                  ? static_cast<double>(static_cast<float>(field.data[k]))
-                                  : field.data[k];
+        const double found = array->GetComponent(k / field.components, static_cast<int>(k % field.components));
+        const double wanted =
+            array->GetDataType() == VTK_FLOAT ? static_cast<double>(static_cast<float>(field.data[k])) : field.data[k];
         count += std::memcmp(&found, &wanted, sizeof found) != 0;
     }
     read_back.array(field.count * field.components);
@@ -45,8 +43,7 @@ Index differences(const Field& field, vtkDataArray* array) {
 }
 
 std::string unit_of(vtkDataSet* data, const std::string& name) {
-    auto* text =
-        vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray((name + "_unit").c_str()));
+    auto* text = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray((name + "_unit").c_str()));
     return text && text->GetNumberOfValues() == 1 ? std::string(text->GetValue(0)) : "(none)";
 }
 
@@ -244,8 +241,7 @@ TEST_CASE("A full disk is an error with path and reason, and the files before it
     {
         const SmallDisk disk(20000);
         CHECK_THROWS_AS(particles->observe(maker.frame), UserError);
-        CHECK_THROWS_WITH(grid->observe(maker.frame),
-                          Contains("grid_000001.vti") && Contains("cannot be written"));
+        CHECK_THROWS_WITH(grid->observe(maker.frame), Contains("grid_000001.vti") && Contains("cannot be written"));
     }
     CHECK(check_series(run.path() / "particles.pvd").size() == 1);
     CHECK(check_series(run.path() / "grid.pvd").size() == 1);

@@ -30,7 +30,8 @@ public:
     void rain(double pixel, const std::function<double(double x, double y)>& rate, double from = 0.0,
               const std::string& crs = "EPSG:32632") const {
         RasterSpec spec;
-        spec.columns = static_cast<int>(std::ceil((240.0 - from) / pixel)), spec.rows = static_cast<int>(std::ceil(200.0 / pixel));
+        spec.columns = static_cast<int>(std::ceil((240.0 - from) / pixel)),
+        spec.rows = static_cast<int>(std::ceil(200.0 / pixel));
         spec.transform = {kWest + from, pixel, 0.0, kNorth, 0.0, -pixel};
         spec.crs = crs, spec.nodata = -9999.0;
         spec.value = [=](int column, int row) {
@@ -39,7 +40,9 @@ public:
         make_raster(at("rain.tif"), spec);
     }
     Scene scene(const std::string& cell = "") const {
-        std::ofstream(at("case.toml")) << "[terrain]\ndem = \"dem.tif\"\n" << cell
+        std::ofstream(at("case.toml"))
+            << "[terrain]\ndem = \"dem.tif\"\n"
+            << cell
             << "[[release]]\nmask = \"mask.tif\"\ndepth = 2\n[time]\nend = 5\n[material]\ndensity = 2650\n"
                "[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 0\nfraction = 0\nfriction_angle_deg = 30\n"
                "young_modulus = 1e6\n[water]\nmodel = \"free\"\nrain = \"rain.tif\"\n";
@@ -73,7 +76,8 @@ TEST_CASE("Rain comes from a raster of any pixel, averaged or interpolated onto 
         for (int j = 0; j < 40; ++j) sum += 25.0 * static_cast<float>(cloud(kWest + 2.5 + 5.0 * i, 0.0));
     CHECK(volume(fine.water->rain) == Approx(sum).epsilon(1e-12));
     CHECK(any_contains(fine.log, "rain.tif: 5 m pixels averaged to 10 m cells"));
-    folder.rain(40.0, [](double x, double) { return x - kWest > 100.0 ? 1e-5 : 0.0; });  // a step: nothing below 0 beside it
+    folder.rain(40.0,
+                [](double x, double) { return x - kWest > 100.0 ? 1e-5 : 0.0; });  // a step: nothing below 0 beside it
     const Raster coarse = folder.scene().water->rain;
     CHECK(*std::min_element(coarse.values.begin(), coarse.values.end()) >= 0.0);
     CHECK(coarse.at(23, 3) == Approx(1e-5).epsilon(1e-6));
@@ -83,10 +87,12 @@ TEST_CASE("Rain comes from a raster of any pixel, averaged or interpolated onto 
 TEST_CASE("Rain that does not lie on the terrain, or is none, is refused in one sentence", "[gdal][water]") {
     const Folder folder;
     folder.rain(10.0, cloud, 60.0);
-    CHECK(contains(folder.refused(), "rain.tif: found 120 of 480 nodes of the terrain without a number, the first at x 500005, "
-                                     "y 6000005; expected a raster that covers all of the terrain"));
+    CHECK(contains(folder.refused(),
+                   "rain.tif: found 120 of 480 nodes of the terrain without a number, the first at x 500005, "
+                   "y 6000005; expected a raster that covers all of the terrain"));
     folder.rain(10.0, [](double x, double y) { return x < kWest + 10.0 && y > kNorth - 10.0 ? -1e-6 : 1e-6; });
-    CHECK(contains(folder.refused(), "rain.tif: found 1 of 480 pixels such as -1e-06, the first at x 500005, y 6000195; expected rates"));
+    CHECK(contains(folder.refused(),
+                   "rain.tif: found 1 of 480 pixels such as -1e-06, the first at x 500005, y 6000195; expected rates"));
     folder.rain(5.0, [](double x, double y) { return x < kWest + 5.0 && y > kNorth - 5.0 ? -9999.0 : 1e-6; });
     CHECK(contains(folder.refused(), "found 1 of 1920 pixels without a number, the first at x 500002.5, y 6000197.5"));
     folder.rain(10.0, cloud, 500.0 - 1000.0, "EPSG:32633");

@@ -74,8 +74,7 @@ void check_same(const Field& field, std::vector<hsize_t> shape, const StoredArra
     REQUIRE(static_cast<Index>(found.numbers.size()) == field.count * field.components);
     Index different = 0;
     for (std::size_t k = 0; k < found.numbers.size(); ++k) {
-        const double wanted =
-            found.bytes == 4 ? static_cast<double>(static_cast<float>(field.data[k])) : field.data[k];
+        const double wanted = found.bytes == 4 ? static_cast<double>(static_cast<float>(field.data[k])) : field.data[k];
         different += std::memcmp(&found.numbers[k], &wanted, sizeof wanted) != 0;
     }
     read_back.array(static_cast<Index>(found.numbers.size()));
@@ -91,8 +90,7 @@ void check_frame(const Frame& frame, const fs::path& file) {
         check_same(field, {1, static_cast<hsize_t>(grid.ny), static_cast<hsize_t>(grid.nx)},
                    read_array(file, name + ("grid/" + field.name)));
     for (const Field& field : frame.particles)
-        check_same(field, {static_cast<hsize_t>(field.count)},
-                   read_array(file, name + ("particles/" + field.name)));
+        check_same(field, {static_cast<hsize_t>(field.count)}, read_array(file, name + ("particles/" + field.name)));
 }
 
 /// Every piece of text that stands between `head` and the next `tail`.
@@ -205,8 +203,7 @@ TEST_CASE("A run.h5 that cannot be written is an error with path and reason", "[
                       Contains("run.h5: cannot be written") && Contains("No such file or directory"));
 }
 
-TEST_CASE("A full disk is an error with path and reason, and the frames before it stay readable",
-          "[io][xdmf]") {
+TEST_CASE("A full disk is an error with path and reason, and the frames before it stay readable", "[io][xdmf]") {
     const FreshFolder run;
     FrameMaker maker(0, 0.0, 200, FrameMaker::utm(20, 20)), large(1, 1.0, 20000, FrameMaker::utm(100, 100));
     const auto writer = make_xdmf_writer(run.path());

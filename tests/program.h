@@ -16,8 +16,7 @@ struct Outcome {
 
 /// Runs `frana ARGUMENTS` in a folder, where it leaves out.txt and err.txt.
 inline Outcome call_frana(const std::filesystem::path& folder, const std::string& arguments) {
-    const std::filesystem::path program =
-        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "frana";
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "frana";
     INFO("the test needs the target `frana` built beside it");
     REQUIRE(std::filesystem::exists(program));
     const std::string command =

@@ -69,8 +69,7 @@ inline double volume_in_box(const Release& release, double x0, double y0, double
             const double a = std::max(x0, g.x(i) - 0.5 * g.cell), b = std::min(x1, g.x(i) + 0.5 * g.cell);
             const double c = std::max(y0, g.y(j) - 0.5 * g.cell), d = std::min(y1, g.y(j) + 0.5 * g.cell);
             if (a >= b || c >= d) continue;
-            volume +=
-                depth * (release.outline ? area_in_box(*release.outline, a, c, b, d) : (b - a) * (d - c));
+            volume += depth * (release.outline ? area_in_box(*release.outline, a, c, b, d) : (b - a) * (d - c));
         }
     return volume;
 }
@@ -95,13 +94,9 @@ inline Release release_of(std::vector<Polygon> parts, double depth) {
     return release;
 }
 
-inline Release release_of_ring(Ring ring, double depth) {
-    return release_of({Polygon{{std::move(ring)}}}, depth);
-}
+inline Release release_of_ring(Ring ring, double depth) { return release_of({Polygon{{std::move(ring)}}}, depth); }
 
-inline Ring rectangle(double x0, double y0, double x1, double y1) {
-    return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-}
+inline Ring rectangle(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
 
 /// A smooth positive depth with a corner of nodata.
 inline Raster bumpy_depth(const GridGeometry& geometry) {
@@ -109,9 +104,9 @@ inline Raster bumpy_depth(const GridGeometry& geometry) {
     depth.source = "depth.tif";
     for (Index j = 0; j < geometry.ny; ++j)
         for (Index i = 0; i < geometry.nx; ++i)
-            depth.at(i, j) = i + j < 4 ? Raster::nodata
-                                       : 1.5 + std::sin(0.9 * static_cast<double>(i)) *
-                                                   std::cos(1.3 * static_cast<double>(j));
+            depth.at(i, j) =
+                i + j < 4 ? Raster::nodata
+                          : 1.5 + std::sin(0.9 * static_cast<double>(i)) * std::cos(1.3 * static_cast<double>(j));
     return depth;
 }
 
@@ -136,8 +131,7 @@ struct Made {
     }
 };
 
-inline Made make(const std::vector<Release>& releases, const Raster& bed,
-                 const frana::ParticleOptions& options = {}) {
+inline Made make(const std::vector<Release>& releases, const Raster& bed, const frana::ParticleOptions& options = {}) {
     Made made;
     made.seeds = frana::make_seeds(releases, bed, options, made.reports, made.log);
     return made;

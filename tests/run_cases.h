@@ -77,8 +77,7 @@ struct Case {
     const char* text;  ///< of the case file, without the looks
 };
 
-inline const Case cases[] = {
-    {"voellmy", R"(
+inline const Case cases[] = {{"voellmy", R"(
 [terrain]
 dem = "dem.asc"
 [[release]]
@@ -97,7 +96,7 @@ end = 13.1
 every = 0.6
 formats = ["vtk", "xdmf", "geotiff"]
 )"},
-    {"bingham_walls", R"(
+                             {"bingham_walls", R"(
 [terrain]
 dem = "dem.asc"
 [[release]]
@@ -119,7 +118,7 @@ every = 0.7
 formats = ["xdmf"]
 history = "output"
 )"},
-    {"paper", R"(
+                             {"paper", R"(
 [terrain]
 dem = "dem.asc"
 model = "shallow"
@@ -159,15 +158,15 @@ inline void make_case(const fs::path& folder, const Case& of) {
 
 /// How the program ended.
 struct Ending {
-    int code = -1;      ///< its exit code, -1: a signal ended it
+    int code = -1;  ///< its exit code, -1: a signal ended it
     int signal = 0;
-    std::string errors; ///< what it said on stderr
-    double peak = 0.0;  ///< memory [bytes]
+    std::string errors;  ///< what it said on stderr
+    double peak = 0.0;   ///< memory [bytes]
 };
 
 /// What else happens to a run.
 struct Disturbance {
-    std::function<void()> in_program = [] {};  ///< before the program starts, in its process
+    std::function<void()> in_program = [] {};                       ///< before the program starts, in its process
     std::function<bool(pid_t)> ready = [](pid_t) { return true; };  ///< from then on the moment counts
     double moment = 1e9;                                            ///< [s]
     int signal = 0;                                                 ///< that may end it, besides
@@ -194,7 +193,8 @@ public:
         while (::wait4(child, &status, WNOHANG, &used) == 0) {
             std::this_thread::sleep_for(std::chrono::microseconds(300));
             if (!ready && !(ready = disturbance.ready(child))) start = Clock::now();
-            if (!ready || disturbed || std::chrono::duration<double>(Clock::now() - start).count() < disturbance.moment) continue;
+            if (!ready || disturbed || std::chrono::duration<double>(Clock::now() - start).count() < disturbance.moment)
+                continue;
             disturbance.at_moment(child);
             disturbed = true;
         }

@@ -18,7 +18,9 @@ struct RunOn {
     double toe = 0.0;     ///< farthest that a node covered later lies from what was covered [cells]
 };
 
-struct Place { double x, y, mass; };
+struct Place {
+    double x, y, mass;
+};
 
 inline std::vector<std::pair<std::int64_t, Place>> places(const DepthAveraged& simulation) {
     const Columns& c = simulation.flow().columns;

@@ -23,8 +23,8 @@ struct Traps : ListenerBase {
 #else
         bool excused = false;
 #endif
-        for (const char* tag : {"[bench]", "[conserve]", "[insitu]", "[lake]", "[nan]", "[nodes]", "[precision]", "[resume]",
-                                "[rest]", "[solid]", "[solver]", "[speed]", "[stress]", "[verify]"})
+        for (const char* tag : {"[bench]", "[conserve]", "[insitu]", "[lake]", "[nan]", "[nodes]", "[precision]",
+                                "[resume]", "[rest]", "[solid]", "[solver]", "[speed]", "[stress]", "[verify]"})
             excused = excused || tags.find(tag) != std::string::npos;
         feclearexcept(FE_ALL_EXCEPT);
         feenableexcept(FE_OVERFLOW);

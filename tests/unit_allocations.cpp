@@ -30,7 +30,9 @@ using namespace frana;
 
 namespace {
 
-struct Asked { long most = 0, counted = 0; };
+struct Asked {
+    long most = 0, counted = 0;
+};
 
 /// The most that a step asks for, and how many steps tell. Lists of tiles may grow where the flow covers more than it ever
 /// did, each when it is next used: such steps and the three after them do not.
@@ -44,7 +46,8 @@ Asked asked_when_warm(Run& run, int steps, Tiles&& tiles) {
         run.advance(1e9);
         const long now = allocations - before;
         const std::size_t work = tiles().work.size() + tiles().tile.size();
-        if (work > largest) steady = 0;
+        if (work > largest)
+            steady = 0;
         else if (++steady > 3) {
             asked.most = std::max(asked.most, now);
             ++asked.counted;

@@ -95,7 +95,8 @@ TEST_CASE("Both shares of a Bingham sheet satisfy their cubic to round-off, from
             const auto [z, y] = bed::bingham_sheet(b, d);
             CAPTURE(b, d, z, y);
             // The smaller share solves a well-conditioned equation; the other is one less it.
-            const double of_y = (3.0 * y * y - y * y * y) + (b + d) * y - d, of_z = z * z * z - (3.0 + b + d) * z + 2.0 + b;
+            const double of_y = (3.0 * y * y - y * y * y) + (b + d) * y - d,
+                         of_z = z * z * z - (3.0 + b + d) * z + 2.0 + b;
             REQUIRE((y <= 0.5 ? std::abs(of_y) / d : std::abs(of_z) / (2.0 + b)) < 1e-15);
             REQUIRE(z + y == Approx(1.0).epsilon(1e-15));
             REQUIRE(z > 0.0);
@@ -147,9 +148,14 @@ TEST_CASE("Bingham and mu(I) sheets relax with third order, speeding up and slow
 // Friction that grows with speed brings any two speeds under the same drive closer together. A step that does the contrary feeds
 // on round-off (a film that came to rest in a gully swung across it, ten times as far from step to step).
 TEST_CASE("No step of friction parts two speeds under the same drive", "[law]") {
-    const BedLaw laws[] = {bed::Coulomb{0.5}, bed::Voellmy{0.1, 300.0}, bed::Manning{0.1, 0.05},
-                           bed::Bingham{1000.0, 300.0, 0.0}, bed::Bingham{10.0, 1e-3, 0.2}, bed::Bingham{0.0, 300.0, 0.0},
-                           bed::Pouliquen{}, bed::Pouliquen{0.03, 0.056, 0.3, 0.2, 0.6}};
+    const BedLaw laws[] = {bed::Coulomb{0.5},
+                           bed::Voellmy{0.1, 300.0},
+                           bed::Manning{0.1, 0.05},
+                           bed::Bingham{1000.0, 300.0, 0.0},
+                           bed::Bingham{10.0, 1e-3, 0.2},
+                           bed::Bingham{0.0, 300.0, 0.0},
+                           bed::Pouliquen{},
+                           bed::Pouliquen{0.03, 0.056, 0.3, 0.2, 0.6}};
     const double step = 1e-5;  // of a speed; differences are good to about round-off over it
     for (const BedLaw& law : laws)
         for (double thickness = 1e-4; thickness < 20.0; thickness *= 3.1)
@@ -162,7 +168,8 @@ TEST_CASE("No step of friction parts two speeds under the same drive", "[law]") 
                                 const double a = chosen.speed_after(flat(thickness), slow, slow + dt * drive, dt);
                                 const double b = chosen.speed_after(flat(thickness), fast, fast + dt * drive, dt);
                                 CAPTURE(law.index(), thickness, slow, drive, dt, a, b);
-                                REQUIRE(std::abs(b - a) <= (fast - slow) * (1.0 + 1e-4) + 8.0 * (slow + dt * drive) * 2.3e-16);
+                                REQUIRE(std::abs(b - a) <=
+                                        (fast - slow) * (1.0 + 1e-4) + 8.0 * (slow + dt * drive) * 2.3e-16);
                             },
                             law);
 }
@@ -215,7 +222,8 @@ TEST_CASE("On a slope every law holds its steady speed along the bed", "[law]") 
     const BedState bed{normal, h, kappa, 0.8, g, rho};
     for (const double dt : {0.01, 1.0, 100.0}) {
         CAPTURE(dt);
-        const auto keeps = [&](const auto& law, double along, double drive) {  // the speed along the map is 1 / kappa of it
+        const auto keeps = [&](const auto& law, double along,
+                               double drive) {  // the speed along the map is 1 / kappa of it
             const double speed = along / kappa;
             CHECK(law.speed_after(bed, speed, speed + dt * drive, dt) == Approx(speed).epsilon(kRoundOff));
         };

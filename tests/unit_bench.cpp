@@ -146,7 +146,9 @@ TEST_CASE("A gate that was not measured is not met", "[bench]") {
 namespace {
 
 /// Notes what it is shown.
-struct Shown { std::size_t particle_fields = 0, node_fields = 0, frames = 0; };
+struct Shown {
+    std::size_t particle_fields = 0, node_fields = 0, frames = 0;
+};
 class Witness final : public Observer {
 public:
     explicit Witness(Shown& shown) : shown_(shown) {}
@@ -166,14 +168,15 @@ private:
 TEST_CASE("bench shows twelve particle fields to writers of particles, the grid to others, and cleans up", "[bench]") {
     const FreshFolder above;
     Shown points, grid;
-    const auto costs = bench::time_frames(
-        1000,
-        {{bench::kGatedWriter, true, false, [&](const auto& folder) {
-              CHECK(std::filesystem::is_directory(folder));
-              return std::make_unique<Witness>(points);
-          }},
-         {"grid", false, true, [&](const auto&) { return std::make_unique<Witness>(grid); }}},
-        above.path());
+    const auto costs =
+        bench::time_frames(1000,
+                           {{bench::kGatedWriter, true, false,
+                             [&](const auto& folder) {
+                                 CHECK(std::filesystem::is_directory(folder));
+                                 return std::make_unique<Witness>(points);
+                             }},
+                            {"grid", false, true, [&](const auto&) { return std::make_unique<Witness>(grid); }}},
+                           above.path());
     CHECK(std::filesystem::is_empty(above.path()));
     CHECK(points.particle_fields == 12);
     CHECK(points.node_fields == 0);

@@ -37,8 +37,7 @@ std::string problem_of(const std::string& text, const std::vector<std::string>& 
 
 }  // namespace
 
-TEST_CASE("The least case needs a DEM, a release with depth and an end, and the rest has defaults",
-          "[case]") {
+TEST_CASE("The least case needs a DEM, a release with depth and an end, and the rest has defaults", "[case]") {
     const CaseFile file = CaseFile::parse(least, "slides/vajont/case.toml");
     CHECK(file.name() == "vajont");
     CHECK(CaseFile::parse(least, "slides/north.toml").name() == "north");
@@ -138,7 +137,8 @@ TEST_CASE("Tables in the wrong shape are named", "[case]") {
           "describe grid` "
           "lists them");
     CHECK(problem_of(least + "[[barrier]]\nheight = 20\n") ==
-          "case.toml:7: barrier.0.outline: not given, and no line or mesh either; expected where the barrier stands; add outline = "
+          "case.toml:7: barrier.0.outline: not given, and no line or mesh either; expected where the barrier stands; "
+          "add outline = "
           "..., line = ... or mesh = ... under [[barrier]]");
 }
 
@@ -161,27 +161,24 @@ TEST_CASE("A law needs its parameters and refuses those of others", "[case]") {
           "case.toml:9: material.bed.mu: found together with case.toml:10: material.bed.friction_angle_deg; "
           "expected only "
           "one of the two; remove one of them");
-    CHECK(problem_of(least +
-                     "[material.bed]\nlaw = \"pouliquen\"\nmu_s = 0.4\nmu_2 = 0.3\ngrain_diameter=1e-3\n") ==
+    CHECK(problem_of(least + "[material.bed]\nlaw = \"pouliquen\"\nmu_s = 0.4\nmu_2 = 0.3\ngrain_diameter=1e-3\n") ==
           "case.toml:10: material.bed.mu_2: found 0.3; expected more than mu_s = 0.4; mu_s is the friction "
           "of slow flow, "
           "mu_2 that of fast flow; correct one");
     CHECK(problem_of(least + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = 1\nyield_stress = 1\n")
               .find("case.toml:10: material.rheology.yield_stress: found, but") == 0);
-    CHECK(problem_of(least + "[scheme]\nflip_ratio = 0.9\n")
-              .find("scheme.transfer = \"tpic\" does not use it") != std::string::npos);
+    CHECK(problem_of(least + "[scheme]\nflip_ratio = 0.9\n").find("scheme.transfer = \"tpic\" does not use it") !=
+          std::string::npos);
     CHECK(problem_of(least + "[scheme]\nprecision = \"float\"\nshape = \"cubic\"\n") ==
           "case.toml:8: scheme.precision: found \"float\" with another preset, shape or transfer than the default; "
           "expected \"double\", since only the default kernels have the other; remove it, or use the default preset, "
           "shape and transfer");
-    CHECK(problem_of(least + "[scheme]\nstill_level = 10\n").find("expected with paper only") !=
-          std::string::npos);
+    CHECK(problem_of(least + "[scheme]\nstill_level = 10\n").find("expected with paper only") != std::string::npos);
     CHECK(problems_of(least + "[material.bed]\nlaw = \"manning\"\nmanning_n = 0.03\n").empty());
 }
 
 TEST_CASE("Keys that contradict each other are refused", "[case]") {
-    CHECK(problem_of(least + "[particles]\nper_cell = 4\ncount = 100\n").find("together with") !=
-          std::string::npos);
+    CHECK(problem_of(least + "[particles]\nper_cell = 4\ncount = 100\n").find("together with") != std::string::npos);
     CHECK(problem_of("[terrain]\ndem=\"a\"\nwindow=[0, 0, -1, 5]\n[[release]]\ndepth=1\n[time]\nend=1\n") ==
           "case.toml:3: terrain.window: found [0.0, 0.0, -1.0, 5.0]; expected [xmin, ymin, xmax, ymax] with "
           "xmin < xmax "
@@ -193,12 +190,12 @@ TEST_CASE("Keys that contradict each other are refused", "[case]") {
           "case.toml:9: output.film: found \"mp4\" without \"vtk\" in output.formats; expected the frames that a film "
           "is made of; add \"vtk\" to output.formats, or remove film");
     const std::string head = "[terrain]\ndem=\"a\"\n[time]\nend=1\n[[release]]\n";
-    CHECK(problem_of(head + "outline=\"a\"\n")
-              .find("case.toml:5: release.0.depth: not given, and no surface either") == 0);
-    CHECK(problem_of(head + "surface=5\nthickness=\"normal\"\n")
-              .find("release.0.thickness: found \"normal\"") != std::string::npos);
-    CHECK(problem_of(head + "surface=5\nincluded_in_dem=true\n")
-              .find("release.0.included_in_dem: found true") != std::string::npos);
+    CHECK(problem_of(head + "outline=\"a\"\n").find("case.toml:5: release.0.depth: not given, and no surface either") ==
+          0);
+    CHECK(problem_of(head + "surface=5\nthickness=\"normal\"\n").find("release.0.thickness: found \"normal\"") !=
+          std::string::npos);
+    CHECK(problem_of(head + "surface=5\nincluded_in_dem=true\n").find("release.0.included_in_dem: found true") !=
+          std::string::npos);
     CHECK(problem_of(least + "[[gauge]]\nname=\"a\"\npoint=[0,0]\n[[gauge]]\nname=\"a\"\npoint=[1,1]\n") ==
           "case.toml:11: gauge.1.name: found \"a\" again; expected a name other than that at case.toml:8: "
           "gauge.0.name; "
@@ -215,21 +212,16 @@ TEST_CASE("Lists are checked value by value", "[case]") {
           std::string::npos);
     CHECK(problem_of(least + "[[profile]]\nname = \"a\"\nline = [[0, 0], [0, 0]]\n").find("comes twice") !=
           std::string::npos);
-    CHECK(problem_of(least + "[[profile]]\nname = \"a\"\nline = [[0, 0]]\n").find("add points") !=
-          std::string::npos);
-    CHECK(problem_of(least + "[particles]\nper_cell = 2.5\n").find("expected a whole number") !=
-          std::string::npos);
+    CHECK(problem_of(least + "[[profile]]\nname = \"a\"\nline = [[0, 0]]\n").find("add points") != std::string::npos);
+    CHECK(problem_of(least + "[particles]\nper_cell = 2.5\n").find("expected a whole number") != std::string::npos);
     const CaseFile file = CaseFile::parse(least + "[output]\nfields = [\"depth\", \"speed\"]\n", "case.toml");
     CHECK(file.words("output.fields") == std::vector<std::string>{"depth", "speed"});
 }
 
 TEST_CASE("--set overrides any key, and its mistakes are those of --set", "[case][set]") {
-    const std::vector<std::string> sets = {"grid.cell=2.5",
-                                           "terrain.model = shallow",
-                                           "release.0.depth=deep.tif",
-                                           "release.0.velocity=[1, -2]",
-                                           "release.1.depth=3",
-                                           "case.title=2024"};
+    const std::vector<std::string> sets = {
+        "grid.cell=2.5",     "terrain.model = shallow", "release.0.depth=deep.tif", "release.0.velocity=[1, -2]",
+        "release.1.depth=3", "case.title=2024"};
     const CaseFile file = CaseFile::parse(least, "case.toml", sets);
     CHECK(file.number("grid.cell") == 2.5);
     CHECK(file.word("terrain.model") == "shallow");
@@ -260,14 +252,12 @@ TEST_CASE("--set displaces what the file says in another way, and says so", "[ca
     const CaseFile angle = CaseFile::parse(voellmy, "case.toml", {"material.bed.friction_angle_deg=20"});
     CHECK_FALSE(angle.given("material.bed.mu"));
     CHECK(angle.log() ==
-          std::vector<std::string>{
-              "case.toml:9: material.bed.mu: replaced by --set material.bed.friction_angle_deg"});
+          std::vector<std::string>{"case.toml:9: material.bed.mu: replaced by --set material.bed.friction_angle_deg"});
     const CaseFile coulomb = CaseFile::parse(voellmy, "case.toml", {"material.bed.law=coulomb"});
     CHECK_FALSE(coulomb.given("material.bed.xi"));
     CHECK(coulomb.given("material.bed.mu"));
-    CHECK(coulomb.log() ==
-          std::vector<std::string>{
-              "case.toml:10: material.bed.xi: not used, since --set material.bed.law is \"coulomb\""});
+    CHECK(coulomb.log() == std::vector<std::string>{
+                               "case.toml:10: material.bed.xi: not used, since --set material.bed.law is \"coulomb\""});
 }
 
 TEST_CASE("The paper preset changes defaults, and single keys override it", "[case]") {
@@ -289,6 +279,5 @@ TEST_CASE("The paper preset changes defaults, and single keys override it", "[ca
 TEST_CASE("read() names a case file that is not there, and files that the case names in vain", "[case]") {
     CHECK_THROWS_WITH(CaseFile::read("no/such/case.toml"),
                       Catch::Contains("no/such/case.toml: found no file that can be read"));
-    CHECK_THROWS_WITH(CaseFile::read(std::filesystem::temp_directory_path()),
-                      Catch::Contains("found a folder"));
+    CHECK_THROWS_WITH(CaseFile::read(std::filesystem::temp_directory_path()), Catch::Contains("found a folder"));
 }

@@ -32,8 +32,7 @@ TEST_CASE("describe selects by key, by table and by beginning", "[case][describe
     CHECK(describe("material").find("material.rheology.viscosity [Pa s]") != std::string::npos);
     CHECK(describe("material").find("scheme.cfl") == std::string::npos);
     CHECK(describe("xi").find("only with material.bed.law = voellmy") != std::string::npos);
-    CHECK(describe("scheme.cfl").find("default: 0.5; 0.25 with scheme.preset = \"paper\"") !=
-          std::string::npos);
+    CHECK(describe("scheme.cfl").find("default: 0.5; 0.25 with scheme.preset = \"paper\"") != std::string::npos);
     CHECK(describe("barrier").find("height above the bed") != std::string::npos);
     CHECK_THROWS_WITH(describe("grid.cel2"), Catch::Contains("did you mean grid.cell?"));
 }
@@ -74,8 +73,7 @@ TEST_CASE("Every entry of the table is sound", "[case][parameters]") {
             const auto& choices = find_parameter(parameter.switch_key)->choices;
             CHECK(std::count(choices.begin(), choices.end(), user) == 1);
         }
-        if (!parameter.instead_of.empty())
-            CHECK(find_parameter(parameter.instead_of)->instead_of == parameter.key);
+        if (!parameter.instead_of.empty()) CHECK(find_parameter(parameter.instead_of)->instead_of == parameter.key);
         const auto* number = parameter.fallback ? std::get_if<double>(&*parameter.fallback) : nullptr;
         if (number) CHECK(parameter.range.holds(*number));
         const bool has_choices = parameter.kind == Kind::choice || parameter.kind == Kind::words;
@@ -151,8 +149,7 @@ line = [[0, 0], [100, 50]]
     // A second time everything is given, so that only the marks of the defaults are gone.
     std::string without_marks = resolved;
     const std::string mark = "  # default";
-    for (std::size_t at = without_marks.find(mark); at != std::string::npos;
-         at = without_marks.find(mark, at))
+    for (std::size_t at = without_marks.find(mark); at != std::string::npos; at = without_marks.find(mark, at))
         without_marks.erase(at, mark.size());
     const auto body = [](const std::string& whole) { return whole.substr(whole.find('\n')); };
     CHECK(body(resolved_toml(again)) == body(without_marks));

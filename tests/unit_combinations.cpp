@@ -79,7 +79,8 @@ std::string in_message(const Values& values, const std::string& value) {
 }
 
 /// The sentence of a row with these values.
-std::string sentence(const Combination& row, const Values& partner, const std::string& value, const std::string& other) {
+std::string sentence(const Combination& row, const Values& partner, const std::string& value,
+                     const std::string& other) {
     const bool table = row.refused.are == Are::tables;
     const std::string with = row.said.empty() ? " with " + partner.key + " = " + in_message(partner, other) : row.said;
     return (table ? "case.toml:7: " + row.refused.key + ".0" : "--set " + row.refused.key) + ": found " +
@@ -96,14 +97,15 @@ TEST_CASE("What cannot go together is refused in the words of its row, and only 
                 Sets sets;
                 std::vector<std::string> tables, none;
                 if (table) tables.push_back(row.refused.key);
-                if (partner.are == Are::tables) tables.push_back(partner.key), none.push_back(partner.key);
-                else sets[partner.key] = other;
+                if (partner.are == Are::tables)
+                    tables.push_back(partner.key), none.push_back(partner.key);
+                else
+                    sets[partner.key] = other;
                 for (const std::string& value : examples(row.refused)) {
                     Sets both = sets;
                     if (!table) both[row.refused.key] = value;
                     CAPTURE(row.refused.key, value, partner.key, other);
-                    CHECK(only_problem([&] { parse(both, tables); }) ==
-                          sentence(row, partner, value, other));
+                    CHECK(only_problem([&] { parse(both, tables); }) == sentence(row, partner, value, other));
                 }
                 for (const std::string& value : examples(row.refused, false)) {
                     if (!table) sets[row.refused.key] = value;

@@ -85,7 +85,8 @@ TEST_CASE("A square of 100 m moved by 20 m has IoU 2/3, and its outlines lie 10 
 TEST_CASE("Distances are taken both ways: a small square in the middle of a large one") {
     const Rings small = {box(40, 40, 60, 60)}, large = {box(0, 0, 100, 100)};
     const double step = 1.25;
-    for (const OutlineDistance& distance : {distance_between(small, large, step), distance_between(large, small, step)}) {
+    for (const OutlineDistance& distance :
+         {distance_between(small, large, step), distance_between(large, small, step)}) {
         // 40 m from each point of the small one; from the large one 40 m over 20 m of each side, and beyond that
         // sqrt(40^2 + d^2), whose integral over d from 0 to 40 is 800 (sqrt 2 + ln(1 + sqrt 2)).
         const double slanting = 800.0 * (std::sqrt(2.0) + std::log(1.0 + std::sqrt(2.0)));
@@ -110,7 +111,8 @@ TEST_CASE("The area of slanting edges in pixels is exact") {
 }
 
 TEST_CASE("Holes are missing from the survey and parts add up, whichever way their rings run") {
-    std::vector<Polygon> parts = {Polygon{{box(0, 0, 100, 100), box(30, 30, 70, 70)}}, Polygon{{box(150, 110, 170, 130)}}};
+    std::vector<Polygon> parts = {Polygon{{box(0, 0, 100, 100), box(30, 30, 70, 70)}},
+                                  Polygon{{box(150, 110, 170, 130)}}};
     const Raster depth = flooded(0, 0, 100, 100);
     for (int way = 0; way < 2; ++way) {
         const Overlap areas = overlap(depth, 0.1, survey_of(parts));

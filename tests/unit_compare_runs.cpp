@@ -157,8 +157,8 @@ TEST_CASE("A deposit of known volumes has the error that they have") {
     CHECK(errors.surveyed_volume == Approx(20000));
     CHECK(errors.volume_error() == Approx(-0.5));
     CHECK(errors.compared_area == Approx(15000));
-    CHECK(errors.mae == Approx(4.0 / 3.0));           // 1, 1 and 2 m on 5000 m2 each
-    CHECK(errors.rmse == Approx(std::sqrt(2.0)));     // 1, 1 and 4 m2
+    CHECK(errors.mae == Approx(4.0 / 3.0));        // 1, 1 and 2 m on 5000 m2 each
+    CHECK(errors.rmse == Approx(std::sqrt(2.0)));  // 1, 1 and 4 m2
     CHECK(errors.unsurveyed_volume == 0.0);
 
     surveyed.at(0, 0) = Raster::nodata;

@@ -43,7 +43,8 @@ TEST_CASE("Into 3D and back gives every column its mass, volume and momentum aga
     CHECK(slope <= 1e-8);
 }
 
-TEST_CASE("Coarse pixels hold the sums of their columns, and the motion within is counted as given up", "[convert][nan]") {
+TEST_CASE("Coarse pixels hold the sums of their columns, and the motion within is counted as given up",
+          "[convert][nan]") {
     const Raster bed = tilted_bed(30, 2.0), coarse = tilted_bed(6, 13.0);
     const FlowColumns columns = uneven_flow(bed, 1300.0, 9.81);
     const ConversionChoice choice{0.3, Layers::end_points, Vertical::zero, VelocityProfile::linear};
@@ -75,7 +76,8 @@ TEST_CASE("Coarse pixels hold the sums of their columns, and the motion within i
     CHECK(kinetic == Approx(c.kinetic_points + c.kinetic_vertical).epsilon(kGate));
 }
 
-TEST_CASE("Rasters of gathered points hold their volume and momentum, and nodata where there is no bed", "[convert][nan]") {
+TEST_CASE("Rasters of gathered points hold their volume and momentum, and nodata where there is no bed",
+          "[convert][nan]") {
     Raster bed = tilted_bed(12, 2.0);
     FlowColumns columns = uneven_flow(bed, 1000.0, 9.81);
     const SolidPoints points = columns_to_points(columns, {});

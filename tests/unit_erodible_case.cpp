@@ -11,7 +11,8 @@ namespace {
 
 Scene scene_of(const FakeGis& gis, const std::string& erodible) {
     return build_scene(CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\n"
-                                       "depth = 2\n[time]\nend = 20\n[material]\ndensity = 1900\n[erodible]\n" + erodible,
+                                       "depth = 2\n[time]\nend = 20\n[material]\ndensity = 1900\n[erodible]\n" +
+                                           erodible,
                                        "slide/case.toml"),
                        gis);
 }
@@ -28,7 +29,8 @@ TEST_CASE("A case without [erodible] has a bed of rock", "[erosion][scene]") {
     CHECK_FALSE(scene_of(slope_gis(), "").erodible);
 }
 
-TEST_CASE("Loose ground has a depth, a law with its numbers, and the flow's density unless it is given", "[erosion][scene]") {
+TEST_CASE("Loose ground has a depth, a law with its numbers, and the flow's density unless it is given",
+          "[erosion][scene]") {
     const Scene scene = scene_of(slope_gis(), "depth = 0.5\nlaw = \"shear\"\nrate = 0.05\nmomentum = 0.25\n");
     const ErodibleBed& bed = scene.erodible.value();
     CHECK(bed.depth.geometry == scene.bed.geometry);
@@ -36,7 +38,8 @@ TEST_CASE("Loose ground has a depth, a law with its numbers, and the flow's dens
     CHECK((bed.density == 1900.0 && bed.momentum == 0.25 && bed.min_depth == 0.05 && bed.evolves));
     const erosion::Shear& law = std::get<erosion::Shear>(bed.law);
     CHECK((law.erosion_rate == 0.05 && law.threshold == 1000.0 && law.depth_per_stress == 1e-4));
-    const Scene other = scene_of(slope_gis(), "depth = 0.5\nlaw = \"growth\"\ngrowth = 2e-3\ndensity = 1500\nbed_evolves = false\n");
+    const Scene other =
+        scene_of(slope_gis(), "depth = 0.5\nlaw = \"growth\"\ngrowth = 2e-3\ndensity = 1500\nbed_evolves = false\n");
     CHECK((other.erodible->density == 1500.0 && !other.erodible->evolves));
     CHECK(std::get<erosion::Growth>(other.erodible->law).growth == 2e-3);
 }
@@ -44,7 +47,8 @@ TEST_CASE("Loose ground has a depth, a law with its numbers, and the flow's dens
 TEST_CASE("An outline and a raster say where ground is loose", "[erosion][scene]") {
     FakeGis gis = slope_gis();
     gis.polygons["gully.geojson"] = rectangle(1040, 2020, 1060, 2037.5);  // pixels are 1040 to 1045, ..., 2035 to 2040
-    gis.rasters["loose.tif"] = sampled(gis.rasters["dem.tif"].geometry, [](double x, double) { return x < 1050 ? 0.4 : 0.0; });
+    gis.rasters["loose.tif"] =
+        sampled(gis.rasters["dem.tif"].geometry, [](double x, double) { return x < 1050 ? 0.4 : 0.0; });
     gis.rasters["loose.tif"].at(9, 6) = NAN;
     const std::string law = "law = \"jump\"\noutline = \"gully.geojson\"\n";
     const Raster even = scene_of(gis, law + "depth = 1.0\n").erodible->depth;
@@ -61,7 +65,8 @@ TEST_CASE("What is wrong with [erodible] is said in one sentence", "[erosion][sc
     CHECK(has(problem_of(gis, "depth = 0.5\n"), "found, but erodible.law = \"none\" does not use it"));
     CHECK(has(problem_of(gis, "law = \"jump\"\n"), "not given, but erodible.law = \"jump\" needs it"));
     CHECK(has(problem_of(gis, "law = \"growth\"\ndepth = 1\n"), "not given, but erodible.law = \"growth\" needs it"));
-    CHECK(has(problem_of(gis, "law = \"jump\"\ndepth = 1\nrate = 0.1\n"), "found, but erodible.law = \"jump\" does not use it"));
+    CHECK(has(problem_of(gis, "law = \"jump\"\ndepth = 1\nrate = 0.1\n"),
+              "found, but erodible.law = \"jump\" does not use it"));
     CHECK(has(problem_of(gis, "law = \"jump\"\ndepth = 1\nmomentum = 1.5\n"), "1.5"));
     CHECK(has(problem_of(gis, "law = \"jump\"\ndepth = 1\ndensity = 0\n"), "expected a number above 0"));
     CHECK(has(problem_of(gis, "law = \"jump\"\ndepth = 1\nthreshold = -1\n"), "-1"));

@@ -31,11 +31,13 @@ ErodibleBed loose(const Scene& scene, ErosionLaw law, const std::function<double
 /// A slide into a gully with a bump; loose ground lies in a band across it, less than the flow would take.
 Scene slide(const std::function<void(Scene&)>& edit = {}) {
     Scene scene = scene_on(90, 60, 2.0, [](double x, double y) {
-        return 90 - 0.5 * x + 0.01 * (y - 59) * (y - 59) + 3 * std::exp(-((x - 90) * (x - 90) + (y - 59) * (y - 59)) / 60);
+        return 90 - 0.5 * x + 0.01 * (y - 59) * (y - 59) +
+               3 * std::exp(-((x - 90) * (x - 90) + (y - 59) * (y - 59)) / 60);
     });
     scene.bed_law = bed::Voellmy{0.2, 400};
-    verify::place(scene, [](double x, double y) { return std::hypot(x - 35, y - 59) < 20 ? 3.0 : 0.0; },
-                  verify::Placement::r2, 2);
+    verify::place(
+        scene, [](double x, double y) { return std::hypot(x - 35, y - 59) < 20 ? 3.0 : 0.0; }, verify::Placement::r2,
+        2);
     scene.erodible = loose(scene, erosion::Growth{0.01},
                            [](double x, double y) { return x > 50 && x < 130 && y > 40 && y < 78 ? 0.3 : 0.0; });
     if (edit) edit(scene);
@@ -97,7 +99,11 @@ TEST_CASE("Flow, bed and what left have the mass of the start, and no node lies 
                 for (const double part : frame.status.impulse) momentum = std::max(momentum, std::abs(part));
                 for (const double residual : left_over.momentum_residual) CHECK(std::abs(residual) <= 1e-11 * momentum);
                 const double *eroded = frame.node("eroded_depth")->data, *z = frame.node("elevation")->data;
-                const DepthAveraged rock([&] { Scene s = scene; s.erodible.reset(); return s; }());
+                const DepthAveraged rock([&] {
+                    Scene s = scene;
+                    s.erodible.reset();
+                    return s;
+                }());
                 const Flow& before = rock.flow();
                 double worst = 0.0, off = 0.0;
                 for (Index j = 0; j < frame.grid.ny; ++j)
@@ -113,7 +119,8 @@ TEST_CASE("Flow, bed and what left have the mass of the start, and no node lies 
 
 TEST_CASE("A bed without anything loose changes no bit of a run", "[erosion]") {
     DepthAveraged rock(slide([](Scene& s) { s.erodible.reset(); }));
-    DepthAveraged bare(slide([](Scene& s) { std::fill(s.erodible->depth.values.begin(), s.erodible->depth.values.end(), 0.0); }));
+    DepthAveraged bare(
+        slide([](Scene& s) { std::fill(s.erodible->depth.values.begin(), s.erodible->depth.values.end(), 0.0); }));
     run(rock, 6.0);
     run(bare, 6.0);
     auto of_bare = bits(bare);
@@ -125,7 +132,8 @@ TEST_CASE("A bed without anything loose changes no bit of a run", "[erosion]") {
     CHECK(bare.status().potential == rock.status().potential);
 }
 
-TEST_CASE("An eroding run has the same bits on any number of threads and after it is taken up again", "[erosion][threads]") {
+TEST_CASE("An eroding run has the same bits on any number of threads and after it is taken up again",
+          "[erosion][threads]") {
     const int before = omp_get_max_threads();
     const Scene scene = slide();
     omp_set_num_threads(1);
@@ -169,10 +177,12 @@ TEST_CASE("A hungry flow takes all of a thin layer where it passes, and no more"
 }
 
 TEST_CASE("The surface of flow and bed does not move when mass changes sides", "[erosion]") {
-    Scene scene = scene_on(60, 50, 1.0, [](double x, double y) { return 0.3 * std::sin(0.2 * x) * std::cos(0.15 * y); });
+    Scene scene =
+        scene_on(60, 50, 1.0, [](double x, double y) { return 0.3 * std::sin(0.2 * x) * std::cos(0.15 * y); });
     scene.bed_law = bed::Coulomb{0.5};
-    verify::place(scene, [](double x, double y) { return std::hypot(x - 30, y - 25) < 12 ? 2.0 : 0.0; },
-                  verify::Placement::full_jitter, 2);
+    verify::place(
+        scene, [](double x, double y) { return std::hypot(x - 30, y - 25) < 12 ? 2.0 : 0.0; },
+        verify::Placement::full_jitter, 2);
     scene.erodible = loose(scene, erosion::Growth{0.05}, [](double, double) { return 1.0; });
     scene.erodible->density = scene.density;
     scene.erodible->momentum = 1.0;  // points are not set back: what is looked at is the exchange alone
@@ -210,10 +220,12 @@ TEST_CASE("The surface of flow and bed does not move when mass changes sides", "
 TEST_CASE("A flow down the middle of a valley takes as much on both sides", "[erosion]") {
     Scene scene = slide([](Scene& s) {
         s.particles = {};
-        verify::place(s, [](double x, double y) { return std::hypot(x - 35, y - 59) < 20 ? 3.0 : 0.0; },
-                      verify::Placement::aligned, 2);
+        verify::place(
+            s, [](double x, double y) { return std::hypot(x - 35, y - 59) < 20 ? 3.0 : 0.0; },
+            verify::Placement::aligned, 2);
     });
-    scene.erodible = loose(scene, erosion::Growth{0.01}, [](double x, double) { return x > 50 && x < 130 ? 0.3 : 0.0; });
+    scene.erodible =
+        loose(scene, erosion::Growth{0.01}, [](double x, double) { return x > 50 && x < 130 ? 0.3 : 0.0; });
     DepthAveraged simulation(scene);
     run(simulation, 6.0);
     const Frame frame = simulation.frame();
@@ -232,8 +244,9 @@ TEST_CASE("A flow down the middle of a valley takes as much on both sides", "[er
 TEST_CASE("What rests on loose ground sleeps and takes nothing", "[erosion][sleep]") {
     Scene scene = scene_on(80, 60, 1.0, [](double x, double) { return 0.05 * x; });
     scene.bed_law = bed::Coulomb{0.6};
-    verify::place(scene, [](double x, double y) { return std::max(0.0, 2.0 - 0.1 * std::hypot(x - 40, y - 30)); },
-                  verify::Placement::r2, 2);
+    verify::place(
+        scene, [](double x, double y) { return std::max(0.0, 2.0 - 0.1 * std::hypot(x - 40, y - 30)); },
+        verify::Placement::r2, 2);
     scene.erodible = loose(scene, erosion::Shear{0.1, 0.0, 1.0}, [](double, double) { return 1.0; });
     DepthAveraged simulation(scene);
     for (int step = 0; step < 12; ++step) simulation.advance(100.0);

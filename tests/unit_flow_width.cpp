@@ -24,9 +24,8 @@ Raster flow_of(const Inside& inside) {
 /// 1000 m long, turned from the x axis.
 Raster channel(double width, double degrees) {
     const double turn = degrees * 0.017453292519943295, c = std::cos(turn), s = std::sin(turn);
-    return flow_of([=](double x, double y) {
-        return std::abs(c * y - s * x) < 0.5 * width && std::abs(c * x + s * y) < 500.0;
-    });
+    return flow_of(
+        [=](double x, double y) { return std::abs(c * y - s * x) < 0.5 * width && std::abs(c * x + s * y) < 500.0; });
 }
 
 /// Half a cell: where an edge lies between nodes, the raster does not know.
@@ -60,9 +59,8 @@ TEST_CASE("A bent channel has its width, and so has a disc", "[width]") {
 
 TEST_CASE("The median goes by the flow's length, not by its area", "[width]") {
     // 300 m of a fan that has twice the area of the 700 m long channel before it.
-    const Raster flow = flow_of([](double x, double y) {
-        return std::abs(y) < (x < 200.0 ? 20.0 : 100.0) && x > -500.0 && x < 500.0;
-    });
+    const Raster flow =
+        flow_of([](double x, double y) { return std::abs(y) < (x < 200.0 ? 20.0 : 100.0) && x > -500.0 && x < 500.0; });
     CHECK(flow_width(flow, 0.1) == to_half_a_cell(40.0));
 }
 
@@ -114,6 +112,7 @@ TEST_CASE("Fewer than six cells across are a remark with the cell that would do"
     CHECK(width_remark(Raster::nodata, 10.0).empty());
     CHECK(width_remark(40.0, 10.0) ==
           "the flow is 4 cells wide (40 m, median over its length); expected 6 or more, or its path and runout hang on "
-          "the grid, and by a few cells on particles.per_cell (frana converge --per-cell 4,9,16 measures it); grid.cell = 5 "
+          "the grid, and by a few cells on particles.per_cell (frana converge --per-cell 4,9,16 measures it); "
+          "grid.cell = 5 "
           "would do");
 }

@@ -80,7 +80,8 @@ TEST_CASE("A bend turns what is higher than half its radius, and adds nothing to
 
 TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothed curvature", "[grid_update]") {
     // A ramp of 1 m/m over three cells of 2 m in a plain; smoothed over 40 m it is next to nothing.
-    Scene scene = verify::scene_on(41, 31, 2.0, [](double x, double) { return std::min(std::max(x - 38.0, 0.0), 6.0); });
+    Scene scene =
+        verify::scene_on(41, 31, 2.0, [](double x, double) { return std::min(std::max(x - 38.0, 0.0), 6.0); });
     scene.scheme.curvature_length = 40.0;
     const Flow flow(scene);
     const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));

@@ -170,7 +170,8 @@ TEST_CASE("A part that grows onto holes of the terrain holds all of it, and its 
     CHECK(part.held() == NodeBox::all(kLarge));
     CHECK(holes_of(*part.ground()).nodes == whole.holes.nodes);
     bool told = false;
-    for (const std::string& remark : part.remarks()) told = told || remark.find("hole(s) inside the terrain") != std::string::npos;
+    for (const std::string& remark : part.remarks())
+        told = told || remark.find("hole(s) inside the terrain") != std::string::npos;
     CHECK(told);
     {
         MemoryArchive archive;

@@ -65,7 +65,8 @@ TEST_CASE("Empirical peaks and their triangles", "[inflow]") {
     const std::vector<std::vector<double>> known = {{29.5, 178, 1072}, {4.40, 27.2, 168}, {31.6, 215, 1462}};
     for (std::size_t n = 0; n < 3; ++n)
         for (std::size_t k = 0; k < 3; ++k)
-            CHECK(peak_discharge(peak_formulas()[n], std::pow(10.0, 3.0 + double(k))) == Approx(known[n][k]).epsilon(3e-3));
+            CHECK(peak_discharge(peak_formulas()[n], std::pow(10.0, 3.0 + double(k))) ==
+                  Approx(known[n][k]).epsilon(3e-3));
     const Hydrograph t = triangle(25000.0, 100.0);
     CHECK(t.time == std::vector<double>{0, 50, 500});
     CHECK(t.discharge == std::vector<double>{0, 100, 0});
@@ -117,7 +118,8 @@ TEST_CASE("Rows bring a table's volume and momentum, each over a way of one spac
 }
 
 TEST_CASE("Nothing comes between two floods of a table", "[inflow]") {
-    const std::vector<InflowRow> rows = rows_of(inflow_of({0, 10, 11, 99, 100, 110}, {8, 8, 0, 0, 8, 8}, {3, 3, 3, 3, 3, 3}));
+    const std::vector<InflowRow> rows =
+        rows_of(inflow_of({0, 10, 11, 99, 100, 110}, {8, 8, 0, 0, 8, 8}, {3, 3, 3, 3, 3, 3}));
     for (const InflowRow& row : rows) CHECK((row.mean_time < 11.0 || row.mean_time > 99.0));
     double volume = 0.0;
     for (const InflowRow& row : rows) volume += row.volume;

@@ -16,7 +16,8 @@ namespace {
 const std::string kLine = "line = [[1100, 2050], [1100, 2080]]\n";
 
 std::string with(const std::string& inflow, const std::string& bed = "law = \"voellmy\"\nmu = 0.1\nxi = 400\n") {
-    return "[terrain]\ndem = \"dem.tif\"\n[material.bed]\n" + bed + "[time]\nend = 20\n[[inflow]]\nname = \"torrent\"\n" + inflow;
+    return "[terrain]\ndem = \"dem.tif\"\n[material.bed]\n" + bed +
+           "[time]\nend = 20\n[[inflow]]\nname = \"torrent\"\n" + inflow;
 }
 
 Scene built(const std::string& text, const std::filesystem::path& folder = "slide") {
@@ -64,7 +65,8 @@ TEST_CASE("An inflow without a release is a scene", "[scene][inflow]") {
 TEST_CASE("The side and the speed of an inflow may be given", "[scene][inflow]") {
     const FreshFolder folder;
     std::ofstream(folder.path() / "q.csv") << "t_min, discharge [m3/s], velocity [m/s]\n0, 2, 3\n1, 4, 5\n";
-    const Scene up = built(with(kLine + "table = \"q.csv\"\nvelocity = \"column\"\ntowards = [1190, 2060]\n"), folder.path());
+    const Scene up =
+        built(with(kLine + "table = \"q.csv\"\nvelocity = \"column\"\ntowards = [1190, 2060]\n"), folder.path());
     CHECK(up.inflows[0].to_right);
     CHECK(up.inflows[0].slope == Approx(-0.5));
     CHECK(up.inflows[0].time == std::vector<double>{0.0, 60.0});
@@ -76,13 +78,16 @@ TEST_CASE("The side and the speed of an inflow may be given", "[scene][inflow]")
 TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
     const std::string volume = "volume = 1000\n";
     CHECK(says(problem_of(with(kLine)), "table", "not given, and no volume either"));
-    CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\npeak = \"rickenmann\"\n")), "peak", "found together with table"));
+    CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\npeak = \"rickenmann\"\n")), "peak",
+               "found together with table"));
     CHECK(says(problem_of(with(kLine + volume + "area = 3\n")), "area", "found an unknown key"));
     CHECK(says(problem_of(with(kLine + volume + "velocity = 0\n")), "velocity", "found 0"));
     CHECK(says(problem_of(with("line = [[1100, 2050], [1100, 2053]]\n" + volume)), "line", "found a line of 3 m"));
-    CHECK(says(problem_of(with("line = [[900, 2050], [900, 2080]]\n" + volume)), "line", "found 900, 2050 outside of the terrain"));
+    CHECK(says(problem_of(with("line = [[900, 2050], [900, 2080]]\n" + volume)), "line",
+               "found 900, 2050 outside of the terrain"));
     CHECK(says(problem_of(with("line = [[1010, 2050], [1010, 2080]]\n" + volume)), "line", "found 1010, 2050 outside"));
-    CHECK(says(problem_of(with("line = [[1050, 2060], [1100, 2060]]\n" + volume)), "line", "found flat ground under the line"));
+    CHECK(says(problem_of(with("line = [[1050, 2060], [1100, 2060]]\n" + volume)), "line",
+               "found flat ground under the line"));
     CHECK(says(problem_of(with(kLine + volume + "towards = [1100, 2200]\n")), "towards", "found towards on the line"));
     CHECK(says(problem_of(with(kLine + volume + "towards = [1190, 2060]\n")), "velocity",
                "found velocity = \"normal\" on ground that rises by 26.6 degrees"));
@@ -98,9 +103,11 @@ TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
 
 TEST_CASE("A line across a ridge has no side to flow to", "[scene][inflow]") {
     FakeGis gis = slope_gis();
-    gis.rasters["dem.tif"] = sampled({40, 30, 1002.5, 2002.5, 5.0}, [](double x, double) { return 200.0 - std::abs(x - 1101.0); });
+    gis.rasters["dem.tif"] =
+        sampled({40, 30, 1002.5, 2002.5, 5.0}, [](double x, double) { return 200.0 - std::abs(x - 1101.0); });
     const auto problem = only_problem([&] {
-        build_scene(CaseFile::parse(with("line = [[1080, 2050], [1125, 2052]]\nvolume = 100\n"), "slide/case.toml"), gis);
+        build_scene(CaseFile::parse(with("line = [[1080, 2050], [1125, 2052]]\nvolume = 100\n"), "slide/case.toml"),
+                    gis);
     });
     CHECK(says(problem, "line", "found "));
 }

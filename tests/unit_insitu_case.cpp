@@ -11,7 +11,8 @@ namespace {
 
 std::string with(const std::string& rest) {
     return "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = "
-           "20\n" + rest;
+           "20\n" +
+           rest;
 }
 
 CaseFile read(const std::string& rest, const std::vector<std::string>& sets = {}) {

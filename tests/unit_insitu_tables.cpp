@@ -99,8 +99,7 @@ TEST_CASE("A work that fails is counted with its first reason, and the run goes 
     std::vector<double> seen;
     FakeSimulation simulation;
     InsituTally tally{"diary", "test", 0, 0, ""};
-    const RunSummary summary =
-        run_with(simulation, {1.0, 0.25, false}, {}, std::make_unique<Diary>(seen, 2), tally);
+    const RunSummary summary = run_with(simulation, {1.0, 0.25, false}, {}, std::make_unique<Diary>(seen, 2), tally);
     CHECK(summary.reason == "end");
     CHECK(summary.last.time == 1.0);
     CHECK(tally.failed == 2);
@@ -158,17 +157,16 @@ TEST_CASE("A cut has the values of the grid between its nodes, and empty cells w
     work->sample(made.frame, 0);
     work->sample(made.frame, 1);
     const Table table = read_table(csv);
-    CHECK(table.columns ==
-          std::vector<std::string>{"t", "distance", "x", "y", "bed", "depth", "velocity_x"});
+    CHECK(table.columns == std::vector<std::string>{"t", "distance", "x", "y", "bed", "depth", "velocity_x"});
     CHECK(table.units[5] == "m");
     CHECK(table.units[6] == "m/s");
     REQUIRE(table.rows() == 2 * 11);  // stations 1 m apart on 10 m, both ends
     CHECK(table.column("t")[0] == 2.5);
     CHECK(table.column("distance")[10] == 10.0);
-    CHECK(table.column("depth")[2] == 0.5);    // at node 1
-    CHECK(table.column("depth")[3] == 0.75);   // between nodes 1 and 2
+    CHECK(table.column("depth")[2] == 0.5);   // at node 1
+    CHECK(table.column("depth")[3] == 0.75);  // between nodes 1 and 2
     CHECK(table.column("bed")[3] == 15.0);
-    CHECK(table.column("depth")[8] == 3.5);    // node 7
+    CHECK(table.column("depth")[8] == 3.5);       // node 7
     CHECK(table.column("velocity_x")[7] == 5.0);  // between nodes 3 and 7
     CHECK(std::isnan(table.column("bed")[9]));
     CHECK(std::isnan(table.column("bed")[10]));

@@ -21,7 +21,8 @@ Scene stream(double shear, double drag) {
 
 }  // namespace
 
-TEST_CASE("The lateral drag at a node is that of its faces, and takes momentum from one side as it gives to the other", "[lateral]") {
+TEST_CASE("The lateral drag at a node is that of its faces, and takes momentum from one side as it gives to the other",
+          "[lateral]") {
     const double drag = 0.7, dt = 0.05, cell = 2.0;
     Scene scene = scene_on(41, 41, cell, [](double, double) { return 0.0; });
     scene.scheme.lateral_drag = drag;
@@ -44,7 +45,8 @@ TEST_CASE("The lateral drag at a node is that of its faces, and takes momentum f
     // Beside the ridge both neighbours are faster by 3 m/s along x; those before and behind differ by 0.5 m/s along y.
     const auto part = [&](Index n, double size, double component) {
         const double f = drag * size * dt / (2.0 * cell);
-        return 2.0 * flow.nodes.mass[n] / (flow.nodes.mass[n] + flow.nodes.mass[k]) * f / (1.0 + 8.0 * f) * component / dt;
+        return 2.0 * flow.nodes.mass[n] / (flow.nodes.mass[n] + flow.nodes.mass[k]) * f / (1.0 + 8.0 * f) * component /
+               dt;
     };
     CHECK(flow.nodes.lateral[k].x == Approx(part(k - up, 3.0, 3.0) + part(k + up, 3.0, 3.0)).epsilon(1e-13));
     CHECK(flow.nodes.lateral[k].y == Approx(part(k + 1, 0.5, 0.5) + part(k - 1, 0.5, -0.5)).epsilon(1e-13));
@@ -52,7 +54,8 @@ TEST_CASE("The lateral drag at a node is that of its faces, and takes momentum f
     each([&](Index n, double, double) {
         const Pair a = flow.nodes.lateral[n], v = flow.nodes.before[n];
         const double m = flow.nodes.mass[n];
-        sum_x += m * a.x, sum_y += m * a.y, size += m * (std::abs(a.x) + std::abs(a.y)), work += m * (a.x * v.x + a.y * v.y);
+        sum_x += m * a.x, sum_y += m * a.y, size += m * (std::abs(a.x) + std::abs(a.y)),
+            work += m * (a.x * v.x + a.y * v.y);
     });
     CHECK(std::abs(sum_x) < 1e-14 * size);
     CHECK(std::abs(sum_y) < 1e-14 * size);
@@ -75,7 +78,9 @@ TEST_CASE("Lateral drag of any strength slows a shear stably and records the ene
         CHECK(b.mass_left == 0.0);
         // What is gone from motion and height has been recorded; the scheme's own share is that of the run without
         // drag.
-        const auto open = [&](const Status& s) { return s.kinetic + s.potential + s.dissipated - start.kinetic - start.potential; };
+        const auto open = [&](const Status& s) {
+            return s.kinetic + s.potential + s.dissipated - start.kinetic - start.potential;
+        };
         CHECK(open(b) <= std::max(open(a), 0.0) + 0.01 * b.dissipated);
     }
 }

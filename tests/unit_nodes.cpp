@@ -92,9 +92,8 @@ TEST_CASE("Peaks hold the speed and the pressure along the bed, and when the flo
 
 TEST_CASE("Speeds are along the bed smoothed to the curvature's length, with and without curvature", "[nodes]") {
     const double turn = 0.9, cell = 5.0, length = 10.0, fall = 0.4, high = 2.0;  // a wave of 7 cells on a slope
-    Scene scene = scene_on(90, 40, cell, [&](double x, double) {
-        return fall * x + high * std::sin(turn * (x / cell - 45.0));
-    });
+    Scene scene =
+        scene_on(90, 40, cell, [&](double x, double) { return fall * x + high * std::sin(turn * (x / cell - 45.0)); });
     scene.scheme.curvature_length = length;
     scene.curvature = GENERATE(Curvature::inertia, Curvature::none);
     Flow flow(scene);
@@ -109,7 +108,8 @@ TEST_CASE("Speeds are along the bed smoothed to the curvature's length, with and
     const double fastest = update_peaks(flow, true, scene.curvature != Curvature::none, 1.0, 0.1, peaks);
     const double average = (230.0 + 2.0 * 76.0 * std::cos(turn) + 2.0 * std::cos(2.0 * turn)) / 384.0;
     const double kept = std::pow(0.5 + 0.5 * std::cos(turn), 2.0 * length * length / (cell * cell));
-    const double difference = (16.0 * std::sin(turn) - 2.0 * std::sin(2.0 * turn)) / (12.0 * cell);  // of a sine, 4th order
+    const double difference =
+        (16.0 * std::sin(turn) - 2.0 * std::sin(2.0 * turn)) / (12.0 * cell);  // of a sine, 4th order
     const double rise = 20.0 * (fall + high * average * kept * difference);
     CHECK(peaks.speed[k] == Approx(std::sqrt(425.0 + rise * rise)).epsilon(1e-12));
     CHECK(fastest == peaks.speed[k]);

@@ -52,9 +52,7 @@ Outcome run_fake(const FakeScript& script, const RunPlan& plan, const Interrupt&
     return outcome;
 }
 
-Outcome run_fake(const FakeScript& script, const RunPlan& plan) {
-    return run_fake(script, plan, Interrupt());
-}
+Outcome run_fake(const FakeScript& script, const RunPlan& plan) { return run_fake(script, plan, Interrupt()); }
 
 }  // namespace
 
@@ -62,8 +60,7 @@ TEST_CASE("frames fall on exact multiples of the output interval, and on the end
     const Outcome outcome = run_fake({}, {1.0, 0.1, false});
     REQUIRE(outcome.notes.frame_times.size() == 11);
     for (std::size_t k = 0; k < 10; ++k) {
-        CHECK(outcome.notes.frame_times[k] ==
-              static_cast<double>(k) * 0.1);  // the same bits, not a running sum
+        CHECK(outcome.notes.frame_times[k] == static_cast<double>(k) * 0.1);  // the same bits, not a running sum
         CHECK(outcome.notes.frame_numbers[k] == static_cast<Index>(k));
     }
     CHECK(outcome.notes.frame_times.back() == 1.0);
@@ -72,8 +69,7 @@ TEST_CASE("frames fall on exact multiples of the output interval, and on the end
     CHECK(outcome.summary.frames == 11);
 }
 
-TEST_CASE(
-    "an end that is no multiple of the interval gets a frame of its own, a multiple gets no second one") {
+TEST_CASE("an end that is no multiple of the interval gets a frame of its own, a multiple gets no second one") {
     CHECK(run_fake({}, {0.25, 0.1, false}).notes.frame_times == std::vector<double>{0.0, 0.1, 0.2, 0.25});
     // k * 0.1 may fall a rounding error beside k / 10.0: never two frames there
     for (int k = 1; k <= 60; ++k) {
@@ -87,8 +83,7 @@ TEST_CASE("observers see the start and every step once, in order") {
     const Outcome outcome = run_fake({0.03, 1e9, 1e9, 1e9, false, {}}, {0.1, 0.05, false});
     const std::vector<double> expected = {0.0, 0.03, 0.05, 0.08, 0.1};
     REQUIRE(outcome.notes.step_times.size() == expected.size());
-    for (std::size_t k = 0; k < expected.size(); ++k)
-        CHECK(outcome.notes.step_times[k] == Approx(expected[k]));
+    for (std::size_t k = 0; k < expected.size(); ++k) CHECK(outcome.notes.step_times[k] == Approx(expected[k]));
     CHECK(outcome.summary.steps == 4);
     CHECK(outcome.summary.particle_steps == 4.0 * 25.0);
 }

@@ -27,7 +27,8 @@ std::vector<Cells> table(const std::string& head) {
             Cells cells;
             for (std::string cell; std::getline(row, cell, '|');) {
                 const std::size_t first = cell.find_first_not_of(' ');
-                cells.push_back(first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') + 1 - first));
+                cells.push_back(
+                    first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') + 1 - first));
             }
             rows.push_back(cells);
         }

@@ -42,12 +42,11 @@ TEST_CASE("CSV gives back every particle bit by bit", "[particles]") {
     for (; std::getline(text, line); ++p) {
         std::vector<double> values;
         std::istringstream cells(line);
-        for (std::string cell; std::getline(cells, cell, ',');)
-            values.push_back(std::strtod(cell.c_str(), nullptr));
+        for (std::string cell; std::getline(cells, cell, ',');) values.push_back(std::strtod(cell.c_str(), nullptr));
         REQUIRE(p < made.seeds.x.size());
         const Seeds& s = made.seeds;
-        CHECK(values == std::vector<double>{static_cast<double>(p), s.x[p], s.y[p], 100.0, s.depth[p],
-                                            s.size[p], 1.0 / 3.0, -0.25, s.volume[p], 1300.0 * s.volume[p]});
+        CHECK(values == std::vector<double>{static_cast<double>(p), s.x[p], s.y[p], 100.0, s.depth[p], s.size[p],
+                                            1.0 / 3.0, -0.25, s.volume[p], 1300.0 * s.volume[p]});
     }
     CHECK(p == made.seeds.x.size());
 }

@@ -17,9 +17,7 @@ void check_volume(const Made& made, double exact) {
     for (const auto& report : made.reports) CHECK(report.relative_error <= kVolumeError);
 }
 
-Polygon square_with_hole() {
-    return {{rotated_square({50, 40}, 40.0, 0.3), rotated_square({52, 38}, 11.0, 1.0)}};
-}
+Polygon square_with_hole() { return {{rotated_square({50, 40}, 40.0, 0.3), rotated_square({52, 38}, 11.0, 1.0)}}; }
 
 }  // namespace
 
@@ -42,8 +40,7 @@ TEST_CASE("Four per cell is the 2 x 2 lattice whose first point stands a quarter
     CHECK(made.reports[0].area == 1500.0);
 }
 
-TEST_CASE("Particles hold the exact volume of outlines with holes, stars, squares and several parts",
-          "[particles]") {
+TEST_CASE("Particles hold the exact volume of outlines with holes, stars, squares and several parts", "[particles]") {
     const Raster bed = flat_bed(101, 81, 1.0);
     const std::vector<std::vector<Polygon>> outlines{
         {square_with_hole()},
@@ -58,13 +55,12 @@ TEST_CASE("Particles hold the exact volume of outlines with holes, stars, square
         }
 }
 
-TEST_CASE("Particles hold the exact volume of depth rasters whose pixels do not fit the lattice",
-          "[particles]") {
+TEST_CASE("Particles hold the exact volume of depth rasters whose pixels do not fit the lattice", "[particles]") {
     const Raster bed = flat_bed(61, 51, 2.0);
     for (const double pixel : {0.37, 1.1, 3.3, 7.9}) {
         Release release = release_of({square_with_hole()}, 0.0);
-        release.depth_field = bumpy_depth(
-            {static_cast<Index>(80 / pixel), static_cast<Index>(75 / pixel), 17.123, 9.87, pixel});
+        release.depth_field =
+            bumpy_depth({static_cast<Index>(80 / pixel), static_cast<Index>(75 / pixel), 17.123, 9.87, pixel});
         for (const double number : {1.0, 4.0, 7.0})
             check_volume(make({release}, bed, per_cell(number)), volume_in_box(release, 0, 0, 120, 100));
         release.outline.reset();
@@ -88,8 +84,7 @@ TEST_CASE("Each particle holds the volume over its own patch", "[particles]") {
             ++shared;
             CHECK(std::abs(made.seeds.volume[p] - exact) < 8e-3 * spacing * spacing * 2.5);
         }
-        if (area > 0.999 * spacing * spacing)
-            CHECK(made.seeds.depth[p] == Approx(exact / area).epsilon(1e-2));
+        if (area > 0.999 * spacing * spacing) CHECK(made.seeds.depth[p] == Approx(exact / area).epsilon(1e-2));
         CHECK(made.seeds.size[p] == Approx(spacing).epsilon(1e-15));
     }
     CHECK(shared < made.seeds.count() / 100);
@@ -108,9 +103,8 @@ TEST_CASE("The depth of a patch is the mean of samples taken on it", "[particles
         double sum = 0.0, covered = 0.0;
         for (int k = 0; k < 4000; ++k) {
             const double u = x + within(random), v = y + within(random);
-            const double depth =
-                field.at(static_cast<Index>(std::floor((u - field.geometry.x0) / 1.7 + 0.5)),
-                         static_cast<Index>(std::floor((v - field.geometry.y0) / 1.7 + 0.5)));
+            const double depth = field.at(static_cast<Index>(std::floor((u - field.geometry.x0) / 1.7 + 0.5)),
+                                          static_cast<Index>(std::floor((v - field.geometry.y0) / 1.7 + 0.5)));
             if (depth > 0.0) sum += depth, covered += 1.0;
         }
         // Depth scatters by 0.6 m within a patch; five standard errors of 4000 samples.
@@ -131,15 +125,13 @@ TEST_CASE("A count is met within one per cent on a free lattice", "[particles]")
     }
 }
 
-TEST_CASE("The image of Fois et al. (2025), section 4.1, is met for every number of the paper",
-          "[particles]") {
+TEST_CASE("The image of Fois et al. (2025), section 4.1, is met for every number of the paper", "[particles]") {
     Release release;
     release.depth_field = Raster::filled({100, 100, 0.5, 0.5, 1.0}, 0.0);
     double exact = 0.0;
     for (Index j = 0; j < 100; ++j)
         for (Index i = 0; i < 100; ++i) {
-            const double r2 =
-                std::pow(static_cast<double>(i) - 49.5, 2) + std::pow(static_cast<double>(j) - 49.5, 2);
+            const double r2 = std::pow(static_cast<double>(i) - 49.5, 2) + std::pow(static_cast<double>(j) - 49.5, 2);
             exact += release.depth_field->at(i, j) = 1.0 + 2.0 * std::exp(-r2 / 150.0);
         }
     for (const Index count : {10000, 100000, 1000000}) {
@@ -223,8 +215,8 @@ TEST_CASE("Two releases keep their own records and velocities", "[particles][nan
 }
 
 TEST_CASE("Overlapping parts of an outline count once and are said", "[particles]") {
-    const Release release = release_of(
-        {{{{{10, 10}, {30, 10}, {30, 30}, {10, 30}}}}, {{{{20, 10}, {40, 10}, {40, 30}, {20, 30}}}}}, 1.0);
+    const Release release =
+        release_of({{{{{10, 10}, {30, 10}, {30, 30}, {10, 30}}}}, {{{{20, 10}, {40, 10}, {40, 30}, {20, 30}}}}}, 1.0);
     const Made made = make({release}, flat_bed(51, 51, 1.0));
     CHECK(made.said("overlap on 200 m2"));
     CHECK(made.volume() == Approx(600.0).epsilon(1e-13));

@@ -25,8 +25,7 @@ bool within(const Ring& ring, double x, double y) {
     bool inside = false;
     for (std::size_t k = 0; k < ring.size(); ++k) {
         const Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
-        if ((a.y() > y) != (b.y() > y) && x < a.x() + (y - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
-            inside = !inside;
+        if ((a.y() > y) != (b.y() > y) && x < a.x() + (y - a.y()) * (b.x() - a.x()) / (b.y() - a.y())) inside = !inside;
     }
     return inside;
 }

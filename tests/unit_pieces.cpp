@@ -2,8 +2,8 @@
 #include <omp.h>
 
 #include "catch.h"
-#include "solid3d/pieces.h"
 #include "solid3d/mpm3d.h"
+#include "solid3d/pieces.h"
 #include "solid3d/split_points.h"
 #include "solid_maker.h"
 

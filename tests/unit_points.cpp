@@ -27,8 +27,8 @@ struct Sums {
         }
     }
     void check_equal(const Sums& o) const {  // round-off of sums over some tens of points
-        for (const auto& [a, b] : {std::pair{mass, o.mass}, {px, o.px}, {py, o.py}, {x, o.x}, {y, o.y}, {xx, o.xx},
-                                   {xy, o.xy}, {yy, o.yy}})
+        for (const auto& [a, b] :
+             {std::pair{mass, o.mass}, {px, o.px}, {py, o.py}, {x, o.x}, {y, o.y}, {xx, o.xx}, {xy, o.xy}, {yy, o.yy}})
             CHECK(std::abs(a - b) <= 1e-12 * (1.0 + std::abs(a)));
     }
 };
@@ -239,9 +239,12 @@ TEST_CASE("A point that splits is not drawn in first, one that may not is", "[po
 }
 
 TEST_CASE("Points in a row split and are straightened as each alone", "[points]") {
-    struct Edge { double r1x, r1y, r2x, r2y; };
-    const std::vector<Edge> odd{{0.9, 0.1, 0.0, 0.4},  {0.4, 0.0, 0.1, 0.9},   {0.0, 0.85, -0.85, 0.0}, {0.7, 0.1, 0.7, 0.2},
-                                {0.1, 0.7, -0.2, 0.7}, {1.3, 0.0, 0.0, 0.05}, {0.05, 0.0, 0.0, 1.3},   {0.5, 0.0, 0.0, 0.5}};
+    struct Edge {
+        double r1x, r1y, r2x, r2y;
+    };
+    const std::vector<Edge> odd{{0.9, 0.1, 0.0, 0.4},  {0.4, 0.0, 0.1, 0.9},  {0.0, 0.85, -0.85, 0.0},
+                                {0.7, 0.1, 0.7, 0.2},  {0.1, 0.7, -0.2, 0.7}, {1.3, 0.0, 0.0, 0.05},
+                                {0.05, 0.0, 0.0, 1.3}, {0.5, 0.0, 0.0, 0.5}};
     const auto put = [](Pool& pool, const Edge& e) {
         pool.add(6.2, 6.3, 2.0, 0.5);
         set_edges(pool.flow.columns, pool.flow.columns.count() - 1, Edges{e.r1x, e.r1y, e.r2x, e.r2y});

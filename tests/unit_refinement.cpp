@@ -89,15 +89,17 @@ TEST_CASE("Enough is the coarsest cell that agrees with the finest, as all betwe
     verdict = judge(runs);
     CHECK(verdict.converged);
     CHECK(verdict.enough == 10.0);
-    CHECK(verdict.sentence == "Converged, and cells of 10 m are enough: between them and 5 m the runout differs by 0 "
-                              "m, the footprints' IoU is 1.000, 0 % of the deposit lies elsewhere, the peak depth "
-                              "differs by 0 % and the peak speed differs by 0 %.");
+    CHECK(verdict.sentence ==
+          "Converged, and cells of 10 m are enough: between them and 5 m the runout differs by 0 "
+          "m, the footprints' IoU is 1.000, 0 % of the deposit lies elsewhere, the peak depth "
+          "differs by 0 % and the peak speed differs by 0 %.");
     runs[0].runout = 500.0, runs[1].iou = 0.89;  // the coarsest agrees by chance
     verdict = judge(runs);
     CHECK_FALSE(verdict.converged);
     CHECK_FALSE(verdict.enough);
-    CHECK(verdict.sentence == "Not converged: between cells of 10 and 5 m the footprints' IoU is 0.890 (expected 0.9 "
-                              "or more); add a finer cell, such as 2.5 m.");
+    CHECK(verdict.sentence ==
+          "Not converged: between cells of 10 and 5 m the footprints' IoU is 0.890 (expected 0.9 "
+          "or more); add a finer cell, such as 2.5 m.");
 }
 
 TEST_CASE("Each part of the rule is asked for", "[refinement]") {
@@ -122,11 +124,13 @@ TEST_CASE("Runs that differ in one key are said to lie apart by as many cells as
     runs[1].runout = 504.0, runs[2].iou = 0.93, runs[0].elsewhere = 0.06;
     CHECK(runout_spread(runs) == exactly(0.8));
     const std::string agree = spread_sentence("particles.per_cell", {4, 9, 16}, runs);
-    CHECK(agree == "With particles.per_cell of 4, 9 and 16 on cells of 5 m the runouts lie 0.8 cells apart; up to 6 % of the "
-                   "deposit lies elsewhere, and the footprints' IoU is 0.930 or more.");
+    CHECK(agree ==
+          "With particles.per_cell of 4, 9 and 16 on cells of 5 m the runouts lie 0.8 cells apart; up to 6 % of the "
+          "deposit lies elsewhere, and the footprints' IoU is 0.930 or more.");
     runs[2].runout = 489.5;
     CHECK(runout_spread(runs) == exactly(2.9));
-    CHECK(spread_sentence("scheme.cfl", {0.1, 0.2, 0.5}, runs).find("2.9 cells apart (expected 1 at most") != std::string::npos);
+    CHECK(spread_sentence("scheme.cfl", {0.1, 0.2, 0.5}, runs).find("2.9 cells apart (expected 1 at most") !=
+          std::string::npos);
     runs[1].runout = std::nan("");
     CHECK(std::isnan(runout_spread(runs)));
 }

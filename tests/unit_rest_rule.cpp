@@ -88,8 +88,10 @@ TEST_CASE("Nothing rests while more than a hundredth of the mass would go a cell
             return t < 100.0 ? share : 0.0;
         };
         const double seen = rest_of(flow);
-        if (share < 0.01) CHECK(seen <= latest_after(40.0));
-        else CHECK((seen >= earliest_after(100.0) && seen <= latest_after(100.0)));
+        if (share < 0.01)
+            CHECK(seen <= latest_after(40.0));
+        else
+            CHECK((seen >= earliest_after(100.0) && seen <= latest_after(100.0)));
     }
 }
 

@@ -70,8 +70,8 @@ TEST_CASE("A polygon of constant depth becomes particles of that volume", "[scen
 }
 
 TEST_CASE("A thickness normal to the slope is longer along gravity", "[scene]") {
-    const BuiltScene result = built(
-        with_release("outline = \"release.geojson\"\ndepth = 2.0\nthickness = \"normal\""), slope_gis());
+    const BuiltScene result =
+        built(with_release("outline = \"release.geojson\"\ndepth = 2.0\nthickness = \"normal\""), slope_gis());
     CHECK(result.releases[0].report.volume == Approx(50 * 30 * 2.0 * std::sqrt(1.25)).epsilon(round_off));
     CHECK(sum(result.scene.particles.volume) == Approx(50 * 30 * 2.0 * std::sqrt(1.25)).epsilon(round_off));
 }
@@ -79,12 +79,12 @@ TEST_CASE("A thickness normal to the slope is longer along gravity", "[scene]") 
 TEST_CASE("A depth raster keeps its own pixels, within an outline or without", "[scene]") {
     FakeGis gis = slope_gis();
     const GridGeometry pixels{6, 4, 1045, 2045, 10};  // covers x 1040..1100, y 2040..2080
-    gis.rasters["depth.tif"] =
-        sampled(pixels, [](double x, double) { return x > 1075 ? 3.0 : Raster::nodata; });
+    gis.rasters["depth.tif"] = sampled(pixels, [](double x, double) { return x > 1075 ? 3.0 : Raster::nodata; });
     CHECK(sum(built(with_release("depth = \"depth.tif\""), gis).scene.particles.volume) ==
           Approx(2 * 40 * 10 * 3.0).epsilon(round_off));  // two columns of pixels begin at x = 1080
-    CHECK(sum(built(with_release("depth = \"depth.tif\"\noutline = \"release.geojson\""), gis)
-                  .scene.particles.volume) == Approx(20 * 30 * 3.0).epsilon(round_off));
+    CHECK(
+        sum(built(with_release("depth = \"depth.tif\"\noutline = \"release.geojson\""), gis).scene.particles.volume) ==
+        Approx(20 * 30 * 3.0).epsilon(round_off));
 }
 
 TEST_CASE("A mask says where, in its own pixels, and a number or raster says how deep", "[scene]") {
@@ -94,15 +94,13 @@ TEST_CASE("A mask says where, in its own pixels, and a number or raster says how
     gis.rasters["depth.tif"] = sampled(grid, [](double x, double) { return x > 1060 ? 4.0 : 2.0; });
     CHECK(sum(built(with_release("mask = \"mask.tif\"\ndepth = 1.5"), gis).scene.particles.volume) ==
           Approx(20 * 20 * 1.5).epsilon(round_off));
-    CHECK(
-        sum(built(with_release("mask = \"mask.tif\"\ndepth = \"depth.tif\""), gis).scene.particles.volume) ==
-        Approx(10 * 20 * (2.0 + 4.0)).epsilon(round_off));
+    CHECK(sum(built(with_release("mask = \"mask.tif\"\ndepth = \"depth.tif\""), gis).scene.particles.volume) ==
+          Approx(10 * 20 * (2.0 + 4.0)).epsilon(round_off));
 }
 
 TEST_CASE("A lake fills the whole window up to its surface", "[scene]") {
     FakeGis gis;
-    gis.rasters["dem.tif"] =
-        sampled({20, 20, 0.5, 0.5, 1.0}, [](double x, double) { return x < 10 ? 8.0 : 12.0; });
+    gis.rasters["dem.tif"] = sampled({20, 20, 0.5, 0.5, 1.0}, [](double x, double) { return x < 10 ? 8.0 : 12.0; });
     const Scene scene = built(with_release("surface = 10.0"), gis).scene;
     // Material lives between the outer nodes; the pixels of the left half hold 2 m.
     CHECK(sum(scene.particles.volume) == Approx(9.5 * 19 * 2.0).epsilon(round_off));
@@ -112,8 +110,7 @@ TEST_CASE("A lake fills the whole window up to its surface", "[scene]") {
 TEST_CASE("A surface raster over an outline gives depth = surface - bed", "[scene]") {
     FakeGis gis = slope_gis();
     gis.rasters["before.tif"] = sampled(grid, [](double x, double y) { return plane(x, y) + 6.0; });
-    const Scene scene =
-        built(with_release("outline = \"release.geojson\"\nsurface = \"before.tif\""), gis).scene;
+    const Scene scene = built(with_release("outline = \"release.geojson\"\nsurface = \"before.tif\""), gis).scene;
     CHECK(sum(scene.particles.volume) == Approx(50 * 30 * 6.0).epsilon(1e-12));
 }
 
@@ -124,8 +121,7 @@ TEST_CASE("A mass that stands in the DEM is cut out of the bed with its whole vo
     CHECK(cut.particles.x == whole.particles.x);
     CHECK(cut.particles.volume == whole.particles.volume);
     double removed = 0.0;
-    for (std::size_t k = 0; k < cut.bed.values.size(); ++k)
-        removed += whole.bed.values[k] - cut.bed.values[k];
+    for (std::size_t k = 0; k < cut.bed.values.size(); ++k) removed += whole.bed.values[k] - cut.bed.values[k];
     // Elevations of some 150 m lose 1e-14 each; 60 pixels of 2 m are removed.
     CHECK(removed * 25.0 == Approx(50 * 30 * 2.0).epsilon(1e-11));
     CHECK(whole.bed.at(12, 12) - cut.bed.at(12, 12) == Approx(2.0).epsilon(1e-12));
@@ -141,11 +137,11 @@ TEST_CASE("Nodata near the material is an error that names the pixel; elsewhere 
     const Scene scene = built(text, gis).scene;
     CHECK(std::isnan(scene.bed.at(0, 1)));
     CHECK(scene.log.front().find("material.bed.law is not given") == 0);
-    CHECK(scene.log[2] == "1 of 1200 nodes lie outside of the terrain, without elevation: an exit, mass that enters is "
-                          "counted as left");
+    CHECK(scene.log[2] ==
+          "1 of 1200 nodes lie outside of the terrain, without elevation: an exit, mass that enters is "
+          "counted as left");
 
-    gis.rasters["dem.tif"].at(12, 18) =
-        Raster::nodata;  // 2 cells north of the edge at y = 2080 (node row 15)
+    gis.rasters["dem.tif"].at(12, 18) = Raster::nodata;  // 2 cells north of the edge at y = 2080 (node row 15)
     CHECK(problems_of(text, gis) ==
           std::vector<std::string>{
               "slide/case.toml:3: release.0: found nodata under or within 3 cells of the material at 1 "
@@ -189,10 +185,8 @@ TEST_CASE("Problems of several files and places are listed together", "[scene]")
     CAPTURE(problems);
     REQUIRE(problems.size() == 5);
     CHECK(problems[0].find("slide/case.toml:3: release.0: found no material") == 0);
-    CHECK(problems[1].find("slide/case.toml:8: release.1.outline: slide/none.geojson: no such polygons") ==
-          0);
-    CHECK(problems[2].find("slide/case.toml:17: survey.footprint: slide/gone.geojson: no such polygons") ==
-          0);
+    CHECK(problems[1].find("slide/case.toml:8: release.1.outline: slide/none.geojson: no such polygons") == 0);
+    CHECK(problems[2].find("slide/case.toml:17: survey.footprint: slide/gone.geojson: no such polygons") == 0);
     CHECK(problems[3].find("slide/case.toml:15: profile.0.line: found no point of it on the terrain") == 0);
     CHECK(problems[4] ==
           "slide/case.toml:12: gauge.0.point: found 0, 0 off the terrain; expected it within x 1000 to 1200, "
@@ -319,8 +313,7 @@ TEST_CASE("resolved.toml gives the same scene as the case it came from", "[scene
     CHECK(a.particles.x == b.particles.x);
     CHECK(a.particles.volume == b.particles.volume);
     CHECK(a.bed_law.index() == b.bed_law.index());
-    CHECK(std::get<bed::Pouliquen>(a.bed_law).grain_diameter ==
-          std::get<bed::Pouliquen>(b.bed_law).grain_diameter);
+    CHECK(std::get<bed::Pouliquen>(a.bed_law).grain_diameter == std::get<bed::Pouliquen>(b.bed_law).grain_diameter);
     CHECK(std::get<bed::Pouliquen>(a.bed_law).i0 == std::get<bed::Pouliquen>(b.bed_law).i0);
     CHECK(a.terrain == b.terrain);
     CHECK(a.curvature == b.curvature);
@@ -365,8 +358,7 @@ TEST_CASE("An outline's layer is named beside it or with it, and its file is loo
     for (const char* keys : {"outline = \"outlines.gpkg\"\nlayer = \"scar\"\ndepth = 2.0",
                              "outline = \"outlines.gpkg|layername=scar\"\ndepth = 2.0"})
         CHECK(sum(built(with_release(keys), gis).scene.particles.volume) == Approx(50 * 30 * 2.0).epsilon(round_off));
-    const auto twice =
-        problems_of(with_release("outline = \"a.gpkg|layername=b\"\nlayer = \"c\"\ndepth = 2.0"), gis);
+    const auto twice = problems_of(with_release("outline = \"a.gpkg|layername=b\"\nlayer = \"c\"\ndepth = 2.0"), gis);
     REQUIRE(twice.size() == 1);
     CHECK(twice[0].find("release.0.layer: found, but outline names a layer as well") != std::string::npos);
     REQUIRE(problems_of(with_release("layer = \"c\"\ndepth = 2.0"), gis).size() == 1);
@@ -455,7 +447,8 @@ TEST_CASE("Each polygon of a barrier's outline can be its own barrier", "[scene]
     const auto barriers = [&](const std::string& keys) {
         return built(with_release("outline = \"release.geojson\"\ndepth = 2.0",
                                   "[[barrier]]\noutline = \"dams.gpkg\"\nheight = 4\n" + keys),
-                     gis).scene.barriers;
+                     gis)
+            .scene.barriers;
     };
     REQUIRE(barriers("").size() == 1);
     CHECK(barriers("")[0].outline.parts.size() == 2);

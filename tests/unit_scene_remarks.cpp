@@ -137,17 +137,21 @@ TEST_CASE("Terrain that is as steep or as high as heights in feet is remarked up
           std::string::npos);
 }
 
-TEST_CASE("Holes inside the terrain are remarked upon, as walls or as open, with their number", "[scene][remarks][holes]") {
+TEST_CASE("Holes inside the terrain are remarked upon, as walls or as open, with their number",
+          "[scene][remarks][holes]") {
     FakeGis gis = slope(0.5);
     for (const auto& [i, j] : {std::pair<Index, Index>{4, 4}, {4, 5}, {33, 20}, {0, 0}})
         gis.rasters["dem.tif"].at(i, j) = Raster::nodata;
     const std::string plain = case_of(coulomb + "bed.mu = 0.4"), open = plain + "[boundary]\nholes = \"open\"\n";
     const std::string walls = remark(plain, gis, "inside the terrain, the largest");
-    CHECK(walls.find("terrain.dem: found 3 nodes without elevation in 2 hole(s) inside the terrain, the largest of 2 at x 1022.5, "
+    CHECK(walls.find("terrain.dem: found 3 nodes without elevation in 2 hole(s) inside the terrain, the largest of 2 "
+                     "at x 1022.5, "
                      "y 2022.5; they are walls") != std::string::npos);
     CHECK(remark(open, gis, "inside the terrain, the largest").find("mass leaves there") != std::string::npos);
     CHECK(remark(plain, gis, "outside of the terrain").find("1 of 1200 nodes") == 0);
-    const auto built = [&](const std::string& text) { return build_scene(CaseFile::parse(text, "slide/case.toml"), gis); };
+    const auto built = [&](const std::string& text) {
+        return build_scene(CaseFile::parse(text, "slide/case.toml"), gis);
+    };
     CHECK(built(plain).hole_top == Approx(2 * 5.0 + 2.0));  // two cells and the release's depth
     CHECK_FALSE(built(open).hole_top.has_value());
     CHECK(built(open).holes.nodes == built(plain).holes.nodes);

@@ -20,17 +20,22 @@ Scene slide_into_deposit() {
     });
     scene.density = 1600.0;
     scene.bed_law = bed::Voellmy{0.45, 400.0};
-    verify::fill(scene, [](double x, double y) {
-        if (x > 30 && x < 48 && y > 20 && y < 60) return 2.0;
-        return x > 66 && x < 215 && y > 12 && y < 138 ? 1.0 : 0.0;
-    }, {2});
+    verify::fill(scene,
+                 [](double x, double y) {
+                     if (x > 30 && x < 48 && y > 20 && y < 60) return 2.0;
+                     return x > 66 && x < 215 && y > 12 && y < 138 ? 1.0 : 0.0;
+                 },
+                 {2});
     Seeds& seeds = scene.particles;  // the slide is on its way
     for (Index p = 0; p < seeds.count(); ++p)
         if (seeds.x[p] < 60.0) seeds.vx[p] = 10.0;
     return scene;
 }
 
-struct Slept { Index most = 0, at_end = 0; bool woke = false; };
+struct Slept {
+    Index most = 0, at_end = 0;
+    bool woke = false;
+};
 
 bool same(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -48,10 +53,11 @@ bool same_columns(const Columns& a, const Columns& b) {
 }
 
 bool same_status(const Status& a, const Status& b) {
-    return same(a.time, b.time) && same(a.mass, b.mass) && same(a.kinetic, b.kinetic) && same(a.potential, b.potential) &&
-           same(a.dissipated, b.dissipated) && same(a.max_speed, b.max_speed) && same(a.max_depth, b.max_depth) &&
-           same(a.covered_area, b.covered_area) && same(a.front, b.front) && same(a.momentum[0], b.momentum[0]) &&
-           same(a.momentum[1], b.momentum[1]) && same(a.impulse[0], b.impulse[0]) && same(a.impulse[1], b.impulse[1]) &&
+    return same(a.time, b.time) && same(a.mass, b.mass) && same(a.kinetic, b.kinetic) &&
+           same(a.potential, b.potential) && same(a.dissipated, b.dissipated) && same(a.max_speed, b.max_speed) &&
+           same(a.max_depth, b.max_depth) && same(a.covered_area, b.covered_area) && same(a.front, b.front) &&
+           same(a.momentum[0], b.momentum[0]) && same(a.momentum[1], b.momentum[1]) &&
+           same(a.impulse[0], b.impulse[0]) && same(a.impulse[1], b.impulse[1]) &&
            same(a.p2g_mass_error, b.p2g_mass_error) && same(a.p2g_momentum_error, b.p2g_momentum_error) &&
            same(a.mean_speed, b.mean_speed) && same(a.mass_left, b.mass_left) && same(a.energy_left, b.energy_left) &&
            same(a.dt, b.dt) && a.particles == b.particles;
@@ -109,7 +115,8 @@ void check(const Scene& scene, int steps) {
 
 }  // namespace
 
-TEST_CASE("A deposit sleeps until a slide reaches it, with the bits of a run without sleep", "[solver][sleep][threads]") {
+TEST_CASE("A deposit sleeps until a slide reaches it, with the bits of a run without sleep",
+          "[solver][sleep][threads]") {
     check(slide_into_deposit(), 240);
 }
 
@@ -122,10 +129,12 @@ TEST_CASE("Sleep changes no bit with walls, a yield stress, or any shape and tra
     SECTION("deposits that lean on walls") {
         Scene scene = slide_into_deposit();
         scene.sides = Sides::wall;
-        verify::fill(scene, [](double x, double y) {
-            if (x > 30 && x < 48 && y > 20 && y < 60) return 2.0;
-            return x > 66 ? 1.0 : 0.0;
-        }, {2});
+        verify::fill(scene,
+                     [](double x, double y) {
+                         if (x > 30 && x < 48 && y > 20 && y < 60) return 2.0;
+                         return x > 66 ? 1.0 : 0.0;
+                     },
+                     {2});
         for (Index p = 0; p < scene.particles.count(); ++p)
             if (scene.particles.x[p] < 60.0) scene.particles.vx[p] = 10.0;
         check(scene, 130);
@@ -178,22 +187,24 @@ TEST_CASE("A pile that holds by less than a step's rounding is not left alone", 
     compare(scene, 120);
 }
 
-TEST_CASE("A sheet that a yield stress alone holds on a bent bed is not left alone when steps grow", "[solver][sleep]") {
+TEST_CASE("A sheet that a yield stress alone holds on a bent bed is not left alone when steps grow",
+          "[solver][sleep]") {
     // A hollow: over a step the path bends and weighs more, by v.H.v with v = dt g / 4 where the slope is 1, the steepest
     // drive (g s / (1 + s^2)). That is 4e-5 g in steps of 0.4 s, 2.5e-4 g in steps of 1 s and 1e-3 g in the longest ones.
     Scene scene = verify::scene_on(80, 50, 50.0, [](double x, double) { return 2e-4 * (x - 5500.0) * (x - 5500.0); });
     const double depth = 0.5;
     scene.density = 1600.0;
     scene.bed_law = bed::Bingham{20.0, scene.density * depth * 0.5 * scene.gravity * (1.0 + 5e-4), 0.0};
-    verify::fill(scene, [&](double x, double y) {
-        return x > 1500 && x < 3800 && y > 400 && y < 2100 ? depth : 0.0;
-    }, {2});
-    const Slept slept = compare(scene, 60, [](const Status& now, int step) { return step < 30 ? now.time + 0.4 : 1e9; });
+    verify::fill(scene, [&](double x, double y) { return x > 1500 && x < 3800 && y > 400 && y < 2100 ? depth : 0.0; },
+                 {2});
+    const Slept slept =
+        compare(scene, 60, [](const Status& now, int step) { return step < 30 ? now.time + 0.4 : 1e9; });
     CHECK(slept.most >= 4);
     CHECK(slept.woke);
 }
 
-TEST_CASE("Material asleep at an exit that opens leaves, and what stays has the bits of a run without sleep", "[solver][sleep]") {
+TEST_CASE("Material asleep at an exit that opens leaves, and what stays has the bits of a run without sleep",
+          "[solver][sleep]") {
     Scene scene = verify::scene_on(60, 40, 1.0, [](double x, double) { return 10.0 - 0.05 * x; });
     scene.bed_law = bed::Coulomb{0.45};
     verify::fill(scene, [](double x, double y) { return x > 12 && x < 48 && y > 8 && y < 32 ? 1.0 : 0.0; }, {2});

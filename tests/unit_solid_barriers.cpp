@@ -10,9 +10,7 @@ using namespace frana;
 namespace {
 
 Polygons ring(const std::vector<Vec2>& corners) { return {{Polygon{{corners}}}, "", ""}; }
-Polygons box(double x0, double y0, double x1, double y1) {
-    return ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
-}
+Polygons box(double x0, double y0, double x1, double y1) { return ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}); }
 /// Its corner that stands in is at (2, 2).
 Polygons l_shape() { return ring({{0, 0}, {6, 0}, {6, 2}, {2, 2}, {2, 6}, {0, 6}}); }
 
@@ -83,8 +81,7 @@ TEST_CASE("A corner that stands in is a corner of two planes, from before it and
     CHECK(before[1].distance == Approx(0.5));
     CHECK(before[1].normal.isApprox(Vec3(0, 1, 0)));
     // Two planes there show the same images.
-    const std::vector<Surface> planes = {Surface::plane({2, 2, 0}, {1, 0, 0}),
-                                         Surface::plane({2, 2, 0}, {0, 1, 0})};
+    const std::vector<Surface> planes = {Surface::plane({2, 2, 0}, {1, 0, 0}), Surface::plane({2, 2, 0}, {0, 1, 0})};
     const std::vector<Surface> corner = {
         Surface::barrier(Prism(ring({{-40, -40}, {60, -40}, {60, 2}, {2, 2}, {2, 60}, {-40, 60}}), 300.0))};
     const MirrorParticles of_planes(planes, 3u, {2.3, 2.5, 1}, 0.5), of_corner(corner, 1u, {2.3, 2.5, 1}, 0.5);
@@ -152,8 +149,7 @@ TEST_CASE("No way that ends inside or beyond a barrier misses its faces, seams i
     CHECK(crossings > 3000);
 }
 
-TEST_CASE("Images in a wall stop at half of its thickness, and those in a thick one are not cut short",
-          "[solid]") {
+TEST_CASE("Images in a wall stop at half of its thickness, and those in a thick one are not cut short", "[solid]") {
     const std::vector<Surface> wall = {Surface::barrier(Prism(box(0, -50, 2, 50), 50.0))};
     const MirrorParticles mirrors(wall, 1u, {-0.7, 0, 0}, 1.0);
     REQUIRE(mirrors.end() - mirrors.begin() == 1);
@@ -204,10 +200,8 @@ TEST_CASE("A wall along a line keeps its wet face on the line", "[solid]") {
     }
     CHECK(least_wall_thickness({{0, 0}, {10, 0}}, 0.5) == Approx(1.5));
     CHECK(least_wall_thickness({{0, 0}, {10, 10}}, 0.5) == Approx(1.5 * std::sqrt(2.0)));
-    CHECK_THROWS_WITH(wall_outline({{0, 0}, {10, 0}, {1, 1}}, WetSide::left, 1.0),
-                      Catch::Contains("120 degrees"));
-    CHECK_THROWS_WITH(wall_outline({{1, 1}, {1, 1}}, WetSide::left, 1.0),
-                      Catch::Contains("two different points"));
+    CHECK_THROWS_WITH(wall_outline({{0, 0}, {10, 0}, {1, 1}}, WetSide::left, 1.0), Catch::Contains("120 degrees"));
+    CHECK_THROWS_WITH(wall_outline({{1, 1}, {1, 1}}, WetSide::left, 1.0), Catch::Contains("two different points"));
     CHECK_THROWS_WITH(Prism(ring({{0, 0}, {1, 1}}), 1.0), Catch::Contains("three corners or more"));
     CHECK_THROWS_WITH(Prism({}, 1.0), Catch::Contains("no polygon"));
     CHECK_THROWS_WITH(Prism(ring({{0, 0}, {1, 1}, {1, 1}, {0, 1}}), 1.0), Catch::Contains("twice in a row"));

@@ -10,8 +10,7 @@ namespace {
 
 Mat3 function_of(const Mat3& a, double (*f)(double)) {
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(a);
-    return solver.eigenvectors() * solver.eigenvalues().unaryExpr(f).asDiagonal() *
-           solver.eigenvectors().transpose();
+    return solver.eigenvectors() * solver.eigenvalues().unaryExpr(f).asDiagonal() * solver.eigenvectors().transpose();
 }
 
 double log_of(double x) { return std::log(x); }
@@ -26,8 +25,7 @@ TEST_CASE("Elastic strain is carried by any deformation, small or large, to roun
     grown << 0.3, -0.8, 0.5, 0.6, -0.2, 0.1, -0.4, 0.7, 0.25;
     grown *= size;
     const Mat3 factor = Mat3::Identity() + grown;
-    const Mat3 exact =
-        0.5 * function_of(factor * function_of(2.0 * e.matrix(), exp_of) * factor.transpose(), log_of);
+    const Mat3 exact = 0.5 * function_of(factor * function_of(2.0 * e.matrix(), exp_of) * factor.transpose(), log_of);
     CAPTURE(size);
     // The reference itself loses 1e-16 of one, which the series do not.
     CHECK((carried_strain(e, grown).matrix() - exact).cwiseAbs().maxCoeff() < 4e-15);
@@ -45,16 +43,14 @@ TEST_CASE("A turned elastic body has the turned stress", "[solid]") {
     double state[7] = {1e-3, -2e-3, 5e-4, 3e-4, 0.0, -1e-4, 0.0}, j = 1.0;
     const Mat3 before = law.stress(j, state, Mat3::Zero()).matrix();
     const double a = 0.7;
-    const Mat3 turn =
-        (Mat3() << std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1).finished();
+    const Mat3 turn = (Mat3() << std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1).finished();
     law.update({turn - Mat3::Identity(), 1.0}, j, state);
     CHECK((law.stress(j, state, Mat3::Zero()).matrix() - turn * before * turn.transpose()).norm() <
           1e-11 * before.norm());
     CHECK(j == Approx(1.0).epsilon(1e-14));
 }
 
-TEST_CASE("Sand is never stressed beyond Drucker and Prager's cone, and flows without a change of volume",
-          "[solid]") {
+TEST_CASE("Sand is never stressed beyond Drucker and Prager's cone, and flows without a change of volume", "[solid]") {
     const double phi = 0.5, cohesion = GENERATE(0.0, 300.0);
     const auto law = solid::DruckerPrager::of(solid::Elastic::of(1e6, 0.3), phi, cohesion);
     double state[7] = {-1e-3, -1e-3, -1e-3, 0, 0, 0, 0}, j = std::exp(-3e-3);
@@ -87,8 +83,7 @@ TEST_CASE("Sand that was pulled apart carries nothing until the gap is closed", 
     CHECK(stretch(-1e-3) == Approx(-3.0 * bulk * std::log(1.0 - 1e-3)).epsilon(1e-9));
 }
 
-TEST_CASE("Bingham's stress below the yield stress is elastic; sheared on, it goes to tau_Y + mu rate",
-          "[solid]") {
+TEST_CASE("Bingham's stress below the yield stress is elastic; sheared on, it goes to tau_Y + mu rate", "[solid]") {
     const solid::Bingham law{1e6, 1e5, 50.0, 1000.0};
     double state[7] = {}, j = 1.0;
     Deformation d{Mat3::Zero(), 1e-4};

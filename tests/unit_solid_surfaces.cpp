@@ -25,8 +25,7 @@ TEST_CASE("A point near one plane has one image; beyond the reach of its nodes, 
 }
 
 TEST_CASE("In a corner of three planes the eight points are symmetric in each plane", "[solid]") {
-    const std::vector<Surface> corner = {Surface::plane({0, 0, 0}, {1, 0, 0}),
-                                         Surface::plane({0, 0, 0}, {0, 1, 0}),
+    const std::vector<Surface> corner = {Surface::plane({0, 0, 0}, {1, 0, 0}), Surface::plane({0, 0, 0}, {0, 1, 0}),
                                          Surface::plane({0, 0, 0}, {0, 0, 1})};
     const Vec3 x(0.5, 1.0, 1.5);
     const auto seven = mirrors_of(corner, x);
@@ -40,8 +39,7 @@ TEST_CASE("In a corner of three planes the eight points are symmetric in each pl
     CHECK(motion.norm() < 1e-14);
 }
 
-TEST_CASE("A stuck surface turns velocities round, and two sides of a slice have no common corner",
-          "[solid]") {
+TEST_CASE("A stuck surface turns velocities round, and two sides of a slice have no common corner", "[solid]") {
     const std::vector<Surface> slice = {Surface::plane({0, 0, 0}, {0, 1, 0}, Hold::stuck),
                                         Surface::plane({0, 2, 0}, {0, -1, 0})};
     const auto mirrors = mirrors_of(slice, {0, 0.5, 0});

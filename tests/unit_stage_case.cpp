@@ -32,8 +32,7 @@ std::string problem_of(const std::string& rest) {
     return only_problem([&] { scene_of(rest); });
 }
 
-const std::string two =
-    "[[stage]]\nmodel = \"depth_averaged\"\nuntil = 8\n[[stage]]\nmodel = \"solid_flow\"\n";
+const std::string two = "[[stage]]\nmodel = \"depth_averaged\"\nuntil = 8\n[[stage]]\nmodel = \"solid_flow\"\n";
 const std::string west = "window = [1005, 2000, 1060, 2100]\n";
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -61,16 +60,15 @@ TEST_CASE("A 3D stage has the scene's laws where it gives none of its own", "[st
     CHECK(law.shear == 3e4);
 }
 
-TEST_CASE("A window is closed where the case says so, and where it reaches walls of the terrain",
-          "[stages]") {
+TEST_CASE("A window is closed where the case says so, and where it reaches walls of the terrain", "[stages]") {
     const std::string edge = "window = [1000, 2000, 1060, 2100]\n";
     using Closed = std::array<bool, 4>;
     CHECK(scene_of(two + edge).solid->closed == Closed{false, false, false, false});
     CHECK(scene_of(two + edge + "closed = [\"north\"]\n").solid->closed == Closed{false, false, false, true});
-    CHECK(scene_of(two + edge + "[boundary]\nsides = \"wall\"\n").solid->closed ==
-          Closed{true, true, false, false});
+    CHECK(scene_of(two + edge + "[boundary]\nsides = \"wall\"\n").solid->closed == Closed{true, true, false, false});
     // A cell away from a wall points would go on through it.
-    const SolidStage near = scene_of(two + "window = [1005, 2005, 1060, 2100]\n[boundary]\nsides = \"wall\"\n").solid.value();
+    const SolidStage near =
+        scene_of(two + "window = [1005, 2005, 1060, 2100]\n[boundary]\nsides = \"wall\"\n").solid.value();
     CHECK(near.closed == Closed{true, true, false, false});
     CHECK(near.window == std::array<Index, 4>{0, 0, 11, 19});
 }
@@ -81,8 +79,7 @@ TEST_CASE("A 3D stage ends where columns follow it", "[stages]") {
     CHECK(middle.from == 8.0);
     CHECK(middle.until == 12.0);
     CHECK(middle.window == std::array<Index, 4>{1, 0, 11, 19});
-    const SolidStage first =
-        scene_of("[[stage]]\nmodel = \"solid_flow\"\nuntil = 5\n" + west + after).solid.value();
+    const SolidStage first = scene_of("[[stage]]\nmodel = \"solid_flow\"\nuntil = 5\n" + west + after).solid.value();
     CHECK(first.from == 0.0);
     CHECK(first.until == 5.0);
     CHECK_FALSE(scene_of(two + west).solid->until.has_value());
@@ -99,10 +96,9 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "xmax, ymax] of "
               "at least 3 x 3 cells of 5 m within x 1000 to 1200, y 2000 to 2150"));
     CHECK(has(problem_of(two), "case.toml:15: stage.1: found no elevation at x 1197.5, y 2147.5"));
-    CHECK(has(
-        problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 25\n[[stage]]\nmodel = \"solid_flow\"\n" +
-                   west),
-        "stage.0.until: found 25 s; expected a time before time.end = 20 s"));
+    CHECK(
+        has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\nuntil = 25\n[[stage]]\nmodel = \"solid_flow\"\n" + west),
+            "stage.0.until: found 25 s; expected a time before time.end = 20 s"));
     CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\n[[stage]]\nmodel = \"solid_flow\"\n" + west),
               "stage.0: not given until, and another stage follows"));
     const std::string columns = "[[stage]]\nmodel = \"depth_averaged\"\n";
@@ -115,10 +111,9 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "stage.1: found it after the others"));
     CHECK(has(problem_of(two + west + "until = 12\n" + columns + "until = 15\n[[stage]]\nmodel = \"solid_flow\"\n"),
               "stage.3: found it after the others; expected depth_averaged, then solid_flow, then depth_averaged"));
-    CHECK(has(problem_of(two + west + "until = 15\n"),
-              "stage.1.until: found 15 s; expected none in the last stage"));
-    CHECK(has(problem_of(two + west + "spacing = 3\n"),
-              "stage.1.spacing: found 3 m; expected at most the stage's cell"));
+    CHECK(has(problem_of(two + west + "until = 15\n"), "stage.1.until: found 15 s; expected none in the last stage"));
+    CHECK(
+        has(problem_of(two + west + "spacing = 3\n"), "stage.1.spacing: found 3 m; expected at most the stage's cell"));
     CHECK(has(problem_of(two + west + "cell = 1000\n"),
               "stage.1.cell: found 1000 m; expected at most the window's shorter side, 55 m"));
     CHECK(has(problem_of(two + west + "top = 1e9\n"),
@@ -127,10 +122,8 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "stage.spacing: found 3e+18 points in space once all of the release is in the window, which need "));
     CHECK(has(problem_of(two + west + "yield_stress = 3\n"),
               "stage.1.yield_stress: found, but the law \"fluid\" does not"));
-    CHECK(has(problem_of(two + west + "cohesion = 3\n"),
-              "stage.1.cohesion: found, but the law \"fluid\" does not"));
-    CHECK(has(problem_of(two + west + "law = \"bingham\"\n"),
-              "stage.1.law: found \"bingham\" without a yield stress"));
+    CHECK(has(problem_of(two + west + "cohesion = 3\n"), "stage.1.cohesion: found, but the law \"fluid\" does not"));
+    CHECK(has(problem_of(two + west + "law = \"bingham\"\n"), "stage.1.law: found \"bingham\" without a yield stress"));
     CHECK(has(problem_of(two + west + "law = \"elastic\"\nyoung_modulus = 1e6\nsound_speed = 3\n"),
               "stage.1.sound_speed: found, but the law \"elastic\" does not"));
     CHECK(has(problem_of(two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\n"),
@@ -255,7 +248,8 @@ TEST_CASE("A barrier of any shape comes from a mesh alone, through the reader th
     const auto scene_with = [&](const std::string& keys) {
         const std::string text =
             "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\n"
-            "end = 20\n[material.bed]\nlaw = \"voellmy\"\nmu = 0.2\nxi = 500\n[[barrier]]\n" + keys;
+            "end = 20\n[material.bed]\nlaw = \"voellmy\"\nmu = 0.2\nxi = 500\n[[barrier]]\n" +
+            keys;
         return build_scene(CaseFile::parse(text, "slide/case.toml"), walled_gis(), reader);
     };
     const std::string at_stage = "mesh = \"wall.stl\"\n" + two + west + "cell = 2.0\n";

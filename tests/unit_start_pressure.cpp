@@ -75,8 +75,8 @@ TEST_CASE("The pressure at the start lies between a lake's and a sheet's, whatev
     FlowColumns one = columns(
         scene, [](double x) { return x < 1.3 ? 1.0 : 0.0; }, 0.5);
     one.x.resize(1);
-    for (auto* list : {&one.y, &one.bed, &one.depth, &one.vx, &one.vy, &one.mass, &one.volume,
-                       &one.bed_pressure, &one.id, &one.slope_x, &one.slope_y})
+    for (auto* list : {&one.y, &one.bed, &one.depth, &one.vx, &one.vy, &one.mass, &one.volume, &one.bed_pressure,
+                       &one.id, &one.slope_x, &one.slope_y})
         list->resize(1);
     take_start_pressure(one, scene);
     CHECK(share(one, scene).first == Approx(cos2).epsilon(1e-12));  // nothing is known of its surface

@@ -25,8 +25,8 @@ double slope(double u) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("V17: a node's weight has integral 1, falls away from it, and its slope is its derivative", "[grid]", Linear,
-                   Quadratic, Cubic) {
+TEMPLATE_TEST_CASE("V17: a node's weight has integral 1, falls away from it, and its slope is its derivative", "[grid]",
+                   Linear, Quadratic, Cubic) {
     constexpr int kPieces = 4000;
     constexpr double kReach = 2.5, kStep = 2.0 * kReach / kPieces;
     double integral = 0.0, worst = 0.0;
@@ -34,7 +34,8 @@ TEMPLATE_TEST_CASE("V17: a node's weight has integral 1, falls away from it, and
         const double u = -kReach + (n + 0.5) * kStep, w = weight<TestType>(u);  // no kink lies between u - d and u + d
         integral += kStep * w;
         constexpr double d = 1e-4;
-        worst = std::max(worst, std::abs((weight<TestType>(u + d) - weight<TestType>(u - d)) / (2.0 * d) - slope<TestType>(u)));
+        worst = std::max(
+            worst, std::abs((weight<TestType>(u + d) - weight<TestType>(u - d)) / (2.0 * d) - slope<TestType>(u)));
         CHECK(w >= 0.0);
         CHECK(slope<TestType>(u) * u <= 0.0);
         if (w > 0.0) CHECK(slope<TestType>(u) * u < 0.0);
@@ -44,8 +45,8 @@ TEMPLATE_TEST_CASE("V17: a node's weight has integral 1, falls away from it, and
     CHECK(worst < 1e-8);  // d^2 / 6 of the third derivative, 1 for the cubic, and round-off 1e-16 / d
 }
 
-TEMPLATE_TEST_CASE("V17: weights at a point are 1 together, and give a linear field and its slope back", "[grid]", Linear,
-                   Quadratic, Cubic) {
+TEMPLATE_TEST_CASE("V17: weights at a point are 1 together, and give a linear field and its slope back", "[grid]",
+                   Linear, Quadratic, Cubic) {
     for (int n = 0; n <= 1000; ++n) {
         const double u = 5.0 + n / 500.0;  // whole and half cells too
         const TestType s(u);
@@ -61,7 +62,8 @@ TEMPLATE_TEST_CASE("V17: weights at a point are 1 together, and give a linear fi
     }
 }
 
-TEMPLATE_TEST_CASE("V17: weights and slopes go on without a jump from one stencil to the next", "[grid]", Quadratic, Cubic) {
+TEMPLATE_TEST_CASE("V17: weights and slopes go on without a jump from one stencil to the next", "[grid]", Quadratic,
+                   Cubic) {
     constexpr double d = 1e-9;
     for (double u = -2.5; u <= 2.5; u += 0.5) {
         CHECK(std::abs(weight<TestType>(u + d) - weight<TestType>(u - d)) < 2.0 * d + 1e-15);  // slopes are below 1

@@ -104,7 +104,8 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK(has(problem_of(density + structure + free, "unrolled = true\n"), "where water finds its level"));
     CHECK(has(problem_of(density + structure + free + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"),
               "found a barrier with water.model"));
-    CHECK(has(problem_of(density + structure + "fraction = 0.0\nconfined_water = 0.2\n" + free), "found 0.2 with fraction = 0"));
+    CHECK(has(problem_of(density + structure + "fraction = 0.0\nconfined_water = 0.2\n" + free),
+              "found 0.2 with fraction = 0"));
 }
 
 TEST_CASE("What does not fit a structure is refused in one sentence", "[structured]") {
@@ -118,11 +119,13 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
     CHECK(has(problem_of(structure + "bulk_modulus = 3e7\n"), "a negative Poisson ratio"));
     CHECK(has(problem_of(structure + "dilatancy_angle_deg = 31\n"), "expected at most friction_angle_deg = 30"));
     const auto steep = [](const char* angle) {
-        return "[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 2e4\nyoung_modulus = 1e8\nfriction_angle_deg = " +
+        return "[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 2e4\nyoung_modulus = "
+               "1e8\nfriction_angle_deg = " +
                std::string(angle) + "\n";
     };
-    CHECK(has(problem_of(steep("60.5")),
-              "material.structure.friction_angle_deg: found 60.5; expected at most 60 with earth_pressure = \"rankine\""));
+    CHECK(has(
+        problem_of(steep("60.5")),
+        "material.structure.friction_angle_deg: found 60.5; expected at most 60 with earth_pressure = \"rankine\""));
     CHECK(scene_of(steep("60")).structure.has_value());
     CHECK(scene_of(steep("75") + "earth_pressure = \"hydrostatic\"\n").structure.has_value());
     CHECK(has(problem_of(structure + "onset = 0.1\n"), "material.structure.onset: found, but"));
@@ -136,11 +139,16 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
               "expected an outline that is one rectangle along x and y"));
     CHECK(scene_of(structure + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n").barriers.size() == 1);
     const auto holed = [](const std::string& rest) {
-        return build_scene(CaseFile::parse("[terrain]\ndem = \"holed.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
-                                           "[time]\nend = 20\n" + structure + rest, "slide/case.toml"), gis());
+        return build_scene(
+            CaseFile::parse("[terrain]\ndem = \"holed.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
+                            "[time]\nend = 20\n" +
+                                structure + rest,
+                            "slide/case.toml"),
+            gis());
     };
-    CHECK(has(only_problem([&] { holed(""); }),
-              "boundary.holes: found \"wall\" beside material.structure with 1 node without elevation inside the terrain"));
+    CHECK(has(
+        only_problem([&] { holed(""); }),
+        "boundary.holes: found \"wall\" beside material.structure with 1 node without elevation inside the terrain"));
     CHECK_FALSE(holed("[boundary]\nholes = \"open\"\n").hole_top.has_value());
     CHECK(has(problem_of("[[insitu]]\nname = \"a\"\nkind = \"figure\"\nfield = \"damage\"\n"),
               "in a case without structure"));

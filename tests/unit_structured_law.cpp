@@ -93,8 +93,7 @@ TEST_CASE("V2: strain along one axis is Hooke's with the weight given", "[struct
     CHECK(loaded.xx == Approx(-700.0 * nu / (1 - nu)).epsilon(1e-14));
 }
 
-TEST_CASE("V3: elastic simple shear: G sin(gamma), G (1 - cos(gamma)), of second order in the step",
-          "[structured]") {
+TEST_CASE("V3: elastic simple shear: G sin(gamma), G (1 - cos(gamma)), of second order in the step", "[structured]") {
     const ColumnLaw law(clay(28.0));
     const double gamma = 2.0, g = law.shear();
     double before = 0.0;
@@ -111,8 +110,7 @@ TEST_CASE("V3: elastic simple shear: G sin(gamma), G (1 - cos(gamma)), of second
     }
 }
 
-TEST_CASE("V4: simple shear under a pressure goes to k + 3 alpha p and keeps its mean stress",
-          "[structured]") {
+TEST_CASE("V4: simple shear under a pressure goes to k + 3 alpha p and keeps its mean stress", "[structured]") {
     const double p = 1e4, c = 2e4;
     const auto plateau = [&](ColumnYield yield) {
         const ColumnLaw law(clay(28.0, yield));
@@ -145,11 +143,13 @@ TEST_CASE("V5: the return of a cone that dilates: multiplier, pressure and shear
     CHECK(back.scale * (q0 + law.shear() * gamma) - q0 == Approx(3 * alpha * gained).epsilon(1e-10));
 }
 
-TEST_CASE("V5: plastic strain in the plane is the elastic strain that the return takes away, wherever the trial stress lies",
-          "[structured]") {
+TEST_CASE(
+    "V5: plastic strain in the plane is the elastic strain that the return takes away, wherever the trial stress lies",
+    "[structured]") {
     const ColumnYield yield = GENERATE(ColumnYield::compression, ColumnYield::plane_strain);
     // What dilates as much as it rubs and hardly shrinks has states that Newton's method leaves to the search.
-    const auto [phi, psi, poisson] = GENERATE(std::tuple(28.0, 0.0, 0.3), std::tuple(28.0, 10.0, 0.3), std::tuple(45.0, 45.0, 0.45));
+    const auto [phi, psi, poisson] =
+        GENERATE(std::tuple(28.0, 0.0, 0.3), std::tuple(28.0, 10.0, 0.3), std::tuple(45.0, 45.0, 0.45));
     ColumnMaterial m = clay(phi, yield, psi);
     m.poisson = poisson;
     const ColumnLaw law(m);
@@ -195,7 +195,9 @@ TEST_CASE("V7: unconfined compression holds 2 c cos(phi) / (1 - sin(phi))", "[st
     const auto strength = [](double c, double phi, ColumnYield yield) {
         return -squeezed_alone(ColumnLaw(clay(phi, yield)), -0.1, 0.0, c).stress.xx;
     };
-    const auto exact = [](double c, double phi) { return 2.0 * c * std::cos(phi * kDegree) / (1.0 - std::sin(phi * kDegree)); };
+    const auto exact = [](double c, double phi) {
+        return 2.0 * c * std::cos(phi * kDegree) / (1.0 - std::sin(phi * kDegree));
+    };
     CHECK(exact(26.7e3, 28.0) == Approx(88.87e3).margin(5.0));  // the flume's clays, as printed
     CHECK(exact(18.3e3, 27.0) == Approx(59.73e3).margin(5.0));
     for (const ColumnYield yield : {ColumnYield::compression, ColumnYield::hexagon}) {
@@ -213,10 +215,8 @@ TEST_CASE("V7: unconfined tension holds what cone and pyramid say", "[structured
     const auto strength = [&](ColumnYield yield) {
         return squeezed_alone(ColumnLaw(clay(30.0, yield)), 0.05, 0.0, c).stress.xx;
     };
-    CHECK(strength(ColumnYield::compression) ==
-          Approx(6 * c * std::cos(phi) / (3 + std::sin(phi))).epsilon(kReturned));
-    CHECK(strength(ColumnYield::hexagon) ==
-          Approx(2 * c * std::cos(phi) / (1 + std::sin(phi))).epsilon(kReturned));
+    CHECK(strength(ColumnYield::compression) == Approx(6 * c * std::cos(phi) / (3 + std::sin(phi))).epsilon(kReturned));
+    CHECK(strength(ColumnYield::hexagon) == Approx(2 * c * std::cos(phi) / (1 + std::sin(phi))).epsilon(kReturned));
 }
 
 TEST_CASE("V8: at constant dilation all bonds are broken when the plastic part is the critical strain",
@@ -231,8 +231,7 @@ TEST_CASE("V8: at constant dilation all bonds are broken when the plastic part i
         const ColumnState before = state;
         law.update({d, d, 0.0, 0.0}, 0.0, c0, state);
         if (before.damage > 0.0 && state.damage < 1.0) {
-            plastic +=
-                2.0 * d - (state.stress.xx + state.stress.yy - before.stress.xx - before.stress.yy) / lame;
+            plastic += 2.0 * d - (state.stress.xx + state.stress.yy - before.stress.xx - before.stress.yy) / lame;
             worst = std::max(worst, std::abs(state.damage - plastic / m.critical_strain));
         } else if (state.damage > 0.0 && before.damage == 0.0) {
             plastic = state.damage * m.critical_strain;
@@ -282,8 +281,7 @@ TEST_CASE("Bell: extended both ways, the lateral stress is -(Ka p - 2 c sqrt(Ka)
     CHECK(s.yy == Approx(bell).margin(1e-6 * c));
 }
 
-TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no negative work",
-          "[structured]") {
+TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no negative work", "[structured]") {
     const double psi = GENERATE(0.0, 28.0), weight = GENERATE(0.0, -2e4);
     const ColumnLaw law(clay(28.0, ColumnYield::hexagon, psi));
     int yielded = 0;
@@ -300,8 +298,7 @@ TEST_CASE("The pyramid's return ends on the pyramid, on its side, and does no ne
         const double xx = trial.xx - s.xx, yy = trial.yy - s.yy, xy = (1 + nu) * (trial.xy - s.xy);
         CHECK(plastic.dilation == Approx((1 - nu) * (xx + yy) / young).margin(1e-10));
         CHECK(plastic.extension ==
-              Approx(((1 - nu) * (xx + yy) / 2 + std::hypot((1 + nu) * (xx - yy) / 2, xy)) / young)
-                  .margin(1e-10));
+              Approx(((1 - nu) * (xx + yy) / 2 + std::hypot((1 + nu) * (xx - yy) / 2, xy)) / young).margin(1e-10));
         const double work = s.xx * (xx - nu * yy) + s.yy * (yy - nu * xx) + 2 * s.xy * xy;
         if (weight == 0.0) CHECK(work >= 0.0);
         ++yielded;
@@ -317,9 +314,11 @@ TEST_CASE("Any stress outside a cone comes back to it with zz as it was, from ne
     for (int n = 0; n < 20000; ++n) {
         const double phi = 5.0 + 35.0 * unit(random);
         const ColumnLaw law(clay(phi, ColumnYield::compression, dilates * phi));
-        const double weight = -std::pow(10.0, 2.0 + 3.0 * unit(random)), cohesion = std::pow(10.0, 1.0 + 5.0 * both(random)),
+        const double weight = -std::pow(10.0, 2.0 + 3.0 * unit(random)),
+                     cohesion = std::pow(10.0, 1.0 + 5.0 * both(random)),
                      size = std::pow(10.0, 1.0 + 5.0 * unit(random));
-        const ColumnStress trial{weight + size * both(random), weight + size * both(random), weight, size * both(random)};
+        const ColumnStress trial{weight + size * both(random), weight + size * both(random), weight,
+                                 size * both(random)};
         if (law.excess<double>(trial, cohesion) <= 0.0) continue;
         ColumnStress s = trial;
         const PlasticStep plastic = law.yield(cohesion, s);
@@ -337,8 +336,7 @@ TEST_CASE("Any stress outside a cone comes back to it with zz as it was, from ne
 }
 
 TEST_CASE("Four columns at once come out as one after the other, to round-off", "[structured]") {
-    ColumnMaterial m =
-        clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::plane_strain, ColumnYield::hexagon));
+    ColumnMaterial m = clay(28.0, GENERATE(ColumnYield::compression, ColumnYield::plane_strain, ColumnYield::hexagon));
     m.critical_strain = 0.05;
     const ColumnLaw law(m);
     ColumnState one[4];

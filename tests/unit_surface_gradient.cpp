@@ -9,8 +9,9 @@
 
 using namespace frana;
 
-TEST_CASE("A film has the slope of its bed on every node, margins too, where the bed bends by more than the film is deep",
-          "[solver][surface]") {
+TEST_CASE(
+    "A film has the slope of its bed on every node, margins too, where the bed bends by more than the film is deep",
+    "[solver][surface]") {
     // A tenth of a millimetre on a bed that bends by 0.86 m a cell, up or down, and rises by 3.5 m or more; at rest or not.
     const double cell = 24.0, depth = 1e-4, bend = GENERATE(7.5e-4, -7.5e-4), speed = GENERATE(0.0, 1.0);
     const bool along_x = GENERATE(true, false);
@@ -18,7 +19,8 @@ TEST_CASE("A film has the slope of its bed on every node, margins too, where the
         const double along = along_x ? x : y;
         return bend * along * along;
     });
-    verify::fill(scene, [&](double x, double y) { return x > 120 && x < 360 && y > 120 && y < 360 ? depth : 0.0; }, {1});
+    verify::fill(scene, [&](double x, double y) { return x > 120 && x < 360 && y > 120 && y < 360 ? depth : 0.0; },
+                 {1});
     scene.particles.vx.assign(scene.particles.x.size(), along_x ? speed : 0.0);
     scene.particles.vy.assign(scene.particles.x.size(), along_x ? 0.0 : speed);
     DepthAveraged simulation(scene);

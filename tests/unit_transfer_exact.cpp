@@ -150,7 +150,8 @@ TEST_CASE("On 45 degrees a Bingham sheet shears twice as fast as speed and depth
             const double across = h[p] / std::sqrt(2.0);
             const double zeta = bed::bingham_sheet(0.0, 6.0 * law.viscosity * along / (law.yield_stress * across)).plug;
             const double shear = 3.0 / (2.0 + zeta) * along / across;
-            const double mu2 = 2.0 * law.viscosity + law.yield_stress / std::sqrt(plane + 0.25 * shear * shear + floor * floor);
+            const double mu2 =
+                2.0 * law.viscosity + law.yield_stress / std::sqrt(plane + 0.25 * shear * shear + floor * floor);
             CHECK(stress[3 * p] == Approx(mu2 * a).epsilon(1e-10));
             CHECK(stress[3 * p + 2] == Approx(mu2 * 0.5 * b).epsilon(1e-10));
             ++inside;

@@ -14,9 +14,7 @@ constexpr double kMc = 900.0, kMu = 500.0, kReduced = kMc * kMu / (kMc + kMu);
 struct Pair {
     Phase c{kMc, {3.0, -1.0}}, u{kMu, {1.8, 0.6}};
     Vec2 momentum() const { return c.mass * c.velocity + u.mass * u.velocity; }
-    double kinetic() const {
-        return 0.5 * (c.mass * c.velocity.squaredNorm() + u.mass * u.velocity.squaredNorm());
-    }
+    double kinetic() const { return 0.5 * (c.mass * c.velocity.squaredNorm() + u.mass * u.velocity.squaredNorm()); }
     Vec2 slip() const { return c.velocity - u.velocity; }
     void run(const Exchange& by, double time, int steps) {
         for (int n = 0; n < steps; ++n) exchange(by, time / steps, c, u);
@@ -84,8 +82,7 @@ TEST_CASE("V10: where a force turns a quadratic slip the step is of first order"
     CHECK(order < 2.2);
 }
 
-TEST_CASE("V11: bodies that forces drive apart reach the slip at which drag balances them",
-          "[two_phase][solver]") {
+TEST_CASE("V11: bodies that forces drive apart reach the slip at which drag balances them", "[two_phase][solver]") {
     const double depth = 1.5, flux = 0.0;
     for (const int power : {1, 2})
         for (const double solids : {0.05, 0.3, 0.55}) {
@@ -94,8 +91,7 @@ TEST_CASE("V11: bodies that forces drive apart reach the slip at which drag bala
             m.power = power;
             const TwoPhaseDrag drag(m);
             const Mixture mixture{solids};
-            const double mc = solids * m.solid_density * depth,
-                         mu = mixture.fluid() * m.fluid_density * depth;
+            const double mc = solids * m.solid_density * depth, mu = mixture.fluid() * m.fluid_density * depth;
             const double reduced = mc * mu / (mc + mu);
             // mu (b_c - b_u) = h alpha_c alpha_u (rho_s - rho_f) g, all of it on c
             const double pushed = depth * solids * mixture.fluid() * 1650.0 * m.gravity / reduced;
@@ -111,24 +107,21 @@ TEST_CASE("V11: bodies that forces drive apart reach the slip at which drag bala
         }
 }
 
-TEST_CASE("V11: without solid-like drag the slip in still mixture is Richardson and Zaki's",
-          "[two_phase][solver]") {
+TEST_CASE("V11: without solid-like drag the slip in still mixture is Richardson and Zaki's", "[two_phase][solver]") {
     TwoPhaseMaterial m;
     m.weighting = 1e6;  // P = 0
     const TwoPhaseDrag drag(m);
     for (const double solids : {0.01, 0.2, 0.4})
         CHECK(drag.grain_speed({solids}, 0.0) ==
-              Approx(zanke_velocity(m, 1e-3) * std::pow(1.0 - solids, richardson_zaki(117.6) - 1.0))
-                  .epsilon(1e-4));
+              Approx(zanke_velocity(m, 1e-3) * std::pow(1.0 - solids, richardson_zaki(117.6) - 1.0)).epsilon(1e-4));
     CHECK(drag.grain_speed({0.2}, 0.5) - drag.grain_speed({0.2}, 0.0) == Approx(0.5 / 0.8).epsilon(1e-12));
     m.weighting = 1.0;  // then the flux counts twice, whatever the shares
     CHECK(TwoPhaseDrag(m).grain_speed({0.3}, 0.5) - TwoPhaseDrag(m).grain_speed({0.3}, 0.0) ==
           Approx(1.0).epsilon(1e-12));
 }
 
-TEST_CASE(
-    "Drag split by structure is the unsplit one without structure, and blocks alone where all is structured",
-    "[two_phase][solver]") {
+TEST_CASE("Drag split by structure is the unsplit one without structure, and blocks alone where all is structured",
+          "[two_phase][solver]") {
     TwoPhaseMaterial m;
     for (const int power : {1, 2}) {
         m.power = power;
@@ -160,8 +153,7 @@ TEST_CASE(
     // F of (32), by its own numbers: gamma / 180 (alpha_u / grains)^3 Re
     m.power = 1, m.weighting = 1e-9;  // P = 1
     const TwoPhaseDrag solid_like(m);
-    const double ut = terminal_velocity(m, m.grain), re = 1000.0 * 1e-3 * ut / 1e-3,
-                 ratio = 0.6 * 0.75 / (0.4 * 0.5);
+    const double ut = terminal_velocity(m, m.grain), re = 1000.0 * 1e-3 * ut / 1e-3, ratio = 0.6 * 0.75 / (0.4 * 0.5);
     CHECK(solid_like.grain_speed({0.4, 0.5, 0.25}, 0.0) ==
           Approx(ut * (1000.0 / 2650.0 / 180.0) * ratio * ratio * ratio * re).epsilon(1e-6));
 }

@@ -11,16 +11,19 @@ using namespace frana::test;
 
 namespace {
 
-const std::string solids = "[material]\ndensity = 2650.0\n[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 0\n"
-                           "fraction = 0\nfriction_angle_deg = 30\nyoung_modulus = 1e6\n[water]\nmodel = \"free\"\n";
+const std::string solids =
+    "[material]\ndensity = 2650.0\n[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 0\n"
+    "fraction = 0\nfriction_angle_deg = 30\nyoung_modulus = 1e6\n[water]\nmodel = \"free\"\n";
 
 double rate(double x, double y) { return 1e-5 * (1.0 + 0.01 * (x - 1000.0) + 0.02 * (y - 2000.0)); }
 
 Scene scene_of(const FakeGis& gis, const std::string& water) {
-    return build_scene(CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
-                                       "[time]\nend = 20\n" + solids + water,
-                                       "slide/case.toml"),
-                       gis);
+    return build_scene(
+        CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
+                        "[time]\nend = 20\n" +
+                            solids + water,
+                        "slide/case.toml"),
+        gis);
 }
 
 std::string problem_of(const FakeGis& gis, const std::string& water) {
@@ -55,15 +58,18 @@ TEST_CASE("Rain and infiltration are numbers or rasters on the terrain's nodes",
 TEST_CASE("A raster of rates that does not fit is refused in one sentence", "[water][scene]") {
     const std::string rain = "rain = \"rain.tif\"\n";
     CHECK(has(problem_of(with_rates(-1e-6), rain),
-              "rain.tif: found 1 of 1200 pixels such as -1e-06, the first at x 1037.5, y 2027.5; expected rates in m/s, 0 or more"));
-    CHECK(has(problem_of(with_rates(NAN), rain), "found 1 of 1200 pixels without a number, the first at x 1037.5, y 2027.5"));
+              "rain.tif: found 1 of 1200 pixels such as -1e-06, the first at x 1037.5, y 2027.5; expected rates in "
+              "m/s, 0 or more"));
+    CHECK(has(problem_of(with_rates(NAN), rain),
+              "found 1 of 1200 pixels without a number, the first at x 1037.5, y 2027.5"));
     CHECK(has(problem_of(with_rates(INFINITY), rain), "found 1 of 1200 pixels such as inf"));
     FakeGis part = slope_gis();
     part.rasters["rain.tif"] = sampled({30, 30, 1002.5, 2002.5, 5.0}, rate);
     const std::string said = problem_of(part, "infiltration = \"rain.tif\"\n");
     CHECK(has(said, "water.infiltration: "));
-    CHECK(has(said, "rain.tif: found 300 of 1200 nodes of the terrain without a number, the first at x 1152.5, y 2002.5; "
-                    "expected a raster that covers all of the terrain"));
+    CHECK(has(said,
+              "rain.tif: found 300 of 1200 nodes of the terrain without a number, the first at x 1152.5, y 2002.5; "
+              "expected a raster that covers all of the terrain"));
     CHECK(has(problem_of(slope_gis(), rain), "no such raster"));
     CHECK(has(problem_of(slope_gis(), "rain = -1\n"), "water.rain: found -1"));
 }
@@ -103,16 +109,20 @@ TEST_CASE("Viscosity of the water is off by default; mud is thicker than clear w
     CHECK(clear.viscosity.kinematic == 2e-6);
     CHECK(clear.viscosity.shear == 2.5);
     CHECK(clear.exchange.material.viscosity == 2e-3);
-    const std::string mud = "viscous = \"mud\"\nmud_alpha = 3e-3\nmud_beta = 20\nmud_concentration = 0.3\ndensity = 1300\n";
+    const std::string mud =
+        "viscous = \"mud\"\nmud_alpha = 3e-3\nmud_beta = 20\nmud_concentration = 0.3\ndensity = 1300\n";
     const WaterPhase thick = water(mud);
     CHECK(thick.exchange.material.viscosity == Approx(3e-3 * std::exp(6.0)).epsilon(1e-15));
     CHECK(thick.viscosity.kinematic == Approx(3e-3 * std::exp(6.0) / 1300.0).epsilon(1e-15));
-    CHECK(water("viscous = \"mud\"\nmud_alpha = 1e-9\nmud_beta = 6\nmud_concentration = 0.1\n").viscosity.kinematic == 1e-6);
+    CHECK(water("viscous = \"mud\"\nmud_alpha = 1e-9\nmud_beta = 6\nmud_concentration = 0.1\n").viscosity.kinematic ==
+          1e-6);
     std::string said;
     for (const std::string& line : scene_of(slope_gis(), mud).log) said += line;
     CHECK(has(said, "its viscosity is 1.21029 Pa s (where tables have poise: 1 poise is 0.1 Pa s)"));
-    CHECK(has(problem_of(slope_gis(), "mud_alpha = 1e-3\n"), "water.mud_alpha: found, but water.viscous = \"none\" does not use it"));
-    CHECK(has(problem_of(slope_gis(), "viscous = \"mud\"\nmud_alpha = 1e-3\nmud_beta = 6\n"), "water.mud_concentration"));
+    CHECK(has(problem_of(slope_gis(), "mud_alpha = 1e-3\n"),
+              "water.mud_alpha: found, but water.viscous = \"none\" does not use it"));
+    CHECK(
+        has(problem_of(slope_gis(), "viscous = \"mud\"\nmud_alpha = 1e-3\nmud_beta = 6\n"), "water.mud_concentration"));
 }
 
 TEST_CASE("V19: grains settle in the viscosity of the mud, and its drag on them follows", "[water][two_phase]") {
@@ -120,7 +130,8 @@ TEST_CASE("V19: grains settle in the viscosity of the mud, and its drag on them 
         return scene_of(slope_gis(), "grain_diameter = 1e-3\ndrag_power = 1\n" + more).water->exchange.material;
     };
     const TwoPhaseMaterial clear = material(""),
-                           mud = material("viscous = \"mud\"\nmud_alpha = 2e-2\nmud_beta = 10\nmud_concentration = 0.2\n");
+                           mud = material(
+                               "viscous = \"mud\"\nmud_alpha = 2e-2\nmud_beta = 10\nmud_concentration = 0.2\n");
     const double eta = 2e-2 * std::exp(2.0);
     CHECK(terminal_velocity(clear, clear.grain) == Approx(0.1176).epsilon(1e-3));
     // So slow a grain is within a tenth of 0.9 of Stokes's, g d^2 (rho_s - rho_f) / (18 eta).
@@ -130,10 +141,11 @@ TEST_CASE("V19: grains settle in the viscosity of the mud, and its drag on them 
     const auto speed = [&](const TwoPhaseMaterial& m) {
         return solids_share * (1.0 - solids_share) * 1650.0 * 9.81 / TwoPhaseDrag(m).unsplit(solids_share, 0.0);
     };
-    const auto still = [&](const TwoPhaseMaterial& m) {  // a power of the share of water, for each Reynolds number its own
-        const double u = terminal_velocity(m, m.grain);
-        return u * std::pow(1.0 - solids_share, richardson_zaki(1000.0 * m.grain * u / m.viscosity) - 1.0);
-    };
+    const auto still =
+        [&](const TwoPhaseMaterial& m) {  // a power of the share of water, for each Reynolds number its own
+            const double u = terminal_velocity(m, m.grain);
+            return u * std::pow(1.0 - solids_share, richardson_zaki(1000.0 * m.grain * u / m.viscosity) - 1.0);
+        };
     TwoPhaseMaterial sharp_clear = clear, sharp_mud = mud;
     sharp_clear.weighting = sharp_mud.weighting = 50.0;  // of the solid-like part next to nothing is left
     CHECK(speed(sharp_clear) == Approx(still(clear)).epsilon(1e-9));

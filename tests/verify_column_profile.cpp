@@ -42,30 +42,26 @@ private:
         const auto next = std::lower_bound(points_.begin(), points_.end(), std::make_pair(x, -1.0));
         if (next == points_.begin() || next == points_.end()) return 0.0;
         const auto before = next - 1;
-        return before->second +
-               (next->second - before->second) * (x - before->first) / (next->first - before->first);
+        return before->second + (next->second - before->second) * (x - before->first) / (next->first - before->first);
     }
     std::vector<std::pair<double, double>> points_;
 };
 
 /// Half a column 2 m long and 1 m high, 8 cells, of sand that is as rough as its floor; at rest.
 Mpm3d collapsed(double friction, double cell) {
-    const double length = 2.0, height = 1.0, width = 3.0 * cell, density = 1000.0, gravity = 9.81,
-                 poisson = 0.3;
+    const double length = 2.0, height = 1.0, width = 3.0 * cell, density = 1000.0, gravity = 9.81, poisson = 0.3;
     const double modulus = density * 100.0 * gravity * height;  // sound ten times as fast as a wave on it
     SolidScene s;
     s.density = density;
     s.gravity = {0, 0, -gravity};
     s.grid = verify::grid_around({}, {0, 0, 0}, {6.5, width, height}, cell);
-    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::free, friction),
-                  Surface::plane({0, 0, 0}, {1, 0, 0})};
+    s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}, Hold::free, friction), Surface::plane({0, 0, 0}, {1, 0, 0})};
     verify::add_slice(s, width);
     s.law = solid::DruckerPrager::of(
         solid::Elastic::of(modulus * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson), poisson),
         std::atan(friction), 0.0, solid::Cone::plane_strain);
-    verify::for_each_part({0, 0, 0}, {length, width, height}, cell, 2, [&](const Vec3& x, double volume) {
-        s.points.add(x, Vec3::Zero(), density * volume);
-    });
+    verify::for_each_part({0, 0, 0}, {length, width, height}, cell, 2,
+                          [&](const Vec3& x, double volume) { s.points.add(x, Vec3::Zero(), density * volume); });
     Mpm3d flow(s);
     while (flow.status().time < 3.0) flow.advance(3.0);
     return flow;
@@ -85,8 +81,7 @@ TEST_CASE("A column of sand comes to rest as a column of grains does", "[verify]
         heights[static_cast<std::size_t>(sand.position(p).x() / kCell)] +=
             sand.body().points.rest_volume[p] / (3.0 * kCell * kCell);
     double apart = 0.0, area = 0.0;
-    for (std::size_t n = 0; n + 1 < heights.size();
-         ++n) {  // means over two cells: points stand half of one apart
+    for (std::size_t n = 0; n + 1 < heights.size(); ++n) {  // means over two cells: points stand half of one apart
         const double x = kCell * static_cast<double>(n + 1);
         apart += kCell * std::abs(0.5 * (heights[n] + heights[n + 1]) - grains.at(x));
         area += kCell * grains.at(x);

@@ -33,8 +33,8 @@ TEST_CASE("Problems have names of their own, grids, and gates on quantities that
         CHECK_FALSE(problem.title.empty());
         for (const verify::Gate& gate : problem.gates) CHECK_FALSE(gate.source.empty());
     }
-    for (const char* name : {"lake_z1", "lake_z2", "lake_island", "ritter", "stoker", "thacker_planar", "thacker_radial",
-                             "radial_dam", "pile", "obstacle", "conversion"})
+    for (const char* name : {"lake_z1", "lake_z2", "lake_island", "ritter", "stoker", "thacker_planar",
+                             "thacker_radial", "radial_dam", "pile", "obstacle", "conversion"})
         CHECK(names.count(name) == 1);
 }
 

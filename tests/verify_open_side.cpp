@@ -28,11 +28,13 @@ TEST_CASE("Surges that leave at an open side bring no mass back", "[verify]") {
     scene.density = 1500.0;
     scene.bed_law = bed::Voellmy{0.1, 2000.0};
     const double end = 2.0 * static_cast<double>(nx - 1);
-    verify::fill(scene, [&](double x, double y) {
-        const bool surge = y > 20 && y < 50 && x > end - 260 && std::fmod(end - x, 80.0) < 30.0;
-        const bool stream = y > 70 && y < 100 && x > end - 300;
-        return surge || stream ? 1.0 : 0.0;
-    }, {2});
+    verify::fill(scene,
+                 [&](double x, double y) {
+                     const bool surge = y > 20 && y < 50 && x > end - 260 && std::fmod(end - x, 80.0) < 30.0;
+                     const bool stream = y > 70 && y < 100 && x > end - 300;
+                     return surge || stream ? 1.0 : 0.0;
+                 },
+                 {2});
     CHECK(worst_p2g(scene, 150) <= 1e-12);  // sums of 1e4 numbers, each right to 1e-16
 }
 
@@ -42,6 +44,7 @@ TEST_CASE("Material in every corner of a small grid keeps its mass", "[verify]")
     scene.sides = sides;
     scene.density = 1500.0;
     scene.rheology = rheology::Bingham{10.0, 20.0};
-    verify::fill(scene, [](double x, double y) { return std::abs(x - 14) > 8 && std::abs(y - 14) > 8 ? 1.0 : 0.0; }, {2});
+    verify::fill(scene, [](double x, double y) { return std::abs(x - 14) > 8 && std::abs(y - 14) > 8 ? 1.0 : 0.0; },
+                 {2});
     CHECK(worst_p2g(scene, 60) <= 1e-12);
 }

@@ -9,15 +9,22 @@ using namespace frana::test;
 
 namespace {
 
-Function z1() { return [](double x, double y) { return 5 * std::exp(-0.4 * ((x - 5) * (x - 5) + (y - 5) * (y - 5))); }; }
-Function z2() { return [](double x, double y) { return x >= 4 && x <= 8 && y >= 4 && y <= 8 ? 4.0 : 0.0; }; }
-Function island() { return [](double x, double y) { return 12 * std::exp(-0.4 * ((x - 5) * (x - 5) + (y - 5) * (y - 5))); }; }
+Function z1() {
+    return [](double x, double y) { return 5 * std::exp(-0.4 * ((x - 5) * (x - 5) + (y - 5) * (y - 5))); };
+}
+Function z2() {
+    return [](double x, double y) { return x >= 4 && x <= 8 && y >= 4 && y <= 8 ? 4.0 : 0.0; };
+}
+Function island() {
+    return [](double x, double y) { return 12 * std::exp(-0.4 * ((x - 5) * (x - 5) + (y - 5) * (y - 5))); };
+}
 
 Scene lake(const Function& z, double shift) {
     Scene scene = scene_on(51, 51, 0.2, z);
     scene.sides = Sides::wall;
     scene.still_surface = 10.0;
-    fill(scene, [&](double x, double y) { return 10.0 - z(x, y); }, 2, shift, 2.2 * shift);
+    fill(
+        scene, [&](double x, double y) { return 10.0 - z(x, y); }, 2, shift, 2.2 * shift);
     return scene;
 }
 
@@ -73,7 +80,9 @@ TEST_CASE("The paper preset keeps a lake of known level at rest", "[lake][paper]
 }
 
 TEST_CASE("A pile below its friction angle does not move by one bit", "[rest]") {
-    struct Pile { double slope, surface, mu; };
+    struct Pile {
+        double slope, surface, mu;
+    };
     for (const Pile& pile : {Pile{0.2, 0.3, 0.6}, Pile{0.7, 0.2, 1.1}})
         for (const double turn : {0.0, 27.0, 45.0}) {
             const double c = std::cos(turn * M_PI / 180), s = std::sin(turn * M_PI / 180);
@@ -103,8 +112,10 @@ TEST_CASE("A slab holds at tan(th) = mu and slides just below it", "[rest]") {
         DepthAveraged simulation(scene);
         run_to(simulation, 2.0);
         double fastest = simulation.status().max_speed_on_map;
-        if (factor > 1.0) CHECK(fastest < 1e-5);  // the rim's own slope, 1e-6 m over a cell, may creep below mu's margin
-        else CHECK(fastest > 0.5 * 1e-4 * slope * 9.81 * 0.75 * 2.0);
+        if (factor > 1.0)
+            CHECK(fastest < 1e-5);  // the rim's own slope, 1e-6 m over a cell, may creep below mu's margin
+        else
+            CHECK(fastest > 0.5 * 1e-4 * slope * 9.81 * 0.75 * 2.0);
     }
 }
 

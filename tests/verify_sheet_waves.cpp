@@ -18,8 +18,9 @@ double wave_in(const Frame& frame, double from, double to) {
     const double* depth = frame.node("depth")->data + frame.grid.ny / 2 * frame.grid.nx;
     double largest = 0.0;
     for (Index i = std::lround(from / kCell); i < std::lround(to / kCell); ++i)
-        largest = std::max(largest, std::abs(depth[i - 2] - 4.0 * depth[i - 1] + 6.0 * depth[i] - 4.0 * depth[i + 1] +
-                                             depth[i + 2]) / 16.0);
+        largest = std::max(
+            largest,
+            std::abs(depth[i - 2] - 4.0 * depth[i - 1] + 6.0 * depth[i] - 4.0 * depth[i + 1] + depth[i + 2]) / 16.0);
     return largest / kDepth;
 }
 

@@ -16,7 +16,8 @@ constexpr double kGravity = 9.81;
 /// is g'' = 2 B / g^2, g = 1 and g' = 0 at first, B = K H / L, H its height: t sqrt(4 B) = sqrt(g (g - 1)) + ln(sqrt(g) +
 /// sqrt(g - 1)).
 struct SavageHutterHeap {
-    double length, height, slope, friction;  ///< half length, height [m]; of the plane [rad], tangent of the bed's angle
+    double length, height, slope,
+        friction;  ///< half length, height [m]; of the plane [rad], tangent of the bed's angle
 
     double across() const { return kGravity * std::cos(slope); }
     double drive() const { return kGravity * std::sin(slope) - across() * friction; }
@@ -81,19 +82,21 @@ double spread_error(const SavageHutterHeap& pile, bool hydrostatic, int cells) {
 
 }  // namespace
 
-TEST_CASE("V16: a heap of grains spreads by Ka on its way down a plane as Savage and Hutter have it", "[structured][grains]") {
+TEST_CASE("V16: a heap of grains spreads by Ka on its way down a plane as Savage and Hutter have it",
+          "[structured][grains]") {
     const SavageHutterHeap pile{10.0, 1.0, 35.0 * M_PI / 180.0, std::tan(20.0 * M_PI / 180.0)};
     const bool hydrostatic = GENERATE(false, true);
     const double coarse = spread_error(pile, hydrostatic, 20), fine = spread_error(pile, hydrostatic, 40);
     const double apart = std::abs(pile.stretch(1.0, 3.0) / pile.stretch(1.0 / 3.0, 3.0) - 1.0);
     CAPTURE(hydrostatic, coarse, fine, apart);
-    CHECK(apart > 0.3);  // what the wrong coefficient would cost
-    CHECK(coarse < 4e-3);  // twice what is measured, 2.2e-3 and 2.3e-3, for the rim's luck
+    CHECK(apart > 0.3);          // what the wrong coefficient would cost
+    CHECK(coarse < 4e-3);        // twice what is measured, 2.2e-3 and 2.3e-3, for the rim's luck
     CHECK(fine < 0.6 * coarse);  // first order, by the kink at the rim; measured 0.44 and 0.33
 }
 
-TEST_CASE("V16: a ridge of grains stays to the last bit where Ka times its slope is below the bed's friction, not above",
-          "[structured][grains]") {
+TEST_CASE(
+    "V16: a ridge of grains stays to the last bit where Ka times its slope is below the bed's friction, not above",
+    "[structured][grains]") {
     const double friction = 0.15, active = 1.0 / 3.0;  // Ka at 30 degrees; at rest grains push by it
     const double ratio = GENERATE(0.8, 1.25);
     const double slope = ratio * friction / active, cell = 0.25, length = 2.0 / slope;
@@ -133,7 +136,8 @@ TEST_CASE("V16: a vertical face lower than Bell's height does not push, a higher
     StructuredFlow flow(s);
     while (flow.status().time < kEnd) flow.advance(kEnd);
     // A block that yields leans on the face with -sigma_xx h = (Ka rho g h / 2 - 2 c sqrt(Ka)) h.
-    const double push = (0.5 * active * s.density * kGravity * kDepth - 2.0 * cohesion * std::sqrt(active)) * kDepth * kWidth;
+    const double push =
+        (0.5 * active * s.density * kGravity * kDepth - 2.0 * cohesion * std::sqrt(active)) * kDepth * kWidth;
     const double got = flow.status().impulse.obstacles.x() / kEnd;
     CAPTURE(ratio, push, got);
     if (ratio > 1.0) {
@@ -146,8 +150,9 @@ TEST_CASE("V16: a vertical face lower than Bell's height does not push, a higher
     }
 }
 
-TEST_CASE("V18: columns that are pulled stay as evenly apart as they were, without artificial stress, whichever way they lie",
-          "[structured]") {
+TEST_CASE(
+    "V18: columns that are pulled stay as evenly apart as they were, without artificial stress, whichever way they lie",
+    "[structured]") {
     // A bar 12 m long is drawn out by a fifth. Its free ends send waves inwards, 2.5 m/s for a second; between them columns
     // go with the strain, and a tensile instability would grow at about sqrt(strain) c / spacing, 16 / s: a millionfold.
     constexpr double kRate = 0.2, kEnd = 1.0, kSpacing = 0.05;
@@ -182,6 +187,7 @@ TEST_CASE("V18: columns that are pulled stay as evenly apart as they were, witho
     }
     CAPTURE(angle, strain, apart / kSpacing, least);
     CHECK(least > 0.1 * s.material.young);  // all of it is under tension
-    CHECK(apart < 0.07 * kSpacing);  // twice the 0.035 of the bar along the grid, where rows of columns pass nodes at once
+    CHECK(apart <
+          0.07 * kSpacing);  // twice the 0.035 of the bar along the grid, where rows of columns pass nodes at once
     CHECK(neighbours.torn(flow, 3.0 * kSpacing).all == 0);
 }

@@ -34,8 +34,9 @@ std::vector<Row> first_rows() {
 }  // namespace
 
 TEST_CASE("The first grids of the verification table give the figures that stand there", "[verify]") {
-    constexpr Index kQuick = 600000;     // steps of a particle
-    constexpr double kTolerance = 0.05;  // of `frana verify --against`: another compiler's round-off, grown by splitting
+    constexpr Index kQuick = 600000;  // steps of a particle
+    constexpr double kTolerance =
+        0.05;  // of `frana verify --against`: another compiler's round-off, grown by splitting
     int run = 0;
     for (const Row& row : first_rows()) {
         if (row.particles * row.steps > kQuick) continue;

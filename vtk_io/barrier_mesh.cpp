@@ -41,17 +41,17 @@ using Path = std::filesystem::path;
 using Triangle = std::array<vtkIdType, 3>;
 
 UserError unreadable(const Path& file) {
-    return UserError(fmt::format("{}: cannot be read as a mesh; expected triangles in a {} file: write it "
-                                 "again from the program that made it",
-                                 file.string(), file.extension().string()));
+    return UserError(
+        fmt::format("{}: cannot be read as a mesh; expected triangles in a {} file: write it "
+                    "again from the program that made it",
+                    file.string(), file.extension().string()));
 }
 
 vtkSmartPointer<vtkPolyData> read_stl(const Path& file) {
     bool complained = false;
     vtkNew<vtkCallbackCommand> listener;
     listener->SetClientData(&complained);
-    listener->SetCallback(
-        [](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
+    listener->SetCallback([](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
     vtkNew<vtkSTLReader> reader;
     for (const char* event : {"ErrorEvent", "WarningEvent"}) {
         reader->AddObserver(event, listener);
@@ -78,9 +78,8 @@ vtkSmartPointer<vtkPolyData> read_any(const Path& file) {
     if (kind == ".stl") return read_stl(file);
     if (kind == ".obj") return read_obj(file);
     if (kind == ".vtp") return read_vtp(file);
-    throw UserError(
-        fmt::format("{}: a mesh of the kind '{}' is not known; expected .stl, .vtp or .obj: convert it",
-                    file.string(), kind));
+    throw UserError(fmt::format("{}: a mesh of the kind '{}' is not known; expected .stl, .vtp or .obj: convert it",
+                                file.string(), kind));
 }
 
 /// Throws UserError with what VTK's filters would die of, or take for something else.
@@ -92,9 +91,10 @@ void require_valid(const Path& file, vtkPolyData* mesh) {
             fault = fmt::format("point {}, counted from 0, is at no place ({}, {}, {})", n, x.x(), x.y(), x.z());
     }
     if (!fault.empty())
-        throw UserError(fmt::format("{}: {}; expected a closed surface of triangles: write the mesh again from the "
-                                    "program that made it",
-                                    file.string(), fault));
+        throw UserError(
+            fmt::format("{}: {}; expected a closed surface of triangles: write the mesh again from the "
+                        "program that made it",
+                        file.string(), fault));
 }
 
 /// Triangles only, with one point at each place: files may repeat it for every triangle.
@@ -112,8 +112,7 @@ vtkSmartPointer<vtkPolyData> read_triangles(const Path& file) {
     vtkSmartPointer<vtkPolyData> mesh = clean->GetOutput();
     mesh->GetPointData()->Initialize();
     if (mesh->GetNumberOfPolys() == 0)
-        throw UserError(
-            fmt::format("{}: the mesh has no triangles; expected a closed surface", file.string()));
+        throw UserError(fmt::format("{}: the mesh has no triangles; expected a closed surface", file.string()));
     return mesh;
 }
 
@@ -186,9 +185,9 @@ void require_simple(const Path& file, vtkPolyData* mesh, const std::vector<Trian
             for (std::size_t k = 0; k < 3; ++k) mesh->GetPoint(triangles[b][k], corner[3 + k]);
             int coplanar = 0;
             double one[3], two[3], surface[2];
-            if (vtkIntersectionPolyDataFilter::TriangleTriangleIntersection(
-                    corner[0], corner[1], corner[2], corner[3], corner[4], corner[5], coplanar, one, two,
-                    surface, 1e-9) != 0 &&
+            if (vtkIntersectionPolyDataFilter::TriangleTriangleIntersection(corner[0], corner[1], corner[2], corner[3],
+                                                                            corner[4], corner[5], coplanar, one, two,
+                                                                            surface, 1e-9) != 0 &&
                 coplanar == 0)
                 throw UserError(
                     fmt::format("{}: the mesh cuts through itself at {}; expected a surface that does "
@@ -227,10 +226,11 @@ void require_volume(const Path& file, vtkPolyData* mesh, const std::vector<Trian
     for (const auto& [start, part] : parts) {
         const double thickness = part.area2 > 0.0 ? 2.0 / 3.0 * std::abs(part.volume6) / part.area2 : 0.0;
         if (!(thickness > kRoundOff * part.box.diagonal().norm()))
-            throw UserError(fmt::format("{}: the part of the mesh at {} has two sides and nothing between them; "
-                                        "expected a solid: give it a thickness, or give the wall as a line with a "
-                                        "height",
-                                        file.string(), place_of(point_of(mesh, start))));
+            throw UserError(
+                fmt::format("{}: the part of the mesh at {} has two sides and nothing between them; "
+                            "expected a solid: give it a thickness, or give the wall as a line with a "
+                            "height",
+                            file.string(), place_of(point_of(mesh, start))));
     }
 }
 
@@ -239,8 +239,7 @@ double volume6(vtkPolyData* mesh, const std::vector<Triangle>& triangles) {
     const Vec3 from = point_of(mesh, 0);
     double sum = 0.0;
     for (const Triangle& t : triangles)
-        sum += (point_of(mesh, t[0]) - from)
-                   .dot((point_of(mesh, t[1]) - from).cross(point_of(mesh, t[2]) - from));
+        sum += (point_of(mesh, t[0]) - from).dot((point_of(mesh, t[1]) - from).cross(point_of(mesh, t[2]) - from));
     return sum;
 }
 
@@ -248,8 +247,7 @@ TriangleMesh turned_outwards(vtkPolyData* read, const std::vector<Triangle>& tri
     const bool inwards = volume6(read, triangles) < 0.0;
     TriangleMesh mesh;
     for (vtkIdType n = 0; n < read->GetNumberOfPoints(); ++n) mesh.points.emplace_back(point_of(read, n));
-    for (const Triangle& t : triangles)
-        mesh.triangles.push_back({t[0], inwards ? t[2] : t[1], inwards ? t[1] : t[2]});
+    for (const Triangle& t : triangles) mesh.triangles.push_back({t[0], inwards ? t[2] : t[1], inwards ? t[1] : t[2]});
     return mesh;
 }
 
@@ -299,9 +297,10 @@ static DistanceField distances_of(const Path& file, const MeshSampling& sampling
                         1e-6 * static_cast<double>(field.distance.size()), sampling.spacing));
     measure_distances(turned_outwards(mesh, triangles), field);
     if (std::none_of(field.distance.begin(), field.distance.end(), [](double d) { return d < 0.0; }))
-        throw UserError(fmt::format("{}: the mesh is thinner than the {:.6g} m between the nodes of its distances; expected a "
-                                    "solid of a cell at least: take finer cells, or give the wall as a line with a height",
-                                    file.string(), sampling.spacing));
+        throw UserError(
+            fmt::format("{}: the mesh is thinner than the {:.6g} m between the nodes of its distances; expected a "
+                        "solid of a cell at least: take finer cells, or give the wall as a line with a height",
+                        file.string(), sampling.spacing));
     field.origin += sampling.origin;
     return field;
 }

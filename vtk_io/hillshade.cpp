@@ -63,8 +63,7 @@ Stencil stencil_at(double place, Index count, Between between) {
     const double p = smooth ? place : std::clamp(place, 0.0, last);
     const auto base = static_cast<Index>(std::floor(p));
     const double t = p - static_cast<double>(base);
-    for (Index k = 0; k < 4; ++k)
-        s.node[static_cast<std::size_t>(k)] = std::clamp<Index>(base + k - 1, 0, count - 1);
+    for (Index k = 0; k < 4; ++k) s.node[static_cast<std::size_t>(k)] = std::clamp<Index>(base + k - 1, 0, count - 1);
     if (smooth) {
         s.weight = {(1.0 - t) * (1.0 - t) * (1.0 - t) / 6.0, (4.0 + t * t * (-6.0 + 3.0 * t)) / 6.0,
                     (1.0 + t * (3.0 + t * (3.0 - 3.0 * t))) / 6.0, t * t * t / 6.0};
@@ -192,8 +191,7 @@ ReliefGrey::ReliefGrey(const std::vector<float>& shade) {
         if (!std::isnan(shade[i])) some.push_back(shade[i]);
     if (some.empty()) return;
     const auto percentile = [&](double share) {
-        const auto place =
-            some.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(some.size() - 1));
+        const auto place = some.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(some.size() - 1));
         std::nth_element(some.begin(), place, some.end());
         return static_cast<double>(*place);
     };

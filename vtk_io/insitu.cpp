@@ -111,8 +111,7 @@ auto filtered(Filter* filter, vtkDataSet* data) {
 
 class CellThreshold final : public InsituWork {
 public:
-    CellThreshold(const std::filesystem::path& folder, const std::string& name, std::string field,
-                  const Interval& kept)
+    CellThreshold(const std::filesystem::path& folder, const std::string& name, std::string field, const Interval& kept)
         : series_(folder, name, ".vtu"), field_(std::move(field)), kept_(kept) {}
 
     void sample(const Frame& frame, Index number) override {

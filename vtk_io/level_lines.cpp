@@ -55,8 +55,7 @@ Vec2 point_at(const std::vector<Vec2>& line, const std::vector<double>& arc, dou
 }
 
 /// The stretch of the line between two distances.
-std::vector<Vec2> part_of(const std::vector<Vec2>& line, const std::vector<double>& arc, double from,
-                          double to) {
+std::vector<Vec2> part_of(const std::vector<Vec2>& line, const std::vector<double>& arc, double from, double to) {
     std::vector<Vec2> part{point_at(line, arc, from)};
     for (std::size_t i = 0; i < line.size(); ++i)
         if (arc[i] > from && arc[i] < to) part.push_back(line[i]);
@@ -112,8 +111,7 @@ LabelledLine with_label(const std::vector<Vec2>& line, double label_width,
     if (result.angle <= -90.0) result.angle += 180.0;
     result.labelled = true;
     result.at = point_at(line, arc, best);
-    result.pieces = {part_of(line, arc, 0.0, best - 0.5 * gap),
-                     part_of(line, arc, best + 0.5 * gap, arc.back())};
+    result.pieces = {part_of(line, arc, 0.0, best - 0.5 * gap), part_of(line, arc, best + 0.5 * gap, arc.back())};
     return result;
 }
 

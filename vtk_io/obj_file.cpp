@@ -53,8 +53,7 @@ void add_face(const Place& place, std::istringstream& words, vtkIdType points, v
             place.refuse(fmt::format("found \"{}\" in a face", word), "numbers of points, from 1");
         corners.push_back(number > 0 ? number - 1 : points + number);
     }
-    if (corners.size() < 3)
-        place.refuse(fmt::format("found a face of {} points", corners.size()), "at least three");
+    if (corners.size() < 3) place.refuse(fmt::format("found a face of {} points", corners.size()), "at least three");
     faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
 }
 

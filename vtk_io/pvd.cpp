@@ -15,11 +15,9 @@
 namespace frana {
 
 void write_pvd(const std::filesystem::path& pvd, const std::vector<PvdEntry>& entries) {
-    std::string text =
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
+    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
     for (const PvdEntry& entry : entries)
-        text +=
-            fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time, entry.file);
+        text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time, entry.file);
     write_text(pvd, text + "  </Collection>\n</VTKFile>\n");
 }
 
@@ -33,8 +31,7 @@ std::vector<PvdEntry> read_pvd(const std::filesystem::path& pvd) {
         vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(pvd.string().c_str()));
     vtkXMLDataElement* collection = root ? root->FindNestedElementWithName("Collection") : nullptr;
     if (!collection)
-        throw UserError(
-            fmt::format("{}: is not a ParaView collection (.pvd); run the case again", pvd.string()));
+        throw UserError(fmt::format("{}: is not a ParaView collection (.pvd); run the case again", pvd.string()));
     std::vector<PvdEntry> entries;
     for (int k = 0; k < collection->GetNumberOfNestedElements(); ++k) {
         vtkXMLDataElement* line = collection->GetNestedElement(k);
@@ -79,8 +76,10 @@ void PvdSeries::serialize(Archive& archive) {
     entries_.clear();
     for (std::size_t i = 0; i < files.size(); ++i) entries_.push_back({times.at(i), files[i]});
     take_back_others();
-    if (!entries_.empty()) write_pvd(pvd_, entries_);
-    else std::filesystem::remove(pvd_);
+    if (!entries_.empty())
+        write_pvd(pvd_, entries_);
+    else
+        std::filesystem::remove(pvd_);
 }
 
 /// The folder holds the files of the list and no other of the series.
@@ -89,9 +88,10 @@ void PvdSeries::take_back_others() const {
     std::set<std::string> listed;
     for (const PvdEntry& entry : entries_) {
         if (!fs::exists(pvd_.parent_path() / entry.file))
-            throw UserError(fmt::format("{}: not found; expected a file that the run had written when its state was "
-                                        "kept; put it back, or run without --resume",
-                                        (pvd_.parent_path() / entry.file).string()));
+            throw UserError(
+                fmt::format("{}: not found; expected a file that the run had written when its state was "
+                            "kept; put it back, or run without --resume",
+                            (pvd_.parent_path() / entry.file).string()));
         listed.insert(entry.file);
     }
     std::error_code none;  // a folder that is not there holds nothing
@@ -104,8 +104,8 @@ void PvdSeries::take_back_others() const {
 
 void PvdSeries::add(std::int64_t number, double time) {
     const PvdEntry entry{time, relative(number)};
-    const auto same = std::find_if(entries_.begin(), entries_.end(),
-                                   [&](const PvdEntry& other) { return other.file == entry.file; });
+    const auto same =
+        std::find_if(entries_.begin(), entries_.end(), [&](const PvdEntry& other) { return other.file == entry.file; });
     if (same == entries_.end())
         entries_.push_back(entry);
     else

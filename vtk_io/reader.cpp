@@ -1,13 +1,13 @@
 #include "vtk_io/reader.h"
 
 #include <fmt/core.h>
-#include <vtkDataArray.h>
-#include <vtkDataSetAttributes.h>
 #include <vtkCell.h>
 #include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
-#include <vtkImageData.h>
 #include <vtkIdList.h>
+#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -27,8 +27,7 @@ namespace {
 
 /// Runs a VTK reader on a file, turning its complaints into a UserError.
 void read_file(vtkXMLReader* reader, const std::filesystem::path& file) {
-    const UserError unreadable(
-        fmt::format("{}: cannot be read as a VTK file; run the case again", file.string()));
+    const UserError unreadable(fmt::format("{}: cannot be read as a VTK file; run the case again", file.string()));
     if (!std::filesystem::exists(file)) throw UserError(file.string() + ": not found; run the case again");
     if (!read_xml(reader, file)) throw unreadable;
 }
@@ -55,8 +54,7 @@ void take_columns(vtkDataSet* data, Loaded& loaded, std::map<std::string, std::v
     vtkPointData* arrays = data->GetPointData();
     for (int k = 0; k < arrays->GetNumberOfArrays(); ++k) {
         vtkDataArray* array = arrays->GetArray(k);
-        if (!array || !array->GetName() ||
-            array->GetName() == std::string(vtkDataSetAttributes::GhostArrayName()))
+        if (!array || !array->GetName() || array->GetName() == std::string(vtkDataSetAttributes::GhostArrayName()))
             continue;
         columns[array->GetName()] = numbers_of(array);
         loaded.components[array->GetName()] = array->GetNumberOfComponents();
@@ -105,9 +103,8 @@ std::pair<PvdEntry, Index> entry_of(const std::filesystem::path& pvd, Index numb
     const auto count = static_cast<Index>(entries.size());
     const Index k = number < 0 ? count + number : number;
     if (k < 0 || k >= count)
-        throw UserError(
-            fmt::format("{}: has no frame {}; it has {} frames, ask for 0 to {} or -1 for the last one",
-                        pvd.string(), number, count, count - 1));
+        throw UserError(fmt::format("{}: has no frame {}; it has {} frames, ask for 0 to {} or -1 for the last one",
+                                    pvd.string(), number, count, count - 1));
     return {entries[static_cast<std::size_t>(k)], k};
 }
 
@@ -115,14 +112,11 @@ std::pair<PvdEntry, Index> entry_of(const std::filesystem::path& pvd, Index numb
 
 std::vector<double> frame_times(const std::filesystem::path& run_dir) { return times_in(run_dir / "grid.pvd"); }
 
-std::vector<double> particle_times(const std::filesystem::path& run_dir) {
-    return times_in(run_dir / "particles.pvd");
-}
+std::vector<double> particle_times(const std::filesystem::path& run_dir) { return times_in(run_dir / "particles.pvd"); }
 
 Index nearest_frame(const std::filesystem::path& run_dir, double time) {
     const auto times = frame_times(run_dir);
-    if (times.empty())
-        throw UserError((run_dir / "grid.pvd").string() + ": lists no frame; run the case again");
+    if (times.empty()) throw UserError((run_dir / "grid.pvd").string() + ": lists no frame; run the case again");
     std::size_t nearest = 0;
     for (std::size_t k = 1; k < times.size(); ++k)
         if (std::abs(times[k] - time) < std::abs(times[nearest] - time)) nearest = k;

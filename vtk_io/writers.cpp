@@ -32,8 +32,7 @@ private:
 
 class GridWriter final : public Observer {
 public:
-    explicit GridWriter(const std::filesystem::path& run_dir)
-        : series_(run_dir / "grid.pvd", "grid", ".vti") {}
+    explicit GridWriter(const std::filesystem::path& run_dir) : series_(run_dir / "grid.pvd", "grid", ".vti") {}
 
     std::string name() const override { return "vtk grid"; }
 

@@ -21,8 +21,7 @@ namespace {
 using Place = std::array<double, 3>;
 
 Place moved(const Place& from, const Place& right, double a, const Place& up, double b) {
-    return {from[0] + a * right[0] + b * up[0], from[1] + a * right[1] + b * up[1],
-            from[2] + a * right[2] + b * up[2]};
+    return {from[0] + a * right[0] + b * up[0], from[1] + a * right[1] + b * up[1], from[2] + a * right[2] + b * up[2]};
 }
 
 double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -68,13 +67,12 @@ private:
             const double area = face.size * face.size;
             for (Index b = 0; b < face.count[1]; ++b)
                 for (Index a = 0; a < face.count[0]; ++a, ++n) {
-                    const double u = face.size * static_cast<double>(a),
-                                 v = face.size * static_cast<double>(b);
+                    const double u = face.size * static_cast<double>(a), v = face.size * static_cast<double>(b);
                     cells->InsertNextCell(4);
                     for (const auto& [du, dv] :
                          {std::pair{0.0, 0.0}, {face.size, 0.0}, {face.size, face.size}, {0.0, face.size}})
-                        cells->InsertCellPoint(points->InsertNextPoint(
-                            moved(face.corner, face.right, u + du, face.up, v + dv).data()));
+                        cells->InsertCellPoint(
+                            points->InsertNextPoint(moved(face.corner, face.right, u + du, face.up, v + dv).data()));
                     if (before_.size() <= n) before_.push_back(0.0), peak_.push_back(0.0);
                     const Place& given = face.impulse[static_cast<std::size_t>(b * face.count[0] + a)];
                     const double push = std::abs(dot(given, normal));

@@ -46,8 +46,7 @@ public:
         for (const ProfileLine& line : lines_) sampled.push_back(along(line, frame));
         if (first_.empty()) first_ = surfaces_of(sampled);
         for (std::size_t k = 0; k < sampled.size(); ++k)
-            for (std::size_t row = 0; row < sampled[k].rows.size(); ++row)
-                sampled[k].rows[row][4] = first_[k][row];
+            for (std::size_t row = 0; row < sampled[k].rows.size(); ++row) sampled[k].rows[row][4] = first_[k][row];
         const auto data = polydata_of(sampled);
         add_time(data->GetFieldData(), frame.status.time);
         vtkNew<vtkXMLPolyDataWriter> writer;
@@ -93,8 +92,7 @@ private:
             names->InsertNextValue(lines_[k].name);
             if (sampled[k].points.size() < 2) continue;
             cells->InsertNextCell(static_cast<int>(sampled[k].points.size()));
-            for (const auto& p : sampled[k].points)
-                cells->InsertCellPoint(points->InsertNextPoint(p.data()));
+            for (const auto& p : sampled[k].points) cells->InsertCellPoint(points->InsertNextPoint(p.data()));
             profile->InsertNextValue(static_cast<int>(k));
         }
         data->SetPoints(points);

@@ -29,8 +29,7 @@ Vec2 gradient(const Raster& bed, Index i, Index j) {
         return inside ? bed.at(a, b) : Raster::nodata;
     };
     const double here = bed.at(i, j), cell = bed.geometry.cell;
-    return {difference(z(i - 1, j), here, z(i + 1, j), cell),
-            difference(z(i, j - 1), here, z(i, j + 1), cell)};
+    return {difference(z(i - 1, j), here, z(i + 1, j), cell), difference(z(i, j - 1), here, z(i, j + 1), cell)};
 }
 
 }  // namespace

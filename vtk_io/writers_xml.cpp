@@ -55,8 +55,7 @@ vtkSmartPointer<vtkDataArray> to_vtk(const Field& field, const std::vector<std::
     }
     array->SetName(field.name.c_str());
     const auto names = component_names(field);
-    for (std::size_t c = 0; c < names.size(); ++c)
-        array->SetComponentName(static_cast<vtkIdType>(c), names[c].c_str());
+    for (std::size_t c = 0; c < names.size(); ++c) array->SetComponentName(static_cast<vtkIdType>(c), names[c].c_str());
     return array;
 }
 
@@ -87,8 +86,7 @@ void hide_nodes(vtkImageData* image, const std::vector<std::uint8_t>& outside) {
     vtkNew<vtkUnsignedCharArray> marks, ghosts;
     marks->SetName("outside");
     ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-    for (auto* array : {marks.Get(), ghosts.Get()})
-        array->SetNumberOfTuples(static_cast<vtkIdType>(outside.size()));
+    for (auto* array : {marks.Get(), ghosts.Get()}) array->SetNumberOfTuples(static_cast<vtkIdType>(outside.size()));
     for (std::size_t k = 0; k < outside.size(); ++k) {
         const unsigned char ghost = vtkDataSetAttributes::HIDDENPOINT;
         marks->SetValue(static_cast<vtkIdType>(k), outside[k]);

@@ -22,8 +22,8 @@ namespace {
 
 /// VTK 9.1 dies of an array whose type it does not know.
 bool knows_type_in(std::string_view tag) {
-    constexpr std::array<std::string_view, 12> kTypes = {"Float32", "Float64", "Int8",   "UInt8",  "Int16",  "UInt16",
-                                                         "Int32",   "UInt32",  "Int64",  "UInt64", "String", "Bit"};
+    constexpr std::array<std::string_view, 12> kTypes = {"Float32", "Float64", "Int8",  "UInt8",  "Int16",  "UInt16",
+                                                         "Int32",   "UInt32",  "Int64", "UInt64", "String", "Bit"};
     const std::string_view key = " type=\"";
     const std::size_t found = tag.find(key);
     if (found == tag.npos) return false;
@@ -52,8 +52,7 @@ bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file) {
     bool complained = false;
     vtkNew<vtkCallbackCommand> listener;
     listener->SetClientData(&complained);
-    listener->SetCallback(
-        [](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
+    listener->SetCallback([](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
     for (const char* event : {"ErrorEvent", "WarningEvent"}) {
         reader->AddObserver(event, listener);
         reader->GetExecutive()->AddObserver(event, listener);

@@ -55,9 +55,10 @@ void cut_back(const std::filesystem::path& file, std::uintmax_t bytes) {
         throw UserError(fmt::format("{}: cannot be continued: {}; put it back, or run without --resume", file.string(),
                                     failure.message()));
     if (found < bytes)
-        throw UserError(fmt::format("{}: found {} bytes; expected at least the {} that it had when the state was kept; "
-                                    "put it back, or run without --resume",
-                                    file.string(), found, bytes));
+        throw UserError(
+            fmt::format("{}: found {} bytes; expected at least the {} that it had when the state was kept; "
+                        "put it back, or run without --resume",
+                        file.string(), found, bytes));
     std::filesystem::resize_file(file, bytes, failure);
     if (failure)
         throw UserError(fmt::format("{}: cannot be cut back to {} bytes: {}; check the file's permissions",
@@ -75,9 +76,10 @@ void write_text(const std::filesystem::path& target, const std::string& text) {
             stream.write(text.data() + at, static_cast<std::streamsize>(std::min(kPiece, text.size() - at)));
         stream.flush();
         if (!stream)
-            throw UserError(fmt::format("{}: cannot be written; check that the folder exists, its permissions and "
-                                        "free space",
-                                        target.string()));
+            throw UserError(
+                fmt::format("{}: cannot be written; check that the folder exists, its permissions and "
+                            "free space",
+                            target.string()));
     }
     file.commit();
 }

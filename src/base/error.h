@@ -18,7 +18,9 @@ public:
     const std::vector<std::string>& problems() const { return problems_; }
 
 private:
-    struct Lines { std::vector<std::string> all; };
+    struct Lines {
+        std::vector<std::string> all;
+    };
     explicit UserError(const Lines& lines) : std::runtime_error(joined(lines.all)), problems_(lines.all) {}
 
     static std::vector<std::string> in_lines(std::vector<std::string> problems) {

@@ -27,22 +27,28 @@ typedef std::int32_t Int4 __attribute__((vector_size(16)));
     return value;
 }
 [[gnu::always_inline]] inline void store(double* p, Double4 value, int lanes) {
-    if (lanes == 4) store(p, value);
-    else std::memcpy(p, &value, sizeof(double) * static_cast<std::size_t>(lanes));
+    if (lanes == 4)
+        store(p, value);
+    else
+        std::memcpy(p, &value, sizeof(double) * static_cast<std::size_t>(lanes));
 }
 
 /// The same for numbers that memory holds in single precision.
 typedef float Float4 __attribute__((vector_size(16)));
 [[gnu::always_inline]] inline Double4 load(const float* p, int lanes) {
     Float4 value = {};
-    if (lanes == 4) std::memcpy(&value, p, sizeof value);
-    else std::memcpy(&value, p, sizeof(float) * static_cast<std::size_t>(lanes));
+    if (lanes == 4)
+        std::memcpy(&value, p, sizeof value);
+    else
+        std::memcpy(&value, p, sizeof(float) * static_cast<std::size_t>(lanes));
     return __builtin_convertvector(value, Double4);
 }
 [[gnu::always_inline]] inline void store(float* p, Double4 value, int lanes) {
     const Float4 narrow = __builtin_convertvector(value, Float4);
-    if (lanes == 4) std::memcpy(p, &narrow, sizeof narrow);
-    else std::memcpy(p, &narrow, sizeof(float) * static_cast<std::size_t>(lanes));
+    if (lanes == 4)
+        std::memcpy(p, &narrow, sizeof narrow);
+    else
+        std::memcpy(p, &narrow, sizeof(float) * static_cast<std::size_t>(lanes));
 }
 
 /// A pair of numbers of one node.
@@ -84,7 +90,9 @@ template <class Real>
     return (m[0] | m[1]) != 0;
 }
 [[gnu::always_inline]] inline double sum(Double4 a) { return (a[0] + a[1]) + (a[2] + a[3]); }
-[[gnu::always_inline]] inline double largest(Double4 a) { return std::fmax(std::fmax(a[0], a[1]), std::fmax(a[2], a[3])); }
+[[gnu::always_inline]] inline double largest(Double4 a) {
+    return std::fmax(std::fmax(a[0], a[1]), std::fmax(a[2], a[3]));
+}
 
 /// Largest integer not above a.
 [[gnu::always_inline]] inline Double4 floor(Double4 a) {

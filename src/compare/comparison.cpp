@@ -31,8 +31,7 @@ public:
         choose_path();
         result_.outline = pixel_outline(*run_.peak_depth, run_.limit);
         result_.trace = scores(*run_.peak_depth, result_.outline);
-        if (run_.final_depth)
-            result_.final = scores(*run_.final_depth, pixel_outline(*run_.final_depth, run_.limit));
+        if (run_.final_depth) result_.final = scores(*run_.final_depth, pixel_outline(*run_.final_depth, run_.limit));
         if (!result_.path.empty()) {
             result_.surveyed_runout = reach_along(result_.path, rings_, result_.cell);
             result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
@@ -92,9 +91,10 @@ private:
     void make_remarks() {
         const Overlap& areas = result_.trace.areas;
         if (areas.missed_outside > 0.0)
-            remark("{:.6g} m2 of the survey ({:.3g} %) lie outside the run's terrain and count as missed; widen the "
-                   "elevation model or terrain.window",
-                   areas.missed_outside, 100.0 * areas.missed_outside / areas.surveyed());
+            remark(
+                "{:.6g} m2 of the survey ({:.3g} %) lie outside the run's terrain and count as missed; widen the "
+                "elevation model or terrain.window",
+                areas.missed_outside, 100.0 * areas.missed_outside / areas.surveyed());
         if (!(areas.simulated() > 0.0)) remark("nothing was ever deeper than {:.6g} m", run_.limit);
         const double length = length_of(result_.path);
         const double farthest = std::fmax(result_.surveyed_runout, result_.trace.runout);
@@ -104,9 +104,10 @@ private:
         if (!result_.deposit) return;
         const DepositErrors& deposit = *result_.deposit;
         if (deposit.unsurveyed_volume > 0.0)
-            remark("{:.6g} m3 of the simulated deposit lie where {} has no data and are in none of its errors; if no "
-                   "data means no deposit there, write zeros",
-                   deposit.unsurveyed_volume, result_.deposit_source);
+            remark(
+                "{:.6g} m3 of the simulated deposit lie where {} has no data and are in none of its errors; if no "
+                "data means no deposit there, write zeros",
+                deposit.unsurveyed_volume, result_.deposit_source);
         if (deposit.negative > 0)
             remark("{} pixels of {} are below zero and are taken as they are", deposit.negative,
                    result_.deposit_source);
@@ -119,9 +120,10 @@ private:
         const double straight = result_.trace.reach - result_.surveyed_reach;
         constexpr double noticeable = 5.0;  // cells; outlines of pixels are good to one
         if (std::abs(along - straight) > noticeable * result_.cell)
-            remark("the steepest path may turn away from the fronts: they differ by {:+.4g} m along it, but by {:+.4g} "
-                   "m straight from the release; give the track of the flow with --path",
-                   along, straight);
+            remark(
+                "the steepest path may turn away from the fronts: they differ by {:+.4g} m along it, but by {:+.4g} "
+                "m straight from the release; give the track of the flow with --path",
+                along, straight);
     }
 
     const SimulatedRun& run_;

@@ -21,17 +21,17 @@ struct SimulatedRun {
 
 /// What was surveyed.
 struct Survey {
-    Polygons footprint;            ///< polygons that do not overlap
-    std::optional<Polyline> path;  ///< for the runout; nothing: the steepest one from the release
-    std::optional<Raster> deposit; ///< thickness [m] on pixels of the run, maybe more around them
-    std::string path_source;       ///< file of the path
-    std::string deposit_source;    ///< file of the thickness
+    Polygons footprint;             ///< polygons that do not overlap
+    std::optional<Polyline> path;   ///< for the runout; nothing: the steepest one from the release
+    std::optional<Raster> deposit;  ///< thickness [m] on pixels of the run, maybe more around them
+    std::string path_source;        ///< file of the path
+    std::string deposit_source;     ///< file of the thickness
 };
 
 /// Scores of one simulated extent.
 struct ExtentScores {
     Overlap areas;
-    OutlineDistance boundary;  ///< NaN when nothing was simulated
+    OutlineDistance boundary;        ///< NaN when nothing was simulated
     double runout = Raster::nodata;  ///< along the path [m]; NaN without path or extent
     double reach = Raster::nodata;   ///< straight from the path's start to the farthest point of the extent [m]
 };

@@ -26,8 +26,8 @@ private:
     Vec2 low_{0, 0};
     double size_ = 1.0;  ///< of a bucket; no piece is longer [m]
     Index nx_ = 1, ny_ = 1;
-    std::vector<Piece> pieces_;         ///< by bucket
-    std::vector<std::size_t> first_;    ///< of each bucket, and the end
+    std::vector<Piece> pieces_;       ///< by bucket
+    std::vector<std::size_t> first_;  ///< of each bucket, and the end
 };
 
 }  // namespace frana

@@ -13,9 +13,7 @@ std::vector<double> pixel_edges(double first_node, double cell, Index count) {
 
 }  // namespace
 
-double Overlap::area_difference_percent() const {
-    return 100.0 * std::abs(simulated() - surveyed()) / surveyed();
-}
+double Overlap::area_difference_percent() const { return 100.0 * std::abs(simulated() - surveyed()) / surveyed(); }
 
 void for_each_pixel_area(const GridGeometry& grid, const Rings& rings,
                          const std::function<void(Index i, Index j, double area)>& body) {

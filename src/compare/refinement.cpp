@@ -54,15 +54,15 @@ std::vector<Difference> differences(const CellFigures& run, const CellFigures& f
         return Difference{change <= rule.peaks, fmt::format("the peak {} differs by {:.2g} %", name, 100.0 * change),
                           fmt::format("{:g} % at most", 100.0 * rule.peaks)};
     };
-    return {{runout <= most_runout, fmt::format("the runout differs by {:.3g} m", runout),
-             fmt::format("{:g} m at most", most_runout)},
-            {run.iou >= rule.iou, fmt::format("the footprints' IoU is {:.3f}", run.iou),
-             fmt::format("{:g} or more", rule.iou)},
-            {run.elsewhere <= rule.elsewhere,
-             fmt::format("{:.2g} % of the deposit lies elsewhere", 100.0 * run.elsewhere),
-             fmt::format("{:g} % at most", 100.0 * rule.elsewhere)},
-            peak("depth", depth),
-            peak("speed", speed)};
+    return {
+        {runout <= most_runout, fmt::format("the runout differs by {:.3g} m", runout),
+         fmt::format("{:g} m at most", most_runout)},
+        {run.iou >= rule.iou, fmt::format("the footprints' IoU is {:.3f}", run.iou),
+         fmt::format("{:g} or more", rule.iou)},
+        {run.elsewhere <= rule.elsewhere, fmt::format("{:.2g} % of the deposit lies elsewhere", 100.0 * run.elsewhere),
+         fmt::format("{:g} % at most", 100.0 * rule.elsewhere)},
+        peak("depth", depth),
+        peak("speed", speed)};
 }
 
 bool agree(const CellFigures& run, const CellFigures& finest, const ConvergenceRule& rule) {
@@ -172,12 +172,13 @@ std::string spread_sentence(const std::string& key, const std::vector<double>& v
     }
     const double spread = runout_spread(runs);
     const bool agrees = spread <= rule.runout_cells;
-    return fmt::format("With {} of {} on cells of {:g} m the runouts lie {:.2g} cells apart{}; up to {:.2g} % of the deposit "
-                       "lies elsewhere, and the footprints' IoU is {:.3f} or more.",
-                       key, listed(names), runs.front().cell, spread,
-                       agrees ? "" : fmt::format(" (expected {:g} at most: so far the answer hangs on this choice)",
-                                                 rule.runout_cells),
-                       100.0 * elsewhere, iou);
+    return fmt::format(
+        "With {} of {} on cells of {:g} m the runouts lie {:.2g} cells apart{}; up to {:.2g} % of the deposit "
+        "lies elsewhere, and the footprints' IoU is {:.3f} or more.",
+        key, listed(names), runs.front().cell, spread,
+        agrees ? ""
+               : fmt::format(" (expected {:g} at most: so far the answer hangs on this choice)", rule.runout_cells),
+        100.0 * elsewhere, iou);
 }
 
 Verdict judge(const std::vector<CellFigures>& runs, const ConvergenceRule& rule) {

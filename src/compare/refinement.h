@@ -11,18 +11,18 @@ namespace frana {
 
 /// What a run on one cell says. NaN: not known.
 struct CellFigures {
-    double cell = 0.0;            ///< [m]
-    double runout = 0.0;          ///< horizontal, along the path that all runs share [m]
-    double reach = 0.0;           ///< straight from the path's start to the farthest point [m]
-    double footprint_area = 0.0;  ///< [m2]
-    double deposit_area = 0.0;    ///< [m2]
-    double deposit_volume = 0.0;  ///< [m3]
+    double cell = 0.0;                             ///< [m]
+    double runout = 0.0;                           ///< horizontal, along the path that all runs share [m]
+    double reach = 0.0;                            ///< straight from the path's start to the farthest point [m]
+    double footprint_area = 0.0;                   ///< [m2]
+    double deposit_area = 0.0;                     ///< [m2]
+    double deposit_volume = 0.0;                   ///< [m3]
     double peak_depth = 0.0, largest_depth = 0.0;  ///< 99.9 % of the footprint is less deep, and the maximum [m]
     double peak_speed = 0.0, largest_speed = 0.0;  ///< the same of the speed [m/s]
-    double iou = 1.0;             ///< of its footprint with the finest one
-    double elsewhere = 0.0;       ///< share of its deposit's volume that lies elsewhere than the finest one
-    double cells_across = 0.0;    ///< the flow's median width
-    double seconds = 0.0;         ///< wall time
+    double iou = 1.0;                              ///< of its footprint with the finest one
+    double elsewhere = 0.0;     ///< share of its deposit's volume that lies elsewhere than the finest one
+    double cells_across = 0.0;  ///< the flow's median width
+    double seconds = 0.0;       ///< wall time
 };
 
 /// The value that a share of the nodes deeper than `limit` stays at or below; NaN where there are none.

@@ -15,7 +15,7 @@ struct Neighbour {
     double distance;  ///< in cells
 };
 constexpr double diagonal = 1.4142135623730951;
-constexpr Neighbour neighbours[] = {{1, 0, 1.0},        {-1, 0, 1.0},        {0, 1, 1.0},         {0, -1, 1.0},
+constexpr Neighbour neighbours[] = {{1, 0, 1.0},      {-1, 0, 1.0},      {0, 1, 1.0},       {0, -1, 1.0},
                                     {1, 1, diagonal}, {1, -1, diagonal}, {-1, 1, diagonal}, {-1, -1, diagonal}};
 
 /// Water on a raster: where it runs from each node.

@@ -36,7 +36,8 @@ bool near_box(const std::pair<Vec3, Vec3>& box, const Vec2& place, double margin
 }
 
 /// Whether a place is within `distance` of a barrier in plan, below its top: the box of a bent wall holds far more.
-bool stands_near(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec3& x, double distance, double cell) {
+bool stands_near(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const Vec3& x, double distance,
+                 double cell) {
     if (!near_box(box, x.head<2>(), distance)) return false;
     const double top = barrier.prism ? barrier.prism->top_at(x.head<2>()) : box.second.z();
     const Vec3 foot(x.x(), x.y(), std::min(x.z(), top - cell));
@@ -219,8 +220,7 @@ void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
         for (std::size_t f = 0; f < loads_.barriers[n].faces.size(); ++f) {
             const Face& face = flow.body().ledger.face(surfaces_[n], static_cast<int>(f));
             loads_.barriers[n].faces[f].impulse = -face.impulse;
-            loads_.barriers[n].faces[f].moment =
-                -FaceLedger::moment_about(face, loads_.barriers[n].about - origin);
+            loads_.barriers[n].faces[f].moment = -FaceLedger::moment_about(face, loads_.barriers[n].about - origin);
         }
 }
 
@@ -255,11 +255,9 @@ std::vector<PatchedFace> BarrierWatch::patched(const Mpm3d& flow) const {
             face.size = patches.size, face.count = patches.count;
             for (int k = 0; k < 3; ++k) {
                 const auto c = static_cast<std::size_t>(k);
-                face.corner[c] = patches.origin[k], face.right[c] = patches.right[k],
-                face.up[c] = patches.up[k];
+                face.corner[c] = patches.origin[k], face.right[c] = patches.right[k], face.up[c] = patches.up[k];
             }
-            for (const Vec3& impulse : patches.impulse)
-                face.impulse.push_back({-impulse[0], -impulse[1], -impulse[2]});
+            for (const Vec3& impulse : patches.impulse) face.impulse.push_back({-impulse[0], -impulse[1], -impulse[2]});
         }
     return faces;
 }
@@ -268,8 +266,7 @@ void BarrierWatch::serialize(Archive& archive) {
     const Archive::Part part(archive, "barriers");
     for (std::size_t n = 0; n < over_.size(); ++n) {
         archive.array("over_" + std::to_string(n), over_[n]);
-        archive.numbers("sums_" + std::to_string(n),
-                        {&loads_.barriers[n].run_up, &loads_.barriers[n].overtopped});
+        archive.numbers("sums_" + std::to_string(n), {&loads_.barriers[n].run_up, &loads_.barriers[n].overtopped});
     }
 }
 

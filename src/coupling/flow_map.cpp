@@ -45,16 +45,14 @@ struct Around {
     Around(const GridGeometry& g, double x, double y) : row(g.nx) {
         const double u = std::clamp((x - g.x0) / g.cell, 0.0, static_cast<double>(g.nx - 1));
         const double v = std::clamp((y - g.y0) / g.cell, 0.0, static_cast<double>(g.ny - 1));
-        const Index i = std::min(static_cast<Index>(u), g.nx - 2),
-                    j = std::min(static_cast<Index>(v), g.ny - 2);
+        const Index i = std::min(static_cast<Index>(u), g.nx - 2), j = std::min(static_cast<Index>(v), g.ny - 2);
         first = j * row + i;
         fu = u - static_cast<double>(i), fv = v - static_cast<double>(j);
     }
     template <class Body>
     void each(Body&& body) const {
         for (Index b = 0; b < 2; ++b)
-            for (Index a = 0; a < 2; ++a)
-                body(first + b * row + a, (a ? fu : 1.0 - fu) * (b ? fv : 1.0 - fv));
+            for (Index a = 0; a < 2; ++a) body(first + b * row + a, (a ? fu : 1.0 - fu) * (b ? fv : 1.0 - fv));
     }
 };
 
@@ -120,8 +118,7 @@ void FlowMap::serialize(Archive& archive) {
         }
     archive.array("nodes", all);
     archive.numbers("sums", {&extent_.max_depth, &extent_.max_speed, &extent_.covered_area, &extent_.front});
-    if (all.size() != kNumbers * nodes_.size())
-        Archive::wrong_length("nodes", all.size(), kNumbers * nodes_.size());
+    if (all.size() != kNumbers * nodes_.size()) Archive::wrong_length("nodes", all.size(), kNumbers * nodes_.size());
     if (!archive.loading()) return;
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
         const double* const v = &all[kNumbers * k];

@@ -118,10 +118,11 @@ std::vector<std::string> GrowingColumns::remarks() const {
     std::vector<std::string> all = columns_->remarks();
     const GridGeometry& g = wider_->grid;
     const auto extent = scene_.bed.geometry.pixel_extent();
-    all.push_back(fmt::format(
-        "terrain: {} x {} of {} x {} nodes were needed, x {:.10g} to {:.10g}, y {:.10g} to {:.10g}; files show the part "
-        "that the flow has reached (output.extent)",
-        held_.nx, held_.ny, g.nx, g.ny, extent[0], extent[2], extent[1], extent[3]));
+    all.push_back(
+        fmt::format("terrain: {} x {} of {} x {} nodes were needed, x {:.10g} to {:.10g}, y {:.10g} to {:.10g}; files "
+                    "show the part "
+                    "that the flow has reached (output.extent)",
+                    held_.nx, held_.ny, g.nx, g.ny, extent[0], extent[2], extent[1], extent[3]));
     if (times_grown_ > 0) remark_on_holes(all, scene_.holes, scene_.bed.geometry, !scene_.hole_top, "terrain.dem");
     return all;
 }

@@ -17,8 +17,7 @@ std::pair<double, double> ground_of(const Scene& scene) {
     double low = INFINITY, high = -INFINITY;
     for (Index j = std::max<Index>(0, w[1] - 2); j <= std::min(g.ny - 1, w[3] + 2); ++j)
         for (Index i = std::max<Index>(0, w[0] - 2); i <= std::min(g.nx - 1, w[2] + 2); ++i)
-            if (const double z = scene.bed.at(i, j); std::isfinite(z))
-                low = std::min(low, z), high = std::max(high, z);
+            if (const double z = scene.bed.at(i, j); std::isfinite(z)) low = std::min(low, z), high = std::max(high, z);
     expect(low <= high, "a window has ground");
     return {low, high};
 }
@@ -60,8 +59,8 @@ std::array<double, 4> window_of(const Scene& scene) {
     const GridGeometry& g = scene.bed.geometry;
     const std::array<Index, 4>& w = scene.solid->window;
     const double half = 0.5 * g.cell;
-    return {std::max(g.x0, g.x(w[0]) - half), std::max(g.y0, g.y(w[1]) - half),
-            std::min(g.x_max(), g.x(w[2]) + half), std::min(g.y_max(), g.y(w[3]) + half)};
+    return {std::max(g.x0, g.x(w[0]) - half), std::max(g.y0, g.y(w[1]) - half), std::min(g.x_max(), g.x(w[2]) + half),
+            std::min(g.y_max(), g.y(w[3]) + half)};
 }
 
 std::array<double, 4> reach_of(const Scene& scene) {
@@ -84,7 +83,9 @@ std::vector<std::uint8_t> marked(const GridGeometry& g, const std::array<Index, 
 
 }  // namespace
 
-std::vector<std::uint8_t> nodes_in_window(const Scene& scene) { return marked(scene.bed.geometry, scene.solid->window); }
+std::vector<std::uint8_t> nodes_in_window(const Scene& scene) {
+    return marked(scene.bed.geometry, scene.solid->window);
+}
 
 std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
     // Points come out by a cell of the terrain, they and columns reach 3/2 cells of space each, and columns are half a
@@ -109,15 +110,13 @@ SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
     const auto [low, high] = ground_of(scene);
     SolidStart start;
     start.sound_speed = scene.solid->sound_speed.value_or(10.0 * std::max(fastest, 0.1));
-    constexpr double kRoom = 8.0;  // cells above the ground at least
-    constexpr double kSplash =
-        4.0;  // jets that a wall throws up rise to several times the energy of their flow
-    start.top =
-        scene.solid->top.value_or(std::max(low + kSplash * (head - low), high + kRoom * scene.solid->cell));
+    constexpr double kRoom = 8.0;    // cells above the ground at least
+    constexpr double kSplash = 4.0;  // jets that a wall throws up rise to several times the energy of their flow
+    start.top = scene.solid->top.value_or(std::max(low + kSplash * (head - low), high + kRoom * scene.solid->cell));
     constexpr double kTransits = 20.0;
     const SolidLaw law = with_sound_speed(scene.solid->law, scene.density, start.sound_speed);
-    start.blur = kTransits * deepest /
-                 std::visit([&](const auto& chosen) { return chosen.sound_speed(scene.density); }, law);
+    start.blur =
+        kTransits * deepest / std::visit([&](const auto& chosen) { return chosen.sound_speed(scene.density); }, law);
     return start;
 }
 
@@ -154,8 +153,7 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
                                      stage.stuck ? 0.0 : stage.bed_friction);
     ground.name = "ground";
     result.surfaces.insert(result.surfaces.begin(), std::move(ground));
-    for (const Barrier& barrier : scene.barriers)
-        result.surfaces.push_back(surface_of(barrier, scene.bed, stage.cell));
+    for (const Barrier& barrier : scene.barriers) result.surfaces.push_back(surface_of(barrier, scene.bed, stage.cell));
     result.gravity = {0.0, 0.0, -scene.gravity};
     result.density = scene.density;
     result.law = with_sound_speed(stage.law, scene.density, start.sound_speed);

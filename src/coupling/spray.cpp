@@ -31,7 +31,8 @@ void Spray::sample(const Mpm3d& flow) {
     const MaterialPoints& points = flow.body().points;
     double all = 0.0, above = 0.0;
     for (Index p = 0; p < points.count(); ++p) {
-        const double z = flow.position(p).z(), v2 = flow.velocity(p).squaredNorm(), m = points.mass[static_cast<std::size_t>(p)];
+        const double z = flow.position(p).z(), v2 = flow.velocity(p).squaredNorm(),
+                     m = points.mass[static_cast<std::size_t>(p)];
         all += m;
         head_ = std::max(head_, z + 0.5 * v2 / gravity_);
         if (v2 > kSlack * 2.0 * gravity_ * std::max(0.0, available_ - z)) {
@@ -48,8 +49,10 @@ void Spray::sample(const Mpm3d& flow) {
 std::optional<std::string> Spray::remark() const {
     if (!(most_share_ > 0.0)) return {};
     std::string text = fmt::format(
-        "points in space: {:.2g} % of their mass had more energy than a fall from the release's highest head gives. That head "
-        "is {:.6g} m, the largest of a point {:.6g} m; most had more at {:.6g} s. Spray may have more; do not build on the "
+        "points in space: {:.2g} % of their mass had more energy than a fall from the release's highest head gives. "
+        "That head "
+        "is {:.6g} m, the largest of a point {:.6g} m; most had more at {:.6g} s. Spray may have more; do not build on "
+        "the "
         "largest speed and run-up of single points",
         100.0 * most_share_, available_, head_, time_);
     if (std::isfinite(highest_))

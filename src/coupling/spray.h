@@ -30,9 +30,9 @@ public:
 
 private:
     double gravity_, available_ = 0.0;
-    double most_share_ = 0.0, time_ = 0.0;     ///< [1], [s]
-    double head_ = 0.0;                        ///< largest z + V^2 / 2g of a point [m]
-    double fastest_ = 0.0, highest_ = 0.0;     ///< of points within what is available [m/s], [m]
+    double most_share_ = 0.0, time_ = 0.0;  ///< [1], [s]
+    double head_ = 0.0;                     ///< largest z + V^2 / 2g of a point [m]
+    double fastest_ = 0.0, highest_ = 0.0;  ///< of points within what is available [m/s], [m]
 };
 
 }  // namespace frana

@@ -27,9 +27,8 @@ const double* numbers(const Frame& frame, const char* name) {
 
 FlowColumns columns_of(const Frame& frame, const Raster& bed, const std::vector<std::uint8_t>& marks) {
     const double *position = numbers(frame, "position"), *velocity = numbers(frame, "velocity"),
-                 *depth = numbers(frame, "depth"), *mass = numbers(frame, "mass"),
-                 *volume = numbers(frame, "volume"), *pressure = numbers(frame, "pressure"),
-                 *id = numbers(frame, "id");
+                 *depth = numbers(frame, "depth"), *mass = numbers(frame, "mass"), *volume = numbers(frame, "volume"),
+                 *pressure = numbers(frame, "pressure"), *id = numbers(frame, "id");
     FlowColumns columns;
     for (Index p = 0; p < frame.particle("mass")->count; ++p) {
         if (!marked(marks, bed.geometry, position[3 * p], position[3 * p + 1])) continue;
@@ -61,8 +60,7 @@ FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector
         columns.vy.push_back(seeds.vy[p]);
         columns.mass.push_back(seeds.volume[p] * scene.density);
         columns.volume.push_back(seeds.volume[p]);
-        columns.bed_pressure.push_back(scene.density * scene.gravity * seeds.depth[p] /
-                                       (1.0 + slope.squaredNorm()));
+        columns.bed_pressure.push_back(scene.density * scene.gravity * seeds.depth[p] / (1.0 + slope.squaredNorm()));
         columns.id.push_back(static_cast<double>(p));
     }
     take_slopes(columns, scene.bed);
@@ -72,7 +70,9 @@ FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector
 namespace {
 
 /// Side of the square that a column stands on, and how many parts lie along it.
-struct Division { double width, count; };
+struct Division {
+    double width, count;
+};
 Division division_of(double volume, double depth, double spacing, double widest) {
     constexpr double kLeast = 0.125;  // of a full point's volume
     const double width = depth > 0.0 ? std::min(std::sqrt(volume / depth), widest) : widest;

@@ -23,14 +23,16 @@ FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, 
                      const std::array<double, 4>& extent);
 
 /// How many parts in_parts() makes, and how many 3D points they become: asked before either takes memory.
-struct PartsForecast { double columns = 0.0, points = 0.0; };
+struct PartsForecast {
+    double columns = 0.0, points = 0.0;
+};
 PartsForecast forecast_parts(const FlowColumns& columns, double spacing, double widest);
 
 /// When points become columns, and what is there. Places are on the map [m].
 struct ColumnsAt {
-    double time;                                                        ///< [s]
+    double time;                                                   ///< [s]
     std::function<Vec2(const DepartedPoint&, const Vec2&)> place;  ///< of a column of a point that has come there
-    std::function<double(const Vec2&)> depth;                           ///< of what is there already [m]
+    std::function<double(const Vec2&)> depth;                      ///< of what is there already [m]
 };
 
 /// Columns that were points, with the gradients of their velocities, dv_k/dx_l at (k, l) [1/s].

@@ -42,16 +42,16 @@ void StagedRun::particle_fields(Frame& frame) {
     const Index before = columns.empty() ? 0 : columns.front().count, more = points_->status().points;
     const Index count = before + more;
     const auto take = [&](const char* name) {
-        const auto found = std::find_if(columns.begin(), columns.end(),
-                                        [&](const Field& field) { return field.name == name; });
+        const auto found =
+            std::find_if(columns.begin(), columns.end(), [&](const Field& field) { return field.name == name; });
         expect(found != columns.end(), "columns have the quantities that points share");
         double* const values = store_.zeros(frame.particles, found->name, found->unit, found->components, count);
         std::copy_n(found->data, before * found->components, values);
         return values + before * found->components;
     };
-    double *position = take("position"), *velocity = take("velocity"), *speed = take("speed"),
-           *depth = take("depth"), *elevation = take("elevation"), *surface = take("surface"),
-           *pressure = take("pressure"), *mass = take("mass"), *volume = take("volume"), *id = take("id");
+    double *position = take("position"), *velocity = take("velocity"), *speed = take("speed"), *depth = take("depth"),
+           *elevation = take("elevation"), *surface = take("surface"), *pressure = take("pressure"),
+           *mass = take("mass"), *volume = take("volume"), *id = take("id");
     double* const model = store_.zeros(frame.particles, "model", "1", 1, count) + before;
     double* const stress = store_.zeros(frame.particles, "stress", "Pa", 6, count) + 6 * before;
     const MaterialPoints& q = points_->body().points;
@@ -85,9 +85,7 @@ void StagedRun::node_fields(Frame& frame) {
     for (const Field& field : columns) {
         double* const values = store_.raw(frame.nodes, field.name, field.unit, field.components, count);
         std::copy_n(field.data, count * field.components, values);
-        const auto more = [&](const auto& at) {
-            each_node(values, count, [&](Index k) { return values[k] + at(k); });
-        };
+        const auto more = [&](const auto& at) { each_node(values, count, [&](Index k) { return values[k] + at(k); }); };
         const auto most = [&](double NodePeak::*peak) {
             each_node(values, count, [&](Index k) { return std::max(values[k], map_.peak(k).*peak); });
         };
@@ -114,8 +112,7 @@ void StagedRun::node_fields(Frame& frame) {
         if (field.name == "speed")
             each_node(values, count, [&](Index k) {
                 const double all = depth[k], before = depth_of_columns[k];
-                return all > 0.0 ? (before * values[k] + (all - before) * map_.velocity(k).norm()) / all
-                                 : 0.0;
+                return all > 0.0 ? (before * values[k] + (all - before) * map_.velocity(k).norm()) / all : 0.0;
             });
     }
 }

@@ -62,7 +62,7 @@ bool StagedRun::on_raised(const Vec2& x) const {
 /// columns stand on that edge.
 std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const Vec2& x,
                                               const std::function<bool(Index, Index)>& allowed) const {
-    constexpr Index kFar = 3;  // cells
+    constexpr Index kFar = 3;          // cells
     constexpr double kWithin = 0.499;  // of a cell: what belongs to its node for certain
     const GridGeometry& g = scene_.bed.geometry;
     const auto i0 = static_cast<Index>(std::floor((x.x() - g.x0) / g.cell + 0.5)),
@@ -74,7 +74,8 @@ std::optional<Vec2> StagedRun::nearest_before(const DepartedPoint& point, const 
             if (is_raised(i, j) || !allowed(i, j)) continue;
             const auto in_cell = [&](const Vec2& at) {
                 const auto near = [&](double u, double node, double low, double high) {
-                    return std::clamp(u, std::max(low, node - kWithin * g.cell), std::min(high, node + kWithin * g.cell));
+                    return std::clamp(u, std::max(low, node - kWithin * g.cell),
+                                      std::min(high, node + kWithin * g.cell));
                 };
                 return Vec2(near(at.x(), g.x(i), g.x0, g.x_max()), near(at.y(), g.y(j), g.y0, g.y_max()));
             };

@@ -22,9 +22,10 @@ Scene on_bed(Scene scene, Raster bed) {
 
 StagedRun::StagedRun(const Scene& scene, Start start)
     : scene_(scene),
-      columns_(std::make_unique<DepthAveraged>(
-          scene.barriers.empty() ? scene : on_bed(scene, with_barriers(scene)), start)),
-      map_(scene), spray_(scene) {
+      columns_(
+          std::make_unique<DepthAveraged>(scene.barriers.empty() ? scene : on_bed(scene, with_barriers(scene)), start)),
+      map_(scene),
+      spray_(scene) {
     expect(scene.solid.has_value(), "a staged run has a stage in space");
     if (!scene.barriers.empty()) mark_raised(with_barriers(scene));
     scene_.particles = {};
@@ -158,7 +159,8 @@ void StagedRun::convert_to_3d() {
         const FlowColumns all = columns_at_edge(gradients);
         FlowColumns columns;
         for (std::size_t k = 0; k < pending_.size(); ++k) columns.take(all, k);
-        const SolidSeeds seeds = seeds_of_window(columns, points_->body().surfaces);  // may be refused, with all still here
+        const SolidSeeds seeds =
+            seeds_of_window(columns, points_->body().surfaces);  // may be refused, with all still here
         pending_.clear();
         points_->add(seeds);
     });
@@ -221,8 +223,7 @@ void StagedRun::accumulate(const Status& columns) {
     status_.max_depth = std::max(columns.max_depth, map_.extent().max_depth);
     status_.max_speed = std::max(columns.max_speed, s.max_speed);
     status_.max_speed_on_map = std::max(columns.max_speed_on_map, s.max_speed);
-    status_.mean_speed =
-        status_.mass > 0.0 ? (columns.mean_speed * columns.mass + s.speeds) / status_.mass : 0.0;
+    status_.mean_speed = status_.mass > 0.0 ? (columns.mean_speed * columns.mass + s.speeds) / status_.mass : 0.0;
     status_.covered_area += map_.extent().covered_area;
     status_.front = std::max(columns.front, map_.extent().front);
     if (start_.sound_speed > 0.0) largest_mach_ = std::max(largest_mach_, s.max_speed / start_.sound_speed);
@@ -278,7 +279,8 @@ std::vector<std::string> StagedRun::remarks() const {
             largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : "", rest > 0.0 ? s.volume / rest : 1.0));
     if (returned_.raised > 0.0)
         remarks.push_back(fmt::format(
-            "{:.6g} m3 became columns on ground that barriers or walls in holes raise, and gained height: columns have no "
+            "{:.6g} m3 became columns on ground that barriers or walls in holes raise, and gained height: columns have "
+            "no "
             "cell before it within three cells; leave as much between barriers, and between stage.window and holes",
             returned_.raised / density));
     remark_pieces(remarks);

@@ -10,9 +10,9 @@
 
 #include "coupling/barriers.h"
 #include "coupling/flow_map.h"
-#include "coupling/stage_conversion.h"
 #include "coupling/solid_scene.h"
 #include "coupling/spray.h"
+#include "coupling/stage_conversion.h"
 #include "observe/frame_store.h"
 #include "shallow/depth_averaged.h"
 
@@ -28,7 +28,8 @@ public:
     /// Known before the points' stage only: later steps end where columns and points meet, and at output times.
     double longest_step() const override {
         // A step aside must not begin the stage: a rounding error less than what is left.
-        return points_ ? 0.0 : std::min(columns_->longest_step(), std::nextafter(scene_.solid->from - status_.time, 0.0));
+        return points_ ? 0.0
+                       : std::min(columns_->longest_step(), std::nextafter(scene_.solid->from - status_.time, 0.0));
     }
     MovingMass motion(const MotionQuery& query) const override;
     bool may_rest() const override;
@@ -98,9 +99,10 @@ private:
     FlowMap map_;
     std::optional<BarrierWatch> watch_;  ///< when there are barriers
     std::vector<Departed> pending_;      ///< columns that left into the window, ahead of the points' time
-    std::vector<std::uint8_t> at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
-    std::vector<std::uint8_t> raised_;   ///< with barriers: 1 at nodes whose ground they raise for columns
-    std::vector<double> points_depth_;   ///< scratch of show_points, on the terrain's nodes [m]
+    std::vector<std::uint8_t>
+        at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
+    std::vector<std::uint8_t> raised_;      ///< with barriers: 1 at nodes whose ground they raise for columns
+    std::vector<double> points_depth_;      ///< scratch of show_points, on the terrain's nodes [m]
     std::vector<DepartedPoint> returning_;  ///< points that left where columns may stand, since the columns' last step
     Converted converted_;
     Returned returned_;

@@ -17,8 +17,7 @@ struct PlaneSums {
     }
     /// Slope of the plane per cell; false where the columns are too few or stand in a row.
     bool slope(Vec2& result) const {
-        constexpr double kLeast =
-            1e-3;  // variance of places across the row [cells^2]; that of a full cell is 0.17
+        constexpr double kLeast = 1e-3;  // variance of places across the row [cells^2]; that of a full cell is 0.17
         if (!(w > 0.0)) return false;
         const double a = xx / w - x * x / (w * w), b = xy / w - x * y / (w * w), d = yy / w - y * y / (w * w);
         const double det = a * d - b * b;

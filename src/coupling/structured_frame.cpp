@@ -26,7 +26,8 @@ void for_each_node(const TileGrid& grid, const std::vector<Index>& tiles, Each&&
     const Index count = static_cast<Index>(tiles.size());
 #pragma omp parallel for schedule(static) if (count >= kTilesForThreads)
     for (Index t = 0; t < count; ++t) {
-        const Index i0 = grid.tile_i(tiles[static_cast<std::size_t>(t)]), j0 = grid.tile_j(tiles[static_cast<std::size_t>(t)]);
+        const Index i0 = grid.tile_i(tiles[static_cast<std::size_t>(t)]),
+                    j0 = grid.tile_j(tiles[static_cast<std::size_t>(t)]);
         for (Index j = std::max<Index>(j0, 0); j < std::min(j0 + kTile, grid.ny()); ++j)
             for (Index i = std::max<Index>(i0, 0); i < std::min(i0 + kTile, grid.nx()); ++i)
                 each(grid.at(i, j), j * grid.nx() + i);
@@ -63,8 +64,8 @@ void StructuredRun::particle_fields(Frame& frame) {
            *speed = column("speed", "m/s", 1), *elevation = column("elevation", "m", 1),
            *surface = column("surface", "m", 1), *pressure = column("pressure", "Pa", 1),
            *mass = column("mass", "kg", 1), *volume = column("volume", "m3", 1), *id = column("id", "1", 1),
-           *stress = column("stress", "Pa", 3), *effective = column("effective_stress", "Pa", 3), *damage = column("damage", "1", 1),
-           *cohesion = column("cohesion", "Pa", 1);
+           *stress = column("stress", "Pa", 3), *effective = column("effective_stress", "Pa", 3),
+           *damage = column("damage", "1", 1), *cohesion = column("cohesion", "Pa", 1);
 #pragma omp parallel for schedule(static)
     for (Index p = 0; p < count; ++p) {
         const Vec2 x = flow().position(p);

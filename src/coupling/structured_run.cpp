@@ -116,8 +116,7 @@ void StructuredRun::accumulate_water() {
     status_.potential += density * both_->water_potential();
     status_.dissipated += density * (l.braked + l.sheared) + flow().status().dragged;
     const WaterBody& body = both_->water().body();
-    status_.energy_left +=
-        density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained));
+    status_.energy_left += density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained));
     status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
     const double speeds = density * both_->water_speeds();
     status_.mean_speed = mass > 0.0 ? (status_.mean_speed * solids + speeds) / mass : 0.0;
@@ -152,8 +151,8 @@ Breakage StructuredRun::breakage() const {
     PieceRule rule = kPieces;
     rule.link *= cell;
     const Neighbours::Torn torn = neighbours_.torn(flow(), kTorn * cell);
-    return Breakage{flow().status().damage, pieces(flow(), rule), neighbours_.pairs(), torn.all, torn.numerical,
-                    flow().sub_cycling()};
+    return Breakage{flow().status().damage, pieces(flow(), rule), neighbours_.pairs(), torn.all,
+                    torn.numerical,         flow().sub_cycling()};
 }
 
 std::optional<WaterBudget> StructuredRun::water_budget() const {
@@ -176,13 +175,15 @@ std::vector<std::string> StructuredRun::remarks() const {
     const StructuredStatus& s = flow().status();
     std::vector<std::string> remarks = remarks_on_lost(s.lost_in_holes, s.mass + s.mass_left);
     if (s.outrun > 0)
-        remarks.push_back(fmt::format("water.profile_factor: in {} nodes and steps drag was weaker than what it adds to the "
-                                      "slip, and it was left out there; a smaller one, or finer grains, may help",
-                                      flow().status().outrun));
+        remarks.push_back(
+            fmt::format("water.profile_factor: in {} nodes and steps drag was weaker than what it adds to the "
+                        "slip, and it was left out there; a smaller one, or finer grains, may help",
+                        flow().status().outrun));
     if (now.numerical == 0) return remarks;
-    remarks.push_back(fmt::format("structure: {} of {} pairs of neighbouring columns parted without damage to either, by the scheme "
-                        "and not by the material (numerical fracture); a smaller critical_strain or finer cells may help",
-                        now.numerical, now.pairs));
+    remarks.push_back(
+        fmt::format("structure: {} of {} pairs of neighbouring columns parted without damage to either, by the scheme "
+                    "and not by the material (numerical fracture); a smaller critical_strain or finer cells may help",
+                    now.numerical, now.pairs));
     return remarks;
 }
 

@@ -115,7 +115,9 @@ namespace {
 std::function<BedGeometry(const TileGrid&)> bed_under(const Scene& scene) {
     Scene of;
     of.bed = scene.bed, of.scheme = scene.scheme, of.sides = scene.sides, of.curvature = Curvature::none;
-    return [of = std::make_shared<const Scene>(std::move(of))](const TileGrid& grid) { return make_bed_geometry(*of, grid); };
+    return [of = std::make_shared<const Scene>(std::move(of))](const TileGrid& grid) {
+        return make_bed_geometry(*of, grid);
+    };
 }
 
 }  // namespace
@@ -158,7 +160,8 @@ public:
             const double h = scene.water->share * seeds.volume[p] / (g_.cell * g_.cell);
             for (int j = 0; j < 3; ++j)
                 for (int i = 0; i < 3; ++i) {
-                    const Index a = std::clamp<Index>(sx.base + i, 0, g_.nx - 1), b = std::clamp<Index>(sy.base + j, 0, g_.ny - 1);
+                    const Index a = std::clamp<Index>(sx.base + i, 0, g_.nx - 1),
+                                b = std::clamp<Index>(sy.base + j, 0, g_.ny - 1);
                     const std::size_t k = static_cast<std::size_t>(b * g_.nx + a);
                     const double w = sx.w[i] * sy.w[j] * h;
                     depth_[k] += w, qx_[k] += w * seeds.vx[p], qy_[k] += w * seeds.vy[p];
@@ -218,7 +221,8 @@ TwoPhaseScene two_phase_scene(const Scene& scene) {
     w.start = [bound, pores, node, bed = w.bed, level = of.level](double x, double y) {
         const std::size_t k = node(x, y);
         WaterState state = pores->at(k);
-        if (level && *level > bed(x, y) + (*bound)[k] + state.depth) state = {*level - bed(x, y) - (*bound)[k], 0.0, 0.0};
+        if (level && *level > bed(x, y) + (*bound)[k] + state.depth)
+            state = {*level - bed(x, y) - (*bound)[k], 0.0, 0.0};
         return state;
     };
     // Only called while the flow is made, so that the scene's rasters need not be copied.

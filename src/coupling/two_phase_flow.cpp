@@ -20,7 +20,8 @@ double confined_volume(const StructuredFlow& columns) {
 
 TwoPhaseFlow::TwoPhaseFlow(const TwoPhaseScene& scene) : columns_(scene.columns), water_(scene.water) {
     expect(scene.columns.grid == scene.water.grid, "columns and water share a grid");
-    FreeWater water{scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}};
+    FreeWater water{
+        scene.exchange, TwoPhaseDrag(scene.exchange.material), nullptr, nullptr, nullptr, nullptr, 0.0, {}, {}};
     water_.lend(water);
     columns_.meet(water);
     confine();
@@ -146,8 +147,8 @@ double TwoPhaseFlow::confined() const { return confined_volume(columns_); }
 
 double TwoPhaseFlow::volume_residual() const {
     const WaterLedger& l = water_.status().ledger;
-    return confined_volume(columns_) + columns_.status().confined_left + water_.status().volume + l.left + l.infiltrated -
-           l.rained - volume_given_;
+    return confined_volume(columns_) + columns_.status().confined_left + water_.status().volume + l.left +
+           l.infiltrated - l.rained - volume_given_;
 }
 
 }  // namespace frana

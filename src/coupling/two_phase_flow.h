@@ -50,8 +50,8 @@ private:
 
     StructuredFlow columns_;
     WaterFlow water_;
-    std::vector<Index> confined_;  ///< tiles where the water lies on columns
-    std::vector<Index> reached_tiles_;   ///< tiles where columns were since the last step of the water
+    std::vector<Index> confined_;       ///< tiles where the water lies on columns
+    std::vector<Index> reached_tiles_;  ///< tiles where columns were since the last step of the water
     std::vector<Index> scratch_;
     double volume_given_ = 0.0, potential_ = 0.0, speeds_ = 0.0, kinetic_ = 0.0;
 };

@@ -20,7 +20,9 @@ namespace {
 
 constexpr std::size_t kHead = 512;  ///< HDF5's smallest user block [bytes]
 
-struct NumberType { hid_t memory, file; };
+struct NumberType {
+    hid_t memory, file;
+};
 NumberType number_type(Archive::Kind kind) {
     switch (kind) {
         case Archive::Kind::real:
@@ -36,7 +38,9 @@ NumberType number_type(Archive::Kind kind) {
 class Saver final : public Archive {
 public:
     Saver(const Access& access, hid_t file)
-        : access_(access), file_(file), links_(access, H5Pcreate(H5P_LINK_CREATE), H5Pclose),
+        : access_(access),
+          file_(file),
+          links_(access, H5Pcreate(H5P_LINK_CREATE), H5Pclose),
           creation_(access, H5Pcreate(H5P_DATASET_CREATE), H5Pclose) {
         access_.check(H5Pset_create_intermediate_group(links_, 1));
         access_.check(H5Pset_obj_track_times(creation_, false));
@@ -74,18 +78,20 @@ protected:
         if (H5Tequal(type, number_type(kind).file) <= 0) throw stranger(name);
         const auto count = static_cast<std::size_t>(access_.check(H5Sget_simple_extent_npoints(space)));
         if (count > fs::file_size(access_.file()) / H5Tget_size(type))  // arrays are not packed
-            throw UserError(fmt::format("{}: claims {} values of {}, more than a file of its size holds; it is damaged, "
-                                        "run without --resume",
-                                        access_.file().string(), count, name));
+            throw UserError(
+                fmt::format("{}: claims {} values of {}, more than a file of its size holds; it is damaged, "
+                            "run without --resume",
+                            access_.file().string(), count, name));
         return count;
     }
     void exchange(const std::string& name, Kind kind, void* data, std::size_t count) override {
         if (count == 0) return;
         const Handle set(access_, open(name), H5Dclose);
         if (!lies_whole(set, count * H5Tget_size(number_type(kind).file)))
-            throw UserError(fmt::format("{}: {} does not lie in it as this program writes it; it is damaged, run without "
-                                        "--resume",
-                                        access_.file().string(), name));
+            throw UserError(
+                fmt::format("{}: {} does not lie in it as this program writes it; it is damaged, run without "
+                            "--resume",
+                            access_.file().string(), name));
         access_.check(H5Dread(set, number_type(kind).memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
     }
 
@@ -104,9 +110,10 @@ private:
         return set;
     }
     UserError stranger(const std::string& name) const {
-        return UserError(fmt::format("{}: has no {} as this program keeps it; it was left by another build of this "
-                                     "version, resume with that one or run without --resume",
-                                     access_.file().string(), name));
+        return UserError(
+            fmt::format("{}: has no {} as this program keeps it; it was left by another build of this "
+                        "version, resume with that one or run without --resume",
+                        access_.file().string(), name));
     }
     const Access& access_;
     hid_t file_;
@@ -140,9 +147,10 @@ void write_head(const fs::path& file) {
 /// The file is a checkpoint, as long as it was and with the bytes that it had.
 void require_whole(const fs::path& file) {
     const auto damaged = [&](const std::string& what) {
-        return UserError(fmt::format("{}: {}; expected the state that a run keeps there; run without --resume to start "
-                                     "at the beginning",
-                                     file.string(), what));
+        return UserError(
+            fmt::format("{}: {}; expected the state that a run keeps there; run without --resume to start "
+                        "at the beginning",
+                        file.string(), what));
     };
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw damaged(fs::exists(file) ? "cannot be read" : "not found");

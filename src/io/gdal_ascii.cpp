@@ -65,7 +65,9 @@ bool begins_header(std::string_view word) {
 class Scan {
 public:
     Scan(const std::filesystem::path& file, const std::string& driver)
-        : file_(file), points_(driver == "XYZ"), between_(points_ ? " \t\r,;" : " \t\r"),
+        : file_(file),
+          points_(driver == "XYZ"),
+          between_(points_ ? " \t\r,;" : " \t\r"),
           star_(driver == "GRASSASCIIGrid") {}
 
     void take(std::string_view line) {
@@ -85,9 +87,10 @@ private:
         return points_ ? line_ == 1 && !is_number(word) : begins_header(word);  // the names of the columns
     }
     [[noreturn]] void refuse(std::string_view word) const {
-        throw UserError(fmt::format("{}:{}: found \"{}\"; expected numbers only; put a number there, or the file's "
-                                    "nodata value where none is known",
-                                    file_.string(), line_, word.substr(0, 40)));
+        throw UserError(
+            fmt::format("{}:{}: found \"{}\"; expected numbers only; put a number there, or the file's "
+                        "nodata value where none is known",
+                        file_.string(), line_, word.substr(0, 40)));
     }
     const std::filesystem::path& file_;
     bool points_;  ///< a line for each

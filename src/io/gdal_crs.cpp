@@ -95,13 +95,12 @@ std::string scale_line(const Place& place, const Unit& unit) {
 [[noreturn]] void refuse_plane(const Place& place, const std::string& found) {
     const Unit up = vertical_unit(place);
     const bool metres = up.name.empty();
-    const std::filesystem::path input =
-        metres ? place.file : std::filesystem::path(sibling(place.file, "_metres"));
-    throw UserError(
-        fmt::format("{}: {}{}; expected a projected CRS in metres; run: {}{}{}", place.file.string(), found,
-                    metres ? "" : ", and its elevations are in " + up.name,
-                    metres ? "" : scale_line(place, up) + " && ", warp_line(input, metric_crs(place), "_utm"),
-                    metres && place.elevation ? " (its elevations are taken as metres)" : ""));
+    const std::filesystem::path input = metres ? place.file : std::filesystem::path(sibling(place.file, "_metres"));
+    throw UserError(fmt::format("{}: {}{}; expected a projected CRS in metres; run: {}{}{}", place.file.string(), found,
+                                metres ? "" : ", and its elevations are in " + up.name,
+                                metres ? "" : scale_line(place, up) + " && ",
+                                warp_line(input, metric_crs(place), "_utm"),
+                                metres && place.elevation ? " (its elevations are taken as metres)" : ""));
 }
 
 /// A map whose lengths are not those on the ground, such as Web Mercator's.
@@ -214,8 +213,7 @@ void require_metres(const Place& place, std::vector<std::string>& log) {
                                     place.file.string(), up.name, scale_line(place, up)));
 }
 
-std::string warp_line(const std::filesystem::path& file, const std::string& target_crs,
-                      const std::string& suffix) {
+std::string warp_line(const std::filesystem::path& file, const std::string& target_crs, const std::string& suffix) {
     return fmt::format("gdalwarp {}-r cubic -ot Float32 -dstnodata -9999 {} {}",
                        target_crs.empty() ? "" : "-t_srs " + target_crs + " ", shell(file.string()),
                        shell(sibling(file, suffix)));

@@ -46,7 +46,6 @@ struct Place {
 void require_metres(const Place& place, std::vector<std::string>& log);
 
 /// Arguments after the program's name of a gdalwarp that leaves no pixel looking like terrain that is none.
-std::string warp_line(const std::filesystem::path& file, const std::string& target_crs,
-                      const std::string& suffix);
+std::string warp_line(const std::filesystem::path& file, const std::string& target_crs, const std::string& suffix);
 
 }  // namespace frana::gdal

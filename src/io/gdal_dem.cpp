@@ -28,8 +28,8 @@ std::array<double, 4> checked_window(const RasterFile& raster, const DemRequest&
     if (!request.window) return all;
     const std::array<double, 4>& w = *request.window;
     const double slack_x = round_off * raster.x_axis().size, slack_y = round_off * raster.y_axis().size;
-    const bool inside = w[0] >= all[0] - slack_x && w[1] >= all[1] - slack_y && w[2] <= all[2] + slack_x &&
-                        w[3] <= all[3] + slack_y;
+    const bool inside =
+        w[0] >= all[0] - slack_x && w[1] >= all[1] - slack_y && w[2] <= all[2] + slack_x && w[3] <= all[3] + slack_y;
     if (!(w[0] < w[2] && w[1] < w[3]) || !inside)
         throw UserError(
             fmt::format("{}: the window {} is not inside the raster, which covers {}; expected [xmin, "
@@ -65,20 +65,18 @@ Raster copied(const RasterFile& raster, const std::array<double, 4>& window, con
     double moved = 0.0;
     for (std::size_t k = 0; k < 4; ++k) moved = std::max(moved, std::abs(extent[k] - window[k]));
     if (request.window && moved > 2.0 * round_off * dem.geometry.cell)
-        log.push_back(
-            fmt::format("{}: window widened to whole pixels: {}", raster.name(), extent_text(extent)));
+        log.push_back(fmt::format("{}: window widened to whole pixels: {}", raster.name(), extent_text(extent)));
     return dem;
 }
 
 /// Cells counted from the window's south-west corner.
-Raster resampled(const RasterFile& raster, const std::array<double, 4>& window, double cell,
-                 const DemRequest& request, std::vector<std::string>& log) {
+Raster resampled(const RasterFile& raster, const std::array<double, 4>& window, double cell, const DemRequest& request,
+                 std::vector<std::string>& log) {
     const double width = window[2] - window[0], height = window[3] - window[1];
     const double nx = std::floor(width / cell + round_off), ny = std::floor(height / cell + round_off);
     if (nx < 1.0 || ny < 1.0)
-        throw UserError(
-            fmt::format("{}: the window {} is smaller than one cell of {:g} m; choose a smaller cell",
-                        raster.file().string(), extent_text(window), cell));
+        throw UserError(fmt::format("{}: the window {} is smaller than one cell of {:g} m; choose a smaller cell",
+                                    raster.file().string(), extent_text(window), cell));
     check_size(raster, nx, ny);
     Raster dem;
     dem.geometry = {Index(nx), Index(ny), window[0] + 0.5 * cell, window[1] + 0.5 * cell, cell};
@@ -109,8 +107,7 @@ Raster GdalReader::read_dem(const std::filesystem::path& file, const DemRequest&
                             std::vector<std::string>& log) const {
     const RasterFile raster(file, gdal::Meaning::elevation, log);
     const auto used = request.window.value_or(raster.extent());
-    gdal::Place place{
-        file, &raster.crs(), {0.5 * (used[0] + used[2]), 0.5 * (used[1] + used[3])}, raster.unit(), true};
+    gdal::Place place{file, &raster.crs(), {0.5 * (used[0] + used[2]), 0.5 * (used[1] + used[3])}, raster.unit(), true};
     gdal::require_metres(place, log);
     remark_named_feet(raster, log);
     const auto window = checked_window(raster, request);
@@ -118,10 +115,8 @@ Raster GdalReader::read_dem(const std::filesystem::path& file, const DemRequest&
     const double cell = request.cell.value_or(pixel);
     if (!(cell > 0.0) || !std::isfinite(cell))
         throw UserError(fmt::format("{}: a cell of {:g} m; expected a positive length", file.string(), cell));
-    const bool as_is =
-        raster.square() && (!request.cell || std::abs(cell - raster.x_axis().size) <= same_cell * cell);
-    Raster dem = as_is ? copied(raster, window, request, log)
-                       : resampled(raster, window, cell, request, log);
+    const bool as_is = raster.square() && (!request.cell || std::abs(cell - raster.x_axis().size) <= same_cell * cell);
+    Raster dem = as_is ? copied(raster, window, request, log) : resampled(raster, window, cell, request, log);
     if (std::all_of(dem.values.begin(), dem.values.end(), [](double z) { return std::isnan(z); }))
         throw UserError(fmt::format("{}: holds no data in {}; expected elevations there; move the window",
                                     file.string(), extent_text(window)));

@@ -35,10 +35,9 @@ gdal::Transformation transformation(const RasterFile& raster, const OGRSpatialRe
     const gdal::Messages messages;
     gdal::Transformation made(OGRCreateCoordinateTransformation(&from, &to));
     if (!made)
-        throw UserError(
-            fmt::format("{}: cannot be brought from {} to {} ({}); reproject it with gdalwarp -t_srs",
-                        raster.file().string(), gdal::crs_name(from), gdal::crs_name(to),
-                        messages.reason("no transformation known")));
+        throw UserError(fmt::format("{}: cannot be brought from {} to {} ({}); reproject it with gdalwarp -t_srs",
+                                    raster.file().string(), gdal::crs_name(from), gdal::crs_name(to),
+                                    messages.reason("no transformation known")));
     return made;
 }
 
@@ -58,8 +57,7 @@ public:
         const auto [i, nx] = gdal::touched(raster.x_axis(), x0 - support * dx, x1 + support * dx);
         const auto [j, ny] = gdal::touched(raster.y_axis(), y0 - support * dy, y1 + support * dy);
         values_ = raster.read(i, j, nx, ny);
-        const double left = raster.x_axis().start + double(i) * dx,
-                     low = raster.y_axis().start + double(j) * dy;
+        const double left = raster.x_axis().start + double(i) * dx, low = raster.y_axis().start + double(j) * dy;
         auto* memory = GetGDALDriverManager()->GetDriverByName("MEM");
         dataset_.reset(memory->Create("", int(nx), int(ny), 1, GDT_Float64, nullptr));
         expect(dataset_ != nullptr, "a raster in memory");
@@ -67,8 +65,8 @@ public:
         dataset_->SetGeoTransform(south_up);
         dataset_->SetSpatialRef(&raster.crs());
         dataset_->GetRasterBand(1)->SetNoDataValue(Raster::nodata);
-        const CPLErr written = dataset_->GetRasterBand(1)->RasterIO(
-            GF_Write, 0, 0, int(nx), int(ny), values_.data(), int(nx), int(ny), GDT_Float64, 0, 0, nullptr);
+        const CPLErr written = dataset_->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, int(nx), int(ny), values_.data(),
+                                                                    int(nx), int(ny), GDT_Float64, 0, 0, nullptr);
         expect(written == CE_None, "a raster in memory takes its pixels");
         set_pixel_edge(raster, target, left + 0.5 * dx * double(nx), low + 0.5 * dy * double(ny));
     }
@@ -122,9 +120,8 @@ Raster warped(const RasterFile& raster, Source& source, const GridGeometry& grid
     double* last_row = out.values.data() + (grid.ny - 1) * grid.nx;
     if (!result || result->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, nx, ny, last_row, nx, ny, GDT_Float64, 0,
                                                       -GSpacing(sizeof(double)) * nx, nullptr) != CE_None)
-        throw UserError(
-            fmt::format("{}: cannot be reprojected to the terrain's CRS ({}); reproject it with gdalwarp",
-                        raster.file().string(), messages.reason("no reason given")));
+        throw UserError(fmt::format("{}: cannot be reprojected to the terrain's CRS ({}); reproject it with gdalwarp",
+                                    raster.file().string(), messages.reason("no reason given")));
     out.crs_wkt = crs_wkt;
     out.source = raster.file().string();
     return out;
@@ -137,8 +134,8 @@ void note_gaps(const RasterFile& raster, const GridGeometry& grid, std::vector<s
     const double slack = 0.5 * grid.cell;
     if (has[0] > wants[0] + slack || has[1] > wants[1] + slack || has[2] < wants[2] - slack ||
         has[3] < wants[3] - slack)
-        log.push_back(fmt::format("{}: covers {} only, not all of {}; no data beyond", raster.name(),
-                                  extent_text(has), extent_text(wants)));
+        log.push_back(fmt::format("{}: covers {} only, not all of {}; no data beyond", raster.name(), extent_text(has),
+                                  extent_text(wants)));
 }
 
 }  // namespace
@@ -151,8 +148,8 @@ Raster GdalReader::read_raster(const std::filesystem::path& file, const std::arr
         const double edge = source.pixel_edge();
         const auto nx = Index(std::ceil((extent[2] - extent[0]) / edge)),
                    ny = Index(std::ceil((extent[3] - extent[1]) / edge));
-        log.push_back(fmt::format("{}: reprojected from {} to {:.6g} m pixels in the terrain's CRS",
-                                  raster.name(), gdal::crs_name(raster.crs()), edge));
+        log.push_back(fmt::format("{}: reprojected from {} to {:.6g} m pixels in the terrain's CRS", raster.name(),
+                                  gdal::crs_name(raster.crs()), edge));
         return warped(raster, source, {nx, ny, extent[0] + 0.5 * edge, extent[1] + 0.5 * edge, edge}, crs_wkt,
                       "bilinear");
     }
@@ -172,15 +169,14 @@ Raster GdalReader::read_raster(const std::filesystem::path& file, const std::arr
     return out;
 }
 
-Raster GdalReader::read_onto(const std::filesystem::path& file, const GridGeometry& grid,
-                             const std::string& crs_wkt, std::vector<std::string>& log) const {
+Raster GdalReader::read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
+                             std::vector<std::string>& log) const {
     const RasterFile raster(file, gdal::Meaning::any, log);
     if (needs_warp(raster, crs_wkt)) {
         Source source(raster, gdal::crs_from_wkt(crs_wkt), grid.pixel_extent());
-        log.push_back(fmt::format("{}: reprojected from {} to the terrain's CRS and {:.6g} m cells",
-                                  raster.name(), gdal::crs_name(raster.crs()), grid.cell));
-        return warped(raster, source, grid, crs_wkt,
-                      grid.cell > 1.5 * source.pixel_edge() ? "average" : "bilinear");
+        log.push_back(fmt::format("{}: reprojected from {} to the terrain's CRS and {:.6g} m cells", raster.name(),
+                                  gdal::crs_name(raster.crs()), grid.cell));
+        return warped(raster, source, grid, crs_wkt, grid.cell > 1.5 * source.pixel_edge() ? "average" : "bilinear");
     }
     const auto wants = grid.pixel_extent();
     if (gdal::touched(raster.x_axis(), wants[0], wants[2])[1] == 0 ||

@@ -26,8 +26,8 @@ std::vector<double> onto_grid(const RasterFile& file, const GridGeometry& grid) 
 
 std::string how_resampled(const RasterFile& file, double cell) {
     const double dx = file.x_axis().size, dy = file.y_axis().size;
-    const std::string pixels = file.square() ? fmt::format("{:.6g} m pixels", dx)
-                                             : fmt::format("pixels of {:.6g} m by {:.6g} m", dx, dy);
+    const std::string pixels =
+        file.square() ? fmt::format("{:.6g} m pixels", dx) : fmt::format("pixels of {:.6g} m by {:.6g} m", dx, dy);
     const double near_equal = 1.0 - 1e-6;
     const bool coarser = cell > near_equal * std::max(dx, dy), finer = cell < near_equal * std::min(dx, dy);
     return fmt::format("{} {} to {:.6g} m cells", pixels,

@@ -15,9 +15,7 @@ namespace {
 /// CRS for a cure: none is asked for where none is known.
 std::string straight_line(const std::filesystem::path& file) { return warp_line(file, "", "_north_up"); }
 
-const char* color_word(int bands) {
-    return bands == 3 || bands == 4 ? "; is this a picture rather than a field?" : "";
-}
+const char* color_word(int bands) { return bands == 3 || bands == 4 ? "; is this a picture rather than a field?" : ""; }
 
 }  // namespace
 
@@ -27,12 +25,11 @@ RasterFile::RasterFile(const std::filesystem::path& file, Meaning meaning, std::
     const int bands = dataset_->GetRasterCount();
     if (bands == 0) {
         const char* inner = CSLFetchNameValue(dataset_->GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
-        throw UserError(
-            fmt::format("{}: holds no raster band{}", file_.string(),
-                        inner ? fmt::format(" but subdatasets; expected one raster; run: gdal_translate "
-                                            "{} {}",
-                                            shell(inner), shell(sibling(file_, "_1")))
-                              : std::string("; expected a raster such as a GeoTIFF")));
+        throw UserError(fmt::format("{}: holds no raster band{}", file_.string(),
+                                    inner ? fmt::format(" but subdatasets; expected one raster; run: gdal_translate "
+                                                        "{} {}",
+                                                        shell(inner), shell(sibling(file_, "_1")))
+                                          : std::string("; expected a raster such as a GeoTIFF")));
     }
     band_ = dataset_->GetRasterBand(1);
     require_numbers(file_, *dataset_);
@@ -62,16 +59,16 @@ void RasterFile::take_geotransform() {
     double t[6];
     if (dataset_->GetGeoTransform(t) != CE_None) {
         const bool points = dataset_->GetGCPCount() > 0;
-        throw UserError(fmt::format(
-            "{}: has no georeference; expected the map position of its pixels; run: {}", file_.string(),
-            points ? straight_line(file_)
-                   : fmt::format("gdal_translate -a_ullr XMIN YMAX XMAX YMIN {} {}", shell(file_.string()),
-                                 shell(sibling(file_, "_placed")))));
+        throw UserError(fmt::format("{}: has no georeference; expected the map position of its pixels; run: {}",
+                                    file_.string(),
+                                    points ? straight_line(file_)
+                                           : fmt::format("gdal_translate -a_ullr XMIN YMAX XMAX YMIN {} {}",
+                                                         shell(file_.string()), shell(sibling(file_, "_placed")))));
     }
     const Index nx = dataset_->GetRasterXSize(), ny = dataset_->GetRasterYSize();
     // A thousandth of a pixel over the whole raster is not a rotation but the round-off of some writer.
-    const bool rotated = std::abs(t[2]) * double(ny) > 1e-3 * std::abs(t[1]) ||
-                         std::abs(t[4]) * double(nx) > 1e-3 * std::abs(t[5]);
+    const bool rotated =
+        std::abs(t[2]) * double(ny) > 1e-3 * std::abs(t[1]) || std::abs(t[4]) * double(nx) > 1e-3 * std::abs(t[5]);
     if (rotated || !(t[1] > 0.0) || t[5] == 0.0)
         throw UserError(
             fmt::format("{}: its rows do not run from west to east (geotransform {:g} {:g} {:g}, "
@@ -112,8 +109,8 @@ std::vector<double> RasterFile::read(Index i, Index j, Index nx, Index ny) const
     const Messages messages;
     const Index first_row = south_up_ ? j : y_.count - j - ny;
     std::vector<double> values(static_cast<std::size_t>(nx * ny));
-    if (band_->RasterIO(GF_Read, int(i), int(first_row), int(nx), int(ny), values.data(), int(nx), int(ny),
-                        GDT_Float64, 0, 0, nullptr) != CE_None)
+    if (band_->RasterIO(GF_Read, int(i), int(first_row), int(nx), int(ny), values.data(), int(nx), int(ny), GDT_Float64,
+                        0, 0, nullptr) != CE_None)
         throw UserError(
             fmt::format("{}: cannot be read to its end ({}); the file is damaged or incomplete: copy or "
                         "download it again",
@@ -124,13 +121,11 @@ std::vector<double> RasterFile::read(Index i, Index j, Index nx, Index ny) const
         for (double& value : values) value = value * scale_ + offset_;
     if (!south_up_)
         for (Index low = 0, high = ny - 1; low < high; ++low, --high)
-            std::swap_ranges(values.begin() + low * nx, values.begin() + (low + 1) * nx,
-                             values.begin() + high * nx);
+            std::swap_ranges(values.begin() + low * nx, values.begin() + (low + 1) * nx, values.begin() + high * nx);
     return values;
 }
 
-void RasterFile::drop_nodata(std::vector<double>& values, Index i, Index first_row, Index nx,
-                             Index ny) const {
+void RasterFile::drop_nodata(std::vector<double>& values, Index i, Index first_row, Index nx, Index ny) const {
     const Messages messages;
     int declared = 0;
     const double nodata = band_->GetNoDataValue(&declared);
@@ -171,16 +166,16 @@ void RasterFile::refuse_sentinels(const std::vector<double>& raw, Index i, Index
         if (std::isnan(raw[k]) || !sentinel(raw[k])) continue;
         const Index column = i + Index(k) % nx, row = first_row + Index(k) / nx;
         const Index j = south_up_ ? row : y_.count - 1 - row;
-        throw UserError(fmt::format(
-            "{}: pixel {} {} (column and row from the first pixel of the file), at {:.10g} {:.10g}, holds "
-            "{:g}, which "
-            "cannot be {} and is not declared as nodata; if it stands for no data, run: gdal_translate "
-            "-a_nodata {} "
-            "{} {}",
-            file_.string(), column, row, x_.start + (double(column) + 0.5) * x_.size,
-            y_.start + (double(j) + 0.5) * y_.size, raw[k],
-            meaning_ == Meaning::elevation ? "an elevation in metres" : "a measured value",
-            fmt::format("{:.17g}", raw[k]), shell(file_.string()), shell(sibling(file_, "_nodata"))));
+        throw UserError(
+            fmt::format("{}: pixel {} {} (column and row from the first pixel of the file), at {:.10g} {:.10g}, holds "
+                        "{:g}, which "
+                        "cannot be {} and is not declared as nodata; if it stands for no data, run: gdal_translate "
+                        "-a_nodata {} "
+                        "{} {}",
+                        file_.string(), column, row, x_.start + (double(column) + 0.5) * x_.size,
+                        y_.start + (double(j) + 0.5) * y_.size, raw[k],
+                        meaning_ == Meaning::elevation ? "an elevation in metres" : "a measured value",
+                        fmt::format("{:.17g}", raw[k]), shell(file_.string()), shell(sibling(file_, "_nodata"))));
     }
 }
 

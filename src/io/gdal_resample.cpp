@@ -92,8 +92,7 @@ NodeWeights mean_weights(Index count, double a, double b) {
     for (Index k = first; k <= last; ++k) {
         const double from = k == first ? a : double(k), to = k == last ? b : double(k + 1);
         const double u0 = from - double(k) - 0.5, u1 = to - double(k) - 0.5;
-        const double first_moment =
-            0.5 * (u1 * u1 - u0 * u0);  // integral of u; the slope is half of what follows
+        const double first_moment = 0.5 * (u1 * u1 - u0 * u0);  // integral of u; the slope is half of what follows
         plain.add(k, u1 - u0);
         moment.add(k, first_moment);
         fine.add(k, u1 - u0);
@@ -222,8 +221,7 @@ void resample_row(const std::vector<NodeWeights>& in_x, const NodeWeights& wy, c
         const NodeWeights& wx = in_x[i];
         if (wx.fine.empty()) continue;
         double value = 0.0;
-        for (std::size_t k = 0; k < wx.fine.size(); ++k)
-            value += wx.fine[k] * folded[std::size_t(wx.first) + k];
+        for (std::size_t k = 0; k < wx.fine.size(); ++k) value += wx.fine[k] * folded[std::size_t(wx.first) + k];
         out[i] = strip.value(wx, wy, value);
     }
 }
@@ -257,8 +255,8 @@ std::vector<NodeWeights> axis_weights(const PixelAxis& pixels, double x0, double
         const double a = centre - 0.5 * ratio, b = centre + 0.5 * ratio;
         const double inside = std::min(b, double(pixels.count)) - std::max(a, 0.0);
         if (inside < least_share * ratio) continue;
-        nodes[std::size_t(i)] = ratio > 1.0 - round_off ? mean_weights(pixels.count, a, b)
-                                                        : cubic_weights(pixels.count, centre - 0.5);
+        nodes[std::size_t(i)] =
+            ratio > 1.0 - round_off ? mean_weights(pixels.count, a, b) : cubic_weights(pixels.count, centre - 0.5);
     }
     return nodes;
 }
@@ -278,8 +276,7 @@ std::vector<double> resample(const std::vector<NodeWeights>& in_x, const std::ve
         // Neighbours of the outermost rows too: slopes must not depend on where a strip ends.
         const Index low = std::max<Index>(batch.low - 1, 0), high = std::min(batch.high + 1, pixels.rows);
         const Strip strip(low, high - low, pixels.columns, pixels.read(low, high - low));
-        for (; j < batch.stop; ++j)
-            resample_row(in_x, in_y[std::size_t(j)], strip, folded, values.data() + j * nx);
+        for (; j < batch.stop; ++j) resample_row(in_x, in_y[std::size_t(j)], strip, folded, values.data() + j * nx);
     }
     return values;
 }

@@ -21,7 +21,8 @@ namespace {
 gdal::Dataset made(const fs::path& file) {
     gdal::register_drivers();
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-    if (!driver) throw UserError("GeoPackage: this GDAL cannot write it; install one with SQLite, or remove gis = true");
+    if (!driver)
+        throw UserError("GeoPackage: this GDAL cannot write it; install one with SQLite, or remove gis = true");
     return gdal::Dataset(driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
 }
 

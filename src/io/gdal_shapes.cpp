@@ -30,8 +30,7 @@ std::vector<Vec2> vertices(const OGRSimpleCurve& curve, bool ring, const std::st
     for (int k = 0; k < curve.getNumPoints(); ++k) {
         const Vec2 point(curve.getX(k), curve.getY(k));
         if (!point.allFinite())
-            throw UserError(place +
-                            ": has a vertex that is no number; expected finite coordinates; draw it again");
+            throw UserError(place + ": has a vertex that is no number; expected finite coordinates; draw it again");
         if (points.empty() || points.back() != point) points.push_back(point);
     }
     while (ring && points.size() > 1 && points.front() == points.back()) points.pop_back();
@@ -51,8 +50,7 @@ void append_polygon(const OGRPolygon& polygon, const std::string& place, std::ve
     if (!part.rings.empty()) parts.push_back(std::move(part));
 }
 
-void collect_polygons(const OGRGeometry& geometry, Census& census,
-                      const std::function<void(const OGRPolygon&)>& use) {
+void collect_polygons(const OGRGeometry& geometry, Census& census, const std::function<void(const OGRPolygon&)>& use) {
     const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
     if (type == wkbPolygon || type == wkbTriangle) {
         ++census.polygons;
@@ -77,13 +75,12 @@ std::vector<std::unique_ptr<OGRPolygon>> outlines_of(std::vector<std::uint8_t>& 
     raster->SetGeoTransform(place.data());
     GDALRasterBand* band = raster->GetRasterBand(1);
     OGRLayer* layer = memory->CreateLayer("patches", nullptr, wkbPolygon, nullptr);
-    const bool done = band->RasterIO(GF_Write, 0, 0, int(nx), int(ny), mask.data(), int(nx), int(ny), GDT_Byte, 0,
-                                     0, nullptr) == CE_None &&
+    const bool done = band->RasterIO(GF_Write, 0, 0, int(nx), int(ny), mask.data(), int(nx), int(ny), GDT_Byte, 0, 0,
+                                     nullptr) == CE_None &&
                       GDALPolygonize(band, band, OGRLayer::ToHandle(layer), -1, nullptr, nullptr, nullptr) == CE_None;
     expect(done, "a mask becomes polygons");
     std::vector<std::unique_ptr<OGRPolygon>> polygons;
-    for (const OGRFeatureUniquePtr& feature : *layer)
-        polygons.emplace_back(feature->StealGeometry()->toPolygon());
+    for (const OGRFeatureUniquePtr& feature : *layer) polygons.emplace_back(feature->StealGeometry()->toPolygon());
     std::stable_sort(polygons.begin(), polygons.end(),
                      [](const auto& a, const auto& b) { return a->get_Area() > b->get_Area(); });
     return polygons;

@@ -30,8 +30,7 @@ std::vector<Vec2> vertices(const OGRSimpleCurve& curve, bool ring, const std::st
 void append_polygon(const OGRPolygon& polygon, const std::string& place, std::vector<Polygon>& parts);
 
 /// Takes a geometry apart into polygons; counts the rest.
-void collect_polygons(const OGRGeometry& geometry, Census& census,
-                      const std::function<void(const OGRPolygon&)>& use);
+void collect_polygons(const OGRGeometry& geometry, Census& census, const std::function<void(const OGRPolygon&)>& use);
 
 /// Outlines of the pixels that are not 0, holes kept, largest first; pixels that touch only at a corner belong to
 /// different ones. `mask` has the row that `transform` (GDAL's geotransform) puts first in front.

@@ -21,8 +21,7 @@ bool ends_with(const std::string& text, const std::string& end) {
 std::vector<std::string> files_behind(const std::filesystem::path& file) {
     gdal::register_drivers();
     const gdal::Messages quiet;
-    const gdal::Dataset dataset(
-        GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
+    const gdal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
     const CPLStringList listed(dataset ? dataset->GetFileList() : nullptr);
     std::vector<std::string> files;
     for (int k = 0; k < listed.size(); ++k)

@@ -51,9 +51,10 @@ Dataset open(const std::filesystem::path& file, unsigned kind) {
     const auto kind_of_file = std::filesystem::status(file, ignored).type();
     using Type = std::filesystem::file_type;
     if (kind_of_file == Type::fifo || kind_of_file == Type::character || kind_of_file == Type::socket)
-        throw UserError(fmt::format("{}: is a pipe or a device, which may never end; expected a file; copy what comes "
-                                    "out of it into a file",
-                                    file.string()));
+        throw UserError(
+            fmt::format("{}: is a pipe or a device, which may never end; expected a file; copy what comes "
+                        "out of it into a file",
+                        file.string()));
     Dataset dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
     if (dataset) return dataset;
     const bool raster = kind == GDAL_OF_RASTER;
@@ -65,8 +66,8 @@ Dataset open(const std::filesystem::path& file, unsigned kind) {
                         "case file's folder",
                         file.string(), wanted));
     throw UserError(fmt::format("{}: cannot be opened ({}); expected {}; try `{} {}`", file.string(),
-                                messages.reason("unknown format"), wanted,
-                                raster ? "gdalinfo" : "ogrinfo -al -so", shell(file.string())));
+                                messages.reason("unknown format"), wanted, raster ? "gdalinfo" : "ogrinfo -al -so",
+                                shell(file.string())));
 }
 
 Dataset warp(const std::string& target, GDALDataset& source, const std::vector<std::string>& arguments) {
@@ -77,8 +78,7 @@ Dataset warp(const std::string& target, GDALDataset& source, const std::vector<s
     if (!options) return nullptr;
     GDALDatasetH sources[] = {GDALDataset::ToHandle(&source)};
     int misuse = 0;
-    return Dataset(
-        GDALDataset::FromHandle(GDALWarp(target.c_str(), nullptr, 1, sources, options.get(), &misuse)));
+    return Dataset(GDALDataset::FromHandle(GDALWarp(target.c_str(), nullptr, 1, sources, options.get(), &misuse)));
 }
 
 std::string shell(const std::string& text) {

@@ -52,11 +52,11 @@ bool opens_as(const fs::path& file, unsigned kind) {
     const char* code = terrain.GetAuthorityCode(nullptr);
     const std::string name = authority && code ? fmt::format("{}:{}", authority, code) : "THE_SURVEY'S_CRS";
     const std::string target = (file.parent_path() / (file.stem().string() + "_crs")).string();
-    const std::string line = program == "ogr2ogr"
-                                 ? fmt::format("ogr2ogr -a_srs {} {} {}", name, gdal::shell(target + ".gpkg"),
-                                               gdal::shell(file.string()))
-                                 : fmt::format("gdal_translate -a_srs {} {} {}", name, gdal::shell(file.string()),
-                                               gdal::shell(target + ".tif"));
+    const std::string line =
+        program == "ogr2ogr"
+            ? fmt::format("ogr2ogr -a_srs {} {} {}", name, gdal::shell(target + ".gpkg"), gdal::shell(file.string()))
+            : fmt::format("gdal_translate -a_srs {} {} {}", name, gdal::shell(file.string()),
+                          gdal::shell(target + ".tif"));
     throw UserError(
         fmt::format("{}: {}; expected a survey that says where on the earth it lies, as the terrain does ({}); if "
                     "it has the terrain's coordinates, run: {}",
@@ -105,15 +105,15 @@ Polygons from_mask(const fs::path& file, const std::string& crs_wkt, std::vector
     for (const auto& outline : gdal::outlines_of(mask, x.count, y.count, {x.start, x.size, 0, y.start, 0, y.size})) {
         const gdal::Messages messages;
         if (transformation && outline->transform(transformation.get()) != OGRERR_NONE)
-            throw UserError(fmt::format("{}: cannot be brought to the terrain's CRS ({}); check its coordinates and "
-                                        "its CRS",
-                                        file.string(), messages.reason("no reason given")));
+            throw UserError(
+                fmt::format("{}: cannot be brought to the terrain's CRS ({}); check its coordinates and "
+                            "its CRS",
+                            file.string(), messages.reason("no reason given")));
         gdal::append_polygon(*outline, file.string(), polygons.parts);
     }
     if (polygons.parts.empty())
-        throw UserError(
-            fmt::format("{}: has no pixel above 0; expected {}; check the values with gdalinfo -stats",
-                        file.string(), what_it_is));
+        throw UserError(fmt::format("{}: has no pixel above 0; expected {}; check the values with gdalinfo -stats",
+                                    file.string(), what_it_is));
     return polygons;
 }
 
@@ -139,9 +139,10 @@ void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& l
     const gdal::Messages messages;
     const Geometry united(all->UnionCascaded());
     if (!united)
-        throw UserError(fmt::format("{}: its polygons cannot be united ({}); expected outlines that do not cross "
-                                    "themselves; draw them again",
-                                    file.string(), messages.reason("no reason given")));
+        throw UserError(
+            fmt::format("{}: its polygons cannot be united ({}); expected outlines that do not cross "
+                        "themselves; draw them again",
+                        file.string(), messages.reason("no reason given")));
     double area = 0.0;
     gdal::Census census;
     std::vector<Polygon> parts;
@@ -153,8 +154,8 @@ void unite(Polygons& polygons, const fs::path& file, std::vector<std::string>& l
     constexpr double round_off = 1e-9;
     if (!(twice > round_off * area)) return;
     polygons.parts = std::move(parts);
-    log.push_back(fmt::format("{}: its polygons overlap by {:.6g} m2, which count once", file.filename().string(),
-                              twice));
+    log.push_back(
+        fmt::format("{}: its polygons overlap by {:.6g} m2, which count once", file.filename().string(), twice));
 }
 
 void require_overlap(const Polygons& polygons, const std::array<double, 4>& extent, const fs::path& file) {
@@ -168,24 +169,24 @@ void require_overlap(const Polygons& polygons, const std::array<double, 4>& exte
     if (all->Intersects(&terrain)) return;
     OGREnvelope box;
     all->getEnvelope(&box);
-    throw UserError(fmt::format("{}: covers {} on the terrain's map, which does not touch the terrain's {}; expected "
-                                "a survey of this place; check its coordinates and its CRS",
-                                file.string(), gdal::extent_text({box.MinX, box.MinY, box.MaxX, box.MaxY}),
-                                gdal::extent_text(extent)));
+    throw UserError(fmt::format(
+        "{}: covers {} on the terrain's map, which does not touch the terrain's {}; expected "
+        "a survey of this place; check its coordinates and its CRS",
+        file.string(), gdal::extent_text({box.MinX, box.MinY, box.MaxX, box.MaxY}), gdal::extent_text(extent)));
 }
 
 }  // namespace
 
-Polygons GdalReader::read_survey(const fs::path& file, const std::array<double, 4>& extent,
-                                 const std::string& crs_wkt, std::vector<std::string>& log) const {
+Polygons GdalReader::read_survey(const fs::path& file, const std::array<double, 4>& extent, const std::string& crs_wkt,
+                                 std::vector<std::string>& log) const {
     const LayerName name = split_layer(file.string());
     const bool vector = opens_as(name.file, GDAL_OF_VECTOR);
     if (!vector && !opens_as(file, GDAL_OF_RASTER)) {
         std::error_code ignored;
-        throw UserError(fmt::format("{}: {}; expected {}; {}", file.string(),
-                                    fs::exists(name.file, ignored) ? "cannot be read" : "no such file", what_it_is,
-                                    fs::exists(name.file, ignored) ? "export it again from your GIS"
-                                                                   : "correct the name"));
+        throw UserError(
+            fmt::format("{}: {}; expected {}; {}", file.string(),
+                        fs::exists(name.file, ignored) ? "cannot be read" : "no such file", what_it_is,
+                        fs::exists(name.file, ignored) ? "export it again from your GIS" : "correct the name"));
     }
     if (vector && !crs_wkt.empty()) require_vector_crs(name, gdal::crs_from_wkt(crs_wkt));
     Polygons polygons = vector ? read_polygons(file, crs_wkt, log) : from_mask(file, crs_wkt, log);
@@ -209,19 +210,21 @@ Raster GdalReader::read_deposit(const fs::path& file, const GridGeometry& grid, 
             const gdal::Transformation forth(OGRCreateCoordinateTransformation(&raster.crs(), &terrain));
             const std::array<double, 4> e = extent;
             constexpr int points = 21;  // along each edge, which need not stay straight
-            if (!forth || !forth->TransformBounds(e[0], e[1], e[2], e[3], &extent[0], &extent[1], &extent[2],
-                                                  &extent[3], points))
-                throw UserError(fmt::format("{}: cannot be brought to the terrain's CRS ({}); reproject it with "
-                                            "gdalwarp",
-                                            file.string(), messages.reason("no transformation known")));
+            if (!forth ||
+                !forth->TransformBounds(e[0], e[1], e[2], e[3], &extent[0], &extent[1], &extent[2], &extent[3], points))
+                throw UserError(
+                    fmt::format("{}: cannot be brought to the terrain's CRS ({}); reproject it with "
+                                "gdalwarp",
+                                file.string(), messages.reason("no transformation known")));
         }
     }
     const GridGeometry wide = widened(grid, extent);
     constexpr Index most = 400'000'000;  // nodes, of 8 bytes each
     if (wide.size() > most)
-        throw UserError(fmt::format("{}: reaches so far that {} x {} pixels of {:g} m would be needed; expected a "
-                                    "deposit near the terrain; cut it with gdalwarp -te",
-                                    file.string(), wide.nx, wide.ny, wide.cell));
+        throw UserError(
+            fmt::format("{}: reaches so far that {} x {} pixels of {:g} m would be needed; expected a "
+                        "deposit near the terrain; cut it with gdalwarp -te",
+                        file.string(), wide.nx, wide.ny, wide.cell));
     Raster deposit = read_onto(file, wide, crs_wkt, log);
     deposit.source = file.string();
     return deposit;

@@ -15,10 +15,10 @@
 namespace frana {
 namespace {
 
-using gdal::crs_name;
 using gdal::append_polygon;
 using gdal::Census;
 using gdal::collect_polygons;
+using gdal::crs_name;
 using gdal::Geometry;
 using gdal::vertices;
 
@@ -38,8 +38,7 @@ gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
     const OGRSpatialReference* declared = layer.GetSpatialRef();
     const std::string name = source.name();
     if (!declared || declared->IsEmpty() || declared->IsLocal()) {
-        if (source.terrain)
-            source.log.push_back(name + ": no CRS; its coordinates are taken as the terrain's own");
+        if (source.terrain) source.log.push_back(name + ": no CRS; its coordinates are taken as the terrain's own");
         return nullptr;
     }
     // By its standard (RFC 7946) a GeoJSON without a crs member is WGS 84; local coordinates say nothing of
@@ -71,13 +70,11 @@ gdal::Transformation to_terrain(Source& source, OGRLayer& layer) {
                         "ogr2ogr -t_srs",
                         source.file.string(), crs_name(from), crs_name(*source.terrain),
                         messages.reason("no transformation known")));
-    source.log.push_back(
-        fmt::format("{}: reprojected from {} to {}", name, crs_name(from), crs_name(*source.terrain)));
+    source.log.push_back(fmt::format("{}: reprojected from {} to {}", name, crs_name(from), crs_name(*source.terrain)));
     return made;
 }
 
-Source open_source(const std::filesystem::path& file, const std::string& crs_wkt,
-                   std::vector<std::string>& log) {
+Source open_source(const std::filesystem::path& file, const std::string& crs_wkt, std::vector<std::string>& log) {
     const LayerName name = split_layer(file.string());
     Source source{name.file, name.layer, gdal::open(name.file, GDAL_OF_VECTOR), std::nullopt, log};
     if (!crs_wkt.empty()) source.terrain = gdal::crs_from_wkt(crs_wkt);
@@ -110,9 +107,9 @@ OGRLayer* chosen_layer(const Source& source) {
                                     layers.empty() ? "one" : "one of " + names_of(layers)));
     }
     if (layers.size() > 1)
-        throw UserError(
-            fmt::format("{}: has {} layers ({}); expected one, or its name; give {}{}{}", source.file.string(),
-                        layers.size(), names_of(layers), source.name(), kLayerMark, layers.front()->GetName()));
+        throw UserError(fmt::format("{}: has {} layers ({}); expected one, or its name; give {}{}{}",
+                                    source.file.string(), layers.size(), names_of(layers), source.name(), kLayerMark,
+                                    layers.front()->GetName()));
     return layers.empty() ? nullptr : layers.front();
 }
 
@@ -122,10 +119,11 @@ void refuse_null(const Source& source, const std::vector<GIntBig>& without) {
     constexpr std::size_t most = 5;
     std::string ids;
     for (std::size_t n = 0; n < std::min(most, without.size()); ++n) ids += fmt::format(n ? ", {}" : "{}", without[n]);
-    throw UserError(fmt::format("{}: {} feature{} ha{} no geometry (feature {}{}); expected one in each; delete them, "
-                                "or draw them again",
-                                source.file.string(), without.size(), without.size() == 1 ? "" : "s",
-                                without.size() == 1 ? "s" : "ve", ids, without.size() > most ? ", ..." : ""));
+    throw UserError(
+        fmt::format("{}: {} feature{} ha{} no geometry (feature {}{}); expected one in each; delete them, "
+                    "or draw them again",
+                    source.file.string(), without.size(), without.size() == 1 ? "" : "s",
+                    without.size() == 1 ? "s" : "ve", ids, without.size() > most ? ", ..." : ""));
 }
 
 /// Calls `use(feature, geometry, "feature 3")` for each geometry of the layer: flat, without curves, in terrain
@@ -164,8 +162,7 @@ void for_each_geometry(Source& source, Census& census,
 }
 
 /// A valid polygon as it is; one that crosses itself repaired, with a remark.
-void append_valid(const OGRPolygon& polygon, const std::string& where, Source& source,
-                  std::vector<Polygon>& parts) {
+void append_valid(const OGRPolygon& polygon, const std::string& where, Source& source, std::vector<Polygon>& parts) {
     const std::string place = fmt::format("{}: {}", source.file.string(), where);
     std::vector<Polygon> raw;
     append_polygon(polygon, place, raw);  // refuses what is not finite before GEOS sees it
@@ -189,8 +186,7 @@ void append_valid(const OGRPolygon& polygon, const std::string& where, Source& s
         append_polygon(part, place, parts);
     });
     if (parts.size() == before)
-        throw UserError(
-            fmt::format("{}: encloses no area ({}); expected an outline; draw it again", place, reason));
+        throw UserError(fmt::format("{}: encloses no area ({}); expected an outline; draw it again", place, reason));
     source.log.push_back(fmt::format("{}: {} was not a valid polygon ({}); repaired, it covers {:.6g} m2",
                                      source.name(), where, reason, area));
 }
@@ -203,18 +199,16 @@ void collect_lines(const OGRGeometry& geometry, Census& census, const std::strin
         Polyline line = vertices(*geometry.toLineString(), false, place);
         if (line.size() >= 2) lines.push_back(std::move(line));
     } else if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection)) {
-        for (const OGRGeometry* part : *geometry.toGeometryCollection())
-            collect_lines(*part, census, place, lines);
+        for (const OGRGeometry* part : *geometry.toGeometryCollection()) collect_lines(*part, census, place, lines);
     } else {
         ++(type == wkbPoint ? census.points : census.polygons);
     }
 }
 
-[[noreturn]] void refuse_content(const Source& source, const Census& census, const char* wanted,
-                                 const char* way_out) {
-    throw UserError(fmt::format(
-        "{}: {}; expected at least one {}; {}", source.file.string(),
-        census.features == 0 ? "holds no features" : "holds " + census.text() + " only", wanted, way_out));
+[[noreturn]] void refuse_content(const Source& source, const Census& census, const char* wanted, const char* way_out) {
+    throw UserError(fmt::format("{}: {}; expected at least one {}; {}", source.file.string(),
+                                census.features == 0 ? "holds no features" : "holds " + census.text() + " only", wanted,
+                                way_out));
 }
 
 /// The number that a feature has under `attribute`.
@@ -249,9 +243,8 @@ ValuedPolygons polygons_of(const std::filesystem::path& file, const std::string&
     polygons.source = file.string();
     Census census;
     const auto use = [&](const OGRFeature& feature, const OGRGeometry& geometry, const std::string& where) {
-        collect_polygons(geometry, census, [&](const OGRPolygon& polygon) {
-            append_valid(polygon, where, source, polygons.parts);
-        });
+        collect_polygons(geometry, census,
+                         [&](const OGRPolygon& polygon) { append_valid(polygon, where, source, polygons.parts); });
         if (attribute.empty() || polygons.parts.size() == valued.values.size()) return;
         valued.values.resize(polygons.parts.size(), value_of(feature, attribute, source, where));
     };

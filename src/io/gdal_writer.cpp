@@ -32,8 +32,7 @@ GDALDriver& driver(const char* name) {
 /// North row first, NaN as nodata.
 std::vector<float> file_values(const std::filesystem::path& target, const Raster& raster) {
     const GridGeometry& g = raster.geometry;
-    expect(g.nx > 0 && g.ny > 0 && Index(raster.values.size()) == g.size(),
-           "a raster has a value for each node");
+    expect(g.nx > 0 && g.ny > 0 && Index(raster.values.size()) == g.size(), "a raster has a value for each node");
     std::vector<float> values(raster.values.size());
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
@@ -89,14 +88,13 @@ std::vector<std::unique_ptr<OGRPolygon>> patches(const Raster& depth, double thr
 }
 
 void write_features(GDALDataset& dataset, const std::vector<std::unique_ptr<OGRPolygon>>& outlines,
-                    const std::string& name, const Raster& depth,
-                    const std::map<std::string, double>& attributes) {
+                    const std::string& name, const Raster& depth, const std::map<std::string, double>& attributes) {
     OGRSpatialReference crs = coded_crs(depth.crs_wkt);
     const double pixel_area = depth.geometry.cell * depth.geometry.cell;
     // 1e-9 m, of the order of a map coordinate's round-off: shared edges stay shared, numbers stay short.
     const char* const options[] = {"RFC7946=NO", "COORDINATE_PRECISION=9", "SIGNIFICANT_FIGURES=15", nullptr};
-    OGRLayer* layer = dataset.CreateLayer(name.c_str(), crs.IsEmpty() ? nullptr : &crs, wkbPolygon,
-                                          const_cast<char**>(options));
+    OGRLayer* layer =
+        dataset.CreateLayer(name.c_str(), crs.IsEmpty() ? nullptr : &crs, wkbPolygon, const_cast<char**>(options));
     if (!layer) return;  // the caller sees GDAL's complaint
     OGRFieldDefn area("area_m2", OFTReal);
     layer->CreateField(&area);
@@ -120,8 +118,7 @@ void write_geotiff(const std::filesystem::path& target, const Raster& raster, co
                    const std::string& description) {
     std::vector<float> values = file_values(target, raster);
     const int nx = int(raster.geometry.nx), ny = int(raster.geometry.ny);
-    const char* const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER",
-                                   nullptr};
+    const char* const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER", nullptr};
     AtomicFile file(target);
     const gdal::Messages messages;
     gdal::Dataset dataset(
@@ -132,8 +129,7 @@ void write_geotiff(const std::filesystem::path& target, const Raster& raster, co
     band->SetNoDataValue(nodata);
     band->SetUnitType(unit.c_str());
     band->SetDescription(description.c_str());
-    const CPLErr written =
-        band->RasterIO(GF_Write, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float32, 0, 0, nullptr);
+    const CPLErr written = band->RasterIO(GF_Write, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float32, 0, 0, nullptr);
     dataset.reset();  // flushes; a full disk shows here
     if (written != CE_None || messages.failed()) refuse_write(target, messages);
     file.commit();

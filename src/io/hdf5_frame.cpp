@@ -28,9 +28,12 @@ struct NumberType {
 };
 template <class T>
 NumberType number_type() {
-    if constexpr (std::is_same_v<T, float>) return {H5T_NATIVE_FLOAT, H5T_IEEE_F32LE};
-    else if constexpr (std::is_same_v<T, double>) return {H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE};
-    else if constexpr (std::is_same_v<T, std::int64_t>) return {H5T_NATIVE_INT64, H5T_STD_I64LE};
+    if constexpr (std::is_same_v<T, float>)
+        return {H5T_NATIVE_FLOAT, H5T_IEEE_F32LE};
+    else if constexpr (std::is_same_v<T, double>)
+        return {H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE};
+    else if constexpr (std::is_same_v<T, std::int64_t>)
+        return {H5T_NATIVE_INT64, H5T_STD_I64LE};
     else {
         static_assert(std::is_same_v<T, std::uint8_t>, "no such type in a file");
         return {H5T_NATIVE_UINT8, H5T_STD_U8LE};
@@ -39,16 +42,13 @@ NumberType number_type() {
 
 template <class T>
 void put_array(Output& output, hid_t group, const std::string& name, const std::string& unit,
-               const std::vector<hsize_t>& shape, const T* values,
-               const std::vector<std::string>& components) {
-    const Handle space(output, H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
-                       H5Sclose);
+               const std::vector<hsize_t>& shape, const T* values, const std::vector<std::string>& components) {
+    const Handle space(output, H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
     const Handle creation(output, H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     output.check(H5Pset_obj_track_times(creation, false));  // the same run gives the same file
-    Handle set(
-        output,
-        H5Dcreate2(group, name.c_str(), number_type<T>().file, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-        H5Dclose);
+    Handle set(output,
+               H5Dcreate2(group, name.c_str(), number_type<T>().file, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+               H5Dclose);
     hdf5::write_whole(output, set, number_type<T>().memory, values);
     put_text(output, set, "unit", unit);
     std::string listed;
@@ -85,8 +85,7 @@ Handle new_group(Output& output, hid_t parent, const std::string& name) {
     return {output, H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose};
 }
 
-void put_grid(Output& output, hid_t parent, const Frame& frame,
-              const std::vector<std::uint8_t>& outside) {
+void put_grid(Output& output, hid_t parent, const Frame& frame, const std::vector<std::uint8_t>& outside) {
     const GridGeometry& grid = frame.grid;
     const Handle group = new_group(output, parent, "grid");
     put_numbers(output, group, "origin", {grid.x0, grid.y0, 0.0});
@@ -143,8 +142,7 @@ std::vector<FileExtent> append_frame(const std::filesystem::path& path, bool fre
     hdf5::reserve(output, path, space_for(frame));
     Handle file = open_file(output, false);
     const std::string name = frame_group(frame.number);
-    if (H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0)
-        output.check(H5Ldelete(file, name.c_str(), H5P_DEFAULT));
+    if (H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0) output.check(H5Ldelete(file, name.c_str(), H5P_DEFAULT));
     {
         const Handle group = new_group(output, file, name);
         put_numbers(output, group, "time", {frame.status.time});

@@ -51,10 +51,9 @@ void put_text(const Access& access, hid_t object, const char* name, const std::s
 
 void put_numbers(const Access& access, hid_t object, const char* name, const std::vector<double>& numbers) {
     const hsize_t count = numbers.size();
-    const Handle space(
-        access, numbers.size() == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose);
-    const Handle attribute(access, H5Acreate2(object, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Aclose);
+    const Handle space(access, numbers.size() == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr),
+                       H5Sclose);
+    const Handle attribute(access, H5Acreate2(object, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     access.check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, numbers.data()));
 }
 

@@ -54,10 +54,8 @@ std::string grid_text(const Frame& frame, bool has_outside) {
         "        </Geometry>\n",
         frame.status.time, dimensions, grid.y0, grid.x0, grid.cell);
     for (const Field& field : frame.nodes)
-        text += attribute_text(field.name, field.components, dimensions, number_attributes(storage_of(field)),
-                               place);
-    if (has_outside)
-        text += attribute_text("outside", 1, dimensions, "NumberType=\"UChar\" Precision=\"1\"", place);
+        text += attribute_text(field.name, field.components, dimensions, number_attributes(storage_of(field)), place);
+    if (has_outside) text += attribute_text("outside", 1, dimensions, "NumberType=\"UChar\" Precision=\"1\"", place);
     return text + "      </Grid>\n";
 }
 
@@ -76,8 +74,8 @@ std::string particles_text(const Frame& frame) {
         frame.status.time, count, place);
     for (const Field& field : frame.particles)
         if (field.name != "position")
-            text += attribute_text(field.name, field.components, dimensions,
-                                   number_attributes(storage_of(field)), place);
+            text +=
+                attribute_text(field.name, field.components, dimensions, number_attributes(storage_of(field)), place);
     return text + "      </Grid>\n";
 }
 
@@ -115,8 +113,7 @@ private:
     void write_list() const {
         write_text(run_dir_ / "run.xdmf", "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n" +
                                               collection_text("grid", grids_) +
-                                              collection_text("particles", particles_) +
-                                              "  </Domain>\n</Xdmf>\n");
+                                              collection_text("particles", particles_) + "  </Domain>\n</Xdmf>\n");
     }
 
     /// HDF5 writes its tables over and over in the same places, and a run that is killed there leaves a file that

@@ -15,9 +15,9 @@ namespace frana::laws {
 struct SharedKey {
     std::string name, unit, meaning;
     Range range;
-    std::string instead_of, more_than, way_out;  ///< as in Key; empty: none
-    std::optional<double> usual;                 ///< the default
-    std::vector<std::string> used_by, needed_by; ///< words of the laws
+    std::string instead_of, more_than, way_out;   ///< as in Key; empty: none
+    std::optional<double> usual;                  ///< the default
+    std::vector<std::string> used_by, needed_by;  ///< words of the laws
 };
 
 template <class Any>
@@ -56,12 +56,15 @@ private:
     template <class Law>
     static void add_keys(std::vector<SharedKey>& all) {
         for (const Key<Law>& key : Law::keys()) {
-            SharedKey mine{key.name, key.unit, key.meaning, key.range, key.instead_of, key.more_than, key.way_out, {}, {}, {}};
+            SharedKey mine{key.name,      key.unit,    key.meaning, key.range, key.instead_of,
+                           key.more_than, key.way_out, {},          {},        {}};
             if (key.missing == Missing::usual) mine.usual = Law{}.*key.parameter;
-            auto row = std::find_if(all.begin(), all.end(), [&](const SharedKey& other) { return other.name == mine.name; });
+            auto row =
+                std::find_if(all.begin(), all.end(), [&](const SharedKey& other) { return other.name == mine.name; });
             if (row == all.end()) row = all.insert(row, mine);
             expect(row->unit == mine.unit && row->meaning == mine.meaning && row->range == mine.range &&
-                       row->instead_of == mine.instead_of && row->more_than == mine.more_than && row->usual == mine.usual,
+                       row->instead_of == mine.instead_of && row->more_than == mine.more_than &&
+                       row->usual == mine.usual,
                    "a key that two laws have must be the same in both");
             row->used_by.push_back(Law::name);
             if (key.missing == Missing::refused) row->needed_by.push_back(Law::name);

@@ -36,8 +36,8 @@ constexpr double kTangentSeries = 1e-2;
 template <class Real>
 [[gnu::always_inline]] inline Real tangent_series(Real x) {
     return 1.0 +
-           x * (-1.0 / 3 +
-                x * (2.0 / 15 + x * (-17.0 / 315 + x * (62.0 / 2835 + x * (-1382.0 / 155925 + x * (21844.0 / 6081075))))));
+           x * (-1.0 / 3 + x * (2.0 / 15 + x * (-17.0 / 315 +
+                                                x * (62.0 / 2835 + x * (-1382.0 / 155925 + x * (21844.0 / 6081075))))));
 }
 
 /// THEORY (38): one step of  ds/dt = drive - coulomb - quadratic s^2, exactly (Riccati): with net = drive - coulomb and

@@ -20,10 +20,10 @@ struct Key {
     Range range;
     const char* meaning;
     Missing missing = Missing::refused;
-    const char* instead_of = "";  ///< key of the same parameter in other terms
+    const char* instead_of = "";                                     ///< key of the same parameter in other terms
     double (*convert)(double) = [](double value) { return value; };  ///< value of the key to parameter
-    const char* more_than = "";   ///< key of the same law that must be smaller
-    const char* way_out = "";     ///< what to do where it is not
+    const char* more_than = "";                                      ///< key of the same law that must be smaller
+    const char* way_out = "";                                        ///< what to do where it is not
 };
 
 }  // namespace frana::laws

@@ -45,8 +45,7 @@ namespace solid {
 /// sqrt(2/3) q; in plane strain half the difference of the principal stresses is sin(phi) times their mean,
 /// and |s| = sqrt(2) times that half.
 DruckerPrager DruckerPrager::of(const Elastic& elastic, double friction_angle, double cohesion, Cone cone) {
-    expect(friction_angle > 0.0 || cohesion == 0.0,
-           "cohesion of this law needs friction: its cone has an apex");
+    expect(friction_angle > 0.0 || cohesion == 0.0, "cohesion of this law needs friction: its cone has an apex");
     const double sine = std::sin(friction_angle);
     const double alpha =
         cone == Cone::compression ? std::sqrt(2.0 / 3.0) * 6.0 * sine / (3.0 - sine) : std::sqrt(2.0) * sine;
@@ -61,7 +60,7 @@ double HerschelBulkley::left_of(double over, double dt) const {
     // x + a x^power = whole, with x = s, or x = G dt rate.
     const double a = exponent <= 1.0 ? g * std::pow(consistency, -power) : consistency * std::pow(g, -power);
     double x = std::min(over, std::pow(over / a, 1.0 / power));
-    constexpr int kMostSteps = 60;          // quadratic from the second on: six at most were seen
+    constexpr int kMostSteps = 60;  // quadratic from the second on: six at most were seen
     constexpr double kRoundOff = 1e-14;
     for (int step = 0; step < kMostSteps; ++step) {
         const double y = a * std::pow(x, power), down = (x + y - over) / (1.0 + power * y / x);

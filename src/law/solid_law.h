@@ -34,8 +34,7 @@ using Deformation = DeformationOf<double>;
 template <class Real>
 [[gnu::always_inline]] inline SymOf<Real> spun(const SymOf<Real>& s, const DeformationOf<Real>& d) {
     const double half = 0.5 * d.dt;
-    const Real xy = half * (d.gradient(0, 1) - d.gradient(1, 0)),
-               yz = half * (d.gradient(1, 2) - d.gradient(2, 1)),
+    const Real xy = half * (d.gradient(0, 1) - d.gradient(1, 0)), yz = half * (d.gradient(1, 2) - d.gradient(2, 1)),
                xz = half * (d.gradient(0, 2) - d.gradient(2, 0));
     return s + SymOf<Real>{2.0 * (xy * s.xy + xz * s.xz),
                            2.0 * (yz * s.yz - xy * s.xy),
@@ -64,8 +63,7 @@ struct Fluid {
     double viscosity = 0.0;  ///< [Pa s]
 
     template <class Real>
-    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>*,
-                                              const Square<Real>& gradient) const {
+    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>*, const Square<Real>& gradient) const {
         return (SymOf<Real>::of(gradient).deviator() * (Real{} + 2.0 * viscosity))
                    .plus_isotropic(-bulk * max(1.0 - j, Real{})) *
                j;
@@ -212,8 +210,7 @@ struct DruckerPrager {
     static DruckerPrager of(const Elastic& elastic, double friction_angle, double cohesion,
                             Cone cone = Cone::compression);
     template <class Real>
-    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>* state,
-                                              const Square<Real>& gradient) const {
+    [[gnu::always_inline]] SymOf<Real> stress(Real j, const Given<Real>* state, const Square<Real>& gradient) const {
         return elastic.stress(j, state, gradient);
     }
     template <class Real>

@@ -66,13 +66,12 @@ template <class Real>
     const Square<Real> b = exponent.matrix();
     Square<Real> gb;
     for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < 3; ++l)
-            gb(k, l) = g(k, l) + (g(k, 0) * b(0, l) + g(k, 1) * b(1, l) + g(k, 2) * b(2, l));
+        for (int l = 0; l < 3; ++l) gb(k, l) = g(k, l) + (g(k, 0) * b(0, l) + g(k, 1) * b(1, l) + g(k, 2) * b(2, l));
     const auto grown = [&](int k, int l) {
         return gb(k, l) + gb(l, k) + (gb(k, 0) * g(l, 0) + gb(k, 1) * g(l, 1) + gb(k, 2) * g(l, 2));
     };
-    return logarithm(exponent + SymOf<Real>{grown(0, 0), grown(1, 1), grown(2, 2), grown(0, 1), grown(1, 2),
-                                            grown(0, 2)}) *
+    return logarithm(exponent +
+                     SymOf<Real>{grown(0, 0), grown(1, 1), grown(2, 2), grown(0, 1), grown(1, 2), grown(0, 2)}) *
            (Real{} + 0.5);
 }
 inline Sym3 carried_strain(const Sym3& e, const Mat3& grown) { return carried<double>(e, grown); }

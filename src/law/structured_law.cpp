@@ -49,8 +49,7 @@ ConeReturn ColumnLaw::to_cone(double q, double first, double k) const {
 }
 
 PlasticStep ColumnLaw::yield(double cohesion, ColumnStress& s) const {
-    return material_.yield == ColumnYield::hexagon ? yield_to_hexagon(cohesion, s)
-                                                   : yield_to_cone(k_ * cohesion, s);
+    return material_.yield == ColumnYield::hexagon ? yield_to_hexagon(cohesion, s) : yield_to_cone(k_ * cohesion, s);
 }
 
 namespace {
@@ -70,13 +69,11 @@ public:
     }
 
 private:
-    double low_ = -std::numeric_limits<double>::infinity(), high_ = std::numeric_limits<double>::infinity(),
-           reach_;
+    double low_ = -std::numeric_limits<double>::infinity(), high_ = std::numeric_limits<double>::infinity(), reach_;
 };
 
-constexpr int kMostPasses = 100;  // of the search; two to four are usual
-constexpr double kStressError =
-    1e-7;  // of zz, over the strength and the weight: far below what damage resolves
+constexpr int kMostPasses = 100;       // of the search; two to four are usual
+constexpr double kStressError = 1e-7;  // of zz, over the strength and the weight: far below what damage resolves
 
 }  // namespace
 
@@ -122,13 +119,16 @@ PlasticStep ColumnLaw::search_cone(double k, ColumnStress& s) const {
 /// much against it, and I1; what zz misses is all but linear in t, and two passes mostly do. A pass has one root, q = sqrt(J2)
 /// of the trial, and one division: q^3 times what is missed over q^3 times its slope.
 template <class Real, class Mask>
-inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>& s, PlasticStepOf<Real>& plastic) const {
+inline Mask ColumnLaw::newton_to_cone(Mask yields, Real k, ColumnStressOf<Real>& s,
+                                      PlasticStepOf<Real>& plastic) const {
     constexpr int kUnasked = 2, kMost = 6;  // passes: a choice after each would keep the next columns waiting
     const double g = shear_, bulk = bulk_, turn = 4.0 / 3.0 * g, per = 1.0 / (g + 9.0 * bulk * alpha_ * dilates_);
-    const double kept = 1.0 - g * per, swell = 3.0 * bulk * dilates_ * per;  // of q, in what is left of q and in the mean
+    const double kept = 1.0 - g * per,
+                 swell = 3.0 * bulk * dilates_ * per;  // of q, in what is left of q and in the mean
     const double lean = 3.0 * bulk * alpha_;
     const Real first = s.xx + s.yy + s.zz, mean = (1.0 / 3.0) * first, z = s.zz - mean, across = 0.5 * (s.xx - s.yy);
-    const Real plane2 = across * across + s.xy * s.xy, enough = kStressError * (k + abs(s.zz)), axis = alpha_ * first - k;
+    const Real plane2 = across * across + s.xy * s.xy, enough = kStressError * (k + abs(s.zz)),
+               axis = alpha_ * first - k;
     Real t = select(kept * sqrt(plane2 + 0.75 * z * z) - g * per * axis > 0.0, Real{}, z / bulk), sz, q, left, lifted;
     const Real one = Real{} + 1.0;
     Mask on_side, open, rises = yields;
@@ -197,8 +197,7 @@ PlasticStep ColumnLaw::yield_to_hexagon(double cohesion, ColumnStress& s) const 
                            {{-1, 0}, -low, {-down, 0}}};
     const double trial[2] = {centre + radius, centre - radius}, nu = material_.poisson;
     const double near = 1e-12 * (std::abs(high) + std::abs(low) + std::abs(trial[0]) + std::abs(trial[1]));
-    double kept[2] = {trial[0], trial[1]}, strain[2] = {0.0, 0.0},
-           least = std::numeric_limits<double>::infinity();
+    double kept[2] = {trial[0], trial[1]}, strain[2] = {0.0, 0.0}, least = std::numeric_limits<double>::infinity();
     // The admissible return that leaves the least outside; by round-off more than one may qualify, and then
     // they agree.
     const auto consider = [&](const Face& a, double la, const Face& b, double lb) {
@@ -226,14 +225,12 @@ PlasticStep ColumnLaw::yield_to_hexagon(double cohesion, ColumnStress& s) const 
     return {strain[0] + strain[1], std::max(strain[0], strain[1])};
 }
 
-void ColumnLaw::give_way(bool, const ColumnStep& step, double left, ColumnStress& s,
-                         ColumnState& state) const {
+void ColumnLaw::give_way(bool, const ColumnStep& step, double left, ColumnStress& s, ColumnState& state) const {
     const PlasticStep plastic = yield(left, s);
     const double critical = material_.critical_strain;
     if (material_.damage_by == DamageBy::strain) {
         const double now = std::abs(step.xx) + std::abs(step.yy) + 2.0 * std::abs(step.xy);
-        if (state.strain > material_.onset)
-            state.damage = 1.0 - (1.0 - state.damage) * std::exp(-now / critical);
+        if (state.strain > material_.onset) state.damage = 1.0 - (1.0 - state.damage) * std::exp(-now / critical);
         return;
     }
     const double opened = material_.damage_by == DamageBy::dilation ? plastic.dilation : plastic.extension;

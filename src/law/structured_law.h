@@ -58,7 +58,7 @@ struct ColumnMaterial {
     ColumnYield yield = ColumnYield::compression;
     DamageBy damage_by = DamageBy::dilation;
     double critical_strain = 0.1;  ///< eps_c at which no bond is left [1]
-    double onset = 0.0;             ///< strain before which DamageBy::strain breaks nothing [1]
+    double onset = 0.0;            ///< strain before which DamageBy::strain breaks nothing [1]
 };
 
 /// eps_c on cells of `cell` [m], of a material that has `reference` on cells of `reference_cell` [m]. Strain
@@ -96,7 +96,7 @@ public:
     bool is_hexagon() const { return material_.yield == ColumnYield::hexagon; }
     double bulk() const { return bulk_; }
     double shear() const { return shear_; }
-    double alpha() const { return alpha_; }  ///< of the cone: sqrt(J2) + alpha I1 = k
+    double alpha() const { return alpha_; }                           ///< of the cone: sqrt(J2) + alpha I1 = k
     double strength(double cohesion) const { return k_ * cohesion; }  ///< k [Pa]
     double active() const { return active_; }                         ///< Ka, Rankine's
     double passive() const { return 1.0 / active_; }                  ///< Kp
@@ -155,12 +155,11 @@ private:
         return {centre + across, centre - across, s.zz, half * turn.sine + s.xy * turn.cosine};
     }
     template <class Real>
-    [[gnu::always_inline]] ColumnStressOf<Real> predicted(const ColumnStressOf<Real>& s,
-                                                          const ColumnStepOf<Real>& step, Real weight) const {
+    [[gnu::always_inline]] ColumnStressOf<Real> predicted(const ColumnStressOf<Real>& s, const ColumnStepOf<Real>& step,
+                                                          Real weight) const {
         const Real lift = weight_share_ * (weight - s.zz);
         return {s.xx + plane_ * (step.xx + material_.poisson * step.yy) + lift,
-                s.yy + plane_ * (step.yy + material_.poisson * step.xx) + lift, weight,
-                s.xy + 2.0 * shear_ * step.xy};
+                s.yy + plane_ * (step.yy + material_.poisson * step.xx) + lift, weight, s.xy + 2.0 * shear_ * step.xy};
     }
     template <class Real>
     [[gnu::always_inline]] Real hexagon_excess(const ColumnStressOf<Real>& s, Real cohesion) const {
@@ -170,8 +169,7 @@ private:
         return (most - least) + (most + least) * sine_ - 2.0 * cosine_ * cohesion;
     }
     // Four by reference: by value they travel differently between files built for different instruction sets.
-    void give_way(bool yields, const ColumnStep& step, double left, ColumnStress& s,
-                  ColumnState& state) const;
+    void give_way(bool yields, const ColumnStep& step, double left, ColumnStress& s, ColumnState& state) const;
     void give_way(const Mask4& yields, const ColumnStepOf<Double4>& step, const Double4& left,
                   ColumnStressOf<Double4>& s, ColumnStateOf<Double4>& state) const;
     template <class Real, class Mask>
@@ -193,7 +191,8 @@ template <class Real>
 [[gnu::always_inline]] inline void small_turn(Real a, Real& cosine, Real& sine) {
     const Real b = a * a;
     cosine = 1.0 - 0.5 * b * (1.0 - 1.0 / 12 * b * (1.0 - 1.0 / 30 * b * (1.0 - 1.0 / 56 * b * (1.0 - 1.0 / 90 * b))));
-    sine = a * (1.0 - 1.0 / 6 * b * (1.0 - 1.0 / 20 * b * (1.0 - 1.0 / 42 * b * (1.0 - 1.0 / 72 * b * (1.0 - 1.0 / 110 * b)))));
+    sine = a * (1.0 - 1.0 / 6 * b *
+                          (1.0 - 1.0 / 20 * b * (1.0 - 1.0 / 42 * b * (1.0 - 1.0 / 72 * b * (1.0 - 1.0 / 110 * b)))));
 }
 void large_turn(double a, double& cosine, double& sine);
 void large_turn(const Double4& a, Double4& cosine, Double4& sine);

@@ -20,9 +20,7 @@ using Given = typename AsGiven<T>::type;
 struct Mat3x4 {
     Double4 entry[9];
     [[gnu::always_inline]] Double4& operator()(int row, int column) { return entry[row + 3 * column]; }
-    [[gnu::always_inline]] const Double4& operator()(int row, int column) const {
-        return entry[row + 3 * column];
-    }
+    [[gnu::always_inline]] const Double4& operator()(int row, int column) const { return entry[row + 3 * column]; }
 };
 template <class Real>
 using Square = std::conditional_t<std::is_same_v<Real, double>, Mat3, Mat3x4>;
@@ -41,9 +39,7 @@ struct SymOf {
     [[gnu::always_inline]] SymOf operator+(const SymOf& b) const {
         return {xx + b.xx, yy + b.yy, zz + b.zz, xy + b.xy, yz + b.yz, xz + b.xz};
     }
-    [[gnu::always_inline]] SymOf operator*(Real s) const {
-        return {s * xx, s * yy, s * zz, s * xy, s * yz, s * xz};
-    }
+    [[gnu::always_inline]] SymOf operator*(Real s) const { return {s * xx, s * yy, s * zz, s * xy, s * yz, s * xz}; }
     [[gnu::always_inline]] SymOf plus_isotropic(Real p) const { return {xx + p, yy + p, zz + p, xy, yz, xz}; }
     [[gnu::always_inline]] Square<Real> matrix() const {
         Square<Real> m;
@@ -53,12 +49,8 @@ struct SymOf {
     }
     /// The symmetric part.
     [[gnu::always_inline]] static SymOf of(const Square<Real>& m) {
-        return {m(0, 0),
-                m(1, 1),
-                m(2, 2),
-                0.5 * (m(0, 1) + m(1, 0)),
-                0.5 * (m(1, 2) + m(2, 1)),
-                0.5 * (m(0, 2) + m(2, 0))};
+        return {
+            m(0, 0), m(1, 1), m(2, 2), 0.5 * (m(0, 1) + m(1, 0)), 0.5 * (m(1, 2) + m(2, 1)), 0.5 * (m(0, 2) + m(2, 0))};
     }
     [[gnu::always_inline]] static SymOf read(const Real* s) { return {s[0], s[1], s[2], s[3], s[4], s[5]}; }
     [[gnu::always_inline]] void write(Real* s) const {
@@ -89,8 +81,7 @@ template <class Real>
 template <class Real>
 [[gnu::always_inline]] inline SymOf<Real> inverse(const SymOf<Real>& a) {
     const Real xx = a.yy * a.zz - a.yz * a.yz, xy = a.xz * a.yz - a.xy * a.zz, xz = a.xy * a.yz - a.xz * a.yy;
-    return SymOf<Real>{xx, a.xx * a.zz - a.xz * a.xz, a.xx * a.yy - a.xy * a.xy,
-                       xy, a.xy * a.xz - a.xx * a.yz, xz} *
+    return SymOf<Real>{xx, a.xx * a.zz - a.xz * a.xz, a.xx * a.yy - a.xy * a.xy, xy, a.xy * a.xz - a.xx * a.yz, xz} *
            (1.0 / (a.xx * xx + a.xy * xy + a.xz * xz));
 }
 

@@ -18,8 +18,7 @@ double relative_weight(const TwoPhaseMaterial& m) {
 }  // namespace
 
 double bound_density(const TwoPhaseMaterial& material, const Mixture& mixture) {
-    return (mixture.solids * material.solid_density +
-            mixture.confined * mixture.fluid() * material.fluid_density) /
+    return (mixture.solids * material.solid_density + mixture.confined * mixture.fluid() * material.fluid_density) /
            mixture.bound();
 }
 
@@ -66,8 +65,7 @@ double TwoPhaseDrag::grain_speed(const Mixture& x, double flux) const {
         material_.fluid_density / material_.solid_density / 180.0 * ratio * ratio * ratio * grain_.reynolds;
     const double fluid_like = std::pow(free, grain_.exponent - 1.0);
     const double p = std::pow(grains / (grains + free), material_.weighting);
-    return grain_.speed * (p * solid_like + (1.0 - p) * fluid_like) +
-           (p / x.bound() + (1.0 - p) / free) * flux;
+    return grain_.speed * (p * solid_like + (1.0 - p) * fluid_like) + (p / x.bound() + (1.0 - p) / free) * flux;
 }
 
 double TwoPhaseDrag::block_speed(const Mixture& x, double flux) const {

@@ -26,7 +26,7 @@ struct TwoPhaseMaterial {
     double viscosity = 1e-3;                                ///< of the fluid, eta [Pa s]
     double gravity = 9.81;                                  ///< [m/s^2]
     double grain = 1e-3, block = 0.1;                       ///< diameters of grains and of blocks [m]
-    int power = 2;         ///< j: drag grows with the slip (1) or with its square (2)
+    int power = 2;                                          ///< j: drag grows with the slip (1) or with its square (2)
     bool split = true;     ///< drag of blocks apart from that of grains; or all solids as grains, all water free
     double weighting = 1;  ///< m of P = (solid share)^m between solid-like and fluid-like drag
 };

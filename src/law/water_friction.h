@@ -16,8 +16,9 @@ struct WaterFriction {
 /// doi:10.5194/gmd-14-1841-2021, eqs. 29 and 30, averaged over the depth).
 struct WaterViscosity {
     double kinematic = 0.0;  ///< nu = eta / density [m^2/s]; 0: the flow feels none
-    double shear = 3.0;      ///< chi of the bed's stress over density, chi nu V / T: 3 for a parabola over the depth [1]
-    bool solid_gradient = false;  ///< slip along a gradient of the solids' share is sheared as well (eq. 30's second term)
+    double shear = 3.0;  ///< chi of the bed's stress over density, chi nu V / T: 3 for a parabola over the depth [1]
+    bool solid_gradient =
+        false;             ///< slip along a gradient of the solids' share is sheared as well (eq. 30's second term)
     double profile = 0.0;  ///< xi of that term: how solids are spread over the depth, 0 evenly, 3 as a parabola [1]
 };
 
@@ -31,8 +32,7 @@ struct WaterBed {
 /// THEORY (12): the deceleration on the map over the speed on the map squared [1/m].
 inline double quadratic_drag(const WaterFriction& friction, const WaterBed& bed) {
     const double t = bed.thickness, c = friction.coefficient;
-    if (friction.law == WaterFriction::Law::manning)
-        return bed.gravity * c * c * bed.kappa / (t * std::cbrt(t));
+    if (friction.law == WaterFriction::Law::manning) return bed.gravity * c * c * bed.kappa / (t * std::cbrt(t));
     if (friction.law == WaterFriction::Law::darcy_weisbach) return c * bed.kappa / (8.0 * t);
     return 0.0;
 }

@@ -62,7 +62,9 @@ inline Edges rectangle_of(const Moments& s) {
 }
 
 /// A velocity gradient as the point's own domain feels it.
-struct Gradient { double xx, xy, yx, yy; };
+struct Gradient {
+    double xx, xy, yx, yy;
+};
 
 /// THEORY (12): the gradient without what a domain narrower than a sixteenth of a cell does not span. Points that
 /// converge are squeezed to such domains, but a node, a cell away, would take their gradient times that cell for

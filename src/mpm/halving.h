@@ -82,7 +82,7 @@ bool four_stay(const Held& held, Index p, const HalvingRules& rules) {
     const Double4 r1x = load(&held.r1x[p], 4), r1y = load(&held.r1y[p], 4);
     const Double4 r2x = load(&held.r2x[p], 4), r2y = load(&held.r2y[p], 4);
     const Double4 l1 = r1x * r1x + r1y * r1y, l2 = r2x * r2x + r2y * r2y, area = r1x * r2y - r1y * r2x;
-    Mask4 stay = max(l1, l2) < (1.0 - kSameLength<Held>) * rules.length * rules.length;
+    Mask4 stay = max(l1, l2) < (1.0 - kSameLength<Held>)*rules.length * rules.length;
     if (rules.straighten) stay &= l1 * l2 <= most_sheared() * area * area;
     return !any(~stay);
 }

@@ -97,7 +97,8 @@ void for_each_four_of_run(const TileGrid& grid, const TileRun& run, GroupsOf&& g
     const Index i0 = grid.tile_i(run.tile[0]), j0 = grid.tile_j(run.tile[0]), k0 = grid.at(i0, j0);
     for (Index row = 0; row < kTile; ++row)
         for (Index n = 0; n < run.count; ++n)
-            for (unsigned of_row = groups[static_cast<std::size_t>(n)] >> (4 * row) & 0xf; of_row != 0; of_row &= of_row - 1) {
+            for (unsigned of_row = groups[static_cast<std::size_t>(n)] >> (4 * row) & 0xf; of_row != 0;
+                 of_row &= of_row - 1) {
                 const Index along = n * kTile + Index{4} * __builtin_ctz(of_row);
                 body(n, k0 + row * grid.stride() + along, i0 + along, j0 + row);
             }

@@ -25,8 +25,7 @@ void permute_field(Field& field, const std::int32_t* order, Index kept, Array& s
     } else {
         char* const room = reinterpret_cast<char*>(scratch.data());
         constexpr std::size_t size = sizeof(Number);
-        for (Index p = 0; p < kept; ++p)
-            std::memcpy(room + static_cast<std::size_t>(p) * size, from + order[p], size);
+        for (Index p = 0; p < kept; ++p) std::memcpy(room + static_cast<std::size_t>(p) * size, from + order[p], size);
         field.resize(static_cast<std::size_t>(kept));
         if (kept > 0) std::memcpy(field.data(), room, static_cast<std::size_t>(kept) * size);
     }
@@ -46,9 +45,8 @@ void for_each_row(const std::int32_t* keys, Index count, Body&& body) {
 }  // namespace
 
 void PointOrder::make_room(Index count, Index tiles) {
-    expect(
-        count < std::numeric_limits<std::int32_t>::max() && tiles < std::numeric_limits<std::int32_t>::max(),
-        "too many points for their numbers");
+    expect(count < std::numeric_limits<std::int32_t>::max() && tiles < std::numeric_limits<std::int32_t>::max(),
+           "too many points for their numbers");
     resize_sparingly(key_, static_cast<std::size_t>(count));
     tile_count_.resize(static_cast<std::size_t>(tiles));
 }
@@ -115,9 +113,8 @@ void PointOrder::permute(const std::vector<PointField>& fields) {
     for (Array& scratch : scratch_) resize_sparingly(scratch, static_cast<std::size_t>(kept));
 #pragma omp parallel for schedule(dynamic, 1) if (kept > 4096)
     for (Index f = 0; f < count; ++f)
-        std::visit(
-            [&](auto* field) { permute_field(*field, order_.data(), kept, scratch_[omp_get_thread_num()]); },
-            fields[static_cast<std::size_t>(f)]);
+        std::visit([&](auto* field) { permute_field(*field, order_.data(), kept, scratch_[omp_get_thread_num()]); },
+                   fields[static_cast<std::size_t>(f)]);
 }
 
 void PointOrder::close_gaps(const std::vector<PointField>& fields) const {

@@ -94,13 +94,13 @@ constexpr std::uint8_t kAsleep = 6;
 /// particle tiles by colour: tiles of one colour share no node, so that they scatter at once without locks and
 /// every sum has one order, whatever the number of threads.
 struct ActiveTiles {
-    std::vector<Index> tile;                  ///< ids of tiles with particles, ascending
-    std::vector<Index> begin;                 ///< first particle of each, and the count at the end
-    std::array<std::vector<Index>, 8> colour; ///< positions in `tile`, by colour; in the plane the first four
-    std::vector<Index> work;                  ///< ids of tiles with particles and their neighbours, ascending
-    std::vector<Index> run;                   ///< positions in `work` where runs begin, and the count at the end
-    std::vector<std::uint8_t> in_work;        ///< per tile of the domain: 1 when it is on the work list
-    std::vector<std::uint8_t> quiet;          ///< per tile of the domain: gathers in a row that left its points at rest
+    std::vector<Index> tile;                   ///< ids of tiles with particles, ascending
+    std::vector<Index> begin;                  ///< first particle of each, and the count at the end
+    std::array<std::vector<Index>, 8> colour;  ///< positions in `tile`, by colour; in the plane the first four
+    std::vector<Index> work;                   ///< ids of tiles with particles and their neighbours, ascending
+    std::vector<Index> run;                    ///< positions in `work` where runs begin, and the count at the end
+    std::vector<std::uint8_t> in_work;         ///< per tile of the domain: 1 when it is on the work list
+    std::vector<std::uint8_t> quiet;  ///< per tile of the domain: gathers in a row that left its points at rest
 
     Index count() const { return static_cast<Index>(tile.size()); }
 };
@@ -146,7 +146,7 @@ struct TileRun {
 template <class Body>
 void for_each_work_run(const ActiveTiles& active, Body&& body) {
     const Index count = static_cast<Index>(active.run.size()) - 1;
-#pragma omp parallel for schedule(dynamic, 1) if (static_cast<Index>(active.work.size()) >= kTilesForThreads)
+#pragma omp parallel for schedule(dynamic, 1) if (static_cast <Index>(active.work.size()) >= kTilesForThreads)
     for (Index n = 0; n < count; ++n)
         body(TileRun{active.work.data() + active.run[n], active.run[n + 1] - active.run[n]});
 }

@@ -4,7 +4,8 @@
 
 namespace frana {
 
-constexpr int kReachBefore = 1, kReachAfter = 3;  ///< nodes that quadratic sub-points touch around the first of a stencil
+constexpr int kReachBefore = 1,
+              kReachAfter = 3;  ///< nodes that quadratic sub-points touch around the first of a stencil
 
 /// Calls body(first, 4) for fours of points, and body(first, count) for those that are left.
 template <class Body>

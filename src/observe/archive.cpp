@@ -8,9 +8,10 @@
 namespace frana {
 
 void Archive::wrong_length(const std::string& name, std::size_t found, std::size_t expected) {
-    throw UserError(fmt::format("the kept state has {} values of {}, expected {}; it was left by another program, run "
-                                "without --resume",
-                                found, name, expected));
+    throw UserError(
+        fmt::format("the kept state has {} values of {}, expected {}; it was left by another program, run "
+                    "without --resume",
+                    found, name, expected));
 }
 
 void Archive::exchange_one(const std::string& name, Kind kind, void* value) {

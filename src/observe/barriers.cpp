@@ -12,9 +12,8 @@ namespace {
 
 std::vector<std::string> columns_of(std::size_t faces) {
     if (faces == 0) return {"t [s]", "run_up [m]", "overtopped [m3]"};
-    std::vector<std::string> columns = {"t [s]",      "fx [N]",         "fy [N]",   "fz [N]",
-                                        "mx [N m]",   "my [N m]",       "mz [N m]", "mean_force [N]",
-                                        "run_up [m]", "overtopped [m3]"};
+    std::vector<std::string> columns = {"t [s]",    "fx [N]",   "fy [N]",         "fz [N]",     "mx [N m]",
+                                        "my [N m]", "mz [N m]", "mean_force [N]", "run_up [m]", "overtopped [m3]"};
     for (std::size_t face = 0; face < faces; ++face) {
         for (const char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("f{}{} [N]", face, axis));
         for (const char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("m{}{} [N m]", face, axis));
@@ -35,8 +34,7 @@ void Barriers::begin(const BarrierLoads& loads) {
     expect(loads.barriers.size() == names_.size(), "every barrier has a name");
     watched_.resize(names_.size());
     for (std::size_t n = 0; n < names_.size(); ++n) {
-        tables_.emplace_back(run_dir_ / "barriers" / (names_[n] + ".csv"),
-                             columns_of(loads.barriers[n].faces.size()));
+        tables_.emplace_back(run_dir_ / "barriers" / (names_[n] + ".csv"), columns_of(loads.barriers[n].faces.size()));
         watched_[n].before.resize(loads.barriers[n].faces.size());
         watched_[n].lately.push_back({time_, 0.0, 0.0});
     }
@@ -106,23 +104,21 @@ void Barriers::serialize(Archive& archive) {
     archive.array("faces", faces);
     if (archive.loading()) {
         BarrierLoads loads;
-        for (const Index count : faces)
-            loads.barriers.emplace_back().faces.resize(static_cast<std::size_t>(count));
+        for (const Index count : faces) loads.barriers.emplace_back().faces.resize(static_cast<std::size_t>(count));
         begin(loads);
     }
     for (std::size_t n = 0; n < names_.size(); ++n) {
         const Archive::Part part(archive, fmt::format("barrier_{}", n));
         BarrierSummary& s = summaries_[n];
-        archive.numbers("summary", {&s.first_contact, &s.peak_force, &s.peak_force_time, &s.raw_peak_force,
-                                    &s.blur, &s.impulse[0], &s.impulse[1], &s.impulse[2], &s.about[0],
-                                    &s.about[1], &s.about[2], &s.run_up, &s.overtopped});
+        archive.numbers(
+            "summary", {&s.first_contact, &s.peak_force, &s.peak_force_time, &s.raw_peak_force, &s.blur, &s.impulse[0],
+                        &s.impulse[1], &s.impulse[2], &s.about[0], &s.about[1], &s.about[2], &s.run_up, &s.overtopped});
         std::vector<double*> before;
         for (FaceLoad& load : watched_[n].before)
             for (int k = 0; k < 3; ++k) before.push_back(&load.impulse[k]), before.push_back(&load.moment[k]);
         archive.numbers("before", before);
         std::vector<double> lately;
-        for (const Moment& moment : watched_[n].lately)
-            lately.insert(lately.end(), {moment.time, moment.x, moment.y});
+        for (const Moment& moment : watched_[n].lately) lately.insert(lately.end(), {moment.time, moment.x, moment.y});
         archive.array("lately", lately);
         if (!archive.loading()) continue;
         watched_[n].lately.clear();

@@ -28,8 +28,7 @@ struct BarrierSummary {
 /// so on. Where no forces are known (columns alone) t, run_up and overtopped.
 class Barriers final : public Observer {
 public:
-    Barriers(std::filesystem::path run_dir, std::vector<std::string> names,
-             std::vector<BarrierSummary>& summaries);
+    Barriers(std::filesystem::path run_dir, std::vector<std::string> names, std::vector<BarrierSummary>& summaries);
     std::string name() const override { return "barriers"; }
     void step(const Status& now, const Probe& probe) override;
     void observe(const Frame& frame) override;

@@ -19,7 +19,8 @@ struct Budget {
 inline Budget budget(const Status& first, const Status& now) {
     Budget result;
     const double came = now.mass_in - first.mass_in, had = first.mass + first.bed.mass + came;
-    const double lost = (now.mass - first.mass) + (now.mass_left - first.mass_left) + (now.bed.mass - first.bed.mass) - came;
+    const double lost =
+        (now.mass - first.mass) + (now.mass_left - first.mass_left) + (now.bed.mass - first.bed.mass) - came;
     result.mass_error = had > 0.0 ? lost / had : 0.0;
     const double of_bed = (now.bed.mass - now.bed.initial) + (now.bed.eroded - now.bed.deposited);
     if (now.bed.initial > 0.0) result.bed_error = of_bed / now.bed.initial;
@@ -28,9 +29,9 @@ inline Budget budget(const Status& first, const Status& now) {
                                          (now.momentum_left[axis] - first.momentum_left[axis]) -
                                          (now.impulse[axis] - first.impulse[axis]);
     // Differences first: the potential energy of a mountain is far larger than what a flow turns over.
-    result.energy_residual = (now.kinetic - first.kinetic) + (now.potential - first.potential) + (now.stored - first.stored) +
-                             (now.dissipated - first.dissipated) + (now.energy_left - first.energy_left) -
-                             (now.bed.energy - first.bed.energy);
+    result.energy_residual = (now.kinetic - first.kinetic) + (now.potential - first.potential) +
+                             (now.stored - first.stored) + (now.dissipated - first.dissipated) +
+                             (now.energy_left - first.energy_left) - (now.bed.energy - first.bed.energy);
     return result;
 }
 

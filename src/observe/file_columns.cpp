@@ -70,10 +70,10 @@ void copy_column(const Field& field, const std::vector<std::uint8_t>& outside, T
         const Index item = k / field.components;
         const bool hidden = !outside.empty() && outside[static_cast<std::size_t>(item)] != 0;
         if (!hidden || !std::isnan(field.data[k]))
-            throw NumericsError(fmt::format(
-                "{} of item {} is {}: a file takes finite numbers up to {:.3g} only; look "
-                "at the step before in history.csv",
-                field.name, item, field.data[k], static_cast<double>(std::numeric_limits<T>::max())));
+            throw NumericsError(
+                fmt::format("{} of item {} is {}: a file takes finite numbers up to {:.3g} only; look "
+                            "at the step before in history.csv",
+                            field.name, item, field.data[k], static_cast<double>(std::numeric_limits<T>::max())));
         target[k] = static_cast<T>(stand_in);
     }
 }

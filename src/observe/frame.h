@@ -13,8 +13,8 @@ namespace frana {
 
 /// One named quantity; `data` is borrowed and holds count * components numbers, components interleaved.
 struct Field {
-    std::string name;          ///< "depth", "velocity", ...
-    std::string unit;          ///< "m", "m/s", "Pa", "kg", "m3", "1"
+    std::string name;  ///< "depth", "velocity", ...
+    std::string unit;  ///< "m", "m/s", "Pa", "kg", "m3", "1"
     int components = 1;
     const double* data = nullptr;
     Index count = 0;
@@ -24,19 +24,19 @@ struct Field {
 /// velocities (momentum, kinetic energy, speeds) stand half a step behind the time; in a frame they are at it.
 struct Status : Clock {
     Index particles = 0;
-    double mass = 0.0;               ///< [kg]
-    double mass_left = 0.0;          ///< left through open sides or exits since the start [kg]
-    double mass_in = 0.0;            ///< came in through lines since the start [kg]; its momentum and energy count as what
-                                     ///< did not leave
-    std::array<double, 2> momentum{};          ///< [kg m/s]
-    std::array<double, 2> impulse{};           ///< of all forces since the start [kg m/s]; with walls their push
-                                               ///< is recorded as what closes the balance
-    std::array<double, 2> momentum_left{};     ///< carried out by what left [kg m/s]
-    double kinetic = 0.0;            ///< [J]
-    double potential = 0.0;          ///< sum of rho g A h (Z + h/2) [J]
-    double dissipated = 0.0;         ///< by bed friction, rheology and bores since the start [J]
-    double energy_left = 0.0;        ///< carried out by what left [J]
-    double stored = 0.0;             ///< of 3D points: of deformation, that unloading gives back [J]
+    double mass = 0.0;       ///< [kg]
+    double mass_left = 0.0;  ///< left through open sides or exits since the start [kg]
+    double mass_in = 0.0;    ///< came in through lines since the start [kg]; its momentum and energy count as what
+                             ///< did not leave
+    std::array<double, 2> momentum{};       ///< [kg m/s]
+    std::array<double, 2> impulse{};        ///< of all forces since the start [kg m/s]; with walls their push
+                                            ///< is recorded as what closes the balance
+    std::array<double, 2> momentum_left{};  ///< carried out by what left [kg m/s]
+    double kinetic = 0.0;                   ///< [J]
+    double potential = 0.0;                 ///< sum of rho g A h (Z + h/2) [J]
+    double dissipated = 0.0;                ///< by bed friction, rheology and bores since the start [J]
+    double energy_left = 0.0;               ///< carried out by what left [J]
+    double stored = 0.0;                    ///< of 3D points: of deformation, that unloading gives back [J]
     /// Of 3D points since the start, parts of `dissipated` [J].
     struct In3d {
         double friction = 0.0;   ///< along the bed and barriers
@@ -54,15 +54,15 @@ struct Status : Clock {
         double energy = 0.0;     ///< potential energy that came with what was taken, since the start [J]
         double deepest = 0.0;    ///< largest depth taken, along gravity [m]
     } bed;
-    double p2g_mass_error = 0.0;     ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
-    double p2g_momentum_error = 0.0; ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]
-    double max_depth = 0.0;          ///< [m]
-    double max_speed = 0.0;          ///< largest speed along the bed, of nodes deeper than a tenth of the footprint depth
-                                     ///< [m/s]; of 3D points that of the fastest
-    double max_speed_on_map = 0.0;   ///< largest particle speed along the map [m/s]
-    double mean_speed = 0.0;         ///< mass mean of the speed [m/s]
-    double covered_area = 0.0;       ///< deeper than the footprint depth now [m2]
-    double front = 0.0;              ///< largest map distance of such a node from the release's centre [m]
+    double p2g_mass_error = 0.0;      ///< |sum_i M_i - sum_p m_p| / sum_p m_p of this step [1]
+    double p2g_momentum_error = 0.0;  ///< |sum_i P_i - sum_p m_p v_p| / sum_p m_p |v_p| [1]
+    double max_depth = 0.0;           ///< [m]
+    double max_speed = 0.0;  ///< largest speed along the bed, of nodes deeper than a tenth of the footprint depth
+                             ///< [m/s]; of 3D points that of the fastest
+    double max_speed_on_map = 0.0;  ///< largest particle speed along the map [m/s]
+    double mean_speed = 0.0;        ///< mass mean of the speed [m/s]
+    double covered_area = 0.0;      ///< deeper than the footprint depth now [m2]
+    double front = 0.0;             ///< largest map distance of such a node from the release's centre [m]
 };
 
 /// Time spent in one named phase of the step.
@@ -85,9 +85,9 @@ struct Breakage {
 
 /// What 3D points have come apart into (solid3d/pieces.h), at the last output and where it was most.
 struct PointsApart {
-    Index pieces = 0;            ///< points of different ones are more than a cell apart
-    double apart = 0.0;          ///< share of their mass outside the largest [1]
-    double alone = 0.0;          ///< share that feels nothing of the largest any more [1]
+    Index pieces = 0;                                ///< points of different ones are more than a cell apart
+    double apart = 0.0;                              ///< share of their mass outside the largest [1]
+    double alone = 0.0;                              ///< share that feels nothing of the largest any more [1]
     double most_apart = 0.0, most_apart_time = 0.0;  ///< largest `apart` of all outputs [1], [s]
 };
 
@@ -99,10 +99,10 @@ struct InflowBudget {
 
 /// Free water, and that which columns confine.
 struct WaterBudget {
-    double given = 0.0, free = 0.0, confined = 0.0;  ///< at the start, all; now [m3]
-    double released = 0.0;                           ///< by what broke, since the start [m3]
+    double given = 0.0, free = 0.0, confined = 0.0;      ///< at the start, all; now [m3]
+    double released = 0.0;                               ///< by what broke, since the start [m3]
     double rained = 0.0, infiltrated = 0.0, left = 0.0;  ///< the last also within columns [m3]
-    double solids_left = 0.0;                       ///< mass of grains that left within columns [kg]
+    double solids_left = 0.0;                            ///< mass of grains that left within columns [kg]
     double residual = 0.0;                               ///< of all these: round-off [m3]
     double bed = 0.0, viscosity = 0.0, drag = 0.0;       ///< energy lost there [J]
     double steps = 0.0;                                  ///< of the columns for each of the water
@@ -127,9 +127,9 @@ struct PatchedFace {
 
 /// A state at an output time; valid only during the call that hands it out.
 struct Frame {
-    Index number = 0;                ///< 0, 1, 2, ... of the output frames
+    Index number = 0;  ///< 0, 1, 2, ... of the output frames
     Status status;
-    std::vector<Field> particles;    ///< "position" (3: x, y, z on the free surface), "depth", "velocity" (3), ...
+    std::vector<Field> particles;  ///< "position" (3: x, y, z on the free surface), "depth", "velocity" (3), ...
     GridGeometry grid;
     std::vector<PatchedFace> faces;  ///< of barriers, where their loads are measured
     std::vector<Field> nodes;        ///< "elevation", "depth", "surface", "velocity" (3), "peak_depth", ...

@@ -108,8 +108,7 @@ void History::add(const Status& now) {
                                      now.bed.deposited};
     for (std::size_t i = 0; i < row.size(); ++i)
         if (!std::isfinite(row[i]))
-            throw NumericsError(
-                fmt::format("step {} at t = {} s: {} is not finite", now.step, now.time, columns()[i]));
+            throw NumericsError(fmt::format("step {} at t = {} s: {} is not finite", now.step, now.time, columns()[i]));
     table_.add(row);
 }
 

@@ -53,7 +53,7 @@ private:
     std::unique_ptr<InsituWork> work_;
     InsituTally& tally_;
     Index next_multiple_ = 0;  ///< of times_.every or every_steps
-    Index sampled_step_ = -1;     ///< the step
+    Index sampled_step_ = -1;  ///< the step
 };
 
 }  // namespace frana

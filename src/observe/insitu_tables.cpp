@@ -108,9 +108,9 @@ private:
         std::vector<std::string> result = {"t [s]", "area [m2]", "volume [m3]"};
         for (const Scalar& value : values) {
             const std::string unit = " [" + value.unit + "]";
-            result.insert(result.end(), {value.name + "_min" + unit, value.name + "_max" + unit,
-                                         value.name + "_max_x [m]", value.name + "_max_y [m]",
-                                         value.name + "_mean" + unit});
+            result.insert(result.end(),
+                          {value.name + "_min" + unit, value.name + "_max" + unit, value.name + "_max_x [m]",
+                           value.name + "_max_y [m]", value.name + "_mean" + unit});
         }
         return result;
     }

@@ -23,9 +23,9 @@ struct FaceLoad {
 /// What material did to a barrier since the start.
 struct BarrierLoad {
     std::vector<FaceLoad> faces;  ///< none where no forces are known
-    Vec3 about{0, 0, 0};      ///< place that moments are about: the middle of the outline, on the bed [m]
-    double run_up = 0.0;      ///< highest elevation of material within two cells of it, ever [m]
-    double overtopped = 0.0;  ///< material that was over it at any time [m3]
+    Vec3 about{0, 0, 0};          ///< place that moments are about: the middle of the outline, on the bed [m]
+    double run_up = 0.0;          ///< highest elevation of material within two cells of it, ever [m]
+    double overtopped = 0.0;      ///< material that was over it at any time [m3]
 };
 
 struct BarrierLoads {
@@ -50,13 +50,13 @@ public:
 class Observer {
 public:
     virtual ~Observer() = default;
-    virtual std::string name() const = 0;                  ///< for the timing table
-    virtual void step(const Status&, const Probe&) {}      ///< after every step (and once at the start)
+    virtual std::string name() const = 0;              ///< for the timing table
+    virtual void step(const Status&, const Probe&) {}  ///< after every step (and once at the start)
     /// Asked after every step that ends between outputs: is a frame wanted now? Then observe_between() gets it.
     virtual bool wants_frame(const Status&) { return false; }
     virtual void observe_between(const Frame&) {}
-    virtual void observe(const Frame&) {}                      ///< at the start, at every output time and at the end
-    virtual void end(const Frame&) {}                      ///< once, with the last frame, after observe()
+    virtual void observe(const Frame&) {}  ///< at the start, at every output time and at the end
+    virtual void end(const Frame&) {}      ///< once, with the last frame, after observe()
     /// Saves what the observer needs to go on, or takes it up again before its first call; then its files are those of
     /// that moment: what was written later is taken back. Throws UserError when they are not there any more.
     virtual void serialize(Archive&) {}

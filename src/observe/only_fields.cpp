@@ -22,14 +22,12 @@ private:
     Frame chosen(const Frame& frame) const {
         Frame result = frame;
         for (std::vector<Field>* fields : {&result.particles, &result.nodes})
-            fields->erase(std::remove_if(fields->begin(), fields->end(),
-                                         [&](const Field& field) { return !wanted(field.name); }),
-                          fields->end());
+            fields->erase(
+                std::remove_if(fields->begin(), fields->end(), [&](const Field& field) { return !wanted(field.name); }),
+                fields->end());
         return result;
     }
-    bool wanted(const std::string& name) const {
-        return std::find(names_.begin(), names_.end(), name) != names_.end();
-    }
+    bool wanted(const std::string& name) const { return std::find(names_.begin(), names_.end(), name) != names_.end(); }
 
     std::unique_ptr<Observer> inner_;
     std::vector<std::string> names_;

@@ -19,8 +19,7 @@ const Field& needed(const Frame& frame, const char* name) {
 
 std::vector<Corner> corners(const GridGeometry& grid, const Vec2& point) {
     const double i = (point.x() - grid.x0) / grid.cell, j = (point.y() - grid.y0) / grid.cell;
-    if (!(i >= 0.0 && j >= 0.0 && i <= static_cast<double>(grid.nx - 1) &&
-          j <= static_cast<double>(grid.ny - 1)))
+    if (!(i >= 0.0 && j >= 0.0 && i <= static_cast<double>(grid.nx - 1) && j <= static_cast<double>(grid.ny - 1)))
         return {};
     const Index left = std::min(static_cast<Index>(i), std::max<Index>(grid.nx - 2, 0));
     const Index below = std::min(static_cast<Index>(j), std::max<Index>(grid.ny - 2, 0));
@@ -72,8 +71,7 @@ Sample sample(const Frame& frame, const Vec2& point) {
     return result;
 }
 
-Profiles::Profiles(const std::filesystem::path& run_dir, std::vector<ProfileLine> lines)
-    : lines_(std::move(lines)) {
+Profiles::Profiles(const std::filesystem::path& run_dir, std::vector<ProfileLine> lines) : lines_(std::move(lines)) {
     const std::vector<std::string> columns = {"t [s]",
                                               "distance [m]",
                                               "x [m]",
@@ -83,8 +81,7 @@ Profiles::Profiles(const std::filesystem::path& run_dir, std::vector<ProfileLine
                                               "surface [m]",
                                               "velocity_along [m/s]",
                                               "velocity_across [m/s]"};
-    for (const ProfileLine& line : lines_)
-        tables_.emplace_back(run_dir / "profiles" / (line.name + ".csv"), columns);
+    for (const ProfileLine& line : lines_) tables_.emplace_back(run_dir / "profiles" / (line.name + ".csv"), columns);
 }
 
 void Profiles::observe(const Frame& frame) {
@@ -92,9 +89,9 @@ void Profiles::observe(const Frame& frame) {
         for (const Station& station : stations(lines_[k].line, 0.5 * frame.grid.cell)) {
             const Sample flow = sample(frame, station.point);
             const Vec2 across(-station.along.y(), station.along.x());
-            tables_[k].add({frame.status.time, station.distance, station.point.x(), station.point.y(),
-                            flow.elevation, flow.depth, flow.elevation + flow.depth,
-                            flow.velocity.dot(station.along), flow.velocity.dot(across)});
+            tables_[k].add({frame.status.time, station.distance, station.point.x(), station.point.y(), flow.elevation,
+                            flow.depth, flow.elevation + flow.depth, flow.velocity.dot(station.along),
+                            flow.velocity.dot(across)});
         }
         tables_[k].flush();
     }

@@ -25,8 +25,8 @@ Scalar scalar(const std::vector<Field>& fields, const std::string& name, const c
     if (const auto found = find_scalar(fields, name)) return *found;
     std::string there;
     for (const Field& field : fields) there += (there.empty() ? "" : ", ") + field.name;
-    throw UserError(fmt::format("found no field \"{}\" of {}; expected one of {}; choose one of them", name, whose,
-                                there));
+    throw UserError(
+        fmt::format("found no field \"{}\" of {}; expected one of {}; choose one of them", name, whose, there));
 }
 
 }  // namespace frana

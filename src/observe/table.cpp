@@ -77,9 +77,8 @@ void TableWriter::flush() {
     if (!stream) {
         std::error_code ignored;
         std::filesystem::resize_file(file_, bytes_, ignored);  // all rows or none, so that they can be tried again
-        throw UserError(
-            fmt::format("{}: rows cannot be added; check the disk's free space and the file's permissions",
-                        file_.string()));
+        throw UserError(fmt::format("{}: rows cannot be added; check the disk's free space and the file's permissions",
+                                    file_.string()));
     }
     bytes_ += pending_.size();
     pending_.clear();
@@ -109,9 +108,8 @@ bool Table::has(const std::string& name) const {
 const std::vector<double>& Table::column(const std::string& name) const {
     const auto found = std::find(columns.begin(), columns.end(), name);
     if (found == columns.end())
-        throw UserError(
-            fmt::format("{}: no column \"{}\"; found {}; run the case again with this version of frana",
-                        source, name, joined(columns, ", ")));
+        throw UserError(fmt::format("{}: no column \"{}\"; found {}; run the case again with this version of frana",
+                                    source, name, joined(columns, ", ")));
     return values[static_cast<std::size_t>(found - columns.begin())];
 }
 
@@ -139,8 +137,7 @@ Table read_table(const std::filesystem::path& file) {
                 fmt::format("{}:{}: {} cells, expected {} as in the header; the file was cut short or "
                             "changed, run the case again",
                             table.source, row, cells.size(), table.columns.size()));
-        for (std::size_t i = 0; i < cells.size(); ++i)
-            table.values[i].push_back(number(cells[i], table.source, row));
+        for (std::size_t i = 0; i < cells.size(); ++i) table.values[i].push_back(number(cells[i], table.source, row));
     }
     return table;
 }

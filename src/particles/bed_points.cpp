@@ -39,7 +39,8 @@ double bed_elevation(const Raster& bed, double x, double y) {
 
 double bed_below(const Raster& bed, double x, double y) {
     const GridGeometry& g = bed.geometry;
-    const Corners at(g, (std::clamp(x, g.x0, g.x_max()) - g.x0) / g.cell, (std::clamp(y, g.y0, g.y_max()) - g.y0) / g.cell);
+    const Corners at(g, (std::clamp(x, g.x0, g.x_max()) - g.x0) / g.cell,
+                     (std::clamp(y, g.y0, g.y_max()) - g.y0) / g.cell);
     double elevation = 0.0, known = 0.0;
     bool whole = true;
     for (Index k = 0; k < 4; ++k) {

@@ -34,10 +34,10 @@ SeedsExport make_seeds_export(const Seeds& seeds, double density, const Raster& 
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
         data.elevation.push_back(bed_elevation(bed, seeds.x[p], seeds.y[p]));
         if (!std::isfinite(data.elevation.back()))
-            throw UserError(fmt::format(
-                "particle {} at x = {:.2f}, y = {:.2f} stands outside the elevation model {} or on "
-                "its nodata; move the release",
-                p, seeds.x[p], seeds.y[p], bed.source));
+            throw UserError(
+                fmt::format("particle {} at x = {:.2f}, y = {:.2f} stands outside the elevation model {} or on "
+                            "its nodata; move the release",
+                            p, seeds.x[p], seeds.y[p], bed.source));
     }
     return data;
 }

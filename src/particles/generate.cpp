@@ -33,8 +33,7 @@ std::string source_of(const Release& release) {
 }
 
 /// Twice-covered area is bearable, a ring that crosses itself is not.
-void require_simple(const Material& material, const OutlineFaults& faults, double area,
-                    const GridGeometry& grid) {
+void require_simple(const Material& material, const OutlineFaults& faults, double area, const GridGeometry& grid) {
     if (faults.negative <= 1e-9 * area) return;
     throw UserError(
         fmt::format("{}: the outline {} crosses itself, or a hole lies outside its polygon, near x = "
@@ -48,18 +47,16 @@ void require_simple(const Material& material, const OutlineFaults& faults, doubl
     // A bow tie may have no net area: its faults show on a finer grid.
     const double spacing = std::max(box.x1 - box.x0, box.y1 - box.y0) / 64.0;
     if (!box.empty())
-        require_simple(material, material.integrate({spacing, box.x0, box.y0}, box, [](const PatchRow&) {}),
-                       0.0, grid);
-    const std::string where =
-        whole_volume > 0.0 ? fmt::format("it spans x {:.2f} to {:.2f}, y {:.2f} to {:.2f}", grid.x0 + box.x0,
-                                         grid.x0 + box.x1, grid.y0 + box.y0, grid.y0 + box.y1)
-                           : std::string("its depth is nowhere above zero");
+        require_simple(material, material.integrate({spacing, box.x0, box.y0}, box, [](const PatchRow&) {}), 0.0, grid);
+    const std::string where = whole_volume > 0.0
+                                  ? fmt::format("it spans x {:.2f} to {:.2f}, y {:.2f} to {:.2f}", grid.x0 + box.x0,
+                                                grid.x0 + box.x1, grid.y0 + box.y0, grid.y0 + box.y1)
+                                  : std::string("its depth is nowhere above zero");
     const std::string source = source_of(material.release());
-    throw UserError(
-        fmt::format("{}: no material of {} on the grid: {}, the grid spans x {:.2f} to {:.2f}, y {:.2f} "
-                    "to {:.2f}; check outline, depth, CRS and terrain.window",
-                    material.name(), source.empty() ? "the release" : source, where, grid.x0, grid.x_max(),
-                    grid.y0, grid.y_max()));
+    throw UserError(fmt::format(
+        "{}: no material of {} on the grid: {}, the grid spans x {:.2f} to {:.2f}, y {:.2f} "
+        "to {:.2f}; check outline, depth, CRS and terrain.window",
+        material.name(), source.empty() ? "the release" : source, where, grid.x0, grid.x_max(), grid.y0, grid.y_max()));
 }
 
 /// Volume and area on the grid, and what lies beyond it.
@@ -72,15 +69,14 @@ ReleaseReport measured(const Material& material, const GridGeometry& grid, Log& 
     report.area = inside.area;
     report.clipped_volume = std::max(0.0, whole.volume - inside.volume);
     if (report.clipped_volume > 1e-9 * report.volume)
-        log.push_back(fmt::format(
-            "{}: {:.6g} m3 ({:.3g} % of it) lie beyond the outer nodes of the grid and are left out",
-            material.name(), report.clipped_volume, 100.0 * report.clipped_volume / whole.volume));
+        log.push_back(
+            fmt::format("{}: {:.6g} m3 ({:.3g} % of it) lie beyond the outer nodes of the grid and are left out",
+                        material.name(), report.clipped_volume, 100.0 * report.clipped_volume / whole.volume));
     return report;
 }
 
 /// An outline that reaches beyond the material of its depth field is worth a remark.
-void remark_bare_outline(const Material& material, const ReleaseReport& report, const GridGeometry& grid,
-                         Log& log) {
+void remark_bare_outline(const Material& material, const ReleaseReport& report, const GridGeometry& grid, Log& log) {
     const Release& release = material.release();
     if (!release.outline || !release.depth_field) return;
     Release bare;
@@ -98,8 +94,7 @@ double pixel_or(const std::optional<Raster>& raster, double x, double y, double 
     if (!raster) return otherwise;
     const GridGeometry& g = raster->geometry;
     const double u = std::floor((x - g.x0) / g.cell + 0.5), v = std::floor((y - g.y0) / g.cell + 0.5);
-    if (!(u >= 0.0 && v >= 0.0 && u < static_cast<double>(g.nx) && v < static_cast<double>(g.ny)))
-        return otherwise;
+    if (!(u >= 0.0 && v >= 0.0 && u < static_cast<double>(g.nx) && v < static_cast<double>(g.ny))) return otherwise;
     const double value = raster->at(static_cast<Index>(u), static_cast<Index>(v));
     return std::isfinite(value) ? value : otherwise;
 }
@@ -134,8 +129,8 @@ std::vector<Index> shares(Index total, const std::vector<ReleaseReport>& reports
 }
 
 /// Where parts of the outline overlap, area and volume are those that the patches counted, once.
-void judge(const Material& material, const OutlineFaults& faults, const GridGeometry& grid,
-           const Seeds& seeds, std::size_t begin, ReleaseReport& report, Log& log) {
+void judge(const Material& material, const OutlineFaults& faults, const GridGeometry& grid, const Seeds& seeds,
+           std::size_t begin, ReleaseReport& report, Log& log) {
     require_simple(material, faults, report.area, grid);
     if (faults.overlap <= 1e-9 * report.area) return;
     log.push_back(fmt::format("{}: parts of the outline {} overlap on {:.6g} m2, which is counted once",
@@ -183,16 +178,15 @@ Seeds make_seeds(const std::vector<Release>& releases, const Raster& bed, const 
     for (std::size_t r = 0; r < materials.size(); ++r) {
         ReleaseReport& report = reports[r];
         const std::size_t begin = seeds.x.size();
-        const OutlineFaults faults =
-            on_lattice ? place_on_lattice(materials[r], lattice, bed, seeds)
-                       : place_scattered(materials[r], counts[r], report.area, density, bed, seeds);
+        const OutlineFaults faults = on_lattice
+                                         ? place_on_lattice(materials[r], lattice, bed, seeds)
+                                         : place_scattered(materials[r], counts[r], report.area, density, bed, seeds);
         set_velocity(releases[r], begin, seeds);
         CompensatedSum volume;
         for (std::size_t p = begin; p < seeds.x.size(); ++p) volume.add(seeds.volume[p]);
         report.particle_volume = volume.value();
         report.count = static_cast<Index>(seeds.x.size() - begin);
-        report.spacing =
-            on_lattice ? lattice.spacing : std::sqrt(report.area / static_cast<double>(report.count));
+        report.spacing = on_lattice ? lattice.spacing : std::sqrt(report.area / static_cast<double>(report.count));
         judge(materials[r], faults, grid, seeds, begin, report, log);
         report.relative_error = std::abs(report.particle_volume - report.volume) / report.volume;
     }
@@ -205,9 +199,8 @@ std::string conservation_table(const std::vector<ReleaseReport>& reports) {
     ReleaseReport sum;
     for (std::size_t r = 0; r < reports.size(); ++r) {
         const ReleaseReport& one = reports[r];
-        text +=
-            fmt::format("{:<8} {:>10} {:>14.6g} {:>16.9g} {:>16.9g} {:>9.1e} {:>12.5g}\n", r + 1, one.count,
-                        one.area, one.volume, one.particle_volume, one.relative_error, one.spacing);
+        text += fmt::format("{:<8} {:>10} {:>14.6g} {:>16.9g} {:>16.9g} {:>9.1e} {:>12.5g}\n", r + 1, one.count,
+                            one.area, one.volume, one.particle_volume, one.relative_error, one.spacing);
         sum.count += one.count;
         sum.area += one.area;
         sum.volume += one.volume;
@@ -215,8 +208,8 @@ std::string conservation_table(const std::vector<ReleaseReport>& reports) {
     }
     if (reports.size() < 2) return text;
     const double error = std::abs(sum.particle_volume - sum.volume) / sum.volume;
-    return text + fmt::format("{:<8} {:>10} {:>14.6g} {:>16.9g} {:>16.9g} {:>9.1e}\n", "all", sum.count,
-                              sum.area, sum.volume, sum.particle_volume, error);
+    return text + fmt::format("{:<8} {:>10} {:>14.6g} {:>16.9g} {:>16.9g} {:>9.1e}\n", "all", sum.count, sum.area,
+                              sum.volume, sum.particle_volume, error);
 }
 
 }  // namespace frana

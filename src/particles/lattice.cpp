@@ -45,8 +45,7 @@ Patches collect(const Material& material, const Lattice& lattice) {
 Patch* fullest_neighbour(Patches& patches, Index row, Index column, double dust) {
     Patch* fullest = nullptr;
     for (Index j = std::max<Index>(row - 1, 0); j <= std::min(row + 1, patches.rows() - 1); ++j) {
-        const auto begin = patches.all.begin() + patches.start[j],
-                   end = patches.all.begin() + patches.start[j + 1];
+        const auto begin = patches.all.begin() + patches.start[j], end = patches.all.begin() + patches.start[j + 1];
         auto it = std::lower_bound(begin, end, column - 1,
                                    [](const Patch& patch, Index wanted) { return patch.column < wanted; });
         for (; it != end && it->column <= column + 1; ++it)
@@ -84,8 +83,7 @@ public:
         const double x = inside(lattice_.x(i), half, static_cast<double>(g.nx - 1) * g.cell) + g.x0;
         const double y = inside(lattice_.y(j), half, static_cast<double>(g.ny - 1) * g.cell) + g.y0;
         if (!holes_ || std::isfinite(bed_elevation(bed_, x, y))) return {x, y};
-        for (const auto& [sx, sy] :
-             {std::array{-1, -1}, std::array{1, -1}, std::array{-1, 1}, std::array{1, 1}}) {
+        for (const auto& [sx, sy] : {std::array{-1, -1}, std::array{1, -1}, std::array{-1, 1}, std::array{1, 1}}) {
             Vec2 quarter(x + 0.5 * half * sx, y + 0.5 * half * sy);
             if (std::isfinite(bed_elevation(bed_, quarter.x(), quarter.y()))) return quarter;
         }
@@ -102,8 +100,8 @@ private:
     bool holes_;
 };
 
-[[noreturn]] void complain_nodata(const Material& material, const Raster& bed, const Lattice& lattice,
-                                  Index i, Index j) {
+[[noreturn]] void complain_nodata(const Material& material, const Raster& bed, const Lattice& lattice, Index i,
+                                  Index j) {
     const GridGeometry& g = bed.geometry;
     throw UserError(
         fmt::format("{}: material lies on nodata of the elevation model {} near pixel column {}, row {} (x = "
@@ -138,8 +136,7 @@ Lattice fitting(double spacing, double cell) {
 }
 
 /// Follows count ~ spacing^-2, bracketed, for one phase of the lattice (in spacings).
-Trial seek(const std::vector<Material>& materials, double spacing, const Vec2& phase, Index wanted,
-           double enough) {
+Trial seek(const std::vector<Material>& materials, double spacing, const Vec2& phase, Index wanted, double enough) {
     Trial best;
     double low = 0.0, high = std::numeric_limits<double>::infinity();
     for (int round = 0; round < 16; ++round) {
@@ -161,8 +158,8 @@ Lattice lattice_of_count(const std::vector<Material>& materials, double cell, do
                          std::vector<std::string>& log) {
     const double guess = std::sqrt(total_area / static_cast<double>(wanted));
     const auto said = [&](const Trial& trial, const char* kind) {
-        log.push_back(fmt::format("particles: {} asked, {} placed on {} lattice of {:.6g} m", wanted,
-                                  trial.count, kind, trial.lattice.spacing));
+        log.push_back(fmt::format("particles: {} asked, {} placed on {} lattice of {:.6g} m", wanted, trial.count, kind,
+                                  trial.lattice.spacing));
         return trial.lattice;
     };
     Trial fits = trial_of(materials, fitting(guess, cell));
@@ -181,8 +178,7 @@ Lattice lattice_of_count(const std::vector<Material>& materials, double cell, do
     return said(best, "a free");
 }
 
-OutlineFaults place_on_lattice(const Material& material, const Lattice& lattice, const Raster& bed,
-                               Seeds& seeds) {
+OutlineFaults place_on_lattice(const Material& material, const Lattice& lattice, const Raster& bed, Seeds& seeds) {
     Patches patches = collect(material, lattice);
     give_away_dust(patches, kDustFraction * lattice.spacing * lattice.spacing);
     const std::size_t most = seeds.x.size() + patches.all.size();
@@ -193,8 +189,7 @@ OutlineFaults place_on_lattice(const Material& material, const Lattice& lattice,
             const Patch& patch = patches.all[k];
             if (!(patch.area > 0.0)) continue;
             const Vec2 at = standing.of(patch.column, patches.first_row + j);
-            if (std::isnan(at.x()))
-                complain_nodata(material, bed, lattice, patch.column, patches.first_row + j);
+            if (std::isnan(at.x())) complain_nodata(material, bed, lattice, patch.column, patches.first_row + j);
             seeds.x.push_back(at.x());
             seeds.y.push_back(at.y());
             seeds.volume.push_back(patch.volume);

@@ -19,7 +19,6 @@ Lattice lattice_of_count(const std::vector<Material>& materials, double cell, do
 
 /// Appends position (map), volume, depth and size of one release's particles, south to north, west to east.
 /// Material on nodata of the bed is a UserError.
-OutlineFaults place_on_lattice(const Material& material, const Lattice& lattice, const Raster& bed,
-                               Seeds& seeds);
+OutlineFaults place_on_lattice(const Material& material, const Lattice& lattice, const Raster& bed, Seeds& seeds);
 
 }  // namespace frana

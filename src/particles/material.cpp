@@ -29,14 +29,12 @@ Box Box::common(const Box& o) const {
 
 Material::Material(const Release& release, const GridGeometry& grid, std::string name)
     : release_(release), name_(std::move(name)) {
-    domain_ = {0.0, 0.0, static_cast<double>(grid.nx - 1) * grid.cell,
-               static_cast<double>(grid.ny - 1) * grid.cell};
+    domain_ = {0.0, 0.0, static_cast<double>(grid.nx - 1) * grid.cell, static_cast<double>(grid.ny - 1) * grid.cell};
     unclipped_box_ = {-kFar, -kFar, kFar, kFar};
     if (release.outline) take_outline(grid);
     if (release.depth_field) take_raster(grid);
     if (!release.depth_field && !(release.depth > 0.0 && std::isfinite(release.depth)))
-        throw UserError(
-            fmt::format("{}: depth is {} m; a release needs a depth above zero", name_, release.depth));
+        throw UserError(fmt::format("{}: depth is {} m; a release needs a depth above zero", name_, release.depth));
     if (!release.outline && !release.depth_field) unclipped_box_ = domain_;
     box_ = unclipped_box_.common(domain_);
 }
@@ -48,9 +46,8 @@ void Material::take_outline(const GridGeometry& grid) {
             std::vector<Vec2> ring;
             for (const Vec2& vertex : part.rings[r]) {
                 if (!vertex.allFinite())
-                    throw UserError(
-                        fmt::format("{}: its outline {} has a vertex that is not a number; repair the file",
-                                    name_, release_.outline->source));
+                    throw UserError(fmt::format("{}: its outline {} has a vertex that is not a number; repair the file",
+                                                name_, release_.outline->source));
                 const Vec2 local(vertex.x() - grid.x0, vertex.y() - grid.y0);
                 around = {std::min(around.x0, local.x()), std::min(around.y0, local.y()),
                           std::max(around.x1, local.x()), std::max(around.y1, local.y())};
@@ -79,8 +76,8 @@ void Material::take_raster(const GridGeometry& grid) {
         for (Index i = 0; i < g.nx; ++i) {
             if (!(raster.at(i, j) > 0.0)) continue;
             if (std::isinf(raster.at(i, j)))
-                throw UserError(fmt::format("{}: pixel ({}, {}) of {} is infinite; mark it as nodata", name_,
-                                            i, g.ny - 1 - j, raster.source));
+                throw UserError(fmt::format("{}: pixel ({}, {}) of {} is infinite; mark it as nodata", name_, i,
+                                            g.ny - 1 - j, raster.source));
             i0 = std::min(i0, i), i1 = std::max(i1, i);
             j0 = std::min(j0, j), j1 = std::max(j1, j);
         }
@@ -91,8 +88,7 @@ void Material::take_raster(const GridGeometry& grid) {
 
 void Material::sort_edges_into_bands() {
     for (const auto& ring : rings_)
-        for (std::size_t k = 0; k < ring.size(); ++k)
-            edges_.push_back({ring[k], ring[(k + 1) % ring.size()]});
+        for (std::size_t k = 0; k < ring.size(); ++k) edges_.push_back({ring[k], ring[(k + 1) % ring.size()]});
     const Index bands = std::min<Index>(4096, static_cast<Index>(edges_.size()));
     double low = kFar, high = -kFar;
     for (const auto& edge : edges_) low = std::min(low, edge[0].y()), high = std::max(high, edge[0].y());

@@ -59,8 +59,7 @@ Material::FineLines Material::fine_lines(const Lattice* lattice, const Box& with
     };
     lines(fine.x, within.x0, within.x1, lattice ? lattice->x0 : 0.0, pixel_x0_);
     lines(fine.y, within.y0, within.y1, lattice ? lattice->y0 : 0.0, pixel_y0_);
-    const auto number = [](const std::vector<double>& all, double start, double step,
-                           std::vector<Index>& numbers) {
+    const auto number = [](const std::vector<double>& all, double start, double step, std::vector<Index>& numbers) {
         numbers.resize(all.size() - 1);
         for (std::size_t k = 0; k + 1 < all.size(); ++k)
             numbers[k] = static_cast<Index>(std::floor((0.5 * (all[k] + all[k + 1]) - start) / step));
@@ -108,8 +107,7 @@ OutlineFaults Material::integrate_fine(const FineLines& fine, const VisitPatchRo
         }
         const double* pixels = nullptr;
         if (release_.depth_field)
-            pixels =
-                release_.depth_field->values.data() + fine.pixel_row[j] * release_.depth_field->geometry.nx;
+            pixels = release_.depth_field->values.data() + fine.pixel_row[j] * release_.depth_field->geometry.nx;
         for (Index i = range.first; i < range.second; ++i) {
             const double depth = pixels ? pixels[fine.pixel_column[i]] : release_.depth;
             if (!(depth > 0.0)) continue;

@@ -60,8 +60,7 @@ void OutlineArea::add_piece(Index row, double xa, double ya, double xb, double y
     if (left >= x_.back()) return;
     if (right <= x_.front()) return record(row, 0, sign * height, x_.front());
     Index column = std::upper_bound(x_.begin(), x_.end(), left) - x_.begin() - 1;
-    if (column >= 0 && right <= x_[column + 1])
-        return record(row, column, sign * height, 0.5 * (left + right));
+    if (column >= 0 && right <= x_[column + 1]) return record(row, column, sign * height, 0.5 * (left + right));
 
     const double rise = height / (right - left);
     double x = left, y = 0.0;

@@ -47,8 +47,7 @@ private:
 /// first.
 class Nearest {
 public:
-    Nearest(const std::vector<Vec2>& points, const Box& box, double bucket)
-        : box_(box), per_metre_(1.0 / bucket) {
+    Nearest(const std::vector<Vec2>& points, const Box& box, double bucket) : box_(box), per_metre_(1.0 / bucket) {
         nx_ = std::max<Index>(1, static_cast<Index>(std::ceil((box.x1 - box.x0) / bucket)));
         ny_ = std::max<Index>(1, static_cast<Index>(std::ceil((box.y1 - box.y0) / bucket)));
         start_.assign(nx_ * ny_ + 1, 0);
@@ -99,9 +98,7 @@ private:
     Index column(double x) const {
         return std::clamp<Index>(static_cast<Index>((x - box_.x0) * per_metre_), 0, nx_ - 1);
     }
-    Index row(double y) const {
-        return std::clamp<Index>(static_cast<Index>((y - box_.y0) * per_metre_), 0, ny_ - 1);
-    }
+    Index row(double y) const { return std::clamp<Index>(static_cast<Index>((y - box_.y0) * per_metre_), 0, ny_ - 1); }
 
     Box box_;
     double per_metre_ = 1.0;  ///< buckets to the metre
@@ -120,8 +117,7 @@ public:
         for (Index j = 0; j < grid_.ny; ++j)
             for (Index i = 0; i < grid_.nx; ++i) {
                 density_.push_back(bed_steepness(bed, grid_.x(i), grid_.y(j)));
-                if (!material.contains(static_cast<double>(i) * grid_.cell,
-                                       static_cast<double>(j) * grid_.cell))
+                if (!material.contains(static_cast<double>(i) * grid_.cell, static_cast<double>(j) * grid_.cell))
                     continue;
                 sum += density_.back();
                 number += 1.0;
@@ -189,18 +185,14 @@ void require_ground(const Material& material, const std::vector<Vec2>& points, c
 void share_with_empty(const Lattice& cells, const Nearest& nearest, std::vector<double>& volumes,
                       std::vector<double>& areas) {
     const std::vector<Vec2>& points = nearest.points();
-    const auto distance2 = [&](std::size_t p, std::size_t q) {
-        return (points[p] - points[q]).squaredNorm();
-    };
+    const auto distance2 = [&](std::size_t p, std::size_t q) { return (points[p] - points[q]).squaredNorm(); };
     for (std::size_t p = 0; p < points.size(); ++p) {
         if (areas[p] > 0.0) continue;
         const double x = cells.x(cells.column(points[p].x())), y = cells.y(cells.row(points[p].y()));
         auto owner = static_cast<std::size_t>(nearest.of(x, y, {-1, -1}));
-        if (!(areas[owner] >
-              0.0))  // the cell's own material is below round-off: take the nearest with something
+        if (!(areas[owner] > 0.0))  // the cell's own material is below round-off: take the nearest with something
             for (std::size_t q = 0; q < points.size(); ++q)
-                if (areas[q] > 0.0 && (!(areas[owner] > 0.0) || distance2(p, q) < distance2(p, owner)))
-                    owner = q;
+                if (areas[q] > 0.0 && (!(areas[owner] > 0.0) || distance2(p, q) < distance2(p, owner))) owner = q;
         volumes[p] = volumes[owner] *= 0.5;
         areas[p] = areas[owner] *= 0.5;
     }
@@ -208,8 +200,8 @@ void share_with_empty(const Lattice& cells, const Nearest& nearest, std::vector<
 
 }  // namespace
 
-OutlineFaults place_scattered(const Material& material, Index count, double area, Density density,
-                              const Raster& bed, Seeds& seeds) {
+OutlineFaults place_scattered(const Material& material, Index count, double area, Density density, const Raster& bed,
+                              Seeds& seeds) {
     const double spacing = std::sqrt(area / static_cast<double>(count));
     const Nearest nearest(points_of(material, count, density, bed), material.box(), spacing);
     const std::vector<Vec2>& points = nearest.points();

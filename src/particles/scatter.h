@@ -12,7 +12,7 @@ enum class Density { even, steepness };
 /// (between a third and three times its mean over the grid, the idea of Fois et al. 2025, section 2). Every
 /// cell of a patch grid, four to the particle's edge, goes to its nearest particle, so the volumes are
 /// exact in total and the depth is that of the surroundings. `area` is the material's [m^2].
-OutlineFaults place_scattered(const Material& material, Index count, double area, Density density,
-                              const Raster& bed, Seeds& seeds);
+OutlineFaults place_scattered(const Material& material, Index count, double area, Density density, const Raster& bed,
+                              Seeds& seeds);
 
 }  // namespace frana

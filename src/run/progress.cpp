@@ -30,8 +30,7 @@ std::string clock_text(double seconds) {
     if (!std::isfinite(seconds)) return "-:--";
     const auto total = static_cast<long>(std::llround(std::max(seconds, 0.0)));
     const long hours = total / 3600, minutes = total / 60 % 60, rest = total % 60;
-    return hours > 0 ? fmt::format("{}:{:02}:{:02}", hours, minutes, rest)
-                     : fmt::format("{}:{:02}", minutes, rest);
+    return hours > 0 ? fmt::format("{}:{:02}:{:02}", hours, minutes, rest) : fmt::format("{}:{:02}", minutes, rest);
 }
 
 Progress::Style Progress::fitting(bool quiet) {
@@ -64,8 +63,8 @@ void Progress::step(const Status& now) {
 void Progress::output(Index number, const Status& now) {
     if (style_ != Style::lines) return;
     const double wall = wall_seconds();
-    stream_ << fmt::format("frame {:4}  t {:.6g} of {:.6g} s  step {}  {}  wall {}  left {}\n", number,
-                           now.time, end_time_, now.step, state_text(now, density_), clock_text(wall),
+    stream_ << fmt::format("frame {:4}  t {:.6g} of {:.6g} s  step {}  {}  wall {}  left {}\n", number, now.time,
+                           end_time_, now.step, state_text(now, density_), clock_text(wall),
                            clock_text(remaining(now, wall)))
             << std::flush;
 }

@@ -12,8 +12,7 @@ class Progress {
 public:
     enum class Style { bar, lines, silent };
     /// `density` [kg/m^3] turns masses into volumes.
-    Progress(std::ostream& stream, Style style, double density)
-        : stream_(stream), style_(style), density_(density) {}
+    Progress(std::ostream& stream, Style style, double density) : stream_(stream), style_(style), density_(density) {}
 
     void begin(const Status& first, double end);
     /// After begin(), when the run goes on from a kept state.

@@ -8,8 +8,8 @@
 namespace frana {
 namespace {
 
-constexpr double kMovingShare = 0.01;  ///< of the mass: what a deposit may change by
-constexpr double kHold = 0.05;         ///< of the time so far: how long all must be calm
+constexpr double kMovingShare = 0.01;   ///< of the mass: what a deposit may change by
+constexpr double kHold = 0.05;          ///< of the time so far: how long all must be calm
 constexpr double kCheck = 0.1 * kHold;  ///< the same between looks
 
 }  // namespace

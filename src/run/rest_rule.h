@@ -47,7 +47,7 @@ private:
     bool is_at_rest(const Simulation& simulation) const;
 
     double cell_, fraction_;
-    double peak_mean_speed_ = 0.0;  ///< [m/s]
+    double peak_mean_speed_ = 0.0;                ///< [m/s]
     double calm_since_ = 0.0, next_check_ = 0.0;  ///< [s]
     bool nothing_moves_ = false, rests_ = false;
 };

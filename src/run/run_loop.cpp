@@ -105,9 +105,9 @@ private:
     std::size_t frame_phase_ = 0;  ///< of summary_.output
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     double wall_before_ = 0.0;  ///< of the runs that this one goes on from [s]
-    Index outputs_ = 0;      ///< multiples of plan_.every passed
-    Index shown_step_ = -1;  ///< step of the last frame that was shown
-    MemoryState aside_;      ///< the simulation, while outputs are shown between two of its steps
+    Index outputs_ = 0;         ///< multiples of plan_.every passed
+    Index shown_step_ = -1;     ///< step of the last frame that was shown
+    MemoryState aside_;         ///< the simulation, while outputs are shown between two of its steps
     bool kept_before_the_cut_ = false;
 };
 
@@ -186,9 +186,10 @@ bool Loop::resume() {
 
 void Loop::require_later_end() const {
     if (simulation_.status().time > plan_.end)
-        throw UserError(fmt::format("--until: found {} s; expected at least the {} s of the state to go on from; "
-                                    "give a later time",
-                                    plan_.end, simulation_.status().time));
+        throw UserError(
+            fmt::format("--until: found {} s; expected at least the {} s of the state to go on from; "
+                        "give a later time",
+                        plan_.end, simulation_.status().time));
 }
 
 /// The next steps, or the last ones, are shortened for an end that the whole run does not have.
@@ -205,9 +206,8 @@ bool Loop::last_before_the_cut() const {
 void Loop::save_state() {
     if (!keeper_ || (heads_for_the_cut() && !last_before_the_cut())) return;
     kept_before_the_cut_ = heads_for_the_cut();
-    timed(summary_.output.back(), [&] {
-        keeper_->save(simulation_.status().time, [&](Archive& archive) { serialize(archive); });
-    });
+    timed(summary_.output.back(),
+          [&] { keeper_->save(simulation_.status().time, [&](Archive& archive) { serialize(archive); }); });
 }
 
 void Loop::serialize(Archive& archive) {
@@ -217,9 +217,9 @@ void Loop::serialize(Archive& archive) {
         frana::serialize(archive, "last", summary_.last);
         frana::serialize(archive, "output", summary_.output);
         Extremes& most = summary_.extremes;
-        archive.numbers("extremes", {&most.max_depth, &most.max_depth_time, &most.max_speed, &most.max_speed_time,
-                                     &most.max_covered_area, &most.max_front, &most.p2g_mass_error,
-                                     &most.p2g_momentum_error});
+        archive.numbers("extremes",
+                        {&most.max_depth, &most.max_depth_time, &most.max_speed, &most.max_speed_time,
+                         &most.max_covered_area, &most.max_front, &most.p2g_mass_error, &most.p2g_momentum_error});
         double wall = wall_seconds();
         archive.numbers("numbers", {&summary_.particle_steps, &wall});
         archive.number("steps", summary_.steps);
@@ -271,7 +271,8 @@ std::string Loop::reason_to_stop() const {
     const Status& now = simulation_.status();
     const bool moved = now.step > summary_.first.step;  // a release that has not yet started is not at rest
     if (now.time >= plan_.end) return "end";
-    if (now.particles == 0 && !(now.mass > 0.0) && !simulation_.more_comes()) return "left";  // free water may flow on alone
+    if (now.particles == 0 && !(now.mass > 0.0) && !simulation_.more_comes())
+        return "left";  // free water may flow on alone
     if (plan_.stop_at_rest && moved && rest_.at_rest()) return "rest";
     if (interrupt_.requested()) return "interrupted";
     return "";
@@ -314,8 +315,7 @@ void Loop::show_frame() {
     // A frame's sums belong to one moment; between frames a solver's velocities may lag behind its positions.
     summary_.last = now.status;
     if (summary_.frames == 0) summary_.first = now.status;
-    for (std::size_t i = 0; i < observers_.size(); ++i)
-        timed(summary_.output[i], [&] { observers_[i]->observe(now); });
+    for (std::size_t i = 0; i < observers_.size(); ++i) timed(summary_.output[i], [&] { observers_[i]->observe(now); });
     shown_step_ = now.status.step;
     progress_.output(now.number, now.status);
     ++summary_.frames;
@@ -325,8 +325,7 @@ void Loop::show_end() {
     if (simulation_.status().step != shown_step_) show_frame();
     Frame last = frame();
     last.number = summary_.frames - 1;
-    for (std::size_t i = 0; i < observers_.size(); ++i)
-        timed(summary_.output[i], [&] { observers_[i]->end(last); });
+    for (std::size_t i = 0; i < observers_.size(); ++i) timed(summary_.output[i], [&] { observers_[i]->end(last); });
 }
 
 /// What was reached is shown all the same.

@@ -38,8 +38,8 @@ struct RunSummary {
     std::string failure_text;    ///< its message; says also when no last frame could be written
     Status first, last;          ///< of the first and the last frame; without a last frame, of the last step
     Extremes extremes;
-    MovingMass motion;             ///< at the end; moving is what the rule of rest takes for it
-    double slow = 0.0;         ///< speed below which it does not [m/s]
+    MovingMass motion;  ///< at the end; moving is what the rule of rest takes for it
+    double slow = 0.0;  ///< speed below which it does not [m/s]
     Index steps = 0;
     Index frames = 0;
     double particle_steps = 0.0;  ///< sum of the particles over the steps

@@ -76,11 +76,12 @@ private:
         const bool read = problems_.attempt(
             place, [&] { scene_.bed = reader_.read_dem(case_.path("terrain.dem"), request, scene_.log); });
         if (!read) return;
-        if (later && !(wider.held == NodeBox::all(wider.grid)) && !problems_.attempt(place, [&] { hold_part(wider); })) return;
+        if (later && !(wider.held == NodeBox::all(wider.grid)) && !problems_.attempt(place, [&] { hold_part(wider); }))
+            return;
         const GridGeometry& grid = scene_.bed.geometry;
         if (grid.nx < 4 || grid.ny < 4)
-            problems_.add(place, fmt::format("found {} x {} nodes", grid.nx, grid.ny),
-                          "expected at least 4 x 4", "choose a smaller grid.cell or a larger terrain.window");
+            problems_.add(place, fmt::format("found {} x {} nodes", grid.nx, grid.ny), "expected at least 4 x 4",
+                          "choose a smaller grid.cell or a larger terrain.window");
         note_nodata();
         remark_on_terrain(case_, scene_);
     }
@@ -101,10 +102,10 @@ private:
     void require_room(const GridGeometry& grid, bool whole) const {
         const double nodes = double(grid.size());
         const double needed = whole ? memory_need(nodes, 0.0, scene_.output.vtk).total() : memory_of_part(nodes);
-        require_memory(needed, free_memory(),
-                       {"terrain.window",
-                        fmt::format("found {} x {} nodes of {:.6g} m, which", grid.nx, grid.ny, grid.cell),
-                        "give a window around the flow, or a larger grid.cell"});
+        require_memory(
+            needed, free_memory(),
+            {"terrain.window", fmt::format("found {} x {} nodes of {:.6g} m, which", grid.nx, grid.ny, grid.cell),
+             "give a window around the flow, or a larger grid.cell"});
     }
 
     /// Before the particles are made.
@@ -112,7 +113,8 @@ private:
         return problems_.attempt(case_.file().string(), [&] {
             const bool counted = case_.given("particles.count");
             double count = 0.0;
-            if (counted) count = double(case_.integer("particles.count"));
+            if (counted)
+                count = double(case_.integer("particles.count"));
             else
                 for (const double nodes : nodes_of_releases_) count += nodes * case_.number("particles.per_cell");
             require_memory(memory_need(0.0, count, scene_.output.vtk).total(), free_memory(),
@@ -128,20 +130,19 @@ private:
         const double free = free_memory(), without = need.total() - need.space;
         const bool space = need.space > 0.5 * need.total();
         const MemoryUse use =
-            space ? MemoryUse{"stage.spacing",
-                              fmt::format(
-                                  "found {:.3g} points in space once all of the release is in the window, which",
-                                  most_points(scene_)),
-                              "give a larger spacing or a smaller window"}
-                  : MemoryUse{"memory",
-                              fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
-                                          scene_.particles.count()),
-                              "use fewer particles, a larger grid.cell or a smaller terrain.window"};
+            space
+                ? MemoryUse{"stage.spacing",
+                            fmt::format("found {:.3g} points in space once all of the release is in the window, which",
+                                        most_points(scene_)),
+                            "give a larger spacing or a smaller window"}
+                : MemoryUse{"memory",
+                            fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
+                                        scene_.particles.count()),
+                            "use fewer particles, a larger grid.cell or a smaller terrain.window"};
         problems_.attempt(case_.file().string(), [&] {
             if (without + 0.1 * need.space > free) require_memory(need.total(), free, use);
         });
-        if (need.total() > free && problems_.empty())
-            scene_.log.push_back(memory_sentence(need.total(), free, use));
+        if (need.total() > free && problems_.empty()) scene_.log.push_back(memory_sentence(need.total(), free, use));
     }
 
     void note_nodata() {
@@ -150,9 +151,10 @@ private:
         find_holes(case_, scene_);
         const Index outside = missing - static_cast<Index>(scene_.holes.nodes.size());
         if (outside > 0)
-            scene_.log.push_back(fmt::format("{} of {} nodes lie outside of the terrain, without elevation: an exit, mass that "
-                                             "enters is counted as left",
-                                             outside, values.size()));
+            scene_.log.push_back(
+                fmt::format("{} of {} nodes lie outside of the terrain, without elevation: an exit, mass that "
+                            "enters is counted as left",
+                            outside, values.size()));
     }
 
     void read_releases() {
@@ -192,8 +194,7 @@ private:
         Index count = 0;
         for (Index k = 0; k < grid.size(); ++k) {
             if (!marks[static_cast<std::size_t>(k)]) continue;
-            const double slope =
-                std::atan(node_gradient(scene_.bed, k % grid.nx, k / grid.nx).norm()) * degrees;
+            const double slope = std::atan(node_gradient(scene_.bed, k % grid.nx, k / grid.nx).norm()) * degrees;
             steepest = std::max(steepest, slope);
             flattest = std::min(flattest, slope);
             sum += slope;
@@ -262,8 +263,8 @@ private:
         if (!case_.given("survey.footprint")) return;
         scene_.footprint = case_.path("survey.footprint");
         problems_.attempt(case_.place("survey.footprint"), [&] {
-            scene_.survey = reader_.read_survey(scene_.footprint, terrain().pixel_extent(),
-                                                scene_.bed.crs_wkt, scene_.log);
+            scene_.survey =
+                reader_.read_survey(scene_.footprint, terrain().pixel_extent(), scene_.bed.crs_wkt, scene_.log);
         });
     }
 
@@ -271,14 +272,12 @@ private:
 
     bool inside(const Vec2& point) const {
         const auto extent = terrain().pixel_extent();
-        return point.x() >= extent[0] && point.x() <= extent[2] && point.y() >= extent[1] &&
-               point.y() <= extent[3];
+        return point.x() >= extent[0] && point.x() <= extent[2] && point.y() >= extent[1] && point.y() <= extent[3];
     }
 
     std::string extent_text() const {
         const auto e = terrain().pixel_extent();
-        return fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1],
-                           e[3]);
+        return fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1], e[3]);
     }
 
     void read_profiles_and_gauges() {
@@ -287,8 +286,8 @@ private:
             const std::string prefix = fmt::format("profile.{}.", i);
             const Polyline& line = case_.points(prefix + "line");
             if (std::none_of(line.begin(), line.end(), [&](const Vec2& point) { return inside(point); }))
-                problems_.add(case_.place(prefix + "line"), "found no point of it on the terrain",
-                              extent_text(), way_out);
+                problems_.add(case_.place(prefix + "line"), "found no point of it on the terrain", extent_text(),
+                              way_out);
             scene_.profiles.push_back({case_.word(prefix + "name"), line});
         }
         for (Index i = 0; i < case_.count("gauge"); ++i) {
@@ -296,9 +295,8 @@ private:
             const auto& xy = case_.numbers(prefix + "point");
             const Vec2 point(xy[0], xy[1]);
             if (!inside(point))
-                problems_.add(case_.place(prefix + "point"),
-                              fmt::format("found {}, {} off the terrain", xy[0], xy[1]), extent_text(),
-                              way_out);
+                problems_.add(case_.place(prefix + "point"), fmt::format("found {}, {} off the terrain", xy[0], xy[1]),
+                              extent_text(), way_out);
             scene_.gauges.push_back({case_.word(prefix + "name"), point});
         }
     }

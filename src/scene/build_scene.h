@@ -29,8 +29,7 @@ struct BuiltScene {
 /// Reads the terrain and the releases through `reader`, barriers of any shape through `meshes`, makes the
 /// particles, and checks all of it: outlines that leave the terrain, releases without volume, nodata within three
 /// cells of material. Throws one UserError with every problem found.
-BuiltScene build_scene_in_detail(const CaseFile& file, const GisReader& reader,
-                                 const MeshReader& meshes = {});
+BuiltScene build_scene_in_detail(const CaseFile& file, const GisReader& reader, const MeshReader& meshes = {});
 
 /// The same without the summaries.
 Scene build_scene(const CaseFile& file, const GisReader& reader, const MeshReader& meshes = {});

@@ -15,9 +15,8 @@ namespace {
 
 std::string read_whole(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(file))
-        throw UserError(
-            fmt::format("{0}: found a folder; expected a case file; name the file, such as {0}/case.toml",
-                        file.string()));
+        throw UserError(fmt::format("{0}: found a folder; expected a case file; name the file, such as {0}/case.toml",
+                                    file.string()));
     std::ifstream stream(file, std::ios::binary);
     if (!stream)
         throw UserError(
@@ -104,8 +103,7 @@ const std::vector<Vec2>& CaseFile::points(const std::string& key) const {
 
 bool CaseFile::is_text(const std::string& key) const {
     const Value& held = value(key);
-    return std::holds_alternative<std::string>(held) ||
-           std::holds_alternative<std::vector<std::string>>(held);
+    return std::holds_alternative<std::string>(held) || std::holds_alternative<std::vector<std::string>>(held);
 }
 
 std::filesystem::path CaseFile::path(const std::string& key) const { return resolve(word(key)); }

@@ -99,8 +99,7 @@ toml::table set_table(const std::string& text, Kind kind) {
         table.clear();
     }
     const bool one_value = table.size() == 1;
-    if (!one_value || (takes_text(kind) && !table.begin()->second.is_string()))
-        return toml::table{{"v", text}};
+    if (!one_value || (takes_text(kind) && !table.begin()->second.is_string())) return toml::table{{"v", text}};
     return table;
 }
 
@@ -114,8 +113,7 @@ bool CaseReader::read_text(const std::string& text) {
     try {
         read_table(toml::parse(std::string_view(text), std::string_view(case_.file_.native())), "");
         return true;
-    } catch (
-        const toml::parse_error& error) {  // the parser's way of saying it: turned into one of our problems
+    } catch (const toml::parse_error& error) {  // the parser's way of saying it: turned into one of our problems
         const unsigned line = error.source().begin.line;
         problems_.add(static_cast<int>(line), fmt::format("{}:{}: TOML", case_.file_.string(), line),
                       "found " + syntax_text(std::string(error.description())), "expected key = value",
@@ -126,8 +124,7 @@ bool CaseReader::read_text(const std::string& text) {
 
 void CaseReader::read_table(const toml::table& table, const std::string& prefix) {
     for (const auto& [name, node] : table) {
-        const std::string key =
-            prefix.empty() ? std::string(name.str()) : prefix + "." + std::string(name.str());
+        const std::string key = prefix.empty() ? std::string(name.str()) : prefix + "." + std::string(name.str());
         read_entry(node, key);
     }
 }
@@ -179,12 +176,10 @@ void CaseReader::read_leaf(const toml::node& node, const Parameter& parameter, c
 void CaseReader::refuse_unknown(const std::string& key, int line, const std::string& place) {
     const std::string plain = without_numbers(key);
     const std::string table = plain.find('.') == std::string::npos ? "" : plain.substr(0, plain.rfind('.'));
-    const std::string known = table.empty()
-                                  ? "one of the tables " + joined(table_names())
-                                  : fmt::format("a key of [{}]: {}", table, joined(names_in(table)));
+    const std::string known = table.empty() ? "one of the tables " + joined(table_names())
+                                            : fmt::format("a key of [{}]: {}", table, joined(names_in(table)));
     const std::string near = meant(plain);
-    const std::string way_out =
-        near.empty() ? "remove it, or see `frana describe`" : "did you mean " + near + "?";
+    const std::string way_out = near.empty() ? "remove it, or see `frana describe`" : "did you mean " + near + "?";
     problems_.add(line, place, "found an unknown key", "expected " + known, way_out);
 }
 
@@ -201,8 +196,7 @@ void CaseReader::apply_set(const std::string& argument) {
     if (!parameter) return refuse_unknown(key, Problems::no_line, place);
     if (!count_repeated(key, place)) return;
     const toml::table table = set_table(trimmed(argument.substr(equals + 1)), parameter->kind);
-    const std::optional<Value> value =
-        convert(table.begin()->second, *parameter, Problems::no_line, place, problems_);
+    const std::optional<Value> value = convert(table.begin()->second, *parameter, Problems::no_line, place, problems_);
     if (!value) {
         misread_.insert(key);
         return;
@@ -224,15 +218,13 @@ bool CaseReader::count_repeated(const std::string& key, const std::string& place
     }
     const std::string number =
         key.size() > plain.size() ? key.substr(table.size() + 1, key.size() - plain.size() - 1) : "";
-    const bool usable =
-        !number.empty() && number.size() < 7 &&
-        std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c); });
+    const bool usable = !number.empty() && number.size() < 7 &&
+                        std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c); });
     const Index have = case_.count(table);
     if (!usable || std::stol(number) > have) {
-        problems_.add(
-            place, usable ? fmt::format("found number {}", number) : "found no number of the table",
-            fmt::format("expected {}.0 to {}.{}", table, table, have),
-            fmt::format("number the tables from 0, such as {}.0.{}", table, plain.substr(table.size() + 1)));
+        problems_.add(place, usable ? fmt::format("found number {}", number) : "found no number of the table",
+                      fmt::format("expected {}.0 to {}.{}", table, table, have),
+                      fmt::format("number the tables from 0, such as {}.0.{}", table, plain.substr(table.size() + 1)));
         return false;
     }
     case_.counts_[table] = std::max(have, static_cast<Index>(std::stol(number) + 1));
@@ -260,8 +252,7 @@ void CaseReader::drop_unused_from_file(const Parameter& switched) {
         const auto found = case_.settings_.find(parameter.key);
         if (found == case_.settings_.end() || found->second.from_set) continue;
         const std::string& chosen = case_.word(switched.key);
-        if (std::find(parameter.used_by.begin(), parameter.used_by.end(), chosen) != parameter.used_by.end())
-            continue;
+        if (std::find(parameter.used_by.begin(), parameter.used_by.end(), chosen) != parameter.used_by.end()) continue;
         case_.log_.push_back(
             fmt::format("{}: not used, since --set {} is \"{}\"", found->second.place, switched.key, chosen));
         case_.settings_.erase(found);

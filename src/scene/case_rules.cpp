@@ -5,8 +5,8 @@
 #include <set>
 
 #include "base/layer_name.h"
-#include "law/catalogue.h"
 #include "law/bed/laws.h"
+#include "law/catalogue.h"
 #include "scene/case_reader.h"
 #include "scene/combinations.h"
 
@@ -56,13 +56,15 @@ void CaseReader::missing(const std::string& key, const Parameter& parameter, con
 
 void CaseReader::check_rules() {
     check_tables();
-    for (const char* table : {"inflow", "profile", "gauge", "section", "barrier", "insitu", "camera"}) check_line_names(table);
+    for (const char* table : {"inflow", "profile", "gauge", "section", "barrier", "insitu", "camera"})
+        check_line_names(table);
     check_meaning();
     check_combinations();
 }
 
 void CaseReader::check_tables() {
-    if (case_.count("release") == 0 && case_.count("inflow") == 0 && !misread_.count("release") && !misread_.count("inflow"))
+    if (case_.count("release") == 0 && case_.count("inflow") == 0 && !misread_.count("release") &&
+        !misread_.count("inflow"))
         problems_.add(1, place_of("release", 1), "not given", "expected at least one [[release]]",
                       "add [[release]] with outline and depth below");
     std::set<std::string> done;
@@ -95,10 +97,8 @@ void CaseReader::check_missing(const std::string& prefix, const std::string& tab
         if (!contains(parameter.required_by, chosen)) continue;
         const std::string other = parameter.instead_of.empty() ? "" : concrete(prefix, parameter.instead_of);
         if (!other.empty() && (there(other) || other < key)) continue;  // of two ways, one complaint
-        const std::string either =
-            other.empty() ? "" : fmt::format(" (or {})", find_parameter(other)->name());
-        missing(key, parameter,
-                fmt::format(", but {} = \"{}\" needs it{}", parameter.switch_key, chosen, either));
+        const std::string either = other.empty() ? "" : fmt::format(" (or {})", find_parameter(other)->name());
+        missing(key, parameter, fmt::format(", but {} = \"{}\" needs it{}", parameter.switch_key, chosen, either));
     }
 }
 
@@ -173,8 +173,8 @@ void CaseReader::check_barrier(const std::string& prefix) {
     if (there("mesh")) {
         for (const char* name : {"outline", "line", "wet", "thickness", "height", "top"})
             if (said(name))
-                wrong(prefix + name, "found together with mesh", "expected the mesh alone, which has its place and height",
-                      "remove one of them");
+                wrong(prefix + name, "found together with mesh",
+                      "expected the mesh alone, which has its place and height", "remove one of them");
         return;
     }
     if (case_.given(prefix + "origin"))
@@ -187,8 +187,7 @@ void CaseReader::check_barrier(const std::string& prefix) {
               "add height = ... or top = ... under [[barrier]]");
     if (there("line") || there("outline") == there("line")) return;
     for (const char* name : {"thickness", "wet"})
-        if (said(name))
-            wrong(prefix + name, "found together with outline", "expected it with line only", "remove it");
+        if (said(name)) wrong(prefix + name, "found together with outline", "expected it with line only", "remove it");
 }
 
 void CaseReader::check_inflow(const std::string& prefix) {
@@ -196,7 +195,8 @@ void CaseReader::check_inflow(const std::string& prefix) {
         return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
     };
     if (!there("table") && !there("volume"))
-        wrong(prefix + "table", "not given, and no volume either", "expected the discharge over time, or its volume [m3]",
+        wrong(prefix + "table", "not given, and no volume either",
+              "expected the discharge over time, or its volume [m3]",
               "add table = ... or volume = ... under [[inflow]]");
     if (case_.given(prefix + "peak") && there("table"))
         wrong(prefix + "peak", "found together with table", "expected it with volume only", "remove one of them");

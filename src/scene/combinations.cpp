@@ -37,23 +37,33 @@ Values is_not(const char* key, std::vector<std::string> words) { return {key, Ar
 /// What structured columns do not know of.
 void add_structure(std::vector<Combination>& table) {
     const Values structure = is_not("material.structure.law", {"none"});
-    table.push_back({{"terrain.unrolled", Are::on}, {is("material.structure.law", {"none"})},
-                     "expected it with structured columns only", "remove it, or give the mass a structure"});
-    table.push_back({is_not("material.rheology.law", {"none"}), {structure},
-                     "expected \"none\": the structure is what resists inside the mass", "remove one of them"});
-    table.push_back({is_not("terrain.curvature", {"none"}), {structure},
-                     "expected \"none\": a solid keeps its length on the map over a bend", "remove it"});
+    table.push_back({{"terrain.unrolled", Are::on},
+                     {is("material.structure.law", {"none"})},
+                     "expected it with structured columns only",
+                     "remove it, or give the mass a structure"});
+    table.push_back({is_not("material.rheology.law", {"none"}),
+                     {structure},
+                     "expected \"none\": the structure is what resists inside the mass",
+                     "remove one of them"});
+    table.push_back({is_not("terrain.curvature", {"none"}),
+                     {structure},
+                     "expected \"none\": a solid keeps its length on the map over a bend",
+                     "remove it"});
     table.push_back({is_not("terrain.model", {"steep"}), {structure}, "expected \"steep\"", "remove it"});
     table.push_back({is_not("scheme.preset", {"default"}), {structure}, "expected \"default\"", "remove it"});
     table.push_back({is_not("scheme.shape", {"quadratic"}), {structure}, "expected \"quadratic\"", "remove it"});
-    table.push_back({{"inflow", Are::tables}, {structure},
+    table.push_back({{"inflow", Are::tables},
+                     {structure},
                      "expected none: material comes in to the depth-averaged flow alone",
                      "remove it, or give a [[release]]"});
-    table.push_back({{"section", Are::tables}, {structure},
+    table.push_back({{"section", Are::tables},
+                     {structure},
                      "expected none: what passes a line is known of the depth-averaged flow alone",
                      "remove it, or use [[gauge]] or [[profile]]"});
-    table.push_back({{"stage", Are::tables}, {structure},
-                     "expected none: structured columns go from the start to the end", "remove it"});
+    table.push_back({{"stage", Are::tables},
+                     {structure},
+                     "expected none: structured columns go from the start to the end",
+                     "remove it"});
 }
 
 /// What free water, and water within a structure, do not know of.
@@ -62,51 +72,78 @@ void add_water(std::vector<Combination>& table) {
     const char* const solids =
         "add [material.structure] (law, cohesion, friction_angle_deg, young_modulus), or use material.bed and "
         "material.rheology for one phase";
-    table.push_back({free, {is("material.structure.law", {"none"})}, "expected solids for the water to be beside",
-                     solids, " without material.structure"});
-    table.push_back({{"barrier", Are::tables}, {free}, "expected none, since water does not know them",
+    table.push_back({free,
+                     {is("material.structure.law", {"none"})},
+                     "expected solids for the water to be beside",
+                     solids,
+                     " without material.structure"});
+    table.push_back({{"barrier", Are::tables},
+                     {free},
+                     "expected none, since water does not know them",
                      "raise the elevation model there"});
-    table.push_back({{"terrain.unrolled", Are::on}, {free},
-                     "expected coordinates on the map, where water finds its level", "remove one of them"});
-    table.push_back({{"material.structure.confined_water", Are::above_zero}, {is("water.model", {"none"})},
+    table.push_back({{"terrain.unrolled", Are::on},
+                     {free},
+                     "expected coordinates on the map, where water finds its level",
+                     "remove one of them"});
+    table.push_back({{"material.structure.confined_water", Are::above_zero},
+                     {is("water.model", {"none"})},
                      "expected 0, since what breaks has to give its water somewhere",
-                     "remove it, or set water.model = \"free\"", " without free water"});
+                     "remove it, or set water.model = \"free\"",
+                     " without free water"});
     table.push_back({{"material.structure.confined_water", Are::above_zero},
                      {{"material.structure.fraction", Are::zero}},
                      "expected 0, since what has no structure holds no water in it",
-                     "use water.share for water in the pores", " with fraction = 0"});
-    table.push_back({{"water.profile_factor", Are::above_zero}, {{"water.solid_gradient", Are::off}},
-                     "expected 0, since it is a part of that term", "set water.solid_gradient = true, or remove it",
+                     "use water.share for water in the pores",
+                     " with fraction = 0"});
+    table.push_back({{"water.profile_factor", Are::above_zero},
+                     {{"water.solid_gradient", Are::off}},
+                     "expected 0, since it is a part of that term",
+                     "set water.solid_gradient = true, or remove it",
                      " without water.solid_gradient"});
 }
 
 /// What an erodible bed is not designed for.
 void add_erodible_bed(std::vector<Combination>& table) {
     const Values erodible = is_not("erodible.law", {"none"});
-    table.push_back({is_not("scheme.shape", {"quadratic"}), {erodible},
-                     "expected \"quadratic\", the shapes that share out a bed", "remove it, or the erodible bed"});
-    table.push_back({is_not("scheme.preset", {"default"}), {erodible},
+    table.push_back({is_not("scheme.shape", {"quadratic"}),
+                     {erodible},
+                     "expected \"quadratic\", the shapes that share out a bed",
+                     "remove it, or the erodible bed"});
+    table.push_back({is_not("scheme.preset", {"default"}),
+                     {erodible},
                      "expected \"default\": particles of the other carry a depth that no mass can join",
                      "remove it, or the erodible bed"});
-    table.push_back({is_not("material.structure.law", {"none"}), {erodible},
-                     "expected \"none\": a mass that holds together, and water beside it, take up no bed", "remove one of them"});
-    table.push_back({{"stage", Are::tables}, {erodible}, "expected none: points in 3D take up no bed",
+    table.push_back({is_not("material.structure.law", {"none"}),
+                     {erodible},
+                     "expected \"none\": a mass that holds together, and water beside it, take up no bed",
+                     "remove one of them"});
+    table.push_back({{"stage", Are::tables},
+                     {erodible},
+                     "expected none: points in 3D take up no bed",
                      "remove the stage, or the erodible bed"});
-    table.push_back({{"barrier", Are::tables}, {erodible}, "expected none: no barrier's footing is known to hold",
+    table.push_back({{"barrier", Are::tables},
+                     {erodible},
+                     "expected none: no barrier's footing is known to hold",
                      "raise the elevation model there, or remove the erodible bed"});
 }
 
 /// What the schemes of the depth-averaged flow do not know of.
 void add_schemes(std::vector<Combination>& table) {
     const Values paper = is("scheme.preset", {"paper"});
-    table.push_back({is_not("terrain.curvature", {"none"}), {is("terrain.model", {"shallow"})},
+    table.push_back({is_not("terrain.curvature", {"none"}),
+                     {is("terrain.model", {"shallow"})},
                      "expected \"none\", since that model has no curvature",
                      "remove it, or set terrain.model = \"steep\""});
-    table.push_back({is_not("terrain.model", {"shallow"}), {paper},
-                     "expected \"shallow\", the only terrain that preset has", "remove it, or use the default preset"});
-    table.push_back({is("scheme.shape", {"cubic"}), {paper}, "expected \"linear\" or \"quadratic\"",
+    table.push_back({is_not("terrain.model", {"shallow"}),
+                     {paper},
+                     "expected \"shallow\", the only terrain that preset has",
+                     "remove it, or use the default preset"});
+    table.push_back({is("scheme.shape", {"cubic"}),
+                     {paper},
+                     "expected \"linear\" or \"quadratic\"",
                      "choose one of them, or scheme.preset = \"default\""});
-    table.push_back({is("scheme.transfer", {"apic"}), {is("scheme.shape", {"linear"})},
+    table.push_back({is("scheme.transfer", {"apic"}),
+                     {is("scheme.shape", {"linear"})},
                      "expected \"tpic\", \"flip\" or \"pic\", since apic here is the one of quadratic shapes",
                      "choose one of them, or scheme.shape = \"quadratic\""});
     table.push_back({is("scheme.precision", {"float"}),
@@ -119,14 +156,20 @@ void add_schemes(std::vector<Combination>& table) {
 
 /// What runs that go into space do not know of.
 void add_space(std::vector<Combination>& table) {
-    table.push_back({{"inflow", Are::tables}, {{"stage", Are::tables}},
-                     "expected none: material comes in to the depth-averaged flow alone", "remove one of them",
+    table.push_back({{"inflow", Are::tables},
+                     {{"stage", Are::tables}},
+                     "expected none: material comes in to the depth-averaged flow alone",
+                     "remove one of them",
                      " with a stage"});
-    table.push_back({{"inflow", Are::tables}, {is("scheme.preset", {"paper"})},
-                     "expected \"default\": that preset has no rows that come in", "remove one of them"});
-    table.push_back({{"section", Are::tables}, {{"stage", Are::tables}},
+    table.push_back({{"inflow", Are::tables},
+                     {is("scheme.preset", {"paper"})},
+                     "expected \"default\": that preset has no rows that come in",
+                     "remove one of them"});
+    table.push_back({{"section", Are::tables},
+                     {{"stage", Are::tables}},
                      "expected none: points in space that pass a line are not counted",
-                     "remove it, or use [[gauge]] or [[profile]]", " with a stage"});
+                     "remove it, or use [[gauge]] or [[profile]]",
+                     " with a stage"});
 }
 
 std::string with_text(const Combination& row) {
@@ -141,26 +184,41 @@ bool Values::hold(const CaseFile& file) const {
     if (are == Are::tables) return file.count(key) > 0;
     if (!file.has(key)) return false;
     switch (are) {
-        case Are::words: return among(words, file.word(key));
-        case Are::others: return !among(words, file.word(key));
-        case Are::without: return !among(file.words(key), words.front());
-        case Are::above_zero: return file.number(key) > 0.0;
-        case Are::zero: return file.number(key) == 0.0;
-        case Are::on: return file.flag(key);
-        default: return !file.flag(key);
+        case Are::words:
+            return among(words, file.word(key));
+        case Are::others:
+            return !among(words, file.word(key));
+        case Are::without:
+            return !among(file.words(key), words.front());
+        case Are::above_zero:
+            return file.number(key) > 0.0;
+        case Are::zero:
+            return file.number(key) == 0.0;
+        case Are::on:
+            return file.flag(key);
+        default:
+            return !file.flag(key);
     }
 }
 
 std::string Values::text() const {
     switch (are) {
-        case Are::words: return fmt::format("{} = {}", key, quoted(words));
-        case Are::others: return fmt::format("{} other than {}", key, quoted(words));
-        case Are::without: return fmt::format("{} without {}", key, quoted(words));
-        case Are::above_zero: return key + " above 0";
-        case Are::zero: return key + " = 0";
-        case Are::on: return key + " = true";
-        case Are::off: return key + " = false";
-        default: return "[[" + key + "]]";
+        case Are::words:
+            return fmt::format("{} = {}", key, quoted(words));
+        case Are::others:
+            return fmt::format("{} other than {}", key, quoted(words));
+        case Are::without:
+            return fmt::format("{} without {}", key, quoted(words));
+        case Are::above_zero:
+            return key + " above 0";
+        case Are::zero:
+            return key + " = 0";
+        case Are::on:
+            return key + " = true";
+        case Are::off:
+            return key + " = false";
+        default:
+            return "[[" + key + "]]";
     }
 }
 
@@ -171,7 +229,8 @@ bool Combination::found(const CaseFile& file) const {
 }
 
 std::string Combination::found_text(const CaseFile& file) const {
-    const std::string beyond = said.empty() ? fmt::format(" with {} = {}", with.front().key, value_text(file, with.front())) : said;
+    const std::string beyond =
+        said.empty() ? fmt::format(" with {} = {}", with.front().key, value_text(file, with.front())) : said;
     return "found " + value_text(file, refused) + beyond;
 }
 
@@ -183,8 +242,10 @@ const std::vector<Combination>& combinations() {
         add_water(table);
         add_erodible_bed(table);
         add_space(table);
-        table.push_back({is_not("output.film", {"none"}), {{"output.formats", Are::without, {"vtk"}}},
-                         "expected the frames that a film is made of", "add \"vtk\" to output.formats, or remove film",
+        table.push_back({is_not("output.film", {"none"}),
+                         {{"output.formats", Are::without, {"vtk"}}},
+                         "expected the frames that a film is made of",
+                         "add \"vtk\" to output.formats, or remove film",
                          " without \"vtk\" in output.formats"});
         return table;
     }();

@@ -26,7 +26,7 @@ struct Combination {
     Values refused;
     std::vector<Values> with;  ///< any of these
     std::string expected, way_out;
-    std::string said = {};       ///< `with` in the message where it is not " with KEY = VALUE"
+    std::string said = {};  ///< `with` in the message where it is not " with KEY = VALUE"
 
     bool found(const CaseFile& file) const;
     /// "found "cubic" with scheme.preset = "paper"".

@@ -38,8 +38,7 @@ std::vector<std::string> conditions(const Parameter& parameter) {
     if (!parameter.used_by.empty())
         lines.push_back(fmt::format("only with {} = {}", parameter.switch_key, listed(parameter.used_by)));
     if (!parameter.required_by.empty()) {
-        const std::string either =
-            parameter.instead_of.empty() ? "" : " (this or " + parameter.instead_of + ")";
+        const std::string either = parameter.instead_of.empty() ? "" : " (this or " + parameter.instead_of + ")";
         lines.push_back(fmt::format("needed by {}{}", listed(parameter.required_by), either));
     } else if (!parameter.instead_of.empty()) {
         lines.push_back(fmt::format("not together with {}", parameter.instead_of));
@@ -48,8 +47,7 @@ std::vector<std::string> conditions(const Parameter& parameter) {
 }
 
 std::string entry(const Parameter& parameter) {
-    const std::string unit =
-        parameter.unit.empty() || parameter.unit == "1" ? "" : " [" + parameter.unit + "]";
+    const std::string unit = parameter.unit.empty() || parameter.unit == "1" ? "" : " [" + parameter.unit + "]";
     std::string text = fmt::format("{}{}\n    {}\n", parameter.key, unit, parameter.meaning);
     text += fmt::format("    value:   {}\n", parameter.expected());
     text += fmt::format("    default: {}\n", default_text(parameter));
@@ -103,21 +101,22 @@ std::string describe(const std::string& prefix) {
         if (parameter.name() == wanted) text += entry(parameter);
     if (!text.empty()) return text;
     const std::string near = closest(wanted, known);
-    const std::string way_out =
-        near.empty() ? "`frana describe` lists all keys" : "did you mean " + near + "?";
-    throw UserError(fmt::format("frana describe: {}: unknown key; a key of the case file is expected; {}",
-                                prefix, way_out));
+    const std::string way_out = near.empty() ? "`frana describe` lists all keys" : "did you mean " + near + "?";
+    throw UserError(
+        fmt::format("frana describe: {}: unknown key; a key of the case file is expected; {}", prefix, way_out));
 }
 
 std::string describe_in_markdown() {
     std::string text =
-        "# Keys of a case file\n\nWritten by `frana describe --markdown`; the program reads the same table. Numbers are in SI "
+        "# Keys of a case file\n\nWritten by `frana describe --markdown`; the program reads the same table. Numbers "
+        "are in SI "
         "units, angles\nin degrees where the key ends in `_deg`. Tables in double brackets may stand several times.\n";
     std::string table;
     for (const Parameter& parameter : parameters()) {
         if (parameter.table() != table) {
             table = parameter.table();
-            text += fmt::format("\n## `{}`\n\n| Key | Meaning | Value | Default |\n|---|---|---|---|\n", heading(table));
+            text +=
+                fmt::format("\n## `{}`\n\n| Key | Meaning | Value | Default |\n|---|---|---|---|\n", heading(table));
         }
         text += row(parameter);
     }

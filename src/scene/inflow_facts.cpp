@@ -11,8 +11,8 @@ InflowFacts facts_of(const Inflow& of, double gravity) {
     InflowFacts facts;
     for (std::size_t n = 0; n + 1 < of.time.size(); ++n)
         facts.volume += 0.5 * (of.time[n + 1] - of.time[n]) * (of.discharge[n] + of.discharge[n + 1]);
-    const auto peak = static_cast<std::size_t>(std::max_element(of.discharge.begin(), of.discharge.end()) -
-                                               of.discharge.begin());
+    const auto peak =
+        static_cast<std::size_t>(std::max_element(of.discharge.begin(), of.discharge.end()) - of.discharge.begin());
     const double cosine = 1.0 / std::sqrt(1.0 + of.slope * of.slope);
     facts.peak = of.discharge[peak], facts.peak_time = of.time[peak], facts.end = of.time.back();
     facts.width = of.width();
@@ -25,12 +25,15 @@ InflowFacts facts_of(const Inflow& of, double gravity) {
 
 std::string inflow_sentence(const std::string& name, const InflowFacts& f) {
     std::string text = fmt::format(
-        "inflow {}: {:.6g} m3 until {:.6g} s, at most {:.4g} m3/s at {:.6g} s; the line is {:.4g} m wide on a slope of {:.3g} "
+        "inflow {}: {:.6g} m3 until {:.6g} s, at most {:.4g} m3/s at {:.6g} s; the line is {:.4g} m wide on a slope of "
+        "{:.3g} "
         "degrees; then {:.3g} m thick at {:.4g} m/s, Froude number {:.3g}",
         name, f.volume, f.end, f.peak, f.peak_time, f.width, f.slope_deg, f.thickness, f.speed, f.froude);
     if (f.froude < 1.0)
-        text += "; so slow a flow may be held up from below, and part of it spread upstream: look at it, or put the line where the "
-                "ground is steeper, or narrower";
+        text +=
+            "; so slow a flow may be held up from below, and part of it spread upstream: look at it, or put the line "
+            "where the "
+            "ground is steeper, or narrower";
     return text;
 }
 

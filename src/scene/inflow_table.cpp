@@ -23,7 +23,8 @@ constexpr Formula kFormulas[] = {
 
 constexpr double kRise = 0.1;  ///< of a triangle's time, until it is highest
 
-const char* const kHeader = "expected a header such as \"t [s], discharge [m3/s]\" or \"t_min, discharge [m3/s], velocity [m/s]\"";
+const char* const kHeader =
+    "expected a header such as \"t [s], discharge [m3/s]\" or \"t_min, discharge [m3/s], velocity [m/s]\"";
 
 std::string trimmed(const std::string& text) {
     const std::size_t begin = text.find_first_not_of(" \t\r\"");
@@ -44,8 +45,10 @@ std::vector<std::string> cells_of(const std::string& line) {
 std::vector<std::string> headings_of(const std::string& line) {
     std::vector<std::string> cells = cells_of(line), joined;
     for (const std::string& cell : cells)
-        if (!joined.empty() && cell.rfind('[', 0) == 0) joined.back() += " " + cell;
-        else joined.push_back(cell);
+        if (!joined.empty() && cell.rfind('[', 0) == 0)
+            joined.back() += " " + cell;
+        else
+            joined.push_back(cell);
     return joined;
 }
 
@@ -67,15 +70,16 @@ Column column_of(const std::string& heading, const std::string& source) {
     const bool cubic = unit == "m3/s" || unit == "m^3/s";
     if ((name == "discharge" || name == "Q" || name == "q") && cubic) return {Column::What::discharge, 1.0};
     if ((name == "velocity" || name == "speed" || name == "v") && unit == "m/s") return {Column::What::velocity, 1.0};
-    throw UserError(fmt::format("{}: found the column \"{}\"; {}; name column and unit in the first line", source, heading,
-                                kHeader));
+    throw UserError(fmt::format("{}: found the column \"{}\"; {}; name column and unit in the first line", source,
+                                heading, kHeader));
 }
 
 double number_of(const std::string& cell, const std::string& source, Index line) {
     char* end = nullptr;
     const double value = std::strtod(cell.c_str(), &end);
     if (cell.empty() || *end != '\0' || !std::isfinite(value))
-        throw UserError(fmt::format("{}:{}: found \"{}\"; expected a number in each column; fill the gap", source, line, cell));
+        throw UserError(
+            fmt::format("{}:{}: found \"{}\"; expected a number in each column; fill the gap", source, line, cell));
     return value;
 }
 
@@ -84,23 +88,29 @@ void require_valid(const Hydrograph& table, const std::string& source) {
         return fmt::format("{}: row {} (t = {:.6g} s)", source, n + 1, table.time[n]);
     };
     if (table.time.size() < 2)
-        throw UserError(fmt::format("{}: found {} row{}; expected two or more, since discharge is linear between them; add rows",
-                                    source, table.time.size(), table.time.size() == 1 ? "" : "s"));
+        throw UserError(
+            fmt::format("{}: found {} row{}; expected two or more, since discharge is linear between them; add rows",
+                        source, table.time.size(), table.time.size() == 1 ? "" : "s"));
     for (std::size_t n = 0; n < table.time.size(); ++n) {
         if (table.time[n] < 0.0)
-            throw UserError(line(n) + ": found a time before 0; expected times of the run, which begins at 0; shift them");
+            throw UserError(line(n) +
+                            ": found a time before 0; expected times of the run, which begins at 0; shift them");
         if (n > 0 && !(table.time[n] > table.time[n - 1]))
-            throw UserError(fmt::format("{}: found a time that is not later than {:.6g} s of the row above; expected times that "
-                                        "grow; sort the rows",
-                                        line(n), table.time[n - 1]));
+            throw UserError(
+                fmt::format("{}: found a time that is not later than {:.6g} s of the row above; expected times that "
+                            "grow; sort the rows",
+                            line(n), table.time[n - 1]));
         if (table.discharge[n] < 0.0)
-            throw UserError(fmt::format("{}: found a discharge of {:.6g} m3/s; expected 0 or more; nothing can flow back "
-                                        "through an inflow",
-                                        line(n), table.discharge[n]));
-        if (!table.velocity.empty() && (table.velocity[n] < 0.0 || (table.velocity[n] == 0.0 && table.discharge[n] > 0.0)))
-            throw UserError(fmt::format("{}: found a velocity of {:.6g} m/s with {:.6g} m3/s; expected one above 0 where "
-                                        "something flows; correct it",
-                                        line(n), table.velocity[n], table.discharge[n]));
+            throw UserError(
+                fmt::format("{}: found a discharge of {:.6g} m3/s; expected 0 or more; nothing can flow back "
+                            "through an inflow",
+                            line(n), table.discharge[n]));
+        if (!table.velocity.empty() &&
+            (table.velocity[n] < 0.0 || (table.velocity[n] == 0.0 && table.discharge[n] > 0.0)))
+            throw UserError(
+                fmt::format("{}: found a velocity of {:.6g} m/s with {:.6g} m3/s; expected one above 0 where "
+                            "something flows; correct it",
+                            line(n), table.velocity[n], table.discharge[n]));
     }
     if (!(table.volume() > 0.0))
         throw UserError(source + ": found no discharge above 0; expected some; correct the table");
@@ -134,14 +144,15 @@ Hydrograph parse_hydrograph(const std::string& text, const std::string& source) 
         ++found[static_cast<std::size_t>(columns.back().what)];
     }
     if (found[0] != 1 || found[1] != 1 || found[2] > 1)
-        throw UserError(fmt::format("{}: found {} columns of time, {} of discharge and {} of velocity; {}; correct the header",
-                                    source, found[0], found[1], found[2], kHeader));
+        throw UserError(
+            fmt::format("{}: found {} columns of time, {} of discharge and {} of velocity; {}; correct the header",
+                        source, found[0], found[1], found[2], kHeader));
     Hydrograph table;
     while (next()) {
         const std::vector<std::string> cells = cells_of(line);
         if (cells.size() != columns.size())
-            throw UserError(fmt::format("{}:{}: found {} cells; expected {} as in the header; correct the row", source, number,
-                                        cells.size(), columns.size()));
+            throw UserError(fmt::format("{}:{}: found {} cells; expected {} as in the header; correct the row", source,
+                                        number, cells.size(), columns.size()));
         for (std::size_t k = 0; k < cells.size(); ++k) {
             const double value = columns[k].unit * number_of(cells[k], source, number);
             (columns[k].what == Column::What::time        ? table.time

@@ -25,20 +25,20 @@ struct Insitu {
     enum class Kind { profile, contour, threshold, figure, reduce, catalyst };
     std::string name;
     Kind kind = Kind::profile;
-    std::string place;                  ///< "case.toml:12: insitu.0", for messages
-    std::optional<double> every;        ///< [s]
-    std::optional<Index> every_steps;   ///< neither: every output
-    std::vector<std::string> fields;    ///< scalar names; one of contour, threshold and figure
+    std::string place;                 ///< "case.toml:12: insitu.0", for messages
+    std::optional<double> every;       ///< [s]
+    std::optional<Index> every_steps;  ///< neither: every output
+    std::vector<std::string> fields;   ///< scalar names; one of contour, threshold and figure
     Polyline line;
-    bool picture = false;               ///< of a profile
+    bool picture = false;  ///< of a profile
     std::vector<double> levels;
     bool of_particles = false;
-    bool gis = false;                   ///< of contour and threshold: a GeoPackage besides
-    std::optional<double> from, to;     ///< of threshold
-    std::optional<double> above;        ///< of figure and reduce
+    bool gis = false;                ///< of contour and threshold: a GeoPackage besides
+    std::optional<double> from, to;  ///< of threshold
+    std::optional<double> above;     ///< of figure and reduce
     std::optional<std::pair<double, double>> range;
     std::optional<Camera> camera;
-    int width = 1000, height = 800;     ///< [px]
+    int width = 1000, height = 800;  ///< [px]
     std::filesystem::path script;
 };
 

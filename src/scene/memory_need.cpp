@@ -24,7 +24,7 @@ constexpr double part_node_rate = 160.0;
 constexpr double structure_rate = 35.0, water_rate = 140.0;
 /// Likewise of an erodible bed: seven numbers with its depth, two more where the bed's smoothing follows.
 constexpr double erodible_rate = 56.0, path_rate = 16.0;
-constexpr double graphics_need = 350e6;        ///< besides, for pictures: software OpenGL, 290 to 420 MB
+constexpr double graphics_need = 350e6;  ///< besides, for pictures: software OpenGL, 290 to 420 MB
 
 /// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.
 constexpr double tile_nodes_3d = 512.0, bytes_per_tile_3d = 16.0;
@@ -73,9 +73,8 @@ MemoryNeed memory_need(const Scene& scene) {
     if (scene.erodible) need.nodes += (scene.erodible->evolves ? erodible_rate + path_rate : erodible_rate) * nodes;
     if (scene.structure) need.nodes += structure_rate * nodes;
     if (scene.water) need.nodes += water_rate * nodes;
-    const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(), [](const Insitu& entry) {
-        return kind_word(entry.kind) == std::string("figure");
-    });
+    const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(),
+                                   [](const Insitu& entry) { return kind_word(entry.kind) == std::string("figure"); });
     if (scene.output.png || draws) need.base += graphics_need;
     if (scene.solid) need.space = bytes_per_point * most_points(scene) + bytes_per_tile_3d * tiles_3d(scene);
     return need;

@@ -59,8 +59,7 @@ inline Parameter flag(const char* key, bool fallback, const char* meaning) {
     return parameter;
 }
 
-inline Parameter choice(const char* key, std::vector<std::string> choices, const char* fallback,
-                 const char* meaning) {
+inline Parameter choice(const char* key, std::vector<std::string> choices, const char* fallback, const char* meaning) {
     Parameter parameter = make(key, Kind::choice, "", meaning);
     parameter.choices = std::move(choices);
     parameter.fallback = text(fallback);
@@ -90,7 +89,7 @@ inline Parameter paper(Parameter parameter, Value value) {
 
 /// Used with these choices of `key` only, and needed with those of `needed_by`.
 inline Parameter with(Parameter parameter, const char* key, std::vector<std::string> used_by,
-               std::vector<std::string> needed_by = {}) {
+                      std::vector<std::string> needed_by = {}) {
     parameter.switch_key = key;
     parameter.used_by = std::move(used_by);
     parameter.required_by = std::move(needed_by);

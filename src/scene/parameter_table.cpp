@@ -13,60 +13,56 @@ namespace {
 using namespace rows;
 
 void add_terrain(Table& table) {
+    table.push_back(absent(make("case.title", Kind::text, "", "title of reports and figures"), "the case's name"));
     table.push_back(
-        absent(make("case.title", Kind::text, "", "title of reports and figures"), "the case's name"));
-    table.push_back(required(
-        make("terrain.dem", Kind::path, "", "elevation model: any GDAL raster, CRS projected in metres")));
-    Parameter window =
-        make("terrain.window", Kind::numbers, "m",
-             "part of the elevation model to use: [xmin, ymin, xmax, ymax] in map coordinates");
+        required(make("terrain.dem", Kind::path, "", "elevation model: any GDAL raster, CRS projected in metres")));
+    Parameter window = make("terrain.window", Kind::numbers, "m",
+                            "part of the elevation model to use: [xmin, ymin, xmax, ymax] in map coordinates");
     window.length = 4;
     table.push_back(absent(window, "the whole elevation model"));
     table.push_back(paper(choice("terrain.model", {"steep", "shallow", "linearised"}, "steep",
                                  "steep: exact on any slope; shallow: gentle slopes (Fois et al. 2024); linearised: "
                                  "Savage and Hutter's theory, for comparison with its solutions"),
                           text("shallow")));
-    Parameter curvature =
-        choice("terrain.curvature", {"full", "inertia", "none"}, "full",
-               "bed curvature: full; inertia: in the acceleration, not in the friction; none");
+    Parameter curvature = choice("terrain.curvature", {"full", "inertia", "none"}, "full",
+                                 "bed curvature: full; inertia: in the acceleration, not in the friction; none");
     curvature.otherwise.push_back({"terrain.model", "shallow", text("none")});
     for (const char* law : {"drucker_prager", "mohr_coulomb"})
         curvature.otherwise.push_back({"material.structure.law", law, text("none")});
     table.push_back(curvature);
-    table.push_back(flag("terrain.unrolled", false,
-                         "coordinates are measured along the ground, as along the floor of a flume, not on the map; with "
-                         "material.structure only"));
     table.push_back(
-        number("terrain.gravity", "m/s^2", above_to(0.0, 300.0), 9.81, "acceleration of gravity"));
-    table.push_back(absent(number("grid.cell", "m", positive, "node distance of the grid"),
-                           "the pixel of the elevation model"));
+        flag("terrain.unrolled", false,
+             "coordinates are measured along the ground, as along the floor of a flume, not on the map; with "
+             "material.structure only"));
+    table.push_back(number("terrain.gravity", "m/s^2", above_to(0.0, 300.0), 9.81, "acceleration of gravity"));
+    table.push_back(
+        absent(number("grid.cell", "m", positive, "node distance of the grid"), "the pixel of the elevation model"));
 }
 
 void add_release(Table& table) {
-    table.push_back(
-        absent(instead(make("release.outline", Kind::path, "",
-                            "polygons of the release, with or without holes: any OGR vector file"),
-                       "release.mask"),
-               "the mask, or the whole terrain"));
+    table.push_back(absent(instead(make("release.outline", Kind::path, "",
+                                        "polygons of the release, with or without holes: any OGR vector file"),
+                                   "release.mask"),
+                           "the mask, or the whole terrain"));
     table.push_back(absent(make("release.layer", Kind::text, "",
                                 "layer of the outline's file that is meant, where it has several; any vector file may "
                                 "also be given as FILE|layername=LAYER"),
                            "the only layer"));
-    table.push_back(absent(
-        instead(make("release.mask", Kind::path, "", "raster of the release: material where it is above 0"),
-                "release.outline"),
-        "the outline, or the whole terrain"));
+    table.push_back(
+        absent(instead(make("release.mask", Kind::path, "", "raster of the release: material where it is above 0"),
+                       "release.outline"),
+               "the outline, or the whole terrain"));
     Parameter depth =
         make("release.depth", Kind::number_or_path, "m",
              "depth of the release, or a raster of it (interpolated on finer cells), or \"field:NAME\": an attribute "
              "of the outline's features");
     depth.range = positive;
     table.push_back(absent(instead(depth, "release.surface"), "surface is needed"));
-    table.push_back(absent(
-        instead(make("release.surface", Kind::number_or_path, "m",
-                     "elevation of the release's upper surface, or a raster of it; depth = surface - bed"),
-                "release.depth"),
-        "depth is needed"));
+    table.push_back(
+        absent(instead(make("release.surface", Kind::number_or_path, "m",
+                            "elevation of the release's upper surface, or a raster of it; depth = surface - bed"),
+                       "release.depth"),
+               "depth is needed"));
     table.push_back(choice("release.thickness", {"vertical", "normal"}, "vertical",
                            "whether depth is measured along gravity or normal to the slope"));
     Parameter velocity = make("release.velocity", Kind::numbers_or_paths, "m/s",
@@ -76,13 +72,11 @@ void add_release(Table& table) {
     table.push_back(velocity);
     table.push_back(flag("release.included_in_dem", false,
                          "the mass still stands in the elevation model and is cut out of the bed"));
-    Parameter per_cell =
-        make("particles.per_cell", Kind::integer, "1", "particles in a full cell of the grid");
+    Parameter per_cell = make("particles.per_cell", Kind::integer, "1", "particles in a full cell of the grid");
     per_cell.range = between(1.0, 400.0);
     per_cell.fallback = 4.0;
     table.push_back(instead(per_cell, "particles.count"));
-    Parameter count =
-        make("particles.count", Kind::integer, "1", "particles in all releases together, about");
+    Parameter count = make("particles.count", Kind::integer, "1", "particles in all releases together, about");
     count.range = between(1.0, 2.0e9);
     table.push_back(absent(instead(count, "particles.per_cell"), "particles.per_cell decides"));
     table.push_back(choice("particles.placement", {"lattice", "r2", "slope"}, "lattice",
@@ -91,32 +85,37 @@ void add_release(Table& table) {
 
 void add_inflow(Table& table) {
     table.push_back(required(make("inflow.name", Kind::name, "", "name of the inflow in reports")));
-    Parameter line = make("inflow.line", Kind::points, "m",
-                          "line through which material comes in, across the flow and as wide as that: [[x, y], [x, y], ...]");
+    Parameter line =
+        make("inflow.line", Kind::points, "m",
+             "line through which material comes in, across the flow and as wide as that: [[x, y], [x, y], ...]");
     line.length = 2;
     table.push_back(required(line));
     Parameter towards =
         make("inflow.towards", Kind::numbers, "m", "a point on the side of the line that the flow goes to: [x, y]");
     towards.length = 2;
     table.push_back(absent(towards, "down the slope"));
-    table.push_back(absent(instead(make("inflow.table", Kind::path, "",
-                                        "CSV of the discharge over time, linear between its rows: a header with units, such "
-                                        "as t [s], discharge [m3/s] and, if wanted, velocity [m/s]; or t_min, t_h"),
-                                   "inflow.volume"),
-                           "volume is needed"));
-    table.push_back(absent(instead(number("inflow.volume", "m3", positive,
-                                          "volume of a triangle of discharge that begins at 0 s and is highest after a tenth "
-                                          "of its time"),
-                                   "inflow.table"),
-                           "table is needed"));
-    Parameter peak = make("inflow.peak", Kind::choice, "",
-                          "highest discharge of that triangle from its volume V, m3/s and m3: mizuyama-granular: 0.135 V^0.78, "
-                          "mizuyama-muddy: 0.0188 V^0.79 (Mizuyama et al. 1992), rickenmann: 0.1 V^0.833 (1999)");
+    table.push_back(
+        absent(instead(make("inflow.table", Kind::path, "",
+                            "CSV of the discharge over time, linear between its rows: a header with units, such "
+                            "as t [s], discharge [m3/s] and, if wanted, velocity [m/s]; or t_min, t_h"),
+                       "inflow.volume"),
+               "volume is needed"));
+    table.push_back(
+        absent(instead(number("inflow.volume", "m3", positive,
+                              "volume of a triangle of discharge that begins at 0 s and is highest after a tenth "
+                              "of its time"),
+                       "inflow.table"),
+               "table is needed"));
+    Parameter peak =
+        make("inflow.peak", Kind::choice, "",
+             "highest discharge of that triangle from its volume V, m3/s and m3: mizuyama-granular: 0.135 V^0.78, "
+             "mizuyama-muddy: 0.0188 V^0.79 (Mizuyama et al. 1992), rickenmann: 0.1 V^0.833 (1999)");
     peak.choices = peak_formulas();
     table.push_back(absent(peak, "mizuyama-granular"));
-    Parameter velocity = make("inflow.velocity", Kind::number_or_choice, "m/s",
-                              "speed along the bed at the line; normal: that of uniform flow by the bed law, on the slope "
-                              "under the line; column: the table's");
+    Parameter velocity =
+        make("inflow.velocity", Kind::number_or_choice, "m/s",
+             "speed along the bed at the line; normal: that of uniform flow by the bed law, on the slope "
+             "under the line; column: the table's");
     velocity.range = positive;
     velocity.choices = {"normal", "column"};
     velocity.fallback = text("normal");
@@ -161,10 +160,8 @@ void add_scheme(Table& table) {
                            "quadratic shapes, tpic and the default preset"));
     table.push_back(with(number("scheme.flip_ratio", "1", fraction, 0.99, "share of FLIP, the rest is PIC"),
                          "scheme.transfer", {"flip"}));
-    table.push_back(
-        paper(number("scheme.cfl", "1", small, 0.5, "largest way in one time step, in cells"), 0.25));
-    table.push_back(
-        paper(number("scheme.filter", "1", fraction, 1.0, "strength of the surface filter"), 0.0));
+    table.push_back(paper(number("scheme.cfl", "1", small, 0.5, "largest way in one time step, in cells"), 0.25));
+    table.push_back(paper(number("scheme.filter", "1", fraction, 1.0, "strength of the surface filter"), 0.0));
     table.push_back(flag("scheme.margin", true, "extrapolate the surface at margins from the inside"));
     table.push_back(number("scheme.sub_point_reach", "1", between(0.0, 0.5), 0.25,
                            "place of a particle's four sub-points, in edges of its domain; 0: all at its centre"));
@@ -176,45 +173,50 @@ void add_scheme(Table& table) {
     table.push_back(paper(number("scheme.viscosity_quadratic", "1", not_negative, 1.0,
                                  "artificial viscosity, coefficient of the velocity jump"),
                           0.0));
-    table.push_back(number("scheme.lateral_drag", "1", not_negative, 0.0,
-                           "drag between neighbouring material of different velocity, SamosAT's artificial viscosity; 0: none"));
-    table.push_back(number("scheme.shock_gate", "1", not_negative, 0.2,
-                           "velocity jump between nodes, in wave speeds, that counts as a bore for the viscosity; 0: none"));
+    table.push_back(
+        number("scheme.lateral_drag", "1", not_negative, 0.0,
+               "drag between neighbouring material of different velocity, SamosAT's artificial viscosity; 0: none"));
+    table.push_back(
+        number("scheme.shock_gate", "1", not_negative, 0.2,
+               "velocity jump between nodes, in wave speeds, that counts as a bore for the viscosity; 0: none"));
     table.push_back(number("scheme.shock_sensor", "1", not_negative, 0.1,
                            "jump, in wave speeds, from which the surface filter is held back; 0: never"));
     table.push_back(paper(flag("scheme.split", true, "split particles whose domain grows too long"), false));
     table.push_back(paper(flag("scheme.merge", true, "merge particles where convergence crowds them"), false));
     table.push_back(paper(
         flag("scheme.reset_domains", true, "give a strongly sheared particle a rectangular domain again"), false));
-    table.push_back(flag("scheme.sleep", true, "skip material at rest until something stirs it; the results are the same"));
+    table.push_back(
+        flag("scheme.sleep", true, "skip material at rest until something stirs it; the results are the same"));
     table.push_back(number("scheme.split_length", "cells", above_to(0.0, 2.0), 0.8,
                            "edge of a particle's domain that makes it split"));
     table.push_back(number("scheme.split_min_mass", "1", fraction, 0.02,
                            "no split below this share of the largest mass at the start"));
-    table.push_back(paper(
-        flag("scheme.mass_fit", true,
-             "fit the masses so that a lake, released below one still level, starts at exact rest"), false));
-    table.push_back(number("scheme.curvature_length", "m", not_negative, 10.0,
-                           "smoothing of the bed for its curvature and for speeds along it, 14 cells at most; 0: none"));
+    table.push_back(paper(flag("scheme.mass_fit", true,
+                               "fit the masses so that a lake, released below one still level, starts at exact rest"),
+                          false));
+    table.push_back(
+        number("scheme.curvature_length", "m", not_negative, 10.0,
+               "smoothing of the bed for its curvature and for speeds along it, 14 cells at most; 0: none"));
     table.push_back(number("scheme.strain_rate_floor", "1/s", positive, 1e-3,
                            "strain rate below which the yield stress is regularised"));
-    table.push_back(number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
-                           "largest 2 viscosity dt / (density cell^2) in one step; with linear shapes, pic or flip 0.25 at most"));
     table.push_back(
-        absent(with(number("scheme.still_level", "m", any_number, "known level of a lake at rest (eq. 33)"),
-                    "scheme.preset", {"paper"}),
-               "no still level is used"));
+        number("scheme.stress_cap", "1", above_to(0.0, 0.5), 0.25,
+               "largest 2 viscosity dt / (density cell^2) in one step; with linear shapes, pic or flip 0.25 at most"));
+    table.push_back(absent(with(number("scheme.still_level", "m", any_number, "known level of a lake at rest (eq. 33)"),
+                                "scheme.preset", {"paper"}),
+                           "no still level is used"));
 }
 
 void add_run(Table& table) {
-    table.push_back(choice("boundary.sides", {"open", "wall"}, "open",
-                           "open: mass leaves and is counted; wall: it is held back"));
+    table.push_back(
+        choice("boundary.sides", {"open", "wall"}, "open", "open: mass leaves and is counted; wall: it is held back"));
     table.push_back(choice("boundary.holes", {"wall", "open"}, "wall",
                            "nodata inside the terrain: wall: mass is held back; open: it leaves and is counted"));
     table.push_back(required(number("time.end", "s", positive, "simulated time")));
-    table.push_back(flag("time.stop_at_rest", false,
-                         "stop when what still moves can change the deposit no more: a hundredth of the mass at most is "
-                         "faster than two cells in the time so far, and no front runs on"));
+    table.push_back(
+        flag("time.stop_at_rest", false,
+             "stop when what still moves can change the deposit no more: a hundredth of the mass at most is "
+             "faster than two cells in the time so far, and no front runs on"));
     table.push_back(number("time.rest_fraction", "1", {0.0, 1.0, true, true}, 0.05,
                            "mean speed, as a share of its peak, above which nothing is taken for rest"));
     table.push_back(number("output.every", "s", at_least(1e-9), 1.0, "time between frames, which are hit exactly"));
@@ -224,25 +226,23 @@ void add_run(Table& table) {
     formats.fallback = std::vector<std::string>{"vtk", "geotiff", "png"};
     table.push_back(formats);
     Parameter fields = make("output.fields", Kind::words_or_all, "", "quantities in the frames");
-    fields.choices = {"depth",       "thickness",        "velocity",      "speed",
-                      "stress",      "effective_stress", "surface",       "elevation",
-                      "mass",        "volume",           "pressure",      "id",
-                      "peak_depth",  "peak_speed",       "peak_pressure", "peak_dynamic_pressure",
-                      "arrival_time", "damage",           "cohesion",
-                      "water_depth",  "water_velocity",   "bed_change",    "eroded_depth",
-                      "deposited_depth"};
+    fields.choices = {"depth",          "thickness",        "velocity",      "speed",
+                      "stress",         "effective_stress", "surface",       "elevation",
+                      "mass",           "volume",           "pressure",      "id",
+                      "peak_depth",     "peak_speed",       "peak_pressure", "peak_dynamic_pressure",
+                      "arrival_time",   "damage",           "cohesion",      "water_depth",
+                      "water_velocity", "bed_change",       "eroded_depth",  "deposited_depth"};
     fields.fallback = std::vector<std::string>{};
     table.push_back(fields);
     table.push_back(choice("output.film", {"none", "mp4", "gif"}, "none",
                            "film of the depth, and of points in space, at the output times, from the frames of "
                            "format vtk; needs the program ffmpeg"));
+    table.push_back(number("output.footprint_depth", "m", positive, 0.1, "deeper than this counts as covered"));
+    table.push_back(choice("output.history", {"step", "output"}, "step", "history.csv has a line per step or frame"));
     table.push_back(
-        number("output.footprint_depth", "m", positive, 0.1, "deeper than this counts as covered"));
-    table.push_back(
-        choice("output.history", {"step", "output"}, "step", "history.csv has a line per step or frame"));
-    table.push_back(choice("output.extent", {"flow", "terrain"}, "flow",
-                           "of rasters and frames. flow: where the terrain goes on far beyond the releases (by more than "
-                           "512 cells), the part that columns alone reach; terrain: all of it, which is then held as well"));
+        choice("output.extent", {"flow", "terrain"}, "flow",
+               "of rasters and frames. flow: where the terrain goes on far beyond the releases (by more than "
+               "512 cells), the part that columns alone reach; terrain: all of it, which is then held as well"));
     table.push_back(number("output.checkpoint_minutes", "min", not_negative, 10.0,
                            "wall time between two checkpoint.h5; 0: one when the run ends or is interrupted"));
     table.push_back(required(make("profile.name", Kind::name, "", "name of the profile's file and figure")));
@@ -254,8 +254,9 @@ void add_run(Table& table) {
     point.length = 2;
     table.push_back(required(point));
     table.push_back(required(make("section.name", Kind::name, "", "name of the section's file")));
-    Parameter through = make("section.line", Kind::points, "m",
-                             "line through which the discharge is recorded, down the slope as positive: [[x, y], [x, y], ...]");
+    Parameter through =
+        make("section.line", Kind::points, "m",
+             "line through which the discharge is recorded, down the slope as positive: [[x, y], [x, y], ...]");
     through.length = 2;
     table.push_back(required(through));
     add_barriers(table);

@@ -13,12 +13,14 @@ void add_erodible(Table& table) {
     std::vector<std::string> choices = {"none"};
     choices.insert(choices.end(), words.begin(), words.end());
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), law, words); };
-    table.push_back(choice(law, choices, "none",
-                           "how the flow takes up its bed. growth: by a share of its mass on each metre; steady: in each "
-                           "second; shear: at a rate, down to what the basal stress allows; energy: by the work of "
-                           "friction; jump: by the stress that the bed cannot bear"));
-    Parameter depth = make("erodible.depth", Kind::number_or_path, "m",
-                           "depth of loose material along gravity, or a raster of it; rock where that is 0 or without data");
+    table.push_back(
+        choice(law, choices, "none",
+               "how the flow takes up its bed. growth: by a share of its mass on each metre; steady: in each "
+               "second; shear: at a rate, down to what the basal stress allows; energy: by the work of "
+               "friction; jump: by the stress that the bed cannot bear"));
+    Parameter depth =
+        make("erodible.depth", Kind::number_or_path, "m",
+             "depth of loose material along gravity, or a raster of it; rock where that is 0 or without data");
     depth.range = not_negative;
     table.push_back(with(depth, law, words, words));
     table.push_back(absent(used(make("erodible.outline", Kind::path, "", "polygons outside of which the bed is rock")),
@@ -31,12 +33,15 @@ void add_erodible(Table& table) {
         if (key.usual) row.fallback = *key.usual;
         table.push_back(with(row, law, key.used_by, key.needed_by));
     }
-    table.push_back(used(number("erodible.momentum", "1", fraction, 0.0,
-                                "share of the flow's velocity that what is taken up brings along: 0, the law of friction is "
-                                "what the bed resists with; 1, what the flow's base feels; no more than friction pays for")));
-    table.push_back(used(number("erodible.min_depth", "m", not_negative, 0.05, "of the flow, below which nothing is taken")));
-    table.push_back(used(flag("erodible.bed_evolves", true,
-                              "the ground sinks by what is taken; false: it stays, and what is taken is only counted")));
+    table.push_back(
+        used(number("erodible.momentum", "1", fraction, 0.0,
+                    "share of the flow's velocity that what is taken up brings along: 0, the law of friction is "
+                    "what the bed resists with; 1, what the flow's base feels; no more than friction pays for")));
+    table.push_back(
+        used(number("erodible.min_depth", "m", not_negative, 0.05, "of the flow, below which nothing is taken")));
+    table.push_back(
+        used(flag("erodible.bed_evolves", true,
+                  "the ground sinks by what is taken; false: it stays, and what is taken is only counted")));
 }
 
 }  // namespace frana

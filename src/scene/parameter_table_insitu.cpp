@@ -10,18 +10,30 @@ const char* const kind = "insitu.kind";
 
 /// Every scalar that a frame may have; components of vectors and stresses by their names.
 std::vector<std::string> scalar_names() {
-    return {"depth",         "thickness",
-            "speed",         "velocity_x",
-            "velocity_y",    "velocity_z",
-            "pressure",      "surface",
-            "elevation",     "peak_depth",
-            "peak_speed",    "peak_pressure",
-            "arrival_time",  "peak_dynamic_pressure",
-            "stress_xx",     "stress_yy",
-            "stress_xy",     "effective_stress_xx",
-            "mass",          "effective_stress_yy",
-            "volume",        "effective_stress_xy",
-            "damage",        "cohesion",
+    return {"depth",
+            "thickness",
+            "speed",
+            "velocity_x",
+            "velocity_y",
+            "velocity_z",
+            "pressure",
+            "surface",
+            "elevation",
+            "peak_depth",
+            "peak_speed",
+            "peak_pressure",
+            "arrival_time",
+            "peak_dynamic_pressure",
+            "stress_xx",
+            "stress_yy",
+            "stress_xy",
+            "effective_stress_xx",
+            "mass",
+            "effective_stress_yy",
+            "volume",
+            "effective_stress_xy",
+            "damage",
+            "cohesion",
             "id"};
 }
 
@@ -60,36 +72,41 @@ void add_what(Table& table) {
     Parameter line = make("insitu.line", Kind::points, "m", "the cut's line: [[x, y], [x, y], ...]");
     line.length = 2;
     table.push_back(with(line, kind, {"profile"}, {"profile"}));
-    table.push_back(with(flag("insitu.picture", false, "a line chart of the cut besides its "
-                                                       "table"), kind, {"profile"}));
-    table.push_back(with(list("insitu.levels", 0, "", "values of the lines, in the field's unit"), kind, {"contour"},
-                         {"contour"}));
+    table.push_back(with(flag("insitu.picture", false,
+                              "a line chart of the cut besides its "
+                              "table"),
+                         kind, {"profile"}));
+    table.push_back(
+        with(list("insitu.levels", 0, "", "values of the lines, in the field's unit"), kind, {"contour"}, {"contour"}));
     Parameter of = choice("insitu.of", {"grid", "particles"}, "grid", "cells of the grid, or particles");
     table.push_back(with(of, kind, {"threshold"}));
-    table.push_back(absent(
-        with(number("insitu.from", "", any_number, "smallest value that is kept, in the field's unit"), kind, {"threshold"}),
-        "no lower limit"));
-    table.push_back(absent(
-        with(number("insitu.to", "", any_number, "largest value that is kept, in the field's unit"), kind, {"threshold"}),
-        "no upper limit"));
-    table.push_back(with(flag("insitu.gis", false,
-                              "besides, for a GIS: insitu/NAME.gpkg with the lines, or the outlines of the cells, at all "
-                              "times, in the coordinate system of the elevation model"),
-                         kind, {"contour", "threshold"}));
-    table.push_back(absent(with(number("insitu.above", "", not_negative,
-                                       "reduce: depth [m] above which a node counts; figure: size of the field above "
-                                       "which it is drawn, in its unit"),
-                                kind, {"figure", "reduce"}),
-                           "output.footprint_depth; fields other than a depth are then shown where the flow is deeper"));
+    table.push_back(
+        absent(with(number("insitu.from", "", any_number, "smallest value that is kept, in the field's unit"), kind,
+                    {"threshold"}),
+               "no lower limit"));
+    table.push_back(absent(with(number("insitu.to", "", any_number, "largest value that is kept, in the field's unit"),
+                                kind, {"threshold"}),
+                           "no upper limit"));
+    table.push_back(
+        with(flag("insitu.gis", false,
+                  "besides, for a GIS: insitu/NAME.gpkg with the lines, or the outlines of the cells, at all "
+                  "times, in the coordinate system of the elevation model"),
+             kind, {"contour", "threshold"}));
+    table.push_back(
+        absent(with(number("insitu.above", "", not_negative,
+                           "reduce: depth [m] above which a node counts; figure: size of the field above "
+                           "which it is drawn, in its unit"),
+                    kind, {"figure", "reduce"}),
+               "output.footprint_depth; fields other than a depth are then shown where the flow is deeper"));
 }
 
 void add_picture(Table& table) {
-    table.push_back(absent(with(make("insitu.camera", Kind::name, "", "name of the [[camera]] of the picture"), kind,
-                                {"figure"}),
-                           "a map of the whole terrain"));
-    table.push_back(absent(with(list("insitu.range", 2, "", "[low, high] of the colours, in the field's unit"), kind,
-                                {"figure"}),
-                           "each picture's own range"));
+    table.push_back(
+        absent(with(make("insitu.camera", Kind::name, "", "name of the [[camera]] of the picture"), kind, {"figure"}),
+               "a map of the whole terrain"));
+    table.push_back(
+        absent(with(list("insitu.range", 2, "", "[low, high] of the colours, in the field's unit"), kind, {"figure"}),
+               "each picture's own range"));
     table.push_back(with(pixels("insitu.width", 1000.0, "of the picture"), kind, {"figure", "profile"}));
     table.push_back(with(pixels("insitu.height", 800.0, "of the picture"), kind, {"figure", "profile"}));
     table.push_back(with(make("insitu.script", Kind::path, "", "ParaView Catalyst script in Python, version 2.0"), kind,
@@ -108,8 +125,9 @@ void add_camera(Table& table) {
                          {"perspective"}, {"perspective"}));
     table.push_back(with(list("camera.target", 3, "m", "what it looks at: [x, y, elevation]"), projection,
                          {"perspective"}, {"perspective"}));
-    table.push_back(with(number("camera.view_angle_deg", "degree", between(1.0, 120.0), 30.0, "its angle of view, "
-                                                                                              "upright"),
+    table.push_back(with(number("camera.view_angle_deg", "degree", between(1.0, 120.0), 30.0,
+                                "its angle of view, "
+                                "upright"),
                          projection, {"perspective"}));
 }
 

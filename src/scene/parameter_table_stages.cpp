@@ -20,36 +20,35 @@ void add_laws(Table& table) {
     Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in space");
     choice_of_law.choices = {"fluid", "bingham", "herschel_bulkley", "drucker_prager", "elastic"};
     table.push_back(of_3d(choice_of_law, "fluid, or bingham where the rheology is"));
+    table.push_back(of_3d(number("stage.viscosity", "Pa s", not_negative, "viscosity of a fluid, or of bingham"),
+                          "the rheology's"));
     table.push_back(
-        of_3d(number("stage.viscosity", "Pa s", not_negative, "viscosity of a fluid, or of bingham"),
-                 "the rheology's"));
-    table.push_back(of_3d(number("stage.yield_stress", "Pa", positive,
-                                    "yield stress of bingham or herschel_bulkley in shear"),
-                             "the rheology's"));
-    table.push_back(
-        of_3d(number("stage.shear_modulus", "Pa", positive, "stiffness of both below their yield stress"),
-                 "a hundred yield stresses"));
-    table.push_back(
-        of_3d(number("stage.sound_speed", "m/s", positive,
-                        "artificial speed of sound of fluids, with a yield stress or without: the density changes by about "
-                        "(speed / sound_speed)^2"),
-                 "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
+        of_3d(number("stage.yield_stress", "Pa", positive, "yield stress of bingham or herschel_bulkley in shear"),
+              "the rheology's"));
+    table.push_back(of_3d(number("stage.shear_modulus", "Pa", positive, "stiffness of both below their yield stress"),
+                          "a hundred yield stresses"));
+    table.push_back(of_3d(
+        number("stage.sound_speed", "m/s", positive,
+               "artificial speed of sound of fluids, with a yield stress or without: the density changes by about "
+               "(speed / sound_speed)^2"),
+        "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
     const std::vector<std::string> mud = {"herschel_bulkley"};
-    table.push_back(with(number("stage.consistency", "Pa s^n", positive,
-                                "K of herschel_bulkley: tau = yield_stress + K rate^exponent"),
-                         law, mud, mud));
-    table.push_back(with(number("stage.exponent", "1", above_to(0.0, 2.0),
-                                "n of herschel_bulkley, below one for what thins with shear"),
-                         law, mud, mud));
+    table.push_back(with(
+        number("stage.consistency", "Pa s^n", positive, "K of herschel_bulkley: tau = yield_stress + K rate^exponent"),
+        law, mud, mud));
+    table.push_back(with(
+        number("stage.exponent", "1", above_to(0.0, 2.0), "n of herschel_bulkley, below one for what thins with shear"),
+        law, mud, mud));
     table.push_back(with(number("stage.friction_angle_deg", "degree", {0.0, 90.0, false, true},
                                 "internal friction angle of drucker_prager"),
                          law, {"drucker_prager"}, {"drucker_prager"}));
-    table.push_back(with(number("stage.cohesion", "Pa", not_negative, 0.0, "cohesion of drucker_prager"), law,
-                         {"drucker_prager"}));
-    table.push_back(with(choice("stage.cone", {"triaxial", "plane_strain"}, "triaxial",
-                                "where drucker_prager is as strong as Mohr and Coulomb's law of that angle: in triaxial "
-                                "compression, or in plane strain, as heaps and slopes fail"),
-                         law, {"drucker_prager"}));
+    table.push_back(
+        with(number("stage.cohesion", "Pa", not_negative, 0.0, "cohesion of drucker_prager"), law, {"drucker_prager"}));
+    table.push_back(
+        with(choice("stage.cone", {"triaxial", "plane_strain"}, "triaxial",
+                    "where drucker_prager is as strong as Mohr and Coulomb's law of that angle: in triaxial "
+                    "compression, or in plane strain, as heaps and slopes fail"),
+             law, {"drucker_prager"}));
     table.push_back(
         with(number("stage.young_modulus", "Pa", positive,
                     "stiffness of drucker_prager or elastic; the stiffer, the more steps: about 100 density "
@@ -73,16 +72,18 @@ void add_barriers(Table& table) {
     table.push_back(flag("barrier.each", false,
                          "every polygon of the outline is a barrier of its own, NAME_1, NAME_2, ...; otherwise all are "
                          "one"));
-    Parameter line = make("barrier.line", Kind::points, "m",
-                          "foot of a wall's face that material comes to: [[x, y], [x, y], ...]");
+    Parameter line =
+        make("barrier.line", Kind::points, "m", "foot of a wall's face that material comes to: [[x, y], [x, y], ...]");
     line.length = 2;
     table.push_back(absent(instead(line, "barrier.outline"), "outline is needed"));
-    table.push_back(absent(make("barrier.mesh", Kind::path, "",
-                                "instead of outline, line, height and top: a closed surface in metres (.stl, .vtp or .obj)"),
-                           "outline or line is needed"));
-    Parameter origin = make("barrier.origin", Kind::numbers, "m",
-                            "where the mesh's own coordinates begin in the map: [x, y, elevation]; such files hold seven "
-                            "digits");
+    table.push_back(
+        absent(make("barrier.mesh", Kind::path, "",
+                    "instead of outline, line, height and top: a closed surface in metres (.stl, .vtp or .obj)"),
+               "outline or line is needed"));
+    Parameter origin =
+        make("barrier.origin", Kind::numbers, "m",
+             "where the mesh's own coordinates begin in the map: [x, y, elevation]; such files hold seven "
+             "digits");
     origin.length = 3;
     table.push_back(absent(origin, "0, 0, 0"));
     table.push_back(
@@ -90,10 +91,9 @@ void add_barriers(Table& table) {
                "side of the line, walking along it, that material comes from; the wall stands on the other"));
     table.push_back(absent(number("barrier.thickness", "m", positive, "thickness of a wall along a line"),
                            "as little as keeps both sides apart: three cells of the stage, up to 4.3 askew"));
-    table.push_back(
-        absent(instead(number("barrier.height", "m", positive, "height above the bed, which the top follows"),
-                       "barrier.top"),
-               "top is needed"));
+    table.push_back(absent(
+        instead(number("barrier.height", "m", positive, "height above the bed, which the top follows"), "barrier.top"),
+        "top is needed"));
     table.push_back(
         absent(instead(number("barrier.top", "m", any_number, "elevation of a level top"), "barrier.height"),
                "height is needed"));
@@ -103,19 +103,17 @@ void add_barriers(Table& table) {
 }
 
 void add_stages(Table& table) {
-    Parameter choice_of_model =
-        make(model, Kind::choice, "",
-             "depth_averaged: columns; solid_flow: points in space, within the stage's window; columns may come before it, "
-             "after it, or both");
+    Parameter choice_of_model = make(
+        model, Kind::choice, "",
+        "depth_averaged: columns; solid_flow: points in space, within the stage's window; columns may come before it, "
+        "after it, or both");
     choice_of_model.choices = {"depth_averaged", "solid_flow"};
     table.push_back(required(choice_of_model));
-    table.push_back(
-        absent(number("stage.until", "s", positive, "time at which the stage ends and the next begins"),
-               "the end of the run"));
-    Parameter window =
-        make("stage.window", Kind::numbers, "m",
-             "where material becomes points in space: [xmin, ymin, xmax, ymax] in map coordinates; "
-             "cells whose nodes lie in it belong to it");
+    table.push_back(absent(number("stage.until", "s", positive, "time at which the stage ends and the next begins"),
+                           "the end of the run"));
+    Parameter window = make("stage.window", Kind::numbers, "m",
+                            "where material becomes points in space: [xmin, ymin, xmax, ymax] in map coordinates; "
+                            "cells whose nodes lie in it belong to it");
     window.length = 4;
     table.push_back(of_3d(window, "the whole terrain"));
     Parameter closed = make("stage.closed", Kind::words, "",
@@ -124,43 +122,40 @@ void add_stages(Table& table) {
     closed.may_be_empty = true;
     closed.fallback = std::vector<std::string>{};
     table.push_back(with(closed, model, in_3d));
-    table.push_back(of_3d(number("stage.cell", "m", positive, "node distance of the grid in space"),
-                             "half of the grid's cell"));
     table.push_back(
-        of_3d(number("stage.spacing", "m", positive, "distance of the points in space at the start"),
-                 "half of the stage's cell: eight points a cell"));
-    table.push_back(
-        of_3d(number("stage.top", "m", any_number, "elevation above which points leave the space"),
-                 "four times as high above the lowest ground as the energy of the material reaches"));
+        of_3d(number("stage.cell", "m", positive, "node distance of the grid in space"), "half of the grid's cell"));
+    table.push_back(of_3d(number("stage.spacing", "m", positive, "distance of the points in space at the start"),
+                          "half of the stage's cell: eight points a cell"));
+    table.push_back(of_3d(number("stage.top", "m", any_number, "elevation above which points leave the space"),
+                          "four times as high above the lowest ground as the energy of the material reaches"));
     add_laws(table);
-    table.push_back(
-        with(flag("stage.stuck", false, "the lowest material does not slide on the bed"), model, in_3d));
+    table.push_back(with(flag("stage.stuck", false, "the lowest material does not slide on the bed"), model, in_3d));
     table.push_back(of_3d(number("stage.bed_friction", "1", between(0.0, 10.0),
-                                    "Coulomb's friction coefficient between the points and the bed"),
-                             "the friction coefficient of material.bed, without its other terms"));
-    table.push_back(with(number("stage.cfl", "1", above_to(0.0, 1.0), 0.4,
-                                "largest way of sound and flow in one time step, in cells"),
-                         model, in_3d));
+                                 "Coulomb's friction coefficient between the points and the bed"),
+                          "the friction coefficient of material.bed, without its other terms"));
+    table.push_back(with(
+        number("stage.cfl", "1", above_to(0.0, 1.0), 0.4, "largest way of sound and flow in one time step, in cells"),
+        model, in_3d));
     Parameter transfer =
         make("stage.transfer", Kind::choice, "",
              "how velocity passes between points and grid: tpic has the quieter pressure, apic keeps angular momentum, "
              "flip lets points keep their velocity, so that what few cells hold is damped by time and not by step");
     transfer.choices = {"tpic", "apic", "flip"};
     table.push_back(of_3d(transfer, "flip for drucker_prager, else tpic"));
-    table.push_back(of_3d(number("stage.blending", "s", positive,
-                                    "time in which points with flip take over the grid's velocity"),
-                             "sqrt(cell / gravity), in which material falls half a cell"));
-    table.push_back(with(flag("stage.split", false,
-                              "points that are drawn 0.8 of a cell apart become two, down to 1/64 of a cell each: thin ends "
-                              "keep together; up to eight times as many points"),
-                         model, in_3d));
+    table.push_back(
+        of_3d(number("stage.blending", "s", positive, "time in which points with flip take over the grid's velocity"),
+              "sqrt(cell / gravity), in which material falls half a cell"));
+    table.push_back(
+        with(flag("stage.split", false,
+                  "points that are drawn 0.8 of a cell apart become two, down to 1/64 of a cell each: thin ends "
+                  "keep together; up to eight times as many points"),
+             model, in_3d));
     table.push_back(with(choice("stage.profile", {"plug", "linear", "parabolic", "bagnold"}, "plug",
                                 "velocity over the depth that columns become points with"),
                          model, in_3d));
-    table.push_back(
-        with(choice("stage.vertical", {"along-bed", "zero"}, "along-bed",
-                    "vertical velocity that columns become points with; zero: Fois et al. (2025)"),
-             model, in_3d));
+    table.push_back(with(choice("stage.vertical", {"along-bed", "zero"}, "along-bed",
+                                "vertical velocity that columns become points with; zero: Fois et al. (2025)"),
+                         model, in_3d));
 }
 
 }  // namespace frana

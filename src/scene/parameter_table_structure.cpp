@@ -11,13 +11,16 @@ void add_structure(Table& table) {
     const std::vector<std::string> any_law = {"drucker_prager", "mohr_coulomb"};
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), law, any_law); };
     const auto needed = [&](Parameter parameter) { return with(std::move(parameter), law, any_law, any_law); };
-    table.push_back(choice(law, {"none", "drucker_prager", "mohr_coulomb"}, "none",
-                           "where columns that hold together yield: Drucker and Prager's cone or Mohr and Coulomb's pyramid, "
-                           "the stress across the bed being given by the weight"));
-    table.push_back(needed(number("material.structure.cohesion", "Pa", not_negative, "cohesion of the undamaged structure")));
-    table.push_back(needed(number("material.structure.friction_angle_deg", "degree", {0.0, 90.0, true, true},
-                                  "internal friction angle of the structure, and of the grains it falls to; at most 60 where "
-                                  "they push by Rankine's coefficients")));
+    table.push_back(
+        choice(law, {"none", "drucker_prager", "mohr_coulomb"}, "none",
+               "where columns that hold together yield: Drucker and Prager's cone or Mohr and Coulomb's pyramid, "
+               "the stress across the bed being given by the weight"));
+    table.push_back(
+        needed(number("material.structure.cohesion", "Pa", not_negative, "cohesion of the undamaged structure")));
+    table.push_back(
+        needed(number("material.structure.friction_angle_deg", "degree", {0.0, 90.0, true, true},
+                      "internal friction angle of the structure, and of the grains it falls to; at most 60 where "
+                      "they push by Rankine's coefficients")));
     table.push_back(used(number("material.structure.dilatancy_angle_deg", "degree", {0.0, 90.0, false, true}, 0.0,
                                 "angle by which yielding makes room")));
     table.push_back(with(choice("material.structure.cone", {"triaxial", "plane_strain"}, "triaxial",
@@ -28,22 +31,25 @@ void add_structure(Table& table) {
     table.push_back(instead(used(number("material.structure.poisson_ratio", "1", {0.0, 0.5, true, true}, usual.poisson,
                                         "share of a strain that shows across it")),
                             "material.structure.bulk_modulus"));
-    table.push_back(absent(instead(used(number("material.structure.bulk_modulus", "Pa", positive,
-                                               "stiffness against a change of volume, more than a third of young_modulus")),
-                                   "material.structure.poisson_ratio"),
-                           "poisson_ratio decides"));
+    table.push_back(
+        absent(instead(used(number("material.structure.bulk_modulus", "Pa", positive,
+                                   "stiffness against a change of volume, more than a third of young_modulus")),
+                       "material.structure.poisson_ratio"),
+               "poisson_ratio decides"));
     table.push_back(used(number("material.structure.fraction", "1", fraction, 1.0,
                                 "share of the solids that have structure; the others are grains from the start")));
-    table.push_back(used(choice("material.structure.earth_pressure", {"rankine", "hydrostatic"}, "rankine",
-                                "how grains push sideways: by Ka where they spread or rest and towards Kp where they are "
-                                "squeezed, or as the depth-averaged flow does, by the pressure of their weight")));
+    table.push_back(
+        used(choice("material.structure.earth_pressure", {"rankine", "hydrostatic"}, "rankine",
+                    "how grains push sideways: by Ka where they spread or rest and towards Kp where they are "
+                    "squeezed, or as the depth-averaged flow does, by the pressure of their weight")));
     table.push_back(used(number("material.structure.confined_water", "1", {0.0, 1.0, false, true}, 0.0,
                                 "share of the columns' volume that is water within the structure; what breaks sets it "
                                 "free, and needs water.model")));
-    table.push_back(used(choice("material.structure.damage", {"dilation", "extension", "strain"}, "dilation",
-                                "what breaks bonds while the structure yields: plastic dilation in the plane (van den Bout et "
-                                "al. 2021), the largest plastic strain in the plane, or any strain, exponentially (their "
-                                "program)")));
+    table.push_back(
+        used(choice("material.structure.damage", {"dilation", "extension", "strain"}, "dilation",
+                    "what breaks bonds while the structure yields: plastic dilation in the plane (van den Bout et "
+                    "al. 2021), the largest plastic strain in the plane, or any strain, exponentially (their "
+                    "program)")));
     table.push_back(used(number("material.structure.critical_strain", "1", positive, usual.critical_strain,
                                 "that strain at which no bond is left")));
     table.push_back(absent(used(number("material.structure.critical_length", "m", positive,

@@ -11,8 +11,9 @@ void add_water(Table& table) {
     const auto used = [&](Parameter parameter) { return with(std::move(parameter), model, {"free"}); };
     table.push_back(choice(model, {"none", "free"}, "none",
                            "free: water on the grid that drags, bears and drains the columns of material.structure"));
-    table.push_back(used(number("water.share", "1", {0.0, 1.0, false, true}, 0.0,
-                                "share of each release's volume that is free water in its pores; the columns have the rest")));
+    table.push_back(
+        used(number("water.share", "1", {0.0, 1.0, false, true}, 0.0,
+                    "share of each release's volume that is free water in its pores; the columns have the rest")));
     table.push_back(absent(used(number("water.level", "m", any_number,
                                        "elevation of a lake at rest at the start, wherever the ground lies lower")),
                            "no lake"));
@@ -24,24 +25,27 @@ void add_water(Table& table) {
     };
     rate("water.rain", "rain, or a raster of it; 1 mm/h is 2.8e-7");
     rate("water.infiltration", "what the ground takes of free water at most, or a raster of it");
-    table.push_back(used(choice("water.friction", {"none", "manning", "darcy_weisbach"}, "none", "friction of water at the bed")));
-    table.push_back(with(number("water.manning_n", "s/m^(1/3)", above_to(0.0, 1.0), "Manning's roughness"), "water.friction",
-                         {"manning"}, {"manning"}));
+    table.push_back(
+        used(choice("water.friction", {"none", "manning", "darcy_weisbach"}, "none", "friction of water at the bed")));
+    table.push_back(with(number("water.manning_n", "s/m^(1/3)", above_to(0.0, 1.0), "Manning's roughness"),
+                         "water.friction", {"manning"}, {"manning"}));
     table.push_back(with(number("water.darcy_f", "1", positive, "Darcy and Weisbach's factor"), "water.friction",
                          {"darcy_weisbach"}, {"darcy_weisbach"}));
-    table.push_back(used(number("water.density", "kg/m^3", positive, usual.material.fluid_density,
-                                "of the water, confined or free")));
+    table.push_back(used(
+        number("water.density", "kg/m^3", positive, usual.material.fluid_density, "of the water, confined or free")));
     table.push_back(used(number("water.viscosity", "Pa s", positive, usual.material.viscosity,
                                 "of clear water; grains settle in it or in mud")));
-    table.push_back(used(choice("water.viscous", {"none", "clear", "mud"}, "none",
-                                "viscosity that the flow of the water feels at the bed and inside: none, that of clear water, "
-                                "or mud_alpha exp(mud_beta mud_concentration) (O'Brien and Julien 1988), in which grains then "
-                                "settle as well")));
+    table.push_back(
+        used(choice("water.viscous", {"none", "clear", "mud"}, "none",
+                    "viscosity that the flow of the water feels at the bed and inside: none, that of clear water, "
+                    "or mud_alpha exp(mud_beta mud_concentration) (O'Brien and Julien 1988), in which grains then "
+                    "settle as well")));
     const auto viscous = [](Parameter parameter, std::vector<std::string> by, std::vector<std::string> needed = {}) {
         return with(std::move(parameter), "water.viscous", std::move(by), std::move(needed));
     };
-    table.push_back(viscous(number("water.mud_alpha", "Pa s", positive, "of mud; tables often have poise, which is 0.1 Pa s"),
-                            {"mud"}, {"mud"}));
+    table.push_back(
+        viscous(number("water.mud_alpha", "Pa s", positive, "of mud; tables often have poise, which is 0.1 Pa s"),
+                {"mud"}, {"mud"}));
     table.push_back(viscous(number("water.mud_beta", "1", between(0.0, 100.0), "of mud, 6 to 33"), {"mud"}, {"mud"}));
     table.push_back(viscous(number("water.mud_concentration", "1", {0.0, 1.0, false, true},
                                    "share of fines in the volume of the free water"),
@@ -49,29 +53,36 @@ void add_water(Table& table) {
     table.push_back(viscous(number("water.bed_shear", "1", not_negative, 3.0,
                                    "viscous stress at the bed over viscosity times speed over depth; 3: a parabola"),
                             {"clear", "mud"}));
-    table.push_back(used(number("water.grain_diameter", "m", positive, usual.material.grain, "of grains, for their drag")));
+    table.push_back(
+        used(number("water.grain_diameter", "m", positive, usual.material.grain, "of grains, for their drag")));
     table.push_back(used(number("water.block_diameter", "m", positive, usual.material.block,
                                 "of blocks of what has structure, for their drag")));
-    table.push_back(viscous(flag("water.solid_gradient", false,
-                                 "viscous stress of water that slips along a gradient of the columns' share (van den Bout et "
-                                 "al. 2021, eq. 30); it takes no energy by itself and may feed slip"),
-                            {"clear", "mud"}));
-    table.push_back(viscous(number("water.profile_factor", "1", not_negative, 0.0,
-                                   "xi of that term, of how grains are spread over the depth: 0 evenly, 3 as a parabola; left "
-                                   "out where drag does not dominate it"),
-                            {"clear", "mud"}));
-    table.push_back(used(choice("water.drag", {"split", "unsplit"}, "split",
-                                "split: blocks of what holds together and grains have each their own (van den Bout et al. "
-                                "2021, eq. 31); unsplit: all solids drag as grains in all of the water (Pudasaini 2012)")));
-    Parameter power = make("water.drag_power", Kind::integer, "1", "drag grows with the slip (1) or with its square (2)");
+    table.push_back(
+        viscous(flag("water.solid_gradient", false,
+                     "viscous stress of water that slips along a gradient of the columns' share (van den Bout et "
+                     "al. 2021, eq. 30); it takes no energy by itself and may feed slip"),
+                {"clear", "mud"}));
+    table.push_back(
+        viscous(number("water.profile_factor", "1", not_negative, 0.0,
+                       "xi of that term, of how grains are spread over the depth: 0 evenly, 3 as a parabola; left "
+                       "out where drag does not dominate it"),
+                {"clear", "mud"}));
+    table.push_back(
+        used(choice("water.drag", {"split", "unsplit"}, "split",
+                    "split: blocks of what holds together and grains have each their own (van den Bout et al. "
+                    "2021, eq. 31); unsplit: all solids drag as grains in all of the water (Pudasaini 2012)")));
+    Parameter power =
+        make("water.drag_power", Kind::integer, "1", "drag grows with the slip (1) or with its square (2)");
     power.range = between(1.0, 2.0);
     power.fallback = static_cast<double>(usual.material.power);
     table.push_back(used(power));
-    table.push_back(used(choice("water.virtual_mass", {"none", "bounded", "unbounded"}, "none",
-                                "water that solids speed up with them: Pudasaini and Mergili (2019), or Pudasaini (2012), "
-                                "which grows without bound where there is little water")));
-    table.push_back(used(number("water.pore_pressure", "1", fraction, usual.pore_pressure,
-                                "share of the pores' pressure that bears the columns on the bed where pores are full")));
+    table.push_back(
+        used(choice("water.virtual_mass", {"none", "bounded", "unbounded"}, "none",
+                    "water that solids speed up with them: Pudasaini and Mergili (2019), or Pudasaini (2012), "
+                    "which grows without bound where there is little water")));
+    table.push_back(
+        used(number("water.pore_pressure", "1", fraction, usual.pore_pressure,
+                    "share of the pores' pressure that bears the columns on the bed where pores are full")));
     table.push_back(used(number("water.void_ratio", "1", positive, usual.void_ratio,
                                 "free water over grains and their confined water that fills the pores")));
 }

@@ -111,8 +111,7 @@ std::string Parameter::expected() const {
         case Kind::numbers:
             return (length > 0 ? fmt::format("a list of {} numbers", length) : "a list of numbers") + in_unit;
         case Kind::numbers_or_paths:
-            return fmt::format("a list of {} numbers", length) + in_unit +
-                   fmt::format(" or of {} rasters", length);
+            return fmt::format("a list of {} numbers", length) + in_unit + fmt::format(" or of {} rasters", length);
         case Kind::points:
             return fmt::format("a list of {} or more points [x, y]", length) + in_unit;
         case Kind::words:
@@ -130,9 +129,8 @@ std::string without_numbers(const std::string& key) {
     while (begin <= key.size()) {
         const std::size_t end = std::min(key.find('.', begin), key.size());
         const std::string part = key.substr(begin, end - begin);
-        const bool digits = !part.empty() && std::all_of(part.begin(), part.end(), [](unsigned char c) {
-            return std::isdigit(c) != 0;
-        });
+        const bool digits = !part.empty() &&
+                            std::all_of(part.begin(), part.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
         if (!digits) result += (result.empty() ? "" : ".") + part;
         begin = end + 1;
     }

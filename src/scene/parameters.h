@@ -11,8 +11,7 @@
 namespace frana {
 
 /// What a case key can hold.
-using Value =
-    std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>, std::vector<Vec2>>;
+using Value = std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>, std::vector<Vec2>>;
 
 enum class Kind {
     number,            ///< double

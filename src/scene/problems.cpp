@@ -21,8 +21,7 @@ void Problems::add(const std::string& place, const UserError& error) {
 void Problems::throw_if_any() const {
     if (problems_.empty()) return;
     std::vector<Problem> sorted = problems_;
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const Problem& a, const Problem& b) { return a.line < b.line; });
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
     std::vector<std::string> texts;
     texts.reserve(sorted.size());
     for (const Problem& problem : sorted) texts.push_back(problem.text);

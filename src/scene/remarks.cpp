@@ -56,11 +56,13 @@ const std::vector<RemarkRow>& remark_table() {
          "feet, "
          "run: gdal_translate -ot Float32 -scale 0 1 0 0.3048 ..."},
         {Remark::walled_holes, "holes that are walls", -none, 0.0,
-         "found {value:.0f} nodes without elevation in {other:.0f} hole(s) inside the terrain, the largest of {what}; they are "
+         "found {value:.0f} nodes without elevation in {other:.0f} hole(s) inside the terrain, the largest of {what}; "
+         "they are "
          "walls; expected ground everywhere; fill them (gdal_fillnodata.py), or let mass leave there (boundary.holes = "
          "\"open\")"},
         {Remark::open_holes, "holes that are open", -none, 0.0,
-         "found {value:.0f} nodes without elevation in {other:.0f} hole(s) inside the terrain, the largest of {what}; mass leaves "
+         "found {value:.0f} nodes without elevation in {other:.0f} hole(s) inside the terrain, the largest of {what}; "
+         "mass leaves "
          "there; expected ground everywhere; fill them (gdal_fillnodata.py)"},
     };
     return table;

@@ -48,10 +48,9 @@ private:
             return;
         }
         const std::string choice = parameter.switch_key.empty() ? "" : parameter.switch_of(key);
-        const bool unused =
-            !choice.empty() && (!case_.has(choice) || !contains(parameter.used_by, case_.word(choice)));
-        const bool said_otherwise = !parameter.instead_of.empty() &&
-                                    case_.given(prefix + find_parameter(parameter.instead_of)->name());
+        const bool unused = !choice.empty() && (!case_.has(choice) || !contains(parameter.used_by, case_.word(choice)));
+        const bool said_otherwise =
+            !parameter.instead_of.empty() && case_.given(prefix + find_parameter(parameter.instead_of)->name());
         if (unused || said_otherwise) return;
         if (const Value* value = case_.find(key))
             out_ += fmt::format("{} = {}  # default\n", parameter.name(), value_text(parameter, *value));
@@ -60,8 +59,7 @@ private:
     }
 
     std::string value_text(const Parameter& parameter, const Value& value) const {
-        if (parameter.kind == Kind::words_or_all && std::get<std::vector<std::string>>(value).empty())
-            return "\"all\"";
+        if (parameter.kind == Kind::words_or_all && std::get<std::vector<std::string>>(value).empty()) return "\"all\"";
         const bool files = parameter.kind == Kind::path || parameter.kind == Kind::number_or_path ||
                            parameter.kind == Kind::numbers_or_paths;
         if (!files) return toml_text(value);
@@ -77,8 +75,7 @@ private:
     /// resolved.toml lies elsewhere than the case, so that relative paths would not be found.
     std::string absolute(const std::string& path) const {
         const std::filesystem::path resolved = case_.resolve(path);
-        if (resolved.string() == path && path.find(':') != std::string::npos)
-            return path;  // a name of GDAL's
+        if (resolved.string() == path && path.find(':') != std::string::npos) return path;  // a name of GDAL's
         return std::filesystem::absolute(resolved).lexically_normal().string();
     }
 

@@ -53,21 +53,27 @@ struct Scheme {
     double split_length = 0.8;         ///< domain edge that triggers a split, in cells [1]
     double split_min_mass = 0.02;      ///< no split below this fraction of the largest initial mass [1]
     bool split = true;
-    bool merge = true;                 ///< merge points where convergence crowds them
-    bool reset_domains = true;         ///< replace strongly sheared domains by rectangles
-    bool sleep = true;                 ///< material at rest is not computed again (same bits)
-    bool mass_fit = true;              ///< fit the masses of a lake so that it starts at exact rest
-    double curvature_length = 10.0;    ///< smoothing length of the bed's Hessian, 0 = none [m]
-    double strain_rate_floor = 1e-3;   ///< regularisation of the yield stress [1/s]
-    double stress_cap = 0.25;          ///< nu: largest 2 mu_eff dt / (rho cell^2) [1]
-    std::optional<double> still_level; ///< paper preset: known still level of its eq. (33) [m]
-    bool paper_pressure = false;       ///< pressure on particles and depth by the ODE (paper preset)
+    bool merge = true;                  ///< merge points where convergence crowds them
+    bool reset_domains = true;          ///< replace strongly sheared domains by rectangles
+    bool sleep = true;                  ///< material at rest is not computed again (same bits)
+    bool mass_fit = true;               ///< fit the masses of a lake so that it starts at exact rest
+    double curvature_length = 10.0;     ///< smoothing length of the bed's Hessian, 0 = none [m]
+    double strain_rate_floor = 1e-3;    ///< regularisation of the yield stress [1/s]
+    double stress_cap = 0.25;           ///< nu: largest 2 mu_eff dt / (rho cell^2) [1]
+    std::optional<double> still_level;  ///< paper preset: known still level of its eq. (33) [m]
+    bool paper_pressure = false;        ///< pressure on particles and depth by the ODE (paper preset)
 };
 
 /// A named line along which the flow is recorded.
-struct Profile { std::string name; Polyline line; };
+struct Profile {
+    std::string name;
+    Polyline line;
+};
 /// A named point at which the flow is recorded every step.
-struct Gauge { std::string name; Vec2 point{0, 0}; };
+struct Gauge {
+    std::string name;
+    Vec2 point{0, 0};
+};
 
 /// A named line through which the discharge is recorded.
 struct Section {
@@ -97,23 +103,23 @@ struct Inflow {
 /// From a time on, the material in a window of the map is 3D points (solid3d/mpm3d.h); what flows into the
 /// window later becomes points as it crosses the edge, and what flows out of it columns.
 struct SolidStage {
-    double from = 0.0;                 ///< [s]
-    std::optional<double> until;       ///< from then on all are columns again [s]; nothing: to the end
-    std::array<Index, 4> window{};     ///< first and last nodes of the terrain's grid in it: i0, j0, i1, j1
-    std::array<bool, 4> closed{};      ///< west, south, east, north: points do not cross these sides
-    double cell = 1.0;                 ///< of the 3D grid [m]
-    double spacing = 0.5;              ///< of the points at the start [m]
-    SolidLaw law;                      ///< of fluids without the bulk modulus, which the speed of sound gives
-    std::optional<double> sound_speed; ///< of fluids [m/s]; nothing: chosen when the stage begins
-    std::optional<double> top;         ///< elevation where the space ends [m]; nothing: chosen when the stage begins
-    bool split = false;                ///< points that are drawn apart become two
-    bool stuck = false;                ///< the lowest material does not slide on the bed
-    double bed_friction = 0.0;         ///< Coulomb's coefficient [1]
-    double cfl = 0.4;                  ///< fraction of a cell that sound and flow may pass in a step [1]
+    double from = 0.0;                   ///< [s]
+    std::optional<double> until;         ///< from then on all are columns again [s]; nothing: to the end
+    std::array<Index, 4> window{};       ///< first and last nodes of the terrain's grid in it: i0, j0, i1, j1
+    std::array<bool, 4> closed{};        ///< west, south, east, north: points do not cross these sides
+    double cell = 1.0;                   ///< of the 3D grid [m]
+    double spacing = 0.5;                ///< of the points at the start [m]
+    SolidLaw law;                        ///< of fluids without the bulk modulus, which the speed of sound gives
+    std::optional<double> sound_speed;   ///< of fluids [m/s]; nothing: chosen when the stage begins
+    std::optional<double> top;           ///< elevation where the space ends [m]; nothing: chosen when the stage begins
+    bool split = false;                  ///< points that are drawn apart become two
+    bool stuck = false;                  ///< the lowest material does not slide on the bed
+    double bed_friction = 0.0;           ///< Coulomb's coefficient [1]
+    double cfl = 0.4;                    ///< fraction of a cell that sound and flow may pass in a step [1]
     Transfer transfer = Transfer::tpic;  ///< tpic, apic or flip
-    double blending = 0.0;             ///< of flip: time in which points take over the nodes' velocity [s]
+    double blending = 0.0;               ///< of flip: time in which points take over the nodes' velocity [s]
     VelocityProfile profile = VelocityProfile::plug;
-    bool along_bed = true;             ///< points start along the bed; otherwise without vertical velocity
+    bool along_bed = true;  ///< points start along the bed; otherwise without vertical velocity
 };
 
 struct DistanceField;
@@ -122,24 +128,24 @@ struct DistanceField;
 struct Barrier {
     std::string name;
     std::shared_ptr<const DistanceField> shape;  ///< when it was given as a mesh: nothing below but hold and friction
-    Polygons outline;                   ///< no parts with a line
-    Polyline line;                      ///< foot of the face that material comes to
-    bool wet_left = true;               ///< that face is on the left as one walks along the line
-    std::optional<double> thickness;    ///< of a wall along a line [m]; nothing: as little as the model can hold apart
-    std::optional<double> top;          ///< elevation of a level top [m]
-    double height = 0.0;                ///< above the bed, which the top then follows [m]
-    bool stuck = false;                 ///< material does not slide along it
-    double friction = 0.0;              ///< Coulomb's coefficient [1]
+    Polygons outline;                            ///< no parts with a line
+    Polyline line;                               ///< foot of the face that material comes to
+    bool wet_left = true;                        ///< that face is on the left as one walks along the line
+    std::optional<double> thickness;  ///< of a wall along a line [m]; nothing: as little as the model can hold apart
+    std::optional<double> top;        ///< elevation of a level top [m]
+    double height = 0.0;              ///< above the bed, which the top then follows [m]
+    bool stuck = false;               ///< material does not slide along it
+    double friction = 0.0;            ///< Coulomb's coefficient [1]
 };
 
 /// Solids that hold together: columns are elastic, yield and break (structured/structured_flow.h).
 struct Structure {
     ColumnMaterial material;
-    double cohesion = 0.0;  ///< undamaged [Pa]
-    double share = 1.0;     ///< of the solids that have structure, undamaged [1]
-    double confined = 0.0;  ///< share of the volume that is water within the structure [1]
-    double cfl = 0.4;       ///< fraction of a cell that sound and flow may pass in a step [1]
-    bool unrolled = false;  ///< coordinates are measured along the ground, not on the map
+    double cohesion = 0.0;     ///< undamaged [Pa]
+    double share = 1.0;        ///< of the solids that have structure, undamaged [1]
+    double confined = 0.0;     ///< share of the volume that is water within the structure [1]
+    double cfl = 0.4;          ///< fraction of a cell that sound and flow may pass in a step [1]
+    bool unrolled = false;     ///< coordinates are measured along the ground, not on the map
     bool hydrostatic = false;  ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
 };
 
@@ -155,17 +161,17 @@ struct WaterPhase {
 
 /// Loose material on the bed that the flow can take up (shallow/erosion.h).
 struct ErodibleBed {
-    Raster depth;              ///< on the nodes of the terrain, along gravity; 0: rock [m]
-    double density = 1000.0;   ///< [kg/m^3]
+    Raster depth;             ///< on the nodes of the terrain, along gravity; 0: rock [m]
+    double density = 1000.0;  ///< [kg/m^3]
     ErosionLaw law;
-    double momentum = 0.0;     ///< kappa: share of the flow's velocity that what is taken brings along [1]
-    double min_depth = 0.05;   ///< of a flow that takes anything [m]
-    bool evolves = true;       ///< the ground sinks by what is taken; otherwise it is only counted
+    double momentum = 0.0;    ///< kappa: share of the flow's velocity that what is taken brings along [1]
+    double min_depth = 0.05;  ///< of a flow that takes anything [m]
+    bool evolves = true;      ///< the ground sinks by what is taken; otherwise it is only counted
 };
 
 /// What is written, and when.
 struct Output {
-    double every = 1.0;                ///< [s]; frames are hit exactly
+    double every = 1.0;  ///< [s]; frames are hit exactly
     bool vtk = true, xdmf = false, geotiff = true, png = true;
     std::string film;                  ///< "mp4", "gif" or, for none, ""
     std::vector<std::string> fields;   ///< empty: all
@@ -177,52 +183,53 @@ struct Output {
 
 /// A terrain of which a scene holds a part, and where more of it comes from as the flow goes on.
 struct WiderTerrain {
-    GridGeometry grid;                             ///< all of its nodes
-    NodeBox held;                                  ///< the scene's bed, of these nodes
-    std::function<Raster(const NodeBox&)> read;    ///< elevations of a part of it; throws UserError
-    std::vector<Vec2> shown;                       ///< places that rasters and frames are to reach as well [m]
+    GridGeometry grid;                           ///< all of its nodes
+    NodeBox held;                                ///< the scene's bed, of these nodes
+    std::function<Raster(const NodeBox&)> read;  ///< elevations of a part of it; throws UserError
+    std::vector<Vec2> shown;                     ///< places that rasters and frames are to reach as well [m]
 };
 
 struct Scene {
-    std::string name;                  ///< case file's folder or stem
+    std::string name;  ///< case file's folder or stem
     std::string title;
     std::filesystem::path case_file;
-    std::filesystem::path footprint;   ///< survey outline, empty when none
-    double gravity = 9.81;             ///< [m/s^2]
-    double density = 1000.0;           ///< [kg/m^3]
+    std::filesystem::path footprint;  ///< survey outline, empty when none
+    double gravity = 9.81;            ///< [m/s^2]
+    double density = 1000.0;          ///< [kg/m^3]
 
-    Raster bed;                        ///< bed elevation on the solver's nodes [m]; NaN: outside (an exit)
+    Raster bed;                                 ///< bed elevation on the solver's nodes [m]; NaN: outside (an exit)
     std::shared_ptr<const WiderTerrain> wider;  ///< nothing: the bed is all of the terrain
     TerrainModel terrain = TerrainModel::steep;
     Curvature curvature = Curvature::full;
     Sides sides = Sides::open;
-    Holes holes;                       ///< of the bed, surrounded by terrain
-    std::optional<double> hole_top;    ///< of walls there, above the ground beside them [m]; nothing: material leaves there
+    Holes holes;  ///< of the bed, surrounded by terrain
+    std::optional<double>
+        hole_top;  ///< of walls there, above the ground beside them [m]; nothing: material leaves there
 
-    Seeds particles;                   ///< material at the start
-    std::vector<Inflow> inflows;       ///< material that comes in later
+    Seeds particles;                      ///< material at the start
+    std::vector<Inflow> inflows;          ///< material that comes in later
     std::optional<double> still_surface;  ///< level of a release given as one horizontal surface at rest [m]: the
                                           ///< points' masses are then fitted so that it starts at exact rest
     BedLaw bed_law;
     Rheology rheology;
     Scheme scheme;
 
-    double end = 10.0;                 ///< [s]
+    double end = 10.0;  ///< [s]
     bool stop_at_rest = false;
-    double rest_fraction = 0.05;       ///< mean speed, as a fraction of its peak, above which nothing is at rest [1]
+    double rest_fraction = 0.05;  ///< mean speed, as a fraction of its peak, above which nothing is at rest [1]
     Output output;
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::vector<Section> sections;
-    std::vector<Insitu> insitu;        ///< looked at while the case runs
-    std::optional<Polygons> survey;    ///< surveyed footprint, to compare with
+    std::vector<Insitu> insitu;      ///< looked at while the case runs
+    std::optional<Polygons> survey;  ///< surveyed footprint, to compare with
     std::vector<Barrier> barriers;
-    std::optional<Structure> structure;  ///< when the material holds together
-    std::optional<WaterPhase> water;        ///< beside a structure
+    std::optional<Structure> structure;   ///< when the material holds together
+    std::optional<WaterPhase> water;      ///< beside a structure
     std::optional<ErodibleBed> erodible;  ///< nothing: the bed is rock
-    std::optional<SolidStage> solid;   ///< where and when the run goes into space
+    std::optional<SolidStage> solid;      ///< where and when the run goes into space
 
-    std::vector<std::string> log;      ///< remarks made while building (resampling, nodata, ...)
+    std::vector<std::string> log;  ///< remarks made while building (resampling, nodata, ...)
 };
 
 }  // namespace frana

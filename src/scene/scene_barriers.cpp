@@ -23,10 +23,10 @@ void require_wall(const Polyline& line) {
     for (std::size_t k = 1; k + 1 < line.size(); ++k) {
         const Vec2 way = line[k] - line[k - 1], next = line[k + 1] - line[k];
         if (way.dot(next) < kSharpest * way.norm() * next.norm())
-            throw UserError(
-                fmt::format("found a turn by more than 120 degrees at ({:.10g}, {:.10g}); expected a wall without one; draw "
-                            "two walls",
-                            line[k].x(), line[k].y()));
+            throw UserError(fmt::format(
+                "found a turn by more than 120 degrees at ({:.10g}, {:.10g}); expected a wall without one; draw "
+                "two walls",
+                line[k].x(), line[k].y()));
     }
 }
 
@@ -120,9 +120,10 @@ private:
                 if (near && std::isfinite(z)) low = std::min(low, z), high = std::max(high, z);
             }
         if (low > high || (mesh.high.z() > low && mesh.low.z() < high + g.cell)) return;
-        throw UserError(fmt::format("found it from {:.6g} to {:.6g} m, the ground there from {:.6g} to {:.6g} m; expected a "
-                                    "barrier that stands on the ground; give the elevation of its origin",
-                                    mesh.low.z(), mesh.high.z(), low, high));
+        throw UserError(
+            fmt::format("found it from {:.6g} to {:.6g} m, the ground there from {:.6g} to {:.6g} m; expected a "
+                        "barrier that stands on the ground; give the elevation of its origin",
+                        mesh.low.z(), mesh.high.z(), low, high));
     }
 
     const CaseFile& case_;
@@ -150,8 +151,9 @@ void read_barriers(const CaseFile& file, const GisReader& reader, const MeshRead
                          "put several polygons into one barrier, without each");
         for (std::size_t n = before; n < scene.barriers.size(); ++n)
             if (const auto [first, is_new] = tables.emplace(scene.barriers[n].name, i); !is_new && first->second != i)
-                problems.add(place, fmt::format("found a barrier \"{}\", which barrier.{} has made as well",
-                                                scene.barriers[n].name, first->second),
+                problems.add(place,
+                             fmt::format("found a barrier \"{}\", which barrier.{} has made as well",
+                                         scene.barriers[n].name, first->second),
                              "expected names that differ", "give another name");
     }
 }

@@ -22,9 +22,10 @@ void refuse_negative(const Raster& pixels, const std::string& file) {
     for (std::size_t k = pixels.values.size(); k-- > 0;)
         if (pixels.values[k] < 0.0) ++bad, first = k;
     if (bad == 0) return;
-    throw UserError(fmt::format("{}: found {} pixels below 0, such as {:.6g} at {}; expected depths of 0 or more; correct "
-                                "them, or give rock 0 or nodata",
-                                file, bad, pixels.values[first], at(pixels.geometry, first)));
+    throw UserError(
+        fmt::format("{}: found {} pixels below 0, such as {:.6g} at {}; expected depths of 0 or more; correct "
+                    "them, or give rock 0 or nodata",
+                    file, bad, pixels.values[first], at(pixels.geometry, first)));
 }
 
 /// On the nodes of the terrain; rock is 0.
@@ -41,8 +42,9 @@ Raster depth_of(const CaseFile& file, const GisReader& reader, Scene& scene) {
         value = value > 0.0 ? value : 0.0;  // cubic interpolation may undershoot
     }
     if (missing > 0)
-        scene.log.push_back(fmt::format("{}: {:.3g} % of the terrain's nodes have no depth of loose material there and count as rock",
-                                        file.place("erodible.depth"), 100.0 * double(missing) / double(grid.size())));
+        scene.log.push_back(
+            fmt::format("{}: {:.3g} % of the terrain's nodes have no depth of loose material there and count as rock",
+                        file.place("erodible.depth"), 100.0 * double(missing) / double(grid.size())));
     return depth;
 }
 
@@ -73,7 +75,9 @@ void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Ra
         scene.log.push_back(fmt::format("{}: {:.3g} % of its area lie outside of the terrain",
                                         file.place("erodible.outline"), 100.0 * (1.0 - inside / all)));
     const GridGeometry& g = depth.geometry;
-    const auto within = [](Index n, Index count) { return n == 0 || n == count - 1 ? 0.5 : 1.0; };  // outer nodes bound it
+    const auto within = [](Index n, Index count) {
+        return n == 0 || n == count - 1 ? 0.5 : 1.0;
+    };  // outer nodes bound it
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i)
             depth.at(i, j) *= std::min(1.0, -covered.at(i, j) / (within(i, g.nx) * within(j, g.ny)));
@@ -86,14 +90,16 @@ void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
     double volume = 0.0;
     for (const double value : depth.values) volume += value * depth.geometry.cell * depth.geometry.cell;
     if (deepest > kDeep)
-        scene.log.push_back(fmt::format("{}: the loose material is up to {:.3g} m deep; is that a depth, and in metres?",
-                                        file.place("erodible.depth"), deepest));
+        scene.log.push_back(
+            fmt::format("{}: the loose material is up to {:.3g} m deep; is that a depth, and in metres?",
+                        file.place("erodible.depth"), deepest));
     scene.log.push_back(fmt::format("erodible: up to {:.6g} m3 of loose material can be taken up", volume));
 }
 
 }  // namespace
 
-std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
+std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& reader, Scene& scene,
+                                         Problems& problems) {
     const std::string& law = file.word("erodible.law");
     if (law == "none") return {};
     ErodibleBed bed;

@@ -125,8 +125,7 @@ void refuse_nodata(const NodeMarks& marks, const Raster& bed, Index reach) {
     for (Index row = 0; row < grid.ny; ++row) {  // from the north, as people read maps
         for (Index i = 0; i < grid.nx; ++i) {
             const Index k = (grid.ny - 1 - row) * grid.nx + i;
-            if (!near[static_cast<std::size_t>(k)] || !std::isnan(bed.values[static_cast<std::size_t>(k)]))
-                continue;
+            if (!near[static_cast<std::size_t>(k)] || !std::isnan(bed.values[static_cast<std::size_t>(k)])) continue;
             if (count++ == 0) first = k;
         }
     }
@@ -167,8 +166,7 @@ double bilinear(const Raster& raster, const Vec2& point) {
     const double u = (point.x() - grid.x0) / grid.cell;
     const double v = (point.y() - grid.y0) / grid.cell;
     const double rim = 0.5 + 1e-6;  // pixels reach half a cell beyond the nodes; coordinates round
-    const bool inside =
-        u >= -rim && v >= -rim && u <= double(grid.nx - 1) + rim && v <= double(grid.ny - 1) + rim;
+    const bool inside = u >= -rim && v >= -rim && u <= double(grid.nx - 1) + rim && v <= double(grid.ny - 1) + rim;
     if (!inside) return Raster::nodata;
     const auto base = [](double t, Index n) {
         return std::clamp<Index>(static_cast<Index>(std::floor(t)), 0, std::max<Index>(0, n - 2));
@@ -199,8 +197,7 @@ Vec2 node_gradient(const Raster& raster, Index i, Index j) {
         const Index back = there(-1) ? -1 : 0;
         const Index ahead = there(1) ? 1 : 0;
         if (ahead == back) return 0.0;
-        const double rise =
-            raster.at(i + ahead * di, j + ahead * dj) - raster.at(i + back * di, j + back * dj);
+        const double rise = raster.at(i + ahead * di, j + ahead * dj) - raster.at(i + back * di, j + back * dj);
         return rise / (double(ahead - back) * grid.cell);
     };
     return {along(1, 0), along(0, 1)};

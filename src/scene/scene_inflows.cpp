@@ -13,10 +13,10 @@ namespace frana {
 namespace {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-constexpr Index kReach = 6;          ///< cells; what holds the flow up behind the line takes so many
-constexpr double kDeepest = 100.0;   ///< more than so much on all of the terrain is a mistake [m]
-constexpr Index kParts = 16;         ///< of an interval of the table, where speeds follow from the discharge
-constexpr Index kMostParts = 4000;   ///< of all
+constexpr Index kReach = 6;         ///< cells; what holds the flow up behind the line takes so many
+constexpr double kDeepest = 100.0;  ///< more than so much on all of the terrain is a mistake [m]
+constexpr Index kParts = 16;        ///< of an interval of the table, where speeds follow from the discharge
+constexpr Index kMostParts = 4000;  ///< of all
 
 class InflowReader {
 public:
@@ -25,7 +25,9 @@ public:
 
     /// Nothing when something is wrong.
     std::optional<Inflow> read(Problems& problems) {
-        const auto attempt = [&](const char* key, auto&& work) { return problems.attempt(case_.place(prefix_ + key), work); };
+        const auto attempt = [&](const char* key, auto&& work) {
+            return problems.attempt(case_.place(prefix_ + key), work);
+        };
         inflow_.name = case_.word(prefix_ + "name");
         inflow_.line = case_.points(prefix_ + "line");
         inflow_.spacing = bed_.geometry.cell / std::sqrt(case_.number("particles.per_cell"));
@@ -49,9 +51,10 @@ private:
         const GridGeometry& g = bed_.geometry;
         const double width = inflow_.width();
         if (width < g.cell)
-            throw UserError(fmt::format("found a line of {:.3g} m; expected a cell ({:.6g} m) at least; lengthen it, or give a "
-                                        "smaller grid.cell",
-                                        width, g.cell));
+            throw UserError(
+                fmt::format("found a line of {:.3g} m; expected a cell ({:.6g} m) at least; lengthen it, or give a "
+                            "smaller grid.cell",
+                            width, g.cell));
         for (std::size_t k = 0; k + 1 < inflow_.line.size(); ++k) {
             const Vec2 piece = inflow_.line[k + 1] - inflow_.line[k];
             const auto parts = static_cast<Index>(std::ceil(2.0 * piece.norm() / g.cell));
@@ -69,8 +72,9 @@ private:
         const GridGeometry& g = bed_.geometry;
         const bool inside = i >= 0 && j >= 0 && i < g.nx && j < g.ny;
         if (inside && !std::isnan(bed_.at(i, j))) return;
-        throw UserError(fmt::format("found {:.10g}, {:.10g} {}; expected ground {} cells around the line; move it inwards",
-                                    at.x(), at.y(), inside ? "beside nodata" : "outside of the terrain, or at its edge", kReach));
+        throw UserError(
+            fmt::format("found {:.10g}, {:.10g} {}; expected ground {} cells around the line; move it inwards", at.x(),
+                        at.y(), inside ? "beside nodata" : "outside of the terrain, or at its edge", kReach));
     }
 
     /// Down the slope, or to the side where `towards` lies.
@@ -81,7 +85,8 @@ private:
             const Vec2 a = inflow_.line.front(), along = inflow_.line.back() - a, to = Vec2(xy[0], xy[1]) - a;
             const double left = along.x() * to.y() - along.y() * to.x();
             if (std::abs(left) <= 1e-9 * along.norm() * (to.norm() + along.norm()))
-                throw UserError("found towards on the line itself; expected a point on the side that the flow goes to; move it");
+                throw UserError(
+                    "found towards on the line itself; expected a point on the side that the flow goes to; move it");
             inflow_.to_right = left < 0.0;
         } else {
             require_one_slope(rise);
@@ -94,8 +99,9 @@ private:
     void require_one_slope(double rise) const {
         constexpr double kFlat = 1e-6;
         if (std::abs(rise) <= kFlat)
-            throw UserError("found flat ground under the line; expected a slope, which tells where the flow goes; give towards = "
-                            "[x, y], a point on that side");
+            throw UserError(
+                "found flat ground under the line; expected a slope, which tells where the flow goes; give towards = "
+                "[x, y], a point on that side");
         double up = 0.0, all = 0.0;
         for (std::size_t k = 0; k + 1 < inflow_.line.size(); ++k) {
             const Vec2 piece = inflow_.line[k + 1] - inflow_.line[k];
@@ -109,10 +115,11 @@ private:
             }
         }
         if (up > 0.25 * all)
-            throw UserError(fmt::format("found {:.0f} % of the line on ground that slopes the other way; expected a line across "
-                                        "the flow, not across a ridge; move it, or give towards = [x, y], a point on the side "
-                                        "that the flow goes to",
-                                        100.0 * up / all));
+            throw UserError(
+                fmt::format("found {:.0f} % of the line on ground that slopes the other way; expected a line across "
+                            "the flow, not across a ridge; move it, or give towards = [x, y], a point on the side "
+                            "that the flow goes to",
+                            100.0 * up / all));
     }
 
     Hydrograph hydrograph() const {
@@ -126,13 +133,15 @@ private:
         const GridGeometry& g = scene_.wider ? scene_.wider->grid : bed_.geometry;
         const double most = kDeepest * g.cell * g.cell * static_cast<double>(g.size());
         if (table.volume() > most)
-            throw UserError(fmt::format("found {:.4g} m3, more than {:.0f} m of depth on all of the terrain; expected less; check "
-                                        "the units of the table",
-                                        table.volume(), kDeepest));
+            throw UserError(
+                fmt::format("found {:.4g} m3, more than {:.0f} m of depth on all of the terrain; expected less; check "
+                            "the units of the table",
+                            table.volume(), kDeepest));
         if (table.time.front() >= scene_.end)
-            throw UserError(fmt::format("found a table that begins at {:.6g} s; expected a time before time.end = {:.6g} s; "
-                                        "shift the table, or run longer",
-                                        table.time.front(), scene_.end));
+            throw UserError(
+                fmt::format("found a table that begins at {:.6g} s; expected a time before time.end = {:.6g} s; "
+                            "shift the table, or run longer",
+                            table.time.front(), scene_.end));
     }
 
     void set_speed(const Hydrograph& table) {
@@ -142,13 +151,13 @@ private:
             inflow_.speed.assign(table.time.size(), cosine * case_.number(key));
         } else if (case_.word(key) == "column") {
             if (table.velocity.empty())
-                throw UserError("found velocity = \"column\" and a table without one; expected a column velocity [m/s]; add it, "
-                                "or give velocity = \"normal\"");
+                throw UserError(
+                    "found velocity = \"column\" and a table without one; expected a column velocity [m/s]; add it, "
+                    "or give velocity = \"normal\"");
             for (const double velocity : table.velocity) inflow_.speed.push_back(cosine * velocity);
         } else {
             refine();
-            for (const double discharge : inflow_.discharge)
-                inflow_.speed.push_back(cosine * normal_speed(discharge));
+            for (const double discharge : inflow_.discharge) inflow_.speed.push_back(cosine * normal_speed(discharge));
         }
     }
 
@@ -158,7 +167,8 @@ private:
         const Index parts = std::clamp<Index>(kMostParts / rows, 1, kParts);
         std::vector<double> time{inflow_.time.front()}, discharge{inflow_.discharge.front()};
         for (std::size_t n = 0; n + 1 < inflow_.time.size(); ++n) {
-            const double dq = inflow_.discharge[n + 1] - inflow_.discharge[n], dt = inflow_.time[n + 1] - inflow_.time[n];
+            const double dq = inflow_.discharge[n + 1] - inflow_.discharge[n],
+                         dt = inflow_.time[n + 1] - inflow_.time[n];
             for (Index part = 1; dq != 0.0 && part < parts; ++part) {
                 const double share = static_cast<double>(part) / static_cast<double>(parts);
                 time.push_back(inflow_.time[n] + share * dt), discharge.push_back(inflow_.discharge[n] + share * dq);
@@ -174,19 +184,22 @@ private:
         const double degrees = std::atan(inflow_.slope) * kDegrees;
         if (!(discharge > 0.0)) return 0.0;
         if (!(inflow_.slope > 0.0))
-            throw UserError(fmt::format("found velocity = \"normal\" on ground that rises by {:.3g} degrees; expected a slope "
-                                        "that the flow goes down; {}",
-                                        -degrees, way_out));
+            throw UserError(
+                fmt::format("found velocity = \"normal\" on ground that rises by {:.3g} degrees; expected a slope "
+                            "that the flow goes down; {}",
+                            -degrees, way_out));
         const bed::NormalFlow flow = bed::normal_flow(scene_.bed_law, discharge / inflow_.width(),
                                                       {inflow_.slope, scene_.gravity, scene_.density});
         if (flow.speed == 0.0)
-            throw UserError(fmt::format("found velocity = \"normal\" where the material stops on the slope of {:.3g} degrees; "
-                                        "expected one that it flows down; {}",
-                                        degrees, way_out));
+            throw UserError(
+                fmt::format("found velocity = \"normal\" where the material stops on the slope of {:.3g} degrees; "
+                            "expected one that it flows down; {}",
+                            degrees, way_out));
         if (std::isinf(flow.speed))
-            throw UserError(fmt::format("found velocity = \"normal\" with a bed law by which the flow gets faster for ever on "
-                                        "{:.3g} degrees; expected one with drag, such as \"voellmy\" or \"manning\"; {}",
-                                        degrees, way_out));
+            throw UserError(
+                fmt::format("found velocity = \"normal\" with a bed law by which the flow gets faster for ever on "
+                            "{:.3g} degrees; expected one with drag, such as \"voellmy\" or \"manning\"; {}",
+                            degrees, way_out));
         return flow.speed;
     }
 

@@ -53,7 +53,8 @@ void read_inflows(const CaseFile& file, Scene& scene, Problems& problems);
 std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems);
 
 /// [erodible] of a scene that has its terrain. What is wrong with its files goes to `problems`, remarks to the scene's log.
-std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
+std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& reader, Scene& scene,
+                                         Problems& problems);
 
 /// [water] of a scene that has its structure. What does not fit together, or is wrong with its rasters, goes to `problems`,
 /// remarks to the scene's log.

@@ -31,8 +31,7 @@ public:
         Release release;
         release.name = case_.table_place(table_);
         bool good = true;
-        if (given("outline"))
-            good &= problems.attempt(place("outline"), [&] { release.outline = outline(); });
+        if (given("outline")) good &= problems.attempt(place("outline"), [&] { release.outline = outline(); });
         if (good && !depths_.empty()) return by_depth(release, problems);
         const char* depth_key = given("mask") ? "mask" : given("surface") ? "surface" : "depth";
         good &= problems.attempt(place(depth_key), [&] { set_depth(release); });
@@ -91,8 +90,10 @@ private:
         if (given("layer")) name += kLayerMark + case_.word(key("layer"));
         const std::string attribute = depth_attribute();
         ValuedPolygons valued;
-        if (attribute.empty()) valued.polygons = reader_.read_polygons(name, bed_.crs_wkt, log_);
-        else valued = reader_.read_valued_polygons(name, attribute, bed_.crs_wkt, log_);
+        if (attribute.empty())
+            valued.polygons = reader_.read_polygons(name, bed_.crs_wkt, log_);
+        else
+            valued = reader_.read_valued_polygons(name, attribute, bed_.crs_wkt, log_);
         depths_ = valued.values;
         Polygons& polygons = valued.polygons;
         const auto extent = terrain_.pixel_extent();
@@ -111,15 +112,14 @@ private:
             }
         }
         if (vertices == 0)
-            throw UserError(
-                fmt::format("{}: found no polygon; expected the outline of a release; export it as polygons",
-                            polygons.source));
+            throw UserError(fmt::format(
+                "{}: found no polygon; expected the outline of a release; export it as polygons", polygons.source));
         if (outside == 0) return polygons;
-        throw UserError(fmt::format(
-            "found {} of {} vertices outside the terrain, such as {:.10g}, {:.10g}; expected all within x "
-            "{:.10g} to {:.10g}, y {:.10g} "
-            "to {:.10g}; correct the outline or its CRS, or widen terrain.window",
-            outside, vertices, example.x(), example.y(), extent[0], extent[2], extent[1], extent[3]));
+        throw UserError(
+            fmt::format("found {} of {} vertices outside the terrain, such as {:.10g}, {:.10g}; expected all within x "
+                        "{:.10g} to {:.10g}, y {:.10g} "
+                        "to {:.10g}; correct the outline or its CRS, or widen terrain.window",
+                        outside, vertices, example.x(), example.y(), extent[0], extent[2], extent[1], extent[3]));
     }
 
     std::string place(const char* name) const { return case_.place(key(name)); }
@@ -196,9 +196,8 @@ private:
         Raster stretch = bed_;
         for (Index j = 0; j < bed_.geometry.ny; ++j)
             for (Index i = 0; i < bed_.geometry.nx; ++i)
-                stretch.at(i, j) = std::isnan(bed_.at(i, j))
-                                       ? Raster::nodata
-                                       : std::sqrt(1.0 + node_gradient(bed_, i, j).squaredNorm());
+                stretch.at(i, j) = std::isnan(bed_.at(i, j)) ? Raster::nodata
+                                                             : std::sqrt(1.0 + node_gradient(bed_, i, j).squaredNorm());
         const bool same = field.geometry == bed_.geometry;
         for (Index j = 0; j < field.geometry.ny; ++j) {
             for (Index i = 0; i < field.geometry.nx; ++i) {
@@ -207,8 +206,10 @@ private:
                 const Vec2 centre(field.geometry.x(i), field.geometry.y(j));
                 const double factor = same ? stretch.at(i, j) : bilinear(stretch, within_terrain(centre));
                 const bool wanted = places[static_cast<std::size_t>(j * field.geometry.nx + i)] != 0;
-                if (!std::isnan(factor)) value *= factor;
-                else value = wanted ? unknown_depth : Raster::nodata;
+                if (!std::isnan(factor))
+                    value *= factor;
+                else
+                    value = wanted ? unknown_depth : Raster::nodata;
             }
         }
     }

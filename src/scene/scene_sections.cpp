@@ -37,9 +37,10 @@ std::vector<Section> read_sections(const CaseFile& file, const Scene& scene, Pro
             return point.x() >= e[0] && point.x() <= e[2] && point.y() >= e[1] && point.y() <= e[3];
         });
         if (!there)
-            problems.add(file.place(prefix + "line"), "found no point of it on the terrain",
-                         fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1], e[3]),
-                         "correct the coordinates, or widen terrain.window");
+            problems.add(
+                file.place(prefix + "line"), "found no point of it on the terrain",
+                fmt::format("expected it within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", e[0], e[2], e[1], e[3]),
+                "correct the coordinates, or widen terrain.window");
         sections.push_back({file.word(prefix + "name"), line, rise_across(line, scene.bed) <= 0.0});
     }
     return sections;

@@ -45,9 +45,7 @@ private:
     }
     bool given(const char* name) const { return case_.given(prefix_ + name); }
     double number(const char* name) const { return case_.number(prefix_ + name); }
-    double number_or(const char* name, double otherwise) const {
-        return given(name) ? number(name) : otherwise;
-    }
+    double number_or(const char* name, double otherwise) const { return given(name) ? number(name) : otherwise; }
 
     /// Sizes that no space has: by a slip of the key, and the work or the memory would have no end.
     void require_size(const SolidStage& stage) {
@@ -85,8 +83,7 @@ private:
         if (stage.spacing > stage.cell)
             problems_.add(
                 case_.place(prefix_ + "spacing"), fmt::format("found {:.6g} m", stage.spacing),
-                fmt::format("expected at most the stage's cell, {:.6g} m, or gaps open between the points",
-                            stage.cell),
+                fmt::format("expected at most the stage's cell, {:.6g} m, or gaps open between the points", stage.cell),
                 "give a smaller spacing, or a larger cell");
         if (given("sound_speed")) stage.sound_speed = number("sound_speed");
         require_size(stage);
@@ -113,8 +110,8 @@ private:
         stage.until = number("until");
         if (*stage.until > stage.from && *stage.until < scene_.end) return;
         problems_.add(case_.place(prefix_ + "until"), fmt::format("found {:.10g} s", *stage.until),
-                      fmt::format("expected a time between the stage's begin, {:.10g} s, and time.end = {:.10g} s", stage.from,
-                                  scene_.end),
+                      fmt::format("expected a time between the stage's begin, {:.10g} s, and time.end = {:.10g} s",
+                                  stage.from, scene_.end),
                       "correct it, or remove the stage after it");
     }
 
@@ -123,14 +120,11 @@ private:
     void read_transfer(SolidStage& stage) {
         const bool sand = std::holds_alternative<solid::DruckerPrager>(stage.law);
         const std::string word = given("transfer") ? case_.word(prefix_ + "transfer") : sand ? "flip" : "tpic";
-        stage.transfer = word == "apic"   ? Transfer::apic
-                         : word == "flip" ? Transfer::flip
-                                          : Transfer::tpic;
+        stage.transfer = word == "apic" ? Transfer::apic : word == "flip" ? Transfer::flip : Transfer::tpic;
         stage.blending = number_or("blending", std::sqrt(stage.cell / scene_.gravity));
         if (given("blending") && word != "flip")
-            problems_.add(case_.place(prefix_ + "blending"),
-                          fmt::format("found with stage.transfer = \"{}\"", word), "expected it with \"flip\" only",
-                          "remove it, or choose \"flip\"");
+            problems_.add(case_.place(prefix_ + "blending"), fmt::format("found with stage.transfer = \"{}\"", word),
+                          "expected it with \"flip\" only", "remove it, or choose \"flip\"");
     }
 
     /// The cells whose nodes lie in the window.
@@ -155,10 +149,9 @@ private:
         stage.window = {0, 0, g.nx - 1, g.ny - 1};
         problems_.add(
             case_.place(prefix_ + "window"), "found " + toml_text(w),
-            fmt::format(
-                "expected [xmin, ymin, xmax, ymax] of at least 3 x 3 cells of {:.6g} m within x {:.10g} "
-                "to {:.10g}, y {:.10g} to {:.10g}",
-                g.cell, e[0], e[2], e[1], e[3]),
+            fmt::format("expected [xmin, ymin, xmax, ymax] of at least 3 x 3 cells of {:.6g} m within x {:.10g} "
+                        "to {:.10g}, y {:.10g} to {:.10g}",
+                        g.cell, e[0], e[2], e[1], e[3]),
             "correct the coordinates, or widen terrain.window");
         return false;
     }
@@ -201,8 +194,7 @@ private:
         if (law == "drucker_prager" || law == "elastic") {
             for (const char* name : {"viscosity", "yield_stress", "shear_modulus", "sound_speed"})
                 if (given(name)) unused(name, law);
-            const solid::Elastic elastic =
-                solid::Elastic::of(number("young_modulus"), number("poisson_ratio"));
+            const solid::Elastic elastic = solid::Elastic::of(number("young_modulus"), number("poisson_ratio"));
             if (law == "elastic") return elastic;
             return drucker_prager(elastic);
         }
@@ -224,8 +216,7 @@ private:
         yield_stress = number_or("yield_stress", yield_stress);
         if (!(yield_stress > 0.0))
             problems_.add(case_.place(prefix_ + "law"), fmt::format("found \"{}\" without a yield stress", law),
-                          "expected stage.yield_stress, or that of material.rheology",
-                          "give one, or choose \"fluid\"");
+                          "expected stage.yield_stress, or that of material.rheology", "give one, or choose \"fluid\"");
         constexpr double kStiff = 100.0;  // yield stresses: stiffer costs steps and changes nothing
         const double shear = number_or("shear_modulus", kStiff * yield_stress);
         if (law == "bingham") return solid::Bingham{0.0, shear, viscosity, yield_stress};
@@ -249,8 +240,7 @@ private:
     }
 
     void unused(const char* name, const std::string& law) {
-        problems_.add(case_.place(prefix_ + name),
-                      fmt::format("found, but the law \"{}\" does not use it", law),
+        problems_.add(case_.place(prefix_ + name), fmt::format("found, but the law \"{}\" does not use it", law),
                       "expected it with another law only", "remove it, or choose another stage.law");
     }
 

@@ -35,8 +35,7 @@ public:
         m.damage_by = damage_by();
         m.critical_strain = number("critical_strain");
         if (given("critical_length"))
-            m.critical_strain =
-                critical_strain(m.critical_strain, number("critical_length"), scene_.bed.geometry.cell);
+            m.critical_strain = critical_strain(m.critical_strain, number("critical_length"), scene_.bed.geometry.cell);
         if (structure.unrolled) require_sines();
         if (m.damage_by == DamageBy::strain) m.onset = number("onset");
         if (m.dilatancy > m.friction)
@@ -59,11 +58,12 @@ private:
         constexpr double kSteepest = 60.0;
         const double angle = number("friction_angle_deg");
         if (angle <= kSteepest) return;
-        problems_.add(case_.place(key("friction_angle_deg")), fmt::format("found {:.6g}", angle),
-                      fmt::format("expected at most {:g} with earth_pressure = \"rankine\": grains have 25 to 50 degrees, and "
-                                  "beyond {:g} their passive pressure makes squeezed ones run away",
-                                  kSteepest, kSteepest),
-                      "give a smaller angle and the rest of the strength as cohesion, or earth_pressure = \"hydrostatic\"");
+        problems_.add(
+            case_.place(key("friction_angle_deg")), fmt::format("found {:.6g}", angle),
+            fmt::format("expected at most {:g} with earth_pressure = \"rankine\": grains have 25 to 50 degrees, and "
+                        "beyond {:g} their passive pressure makes squeezed ones run away",
+                        kSteepest, kSteepest),
+            "give a smaller angle and the rest of the strength as cohesion, or earth_pressure = \"hydrostatic\"");
     }
 
     double poisson(double young) {
@@ -120,8 +120,10 @@ private:
                   });
         }
         if (!box)
-            problems_.add(case_.table_place(table), fmt::format("found barrier \"{}\" beside material.structure", barrier.name),
-                          "expected an outline that is one rectangle along x and y, the only barrier that structured columns know",
+            problems_.add(case_.table_place(table),
+                          fmt::format("found barrier \"{}\" beside material.structure", barrier.name),
+                          "expected an outline that is one rectangle along x and y, the only barrier that structured "
+                          "columns know",
                           "give such an outline, or raise the elevation model there");
     }
 

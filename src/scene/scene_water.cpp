@@ -25,9 +25,10 @@ void require(const Raster& raster, const std::string& file, const char* what, Go
         if (!good(raster.values[k])) ++bad, first = k;
     if (bad == 0) return;
     const double value = raster.values[first];
-    throw UserError(fmt::format("{}: found {} of {} {} {}, the first at {}; {}", file, bad, raster.values.size(), what,
-                                std::isnan(value) ? std::string("without a number") : fmt::format("such as {:.6g}", value),
-                                at(raster.geometry, first), expected));
+    throw UserError(
+        fmt::format("{}: found {} of {} {} {}, the first at {}; {}", file, bad, raster.values.size(), what,
+                    std::isnan(value) ? std::string("without a number") : fmt::format("such as {:.6g}", value),
+                    at(raster.geometry, first), expected));
 }
 
 /// A rate on the nodes of the terrain [m/s]: a number, or a raster, whose own pixels have to be rates and to cover the
@@ -65,11 +66,13 @@ WaterFriction friction_of(const CaseFile& file) {
 double viscosity_of(const CaseFile& file, Scene& scene) {
     const double clear = number(file, "viscosity");
     if (file.word("water.viscous") != "mud") return clear;
-    const double alpha = number(file, "mud_alpha"), beta = number(file, "mud_beta"), part = number(file, "mud_concentration");
+    const double alpha = number(file, "mud_alpha"), beta = number(file, "mud_beta"),
+                 part = number(file, "mud_concentration");
     const double eta = mud_viscosity(alpha, beta, part, clear);
-    scene.log.push_back(fmt::format("water: with mud_alpha = {:.6g} Pa s, mud_beta = {:.6g} and mud_concentration = {:.6g} "
-                                    "its viscosity is {:.6g} Pa s (where tables have poise: 1 poise is 0.1 Pa s)",
-                                    alpha, beta, part, eta));
+    scene.log.push_back(
+        fmt::format("water: with mud_alpha = {:.6g} Pa s, mud_beta = {:.6g} and mud_concentration = {:.6g} "
+                    "its viscosity is {:.6g} Pa s (where tables have poise: 1 poise is 0.1 Pa s)",
+                    alpha, beta, part, eta));
     return eta;
 }
 

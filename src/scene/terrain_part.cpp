@@ -49,9 +49,9 @@ std::vector<Vec2> shown_places(const CaseFile& file, const GisReader& reader, co
     }
     std::vector<std::string> said_later;
     if (file.given("survey.footprint"))
-        take_corners(reader.read_survey(file.path("survey.footprint"), whole.geometry.pixel_extent(), whole.crs_wkt,
-                                        said_later),
-                     points);
+        take_corners(
+            reader.read_survey(file.path("survey.footprint"), whole.geometry.pixel_extent(), whole.crs_wkt, said_later),
+            points);
     return points;
 }
 
@@ -61,7 +61,7 @@ std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene&
                                               const Raster& whole) {
     if (!may_begin_with_part(file, scene)) return {};
     constexpr Index kListed = 48;  // what is near material is listed by tiles of 16 nodes
-    constexpr Index kToGo = 512;  // nodes: most flows of a hillslope end within
+    constexpr Index kToGo = 512;   // nodes: most flows of a hillslope end within
     const NodeBox all = NodeBox::all(whole.geometry);
     TerrainPart part;
     try {

@@ -60,8 +60,7 @@ private:
     }
 
     std::nullopt_t wrong(const toml::node& node, const std::string& way_out) const {
-        problems_.add(line_, place_, "found " + found_text(node), "expected " + parameter_.expected(),
-                      way_out);
+        problems_.add(line_, place_, "found " + found_text(node), "expected " + parameter_.expected(), way_out);
         return std::nullopt;
     }
 
@@ -131,8 +130,7 @@ private:
                                        std::optional<T> (Converter::*item)(const toml::node&) const,
                                        std::size_t length) const {
         const toml::array* array = node.as_array();
-        if (!array || array->empty() || (length > 0 && array->size() != length))
-            return wrong(node, explained());
+        if (!array || array->empty() || (length > 0 && array->size() != length)) return wrong(node, explained());
         std::vector<T> values;
         for (const toml::node& element : *array) {
             std::optional<T> value = (this->*item)(element);
@@ -164,8 +162,7 @@ private:
         if (!values) return std::nullopt;
         if (values->size() < parameter_.length) return wrong(node, "add points");
         for (std::size_t i = 1; i < values->size(); ++i)
-            if ((*values)[i] == (*values)[i - 1])
-                return wrong(node, "remove the point that comes twice in a row");
+            if ((*values)[i] == (*values)[i - 1]) return wrong(node, "remove the point that comes twice in a row");
         return Value(std::move(*values));
     }
 
@@ -197,8 +194,8 @@ std::string found_text(const toml::node& node) {
     return node.is_table() ? "a table" : "a date or time";
 }
 
-std::optional<Value> convert(const toml::node& node, const Parameter& parameter, int line,
-                             const std::string& place, Problems& problems) {
+std::optional<Value> convert(const toml::node& node, const Parameter& parameter, int line, const std::string& place,
+                             Problems& problems) {
     return Converter(parameter, line, place, problems).value(node);
 }
 

@@ -14,7 +14,7 @@ std::string found_text(const toml::node& node);
 
 /// The value of a key as its parameter wants it, in range. Nothing when it is not; the reason is then in
 /// `problems` under `place` ("case.toml:12: grid.cell"), ordered by `line`.
-std::optional<Value> convert(const toml::node& node, const Parameter& parameter, int line,
-                             const std::string& place, Problems& problems);
+std::optional<Value> convert(const toml::node& node, const Parameter& parameter, int line, const std::string& place,
+                             Problems& problems);
 
 }  // namespace frana

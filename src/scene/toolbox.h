@@ -49,8 +49,8 @@ public:
     virtual Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                const std::string& crs_wkt, std::vector<std::string>& log) const = 0;
     /// The same, averaged / interpolated onto `grid`.
-    virtual Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid,
-                             const std::string& crs_wkt, std::vector<std::string>& log) const = 0;
+    virtual Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
+                             std::vector<std::string>& log) const = 0;
     /// All polygons of a vector file, reprojected to `crs_wkt` when both are known and differ.
     virtual Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                    std::vector<std::string>& log) const = 0;
@@ -82,9 +82,9 @@ struct MeshField {
 
 /// How a mesh becomes a field of distances.
 struct MeshSampling {
-    double spacing = 1.0;    ///< between the field's nodes [m]
-    double margin = 0.0;     ///< that the field reaches beyond the mesh [m]
-    Vec3 origin{0, 0, 0};    ///< of the mesh's coordinates, in those of the map [m]
+    double spacing = 1.0;  ///< between the field's nodes [m]
+    double margin = 0.0;   ///< that the field reaches beyond the mesh [m]
+    Vec3 origin{0, 0, 0};  ///< of the mesh's coordinates, in those of the map [m]
 };
 
 /// Reads a mesh. Throws UserError for what is no closed surface.

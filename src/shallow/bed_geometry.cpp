@@ -34,8 +34,10 @@ std::vector<double> filled(const Raster& bed) {
     std::deque<Index> front;
     bool any_missing = false;
     for (Index k = 0; k < nx * ny; ++k) {
-        if (std::isnan(z[k])) any_missing = true;
-        else front.push_back(k);
+        if (std::isnan(z[k]))
+            any_missing = true;
+        else
+            front.push_back(k);
     }
     if (front.empty())
         throw UserError(bed.source + ": the elevation model holds no data in the window; choose another window");
@@ -100,9 +102,12 @@ void smooth(const TileGrid& grid, LazyArray<double>& field, LazyArray<double>& s
 /// Average of a bilinear bed with the scheme's own shape function: B-splines of two degrees more at whole numbers.
 std::array<double, 3> averaging(const Scene& scene) {
     switch (scene.scheme.shape) {
-        case Shape::linear: return {1.0, 0.0, 0.0};
-        case Shape::quadratic: return {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
-        case Shape::cubic: return {66.0 / 120.0, 26.0 / 120.0, 1.0 / 120.0};
+        case Shape::linear:
+            return {1.0, 0.0, 0.0};
+        case Shape::quadratic:
+            return {230.0 / 384.0, 76.0 / 384.0, 1.0 / 384.0};
+        case Shape::cubic:
+            return {66.0 / 120.0, 26.0 / 120.0, 1.0 / 120.0};
     }
     throw InternalError("unknown shape");
 }
@@ -126,9 +131,8 @@ double slope_at(const double* z, Index step, double cell) {
 /// slope that meets a wall is mirrored for the pressure, but it has no curvature there.
 LazyArray<double> smoothed_bed(const Scene& scene, const TileGrid& grid, const std::vector<double>& z) {
     LazyArray<double> smoothed(grid.size()), scratch(grid.size());
-    for_each_node(grid, 0, [&](Index i, Index j, Index k) {
-        smoothed[k] = extended(z, grid.nx(), grid.ny(), i, j, false);
-    });
+    for_each_node(grid, 0,
+                  [&](Index i, Index j, Index k) { smoothed[k] = extended(z, grid.nx(), grid.ny(), i, j, false); });
     average(scene, grid, smoothed, scratch);
     const Index passes = smoothing_passes(scene.scheme, grid.cell());
     const std::array<double, 3> binomial{0.5, 0.25, 0.0};
@@ -139,7 +143,9 @@ LazyArray<double> smoothed_bed(const Scene& scene, const TileGrid& grid, const s
     return smoothed;
 }
 
-struct Curved { double xx, xy, yy; };
+struct Curved {
+    double xx, xy, yy;
+};
 Curved curvature_at(const double* c, Index up, double cell) {
     const auto held = [&](double h) { return std::clamp(h, -kSharpest / cell, kSharpest / cell); };
     return {held((c[1] - 2.0 * c[0] + c[-1]) / (cell * cell)),
@@ -158,7 +164,8 @@ double least_around(const double* c, Index up) {
 template <class Body>
 void for_each_of_tile(const TileGrid& grid, Index tile, Index margin, Body&& body) {
     const Window window{grid};
-    const Index i0 = std::max(grid.tile_i(tile), window.i0() + margin), j0 = std::max(grid.tile_j(tile), window.j0() + margin);
+    const Index i0 = std::max(grid.tile_i(tile), window.i0() + margin),
+                j0 = std::max(grid.tile_j(tile), window.j0() + margin);
     const Index i1 = std::min(grid.tile_i(tile) + kTile, window.i1() - margin);
     const Index j1 = std::min(grid.tile_j(tile) + kTile, window.j1() - margin);
     for (Index j = j0; j < j1; ++j)
@@ -201,7 +208,8 @@ void mark_exits(const Scene& scene, const TileGrid& grid, BedGeometry& bed) {
     bed.exit = LazyArray<std::uint8_t>(grid.size());
     const std::vector<double>& z = scene.bed.values;
     for (Index n = 0; n < nx * ny; ++n)
-        if (std::isnan(z[static_cast<std::size_t>(n)])) bed.exit[grid.at(n % nx, n / nx)] = kNoData, bed.has_exits = true;
+        if (std::isnan(z[static_cast<std::size_t>(n)]))
+            bed.exit[grid.at(n % nx, n / nx)] = kNoData, bed.has_exits = true;
     for (const Index n : scene.holes.nodes) bed.exit[grid.at(n % nx, n / nx)] = scene.hole_top ? kWall : kHole;
 }
 

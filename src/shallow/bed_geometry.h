@@ -17,21 +17,25 @@ inline bool has_no_data(std::uint8_t kind) { return kind == kNoData || kind == k
 /// Node values on the storage of a TileGrid, filled on all of it (beyond walls mirrored, beyond open sides
 /// extended linearly, over nodata by the nearest known value, to which a wall in a hole adds its height in z and ground).
 struct BedGeometry {
-    LazyArray<double> z;        ///< bed averaged with the node's own shape function, (1/A) int N_i Z dx [m]
-    LazyArray<double> ground;   ///< the elevation model's own elevation at the node [m]
+    LazyArray<double> z;       ///< bed averaged with the node's own shape function, (1/A) int N_i Z dx [m]
+    LazyArray<double> ground;  ///< the elevation model's own elevation at the node [m]
     std::array<double, 3> averaging{1.0, 0.0, 0.0};  ///< weights that make z of ground: centre, one, two nodes away
-    LazyArray<double> z_min;    ///< least z of the 5 x 5 neighbourhood [m]
+    LazyArray<double> z_min;                         ///< least z of the 5 x 5 neighbourhood [m]
     LazyArray<double> slope_x;  ///< dz/dx by the 4th-order stencil that also differentiates the free surface [1]
     LazyArray<double> slope_y;  ///< [1]
-    LazyArray<double> hxx, hxy, hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
-    LazyArray<double> smooth_x, smooth_y;  ///< slopes of that smoothed bed, which the flow's path has [1]; empty on gentle terrain
-    LazyArray<double> smoothed;       ///< that smoothed bed, where an erodible one may change it; otherwise empty [m]
-    LazyArray<std::uint8_t> exit;     ///< 0, or what kind of node it is
-    bool has_exits = false;           ///< some node is of such a kind
+    LazyArray<double> hxx, hxy,
+        hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
+    LazyArray<double> smooth_x,
+        smooth_y;  ///< slopes of that smoothed bed, which the flow's path has [1]; empty on gentle terrain
+    LazyArray<double> smoothed;    ///< that smoothed bed, where an erodible one may change it; otherwise empty [m]
+    LazyArray<std::uint8_t> exit;  ///< 0, or what kind of node it is
+    bool has_exits = false;        ///< some node is of such a kind
 };
 
 /// Slopes of the bed smoothed to `curvature_length`, which velocities along the bed follow [1].
-struct SmoothSlopes { LazyArray<double> x, y; };
+struct SmoothSlopes {
+    LazyArray<double> x, y;
+};
 SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid);
 
 /// Fills the geometry of scene.bed for the scheme's shape function (quadratic: the elevation model is taken

@@ -20,8 +20,7 @@ struct Carried {
 
     template <class Self, class Visit>
     static void each(Self& s, Visit&& visit) {
-        for (auto* column :
-             {&s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.r1x, &s.r1y, &s.r2x, &s.r2y, &s.depth})
+        for (auto* column : {&s.vx, &s.vy, &s.cxx, &s.cxy, &s.cyx, &s.cyy, &s.r1x, &s.r1y, &s.r2x, &s.r2y, &s.depth})
             visit(*column);
     }
 };
@@ -29,10 +28,9 @@ struct Carried {
 /// Columns of material. Positions and domain edges are in cells (from node (0, 0)); all else is SI. Positions
 /// and masses are always in double precision: a step moves a point by little, and mass is exact.
 struct Columns : Carried<double> {
-    Array x, y;  ///< position [cells]
-    Array mass;  ///< [kg]
-    Carried<float>
-        narrow;  ///< with scheme.precision = "float" instead of the base's columns, which are empty then
+    Array x, y;             ///< position [cells]
+    Array mass;             ///< [kg]
+    Carried<float> narrow;  ///< with scheme.precision = "float" instead of the base's columns, which are empty then
     std::vector<std::int64_t> id;  ///< constant through sorting; children of a split get new ones
     bool single = false;           ///< what points carry is in `narrow`
 
@@ -87,8 +85,7 @@ private:
             Carried<float>::each(s.narrow, visit);
         else
             Carried<double>::each(
-                static_cast<
-                    std::conditional_t<std::is_const_v<Self>, const Carried<double>, Carried<double>>&>(s),
+                static_cast<std::conditional_t<std::is_const_v<Self>, const Carried<double>, Carried<double>>&>(s),
                 visit);
     }
 };
@@ -96,11 +93,11 @@ private:
 /// A column that left at an exit where that is noted, as it was when it left.
 struct Departed {
     std::int64_t id;
-    double x, y;    ///< position [cells]
-    double vx, vy;  ///< [m/s]
-    double depth;   ///< [m]
-    double mass;    ///< [kg]
-    double energy;  ///< kinetic and potential, as it was recorded [J]
+    double x, y;                     ///< position [cells]
+    double vx, vy;                   ///< [m/s]
+    double depth;                    ///< [m]
+    double mass;                     ///< [kg]
+    double energy;                   ///< kinetic and potential, as it was recorded [J]
     std::array<double, 4> gradient;  ///< of the velocity: cxx, cyx, cxy, cyy [1/s]
 };
 
@@ -109,21 +106,17 @@ class TileSorter {
 public:
     /// Sorts `columns` and rebuilds `active`. Same bits for any number of threads.
     /// `gone` (one byte per particle, may be empty) marks particles to drop.
-    void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
-              ActiveTiles& active) {
+    void sort(Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
         plan(columns, grid, gone, active);
         carry_out(columns);
     }
     /// The same in two, so that points can be dropped between: `active` and order() first, then the columns.
-    void plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone,
-              ActiveTiles& active);
+    void plan(const Columns& columns, const TileGrid& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     void carry_out(Columns& columns);
     /// Of a plan: the point that will lie at each place.
     const std::vector<std::int32_t>& order() const { return order_.order(); }
     /// Leaves points marked in `gone` out of a plan.
-    void leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
-        order_.leave_out(gone, active);
-    }
+    void leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active) { order_.leave_out(gone, active); }
     /// Drops the points marked in `gone`; the others keep their order and tiles.
     void drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "base/flush_denormals.h"
 #include "base/clock.h"
+#include "base/flush_denormals.h"
 #include "mpm/stencil.h"
 #include "shallow/lateral.h"
 #include "shallow/shock.h"
@@ -60,14 +60,16 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     choose_sleep();
     if (start == Start::resumed) return;
     flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
-    if (scene.still_surface && scene.scheme.paper_pressure) level_points(*scene.still_surface);
+    if (scene.still_surface && scene.scheme.paper_pressure)
+        level_points(*scene.still_surface);
     else if (scene.still_surface && scene.scheme.mass_fit && scene.scheme.shape != Shape::linear) {
         // Points that split later would spread over other nodes than those they were fitted on; the fit makes some heavy
         // enough to split.
         const auto split = [&] { return splitter_.split(flow_) > 0; };
         const auto sort = [&] { sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active); };
         while (split()) sort();
-        for (fit_ = fit_masses(flow_, *scene.still_surface); split(); fit_ = fit_masses(flow_, *scene.still_surface)) sort();
+        for (fit_ = fit_masses(flow_, *scene.still_surface); split(); fit_ = fit_masses(flow_, *scene.still_surface))
+            sort();
     }
     if (flow_.scheme.merge && !flow_.scheme.paper_pressure) make_merger();
     const double longest = longest_step();
@@ -112,8 +114,10 @@ void DepthAveraged::place(const Seeds& seeds) {
         mass += c.mass[p];
     }
     signal_ = status_.max_speed_on_map;
-    if (mass > 0.0) centre_ /= mass;
-    else if (feed_) centre_ = (feed_->middle() - Vec2(flow_.grid.geometry().x0, flow_.grid.geometry().y0)) / flow_.cell;
+    if (mass > 0.0)
+        centre_ /= mass;
+    else if (feed_)
+        centre_ = (feed_->middle() - Vec2(flow_.grid.geometry().x0, flow_.grid.geometry().y0)) / flow_.cell;
     splitter_.set_next_id(seeds.count());
     sorter_.sort(c, flow_.grid, {}, flow_.active);
 }
@@ -149,7 +153,7 @@ void DepthAveraged::advance(double until) {
     if (passages_) timed_("sections", [&] { passages_->note(flow_); });
     PointSums points =
         apart ? timed_("gather", [&] { return transfer_->gather(flow_, dt); })
-               : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_velocity_dt); });
+              : timed_("gather and deposit", [&] { return transfer_->carry(flow_, dt, next_velocity_dt); });
     require_finite(points);
     if (passages_) timed_("sections", [&] { passages_->count_moved(flow_); });
     accumulate_points(points);
@@ -192,9 +196,8 @@ void DepthAveraged::arrive(const PointSums& points) {
     if (feed_) timed_("inflow", [&] { support_inflows(); });
     timed_("depth", [&] { fold_walls(flow_); });
     const NodeSums sums = raise_surface();
-    status_.max_speed = timed_("peaks", [&] {
-        return update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_);
-    });
+    status_.max_speed =
+        timed_("peaks", [&] { return update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_); });
 
     stress_power_ = points.stress_power;
     status_.particles = flow_.columns.count();
@@ -330,7 +333,8 @@ void DepthAveraged::require_finite(const PointSums& sums) const {
     const Index p = sums.bad;
     const GridGeometry& g = flow_.grid.geometry();
     throw NumericsError(fmt::format(
-        "step {}, t = {:.6g} s, dt = {:.3g} s: the point at ({:.6g}, {:.6g}) has depth {:.3g} m and would move more than "
+        "step {}, t = {:.6g} s, dt = {:.3g} s: the point at ({:.6g}, {:.6g}) has depth {:.3g} m and would move more "
+        "than "
         "four cells in one step or is not finite; reduce scheme.cfl (now {}) or look at the terrain there",
         status_.step, status_.time, status_.dt, g.x0 + flow_.columns.x[p] * g.cell, g.y0 + flow_.columns.y[p] * g.cell,
         flow_.columns.with_real([&](auto real) { return double{flow_.columns.carried<decltype(real)>().depth[p]}; }),
@@ -373,11 +377,13 @@ std::vector<std::string> DepthAveraged::remarks() const {
     if (!fit_) return remarks;
     constexpr double kLevel = 1e-6;  // [cells]; far above round-off, and currents of it are slow
     const bool rests = fit_->level_error <= kLevel * flow_.cell;
-    remarks.push_back(fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
-                        "{} points at their limits; level within {:.2g} m{}",
-                        fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped, fit_->level_error,
-                        rests ? "" : ", so the lake does not rest; give more points (particles.per_cell) or a finer "
-                                     "grid.cell"));
+    remarks.push_back(
+        fmt::format("masses fitted to the still level: {} nodes, {} iterations, largest change of a point {:.2g}, "
+                    "{} points at their limits; level within {:.2g} m{}",
+                    fit_->rows, fit_->iterations, fit_->largest_change, fit_->clipped, fit_->level_error,
+                    rests ? ""
+                          : ", so the lake does not rest; give more points (particles.per_cell) or a finer "
+                            "grid.cell"));
     return remarks;
 }
 

@@ -74,7 +74,9 @@ public:
         births_wanted_ = true;
     }
     /// A column that another one was split into, and that one, by id.
-    struct Birth { Index child, parent; };
+    struct Birth {
+        Index child, parent;
+    };
     /// All since the last call, the oldest first.
     std::vector<Birth> take_births();
 
@@ -131,11 +133,14 @@ private:
     std::unique_ptr<TransferKernel> transfer_;
     std::unique_ptr<GridUpdateKernel> grid_update_;
     Splitter splitter_;
-    std::optional<Merger> merger_;  ///< nothing when the scheme does not merge
+    std::optional<Merger> merger_;    ///< nothing when the scheme does not merge
     std::optional<Erosion> erosion_;  ///< nothing when the bed is rock
     TileSorter sorter_;
-    std::optional<Feed> feed_;          ///< nothing without inflows
-    struct Supported { Index k; double before; };
+    std::optional<Feed> feed_;  ///< nothing without inflows
+    struct Supported {
+        Index k;
+        double before;
+    };
     std::vector<Supported> supported_;  ///< nodes with depth of what is still to come in; their mass without [kg]
     std::optional<Passages> passages_;  ///< nothing without sections
     bool births_wanted_ = false;
@@ -149,14 +154,16 @@ private:
     bool steep_, curved_, sleeps_;
     double footprint_depth_;
     std::array<double, 2> start_momentum_{};  ///< [kg m/s]
-    double signal_ = 0.0;       ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]
-    double since_split_ = 0.0;  ///< ordinary steps since points were last split
-    double drift_ = 0.0;        ///< largest distance since the last sort [cells]
-    double stress_power_ = 0.0; ///< of the present deposit [W]
-    double lost_in_holes_ = 0.0;  ///< of the mass that left [kg]
-    Vec2 centre_{0, 0};         ///< of the release [cells]
+    double signal_ = 0.0;                     ///< largest |v| + sqrt(g_c h) seen in the last step [m/s]
+    double since_split_ = 0.0;                ///< ordinary steps since points were last split
+    double drift_ = 0.0;                      ///< largest distance since the last sort [cells]
+    double stress_power_ = 0.0;               ///< of the present deposit [W]
+    double lost_in_holes_ = 0.0;              ///< of the mass that left [kg]
+    Vec2 centre_{0, 0};                       ///< of the release [cells]
 
-    struct StressSum { double stress[3], mass; };
+    struct StressSum {
+        double stress[3], mass;
+    };
     LazyArray<StressSum> stress_sums_;  ///< per node, of the points' stress times mass [Pa kg], and mass [kg]
     TransferKernel::Probe probe_;
     FrameStore store_;

@@ -28,12 +28,10 @@ void wake_all(Flow& flow) {
 }  // namespace
 
 void DepthAveraged::open_exits(const std::vector<std::uint8_t>& marks, bool leave_now) {
-    expect(static_cast<Index>(marks.size()) == flow_.grid.geometry().size(),
-           "every node of the grid is marked or not");
+    expect(static_cast<Index>(marks.size()) == flow_.grid.geometry().size(), "every node of the grid is marked or not");
     for (Index j = 0; j < flow_.grid.ny(); ++j)
         for (Index i = 0; i < flow_.grid.nx(); ++i)
-            if (marks[static_cast<std::size_t>(j * flow_.grid.nx() + i)])
-                flow_.bed.exit[flow_.grid.at(i, j)] = kNoted;
+            if (marks[static_cast<std::size_t>(j * flow_.grid.nx() + i)]) flow_.bed.exit[flow_.grid.at(i, j)] = kNoted;
     flow_.bed.has_exits = true;
     flow_.departed.resize(static_cast<std::size_t>(omp_get_max_threads()));
     if (leave_now) leave_at_exits();
@@ -133,8 +131,8 @@ void DepthAveraged::take_rows() {
     status_.energy_left -= came.left_energy;
     status_.kinetic += kinetic;  // of nodes, and to the next grid update only
     for (Index n = 0; n < rows.seeds.count(); ++n)
-        signal_ = std::max(signal_, std::hypot(rows.seeds.vx[n], rows.seeds.vy[n]) +
-                                        std::sqrt(flow_.gravity * rows.seeds.depth[n]));
+        signal_ = std::max(
+            signal_, std::hypot(rows.seeds.vx[n], rows.seeds.vy[n]) + std::sqrt(flow_.gravity * rows.seeds.depth[n]));
     if (before == 0) status_.dt = 0.0, since_split_ = 0.0;  // as at a start
     if (feed_->over()) wake_all(flow_), choose_sleep();
 }

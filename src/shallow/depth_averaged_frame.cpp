@@ -227,12 +227,14 @@ void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
             const auto four = [&](const auto& column) { return load(&column[p], lanes); };
             const Double4 vx = four(probe_.vx), vy = four(probe_.vy), depth = four(probe_.depth), none = {};
             const Mask4 wet = depth > flow_.dry_depth();
-            const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy), 0.5 * (four(probe_.cxy) + four(probe_.cyx))};
-            const Sheet<Double4> sheet = sheet_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy,
-                                                       max(depth, all(flow_.dry_depth())));
-            const PlaneOf<Double4> sigma =
-                law.stress(StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow_.scheme.strain_rate_floor, cap});
-            const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none), xy = select(wet, sigma.xy, none);
+            const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy),
+                                        0.5 * (four(probe_.cxy) + four(probe_.cyx))};
+            const Sheet<Double4> sheet =
+                sheet_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy, max(depth, all(flow_.dry_depth())));
+            const PlaneOf<Double4> sigma = law.stress(
+                StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow_.scheme.strain_rate_floor, cap});
+            const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none),
+                          xy = select(wet, sigma.xy, none);
             for (int n = 0; n < lanes; ++n)
                 stresses[3 * (p + n)] = xx[n], stresses[3 * (p + n) + 1] = yy[n], stresses[3 * (p + n) + 2] = xy[n];
         }

@@ -26,9 +26,12 @@ Index tile_of_node(const TileGrid& grid, Index i, Index j) {
 void spread(Flow& flow, const ColumnAt& column, const Edges& edges) {
     double* const into = flow.nodes.column_mass.data();
     switch (flow.scheme.shape) {
-        case Shape::linear: return spread_column<Linear>(flow, into, column, edges);
-        case Shape::quadratic: return spread_column<Quadratic>(flow, into, column, edges);
-        case Shape::cubic: return spread_column<Cubic>(flow, into, column, edges);
+        case Shape::linear:
+            return spread_column<Linear>(flow, into, column, edges);
+        case Shape::quadratic:
+            return spread_column<Quadratic>(flow, into, column, edges);
+        case Shape::cubic:
+            return spread_column<Cubic>(flow, into, column, edges);
     }
 }
 

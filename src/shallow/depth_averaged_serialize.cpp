@@ -31,7 +31,7 @@ void serialize_array(Archive& archive, const char* name, ArrayOf<float>& column)
 /// `components` numbers at every node of the tiles; at(storage index) is where they lie.
 template <class At>
 void serialize_tiles(Archive& archive, const std::string& name, const Flow& flow, const std::vector<Index>& tiles,
-                Index components, const At& at) {
+                     Index components, const At& at) {
     std::vector<double> values;
     if (!archive.loading()) values.reserve(tiles.size() * static_cast<std::size_t>(kNodes * components));
     if (!archive.loading())

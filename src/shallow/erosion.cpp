@@ -92,9 +92,9 @@ struct GroundOfFour {
         Double4 bx = none, by = none, gravity = all(flow.gravity);
         if (flow.steep) bx = means.of(flow.bed.slope_x, lanes), by = means.of(flow.bed.slope_y, lanes);
         if (curved)
-            gravity = max(none, gravity + vx * vx * means.of(flow.bed.hxx, lanes) +
-                                    2.0 * vx * vy * means.of(flow.bed.hxy, lanes) +
-                                    vy * vy * means.of(flow.bed.hyy, lanes));
+            gravity =
+                max(none, gravity + vx * vx * means.of(flow.bed.hxx, lanes) +
+                              2.0 * vx * vy * means.of(flow.bed.hxy, lanes) + vy * vy * means.of(flow.bed.hyy, lanes));
         const Double4 on_map2 = vx * vx + vy * vy, rise = vx * bx + vy * by;
         const Double4 kappa = sqrt(one + rise * rise / on_map2), cosine = one / sqrt(one + bx * bx + by * by);
         speed = kappa * sqrt(on_map2);
@@ -112,14 +112,26 @@ Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 sp
 }  // namespace
 
 Erosion::Erosion(const Scene& scene, Flow& flow)
-    : law_(scene.erodible->law), friction_(scene.bed_law), momentum_(scene.erodible->momentum),
-      min_depth_(scene.erodible->min_depth), density_(scene.erodible->density), per_area_(1.0 / (density_ * flow.area)),
+    : law_(scene.erodible->law),
+      friction_(scene.bed_law),
+      momentum_(scene.erodible->momentum),
+      min_depth_(scene.erodible->min_depth),
+      density_(scene.erodible->density),
+      per_area_(1.0 / (density_ * flow.area)),
       evolves_(scene.erodible->evolves),
       curved_(scene.terrain != TerrainModel::shallow && scene.curvature == Curvature::full),
-      bent_path_(flow.bed.smoothed), left_(flow.grid.size()), initial_(flow.grid.size()),
-      demand_(flow.grid.size()), taken_(flow.grid.size()), share_(flow.grid.size()), holds_(flow.grid.tiles()),
-      changed_(flow.grid.tiles()), tile_mass_(flow.grid.tiles()), tile_deepest_(flow.grid.tiles()),
-      marked_(static_cast<std::size_t>(flow.grid.tiles()), 0), tile_energy_(flow.grid.tiles()) {
+      bent_path_(flow.bed.smoothed),
+      left_(flow.grid.size()),
+      initial_(flow.grid.size()),
+      demand_(flow.grid.size()),
+      taken_(flow.grid.size()),
+      share_(flow.grid.size()),
+      holds_(flow.grid.tiles()),
+      changed_(flow.grid.tiles()),
+      tile_mass_(flow.grid.tiles()),
+      tile_deepest_(flow.grid.tiles()),
+      marked_(static_cast<std::size_t>(flow.grid.tiles()), 0),
+      tile_energy_(flow.grid.tiles()) {
     const TileGrid& grid = flow.grid;
     expect(flow.scheme.shape == Shape::quadratic && !flow.scheme.paper_pressure,
            "an erodible bed needs quadratic shapes");
@@ -205,9 +217,7 @@ ExchangeSums Erosion::exchange(Flow& flow, double dt) {
     find_demand(flow, dt);
     scarce_ = find_shares(flow);
     if (scarce_) share_out(flow);
-    flow.columns.with_real([&](auto real) {
-        for_each_eroding(flow, [&](Index n) { grow<decltype(real)>(flow, n); });
-    });
+    flow.columns.with_real([&](auto real) { for_each_eroding(flow, [&](Index n) { grow<decltype(real)>(flow, n); }); });
     lower(flow);
     CompensatedSum taken;
     for (Index n = 0; n < flow.active.count(); ++n) {
@@ -239,7 +249,8 @@ bool Erosion::choose(const Flow& flow) {
         for_each_around(flow.grid, tile, [&](Index to) { marked_[static_cast<std::size_t>(to)] = 1; });
     }
     for (const Index tile : active.work)
-        if (std::exchange(marked_[static_cast<std::size_t>(tile)], std::uint8_t{0}) || flow.walls) nodes_.push_back(tile);
+        if (std::exchange(marked_[static_cast<std::size_t>(tile)], std::uint8_t{0}) || flow.walls)
+            nodes_.push_back(tile);
     return any;
 }
 
@@ -425,8 +436,7 @@ void Erosion::take_left_over(const Flow& flow, Index n) {
         const Edges edges = edges_of(c.carried<Real>(), p);
         for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges, [&](const auto& sx, const auto& sy) {
             for (int j = 0; j < 3; ++j)
-                for (int i = 0; i < 3; ++i)
-                    more += sx.w[i] * sy.w[j] * share_[flow.grid.at(sx.base + i, sy.base + j)];
+                for (int i = 0; i < 3; ++i) more += sx.w[i] * sy.w[j] * share_[flow.grid.at(sx.base + i, sy.base + j)];
         });
         gained_[p] += 0.25 * more * wanted_[p];
     }
@@ -574,7 +584,8 @@ std::vector<Index> Erosion::tiles_to_keep(const Flow& flow, bool aside) const {
         for (Index dj = -far; dj <= far; ++dj)
             for (Index di = -far; di <= far; ++di) {
                 const Index to = tile + dj * width + di, column = tile % width + di;
-                if (column >= 0 && column < width && to >= 0 && to < grid.tiles()) kept[static_cast<std::size_t>(to)] = 1;
+                if (column >= 0 && column < width && to >= 0 && to < grid.tiles())
+                    kept[static_cast<std::size_t>(to)] = 1;
             }
     };
     if (aside)
@@ -606,7 +617,8 @@ void Erosion::serialize(Archive& archive, Flow& flow) {
         const std::size_t expected = tiles.size() * static_cast<std::size_t>(kTile * kTile);
         if (values.size() != expected) throw misfit("its erodible bed is not that of the tiles");
         const double* from = values.data();
-        for (const Index tile : tiles) for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { field[k] = *from++; });
+        for (const Index tile : tiles)
+            for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { field[k] = *from++; });
     };
     numbers("left", left_);
     if (evolves_) {
@@ -625,9 +637,11 @@ void Erosion::serialize(Archive& archive, Flow& flow) {
     }
     status_changed();
     if (!evolves_) return;
-    for (const Index tile : tiles) for_each_around(flow.grid, tile, [&](Index to) { refresh_slopes(flow.grid, flow.bed, to); });
+    for (const Index tile : tiles)
+        for_each_around(flow.grid, tile, [&](Index to) { refresh_slopes(flow.grid, flow.bed, to); });
     if (bent_path_)
-        for (const Index tile : tiles) for_each_around(flow.grid, tile, [&](Index to) { refresh_path(flow.grid, flow.bed, to); });
+        for (const Index tile : tiles)
+            for_each_around(flow.grid, tile, [&](Index to) { refresh_path(flow.grid, flow.bed, to); });
 }
 
 }  // namespace frana

@@ -15,10 +15,10 @@ namespace frana {
 
 /// What an exchange changed, of all points and nodes.
 struct ExchangeSums {
-    double taken = 0.0;           ///< [kg]
-    double px = 0.0, py = 0.0;    ///< momentum that came along [kg m/s]
-    double lost = 0.0;            ///< kinetic energy that sharing it lost [J]
-    double max_shift = 0.0;       ///< that a point was set back [cells]
+    double taken = 0.0;         ///< [kg]
+    double px = 0.0, py = 0.0;  ///< momentum that came along [kg m/s]
+    double lost = 0.0;          ///< kinetic energy that sharing it lost [J]
+    double max_shift = 0.0;     ///< that a point was set back [cells]
 };
 
 /// The erodible bed of a run, and the passes over it. Numbers of nodes are those of a full node: at walls half of the node
@@ -77,19 +77,19 @@ private:
     ErosionLaw law_;
     BedLaw friction_;
     double momentum_, min_depth_, density_;
-    double per_area_;             ///< depth of a mass on a node [m/kg]
+    double per_area_;  ///< depth of a mass on a node [m/kg]
     bool evolves_, curved_, bent_path_;
     std::vector<double> filter_;  ///< one half of the bed's smoothing, from its middle on
 
-    LazyArray<double> left_, initial_;   ///< [kg]
-    LazyArray<double> demand_, taken_;   ///< of the step, on the nodes; zero between steps [kg]
-    LazyArray<double> share_;            ///< of the demand that a node can give, then what is left over to give [1]
-    LazyArray<double> pending_;          ///< change of z that the smoothed bed does not have yet [m]
-    LazyArray<double> tile_pending_;     ///< largest of a tile [m]
-    LazyArray<std::uint8_t> holds_;      ///< per tile of the domain: 1, something is left to take
-    LazyArray<std::uint8_t> changed_;    ///< 1: something there is no more as the scene has it
+    LazyArray<double> left_, initial_;  ///< [kg]
+    LazyArray<double> demand_, taken_;  ///< of the step, on the nodes; zero between steps [kg]
+    LazyArray<double> share_;           ///< of the demand that a node can give, then what is left over to give [1]
+    LazyArray<double> pending_;         ///< change of z that the smoothed bed does not have yet [m]
+    LazyArray<double> tile_pending_;    ///< largest of a tile [m]
+    LazyArray<std::uint8_t> holds_;     ///< per tile of the domain: 1, something is left to take
+    LazyArray<std::uint8_t> changed_;   ///< 1: something there is no more as the scene has it
     LazyArray<double> tile_mass_, tile_deepest_;  ///< [kg], [m]
-    std::vector<Index> ledger_tiles_;    ///< that had something at the start
+    std::vector<Index> ledger_tiles_;             ///< that had something at the start
 
     std::vector<std::uint8_t> eroding_;  ///< by position in ActiveTiles
     std::vector<std::uint8_t> marked_;   ///< scratch, per tile of the domain

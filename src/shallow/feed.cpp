@@ -17,7 +17,8 @@ struct Through {
     /// Goes on by `s` within the n-th interval of the table, from `since` after its beginning.
     void go(const Inflow& of, std::size_t n, double since, double s) {
         const double length = of.time[n + 1] - of.time[n];
-        const double dq = (of.discharge[n + 1] - of.discharge[n]) / length, dv = (of.speed[n + 1] - of.speed[n]) / length;
+        const double dq = (of.discharge[n + 1] - of.discharge[n]) / length,
+                     dv = (of.speed[n + 1] - of.speed[n]) / length;
         const double q = of.discharge[n] + dq * since, v = of.speed[n] + dv * since, at = of.time[n] + since;
         const double more = s * (q + 0.5 * dq * s);
         way += s * (v + 0.5 * dv * s);
@@ -127,7 +128,8 @@ void Feed::add_row(const Source& source, const InflowRow& row, double way, Colum
 }
 
 void Feed::Columns::clear() {
-    for (auto* column : {&seeds.x, &seeds.y, &seeds.vx, &seeds.vy, &seeds.volume, &seeds.depth, &seeds.size}) column->clear();
+    for (auto* column : {&seeds.x, &seeds.y, &seeds.vx, &seeds.vy, &seeds.volume, &seeds.depth, &seeds.size})
+        column->clear();
     from.clear();
 }
 

@@ -74,7 +74,7 @@ private:
     static void add_row(const Source& source, const InflowRow& row, double way, Columns& columns);
 
     std::vector<Source> sources_;
-    std::vector<Index> next_;  ///< row of each source
+    std::vector<Index> next_;   ///< row of each source
     Columns columns_, behind_;  ///< scratch
 };
 

@@ -33,10 +33,22 @@ struct Flow {
                 scene.scheme},
                make_bed_geometry(scene, TileGrid(scene.bed.geometry))) {}
     Flow(const FlowSetup& setup, BedGeometry of)
-        : grid(setup.grid), bed(std::move(of)), nodes(grid, setup.with_force), density(setup.density),
-          gravity(setup.gravity), cell(grid.cell()), area(cell * cell), walls(setup.walls), steep(setup.steep),
-          scheme(setup.scheme), in_reach(grid.tiles()), near(grid.tiles()), reach(grid.tiles()),
-          deposit_sums(grid.tiles()), depth_sums(grid.tiles()), rest(grid) {}
+        : grid(setup.grid),
+          bed(std::move(of)),
+          nodes(grid, setup.with_force),
+          density(setup.density),
+          gravity(setup.gravity),
+          cell(grid.cell()),
+          area(cell * cell),
+          walls(setup.walls),
+          steep(setup.steep),
+          scheme(setup.scheme),
+          in_reach(grid.tiles()),
+          near(grid.tiles()),
+          reach(grid.tiles()),
+          deposit_sums(grid.tiles()),
+          depth_sums(grid.tiles()),
+          rest(grid) {}
 
     TileGrid grid;
     BedGeometry bed;
@@ -57,10 +69,10 @@ struct Flow {
     LazyArray<NodeGroups> in_reach;
     /// The same grown by three nodes, as far as passes look: these nodes, and no others, hold what a dry node holds.
     LazyArray<NodeGroups> near;
-    LazyArray<TileReach> reach;       ///< what the points of each tile touch
-    std::vector<Index> shore;         ///< tiles of the work list that have margin nodes (mark_margin)
-    std::vector<std::uint8_t> marked; ///< scratch of mark_margin, one per tile of the work list
-    std::vector<std::vector<Departed>> departed;  ///< in the last gather, by thread
+    LazyArray<TileReach> reach;                    ///< what the points of each tile touch
+    std::vector<Index> shore;                      ///< tiles of the work list that have margin nodes (mark_margin)
+    std::vector<std::uint8_t> marked;              ///< scratch of mark_margin, one per tile of the work list
+    std::vector<std::vector<Departed>> departed;   ///< in the last gather, by thread
     LazyArray<TileSums> deposit_sums, depth_sums;  ///< per tile, of node_sums and depth_pass
     Rest rest;
     /// Nodes that the passes go over.
@@ -106,9 +118,7 @@ void for_each_wall_pair(const Flow& flow, int axis, Index first, Body&& body) {
         const Index from = axis == 0 ? grid.tile_i(tile) : grid.tile_j(tile);
         const auto along_wall = [&](Index wall, Index inward) {
             if (wall < from || wall >= from + kTile) return;
-            const Index ghosts = wall - inward * kGhosts < from              ? -1
-                                 : wall - inward * kGhosts >= from + kTile ? 1
-                                                                           : 0;
+            const Index ghosts = wall - inward * kGhosts < from ? -1 : wall - inward * kGhosts >= from + kTile ? 1 : 0;
             const Index beyond = tile + ghosts * (axis == 0 ? 1 : grid.tiles_x());
             if (!flow.active.in_work[beyond]) return;
             for (Index n = 0; n < kTile; ++n) {

@@ -16,13 +16,13 @@ constexpr double kSlowest = 1e-30;  ///< below any speed, above the root of the 
 /// A node, or four in a row.
 template <class Real>
 struct Node {
-    Real vx, vy;          ///< before the grid update [m/s]
-    Real ex, ey;          ///< gradient of the free surface [1]
+    Real vx, vy;  ///< before the grid update [m/s]
+    Real ex, ey;  ///< gradient of the free surface [1]
     Real depth, mass;
-    Real law_depth;       ///< without the 2-cell wave [m]
+    Real law_depth;                       ///< without the 2-cell wave [m]
     Real acceleration_x, acceleration_y;  ///< artificial viscosity and stress [m/s^2]
-    Real loss_x, loss_y;  ///< the viscosity's part, whose work is lost [m/s^2]
-    Real at_front;             ///< 1 at margins, whose surface may be that of what lies behind; otherwise 0
+    Real loss_x, loss_y;                  ///< the viscosity's part, whose work is lost [m/s^2]
+    Real at_front;                        ///< 1 at margins, whose surface may be that of what lies behind; otherwise 0
 };
 
 template <class Real>
@@ -96,7 +96,9 @@ public:
 
 private:
     template <class Real>
-    struct Sums { Real kinetic{}, dissipated{}, impulse_x{}, impulse_y{}, max_signal{}; };
+    struct Sums {
+        Real kinetic{}, dissipated{}, impulse_x{}, impulse_y{}, max_signal{};
+    };
     struct TileWork {
         Sums<Double4> four;
         Sums<double> single;
@@ -130,7 +132,8 @@ private:
         const std::uint8_t* f = flow.nodes.flags.data() + k;
         constexpr int kInside = kMoving | kWideX | kWideY;
         Motion* motion = flow.nodes.motions() + k;
-        if ((f[0] & f[1] & f[2] & f[3] & kInside) == kInside && !pressure_on_points_ && dt > 0.0 && inside(flow, i, j)) {
+        if ((f[0] & f[1] & f[2] & f[3] & kInside) == kInside && !pressure_on_points_ && dt > 0.0 &&
+            inside(flow, i, j)) {
             const Node<Double4> node = prepared_four(flow, k);
             const auto after = updated(flow, typename Terrain::template Bed<Double4>(flow, k), node, dt);
             add(flow, node, after, 1.0, work.four);
@@ -173,8 +176,8 @@ private:
         sums.dissipated += mass * after.dissipated;
         sums.impulse_x += mass * (after.vx - node.vx);
         sums.impulse_y += mass * (after.vy - node.vy);
-        sums.max_signal =
-            max(sums.max_signal, sqrt(after.vx * after.vx + after.vy * after.vy) + sqrt(after.wave_gravity * node.depth));
+        sums.max_signal = max(sums.max_signal,
+                              sqrt(after.vx * after.vx + after.vy * after.vy) + sqrt(after.wave_gravity * node.depth));
     }
 
     /// A grid update of no length: the start of a run.
@@ -224,7 +227,8 @@ private:
         Node<Double4> node;  // set one by one: to clear it first would be a loop of its own
         unzip(&nodes.before[k], node.vx, node.vy);
         node.acceleration_x = node.acceleration_y = node.loss_x = node.loss_y = node.at_front = Double4{};
-        node.depth = load(&nodes.depth[k]), node.law_depth = load(&nodes.law_depth[k]), node.mass = load(&nodes.mass[k]);
+        node.depth = load(&nodes.depth[k]), node.law_depth = load(&nodes.law_depth[k]),
+        node.mass = load(&nodes.mass[k]);
         node.ex = wide_gradients(flow, k, 1);
         node.ey = wide_gradients(flow, k, up);
         if (has_viscosity(flow.scheme)) {
@@ -232,7 +236,8 @@ private:
             unzip(&nodes.viscous_flux[k], right, above);
             unzip(&nodes.viscous_flux[k - 1], left, across);
             unzip(&nodes.viscous_flux[k - up], across, below);
-            const Double4 none = {}, scale = select(node.depth > 1e-12 * flow.cell, 1.0 / (flow.cell * node.depth), none);
+            const Double4 none = {},
+                          scale = select(node.depth > 1e-12 * flow.cell, 1.0 / (flow.cell * node.depth), none);
             node.acceleration_x = node.loss_x = scale * (left - right);
             node.acceleration_y = node.loss_y = scale * (below - above);
         }
@@ -265,7 +270,7 @@ private:
     /// Steep terrain: a = -g_c drive, g_c = (g + v.H.v)+ at the middle of the step.
     template <class Real, Curvature kCurvature, bool kLinear>
     Updated<Real> updated(const Flow& flow, const SteepBed<Real, kCurvature, kLinear>& bed, const Node<Real>& n,
-                        double dt) const {
+                          double dt) const {
         const double g = flow.gravity;
         const Real cosine = 1.0 / sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
         const Drive<Real> slope = bed.drive(n.ex, n.ey, cosine);
@@ -282,8 +287,8 @@ private:
         const Real along = dx * bed.bx + dy * bed.by, speed2 = dx * dx + dy * dy;
         const Real kappa = sqrt(1.0 + select(speed2 > 0.0, along * along / speed2, Real{}));
         const Real normal = kCurvature == Curvature::full ? gravity : Real{} + g;
-        const BedStateOf<Real> state{normal * cosine / kappa, max(n.law_depth * cosine, Real{} + 1e-9), kappa, cosine, g,
-                                     flow.density};
+        const BedStateOf<Real> state{
+            normal * cosine / kappa, max(n.law_depth * cosine, Real{} + 1e-9), kappa, cosine, g, flow.density};
         return braked(state, n, dx, dy, bed.bx, bed.by, max(Real{} + g, gravity), dt);
     }
 
@@ -318,7 +323,7 @@ private:
 
     template <class Real>
     Updated<Real> braked(const BedStateOf<Real>& state, const Node<Real>& n, Real dx, Real dy, Real bx, Real by,
-                        Real wave_gravity, double dt) const {
+                         Real wave_gravity, double dt) const {
         // A node that forces stopped has the share kept of the slowest, or round-off would decide what flip's points keep.
         const Real driven = max(sqrt(dx * dx + dy * dy), Real{} + kSlowest), unit = 1.0 / driven;
         const Real s0 = max(Real{}, (n.vx * dx + n.vy * dy) * unit);
@@ -338,7 +343,7 @@ private:
 
     Law law_;
     bool pressure_on_points_;
-    double drift_ = 0.0;  ///< [s]
+    double drift_ = 0.0;               ///< [s]
     LazyArray<GridUpdateSums> parts_;  ///< per tile of the domain
 };
 
@@ -354,9 +359,12 @@ std::unique_ptr<GridUpdateKernel> with_law(const Scene& scene) {
 template <bool kLinear>
 std::unique_ptr<GridUpdateKernel> with_curvature(const Scene& scene) {
     switch (scene.curvature) {
-        case Curvature::none: return with_law<Steep<Curvature::none, kLinear>>(scene);
-        case Curvature::inertia: return with_law<Steep<Curvature::inertia, kLinear>>(scene);
-        case Curvature::full: return with_law<Steep<Curvature::full, kLinear>>(scene);
+        case Curvature::none:
+            return with_law<Steep<Curvature::none, kLinear>>(scene);
+        case Curvature::inertia:
+            return with_law<Steep<Curvature::inertia, kLinear>>(scene);
+        case Curvature::full:
+            return with_law<Steep<Curvature::full, kLinear>>(scene);
     }
     throw InternalError("unknown curvature");
 }
@@ -365,9 +373,12 @@ std::unique_ptr<GridUpdateKernel> with_curvature(const Scene& scene) {
 
 std::unique_ptr<GridUpdateKernel> make_grid_update(const Scene& scene) {
     switch (scene.terrain) {
-        case TerrainModel::shallow: return with_law<Gentle>(scene);
-        case TerrainModel::steep: return with_curvature<false>(scene);
-        case TerrainModel::linearised: return with_curvature<true>(scene);
+        case TerrainModel::shallow:
+            return with_law<Gentle>(scene);
+        case TerrainModel::steep:
+            return with_curvature<false>(scene);
+        case TerrainModel::linearised:
+            return with_curvature<true>(scene);
     }
     throw InternalError("unknown terrain model");
 }

@@ -9,10 +9,10 @@ namespace frana {
 
 /// Sums over nodes, made tile by tile in a fixed order.
 struct GridUpdateSums {
-    double kinetic = 0.0;          ///< after the grid update, along the bed [J]
-    double dissipated = 0.0;       ///< by bed friction in this grid update [J]
+    double kinetic = 0.0;                     ///< after the grid update, along the bed [J]
+    double dissipated = 0.0;                  ///< by bed friction in this grid update [J]
     double impulse_x = 0.0, impulse_y = 0.0;  ///< of all nodal forces in this grid update [kg m/s]
-    double max_signal = 0.0;       ///< largest |v| + sqrt(g_c h) on nodes [m/s]
+    double max_signal = 0.0;                  ///< largest |v| + sqrt(g_c h) on nodes [m/s]
 };
 
 class GridUpdateKernel {

@@ -14,7 +14,9 @@ struct GentleBed {
 
 /// Driving slope of the surface, times its gravity: a = -gravity * (x, y).
 template <class Real>
-struct Drive { Real x, y; };
+struct Drive {
+    Real x, y;
+};
 
 /// Slopes whose squares are far below this are smooth, whatever the ground around: what a bend there could turn is as small.
 constexpr double kFlat = 0.01;
@@ -48,7 +50,8 @@ struct SteepBed {
             const Real slope2 = bx * bx + by * by, along = read<Real>(smooth_x) * bx + read<Real>(smooth_y) * by;
             const Real known = min(one, max(zero, (along + kFlat) / (slope2 + kFlat)));
             const Real share = known * known, q = max(zero, bx * ex + by * ey);
-            const Real hidden = max(zero, up_bed - up) / (abs(up_bed) + abs(up) + 1e-300);  // of the climb, by the margin
+            const Real hidden =
+                max(zero, up_bed - up) / (abs(up_bed) + abs(up) + 1e-300);  // of the climb, by the margin
             const Real bare = at_front * (1.0 - share) * hidden;
             const Real cx = ex + bare * (bx - ex), cy = ey + bare * (by - ey);
             const Real rise = dx * cx + dy * cy, square = max(cx * cx + cy * cy, zero + 1e-300);

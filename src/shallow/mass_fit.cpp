@@ -19,14 +19,19 @@ struct Reach {
 };
 
 /// Node index with walls mirrored; wall nodes count their own image too.
-struct Folded { Index k; double factor; };
+struct Folded {
+    Index k;
+    double factor;
+};
 
 Folded folded(const Flow& flow, Index i, Index j) {
     double factor = 1.0;
     if (flow.walls) {
         const auto fold = [&](Index& n, Index last) {
-            if (n < 0) n = -n;
-            else if (n > last) n = 2 * last - n;
+            if (n < 0)
+                n = -n;
+            else if (n > last)
+                n = 2 * last - n;
             if (n == 0 || n == last) factor *= 2.0;
         };
         fold(i, flow.grid.nx() - 1);

@@ -5,11 +5,11 @@ namespace frana {
 
 /// What the fit did.
 struct MassFit {
-    Index rows = 0;              ///< nodes held to the level
-    Index iterations = 0;        ///< of the conjugate gradients, all rounds
-    double largest_change = 0.0; ///< largest |m - m0| / m0 of a point [1]
-    Index clipped = 0;           ///< points whose mass met the limits [0.03, 5] m0
-    double level_error = 0.0;    ///< largest distance of the surface from the level where it is wet (off_level) [m]
+    Index rows = 0;               ///< nodes held to the level
+    Index iterations = 0;         ///< of the conjugate gradients, all rounds
+    double largest_change = 0.0;  ///< largest |m - m0| / m0 of a point [1]
+    Index clipped = 0;            ///< points whose mass met the limits [0.03, 5] m0
+    double level_error = 0.0;     ///< largest distance of the surface from the level where it is wet (off_level) [m]
 };
 
 /// Largest distance of the free surface, margins included, from `level` on the wet nodes of the domain [m].

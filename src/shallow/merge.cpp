@@ -45,8 +45,10 @@ class Squares {
 public:
     /// `sorted`: the point at each place; `order` and `square` have room for the tile's points.
     Squares(const Flow& flow, Index n, const std::int32_t* sorted, std::int32_t* order, std::int16_t* square)
-        : i0_(2 * flow.grid.tile_i(flow.active.tile[n]) + 1), j0_(2 * flow.grid.tile_j(flow.active.tile[n]) + 1),
-          c_(flow.columns), order_(order) {
+        : i0_(2 * flow.grid.tile_i(flow.active.tile[n]) + 1),
+          j0_(2 * flow.grid.tile_j(flow.active.tile[n]) + 1),
+          c_(flow.columns),
+          order_(order) {
         const Index begin = flow.active.begin[n], end = flow.active.begin[n + 1];
         Index held = 0;
         for (Index place = begin; place < end; ++place) {
@@ -73,9 +75,11 @@ private:
     /// A point that the rounding of 2 x puts outside belongs to the nearest square.
     std::int16_t square_of(Index p) const {
         const double u = 2.0 * c_.x[p], v = 2.0 * c_.y[p], left = std::floor(u), below = std::floor(v);
-        if (near_edge(u, left) || near_edge(u, left + 1.0) || near_edge(v, below) || near_edge(v, below + 1.0)) return kNone;
+        if (near_edge(u, left) || near_edge(u, left + 1.0) || near_edge(v, below) || near_edge(v, below + 1.0))
+            return kNone;
         const Index i = static_cast<Index>(left) - i0_, j = static_cast<Index>(below) - j0_;
-        return static_cast<std::int16_t>(std::clamp<Index>(j, 0, kSide - 1) * kSide + std::clamp<Index>(i, 0, kSide - 1));
+        return static_cast<std::int16_t>(std::clamp<Index>(j, 0, kSide - 1) * kSide +
+                                         std::clamp<Index>(i, 0, kSide - 1));
     }
     Index i0_, j0_;
     const Columns& c_;
@@ -89,7 +93,9 @@ double cost_of(const Columns& c, Index a, Index b) {
     return c.mass[a] * c.mass[b] / (c.mass[a] + c.mass[b]) * (dx * dx + dy * dy);
 }
 
-struct Pick { Index a = -1, b = -1; };
+struct Pick {
+    Index a = -1, b = -1;
+};
 
 /// The cheapest union among `count` points, nothing when two tie.
 Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {

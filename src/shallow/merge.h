@@ -32,11 +32,11 @@ private:
     template <class Real>
     bool unite(Flow& flow, Index a, Index b, double longest, std::vector<std::uint8_t>& gone);
 
-    Index most_ = 2;  ///< points that a half-cell square may hold
-    Index largest_ = 0;  ///< points of the fullest tile: each thread has room for so many
+    Index most_ = 2;                    ///< points that a half-cell square may hold
+    Index largest_ = 0;                 ///< points of the fullest tile: each thread has room for so many
     std::vector<std::int32_t> order_;   ///< a tile's points by square
     std::vector<std::int16_t> square_;  ///< of the point at each of the tile's places, as it was found
-    std::vector<Index> merged_;  ///< per tile
+    std::vector<Index> merged_;         ///< per tile
     bool notes_ = false;
     std::vector<std::int32_t> into_;
 };

@@ -16,13 +16,15 @@ struct alignas(32) Deposit {
 
 /// What points gather from a node.
 struct alignas(32) Motion {
-    double vx, vy;  ///< velocity after the grid update [m/s]
-    double depth;   ///< [m]
-    double velocity_share;    ///< share of the velocity that friction left [1]; read by flip
+    double vx, vy;          ///< velocity after the grid update [m/s]
+    double depth;           ///< [m]
+    double velocity_share;  ///< share of the velocity that friction left [1]; read by flip
 };
 
 /// A pair of numbers per node.
-struct Pair { double x, y; };
+struct Pair {
+    double x, y;
+};
 
 enum NodeFlag : std::uint8_t {
     kWet = 1,      ///< depth above round-off
@@ -50,10 +52,22 @@ inline bool eight_have(const std::uint8_t* f, std::uint8_t set, std::uint8_t uns
 
 struct Nodes {
     explicit Nodes(const TileGrid& grid, bool with_force)
-        : deposit(grid.size()), mass(grid.size()), column_mass(grid.size()), forced(with_force),
-          depth(grid.size()), law_depth(grid.size()), level(grid.size()), surface(grid.size()), wave_x(grid.size()),
-          row_known(grid.size(), around(grid)), before(grid.size()), motion(grid.size()),
-          viscous_flux(grid.size()), lateral(grid.size()), shock(grid.size()), sensed(grid.size(), around(grid)),
+        : deposit(grid.size()),
+          mass(grid.size()),
+          column_mass(grid.size()),
+          forced(with_force),
+          depth(grid.size()),
+          law_depth(grid.size()),
+          level(grid.size()),
+          surface(grid.size()),
+          wave_x(grid.size()),
+          row_known(grid.size(), around(grid)),
+          before(grid.size()),
+          motion(grid.size()),
+          viscous_flux(grid.size()),
+          lateral(grid.size()),
+          shock(grid.size()),
+          sensed(grid.size(), around(grid)),
           flags(grid.size(), around(grid)) {}
 
     Deposit* deposits() { return deposit.data(); }
@@ -62,18 +76,18 @@ struct Nodes {
     const Motion* motions() const { return motion.data(); }
 
     LazyArray<Deposit> deposit;
-    LazyArray<double> mass;          ///< sum of m_p N_i; apart, since it goes row by row [kg]
+    LazyArray<double> mass;  ///< sum of m_p N_i; apart, since it goes row by row [kg]
     /// Mass deposited from the points' sub-points: what the depth is made of [kg]. Apart from Deposit, since a vector
     /// read of a node waits for a narrower write to it.
     LazyArray<double> column_mass;
-    bool forced;                     ///< points deposit forces
-    LazyArray<double> depth;         ///< column_mass / (rho A) [m]
-    LazyArray<double> law_depth;     ///< that the bed law is given: the depth without its 2-cell wave [m]
-    LazyArray<double> level;         ///< bed + depth [m]
-    LazyArray<double> surface;       ///< free surface: the level, filtered and mended at margins; bed where dry [m]
-    LazyArray<double> wave_x;        ///< part of the 2-cell wave in x, scratch of the filter [m]
+    bool forced;                        ///< points deposit forces
+    LazyArray<double> depth;            ///< column_mass / (rho A) [m]
+    LazyArray<double> law_depth;        ///< that the bed law is given: the depth without its 2-cell wave [m]
+    LazyArray<double> level;            ///< bed + depth [m]
+    LazyArray<double> surface;          ///< free surface: the level, filtered and mended at margins; bed where dry [m]
+    LazyArray<double> wave_x;           ///< part of the 2-cell wave in x, scratch of the filter [m]
     LazyArray<std::uint8_t> row_known;  ///< 1: the wave in x is known there
-    LazyArray<Pair> before;          ///< momentum / mass, before the grid update [m/s]
+    LazyArray<Pair> before;             ///< momentum / mass, before the grid update [m/s]
     LazyArray<Motion> motion;
     LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^3/s^2]
     LazyArray<Pair> lateral;         ///< acceleration by the lateral drag; used only when the scheme has one [m/s^2]

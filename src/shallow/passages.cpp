@@ -30,8 +30,8 @@ Passages::Passages(const std::vector<Section>& sections, const TileGrid& grid)
     const auto cells = [&](const Vec2& at) { return Vec2((at.x() - g.x0) / g.cell, (at.y() - g.y0) / g.cell); };
     for (std::size_t n = 0; n < sections.size(); ++n)
         for (std::size_t k = 0; k + 1 < sections[n].line.size(); ++k)
-            pieces_.push_back({cells(sections[n].line[k]), cells(sections[n].line[k + 1]), n,
-                               sections[n].to_right ? 1.0 : -1.0});
+            pieces_.push_back(
+                {cells(sections[n].line[k]), cells(sections[n].line[k + 1]), n, sections[n].to_right ? 1.0 : -1.0});
     const double half = 0.5 * static_cast<double>(kTile);
     for (Index tile = 0; tile < grid.tiles(); ++tile) {
         const Vec2 middle(static_cast<double>(grid.tile_i(tile)) + half, static_cast<double>(grid.tile_j(tile)) + half);

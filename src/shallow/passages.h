@@ -31,9 +31,9 @@ public:
 
 private:
     struct Piece {
-        Vec2 a, b;        ///< [cells]
+        Vec2 a, b;  ///< [cells]
         std::size_t section;
-        double sense;     ///< 1: from its left to its right counts; -1: the other way
+        double sense;  ///< 1: from its left to its right counts; -1: the other way
     };
     struct Noted {
         Index p;
@@ -47,7 +47,7 @@ private:
     std::vector<double> passed_;
     std::vector<std::uint8_t> watched_;  ///< per tile: some of its points may come to a line
     std::vector<Noted> noted_;
-    std::vector<std::size_t> by_id_;     ///< scratch
+    std::vector<std::size_t> by_id_;  ///< scratch
 };
 
 }  // namespace frana

@@ -9,7 +9,9 @@ namespace frana {
 namespace {
 
 template <class Real>
-struct Contact { Real speed, pressure; };
+struct Contact {
+    Real speed, pressure;
+};
 
 /// bed_contact of one node or four.
 template <class Real>
@@ -20,12 +22,11 @@ Contact<Real> contact(const Flow& flow, bool steep, bool curved, Index k, Real v
         rise = vx * bx + vy * by;
         cosine2 = 1.0 / (1.0 + bx * bx + by * by);
         if (curved)
-            gravity = max(Real{}, flow.gravity + vx * vx * read<Real>(&flow.bed.hxx[k]) +
-                                      2.0 * vx * vy * read<Real>(&flow.bed.hxy[k]) +
-                                      vy * vy * read<Real>(&flow.bed.hyy[k]));
+            gravity =
+                max(Real{}, flow.gravity + vx * vx * read<Real>(&flow.bed.hxx[k]) +
+                                2.0 * vx * vy * read<Real>(&flow.bed.hxy[k]) + vy * vy * read<Real>(&flow.bed.hyy[k]));
     }
-    return {sqrt(vx * vx + vy * vy + rise * rise),
-            flow.density * gravity * cosine2 * read<Real>(&flow.nodes.depth[k])};
+    return {sqrt(vx * vx + vy * vy + rise * rise), flow.density * gravity * cosine2 * read<Real>(&flow.nodes.depth[k])};
 }
 
 void raise(double* peaks, Double4 values) { store(peaks, max(load(peaks), values)); }

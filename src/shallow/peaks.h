@@ -5,21 +5,26 @@ namespace frana {
 
 /// What every node ever saw, updated after each step on nodes near material only.
 struct Peaks {
-    LazyArray<double> depth;             ///< [m]
-    LazyArray<double> speed;             ///< along the smoothed bed, where deeper than a tenth of the footprint depth [m/s]
-    LazyArray<double> pressure;          ///< on the bed, normal [Pa]
+    LazyArray<double> depth;     ///< [m]
+    LazyArray<double> speed;     ///< along the smoothed bed, where deeper than a tenth of the footprint depth [m/s]
+    LazyArray<double> pressure;  ///< on the bed, normal [Pa]
     LazyArray<double> dynamic_pressure;  ///< rho |V|^2, same nodes as speed [Pa]
     LazyArray<double> arrival;           ///< first time deeper than the footprint depth; valid where depth is [s]
 
     explicit Peaks(const TileGrid& grid)
-        : depth(grid.size()), speed(grid.size()), pressure(grid.size()), dynamic_pressure(grid.size()),
+        : depth(grid.size()),
+          speed(grid.size()),
+          pressure(grid.size()),
+          dynamic_pressure(grid.size()),
           arrival(grid.size()) {}
 };
 
 /// THEORY (59): speed along the bed and normal pressure on it at a node, from the velocity (vx, vy) there. Both by the
 /// bed smoothed to `curvature_length`: a column slides over the roughness of single cells, it does not jump up and down
 /// with them. By the raw slope the speed would grow with every finer cell.
-struct BedContact { double speed, pressure; };
+struct BedContact {
+    double speed, pressure;
+};
 BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, double vx, double vy);
 
 /// Takes the present depth and velocity into the peaks. Returns the largest speed along the bed of nodes deeper than a

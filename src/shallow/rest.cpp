@@ -25,13 +25,15 @@ bool at_wall(const Flow& flow, Index tile) {
         const auto holds = [&](Index wall) { return first <= wall + kGhosts && first + kTile > wall - kGhosts; };
         return holds(0) || holds(nodes - 1);
     };
-    return flow.walls && (along(flow.grid.tile_i(tile), flow.grid.nx()) || along(flow.grid.tile_j(tile), flow.grid.ny()));
+    return flow.walls &&
+           (along(flow.grid.tile_i(tile), flow.grid.nx()) || along(flow.grid.tile_j(tile), flow.grid.ny()));
 }
 
 /// Folding adds to wall nodes in place, so what deposits on them deposits anew each step.
 bool may_sleep(const Flow& flow, Index tile) {
     bool near_wall = false;
-    if (flow.walls) for_each_around(flow, tile, [&](Index to, std::size_t) { near_wall = near_wall || at_wall(flow, to); });
+    if (flow.walls)
+        for_each_around(flow, tile, [&](Index to, std::size_t) { near_wall = near_wall || at_wall(flow, to); });
     return !near_wall;
 }
 
@@ -142,8 +144,10 @@ bool some_asleep(const Flow& flow) {
 void note_rest(Flow& flow, Index n, bool at_rest) {
     const Index tile = flow.active.tile[n];
     std::uint8_t& quiet = flow.active.quiet[tile];
-    if (!at_rest || !flow.scheme.sleep) quiet = 0;
-    else if (quiet + 1 < kAsleep || may_sleep(flow, tile)) quiet = std::min<std::uint8_t>(quiet + 1, kAsleep);
+    if (!at_rest || !flow.scheme.sleep)
+        quiet = 0;
+    else if (quiet + 1 < kAsleep || may_sleep(flow, tile))
+        quiet = std::min<std::uint8_t>(quiet + 1, kAsleep);
 }
 
 void choose_gathers(Flow& flow) {

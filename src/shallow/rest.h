@@ -31,14 +31,14 @@ struct Rest {
           active(grid.tiles()),
           known(grid.tiles()) {}
 
-    LazyArray<NodeGroups> moving;     ///< groups with a node in motion after the last grid update
-    LazyArray<NodeGroups> changed;    ///< groups that the last deposit made anew
-    LazyArray<NodeGroups> frozen;       ///< groups that sleeping points touch a second time and that must not change
+    LazyArray<NodeGroups> moving;    ///< groups with a node in motion after the last grid update
+    LazyArray<NodeGroups> changed;   ///< groups that the last deposit made anew
+    LazyArray<NodeGroups> frozen;    ///< groups that sleeping points touch a second time and that must not change
     LazyArray<std::uint8_t> active;  ///< 1: the passes go over this tile
-    LazyArray<std::uint8_t> known;    ///< 1: was on the work list of the last deposit
+    LazyArray<std::uint8_t> known;   ///< 1: was on the work list of the last deposit
     std::vector<std::uint8_t> gathers, deposits;  ///< by position in ActiveTiles
-    bool some_asleep = false;         ///< in the present deposit; otherwise it is of all points
-    std::vector<Index> work_before;   ///< work list of the last deposit
+    bool some_asleep = false;                     ///< in the present deposit; otherwise it is of all points
+    std::vector<Index> work_before;               ///< work list of the last deposit
     std::vector<SavedGroup> saved;
 };
 

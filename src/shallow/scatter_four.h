@@ -7,7 +7,9 @@
 namespace frana {
 
 /// Mass [kg], momentum, and mass times cell times velocity gradient, kl: dv_k / dx_l [kg m/s], of four points.
-struct FourMotions { Double4 mass, px, py, xx, xy, yx, yy; };
+struct FourMotions {
+    Double4 mass, px, py, xx, xy, yx, yy;
+};
 
 /// What a point brings to its three by three nodes. A node's momentum is wx wy (b + i qx + j qy), its force
 /// sx wy fx + wx sy fy: both are one product of wx with a vector of the row, and one of {i wx, sx} with another.
@@ -21,8 +23,9 @@ struct Brought {
 
 /// Mass, momentum and the force -V sigma grad N, the weak form of div(h sigma) (Fois et al. 2024, eq. 21), of four
 /// points. `internal_force`: V sigma / cell [N].
-[[gnu::always_inline]] inline void scatter_four(Nodes& nodes, Index stride, int lanes, const Stencils& sx, const Stencils& sy,
-                                                const FourMotions& q, const PlaneOf<Double4>& internal_force) {
+[[gnu::always_inline]] inline void scatter_four(Nodes& nodes, Index stride, int lanes, const Stencils& sx,
+                                                const Stencils& sy, const FourMotions& q,
+                                                const PlaneOf<Double4>& internal_force) {
     const Double4 zero = {}, m = q.mass;
     Brought brought[4];
     const auto fill = [&](Double4 Brought::*what, Double4 a, Double4 b, Double4 c, Double4 d) {
@@ -54,8 +57,7 @@ struct Brought {
         Double4 value = b.base;
         for (int j = 0; j < 3; ++j, row += stride, mass += stride, value += b.along_y) {
             const Double4 middle = of_row[j] * value, side = wy[j] * b.along_x;
-            for (int i = 0; i < 3; ++i)
-                store(row + i, load(row + i) + (wx[i] * middle + of_column[i] * side));
+            for (int i = 0; i < 3; ++i) store(row + i, load(row + i) + (wx[i] * middle + of_column[i] * side));
             store(mass, load(mass) + wy[j] * b.mass);
         }
     }

@@ -9,7 +9,9 @@
 namespace frana {
 
 template <class Real>
-struct Sheet { Real speed, thickness; };  ///< [m/s], [m]
+struct Sheet {
+    Real speed, thickness;
+};  ///< [m/s], [m]
 
 /// On gentle terrain those of the map. S: the scheme's stencil.
 template <class S>
@@ -26,8 +28,8 @@ Sheet<double> sheet_at(const Flow& flow, const S& sx, const S& sy, double vx, do
 }
 
 /// The same of four points at x, y [cells], with quadratic splines.
-[[gnu::always_inline]] inline Sheet<Double4> sheet_of_four(const Flow& flow, Double4 x, Double4 y, int lanes, Double4 vx,
-                                                           Double4 vy, Double4 depth) {
+[[gnu::always_inline]] inline Sheet<Double4> sheet_of_four(const Flow& flow, Double4 x, Double4 y, int lanes,
+                                                           Double4 vx, Double4 vy, Double4 depth) {
     Double4 bx = {}, by = {};
     if (flow.bed.smooth_x) {
         const Stencils sx(x), sy(y);

@@ -7,7 +7,9 @@ namespace {
 
 /// A face, or four.
 template <class Real>
-struct Face { Real flux{}, sensor{}; };
+struct Face {
+    Real flux{}, sensor{};
+};
 
 template <class Real>
 Real from_0_to_1(Real value) {

@@ -18,8 +18,8 @@ double leave(const Flow& flow, Index p, Index k, PointSums& sums) {
     sums.left_px += m * vx;
     sums.left_py += m * vy;
     const double vz = flow.steep ? vx * flow.bed.slope_x[k] + vy * flow.bed.slope_y[k] : 0.0;
-    const double energy = m * (0.5 * (vx * vx + vy * vy + vz * vz) +
-                               flow.gravity * (flow.bed.z[k] + 0.5 * std::max(depth, 0.0)));
+    const double energy =
+        m * (0.5 * (vx * vx + vy * vy + vz * vz) + flow.gravity * (flow.bed.z[k] + 0.5 * std::max(depth, 0.0)));
     sums.left_energy += energy;
     return energy;
 }
@@ -58,7 +58,8 @@ double stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
     const double dx = c.x[p] - static_cast<double>(i), dy = c.y[p] - static_cast<double>(j);
     double least = 4.0;
     Index to_x = 0, to_y = 0;
-    for (const auto& [a, b] : {std::pair<Index, Index>{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}) {
+    for (const auto& [a, b] :
+         {std::pair<Index, Index>{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}) {
         const double to_edge = 0.5 - static_cast<double>(a) * dx - static_cast<double>(b) * dy;
         const double way = a != 0 && b != 0 ? 1.5 + to_edge : to_edge;  // over corners only where no edge is free
         if (flow.bed.exit[flow.grid.at(i + a, j + b)] == kWall || way >= least) continue;
@@ -107,7 +108,14 @@ double meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums
         const double energy = leave<Real>(flow, p, k, sums);
         if (flow.bed.exit[k] == kNoted)
             flow.departed[static_cast<std::size_t>(omp_get_thread_num())].push_back(
-                {c.id[p], c.x[p], c.y[p], held.vx[p], held.vy[p], held.depth[p], c.mass[p], energy,
+                {c.id[p],
+                 c.x[p],
+                 c.y[p],
+                 held.vx[p],
+                 held.vy[p],
+                 held.depth[p],
+                 c.mass[p],
+                 energy,
                  {held.cxx[p], held.cyx[p], held.cxy[p], held.cyy[p]}});
         c.mass[p] = 0.0;
     } else if (flow.bed.exit[k] == kWall) {

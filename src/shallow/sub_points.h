@@ -19,7 +19,9 @@ void deposit_column(const TileGrid& grid, double* into, const S& sx, const S& sy
 }
 
 /// A column's mass [kg] at its place [cells].
-struct ColumnAt { double x, y, mass; };
+struct ColumnAt {
+    double x, y, mass;
+};
 
 /// THEORY (13): calls body(sx, sy) with the stencils of the four sub-points of a domain, at +- r1/4 +- r2/4
 /// (scheme.sub_point_reach). At open sides they are held inside the domain, so that no mass waits beyond the edge.
@@ -44,9 +46,8 @@ void for_each_sub_point(const Flow& flow, double at_x, double at_y, const Edges&
 template <class S>
 void spread_column(const Flow& flow, double* into, const ColumnAt& column, const Edges& r) {
     const double quarter = 0.25 * column.mass;
-    for_each_sub_point<S>(flow, column.x, column.y, r, [&](const S& sx, const S& sy) {
-        deposit_column(flow.grid, into, sx, sy, quarter);
-    });
+    for_each_sub_point<S>(flow, column.x, column.y, r,
+                          [&](const S& sx, const S& sy) { deposit_column(flow.grid, into, sx, sy, quarter); });
 }
 
 /// Those of a point of the flow.

@@ -6,12 +6,16 @@
 namespace frana {
 
 /// Edges of the domains of four points [cells].
-struct Domains { Double4 r1x, r1y, r2x, r2y; };
+struct Domains {
+    Double4 r1x, r1y, r2x, r2y;
+};
 
 /// Gradients as domains feel them (mpm/domain.h): few points are so narrow that it matters.
-[[gnu::always_inline]] inline void limit_gradients(const Domains& r, Double4& cxx, Double4& cxy, Double4& cyx, Double4& cyy) {
+[[gnu::always_inline]] inline void limit_gradients(const Domains& r, Double4& cxx, Double4& cxy, Double4& cyx,
+                                                   Double4& cyy) {
     constexpr double least = 1.01 / 256.0;  // of 12 times the smaller moment; a little early
-    const Double4 xx = r.r1x * r.r1x + r.r2x * r.r2x, yy = r.r1y * r.r1y + r.r2y * r.r2y, xy = r.r1x * r.r1y + r.r2x * r.r2y;
+    const Double4 xx = r.r1x * r.r1x + r.r2x * r.r2x, yy = r.r1y * r.r1y + r.r2y * r.r2y,
+                  xy = r.r1x * r.r1y + r.r2x * r.r2y;
     const Mask4 wide = (xx >= least) & ((xx - least) * (yy - least) >= xy * xy);
     if (!any(~wide)) return;
     for (int n = 0; n < 4; ++n) {
@@ -23,8 +27,8 @@ struct Domains { Double4 r1x, r1y, r2x, r2y; };
 /// The sub-points of four points of masses m. All of a point's lie within four nodes each way if none is farther than half
 /// a cell; their weights are summed there first. Otherwise nothing is done, and returns false.
 /// `into`: an array on the grid's storage.
-[[gnu::always_inline]] inline bool spread_four(const Flow& flow, double* into, int lanes, Double4 x, Double4 y, Double4 m,
-                                               const Domains& r) {
+[[gnu::always_inline]] inline bool spread_four(const Flow& flow, double* into, int lanes, Double4 x, Double4 y,
+                                               Double4 m, const Domains& r) {
     const double reach = flow.scheme.sub_point_reach;
     const Double4 ax = reach * (r.r1x + r.r2x), bx = reach * (r.r1x - r.r2x);
     const Double4 ay = reach * (r.r1y + r.r2y), by = reach * (r.r1y - r.r2y);

@@ -51,8 +51,7 @@ struct WetRows {
             if (first < 0 || first + kTile + 4 > flow.grid.size()) continue;  // beyond the spare ring: dry
             // Depth and not the flags, which other threads write at the same time.
             const double* depth = flow.nodes.depth.data() + first;
-            for (Index i = 0; i < kTile + 4; ++i)
-                row[j] |= static_cast<std::uint32_t>(depth[i] > 0.0) << i;
+            for (Index i = 0; i < kTile + 4; ++i) row[j] |= static_cast<std::uint32_t>(depth[i] > 0.0) << i;
         }
     }
 };
@@ -85,7 +84,8 @@ std::uint8_t flags_now(const Nodes& nodes, Index k) { return __atomic_load_n(&no
 /// film only, on ground that bends by more than it is deep: on what a grid resolves waves are linear at shores. Nothing where
 /// the ground from q to p is next to level, as on a crest: a lake is as level there as a film.
 double film_bend(const Flow& flow, Index k, Index p, Index q) {
-    const double bend = flow.bed.z[k] - 2.0 * flow.bed.z[p] + flow.bed.z[q], depth = std::max(flow.nodes.depth[p], flow.nodes.depth[q]);
+    const double bend = flow.bed.z[k] - 2.0 * flow.bed.z[p] + flow.bed.z[q],
+                 depth = std::max(flow.nodes.depth[p], flow.nodes.depth[q]);
     if (std::abs(bend) <= depth) return 0.0;
     const double rise = flow.nodes.surface[p] - flow.nodes.surface[q], ground = flow.bed.z[p] - flow.bed.z[q];
     return std::min(1.0, std::abs(bend) / depth - 1.0) * film_share(rise / flow.cell, ground / flow.cell) * bend;
@@ -116,7 +116,8 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
             double e = 2.0 * nodes.surface[p] - nodes.surface[q] + film;
             const double limit = flow.scheme.margin_limit * nodes.depth[p];
             if (known(r)) {
-                const double bend = std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r] - film, -limit, limit);
+                const double bend =
+                    std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r] - film, -limit, limit);
                 e += bend + rests * (std::max(bend, std::min(0.0, nodes.level[k] - e)) - bend);
             }
             const double weight = di == 0 || dj == 0 ? nodes.depth[p] : 0.25 * nodes.depth[p];
@@ -126,7 +127,8 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
     if (weights <= 0.0) return false;
     value = std::max(sum / weights, flow.bed.z_min[k]);
     const double level = nodes.level[k];
-    if (value >= level) value = level;
+    if (value >= level)
+        value = level;
     else  // a heap stays seen
         value = std::max(value, level - emerging(flow, k, value) - (value - flow.bed.z_min[k]));
     return true;
@@ -144,7 +146,8 @@ void shoreline_sweep(Flow& flow, int sweep) {
         const Index tile = flow.shore[static_cast<std::size_t>(n)];
         for_each_node_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
             const std::uint8_t f = nodes.flags[k];
-            if (!(f & kMargin) || f >= kSweep || !inside(i, j) || !extrapolate(flow, k, sweep, nodes.surface[k])) return;
+            if (!(f & kMargin) || f >= kSweep || !inside(i, j) || !extrapolate(flow, k, sweep, nodes.surface[k]))
+                return;
             __atomic_store_n(&nodes.flags[k], static_cast<std::uint8_t>(f | sweep * kSweep), __ATOMIC_RELAXED);
         });
     }

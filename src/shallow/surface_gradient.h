@@ -42,8 +42,9 @@ inline double surface_gradient(const Flow& flow, Index k, Index step, bool wide,
 /// The same for four nodes in a row, all wide.
 [[gnu::always_inline]] inline Double4 wide_gradients(const Flow& flow, Index k, Index step) {
     const double* e = flow.nodes.surface.data() + k;
-    const Double4 none = {}, slope = (8.0 * (load(e + step) - load(e - step)) - (load(e + 2 * step) - load(e - 2 * step))) /
-                                     (12.0 * flow.cell);
+    const Double4 none = {},
+                  slope = (8.0 * (load(e + step) - load(e - step)) - (load(e + 2 * step) - load(e - 2 * step))) /
+                          (12.0 * flow.cell);
     return select(abs(slope) * flow.cell <= kSurfaceRoundOff * abs(load(e)), none, slope);
 }
 

@@ -100,9 +100,7 @@ public:
         return total(flow.active, gathered_);
     }
 
-    PointSums carry(Flow& flow, double dt, double velocity_dt) override {
-        return carry_apart(flow, dt, velocity_dt);
-    }
+    PointSums carry(Flow& flow, double dt, double velocity_dt) override { return carry_apart(flow, dt, velocity_dt); }
 
     void probe(Flow& flow, Probe& out) override {
         const std::size_t count = static_cast<std::size_t>(flow.columns.count());
@@ -124,7 +122,9 @@ public:
     }
 
 private:
-    struct Gathered { double vx, vy, cxx, cxy, cyx, cyy, depth, velocity_share, old_x, old_y; };
+    struct Gathered {
+        double vx, vy, cxx, cxy, cyx, cyy, depth, velocity_share, old_x, old_y;
+    };
 
     /// APIC: C = D^-1 sum N v (x) d, D = cell^2/4 (quadratic) or cell^2/3 (cubic; Jiang et al. 2015);
     /// TPIC: C = sum v (x) grad N.
@@ -167,7 +167,8 @@ private:
         Double4 base = {m * vx, m * vy, 0.0, 0.0}, along_x = {}, along_y = {};
         if constexpr (kAffine) {
             const double mc = m * flow.cell;
-            const Gradient g = spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
+            const Gradient g =
+                spanned({c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p]}, c.r1x[p], c.r1y[p], c.r2x[p], c.r2y[p]);
             along_x = mc * Double4{g.xx, g.yx, 0.0, 0.0};
             along_y = mc * Double4{g.xy, g.yy, 0.0, 0.0};
             base -= sx.offset * along_x + sy.offset * along_y;
@@ -215,7 +216,8 @@ private:
                 row += sx.w[i] * node;
                 if constexpr (kTransfer == Transfer::apic)
                     row_x += (sx.w[i] * (static_cast<double>(i) - sx.offset)) * node;
-                else row_x += sx.slope(i) * node;
+                else
+                    row_x += sx.slope(i) * node;
                 if constexpr (kTransfer == Transfer::flip) {
                     const double share = sx.w[i] * sy.w[j] * motions[k + i].velocity_share;
                     old_x += share * flow.nodes.before[k + i].x;
@@ -226,11 +228,12 @@ private:
             by_x += sy.w[j] * row_x;
             if constexpr (kTransfer == Transfer::apic)
                 by_y += (sy.w[j] * (static_cast<double>(j) - sy.offset)) * row;
-            else by_y += sy.slope(j) * row;
+            else
+                by_y += sy.slope(j) * row;
         }
         const double scale = gradient_scale() / flow.cell;
-        return {value[0], value[1], scale * by_x[0], scale * by_y[0], scale * by_x[1], scale * by_y[1],
-                value[2], value[3], old_x, old_y};
+        return {value[0],        value[1], scale * by_x[0], scale * by_y[0], scale * by_x[1],
+                scale * by_y[1], value[2], value[3],        old_x,           old_y};
     }
 
     /// FLIP: forces add to a point's velocity what they added to the nodes', friction leaves of it the share that it left of
@@ -280,7 +283,8 @@ private:
         const double set_back = meet_side<double>(flow, p, gone_, sums);
         const double speed = std::hypot(vx, vy), m = c.mass[p];
         sums.max_shift = std::max(sums.max_shift, shift + set_back);
-        for (const double part : {vx, vy, g.vx, g.vy, c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p], g.cxx, g.cxy, g.cyx, g.cyy})
+        for (const double part :
+             {vx, vy, g.vx, g.vy, c.cxx[p], c.cxy[p], c.cyx[p], c.cyy[p], g.cxx, g.cxy, g.cyx, g.cyy})
             sums.max_motion = std::max(sums.max_motion, std::abs(part));
         sums.max_speed = std::max(sums.max_speed, speed);
         sums.max_signal = std::max(sums.max_signal, speed + std::sqrt(flow.gravity * std::max(c.depth[p], 0.0)));
@@ -307,7 +311,8 @@ std::unique_ptr<TransferKernel> with_rheology(const Scene& scene) {
             using Law = std::decay_t<decltype(law)>;
             if constexpr (std::is_same_v<S, Cubic>)
                 expect(!scene.scheme.paper_pressure, "cubic shapes with pressure on points");
-            else if (scene.scheme.paper_pressure) return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
+            else if (scene.scheme.paper_pressure)
+                return std::make_unique<Kernel<S, kTransfer, Law, true>>(law);
             return std::make_unique<Kernel<S, kTransfer, Law, false>>(law);
         },
         scene.rheology);
@@ -316,10 +321,14 @@ std::unique_ptr<TransferKernel> with_rheology(const Scene& scene) {
 template <class S>
 std::unique_ptr<TransferKernel> with_transfer(const Scene& scene) {
     switch (scene.scheme.transfer) {
-        case Transfer::tpic: return with_rheology<S, Transfer::tpic>(scene);
-        case Transfer::apic: return with_rheology<S, Transfer::apic>(scene);
-        case Transfer::flip: return with_rheology<S, Transfer::flip>(scene);
-        case Transfer::pic: return with_rheology<S, Transfer::pic>(scene);
+        case Transfer::tpic:
+            return with_rheology<S, Transfer::tpic>(scene);
+        case Transfer::apic:
+            return with_rheology<S, Transfer::apic>(scene);
+        case Transfer::flip:
+            return with_rheology<S, Transfer::flip>(scene);
+        case Transfer::pic:
+            return with_rheology<S, Transfer::pic>(scene);
     }
     throw InternalError("unknown transfer");
 }
@@ -328,16 +337,20 @@ std::unique_ptr<TransferKernel> with_transfer(const Scene& scene) {
 
 std::unique_ptr<TransferKernel> make_plain_transfer(const Scene& scene) {
     switch (scene.scheme.shape) {
-        case Shape::linear: return with_transfer<Linear>(scene);
-        case Shape::quadratic: return with_transfer<Quadratic>(scene);
-        case Shape::cubic: return with_transfer<Cubic>(scene);
+        case Shape::linear:
+            return with_transfer<Linear>(scene);
+        case Shape::quadratic:
+            return with_transfer<Quadratic>(scene);
+        case Shape::cubic:
+            return with_transfer<Cubic>(scene);
     }
     throw InternalError("unknown shape");
 }
 
 std::unique_ptr<TransferKernel> make_transfer(const Scene& scene) {
     auto packed = make_packed_transfer(scene);
-    expect(packed || scene.scheme.precision == Precision::full, "single precision with another scheme than the default");
+    expect(packed || scene.scheme.precision == Precision::full,
+           "single precision with another scheme than the default");
     return packed ? std::move(packed) : make_plain_transfer(scene);
 }
 

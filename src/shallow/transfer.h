@@ -10,19 +10,19 @@ namespace frana {
 
 /// Sums over points, made tile by tile in a fixed order.
 struct PointSums {
-    double mass = 0.0;               ///< [kg]
-    double px = 0.0, py = 0.0;       ///< momentum [kg m/s]
-    double p_abs = 0.0;              ///< sum of m |v| [kg m/s]
-    double max_speed = 0.0;          ///< [m/s]
-    double max_signal = 0.0;         ///< largest |v| + sqrt(g h) [m/s]
-    double max_shift = 0.0;          ///< largest displacement of the step [cells]
-    double max_motion = 0.0;         ///< largest part of v [m/s] or grad v [1/s]; 0: all at rest
-    double stress_power = 0.0;       ///< sum of V sigma : eps [W]
+    double mass = 0.0;          ///< [kg]
+    double px = 0.0, py = 0.0;  ///< momentum [kg m/s]
+    double p_abs = 0.0;         ///< sum of m |v| [kg m/s]
+    double max_speed = 0.0;     ///< [m/s]
+    double max_signal = 0.0;    ///< largest |v| + sqrt(g h) [m/s]
+    double max_shift = 0.0;     ///< largest displacement of the step [cells]
+    double max_motion = 0.0;    ///< largest part of v [m/s] or grad v [1/s]; 0: all at rest
+    double stress_power = 0.0;  ///< sum of V sigma : eps [W]
     double left_mass = 0.0, left_px = 0.0, left_py = 0.0, left_energy = 0.0;  ///< removed in this step
-    double lost_in_holes = 0.0;      ///< of left_mass [kg]
+    double lost_in_holes = 0.0;                                               ///< of left_mass [kg]
     double wall_impulse_x = 0.0, wall_impulse_y = 0.0;  ///< by walls in holes of the terrain [kg m/s]
     Index left_count = 0;
-    Index bad = -1;                  ///< a point whose state is not finite, or that jumped more than 4 cells
+    Index bad = -1;  ///< a point whose state is not finite, or that jumped more than 4 cells
 
     void add(const PointSums& other);
 };
@@ -48,7 +48,9 @@ public:
     /// nothing more. The sums are those of gather, with the deposit's stress power.
     virtual PointSums carry(Flow& flow, double dt, double velocity_dt) = 0;
     /// The points' velocities gathered from the nodes, without moving anything: v and grad v at the points.
-    struct Probe { std::vector<double> vx, vy, cxx, cxy, cyx, cyy, depth; };
+    struct Probe {
+        std::vector<double> vx, vy, cxx, cxy, cyx, cyy, depth;
+    };
     virtual void probe(Flow& flow, Probe& out) = 0;
     /// One byte per point, 1: it left the domain in the last gather. Free for others' use until the next.
     std::vector<std::uint8_t>& gone() { return gone_; }

@@ -106,7 +106,8 @@ public:
 private:
     /// PointSums of the lanes, in a fixed order.
     struct Sums {
-        Double4 mass = {}, px = {}, py = {}, p_abs = {}, speed = {}, signal = {}, shift = {}, motion = {}, stress_power = {};
+        Double4 mass = {}, px = {}, py = {}, p_abs = {}, speed = {}, signal = {}, shift = {}, motion = {},
+                stress_power = {};
         PointSums rare;
         PointSums points() const {
             PointSums s = rare;
@@ -154,8 +155,9 @@ private:
     static void touch_points(const Columns& c, Index first, Index end) {
         const Carried<Real>& h = c.carried<Real>();
         const double* const placed[] = {c.x.data(), c.y.data(), c.mass.data()};
-        const Real* const carried[] = {h.r1x.data(), h.r1y.data(), h.r2x.data(), h.r2y.data(), h.vx.data(), h.vy.data(),
-                                       h.cxx.data(), h.cxy.data(), h.cyx.data(), h.cyy.data(), h.depth.data()};
+        const Real* const carried[] = {h.r1x.data(), h.r1y.data(), h.r2x.data(),  h.r2y.data(),
+                                       h.vx.data(),  h.vy.data(),  h.cxx.data(),  h.cxy.data(),
+                                       h.cyx.data(), h.cyy.data(), h.depth.data()};
         for (Index p = first; p < end; p += kCacheLine / sizeof(double)) {
             for (const double* column : placed) touch(column + p);
             for (const Real* column : carried) touch(column + p);
@@ -163,7 +165,8 @@ private:
     }
 
     static void touch_motions(const Flow& flow, Index n) {
-        for_each_row_of_full(flow.grid, flow.active, n, [&](Index k, Index count) { touch(flow.nodes.motions() + k, count); });
+        for_each_row_of_full(flow.grid, flow.active, n,
+                             [&](Index k, Index count) { touch(flow.nodes.motions() + k, count); });
     }
     static void touch_deposits(const Flow& flow, Index n) {
         for_each_row_of_full(flow.grid, flow.active, n, [&](Index k, Index count) {
@@ -287,7 +290,8 @@ private:
             Double4 gxx = load(&held.cxx[p], lanes), gxy = load(&held.cxy[p], lanes);
             Double4 gyx = load(&held.cyx[p], lanes), gyy = load(&held.cyy[p], lanes);
             limit_gradients({load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
-                             load(&held.r2y[p], lanes)}, gxx, gxy, gyx, gyy);
+                             load(&held.r2y[p], lanes)},
+                            gxx, gxy, gyx, gyy);
             const Double4 first_x = load(&held.vx[p], lanes) - flow.cell * (sx.offset * gxx + sy.offset * gxy);
             const Double4 first_y = load(&held.vy[p], lanes) - flow.cell * (sx.offset * gyx + sy.offset * gyy);
             const Index stride = flow.grid.stride();
@@ -304,7 +308,8 @@ private:
                         const auto more = [&](int i) {
                             const Pair& before = flow.nodes.before[k + i];
                             const double share = flow.carried_share * flow.nodes.motions()[k + i].velocity_share;
-                            return share * (row + static_cast<double>(i) * along_x - Double4{before.x, before.y, 0.0, 0.0});
+                            return share *
+                                   (row + static_cast<double>(i) * along_x - Double4{before.x, before.y, 0.0, 0.0});
                         };
                         const Double4 a = more(0), b = more(1), d = more(2);
                         const Double4 along = reach.wx[0] * a + reach.wx[1] * b + reach.wx[2] * d;
@@ -348,8 +353,10 @@ private:
             return;
         }
         const bool flip = flow.carried_share > 0.0;
-        if (flip) take_motion(held, p, lanes, g, Own(flow, p, lanes), sums);
-        else take_motion(held, p, lanes, g);
+        if (flip)
+            take_motion(held, p, lanes, g, Own(flow, p, lanes), sums);
+        else
+            take_motion(held, p, lanes, g);
         const Double4 x = load(&c.x[p], lanes) + shift_x, y = load(&c.y[p], lanes) + shift_y;
         store(&c.x[p], x, lanes), store(&c.y[p], y, lanes);
         store(&held.depth[p], g.depth, lanes);
@@ -358,8 +365,8 @@ private:
 
         const Double4 speed = flip ? speed_of(held, p, lanes) : sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
         sums.shift = max(sums.shift, shift);
-        sums.motion = max(sums.motion, max(max(abs(g.vx), abs(g.vy)),
-                                           max(max(abs(g.cxx), abs(g.cxy)), max(abs(g.cyx), abs(g.cyy)))));
+        sums.motion = max(
+            sums.motion, max(max(abs(g.vx), abs(g.vy)), max(max(abs(g.cxx), abs(g.cxy)), max(abs(g.cyx), abs(g.cyy)))));
         sums.speed = max(sums.speed, speed);
         sums.signal = max(sums.signal, speed + sqrt(flow.gravity * max(g.depth, zero)));
         Double4 m = load(&c.mass[p], lanes), vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes);

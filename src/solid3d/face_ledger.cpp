@@ -60,9 +60,7 @@ FaceLedger::FaceLedger(const std::vector<Surface>& surfaces, const Vec3& low, co
     }
 }
 
-Vec3 FaceLedger::moment_about(const Face& face, const Vec3& point) {
-    return face.moment - point.cross(face.impulse);
-}
+Vec3 FaceLedger::moment_about(const Face& face, const Vec3& point) { return face.moment - point.cross(face.impulse); }
 
 void FaceLedger::add(const FaceImpulse& part) {
     Face& face = faces_[static_cast<std::size_t>(part.face)];
@@ -76,7 +74,8 @@ void FaceLedger::serialize(Archive& archive) {
         Face& face = faces_[f];
         std::vector<double> numbers;
         for (const Vec3* v : {&face.impulse, &face.moment}) numbers.insert(numbers.end(), v->data(), v->data() + 3);
-        for (const Vec3& impulse : face.patches.impulse) numbers.insert(numbers.end(), impulse.data(), impulse.data() + 3);
+        for (const Vec3& impulse : face.patches.impulse)
+            numbers.insert(numbers.end(), impulse.data(), impulse.data() + 3);
         const std::size_t expected = 3 * (2 + face.patches.impulse.size());
         archive.array("face_" + std::to_string(f), numbers);
         if (numbers.size() != expected) Archive::wrong_length("face", numbers.size(), expected);

@@ -20,7 +20,7 @@ struct Patches {
     Vec3 origin{0, 0, 0}, right{1, 0, 0}, up{0, 1, 0};
     double size = 1.0;                 ///< of a square's edge [m]
     std::array<Index, 2> count{0, 0};  ///< along right and up
-    std::vector<Vec3> impulse;  ///< on the material since the start, at row * count[0] + column [kg m/s]
+    std::vector<Vec3> impulse;         ///< on the material since the start, at row * count[0] + column [kg m/s]
 
     /// The square nearest to a place.
     Index at(const Vec3& x) const;

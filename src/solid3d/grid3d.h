@@ -10,7 +10,7 @@
 
 namespace frana {
 
-constexpr Index kTile3d = 8;                                     ///< nodes along a tile's edge
+constexpr Index kTile3d = 8;                               ///< nodes along a tile's edge
 constexpr Index kTileNodes = kTile3d * kTile3d * kTile3d;  ///< nodes of a tile
 
 /// A box of nodes, node (0, 0, 0) at `origin`.

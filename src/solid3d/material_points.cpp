@@ -5,7 +5,7 @@
 namespace frana {
 
 void Sorter3d::sort(MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone,
-                       ActiveTiles& active) {
+                    ActiveTiles& active) {
     const auto first = [](double x) { return static_cast<Index>(std::floor(x - 0.5)); };
     order_.find_tiles(points.count(), grid.tiles(), [&](Index p) {
         if (!gone.empty() && gone[static_cast<std::size_t>(p)]) return Index{-1};

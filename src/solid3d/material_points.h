@@ -17,8 +17,8 @@ struct MaterialPoints {
     Array rest_volume;              ///< without stress [m^3]
     Array j;                        ///< volume over rest_volume [1]
     std::array<Array, 7> state;     ///< of the law
-    int states = 0;                  ///< of them in use
-    std::vector<std::int64_t> id;    ///< constant through sorting
+    int states = 0;                 ///< of them in use
+    std::vector<std::int64_t> id;   ///< constant through sorting
 
     Index count() const { return static_cast<Index>(mass.size()); }
 
@@ -51,8 +51,7 @@ class Sorter3d {
 public:
     /// Sorts `points`, without those marked in `gone` (one byte a point, may be empty), and rebuilds
     /// `active`: tiles with points in eight colours, and on the work list those and their 26 neighbours.
-    void sort(MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone,
-              ActiveTiles& active);
+    void sort(MaterialPoints& points, const Grid3d& grid, const std::vector<std::uint8_t>& gone, ActiveTiles& active);
     /// Makes `active` whole from its tiles and their ranges.
     static void list_tiles(const Grid3d& grid, ActiveTiles& active);
     Index bytes() const { return order_.bytes(); }

@@ -1,9 +1,9 @@
 #pragma once
 // Up to four mirror particles of points, which give to their nodes side by side. Mirror particles lie anywhere: unlike
 // points they reach their nodes in the grid itself.
+#include "solid3d/grid3d.h"
 #include "solid3d/material_points.h"
 #include "solid3d/point_batch.h"
-#include "solid3d/grid3d.h"
 #include "solid3d/surfaces.h"
 
 namespace frana {
@@ -134,7 +134,7 @@ template <bool bends, class Law>
 /// Adds what one mirror particle gives to its 27 nodes; first: of these, along each axis.
 template <Affine affine>
 [[gnu::always_inline]] inline void contribute(const Grid3d& grid, double* nodes, const std::array<Index, 3>& first,
-                                        const BatchShares<affine, false>& from, int lane) {
+                                              const BatchShares<affine, false>& from, int lane) {
     const Index* const across = grid.place(0, first[0]);
     const Index at[3] = {4 * across[0], 4 * across[1], 4 * across[2]};
     const Double4 w[3] = {all(from.w[0][0][lane]), all(from.w[0][1][lane]), all(from.w[0][2][lane])};

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/clock.h"
 #include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
-#include "base/clock.h"
 
 namespace frana {
 namespace {
@@ -27,8 +27,7 @@ void require_inside(const SolidSeeds& seeds, const GridGeometry3d& grid) {
     for (std::size_t p = 0; p < count; ++p) {
         const Vec3 x = (seeds.position[p] - grid.origin) / grid.cell;
         for (int k = 0; k < 3; ++k)
-            expect(x[k] >= 0.5 && x[k] <= static_cast<double>(grid.nodes[k]) - 1.5,
-                   "points in space lie in the grid");
+            expect(x[k] >= 0.5 && x[k] <= static_cast<double>(grid.nodes[k]) - 1.5, "points in space lie in the grid");
         expect(seeds.mass[p] > 0.0, "points in space have mass");
     }
 }
@@ -100,8 +99,7 @@ void Mpm3d::place(const SolidSeeds& seeds) {
         status_.momentum += mass * seeds.velocity[n];
         moment += mass * seeds.position[n];
         total.add(mass);
-        const double kinetic = 0.5 * mass * speed * speed,
-                     potential = -mass * body_.gravity.dot(seeds.position[n]),
+        const double kinetic = 0.5 * mass * speed * speed, potential = -mass * body_.gravity.dot(seeds.position[n]),
                      stored = q.rest_volume[p] * energy;
         status_.kinetic += kinetic, status_.potential += potential, status_.stored += stored;
         given += kinetic + potential + stored;
@@ -153,8 +151,7 @@ void Mpm3d::mark_near() {
         for (int axis = 0; axis < 3; ++axis) {
             const double first = static_cast<double>(grid.first_node(t[axis]));
             low[axis] = grid.geometry().origin[axis] + h * (first - before);
-            high[axis] =
-                grid.geometry().origin[axis] + h * (first + static_cast<double>(kTile3d) + behind);
+            high[axis] = grid.geometry().origin[axis] + h * (first + static_cast<double>(kTile3d) + behind);
         }
         return surfaces_near(body_.surfaces, low, high, h, 0.0);
     };
@@ -164,8 +161,7 @@ void Mpm3d::mark_near() {
         body_.near_points[static_cast<std::size_t>(n)] = set;
         if (set == 0) continue;
         const std::array<Index, 3> t = grid.tile_place(body_.active.tile[n]);
-        body_.mirror_colour[static_cast<std::size_t>(t[0] % 4 + 4 * (t[1] % 4) + 16 * (t[2] % 4))].push_back(
-            n);
+        body_.mirror_colour[static_cast<std::size_t>(t[0] % 4 + 4 * (t[1] % 4) + 16 * (t[2] % 4))].push_back(n);
     }
     for (std::size_t n = 0; n < body_.active.work.size(); ++n)
         body_.near_nodes[n] = near(body_.active.work[n], 0.0, -1.0);
@@ -223,8 +219,7 @@ void Mpm3d::make_room_for_impulses() {
 double Mpm3d::step_length(double until) const {
     const double h = body_.grid.cell(), viscosity = kernel_->explicit_viscosity();
     double longest = cfl_ * h / (sound_speed_ + status_.max_speed);
-    constexpr double kViscous =
-        0.1;  // of rho h^2 / mu: half of what a slice was stable with, for the third direction
+    constexpr double kViscous = 0.1;  // of rho h^2 / mu: half of what a slice was stable with, for the third direction
     if (viscosity > 0.0) longest = std::min(longest, kViscous * density_ * h * h / viscosity);
     return status_.step_towards(until, longest);
 }
@@ -248,10 +243,11 @@ void Mpm3d::advance(double until) {
     if (notes_ && status_.points != body_.points.count())
         for (Index p = 0; p < body_.points.count(); ++p)
             if (body_.gone[static_cast<std::size_t>(p)]) departed_.push_back(departed(p));
-    if (drift_ > kDriftLimit - 0.5 || status_.points != body_.points.count()) timed_("sort", [&] {
-        if (splits_) split();
-        sort();
-    });
+    if (drift_ > kDriftLimit - 0.5 || status_.points != body_.points.count())
+        timed_("sort", [&] {
+            if (splits_) split();
+            sort();
+        });
 }
 
 /// Sums in the order of the tiles: the same bits for any number of threads.
@@ -324,8 +320,7 @@ Sym3 Mpm3d::stress(Index p) const {
     const MaterialPoints& q = body_.points;
     double state[7];
     for (int n = 0; n < q.states; ++n) state[n] = q.state[n][p];
-    return std::visit([&](const auto& law) { return law.stress(q.j[p], state, gradient(p)); }, law_) *
-           (1.0 / q.j[p]);
+    return std::visit([&](const auto& law) { return law.stress(q.j[p], state, gradient(p)); }, law_) * (1.0 / q.j[p]);
 }
 
 Mat3 Mpm3d::gradient(Index p) const {
@@ -349,8 +344,7 @@ Vec3 Mpm3d::angular_momentum() const {
         sum += body_.points.mass[p] * position(p).cross(velocity(p));
         if (!apic_) continue;
         const Mat3 l = gradient(p);
-        sum += body_.points.mass[p] * 0.25 * h * h *
-               Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1));
+        sum += body_.points.mass[p] * 0.25 * h * h * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1));
     }
     return sum;
 }

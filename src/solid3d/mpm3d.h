@@ -32,20 +32,20 @@ struct SolidSeeds {
 struct GhostParticles {
     SolidSeeds seeds;
     std::vector<Mat3> gradient;  ///< of the velocity at each, dv_k/dx_l at (k, l) [1/s]
-    double time = 0.0;  ///< when it is at its places [s]
-    double span = 0.0;  ///< how long it moves from there, forth or back, at most [s]
+    double time = 0.0;           ///< when it is at its places [s]
+    double span = 0.0;           ///< how long it moves from there, forth or back, at most [s]
 
     bool empty() const { return seeds.mass.empty(); }
 };
 
 /// A point that left, as it was then.
 struct DepartedPoint {
-    double time;    ///< [s]
-    Vec3 position;  ///< [m]
-    Vec3 velocity;  ///< [m/s]
-    Mat3 gradient;  ///< of the velocity, dv_k/dx_l at (k, l) [1/s]
-    double mass;    ///< [kg]
-    double energy;  ///< kinetic, potential and stored, as it was recorded but for round-off [J]
+    double time;      ///< [s]
+    Vec3 position;    ///< [m]
+    Vec3 velocity;    ///< [m/s]
+    Mat3 gradient;    ///< of the velocity, dv_k/dx_l at (k, l) [1/s]
+    double mass;      ///< [kg]
+    double energy;    ///< kinetic, potential and stored, as it was recorded but for round-off [J]
     double pressure;  ///< [Pa]
 };
 
@@ -58,7 +58,7 @@ struct SolidScene {
     /// Points keep their velocities and learn how those of the nodes change (affine FLIP), but for a share of
     /// 1 - exp(-dt / blending) that they take from the nodes (PIC), so that damping is by time, not by step.
     bool flip = false;
-    double blending = 0.0;  ///< [s]
+    double blending = 0.0;          ///< [s]
     double averaging = 0.005;       ///< share of J's mean taken over in a step, of laws that average [1]
     bool split = false;             ///< points that are drawn apart become two (split_points.h)
     double cfl = 0.4;               ///< fraction of a cell that sound and flow may pass in a step [1]
@@ -76,13 +76,13 @@ struct SolidStatus : Clock {
     double energy_left = 0.0;            ///< kinetic, potential and stored, carried out [J]
     double energy_given = 0.0;           ///< the same at the start and with what was added since [J]
     Vec3 weight_impulse{0, 0, 0};        ///< of gravity since the start [kg m/s]
-    Vec3 ghost_impulse{0, 0, 0};        ///< of material beside the points since the start [kg m/s]
+    Vec3 ghost_impulse{0, 0, 0};         ///< of material beside the points since the start [kg m/s]
     Vec3 centre{0, 0, 0};                ///< of mass [m]
     double kinetic = 0.0;                ///< sum of m v^2 / 2 [J]
     double potential = 0.0;              ///< sum of -m gravity . x [J]
     double stored = 0.0;                 ///< of deformation, that unloading gives back [J]
     double friction = 0.0;               ///< lost along surfaces since the start [J]
-    double contact_work = 0.0;                 ///< given by pushes of surfaces and of material beside; impacts lose [J]
+    double contact_work = 0.0;           ///< given by pushes of surfaces and of material beside; impacts lose [J]
     double material = 0.0;               ///< lost to the law since the start: yielding, viscosity [J]
     double speeds = 0.0;                 ///< sum of m |v| [kg m/s]
     double volume = 0.0;                 ///< sum of J V_0 [m^3]
@@ -131,7 +131,7 @@ struct SolidBody {
     /// Material beside the points, which gives to the nodes like them. `real` has it too.
     struct Ghosts {
         GhostParticles material;
-        std::vector<SurfaceSet> near;    ///< surfaces that may show mirror particles of each of its seeds
+        std::vector<SurfaceSet> near;  ///< surfaces that may show mirror particles of each of its seeds
         /// Of the step, seeds and mirror particles: a place [cells], mass and momentum [kg, kg m/s], mass times the
         /// velocity's gradient [kg/s], impulse of the pressure [J s], and the seed's mirror particle where one is cut
         /// (surfaces.h).
@@ -150,15 +150,15 @@ struct SolidBody {
     /// Of transfers that keep velocities. First m J and the momentum that points brought, without mirror particles;
     /// then what v_p / flip_share grows by: the new velocity less flip_share times that brought.
     LazyArray<Node> flip_sums;
-    double flip_share = 0.0;  ///< of the step: exp(-dt / blending)
-    LazyArray<double> mass_j;     ///< sum of w m J, of laws that average
+    double flip_share = 0.0;   ///< of the step: exp(-dt / blending)
+    LazyArray<double> mass_j;  ///< sum of w m J, of laws that average
     std::vector<Surface> surfaces;
-    std::vector<Vec3> impulse;        ///< of each surface on the material since the start [kg m/s]
-    std::vector<Vec3> tile_impulse;   ///< of the step, per tile of the work list and surface
+    std::vector<Vec3> impulse;           ///< of each surface on the material since the start [kg m/s]
+    std::vector<Vec3> tile_impulse;      ///< of the step, per tile of the work list and surface
     std::vector<SurfaceWork> tile_work;  ///< of the step, per tile of the work list
-    std::vector<Vec3> point_impulse;  ///< the same, per particle tile: of points put back
-    SurfaceSet barriers = 0;          ///< which of the surfaces are
-    FaceLedger ledger;                ///< of barriers' faces since the start
+    std::vector<Vec3> point_impulse;     ///< the same, per particle tile: of points put back
+    SurfaceSet barriers = 0;             ///< which of the surfaces are
+    FaceLedger ledger;                   ///< of barriers' faces since the start
     /// Of the step: what barriers gave to the nodes of each tile of the work list, and to the points of each
     /// particle tile that they put back.
     std::vector<std::vector<FaceImpulse>> node_impulses, point_impulses;
@@ -224,9 +224,7 @@ public:
     Index particle_bytes() const { return body_.points.bytes() + sorter_.bytes() + allocated(body_.gone); }
     /// Position of a point [m].
     Vec3 position(Index p) const;
-    Vec3 velocity(Index p) const {
-        return {body_.points.v[0][p], body_.points.v[1][p], body_.points.v[2][p]};
-    }
+    Vec3 velocity(Index p) const { return {body_.points.v[0][p], body_.points.v[1][p], body_.points.v[2][p]}; }
     /// Cauchy stress at a point [Pa].
     Sym3 stress(Index p) const;
     /// Momentum + carried out - given with points - impulses of gravity, surfaces and material beside: round-off [kg m/s]

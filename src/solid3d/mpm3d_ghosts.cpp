@@ -11,8 +11,10 @@ void Mpm3d::set_adjacent(GhostParticles material) {
     expect(seeds.position.size() == count && seeds.velocity.size() == count && seeds.pressure.size() == count &&
                material.gradient.size() == count,
            "material beside points has a place, a velocity with its gradient and a pressure each");
-    if (count > 0) make_room_for_ghosts();
-    else ghosts.reaches.clear(), ghosts.tile_impulse.clear();
+    if (count > 0)
+        make_room_for_ghosts();
+    else
+        ghosts.reaches.clear(), ghosts.tile_impulse.clear();
     ghosts.near.clear();
     ghosts.material = std::move(material);
     for (std::size_t p = 0; p < count; ++p) note_near(p);

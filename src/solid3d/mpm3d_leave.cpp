@@ -9,7 +9,11 @@ DepartedPoint Mpm3d::departed(Index p) const {
     double state[7];
     for (int n = 0; n < q.states; ++n) state[n] = q.state[n][p];
     const double stored = std::visit([&](const auto& law) { return law.stored(q.j[p], state); }, law_);
-    return {status_.time, x, v, gradient(p), q.mass[p],
+    return {status_.time,
+            x,
+            v,
+            gradient(p),
+            q.mass[p],
             q.mass[p] * (0.5 * v.squaredNorm() - body_.gravity.dot(x)) + q.rest_volume[p] * stored,
             -stress(p).trace() / 3.0};
 }

@@ -10,8 +10,8 @@ void serialize_status(Archive& archive, SolidStatus& s) {
     const Archive::Part part(archive, "status");
     archive.number("step", s.step);
     archive.number("points", s.points);
-    std::vector<double*> numbers = {&s.time,    &s.dt,        &s.mass,   &s.mass_left, &s.energy_left,
-                                    &s.kinetic, &s.potential, &s.speeds, &s.volume,    &s.max_speed,
+    std::vector<double*> numbers = {&s.time,    &s.dt,        &s.mass,         &s.mass_left, &s.energy_left,
+                                    &s.kinetic, &s.potential, &s.speeds,       &s.volume,    &s.max_speed,
                                     &s.stored,  &s.friction,  &s.contact_work, &s.material,  &s.energy_given};
     for (Vec3* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &s.weight_impulse, &s.ghost_impulse, &s.centre})
         for (int k = 0; k < 3; ++k) numbers.push_back(&(*v)[k]);

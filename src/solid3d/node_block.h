@@ -23,7 +23,7 @@ public:
     static constexpr Index kPlane = kSide * kRow;  ///< storage between nodes (i, j, k) and (i, j, k + 1)
 
     Double4 node[kSide * kPlane];
-    Double4 flip_sums[kSide * kPlane];       ///< of transfers that keep velocities (mpm3d.h)
+    Double4 flip_sums[kSide * kPlane];  ///< of transfers that keep velocities (mpm3d.h)
     double mass_j[kSide * kPlane + 1];  ///< rows of three are read as four
 
     static bool holds(const Box3d& box) {
@@ -40,8 +40,7 @@ public:
     }
     /// Adds the block to the grid's nodes, four numbers each.
     template <bool averages, bool flip, class Node>
-    void add_to(const Grid3d& grid, const Box3d& box, Node* nodes, Node* flip_nodes,
-                double* mass_of_j) const {
+    void add_to(const Grid3d& grid, const Box3d& box, Node* nodes, Node* flip_nodes, double* mass_of_j) const {
         static_assert(sizeof(Node) == sizeof(Double4), "a node is four numbers");
         each_row(box, [&](Index j, Index k, Index at) {
             const Index row = *grid.place(1, j) + *grid.place(2, k);
@@ -77,8 +76,7 @@ private:
     template <class Visit>
     static void each_row(const Box3d& box, Visit&& visit) {
         for (Index k = 0; k < box.count[2]; ++k)
-            for (Index j = 0; j < box.count[1]; ++j)
-                visit(box.first[1] + j, box.first[2] + k, k * kPlane + j * kRow);
+            for (Index j = 0; j < box.count[1]; ++j) visit(box.first[1] + j, box.first[2] + k, k * kPlane + j * kRow);
     }
 };
 

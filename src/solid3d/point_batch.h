@@ -24,8 +24,7 @@ struct BatchPlace {
         const Int4 i = first[0] - static_cast<std::int32_t>(box.first[0]),
                    j = first[1] - static_cast<std::int32_t>(box.first[1]),
                    k = first[2] - static_cast<std::int32_t>(box.first[2]);
-        return i + j * static_cast<std::int32_t>(NodeBlock::kRow) +
-               k * static_cast<std::int32_t>(NodeBlock::kPlane);
+        return i + j * static_cast<std::int32_t>(NodeBlock::kRow) + k * static_cast<std::int32_t>(NodeBlock::kPlane);
     }
 };
 
@@ -43,7 +42,7 @@ struct BatchContribution {
 /// before the step's impulses, with m J in the place of the mass.
 template <Affine affine, bool flip>
 struct BatchShares {
-    Double4 share[3][3][4];  ///< axis, node, point: mass and momentum
+    Double4 share[3][3][4];           ///< axis, node, point: mass and momentum
     Double4 had[flip ? 3 : 1][3][4];  ///< what points had before
     Double4 w[3][3];
     Double4 mass_j;
@@ -86,7 +85,7 @@ private:
 /// Adds what one point gives to its 27 nodes, the first of them at `at` of the block.
 template <bool averages, Affine affine, bool flip>
 [[gnu::always_inline]] inline void contribute(NodeBlock& block, Index at, const BatchShares<affine, flip>& from,
-                                        int point) {
+                                              int point) {
     const Double4 w[3] = {all(from.w[0][0][point]), all(from.w[0][1][point]), all(from.w[0][2][point])};
     const Double4 x[3] = {from.share[0][0][point], from.share[0][1][point], from.share[0][2][point]};
     const Double4 weights{from.w[0][0][point], from.w[0][1][point], from.w[0][2][point], 0.0};
@@ -105,7 +104,8 @@ template <bool averages, Affine affine, bool flip>
                 const Double4 had = wk * from.had[1][j][point] + wj * from.had[2][k][point];
                 Double4* const flip_sums = block.flip_sums + at + row;
                 for (int i = 0; i < 3; ++i) flip_sums[i] = (flip_sums[i] + wjk * from.had[0][i][point]) + w[i] * had;
-            } else if constexpr (averages) store(first_j + row, load(first_j + row) + wjk * row_j);
+            } else if constexpr (averages)
+                store(first_j + row, load(first_j + row) + wjk * row_j);
         }
     }
 }

@@ -50,8 +50,7 @@ void keep_nearest(Contact* list, int& count, const Contact& contact) {
 Prism::Prism(const Polygons& outline, double top) : level_(top) {
     for (const Polygon& part : outline.parts)
         for (std::size_t r = 0; r < part.rings.size(); ++r) add_ring(part.rings[r], r > 0);
-    if (edges_.empty())
-        throw UserError("a barrier's outline has no polygon; expected one or more with an area");
+    if (edges_.empty()) throw UserError("a barrier's outline has no polygon; expected one or more with an area");
     find_box();
 }
 
@@ -124,9 +123,7 @@ double Prism::highest_top() const {
     return highest;
 }
 
-double Prism::top_at(const Vec2& p) const {
-    return top_.values.empty() ? level_ : bed_height(top_, p.x(), p.y()).z;
-}
+double Prism::top_at(const Vec2& p) const { return top_.values.empty() ? level_ : bed_height(top_, p.x(), p.y()).z; }
 
 /// Half-open in y, so that each side counts once.
 bool Prism::within(const Vec2& p) const {
@@ -182,9 +179,8 @@ int Prism::before_it(const Vec3& x, double reach, Contact* list) const {
         if (!(d >= 0.0) || d >= reach) continue;
         const bool faces =
             (t >= 0.0 || (edge.starts_in && t > -reach && before.normal.dot(from_start) >= 0.0)) &&
-            (t <= edge.length ||
-             (edge.ends_in && t < edge.length + reach &&
-              edges_[static_cast<std::size_t>(edge.after)].normal.dot(p - edge.to()) >= 0.0));
+            (t <= edge.length || (edge.ends_in && t < edge.length + reach &&
+                                  edges_[static_cast<std::size_t>(edge.after)].normal.dot(p - edge.to()) >= 0.0));
         if (faces) keep_nearest(found, count, lifted(x, d, edge.normal, face));
     }
     int kept = 0;
@@ -244,11 +240,9 @@ int Prism::within_it(const Vec3& x, double cell, Contact* list) const {
         return count;
     }
     if (list[0].face == top.face) return count;
-    for (const auto& [in, neighbour] :
-         {std::pair(edge.starts_in, edge.before), std::pair(edge.ends_in, edge.after)}) {
+    for (const auto& [in, neighbour] : {std::pair(edge.starts_in, edge.before), std::pair(edge.ends_in, edge.after)}) {
         const Contact other = side(neighbour);
-        if (in && other.distance < kLongestReach * cell && bends_from(list, count, other.normal))
-            list[count++] = other;
+        if (in && other.distance < kLongestReach * cell && bends_from(list, count, other.normal)) list[count++] = other;
     }
     return count;
 }
@@ -264,8 +258,7 @@ bool Prism::enters(const Vec3& from, const Vec3& to, Entry& entry) const {
         const double share = before / (before - behind);
         const Vec3 at = place(share);
         const double t = edge.along.dot(at.head<2>() - edge.from), seam = kSeam * edge.length;
-        if (share < entry.share && t >= -seam && t <= edge.length + seam &&
-            at.z() < top_at(at.head<2>()) + seam)
+        if (share < entry.share && t >= -seam && t <= edge.length + seam && at.z() < top_at(at.head<2>()) + seam)
             entry = {share, level(edge.normal), static_cast<int>(k)};
     }
     const double above = from.z() - top_at(from.head<2>()), below = to.z() - top_at(to.head<2>());

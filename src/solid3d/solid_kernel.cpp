@@ -9,8 +9,8 @@
 #include "base/touch.h"
 #include "solid3d/batch_sums.h"
 #include "solid3d/mirror_batch.h"
-#include "solid3d/point_batch.h"
 #include "solid3d/mpm3d.h"
+#include "solid3d/point_batch.h"
 
 namespace frana {
 namespace {
@@ -80,7 +80,7 @@ public:
             block.clear<Law::kAverages, flip>(box);
             scatter_points(body, begin, end, dt, box, block);
             block.add_to<Law::kAverages, flip>(body.grid, box, body.nodes.data(), body.flip_sums.data(),
-                                                body.mass_j.data());
+                                               body.mass_j.data());
         });
     }
 
@@ -98,7 +98,7 @@ public:
             for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
                 const Vec3 x = position(body, p);
                 const MirrorParticles mirrors(body.surfaces, body.near_points[static_cast<std::size_t>(n)],
-                                    origin + h * x, h);
+                                              origin + h * x, h);
                 for (const MirrorParticle& mirror : mirrors) {
                     const Vec3 place = (mirror.place - origin) / h;
                     const bool far = (place - x).cwiseAbs().maxCoeff() > kFarthestMirror;
@@ -144,9 +144,9 @@ public:
             const Index first = tile * kTileNodes;
             Vec3* const impulse = body.tile_impulse.data() + n * static_cast<Index>(body.surfaces.size());
             std::fill_n(impulse, body.surfaces.size(), Vec3::Zero());
-            const Given given{
-                impulse, near & body.barriers ? &body.node_impulses[static_cast<std::size_t>(n)] : nullptr,
-                &body.tile_work[static_cast<std::size_t>(n)]};
+            const Given given{impulse,
+                              near & body.barriers ? &body.node_impulses[static_cast<std::size_t>(n)] : nullptr,
+                              &body.tile_work[static_cast<std::size_t>(n)]};
             *given.work = {};
             if (given.faces) given.faces->clear();
             if (!body.ghosts.reaches.empty() && body.ghosts.reaches[static_cast<std::size_t>(n)])
@@ -279,8 +279,8 @@ private:
                 const Vec3 shown = (mirror.place - origin) / h;
                 if ((shown - place).cwiseAbs().maxCoeff() > kFarthestMirror || !felt(body, shown)) continue;
                 ghosts.mirrors.push_back({shown, seeds.mass[p], mirror.motion * momentum,
-                                         mirror.motion * mirror.without_shear(motion) * mirror.turn.transpose(),
-                                         mirror.motion * force * mirror.turn.transpose(), mirror});
+                                          mirror.motion * mirror.without_shear(motion) * mirror.turn.transpose(),
+                                          mirror.motion * force * mirror.turn.transpose(), mirror});
             }
         }
     }
@@ -293,7 +293,8 @@ private:
             at[axis] = body.grid.place(axis, static_cast<Index>(std::floor(place[axis] - 0.5)));
         for (int n = 0; n < 27; ++n) {
             const Index node = at[0][n % 3] + at[1][n / 3 % 3] + at[2][n / 9];
-            if (body.active.in_work[static_cast<std::size_t>(node / kTileNodes)] && body.nodes[node].m > 0.0) return true;
+            if (body.active.in_work[static_cast<std::size_t>(node / kTileNodes)] && body.nodes[node].m > 0.0)
+                return true;
         }
         return false;
     }
@@ -339,8 +340,8 @@ private:
         double* const nodes = &body.nodes.data()->m;
         for (int lane = 0; lane < batch.count; ++lane)
             contribute(body.grid, nodes,
-                 {at.first[0][lane] - kTile3d, at.first[1][lane] - kTile3d, at.first[2][lane] - kTile3d},
-                 shares, lane);
+                       {at.first[0][lane] - kTile3d, at.first[1][lane] - kTile3d, at.first[2][lane] - kTile3d}, shares,
+                       lane);
         batch.count = 0, batch.slides = 0;
     }
 
@@ -351,9 +352,8 @@ private:
         if (!body.grid.holds(first)) return false;
         bool listed = false;
         for (int corner = 0; corner < 8; ++corner)
-            listed |=
-                body.active.in_work[body.grid.tile_of(first[0] + Index{2} * (corner & 1), first[1] + (corner & 2),
-                                                      first[2] + (corner & 4) / 2)] != 0;
+            listed |= body.active.in_work[body.grid.tile_of(first[0] + Index{2} * (corner & 1), first[1] + (corner & 2),
+                                                            first[2] + (corner & 4) / 2)] != 0;
         return listed;
     }
 
@@ -369,16 +369,15 @@ private:
     struct Touch {
         int surface;
         Contact contact;
-        double least;         ///< speed away from the surface that it asks for [m/s]
-        double normal_change = 0.0;    ///< along its normal, never below zero [m/s]
-        Vec3 brake{0, 0, 0};  ///< along the surface [m/s]
+        double least;                ///< speed away from the surface that it asks for [m/s]
+        double normal_change = 0.0;  ///< along its normal, never below zero [m/s]
+        Vec3 brake{0, 0, 0};         ///< along the surface [m/s]
     };
     static constexpr int kMostTouched = 6;
 
     /// Surfaces that mirror particles of points at `x` can reach, with the speeds they ask for: what points and mirror
     /// particles together have along the normal (`mixed`), and behind a surface none into it.
-    static int touched(const SolidBody& body, SurfaceSet near, const Vec3& x, const Vec3& mixed,
-                       Touch* list) {
+    static int touched(const SolidBody& body, SurfaceSet near, const Vec3& x, const Vec3& mixed, Touch* list) {
         int count = 0;
         for (; near != 0 && count < kMostTouched; near &= near - 1) {
             const int s = __builtin_ctz(near);
@@ -396,8 +395,8 @@ private:
 
     /// The same for the faces of a barrier. In one so thin that material of both sides shares a node, neither
     /// side knows what the other's mirror particles ask for: nothing goes into either.
-    [[gnu::noinline]] static int touched_barrier(const SolidBody& body, int s, const Vec3& x,
-                                                 const Vec3& mixed, Touch* list, int count) {
+    [[gnu::noinline]] static int touched_barrier(const SolidBody& body, int s, const Vec3& x, const Vec3& mixed,
+                                                 Touch* list, int count) {
         Contact found[kMostContacts];
         const int faces = contacts(body.surfaces[static_cast<std::size_t>(s)], x, body.grid.cell(), found);
         bool thin = false;
@@ -415,8 +414,7 @@ private:
     /// Pushes that give each surface its speed, or none where the material leaves it faster: by turns
     /// (projected Gauss-Seidel), at once where surfaces are perpendicular to each other.
     static void separate(Touch* list, int count, Vec3& v) {
-        constexpr int kTurns =
-            20;  // a corner of 60 degrees errs by a quarter of the turn before: 1e-12 of the start
+        constexpr int kTurns = 20;  // a corner of 60 degrees errs by a quarter of the turn before: 1e-12 of the start
         for (int turn = 0; turn < (count > 1 ? kTurns : 1); ++turn)
             for (Touch* t = list; t < list + count; ++t) {
                 const double change = std::max(t->least - v.dot(t->contact.normal), -t->normal_change);
@@ -490,9 +488,9 @@ private:
 
     /// Where impulses on the nodes of a tile are recorded.
     struct Given {
-        Vec3* impulse;                 ///< per surface
+        Vec3* impulse;                    ///< per surface
         std::vector<FaceImpulse>* faces;  ///< of barriers, where some are near
-        SurfaceWork* work;             ///< of all surfaces
+        SurfaceWork* work;                ///< of all surfaces
     };
 
     /// The velocity of a node near surfaces. `mixed` is what points and mirror particles gave it: free surfaces take
@@ -523,7 +521,8 @@ private:
             }
             if (body.barriers >> t->surface & 1)
                 list_impulse(body, t->surface, t->contact,
-                          {real.m, x, t->normal_change * normal + t->brake, Vec3::Zero(), Vec3::Zero()}, *given.faces);
+                             {real.m, x, t->normal_change * normal + t->brake, Vec3::Zero(), Vec3::Zero()},
+                             *given.faces);
             else
                 given.impulse[t->surface] += real.m * (t->normal_change * normal + t->brake);
         }
@@ -542,14 +541,14 @@ private:
     /// Records it with the face. Not inlined, like all that barriers need, so that scenes without them have the
     /// bits they had: in place, it would share sums with other code, and so change what is fused there.
     [[gnu::noinline]] static void list_impulse(const SolidBody& body, int surface, const Contact& c,
-                                            const ImpulseAt& source, std::vector<FaceImpulse>& list) {
+                                               const ImpulseAt& source, std::vector<FaceImpulse>& list) {
         const Vec3 impulse = source.mass * source.change;
         if (impulse.isZero(0.0) && source.shift.isZero(0.0)) return;
         const int face = body.ledger.first(surface) + c.face;
         const Patches& patches = body.ledger.faces()[static_cast<std::size_t>(face)].patches;
-        list.push_back({face, patches.at(source.place - c.distance * c.normal), impulse,
-                        (source.place - body.grid.geometry().origin).cross(impulse) +
-                            source.mass * source.shift.cross(source.v)});
+        list.push_back(
+            {face, patches.at(source.place - c.distance * c.normal), impulse,
+             (source.place - body.grid.geometry().origin).cross(impulse) + source.mass * source.shift.cross(source.v)});
     }
 
     /// The same as move_nodes, where material beside the points gave to the nodes: it and they have one velocity, on
@@ -657,8 +656,8 @@ private:
 
     /// Not inlined: into the function that holds the block the compiler would find each node's address
     /// anew, two more instructions a node.
-    [[gnu::noinline]] void scatter_points(const SolidBody& body, Index begin, Index end, double dt,
-                                          const Box3d& box, NodeBlock& block) const {
+    [[gnu::noinline]] void scatter_points(const SolidBody& body, Index begin, Index end, double dt, const Box3d& box,
+                                          NodeBlock& block) const {
         Index p = begin;
         for (; p + 4 <= end; p += 4) {
             read_ahead(body.points, begin, p, end);
@@ -666,8 +665,7 @@ private:
         }
         if (p < end) scatter_batch(body, p, static_cast<int>(end - p), dt, box, block);
     }
-    [[gnu::noinline]] SolidSums gather_points(SolidBody& body, Index tile, double dt,
-                                              const NodeBlock& block) const {
+    [[gnu::noinline]] SolidSums gather_points(SolidBody& body, Index tile, double dt, const NodeBlock& block) const {
         SolidSums sums;
         BatchSums lane_sums;
         const Index begin = body.active.begin[tile], end = body.active.begin[tile + 1];
@@ -681,8 +679,8 @@ private:
         return sums;
     }
 
-    [[gnu::always_inline]] void scatter_batch(const SolidBody& body, Index p, int lanes, double dt,
-                                              const Box3d& box, NodeBlock& block) const {
+    [[gnu::always_inline]] void scatter_batch(const SolidBody& body, Index p, int lanes, double dt, const Box3d& box,
+                                              NodeBlock& block) const {
         const MaterialPoints& q = body.points;
         Double4 x[3], v[3], state[7];
         Mat3x4 gradient;
@@ -708,8 +706,7 @@ private:
     }
 
     [[gnu::always_inline]] void gather_batch(SolidBody& body, Index p, int lanes, double dt, Index tile,
-                                             const NodeBlock& block, BatchSums& lane_sums,
-                                             SolidSums& sums) const {
+                                             const NodeBlock& block, BatchSums& lane_sums, SolidSums& sums) const {
         MaterialPoints& q = body.points;
         Double4 from[3], state[7];
         load_all(q.x.data(), 3, p, lanes, from);
@@ -748,9 +745,7 @@ private:
             return rate * all(d.dt);
         } else {
             const Mat3x4& l = d.gradient;
-            const auto row = [&](int i, int j) {
-                return l(i, 0) * l(j, 0) + l(i, 1) * l(j, 1) + l(i, 2) * l(j, 2);
-            };
+            const auto row = [&](int i, int j) { return l(i, 0) * l(j, 0) + l(i, 1) * l(j, 1) + l(i, 2) * l(j, 2); };
             const SymOf<Double4> turned{row(0, 0), row(1, 1), row(2, 2), row(0, 1), row(1, 2), row(0, 2)};
             return (rate + (turned * all(0.5) + times(rate, rate) * all(-1.0)) * all(d.dt)) * all(d.dt);
         }
@@ -772,8 +767,7 @@ private:
 
     /// Looks whether points are sound, puts them back before surfaces, and records them.
     [[gnu::always_inline]] static void finish(SolidBody& body, Index p, int lanes, BatchPoints& now,
-                                              const Double4* from, Index tile, BatchSums& lane_sums,
-                                              SolidSums& sums) {
+                                              const Double4* from, Index tile, BatchSums& lane_sums, SolidSums& sums) {
         const Mask4 there = now.mass > 0.0;  // not beyond `lanes`
         const Mask4 bad = there & ~is_finite(now, from);
         if (any(bad)) {
@@ -793,8 +787,7 @@ private:
                 const auto axis = static_cast<std::size_t>(k);
                 const Double4 x = load(body.points.x[axis].data() + p, lanes),
                               v = load(body.points.v[axis].data() + p, lanes);
-                gained += 0.5 * (v * v - now.v[k] * now.v[k]) -
-                          body.gravity[k] * body.grid.cell() * (x - now.x[k]);
+                gained += 0.5 * (v * v - now.v[k] * now.v[k]) - body.gravity[k] * body.grid.cell() * (x - now.x[k]);
                 now.x[k] = x, now.v[k] = v;
             }
             sums.contact_work += sum(gained * now.mass);
@@ -883,14 +876,13 @@ private:
             q.v[k][p] += change[k];
         }
         list_impulse(body, s, c, {q.mass[p], x, change, (kHair * h - c.distance) * c.normal, v + change},
-                  body.point_impulses[static_cast<std::size_t>(tile)]);
+                     body.point_impulses[static_cast<std::size_t>(tile)]);
         return true;
     }
 
     /// Where numbers are finite, and points did not run away.
     [[gnu::always_inline]] static Mask4 is_finite(const BatchPoints& now, const Double4* from) {
-        const Double4 shift =
-            max(max(abs(now.x[0] - from[0]), abs(now.x[1] - from[1])), abs(now.x[2] - from[2]));
+        const Double4 shift = max(max(abs(now.x[0] - from[0]), abs(now.x[1] - from[1])), abs(now.x[2] - from[2]));
         const Double4 size = abs(now.v[0]) + abs(now.v[1]) + abs(now.v[2]) + abs(now.volume);
         return (size <= std::numeric_limits<double>::max()) & (shift < kLongestShift);
     }

@@ -141,7 +141,7 @@ void MirrorParticles::cut_off(MirrorParticle& mirror, const Near& near, const Ve
     const Vec3& normal = near.contact.normal;
     if (near.thick < std::numeric_limits<double>::infinity() && mirror.cuts < 2)
         mirror.cut[mirror.cuts++] = {{normal[0], normal[1], normal[2]},
-                                   normal.dot(from) - near.contact.distance - 0.5 * near.thick};
+                                     normal.dot(from) - near.contact.distance - 0.5 * near.thick};
 }
 
 /// Whether surface n meets another one.
@@ -195,15 +195,15 @@ void MirrorParticles::reflect(const Near* near, int count, const MirrorParticle&
         const Vec3& normal = near[n].contact.normal;
         const Mat3 reflection = Mat3::Identity() - 2.0 * normal * normal.transpose();
         MirrorParticle mirror{from.place - 2.0 * near[n].contact.distance * normal,
-                    reflection * from.turn,
-                    near[n].stuck ? Mat3(-from.motion) : Mat3(reflection * from.motion),
-                    Vec3::Zero(),
-                    0.0,
-                    from.held || near[n].stuck,
-                    from.slides,
-                    {from.slide[0], from.slide[1], from.slide[2]},
-                    from.cuts,
-                    {from.cut[0], from.cut[1]}};
+                              reflection * from.turn,
+                              near[n].stuck ? Mat3(-from.motion) : Mat3(reflection * from.motion),
+                              Vec3::Zero(),
+                              0.0,
+                              from.held || near[n].stuck,
+                              from.slides,
+                              {from.slide[0], from.slide[1], from.slide[2]},
+                              from.cuts,
+                              {from.cut[0], from.cut[1]}};
         const bool square = (from.turn * normal - normal).norm() < kSquare;  // to all mirrors before
         if (near[n].bends() && square && !from.held)
             mirror.held_normal = normal, mirror.held_above = near[n].contact.distance;

@@ -31,8 +31,7 @@ struct Surface {
     double friction = 0.0;  ///< Coulomb's coefficient of a free surface [1]
     std::string name;
 
-    static Surface plane(const Vec3& through, const Vec3& normal, Hold hold = Hold::free,
-                         double friction = 0.0);
+    static Surface plane(const Vec3& through, const Vec3& normal, Hold hold = Hold::free, double friction = 0.0);
     static Surface ground(Raster bed, Hold hold = Hold::free, double friction = 0.0);
     static Surface barrier(Prism prism, Hold hold = Hold::free, double friction = 0.0);
     /// The field reaches mirror_reach() cells beyond the solid wherever material comes near.

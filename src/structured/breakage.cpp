@@ -27,13 +27,11 @@ void each_pair(const StructuredFlow& flow, double reach, Visit&& visit) {
     std::sort(places.begin(), places.end(), before);
     for (std::size_t n = 0; n < places.size(); ++n)
         for (const Index strip : {places[n].strip, places[n].strip + 1}) {
-            auto other = strip == places[n].strip
-                             ? places.begin() + static_cast<std::ptrdiff_t>(n) + 1
-                             : std::lower_bound(places.begin(), places.end(),
-                                                Place{strip, places[n].x - reach, 0, 0}, before);
+            auto other = strip == places[n].strip ? places.begin() + static_cast<std::ptrdiff_t>(n) + 1
+                                                  : std::lower_bound(places.begin(), places.end(),
+                                                                     Place{strip, places[n].x - reach, 0, 0}, before);
             for (; other != places.end() && other->strip == strip && other->x < places[n].x + reach; ++other)
-                if (std::hypot(other->x - places[n].x, other->y - places[n].y) < reach)
-                    visit(places[n].p, other->p);
+                if (std::hypot(other->x - places[n].x, other->y - places[n].y) < reach) visit(places[n].p, other->p);
         }
 }
 

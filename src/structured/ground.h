@@ -12,7 +12,7 @@ namespace frana {
 struct GroundGravity {
     double x = 0.0, y = 0.0, across = 9.81;
     double slope_x = 0.0, slope_y = 0.0;
-    double elevation = 0.0;  ///< [m]
+    double elevation = 0.0;           ///< [m]
     bool exit = false, hole = false;  ///< no ground; and that in a hole of the terrain
 };
 using Ground = std::function<GroundGravity(double x, double y)>;

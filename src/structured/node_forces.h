@@ -23,7 +23,7 @@ struct FlatOf {
 template <class Real>
 struct GroundOf {
     FlatOf<Real> plane_gravity;  ///< gravity along the plane [m/s^2]
-    Real across;        ///< and on the ground
+    Real across;                 ///< and on the ground
     FlatOf<Real> slope;
     Real elevation, open;
 
@@ -59,8 +59,8 @@ struct GroundOf {
     const Deposit& d = body.nodes[k];
     return 1.0 / mass * FlatOf<double>{d.px, d.py};
 }
-[[gnu::always_inline]] inline FlatOf<double> stressed_part(const StructuredBody& body, Index k, double mass, double bound,
-                                                           double dt) {
+[[gnu::always_inline]] inline FlatOf<double> stressed_part(const StructuredBody& body, Index k, double mass,
+                                                           double bound, double dt) {
     const Deposit& d = body.nodes[k];
     return brought(body, k, mass) + dt / bound * FlatOf<double>{d.fx, d.fy};
 }
@@ -116,7 +116,8 @@ struct GrainsOf {
     Double4 right, left, above, below, unused;
     unzip(flux, right, above), unzip(flux - 1, left, unused), unzip(flux - flow.grid.stride(), unused, below);
     const Double4 depth = load(&flow.nodes.depth[k]), none = {};
-    return select(depth > 1e-12 * flow.cell, 1.0 / (flow.cell * depth), none) * FlatOf<Double4>{left - right, below - above};
+    return select(depth > 1e-12 * flow.cell, 1.0 / (flow.cell * depth), none) *
+           FlatOf<Double4>{left - right, below - above};
 }
 
 /// What drives grains. As in the depth-averaged flow: the slope of the free surface instead of the ground's, for their
@@ -124,8 +125,8 @@ struct GrainsOf {
 /// -g_z h / 2 div(s K); and the artificial viscosity at bores. Besides the share of their weight that the whole node is
 /// given. `bears`: share of the weight on the bed. [m/s^2]
 template <class Real>
-[[gnu::always_inline]] inline FlatOf<Real> grain_drive(const StructuredBody& body, Index k, const GroundOf<Real>& ground,
-                                                       double bears) {
+[[gnu::always_inline]] inline FlatOf<Real> grain_drive(const StructuredBody& body, Index k,
+                                                       const GroundOf<Real>& ground, double bears) {
     const Flow& flow = body.flow;
     const GrainsOf<Real> grains = grains_at(body, k, Real{});
     const FlatOf<Real> surface = surface_at(flow, k, Real{});
@@ -148,16 +149,17 @@ template <class Real>
 /// A bed law's friction over a step that would change `before` to `driven` (law/bed/node_friction.h); `across`: gravity
 /// that presses on the ground [m/s^2].
 template <class Real, class Law>
-[[gnu::always_inline]] inline FlatOf<Real> braked(const Law& law, const StructuredBody& body, const GroundOf<Real>& ground,
-                                                  Real across, Real depth, const FlatOf<Real>& before,
-                                                  const FlatOf<Real>& driven, const StepTimes& times) {
+[[gnu::always_inline]] inline FlatOf<Real> braked(const Law& law, const StructuredBody& body,
+                                                  const GroundOf<Real>& ground, Real across, Real depth,
+                                                  const FlatOf<Real>& before, const FlatOf<Real>& driven,
+                                                  const StepTimes& times) {
     constexpr double kSlowest = 1e-30;  // below any speed, above the root of the smallest number [m/s]
     const Real none = {}, speed = max(sqrt(driven.dot(driven)), none + kSlowest);
     const FlatOf<Real> unit = 1.0 / speed * driven;
     const Real along = ground.slope.dot(unit), steep = sqrt(1.0 + ground.slope.dot(ground.slope)),
                kappa = sqrt(1.0 + along * along), cosine = 1.0 / steep;
-    const BedStateOf<Real> state{across * steep / kappa, max(depth * cosine, none + 1e-9), kappa, cosine,
-                                 body.gravity, body.density};
+    const BedStateOf<Real> state{
+        across * steep / kappa, max(depth * cosine, none + 1e-9), kappa, cosine, body.gravity, body.density};
     const Real start = max(none, before.dot(unit)), left = speeds_after(law, state, start, speed, times.velocity_dt);
     return mean_if_stopping(law, state, BrakedOf<Real>{start, speed, left, times.velocity_dt, times.drift}) * unit;
 }

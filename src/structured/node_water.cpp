@@ -21,7 +21,8 @@ double water_surface_at(const StructuredBody& body, Index k, double otherwise) {
     const FreeWater& water = *body.water;
     const StructuredBody::Bound& bound = body.bound[k];
     const double open = body.ground[k].open;  // 0 where no column has been near
-    const double depth = open > 0.0 ? (bound.volume - bound.released) / (open * body.grid.cell() * body.grid.cell()) : 0.0;
+    const double depth =
+        open > 0.0 ? (bound.volume - bound.released) / (open * body.grid.cell() * body.grid.cell()) : 0.0;
     return has_water(body, k) ? water.bed[k] + water.h[k] + depth : otherwise;
 }
 
@@ -60,7 +61,8 @@ Met meet_water(const StructuredBody& body, Index k) {
     const StructuredBody::Bound& bound = body.bound[k];
     const StructuredBody::NodeGround& ground = body.ground[k];
     const double area = ground.open * body.grid.cell() * body.grid.cell();
-    Met met{body.node_mass[k] - water.by.material.fluid_density * bound.released, (bound.volume - bound.released) / area};
+    Met met{body.node_mass[k] - water.by.material.fluid_density * bound.released,
+            (bound.volume - bound.released) / area};
     if (!has_water(body, k)) return met;
     met.support = water.support(met.mass / (area * met.depth), met.depth, water.h[k]);
     met.slope = surface_slope(body, k);

@@ -45,8 +45,8 @@ inline double spline_below(double t) {
 inline double covered(const Vec2& low, const Vec2& high, const Vec2& node, double cell) {
     double share = 1.0;
     for (int axis = 0; axis < 2; ++axis)
-        share *= std::max(0.0, spline_below((high[axis] - node[axis]) / cell) -
-                                   spline_below((low[axis] - node[axis]) / cell));
+        share *= std::max(
+            0.0, spline_below((high[axis] - node[axis]) / cell) - spline_below((low[axis] - node[axis]) / cell));
     return share;
 }
 
@@ -56,14 +56,13 @@ constexpr double kLeastOpen = 0.25;
 
 /// Share of a node's shape function that material can fill: outside of all obstacles, of which no three
 /// overlap. Mass over this share is the depth beside a wall. Not below `least`.
-inline double open_share(const std::vector<Obstacle>& obstacles, const Vec2& node, double cell,
-                         double least) {
+inline double open_share(const std::vector<Obstacle>& obstacles, const Vec2& node, double cell, double least) {
     double open = 1.0;
     for (std::size_t a = 0; a < obstacles.size(); ++a) {
         open -= covered(obstacles[a].low, obstacles[a].high, node, cell);
         for (std::size_t b = 0; b < a; ++b)
-            open += covered(obstacles[a].low.cwiseMax(obstacles[b].low),
-                            obstacles[a].high.cwiseMin(obstacles[b].high), node, cell);
+            open += covered(obstacles[a].low.cwiseMax(obstacles[b].low), obstacles[a].high.cwiseMin(obstacles[b].high),
+                            node, cell);
     }
     return std::max(open, least);
 }

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/clock.h"
 #include "base/compensated_sum.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
-#include "base/clock.h"
 
 namespace frana {
 namespace {
@@ -22,11 +22,10 @@ constexpr Index kStepsBetweenSplits = 3;
 void require_inside(const StructuredSeeds& seeds, const GridGeometry& g) {
     for (std::size_t p = 0; p < seeds.x.size(); ++p) {
         const double x = (seeds.x[p] - g.x0) / g.cell, y = (seeds.y[p] - g.y0) / g.cell;
-        expect(x >= 0.0 && y >= 0.0 && x <= static_cast<double>(g.nx) - 1.0 &&
-                   y <= static_cast<double>(g.ny) - 1.0,
+        expect(x >= 0.0 && y >= 0.0 && x <= static_cast<double>(g.nx) - 1.0 && y <= static_cast<double>(g.ny) - 1.0,
                "structured columns start in the grid");
-        expect(seeds.mass[p] > 0.0 && seeds.depth[p] > 0.0 && seeds.cohesion[p] >= 0.0 &&
-                   seeds.damage[p] >= 0.0 && seeds.damage[p] <= 1.0,
+        expect(seeds.mass[p] > 0.0 && seeds.depth[p] > 0.0 && seeds.cohesion[p] >= 0.0 && seeds.damage[p] >= 0.0 &&
+                   seeds.damage[p] <= 1.0,
                "structured columns have mass, depth, cohesion and damage");
     }
 }
@@ -56,7 +55,8 @@ StructuredFlow::StructuredFlow(const StructuredScene& scene)
       sound_speed_(scene.share > 0.0 || !scene.hydrostatic ? body_.law.sound_speed(scene.density) : 0.0),
       hydrostatic_(scene.hydrostatic) {
     flush_denormals_on_all_threads();
-    for (const double m : scene.points.mass) rules_.least_mass = std::max(rules_.least_mass, scene.scheme.split_min_mass * m);
+    for (const double m : scene.points.mass)
+        rules_.least_mass = std::max(rules_.least_mass, scene.scheme.split_min_mass * m);
     place(scene);
     if (body_.grains) begin_grains();
     sort();
@@ -75,8 +75,7 @@ void StructuredFlow::place(const StructuredScene& scene) {
         const std::size_t n = static_cast<std::size_t>(p);
         q.x[p] = (seeds.x[n] - g.x0) / g.cell, q.y[p] = (seeds.y[n] - g.y0) / g.cell;
         q.vx[p] = seeds.vx[n], q.vy[p] = seeds.vy[n];
-        for (Array* column : {&q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.xx, &q.yy, &q.xy, &q.strain})
-            (*column)[p] = 0.0;
+        for (Array* column : {&q.cxx, &q.cxy, &q.cyx, &q.cyy, &q.xx, &q.yy, &q.xy, &q.strain}) (*column)[p] = 0.0;
         q.mass[p] = seeds.mass[n], q.volume[p] = seeds.mass[n] / body_.density;
         q.depth[p] = q.layer[p] = seeds.depth[n];
         q.damage[p] = seeds.damage[n], q.cohesion[p] = seeds.cohesion[n];
@@ -147,7 +146,7 @@ void StructuredFlow::take_tiles() {
     left_ = body_.active.work;
     lists_.list_tiles(body_.grid, body_.active);
     left_.reserve(body_.active.work.capacity());  // grows with the list, not a sort later
-    for (const Index tile : left_) {  // what nobody clears any more must not be seen when columns come back
+    for (const Index tile : left_) {              // what nobody clears any more must not be seen when columns come back
         if (body_.active.in_work[static_cast<std::size_t>(tile)]) continue;
         const Index first = body_.grid.at(body_.grid.tile_i(tile), body_.grid.tile_j(tile));
         for (Index j = 0; j < kTile; ++j) {
@@ -173,16 +172,14 @@ void StructuredFlow::learn_ground() {
                 const GroundGravity ground = ground_(g.x(i), g.y(j));
                 body_.has_exits = body_.has_exits || ground.exit;
                 const double open = open_share(body_.obstacles, {g.x(i), g.y(j)}, g.cell, kLeastOpen);
-                body_.ground[body_.grid.at(i, j)] = {ground.x,       ground.y,         ground.across, ground.slope_x,
-                                                   ground.slope_y, ground.elevation, open,
-                                                   ground.hole ? 2.0 : ground.exit ? 1.0 : 0.0};
+                body_.ground[body_.grid.at(i, j)] = {
+                    ground.x,       ground.y,         ground.across, ground.slope_x,
+                    ground.slope_y, ground.elevation, open,          ground.hole ? 2.0 : ground.exit ? 1.0 : 0.0};
             }
     }
 }
 
-double StructuredFlow::step_length(double until) const {
-    return status_.step_towards(until, longest_step());
-}
+double StructuredFlow::step_length(double until) const { return status_.step_towards(until, longest_step()); }
 
 /// Sound and flow pass part of a cell. Nothing here bounds the step for grains alone: their earth pressure
 /// grows so fast with the rate of squeezing (earth_pressure.h) that it needs steps below cell^2 / (5 (Kp -
@@ -237,10 +234,10 @@ void StructuredFlow::accumulate() {
     for (const StructuredSums& tile : body_.sums) {
         all.mass += tile.mass, all.kinetic += tile.kinetic, all.damaged += tile.damaged;
         all.max_speed2 = std::max(all.max_speed2, tile.max_speed2),
-        all.max_wave = std::max(all.max_wave, tile.max_wave), all.max_signal = std::max(all.max_signal, tile.max_signal);
+        all.max_wave = std::max(all.max_wave, tile.max_wave),
+        all.max_signal = std::max(all.max_signal, tile.max_signal);
         all.speeds += tile.speeds, all.stored += tile.stored, all.worked += tile.worked;
-        all.momentum += tile.momentum, all.left_mass += tile.left_mass,
-            all.left_momentum += tile.left_momentum;
+        all.momentum += tile.momentum, all.left_mass += tile.left_mass, all.left_momentum += tile.left_momentum;
         all.left_energy += tile.left_energy, all.released += tile.released;
         all.left_confined += tile.left_confined, all.lost_in_holes += tile.lost_in_holes;
         if (tile.bad >= 0) all.bad = tile.bad;

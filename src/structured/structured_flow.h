@@ -7,13 +7,13 @@
 
 #include "base/clock.h"
 #include "law/bed/laws.h"
+#include "law/free_water.h"
 #include "law/structured_law.h"
-#include "observe/frame.h"
-#include "shallow/flow.h"
 #include "mpm/halving.h"
 #include "mpm/step_clock.h"
+#include "observe/frame.h"
+#include "shallow/flow.h"
 #include "structured/earth_pressure.h"
-#include "law/free_water.h"
 #include "structured/ground.h"
 #include "structured/obstacle.h"
 #include "structured/structured_points.h"
@@ -44,16 +44,16 @@ struct StructuredScene {
     Ground ground = terrain_ground([](double, double) { return Vec2(0.0, 0.0); });
     double density = 1700.0;  ///< [kg/m^3]
     ColumnMaterial material;
-    double share = 1.0;         ///< of the solids that have structure, undamaged [1]
-    double gravity = 9.81;      ///< [m/s^2]
-    bool hydrostatic = false;   ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
+    double share = 1.0;        ///< of the solids that have structure, undamaged [1]
+    double gravity = 9.81;     ///< [m/s^2]
+    bool hydrostatic = false;  ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
     /// The bed under the grains' surface, on the map, asked for when there are grains. None: a plane that the columns'
     /// coordinates lie in, and gravity along it by the ground.
     std::function<BedGeometry(const TileGrid&)> bed;
-    Scheme scheme;              ///< of the grains' surface and of splitting them
+    Scheme scheme;  ///< of the grains' surface and of splitting them
     BedLaw bed_law;
-    double confined = 0.0;      ///< share of the volume that is water within the structure [1]
-    double cfl = 0.4;           ///< fraction of a cell that sound and flow may pass in a step [1]
+    double confined = 0.0;  ///< share of the volume that is water within the structure [1]
+    double cfl = 0.4;       ///< fraction of a cell that sound and flow may pass in a step [1]
     std::vector<Obstacle> obstacles;
     StructuredSeeds points;
 };
@@ -83,20 +83,19 @@ struct StructuredTally {
 /// Sums over the points after a step.
 struct StructuredStatus : Clock {
     Index points = 0;
-    double mass = 0.0, mass_left = 0.0;  ///< in the grid; gone through its sides [kg]
-    double lost_in_holes = 0.0;          ///< of what is gone, in holes of the terrain [kg]
-    double released = 0.0;               ///< water given to the nodes since the start [m^3]
-    double confined_left = 0.0;          ///< water in columns that have left [m^3]
-    Vec2 momentum{0, 0}, momentum_left{0, 0},
-        momentum_given{0, 0};  ///< present, carried out, at the start [kg m/s]
+    double mass = 0.0, mass_left = 0.0;                              ///< in the grid; gone through its sides [kg]
+    double lost_in_holes = 0.0;                                      ///< of what is gone, in holes of the terrain [kg]
+    double released = 0.0;                                           ///< water given to the nodes since the start [m^3]
+    double confined_left = 0.0;                                      ///< water in columns that have left [m^3]
+    Vec2 momentum{0, 0}, momentum_left{0, 0}, momentum_given{0, 0};  ///< present, carried out, at the start [kg m/s]
     StructuredImpulses impulse;
-    double kinetic = 0.0;    ///< sum of m v^2 / 2, in the plane of the columns [J]
-    double damage = 0.0;     ///< mean over the mass [1]
-    double max_speed = 0.0;  ///< [m/s]
-    double speeds = 0.0;     ///< sum of m |v| [kg m/s]
-    double bed_kinetic = 0.0, potential = 0.0;  ///< of the nodes, along the bed and above z = 0 [J]
-    double stored = 0.0;                        ///< elastic, of the structure in the plane [J]
-    double friction = 0.0, obstacle_work = 0.0;        ///< lost at the bed and to obstacles since the start [J]
+    double kinetic = 0.0;                        ///< sum of m v^2 / 2, in the plane of the columns [J]
+    double damage = 0.0;                         ///< mean over the mass [1]
+    double max_speed = 0.0;                      ///< [m/s]
+    double speeds = 0.0;                         ///< sum of m |v| [kg m/s]
+    double bed_kinetic = 0.0, potential = 0.0;   ///< of the nodes, along the bed and above z = 0 [J]
+    double stored = 0.0;                         ///< elastic, of the structure in the plane [J]
+    double friction = 0.0, obstacle_work = 0.0;  ///< lost at the bed and to obstacles since the start [J]
     double dragged = 0.0;      ///< lost by columns and water to the drag between them since the start [J]
     Index outrun = 0;          ///< nodes and steps in which drag was too weak for xi, which was left out there
     double worked = 0.0;       ///< by the strains of the structure since the start: stored, or lost by yielding [J]
@@ -123,7 +122,7 @@ struct StructuredBody {
     ActiveTiles& active = flow.active;
     ColumnLaw law;
     StructuredPoints points;
-    Deposit* nodes = flow.nodes.deposits();   ///< momentum, and the force of the structure's stress
+    Deposit* nodes = flow.nodes.deposits();      ///< momentum, and the force of the structure's stress
     double* node_mass = flow.nodes.mass.data();  ///< [kg]
     struct alignas(32) GrainPressure {
         double xx, yy, xy, share;  ///< sums of w m (1 - f) K and w m (1 - f), of grains
@@ -133,8 +132,8 @@ struct StructuredBody {
     };
     struct NodeGround {
         double x, y, across, slope_x, slope_y, elevation;  ///< of the ground
-        double open;  ///< share of the node that is open, 0 where nobody asked yet
-        double exit;  ///< 1 where there is no ground, 2 in a hole of the terrain
+        double open;                                       ///< share of the node that is open, 0 where nobody asked yet
+        double exit;                                       ///< 1 where there is no ground, 2 in a hole of the terrain
     };
     LazyArray<GrainPressure> grain_pressure;
     LazyArray<Moved> moved;
@@ -145,16 +144,16 @@ struct StructuredBody {
     };
     LazyArray<Bound> bound;
     std::optional<FreeWater> water;
-    std::vector<std::uint8_t> gone;            ///< per point: left the grid in this step
-    std::vector<StructuredSums> sums;          ///< of the step, per particle tile
-    std::vector<StructuredTally> tallies;      ///< of the step, per tile of the work list
+    std::vector<std::uint8_t> gone;        ///< per point: left the grid in this step
+    std::vector<StructuredSums> sums;      ///< of the step, per particle tile
+    std::vector<StructuredTally> tallies;  ///< of the step, per tile of the work list
     std::vector<Obstacle> obstacles;
     Rankine rankine;
     BedLaw bed_law;
     double density, share, gravity;
-    bool grains = false;  ///< some column is broken or has grains beside its structure
+    bool grains = false;     ///< some column is broken or has grains beside its structure
     bool has_exits = false;  ///< some node that was asked for has no ground
-    bool mapped = false;  ///< coordinates are on the map, and flow has the bed; otherwise they lie in its plane
+    bool mapped = false;     ///< coordinates are on the map, and flow has the bed; otherwise they lie in its plane
 };
 
 /// How long forces act in a step, and how long columns then drift [s]. With grains velocities stand half a step behind the
@@ -247,9 +246,9 @@ private:
     StructuredStatus status_;
     double cfl_, sound_speed_;
     bool hydrostatic_;
-    double wave_ = 0.0;   ///< largest speed with which surfaces and columns run, both ways of the grid at once [m/s]
+    double wave_ = 0.0;    ///< largest speed with which surfaces and columns run, both ways of the grid at once [m/s]
     double signal_ = 0.0;  ///< the same along one way: what the depth-averaged flow's steps go by [m/s]
-    double drift_ = 0.0;  ///< since the last sort [cells]
+    double drift_ = 0.0;   ///< since the last sort [cells]
 };
 
 }  // namespace frana

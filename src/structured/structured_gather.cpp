@@ -45,8 +45,7 @@ struct Batch {
     transpose(taken[0].mean, taken[1].mean, taken[2].mean, taken[3].mean, mean);
     transpose(taken[0].slope_x, taken[1].slope_x, taken[2].slope_x, taken[3].slope_x, x);
     transpose(taken[0].slope_y, taken[1].slope_y, taken[2].slope_y, taken[3].slope_y, y);
-    return {mean[0],         mean[1],         mean[2],         mean[3],
-            per_cell * x[0], per_cell * x[1], per_cell * y[0], per_cell * y[1]};
+    return {mean[0], mean[1], mean[2], mean[3], per_cell * x[0], per_cell * x[1], per_cell * y[0], per_cell * y[1]};
 }
 
 /// An edge of four domains goes with the material.
@@ -59,8 +58,7 @@ struct Batch {
 /// Stress, damage and the column's own depth, which changes with its area: exp(-div dt) to second order.
 /// Returns the work of the strains on the structure [J].
 template <bool kWater, bool kHexagon>
-[[gnu::always_inline]] inline Double4 strain_four(StructuredBody& body, const Batch& b, Index p, int lanes,
-                                               double dt) {
+[[gnu::always_inline]] inline Double4 strain_four(StructuredBody& body, const Batch& b, Index p, int lanes, double dt) {
     StructuredPoints& q = body.points;
     const Double4 half = (0.5 * dt) * (b.cxx + b.cyy), damage = load(&q.damage[p], lanes);
     const Double4 depth = load(&q.depth[p], lanes) * ((1.0 - half) / (1.0 + half));
@@ -147,8 +145,7 @@ double energy_of(const StructuredBody& body, Index p) {
 /// Columns leave beyond the outer nodes, and where there is no ground: whether this one does, which is then recorded.
 bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
     const StructuredPoints& q = body.points;
-    const bool inside = q.x[p] >= 0.0 && q.y[p] >= 0.0 &&
-                        q.x[p] <= static_cast<double>(body.grid.nx()) - 1.0 &&
+    const bool inside = q.x[p] >= 0.0 && q.y[p] >= 0.0 && q.x[p] <= static_cast<double>(body.grid.nx()) - 1.0 &&
                         q.y[p] <= static_cast<double>(body.grid.ny()) - 1.0;
     if (inside && !(ground_below(body, p).exit > 0.0)) return false;
     const double m = q.mass[p];
@@ -225,14 +222,12 @@ StructuredSums gather_tile(StructuredBody& body, Index n, double dt) {
     constexpr Index kBatch = 128;
     const Index end = body.active.begin[n + 1];
     Sums sums;
-    for_each_row_of_full(body.grid, body.active, n,
-                         [&](Index k, Index count) { touch(body.moved.data() + k, count); });
+    for_each_row_of_full(body.grid, body.active, n, [&](Index k, Index count) { touch(body.moved.data() + k, count); });
     for (Index first = body.active.begin[n]; first < end; first += kBatch) {
         const Index last = std::min(first + kBatch, end);
         touch_columns<kGrains>(body.points, first, last);
-        for_each_four(first, last, [&](Index p, int lanes) {
-            gather_columns<kGrains, kWater, kHexagon>(body, p, lanes, dt, sums);
-        });
+        for_each_four(first, last,
+                      [&](Index p, int lanes) { gather_columns<kGrains, kWater, kHexagon>(body, p, lanes, dt, sums); });
     }
     return sums.columns();
 }

@@ -2,8 +2,8 @@
 // Structured solids and their free water seen from above: depth and velocity on the nodes, and what each node ever saw.
 #include "mpm/node_peak.h"
 #include "observe/archive.h"
-#include "structured/structured_flow.h"
 #include "shallow/bed_geometry.h"
+#include "structured/structured_flow.h"
 #include "water/water_flow.h"
 
 namespace frana {

@@ -89,7 +89,8 @@ template <class Real, class Law>
     const StructuredBody& body = step.body;
     TallyOf<Real>& tally = step.of(Real{});
     const FlatOf<Real> free = body.obstacles.empty() ? node.driven : stopped(body, k, node.driven);
-    const FlatOf<Real> left = braked(step.law, body, ground, node.across, node.law_depth, node.before, free, step.times);
+    const FlatOf<Real> left =
+        braked(step.law, body, ground, node.across, node.law_depth, node.before, free, step.times);
     tally.friction += node.mass * (left - free);
     // By the velocity that is left: what rests under stress and friction loses nothing.
     tally.braked += node.mass * ground.along(free - left, left);

@@ -43,7 +43,7 @@ Double4 bound_of(const StructuredBody& body, Index p) {
 
 /// What the grains of four columns give their nodes, column by column: m (1 - f) K, m (1 - f). False if none has any.
 [[gnu::always_inline]] inline bool grain_pressures(const StructuredBody& body, Index p, int lanes, Double4 grains,
-                                                Double4 thrust[4]) {
+                                                   Double4 thrust[4]) {
     if (!any(grains != 0.0)) return false;
     const StructuredPoints& q = body.points;
     const Sym2Of<Double4> rate{load(&q.cxx[p], lanes), load(&q.cyy[p], lanes),
@@ -65,7 +65,8 @@ template <bool kWater>
     if constexpr (kWater) mass = body.density * (load(&q.volume[p], lanes) - load(&q.released[p], lanes));
     if (!at_side && spread_four(body.flow, body.flow.nodes.column_mass.data(), lanes, x, y, mass, r)) return;
     for (int n = 0; n < lanes; ++n)
-        spread_column<Quadratic>(body.flow, body.flow.nodes.column_mass.data(), {x[n], y[n], mass[n]}, edges_of(q, p + n));
+        spread_column<Quadratic>(body.flow, body.flow.nodes.column_mass.data(), {x[n], y[n], mass[n]},
+                                 edges_of(q, p + n));
 }
 
 /// Four columns at once.
@@ -132,9 +133,8 @@ void scatter_tile(StructuredBody& body, Index n) {
     for (Index first = body.active.begin[n]; first < end; first += kBatch) {
         const Index last = std::min(first + kBatch, end);
         touch_columns<kGrains>(body.points, first, last);
-        for_each_four(first, last, [&](Index p, int lanes) {
-            scatter_columns<kGrains, kWater>(body, p, lanes, at_side, marks);
-        });
+        for_each_four(first, last,
+                      [&](Index p, int lanes) { scatter_columns<kGrains, kWater>(body, p, lanes, at_side, marks); });
     }
     if constexpr (kGrains) body.flow.reach[tile] = marks.reach(kReachBefore, kReachAfter);
 }
@@ -151,8 +151,7 @@ void clear_nodes(StructuredBody& body) {
                 std::fill_n(&body.grain_pressure[first + j * body.grid.stride()], kTile, GrainPressure{});
                 std::fill_n(&body.flow.nodes.column_mass[first + j * body.grid.stride()], kTile, 0.0);
             }
-            if (body.water)
-                std::fill_n(&body.bound[first + j * body.grid.stride()], kTile, StructuredBody::Bound{});
+            if (body.water) std::fill_n(&body.bound[first + j * body.grid.stride()], kTile, StructuredBody::Bound{});
         }
     });
 }

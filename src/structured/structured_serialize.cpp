@@ -16,7 +16,8 @@ void serialize_status(Archive& archive, StructuredStatus& s) {
                                     &s.stored,   &s.friction,  &s.obstacle_work, &s.worked,        &s.energy_left,
                                     &s.released, &s.dragged,   &s.confined_left, &s.lost_in_holes, &s.flow_steps};
     StructuredImpulses& i = s.impulse;
-    for (Vec2* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &i.weight, &i.pressure, &i.friction, &i.obstacles, &i.water})
+    for (Vec2* v : {&s.momentum, &s.momentum_left, &s.momentum_given, &i.weight, &i.pressure, &i.friction, &i.obstacles,
+                    &i.water})
         for (int k = 0; k < 2; ++k) numbers.push_back(&(*v)[k]);
     archive.numbers("sums", numbers);
 }

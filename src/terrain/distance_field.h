@@ -24,8 +24,7 @@ struct DistanceField {
         return distance[static_cast<std::size_t>((k * nodes[1] + j) * nodes[0] + i)];
     }
     Vec3 place(Index i, Index j, Index k) const {
-        return origin +
-               spacing * Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
+        return origin + spacing * Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
     }
     Vec3 end() const { return place(nodes[0] - 1, nodes[1] - 1, nodes[2] - 1); }
 

@@ -71,9 +71,10 @@ Holes holes_of(const Raster& bed) {
 
 std::vector<std::string> remarks_on_lost(double lost, double all) {
     if (!(lost > 0.0)) return {};
-    return {fmt::format("boundary.holes: {:.6g} kg, {:.3g} % of the mass, left where the elevation model has no data inside "
-                        "the terrain; fill it (gdal_fillnodata.py), or make walls of its holes (boundary.holes = \"wall\")",
-                        lost, 100.0 * lost / all)};
+    return {fmt::format(
+        "boundary.holes: {:.6g} kg, {:.3g} % of the mass, left where the elevation model has no data inside "
+        "the terrain; fill it (gdal_fillnodata.py), or make walls of its holes (boundary.holes = \"wall\")",
+        lost, 100.0 * lost / all)};
 }
 
 }  // namespace frana

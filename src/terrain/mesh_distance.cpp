@@ -82,9 +82,7 @@ private:
         Vec3 low, high;
         std::size_t first, last;  ///< of a leaf: its triangles in order_; of others last is 0
         std::size_t second;       ///< of others: the other child; one is the next box
-        double square_to(const Vec3& x) const {
-            return (low - x).cwiseMax(x - high).cwiseMax(0.0).squaredNorm();
-        }
+        double square_to(const Vec3& x) const { return (low - x).cwiseMax(x - high).cwiseMax(0.0).squaredNorm(); }
     };
 
     void take_normals(const TriangleMesh& mesh) {

@@ -33,16 +33,15 @@ template <class Real>
 struct FaceFlux {
     Real mass;           ///< [m^2/s]
     Real along, across;  ///< momentum that the mass carries [m^3/s^2]
-    Real low, high;  ///< all other momentum through the face, less the pressure g h^2 / 2 of the water that
-                     ///< stands there after reconstruction, on either side [m^3/s^2]
+    Real low, high;      ///< all other momentum through the face, less the pressure g h^2 / 2 of the water that
+                         ///< stands there after reconstruction, on either side [m^3/s^2]
 };
 
 /// The flux between two sides under gravity g [m/s^2]. Water sees the higher ground of both sides: what
 /// stands level does not flow, to the last bit, and a dry side higher than the water is a wall. Speeds of the
 /// waves are Davis's, beside dry ground those of a dam break.
 template <class Real>
-[[gnu::always_inline]] inline FaceFlux<Real> face_flux(const FaceSide<Real>& l, const FaceSide<Real>& r,
-                                                       Real g) {
+[[gnu::always_inline]] inline FaceFlux<Real> face_flux(const FaceSide<Real>& l, const FaceSide<Real>& r, Real g) {
     const Real none = {};
     const Real hl = max(none, l.depth - max(none, r.ground - l.ground)),
                hr = max(none, r.depth - max(none, l.ground - r.ground));

@@ -8,8 +8,7 @@ namespace {
 /// What lies beyond a side, from the cells before it: `inside` is the last cell, `step` leads into the grid.
 /// A wall is a mirror, and so is an open side that water does not leave by. Where it does, the ground goes on
 /// as it falls, or level, with water as deep and as fast. `room`: cells the block has.
-void beyond(WaterBlock& block, Index inside, Index step, WaterSide side, double* normal, double outward,
-            Index room) {
+void beyond(WaterBlock& block, Index inside, Index step, WaterSide side, double* normal, double outward, Index room) {
     const auto ground = [&](Index k) { return block.surface[k] - block.depth[k]; };
     const double fall = std::max(0.0, ground(inside + step) - ground(inside));
     const bool leaves = side == WaterSide::open && outward * normal[inside] > 0.0;
@@ -24,10 +23,8 @@ void beyond(WaterBlock& block, Index inside, Index step, WaterSide side, double*
     }
 }
 
-void load_row(const WaterBody& body, const WaterFields& from, const TilePart& part, Index b,
-              WaterBlock& block) {
-    const Index a0 = std::max<Index>(0, kHalo - part.i0),
-                a1 = std::min(kRows, kHalo + body.grid.nx() - part.i0);
+void load_row(const WaterBody& body, const WaterFields& from, const TilePart& part, Index b, WaterBlock& block) {
+    const Index a0 = std::max<Index>(0, kHalo - part.i0), a1 = std::min(kRows, kHalo + body.grid.nx() - part.i0);
     const Index first = body.grid.at(part.i0 - kHalo, part.j0 + b - kHalo), row = b * kRow;
     if (a1 < kRows)
         for (double* cells : {block.depth, block.surface, block.u, block.v, block.normal_gravity})
@@ -53,8 +50,7 @@ TilePart part_of(const TileGrid& grid, Index tile) {
 }
 
 bool load_block(const WaterBody& body, const WaterFields& from, const TilePart& part, WaterBlock& block) {
-    const Index b0 = std::max<Index>(0, kHalo - part.j0),
-                b1 = std::min(kRows, kHalo + body.grid.ny() - part.j0);
+    const Index b0 = std::max<Index>(0, kHalo - part.j0), b1 = std::min(kRows, kHalo + body.grid.ny() - part.j0);
     bool wet = false;
     for (Index b = b0; b < b1; ++b) {
         load_row(body, from, part, b, block);

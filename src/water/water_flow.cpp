@@ -6,9 +6,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/flush_denormals.h"
-#include "base/clock.h"
 
 namespace frana {
 namespace {
@@ -195,10 +195,11 @@ WaterSums WaterFlow::summed() const {
         if (tile.bad >= 0) all.bad = tile.bad;
     }
     if (all.bad >= 0)
-        throw NumericsError(fmt::format("free water, step {}, t = {:.6g} s, dt = {:.3g} s: node ({}, {}) has numbers "
-                                        "that are not finite, or a negative depth; a smaller cfl may help",
-                                        status_.step, status_.time, status_.dt,
-                                        all.bad % body_.grid.stride() - kTile, all.bad / body_.grid.stride() - kTile));
+        throw NumericsError(
+            fmt::format("free water, step {}, t = {:.6g} s, dt = {:.3g} s: node ({}, {}) has numbers "
+                        "that are not finite, or a negative depth; a smaller cfl may help",
+                        status_.step, status_.time, status_.dt, all.bad % body_.grid.stride() - kTile,
+                        all.bad / body_.grid.stride() - kTile));
     return all;
 }
 

@@ -24,13 +24,13 @@ struct WaterState {
 
 struct WaterScene {
     using Function = std::function<double(double x, double y)>;
-    GridGeometry grid;                                             ///< at least 3 nodes each way
-    Function bed = [](double, double) { return 0.0; };             ///< elevation [m]
-    Function confined = {};                                        ///< depth of confined mass, none without [m]
-    std::function<WaterState(double x, double y)> start = {};      ///< dry without
-    Function rain = {};                                            ///< [m/s]; none without
-    Function infiltration = {};                                    ///< what the ground takes at most [m/s]
-    std::array<WaterSide, 4> sides{};                              ///< at low x, high x, low y, high y
+    GridGeometry grid;                                         ///< at least 3 nodes each way
+    Function bed = [](double, double) { return 0.0; };         ///< elevation [m]
+    Function confined = {};                                    ///< depth of confined mass, none without [m]
+    std::function<WaterState(double x, double y)> start = {};  ///< dry without
+    Function rain = {};                                        ///< [m/s]; none without
+    Function infiltration = {};                                ///< what the ground takes at most [m/s]
+    std::array<WaterSide, 4> sides{};                          ///< at low x, high x, low y, high y
     WaterFriction friction;
     WaterViscosity viscosity;
     double gravity = 9.81;  ///< [m/s^2]
@@ -38,20 +38,20 @@ struct WaterScene {
     /// water slides down a steep plane as a block does; else g, which are the shallow-water equations as they
     /// are printed. Both keep lakes at rest: each cell's slope of the surface is multiplied by its own value.
     bool steep = true;
-    double theta = 2.0;    ///< of the limiter, 1 (minmod) to 2 (MC: of the smaller errors, face_flux.h)
-    double cfl = 0.45;    ///< part of a cell that waves may pass in a step, below 1/2 [1]
-    double film = 1e-6;   ///< water as shallow as this stays where it is [m]
+    double theta = 2.0;  ///< of the limiter, 1 (minmod) to 2 (MC: of the smaller errors, face_flux.h)
+    double cfl = 0.45;   ///< part of a cell that waves may pass in a step, below 1/2 [1]
+    double film = 1e-6;  ///< water as shallow as this stays where it is [m]
 };
 
 /// Sums over density since the start, or of one step: volumes [m^3], momentum [m^4/s].
 struct WaterLedger {
     double rained = 0.0, infiltrated = 0.0, left = 0.0;
     Vec2 momentum_left{0, 0}, momentum_infiltrated{0, 0};  ///< carried out
-    double released = 0.0;    ///< given by columns
-    Vec2 columns{0, 0};       ///< of what columns released, and their drag
-    Vec2 ground{0, 0};    ///< push of bed and confined mass
-    Vec2 walls{0, 0};     ///< push of walls, and of the water beyond open sides
-    Vec2 friction{0, 0};  ///< at the bed, and what films lose that stop
+    double released = 0.0;                                 ///< given by columns
+    Vec2 columns{0, 0};                                    ///< of what columns released, and their drag
+    Vec2 ground{0, 0};                                     ///< push of bed and confined mass
+    Vec2 walls{0, 0};                                      ///< push of walls, and of the water beyond open sides
+    Vec2 friction{0, 0};                                   ///< at the bed, and what films lose that stop
     /// Energy over density [m^5/s^2]: lost at the bed, by films that stop and in speeding up rain; lost to viscosity inside;
     /// gone with the water through open sides and into the ground, less what rain brought, heights above the datum.
     double braked = 0.0, sheared = 0.0, energy_out = 0.0;
@@ -60,8 +60,8 @@ struct WaterLedger {
 
 /// After a step; all over the density.
 struct WaterStatus : Clock {
-    double volume = 0.0, volume_given = 0.0;     ///< present, at the start [m^3]
-    Vec2 momentum{0, 0}, momentum_given{0, 0};   ///< present, at the start [m^4/s]
+    double volume = 0.0, volume_given = 0.0;    ///< present, at the start [m^3]
+    Vec2 momentum{0, 0}, momentum_given{0, 0};  ///< present, at the start [m^4/s]
     WaterLedger ledger;
     double kinetic = 0.0;    ///< sum of h v^2 / 2 [m^5/s^2]
     double max_speed = 0.0;  ///< [m/s]
@@ -73,7 +73,7 @@ struct WaterSums {
     double volume = 0.0, kinetic = 0.0, max_speed2 = 0.0, signal = 0.0;
     Vec2 momentum{0, 0};
     std::uint16_t near = 0;  ///< bit 3 (dj + 1) + di + 1: water is near that neighbour; bit 4: there is some here
-    Index bad = -1;         ///< a node whose numbers are not finite
+    Index bad = -1;          ///< a node whose numbers are not finite
 };
 
 /// Depth and discharge, one number a node.
@@ -87,11 +87,11 @@ struct WaterFields {
 struct WaterBody {
     explicit WaterBody(const WaterScene& scene);
     TileGrid grid;
-    WaterFields now, half;      ///< the state; after the first stage of a step
+    WaterFields now, half;                 ///< the state; after the first stage of a step
     LazyArray<double> driven_x, driven_y;  ///< discharge after the first stage, before friction [m^2/s]
-    LazyArray<double> bed;      ///< elevation above `datum` [m], two nodes beyond the grid as well
-    LazyArray<double> confined; ///< depth of confined mass [m]: may be changed between steps
-    LazyArray<double> normal_gravity;     ///< gravity across the ground [m/s^2]
+    LazyArray<double> bed;                 ///< elevation above `datum` [m], two nodes beyond the grid as well
+    LazyArray<double> confined;            ///< depth of confined mass [m]: may be changed between steps
+    LazyArray<double> normal_gravity;      ///< gravity across the ground [m/s^2]
     /// With WaterViscosity::solid_gradient, as confined: confined mass's share of the volume [1], its velocity [m/s].
     LazyArray<double> share, bound_x, bound_y;
     LazyArray<double> rain, infiltration;  ///< [m/s]; empty without

@@ -30,8 +30,8 @@ void find_slopes(const WaterBlock& block, const double* along, const double* acr
 /// A cell's water at its high face (sign 1) or at its low one (-1): linear in the cell, its momentum the
 /// cell's.
 [[gnu::always_inline]] inline FaceSide<Double4> at_face(const WaterBlock& block, const double* along,
-                                                        const double* across, const WaterSlopes& slopes,
-                                                        Index k, double sign) {
+                                                        const double* across, const WaterSlopes& slopes, Index k,
+                                                        double sign) {
     const Double4 h = load(block.depth + k), rise = (0.5 * sign) * load(slopes.depth + k);
     const Double4 here = h + rise, other = sign * (h - rise);
     const Double4 surface = load(block.surface + k) + (0.5 * sign) * load(slopes.surface + k);
@@ -52,8 +52,8 @@ void find_slopes(const WaterBlock& block, const double* along, const double* acr
 }
 
 /// Fluxes through the faces between the places k - step and k of the groups of four from `first` on.
-void find_fluxes(const WaterBlock& block, const double* along, const double* across,
-                 const WaterSlopes& slopes, Index first, Index step, WaterFaces& to) {
+void find_fluxes(const WaterBlock& block, const double* along, const double* across, const WaterSlopes& slopes,
+                 Index first, Index step, WaterFaces& to) {
     for (Index n = 0; n < kGroups; ++n) {
         const Index k = first + 4 * n;
         FaceFlux<Double4> f{};
@@ -159,7 +159,8 @@ GradientStress gradient_stress(const WaterBody& body, const Stage& s, const Visc
                  *bound_across = (in_x ? body.bound_y : body.bound_x).data();
     double slip_along = 0.0, slip_across = 0.0, change = 0.0, sides = 0.0;
     const auto take = [&](Index cell, Index node) {
-        change += 0.25 * (body.share[node + aside] - body.share[node - aside]);  // of both, half of a central difference
+        change +=
+            0.25 * (body.share[node + aside] - body.share[node - aside]);  // of both, half of a central difference
         if (!(body.share[node] > 0.0)) return;
         slip_along += of.along[cell] - bound_along[node], slip_across += of.across[cell] - bound_across[node], ++sides;
     };
@@ -201,7 +202,8 @@ double add_viscosity(const WaterBody& body, const TilePart& part, Stage& s) {
             if (b < part.rows)
                 lost += add_viscous(body, s, {s.block.u, s.block.v, 1, east || west, a < part.columns || east}, k, s.x);
             if (a < part.columns)
-                lost += add_viscous(body, s, {s.block.v, s.block.u, kRow, north || south, b < part.rows || north}, k, s.y);
+                lost +=
+                    add_viscous(body, s, {s.block.v, s.block.u, kRow, north || south, b < part.rows || north}, k, s.y);
         }
     return lost;
 }
@@ -216,7 +218,7 @@ Change change_of(const Stage& s, Index k, double cells) {
     const WaterFaces &x = s.x, &y = s.y;
     const double weight = s.block.normal_gravity[k] * s.block.depth[k];
     const Vec2 pressure_force = -cells * Vec2(x.low[k + 1] - x.high[k] + weight * s.across_x.surface[k],
-                                    y.low[k + kRow] - y.high[k] + weight * s.across_y.surface[k]);
+                                              y.low[k + kRow] - y.high[k] + weight * s.across_y.surface[k]);
     return {-cells * (x.mass[k + 1] - x.mass[k] + y.mass[k + kRow] - y.mass[k]),
             pressure_force.x() - cells * (x.along[k + 1] - x.along[k] + y.across[k + kRow] - y.across[k]),
             pressure_force.y() - cells * (x.across[k + 1] - x.across[k] + y.along[k + kRow] - y.along[k]),
@@ -228,15 +230,15 @@ Change change_of(const Stage& s, Index k, double cells) {
 double head_of(const WaterBody& body, const WaterBlock& block, Index k) {
     const double u = block.u[k], v = block.v[k];
     const auto ground = [&](Index at) { return block.surface[at] - block.depth[at]; };
-    const double up = body.steep ? 0.5 / body.grid.cell() * (u * (ground(k + 1) - ground(k - 1)) +
-                                                             v * (ground(k + kRow) - ground(k - kRow)))
+    const double up = body.steep ? 0.5 / body.grid.cell() *
+                                       (u * (ground(k + 1) - ground(k - 1)) + v * (ground(k + kRow) - ground(k - kRow)))
                                  : 0.0;
     return body.gravity * block.surface[k] + 0.5 * (u * u + v * v + up * up);
 }
 
 /// One side of the grid in a tile's ledger: `k` is the face, `inside` the cell at it.
 void accumulate_side(const WaterBody& body, const Stage& s, const WaterFaces& faces, const WaterSlopes& slopes, Index k,
-               Index inside, int axis, double outward, double cells, WaterLedger& ledger) {
+                     Index inside, int axis, double outward, double cells, WaterLedger& ledger) {
     const double h = s.block.depth[inside] + 0.5 * outward * slopes.depth[inside];
     const double force = (outward > 0.0 ? faces.low[k] : faces.high[k]) + 0.5 * s.block.normal_gravity[inside] * h * h;
     ledger.walls[axis] -= outward * cells * force;
@@ -283,8 +285,7 @@ void run_stage(const WaterBody& body, const WaterFields& from, Index tile, doubl
     for (Index b = kHalo; b < part.rows; ++b)
         for (Index a = kHalo; a < part.columns; ++a) {
             const Index i = part.i0 + a - kHalo, j = part.j0 + b - kHalo;
-            const Change change =
-                moves ? change_of(s, b * kRow + a, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
+            const Change change = moves ? change_of(s, b * kRow + a, cells) : Change{0.0, 0.0, 0.0, Vec2(0, 0)};
             tile_ledger.ground += change.pressure_force;
             each(body.grid.at(i, j), i, j, change);
         }
@@ -300,8 +301,8 @@ struct Water {
 /// Slope of the bed at a node.
 Vec2 bed_slope(const WaterBody& body, Index k) {
     const double per = 0.5 / body.grid.cell();
-    return per * Vec2(body.bed[k + 1] - body.bed[k - 1],
-                      body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
+    return per *
+           Vec2(body.bed[k + 1] - body.bed[k - 1], body.bed[k + body.grid.stride()] - body.bed[k - body.grid.stride()]);
 }
 
 /// Something slows water at the bed.
@@ -414,8 +415,7 @@ template <class Body>
 void for_each_listed_tile(const WaterBody& body, Body&& each) {
     const Index count = static_cast<Index>(body.work.size());
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
-    for (Index n = 0; n < count; ++n)
-        each(static_cast<std::size_t>(n), body.work[static_cast<std::size_t>(n)]);
+    for (Index n = 0; n < count; ++n) each(static_cast<std::size_t>(n), body.work[static_cast<std::size_t>(n)]);
 }
 
 }  // namespace
@@ -426,15 +426,14 @@ void first_stage(WaterBody& body, double dt) {
     const bool brakes = brakes_of(body);
     for_each_listed_tile(body, [&](std::size_t n, Index tile) {
         body.sums[n] = WaterSums{};
-        run_stage(
-            body, body.now, tile, dt, body.sums[n].ledger, [&](Index k, Index, Index, const Change& change) {
-                Water w{body.now.h[k] + change.h, body.now.qx[k] + change.qx, body.now.qy[k] + change.qy};
-                if (brakes) {
-                    body.driven_x[k] = w.qx, body.driven_y[k] = w.qy;
-                    if (w.h > body.film) brake(body, k, dt, w);
-                }
-                body.half.h[k] = w.h, body.half.qx[k] = w.qx, body.half.qy[k] = w.qy;
-            });
+        run_stage(body, body.now, tile, dt, body.sums[n].ledger, [&](Index k, Index, Index, const Change& change) {
+            Water w{body.now.h[k] + change.h, body.now.qx[k] + change.qx, body.now.qy[k] + change.qy};
+            if (brakes) {
+                body.driven_x[k] = w.qx, body.driven_y[k] = w.qy;
+                if (w.h > body.film) brake(body, k, dt, w);
+            }
+            body.half.h[k] = w.h, body.half.qx[k] = w.qx, body.half.qy[k] = w.qy;
+        });
     });
 }
 
@@ -446,18 +445,14 @@ void second_stage(WaterBody& body, double dt) {
     for_each_listed_tile(body, [&](std::size_t n, Index tile) {
         WaterSums& sums = body.sums[n];
         WaterLedger ends;
-        run_stage(body, body.half, tile, dt, sums.ledger,
-                  [&](Index k, Index i, Index j, const Change& change) {
-                      const auto mean = [&](double start, double half, double by) {
-                          return 0.5 * (start + (half + by));
-                      };
-                      Water w{mean(body.now.h[k], body.half.h[k], change.h),
-                              mean(body.now.qx[k], driven_x[k], change.qx),
-                              mean(body.now.qy[k], driven_y[k], change.qy)};
-                      finish_cell(body, k, dt, w, ends);
-                      count(body, k, i, j, w, sums);
-                      body.now.h[k] = w.h, body.now.qx[k] = w.qx, body.now.qy[k] = w.qy;
-                  });
+        run_stage(body, body.half, tile, dt, sums.ledger, [&](Index k, Index i, Index j, const Change& change) {
+            const auto mean = [&](double start, double half, double by) { return 0.5 * (start + (half + by)); };
+            Water w{mean(body.now.h[k], body.half.h[k], change.h), mean(body.now.qx[k], driven_x[k], change.qx),
+                    mean(body.now.qy[k], driven_y[k], change.qy)};
+            finish_cell(body, k, dt, w, ends);
+            count(body, k, i, j, w, sums);
+            body.now.h[k] = w.h, body.now.qx[k] = w.qx, body.now.qy[k] = w.qy;
+        });
         sums.ledger.add(ends, area);
         scale(sums, area);
     });

@@ -32,9 +32,7 @@ std::string unremarked(std::string text) {
 }
 
 /// What may take minutes or all memory because the case asks for it is no finding.
-bool small(const CaseFile& file) {
-    return !file.has("particles.count") || file.number("particles.count") < 1e5;
-}
+bool small(const CaseFile& file) { return !file.has("particles.count") || file.number("particles.count") < 1e5; }
 
 }  // namespace
 

@@ -23,8 +23,8 @@ void keep_drivers(const std::set<std::string>& wanted) {
         if (GDALDriver* driver = manager.GetDriver(n); !wanted.count(driver->GetDescription()))
             manager.DeregisterDriver(driver);
 }
-const std::set<std::string> kDrivers{"GTiff", "AAIGrid", "GSAG", "GSBG", "GS7BG", "MEM", "Memory",
-                                     "GeoJSON", "TopoJSON", "GML", "KML"};
+const std::set<std::string> kDrivers{"GTiff",  "AAIGrid", "GSAG",     "GSBG", "GS7BG", "MEM",
+                                     "Memory", "GeoJSON", "TopoJSON", "GML",  "KML"};
 
 /// A file in memory, gone at the end.
 class MemoryFile {

@@ -13,8 +13,8 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 
 CaseFile case_with(const std::string& keys) {
-    return CaseFile::parse("[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = 1\n[time]\nend = 5\n[material.bed]\n" + keys,
-                           "case.toml");
+    return CaseFile::parse(
+        "[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = 1\n[time]\nend = 5\n[material.bed]\n" + keys, "case.toml");
 }
 
 /// A disc on a plane, so thin that its pressure has nothing to push: a block.
@@ -38,12 +38,15 @@ Scene block(const CaseFile& file, double slope) {
 }
 
 /// Means over all columns: place along the map [m], speed along the bed [m/s].
-struct Mean { double x = 0.0, speed = 0.0; };
+struct Mean {
+    double x = 0.0, speed = 0.0;
+};
 Mean mean_of(Simulation& simulation) {
     const Frame frame = simulation.frame();
     const auto* place = frame.particle("position");
     Mean mean;
-    for (Index p = 0; p < place->count; ++p) mean.x += place->data[3 * p], mean.speed += frame.particle("speed")->data[p];
+    for (Index p = 0; p < place->count; ++p)
+        mean.x += place->data[3 * p], mean.speed += frame.particle("speed")->data[p];
     mean.x /= static_cast<double>(place->count), mean.speed /= static_cast<double>(place->count);
     return mean;
 }

@@ -14,7 +14,8 @@ struct Viscous {
     static constexpr const char* name = "viscous";
     static constexpr const char* is = "a toy";
     static std::vector<Key<Viscous>> keys() {
-        return {friction_angle(&Viscous::mu), friction(&Viscous::mu),
+        return {friction_angle(&Viscous::mu),
+                friction(&Viscous::mu),
                 {&Viscous::rate, "drag_rate", "1/s", ranges::positive, "rate at which drag slows it", Missing::usual}};
     }
     double friction_at_rest() const { return mu; }

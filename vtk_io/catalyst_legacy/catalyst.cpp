@@ -45,10 +45,11 @@ public:
 
 private:
     UserError trouble(const char* what) const {
-        return UserError(fmt::format("{}: the script {}; expected one that reads the channels grid and particles; "
-                                     "Python's "
-                                     "own message is above",
-                                     script_.string(), what));
+        return UserError(
+            fmt::format("{}: the script {}; expected one that reads the channels grid and particles; "
+                        "Python's "
+                        "own message is above",
+                        script_.string(), what));
     }
 
     void start() {
@@ -77,16 +78,18 @@ bool draws(const std::filesystem::path& script) {
 
 void check_catalyst(const std::filesystem::path& script, const std::string& place) {
     if (vtkCPPythonPipeline::DetectScriptVersion(script.string().c_str()) != 2)
-        throw UserError(fmt::format("{}.script: found {}, which is not a Catalyst script of version 2.0; expected "
-                                    "one that "
-                                    "begins with \"# script-version: 2.0\"; add that line, or export it anew from "
-                                    "ParaView",
-                                    place, script.string()));
+        throw UserError(
+            fmt::format("{}.script: found {}, which is not a Catalyst script of version 2.0; expected "
+                        "one that "
+                        "begins with \"# script-version: 2.0\"; add that line, or export it anew from "
+                        "ParaView",
+                        place, script.string()));
     const char* display = std::getenv("DISPLAY");
     if ((display == nullptr || *display == '\0') && draws(script))
-        throw UserError(fmt::format("{}.script: found {}, which draws, and no display; expected one in DISPLAY, since "
-                                    "ParaView ends the process without; run under `xvfb-run -a`",
-                                    place, script.string()));
+        throw UserError(
+            fmt::format("{}.script: found {}, which draws, and no display; expected one in DISPLAY, since "
+                        "ParaView ends the process without; run under `xvfb-run -a`",
+                        place, script.string()));
 }
 
 std::unique_ptr<InsituWork> make_catalyst(const std::filesystem::path& script) {

@@ -77,8 +77,7 @@ vtkSmartPointer<vtkActor> facets_actor(const std::vector<Objects3d::Facet>& face
     return unlit_actor(data);
 }
 
-vtkSmartPointer<vtkActor> edges_actor(const std::vector<std::vector<Vec3>>& edges, const Vec2& origin,
-                                      double width) {
+vtkSmartPointer<vtkActor> edges_actor(const std::vector<std::vector<Vec3>>& edges, const Vec2& origin, double width) {
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> cells;
     for (const std::vector<Vec3>& edge : edges) {

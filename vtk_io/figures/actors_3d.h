@@ -16,7 +16,6 @@ namespace frana {
 vtkSmartPointer<vtkActor> balls_actor(const std::vector<Objects3d::Ball>& balls, const Vec2& origin);
 /// Flat areas in just the colours given.
 vtkSmartPointer<vtkActor> facets_actor(const std::vector<Objects3d::Facet>& facets, const Vec2& origin);
-vtkSmartPointer<vtkActor> edges_actor(const std::vector<std::vector<Vec3>>& edges, const Vec2& origin,
-                                      double width);
+vtkSmartPointer<vtkActor> edges_actor(const std::vector<std::vector<Vec3>>& edges, const Vec2& origin, double width);
 
 }  // namespace frana

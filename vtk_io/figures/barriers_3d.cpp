@@ -58,8 +58,7 @@ private:
     void add_side(const LoadedFace& side, double length) {
         const Vec3 normal = side.right().cross(side.up()), corner = side.corner(), right = side.right();
         const std::vector<double> pressure = smoothed(side, [&](const LoadedPatch& patch) {
-            return patch.corners[3].z() >
-                   elevation_at(bed_, 0.5 * (patch.corners[0] + patch.corners[1]).head<2>());
+            return patch.corners[3].z() > elevation_at(bed_, 0.5 * (patch.corners[0] + patch.corners[1]).head<2>());
         });
         for (std::size_t k = 0; k < side.patches.size(); ++k) {
             const LoadedPatch& patch = side.patches[k];

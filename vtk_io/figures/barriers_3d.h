@@ -25,10 +25,10 @@ struct BarrierSolid {
         double pressure = 0.0;      ///< mean over the patch and those around it on its face [Pa]
     };
     std::vector<Piece> pieces;
-    std::vector<Polyline> rings;           ///< of the outline, open: the last corner is not the first [m]
-    std::vector<std::vector<Vec3>> edges;  ///< along the top and down the corners
-    Vec3 load{0, 0, 0};                    ///< of the pressure on the sides, of a mesh on all of it [N]
-    Vec3 middle_of_load{0, 0, 0};          ///< where it acts, or without any the middle of the outline [m]
+    std::vector<Polyline> rings;               ///< of the outline, open: the last corner is not the first [m]
+    std::vector<std::vector<Vec3>> edges;      ///< along the top and down the corners
+    Vec3 load{0, 0, 0};                        ///< of the pressure on the sides, of a mesh on all of it [N]
+    Vec3 middle_of_load{0, 0, 0};              ///< where it acts, or without any the middle of the outline [m]
     std::shared_ptr<const TriangleMesh> mesh;  ///< of a barrier that was given as one: it has no rings
 
     /// Whether a place lies within the outline.

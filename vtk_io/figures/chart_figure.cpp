@@ -51,8 +51,7 @@ Axis axis_over(std::optional<Range> data, const std::optional<Range>& given, boo
     if (log && range.first <= 0.0) range.first = std::min(1e-3 * std::abs(range.second), 1.0);
     if (range.second <= range.first) {
         const double half = range.first != 0.0 ? 0.1 * std::abs(range.first) : 1.0;
-        range =
-            log ? Range{range.first / 2.0, range.first * 2.0} : Range{range.first - half, range.first + half};
+        range = log ? Range{range.first / 2.0, range.first * 2.0} : Range{range.first - half, range.first + half};
     }
     if (!given && margin > 0.0) {
         if (log) {
@@ -90,8 +89,7 @@ std::string scaled_label(const std::string& label, double factor) {
     if (factor == 1.0) return label;
     const auto [name, unit] = name_and_unit(label);
     const std::string power = power_of_ten(static_cast<int>(std::lround(std::log10(factor))));
-    return fmt::format("{} [{}{}{}]", name, power, unit.empty() || unit == "1" ? "" : " ",
-                       unit == "1" ? "" : unit);
+    return fmt::format("{} [{}{}{}]", name, power, unit.empty() || unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
 /// Where a logarithmic axis with decades has its small ticks.
@@ -119,8 +117,8 @@ Pen curve_pen(std::size_t i, double unit) {
     Pen pen;
     pen.colour = curve_colour(i);
     pen.width = 0.13 * unit;
-    const std::vector<std::vector<double>> patterns{
-        {}, {0.7, 0.3}, {0.15, 0.22}, {0.8, 0.25, 0.15, 0.25}, {1.3, 0.35}, {0.35, 0.2}};
+    const std::vector<std::vector<double>> patterns{{},          {0.7, 0.3}, {0.15, 0.22}, {0.8, 0.25, 0.15, 0.25},
+                                                    {1.3, 0.35}, {0.35, 0.2}};
     for (const double part : patterns[i % patterns.size()]) pen.dash.push_back(part * unit);
     return pen;
 }
@@ -159,8 +157,7 @@ private:
     void draw_grid(const Axis& y_axis, const Rectangle& frame);
     void draw_labels(const ChartPanel& panel, const Axis& y_axis, const Rectangle& frame, bool last);
     void fill_below(const Curve& curve, const Axis& y_axis, const Rectangle& frame, const Colour& colour);
-    std::vector<std::vector<Vec2>> pieces(const Curve& curve, const Axis& y_axis,
-                                          const Rectangle& frame) const;
+    std::vector<std::vector<Vec2>> pieces(const Curve& curve, const Axis& y_axis, const Rectangle& frame) const;
 
     /// Number of a curve among the lines of its panel: the ground has no colour of its own.
     static std::size_t number(const ChartPanel& panel, std::size_t curve) {
@@ -255,8 +252,7 @@ void ChartDrawing::draw_grid(const Axis& y_axis, const Rectangle& frame) {
     }
 }
 
-void ChartDrawing::draw_labels(const ChartPanel& panel, const Axis& y_axis, const Rectangle& frame,
-                               bool last) {
+void ChartDrawing::draw_labels(const ChartPanel& panel, const Axis& y_axis, const Rectangle& frame, bool last) {
     const Pen pen{colours::black, std::max(1.0, std::round(0.09 * unit_)), {}};
     canvas_.frame(frame, pen);
     TextStyle style{unit_, Across::centre, Upward::top, 0.0, false, false, {}};
@@ -274,8 +270,7 @@ void ChartDrawing::draw_labels(const ChartPanel& panel, const Axis& y_axis, cons
         canvas_.stroke({{frame.x0, y}, {frame.x0 - 0.2 * unit_, y}}, pen);
     }
     const double middle = 0.5 * (frame.x0 + frame.x1);
-    if (last)
-        canvas_.text(scaled_label(figure_.x_label, x_axis_.factor), {middle, frame.y0 - 2.0 * unit_}, style);
+    if (last) canvas_.text(scaled_label(figure_.x_label, x_axis_.factor), {middle, frame.y0 - 2.0 * unit_}, style);
     style.across = Across::right;
     style.upward = Upward::middle;
     for (std::size_t i = 0; i < y_axis.ticks.at.size(); ++i) {
@@ -306,8 +301,7 @@ std::vector<std::vector<Vec2>> ChartDrawing::pieces(const Curve& curve, const Ax
     return result;
 }
 
-void ChartDrawing::fill_below(const Curve& curve, const Axis& y_axis, const Rectangle& frame,
-                              const Colour& colour) {
+void ChartDrawing::fill_below(const Curve& curve, const Axis& y_axis, const Rectangle& frame, const Colour& colour) {
     for (const auto& line : pieces(curve, y_axis, frame))
         for (const auto& part : clipped(line, {frame.x0, -1e6, frame.x1, 1e6}))
             for (std::size_t i = 1; i < part.size(); ++i) {
@@ -318,8 +312,7 @@ void ChartDrawing::fill_below(const Curve& curve, const Axis& y_axis, const Rect
             }
 }
 
-void ChartDrawing::draw_panel(const ChartPanel& panel, const Axis& y_axis, const Rectangle& frame,
-                              bool last) {
+void ChartDrawing::draw_panel(const ChartPanel& panel, const Axis& y_axis, const Rectangle& frame, bool last) {
     draw_grid(y_axis, frame);
     for (std::size_t i = 0; i < panel.curves.size(); ++i)
         if (panel.curves[i].kind == Curve::Kind::water)

@@ -15,11 +15,10 @@ Colour along(const std::array<Colour, N>& points, double t) {
     return mixed(points[i], points[i + 1], place - static_cast<double>(i));
 }
 
-constexpr std::array<Colour, 20> viridis{{{68, 1, 84},    {72, 21, 103},  {72, 38, 119},  {69, 55, 129},
-                                          {64, 71, 136},  {57, 86, 140},  {51, 99, 141},  {45, 112, 142},
-                                          {40, 125, 142}, {35, 138, 141}, {31, 150, 139}, {32, 163, 135},
-                                          {41, 175, 127}, {60, 187, 117}, {85, 198, 103}, {115, 208, 85},
-                                          {149, 216, 64}, {184, 222, 41}, {220, 227, 25}, {253, 231, 37}}};
+constexpr std::array<Colour, 20> viridis{
+    {{68, 1, 84},    {72, 21, 103},  {72, 38, 119},  {69, 55, 129},  {64, 71, 136},  {57, 86, 140},  {51, 99, 141},
+     {45, 112, 142}, {40, 125, 142}, {35, 138, 141}, {31, 150, 139}, {32, 163, 135}, {41, 175, 127}, {60, 187, 117},
+     {85, 198, 103}, {115, 208, 85}, {149, 216, 64}, {184, 222, 41}, {220, 227, 25}, {253, 231, 37}}};
 
 constexpr std::array<Colour, 10> plasma{{{13, 8, 135},
                                          {70, 3, 159},
@@ -55,9 +54,7 @@ constexpr std::array<Colour, 9> cool_to_warm{{{59, 76, 192},
 constexpr std::array<Colour, 6> curves{
     {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {0, 0, 0}, {86, 180, 233}}};
 
-std::uint8_t channel(double value) {
-    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
-}
+std::uint8_t channel(double value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))); }
 
 }  // namespace
 
@@ -75,8 +72,8 @@ Colour Pixels::at(int x, int y) const {
 
 Colour mixed(const Colour& a, const Colour& b, double share) {
     const double rest = 1.0 - share;
-    return {channel(rest * a.r + share * b.r), channel(rest * a.g + share * b.g),
-            channel(rest * a.b + share * b.b), a.a};
+    return {channel(rest * a.r + share * b.r), channel(rest * a.g + share * b.g), channel(rest * a.b + share * b.b),
+            a.a};
 }
 
 Colour scaled(const Colour& colour, double factor) {
@@ -86,17 +83,19 @@ Colour scaled(const Colour& colour, double factor) {
 Colour colour_at(Colormap map, double t) {
     const double place = t > 0.0 ? std::min(t, 1.0) : 0.0;
     switch (map) {
-        case Colormap::depth: return along(viridis, 1.0 - place);
-        case Colormap::speed: return along(plasma, place);
-        case Colormap::pressure: return along(greens, place);
-        case Colormap::diverging: break;
+        case Colormap::depth:
+            return along(viridis, 1.0 - place);
+        case Colormap::speed:
+            return along(plasma, place);
+        case Colormap::pressure:
+            return along(greens, place);
+        case Colormap::diverging:
+            break;
     }
     return along(cool_to_warm, place);
 }
 
-double brightness(const Colour& colour) {
-    return (0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b) / 255.0;
-}
+double brightness(const Colour& colour) { return (0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b) / 255.0; }
 
 Colour curve_colour(std::size_t i) { return curves[i % curves.size()]; }
 

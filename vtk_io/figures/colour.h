@@ -50,17 +50,17 @@ Colour curve_colour(std::size_t i);
 namespace colours {
 inline constexpr Colour black{0, 0, 0};
 inline constexpr Colour white{255, 255, 255};
-inline constexpr Colour no_data{226, 226, 226};  ///< map where there is no terrain
-inline constexpr Colour contour{92, 74, 58};     ///< elevation contours
-inline constexpr Colour survey{230, 0, 60};      ///< surveyed outline; drawn on a white casing
-inline constexpr Colour hit{0, 158, 115};        ///< simulated and surveyed; with the next two told apart by the
-                                                 ///< colour-blind (Okabe & Ito 2008) and in grey
-inline constexpr Colour beyond{240, 180, 40};    ///< simulated only
-inline constexpr Colour missed{0, 62, 130};      ///< surveyed only
-inline constexpr Colour grid{218, 218, 218};     ///< grid lines of charts
-inline constexpr Colour note{70, 70, 70};        ///< footers
+inline constexpr Colour no_data{226, 226, 226};   ///< map where there is no terrain
+inline constexpr Colour contour{92, 74, 58};      ///< elevation contours
+inline constexpr Colour survey{230, 0, 60};       ///< surveyed outline; drawn on a white casing
+inline constexpr Colour hit{0, 158, 115};         ///< simulated and surveyed; with the next two told apart by the
+                                                  ///< colour-blind (Okabe & Ito 2008) and in grey
+inline constexpr Colour beyond{240, 180, 40};     ///< simulated only
+inline constexpr Colour missed{0, 62, 130};       ///< surveyed only
+inline constexpr Colour grid{218, 218, 218};      ///< grid lines of charts
+inline constexpr Colour note{70, 70, 70};         ///< footers
 inline constexpr Colour unloaded{238, 238, 232};  ///< barrier in a run without loads
-inline constexpr Colour ground{205, 195, 182};   ///< filled terrain in charts
+inline constexpr Colour ground{205, 195, 182};    ///< filled terrain in charts
 }  // namespace colours
 
 }  // namespace frana

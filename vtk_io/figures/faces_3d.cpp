@@ -8,8 +8,7 @@ namespace frana {
 
 double LoadedFace::longest() const {
     double most = 0.0;
-    for (const LoadedPatch& patch : patches)
-        most = std::max(most, right().dot(patch.corners[1] - corner()));
+    for (const LoadedPatch& patch : patches) most = std::max(most, right().dot(patch.corners[1] - corner()));
     return most;
 }
 

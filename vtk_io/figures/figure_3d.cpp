@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vtk_io/figures/map_figure_perspective.h"
 #include "vtk_io/figures/colours_3d.h"
+#include "vtk_io/figures/map_figure_perspective.h"
 
 namespace frana {
 namespace {
@@ -16,7 +16,9 @@ bool holds(const std::array<double, 4>& box, const Vec3& p) {
 }
 
 /// What has to be seen.
-struct Subjects { std::vector<Vec3> points, barriers; };
+struct Subjects {
+    std::vector<Vec3> points, barriers;
+};
 
 /// Some of the points, and the upper edges of the barriers' sides.
 Subjects subjects_of(const Figure3d& figure) {
@@ -35,8 +37,7 @@ Subjects subjects_of(const Figure3d& figure) {
 }
 
 /// Share of the places that the ground does not hide from an eye far away against the direction of view.
-double share_in_sight(const Figure3d& figure, const std::vector<Vec3>& places, double azimuth,
-                      double down) {
+double share_in_sight(const Figure3d& figure, const std::vector<Vec3>& places, double azimuth, double down) {
     if (places.empty()) return 1.0;
     const Vec3 back(-std::sin(azimuth) * std::cos(down), -std::cos(azimuth) * std::cos(down), std::sin(down));
     const double step = figure.bed.geometry.cell;
@@ -57,8 +58,8 @@ ViewAngles3d best_view(const Figure3d& figure) {
     struct Choice {
         double turn, weight;  ///< from the flow's direction [degrees]
     };
-    constexpr Choice turns[] = {{-52, 1.0}, {52, 0.97}, {-128, 0.8}, {128, 0.8}, {-152, 0.75}, {152, 0.75},
-                                {0, 0.6},   {180, 0.6}};
+    constexpr Choice turns[] = {{-52, 1.0},   {52, 0.97},  {-128, 0.8}, {128, 0.8},
+                                {-152, 0.75}, {152, 0.75}, {0, 0.6},    {180, 0.6}};
     constexpr Choice downs[] = {{24, 1.0}, {36, 0.85}, {52, 0.7}};
     const double flow = std::atan2(figure.view.flow.x(), figure.view.flow.y());
     const Subjects subjects = subjects_of(figure);
@@ -112,14 +113,13 @@ Objects3d objects_of(const Figure3d& figure, double azimuth) {
     for (const BarrierSolid& barrier : figure.moment.barriers) {
         for (const auto& piece : barrier.pieces)
             if (holds(figure.view.box, piece.corners.front()))
-                objects.facets.push_back({piece.corners, scaled(colours.of_pressure(piece.pressure),
-                                                                light_on(piece.normal, azimuth))});
+                objects.facets.push_back(
+                    {piece.corners, scaled(colours.of_pressure(piece.pressure), light_on(piece.normal, azimuth))});
         for (const auto& edge : barrier.edges)
             if (holds(figure.view.box, edge.front()) && holds(figure.view.box, edge.back()))
                 objects.edges.push_back(edge);
     }
-    if (const BarrierSolid* barrier = figure.moment.most_loaded())
-        objects.inset = struck_face(*barrier, colours);
+    if (const BarrierSolid* barrier = figure.moment.most_loaded()) objects.inset = struck_face(*barrier, colours);
     objects.bars = colours.bars();
     return objects;
 }
@@ -128,13 +128,10 @@ Objects3d objects_of(const Figure3d& figure, double azimuth) {
 
 Colours3d::Colours3d(const View3d& view) : view_(view), kilo_(view.pressure >= 2000.0) {}
 
-Colour Colours3d::of_speed(double speed) const {
-    return colour_at(Colormap::speed, speed / view_.fastest);
-}
+Colour Colours3d::of_speed(double speed) const { return colour_at(Colormap::speed, speed / view_.fastest); }
 
 Colour Colours3d::of_pressure(double pressure) const {
-    return view_.pressure > 0.0 ? colour_at(Colormap::pressure, pressure / view_.pressure)
-                                : colours::unloaded;
+    return view_.pressure > 0.0 ? colour_at(Colormap::pressure, pressure / view_.pressure) : colours::unloaded;
 }
 
 std::vector<ColourBar> Colours3d::bars() const {

@@ -19,7 +19,7 @@ struct Figure3d {
     Moment3d moment;
     View3d view;
     std::optional<ViewAngles3d> look;  ///< nothing: best_view()
-    std::vector<Vec3> room;         ///< places that the picture has room for; none: those of the moment [m]
+    std::vector<Vec3> room;            ///< places that the picture has room for; none: those of the moment [m]
     std::string title, footer;
     int width = 1600, height = 1100;  ///< [px]; a section is as high as it needs, and at most this
 };

@@ -70,8 +70,11 @@ bool run_in(const fs::path& folder, const fs::path& program, std::vector<std::st
 
 /// Names only: no path of the user's ever comes to the command line.
 std::vector<std::string> command(const std::string& extension, double pictures_per_second) {
-    std::vector<std::string> words = {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-framerate",
-                                      fmt::format("{:.6g}", pictures_per_second), "-i", "frame_%06d.png"};
+    std::vector<std::string> words = {"ffmpeg",       "-nostdin",
+                                      "-hide_banner", "-loglevel",
+                                      "error",        "-y",
+                                      "-framerate",   fmt::format("{:.6g}", pictures_per_second),
+                                      "-i",           "frame_%06d.png"};
     if (extension == ".gif")  // a palette of its own keeps the colours of the map
         for (const char* word : {"-filter_complex",
                                  "scale=w='min(iw,800)':h=-1:flags=lanczos,split[a][b];[a]palettegen[p];"

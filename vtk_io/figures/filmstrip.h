@@ -12,7 +12,7 @@ namespace frana {
 struct Filmstrip {
     std::vector<MapFigure> maps;  ///< drawn with one colour range and one view, those of all together
     int columns = 3;
-    int width = 1800;             ///< of the picture [px]
+    int width = 1800;  ///< of the picture [px]
 };
 
 /// Draws the maps in rows into one PNG. False with a reason when there is no renderer (no file is made); UserError when

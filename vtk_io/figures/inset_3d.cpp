@@ -4,8 +4,7 @@
 
 namespace frana {
 
-void draw_inset(Canvas& canvas, const Objects3d::Inset& inset, const Vec2& corner, const Vec2& most,
-                double unit) {
+void draw_inset(Canvas& canvas, const Objects3d::Inset& inset, const Vec2& corner, const Vec2& most, double unit) {
     if (inset.areas.empty()) return;
     Vec2 low = inset.areas.front().corners.front(), high = low;
     for (const auto& area : inset.areas)

@@ -50,14 +50,14 @@ private:
         double shown_above = figure_.shown_above;
         if (!figure_.outline_field.empty()) {
             const Raster outlined{figure_.bed.geometry, figure_.outline_field, "", ""};
-            field_.values = inside_outline(field_.values, resampled(outlined, pixels, Between::linear).values, shown_above);
+            field_.values =
+                inside_outline(field_.values, resampled(outlined, pixels, Between::linear).values, shown_above);
             shown_above = kAll;
         }
         const Raster bed = resampled(figure_.bed, pixels, Between::smooth);
-        const Pixels picture =
-            figure_.shows_overlay()
-                ? painted_overlay(bed, *figure_.simulated, all_rings(*figure_.survey))
-                : painted(bed, field_, {figure_.colormap, layout_.colours, shown_above, 0.0});
+        const Pixels picture = figure_.shows_overlay()
+                                   ? painted_overlay(bed, *figure_.simulated, all_rings(*figure_.survey))
+                                   : painted(bed, field_, {figure_.colormap, layout_.colours, shown_above, 0.0});
         canvas_.image(picture, static_cast<int>(layout_.frame.x0), static_cast<int>(layout_.frame.y0));
     }
 
@@ -81,8 +81,7 @@ private:
         for (double n = std::ceil(low / interval); n * interval <= high; ++n) {
             const bool index = std::fmod(std::abs(n), 5.0) == 0.0;
             for (const Polyline& line : level_lines(bed, (n + off_plateaus) * interval))
-                for (const auto& piece : on_sheet(line))
-                    contour(piece, index, with_step(n * interval, interval));
+                for (const auto& piece : on_sheet(line)) contour(piece, index, with_step(n * interval, interval));
         }
     }
 
@@ -90,11 +89,9 @@ private:
         Pen pen{colours::contour, (index ? 0.085 : 0.05) * layout_.unit, {}};
         pen.colour.a = index ? 200 : 120;
         if (!index) return canvas_.stroke(line, pen);
-        TextStyle style{0.75 * layout_.unit, Across::centre, Upward::middle, 0.0, false, false,
-                        colours::contour};
+        TextStyle style{0.75 * layout_.unit, Across::centre, Upward::middle, 0.0, false, false, colours::contour};
         const double width = text_size(label, style).x() + 0.6 * layout_.unit;
-        const LabelledLine parts =
-            with_label(line, width, [&](const Vec2& p) { return free_for_label(p, width); });
+        const LabelledLine parts = with_label(line, width, [&](const Vec2& p) { return free_for_label(p, width); });
         for (const auto& piece : parts.pieces) canvas_.stroke(piece, pen);
         if (!parts.labelled) return;
         style.angle = parts.angle;
@@ -114,8 +111,8 @@ private:
             if (box.meets(other)) return false;
         for (const double dx : {0.0, -0.5 * width, 0.5 * width}) {
             const auto i = static_cast<Index>(p.x() - f.x0 + dx), j = static_cast<Index>(p.y() - f.y0);
-            if (std::abs(field_.at(std::min(i, field_.geometry.nx - 1),
-                                   std::min(j, field_.geometry.ny - 1))) > figure_.shown_above)
+            if (std::abs(field_.at(std::min(i, field_.geometry.nx - 1), std::min(j, field_.geometry.ny - 1))) >
+                figure_.shown_above)
                 return false;
         }
         return true;
@@ -137,8 +134,7 @@ private:
         for (double& value : field.values) value = std::isnan(value) ? 0.0 : std::abs(value);
         const Raster seen = resampled(field, coarser(layout_.pixel_grid(), 1), Between::linear);
         for (const Polyline& line : level_lines(seen, figure_.shown_above))
-            for (const auto& piece : on_sheet(line))
-                canvas_.stroke(piece, {colours::black, 0.1 * layout_.unit, {}});
+            for (const auto& piece : on_sheet(line)) canvas_.stroke(piece, {colours::black, 0.1 * layout_.unit, {}});
     }
 
     void overlays() {
@@ -168,7 +164,9 @@ private:
         if (!room) style.across = Across::right;
         const double width = text_size(text, style).x(), x = at.x() + (room ? 0.9 : -0.9) * u;
         double y = std::clamp(at.y(), layout_.frame.y0 + u, layout_.frame.y1 - u);
-        const auto box = [&] { return Rectangle{room ? x : x - width, y - 0.6 * u, room ? x + width : x, y + 0.6 * u}; };
+        const auto box = [&] {
+            return Rectangle{room ? x : x - width, y - 0.6 * u, room ? x + width : x, y + 0.6 * u};
+        };
         for (bool moved = true; moved;) {  // above the names that stand there already
             moved = false;
             for (const Rectangle& other : names_)
@@ -202,22 +200,20 @@ private:
         canvas_.text(projected ? "easting [m]" : "x [m]", {0.5 * (f.x0 + f.x1), f.y0 - 1.8 * u}, style);
         style.upward = Upward::bottom;
         style.angle = 90.0;
-        canvas_.text(projected ? "northing [m]" : "y [m]", {f.x0 - 1.0 * u - widest, 0.5 * (f.y0 + f.y1)},
-                     style);
+        canvas_.text(projected ? "northing [m]" : "y [m]", {f.x0 - 1.0 * u - widest, 0.5 * (f.y0 + f.y1)}, style);
     }
 
     void explanations() {
         const double u = layout_.unit;
         const Rectangle& f = layout_.frame;
         if (!figure_.shows_overlay())
-            draw_colour_bar(canvas_, {std::round(f.x1 + u), f.y0, std::round(f.x1 + 2.1 * u), f.y1},
-                            layout_.colours, figure_.colormap, figure_.field_label, u);
+            draw_colour_bar(canvas_, {std::round(f.x1 + u), f.y0, std::round(f.x1 + 2.1 * u), f.y1}, layout_.colours,
+                            figure_.colormap, figure_.field_label, u);
         for (std::size_t i = 0; i < layout_.strip.places.size(); ++i) {
             const auto [x, row] = layout_.strip.places[i];
             const Vec2 at(u + x, layout_.strip_top - (row + 0.5) * layout_.row_height());
             if (i == 0)
-                draw_scale(canvas_, layout_.scale_length, layout_.scale_length / layout_.metres_per_pixel, at,
-                           u);
+                draw_scale(canvas_, layout_.scale_length, layout_.scale_length / layout_.metres_per_pixel, at, u);
             else
                 draw_legend_entry(canvas_, layout_.legend[i - 1], {at.x(), at.y() - 0.5 * u}, u);
         }
@@ -227,7 +223,7 @@ private:
     const MapFigure& figure_;
     const MapLayout& layout_;
     Canvas canvas_;
-    Raster field_;  ///< at the pixels of the frame
+    Raster field_;                   ///< at the pixels of the frame
     std::vector<Rectangle> labels_;  ///< of contours
     std::vector<Rectangle> names_;   ///< of profiles and gauges
 };
@@ -235,8 +231,7 @@ private:
 }  // namespace
 
 bool render_map(const MapFigure& figure, const std::filesystem::path& png, std::string& why_not) {
-    expect(figure.field.size() == figure.bed.values.size(),
-           "the field of a map has one value per node of the bed");
+    expect(figure.field.size() == figure.bed.values.size(), "the field of a map has one value per node of the bed");
     why_not = no_renderer_reason();
     if (!why_not.empty()) return false;
     const MapLayout layout = lay_out(figure);

@@ -11,17 +11,14 @@ void draw_colour_bar(Canvas& canvas, const Rectangle& bar, const ColourRange& ra
     Rectangle body = bar;
     if (range.more_above) body.y1 -= tip;
     if (range.more_below) body.y0 += tip;
-    const int w = static_cast<int>(std::lround(body.width())),
-              h = static_cast<int>(std::lround(body.height()));
+    const int w = static_cast<int>(std::lround(body.width())), h = static_cast<int>(std::lround(body.height()));
     Pixels pixels(w, h);
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) pixels.set(x, y, colour_at(map, (y + 0.5) / h));
     canvas.image(pixels, static_cast<int>(std::lround(body.x0)), static_cast<int>(std::lround(body.y0)));
     const double middle = 0.5 * (bar.x0 + bar.x1);
-    if (range.more_above)
-        canvas.fill({{body.x0, body.y1}, {body.x1, body.y1}, {middle, bar.y1}}, colour_at(map, 1.0));
-    if (range.more_below)
-        canvas.fill({{body.x0, body.y0}, {body.x1, body.y0}, {middle, bar.y0}}, colour_at(map, 0.0));
+    if (range.more_above) canvas.fill({{body.x0, body.y1}, {body.x1, body.y1}, {middle, bar.y1}}, colour_at(map, 1.0));
+    if (range.more_below) canvas.fill({{body.x0, body.y0}, {body.x1, body.y0}, {middle, bar.y0}}, colour_at(map, 0.0));
     std::vector<Vec2> edge{{body.x0, body.y0}};
     if (range.more_below) edge.emplace_back(middle, bar.y0);
     edge.emplace_back(body.x1, body.y0);
@@ -55,8 +52,7 @@ void stroke_cased(Canvas& canvas, const std::vector<Vec2>& line, const Pen& pen)
 
 void draw_gauge(Canvas& canvas, const Vec2& at, double unit) {
     const double r = 0.55 * unit;
-    const std::vector<Vec2> corners{
-        {at.x() - r, at.y() + r}, {at.x() + r, at.y() + r}, {at.x(), at.y() - 0.1 * r}};
+    const std::vector<Vec2> corners{{at.x() - r, at.y() + r}, {at.x() + r, at.y() + r}, {at.x(), at.y() - 0.1 * r}};
     canvas.fill(corners, colours::white);
     canvas.stroke({corners[0], corners[1], corners[2], corners[0]}, {colours::black, 0.12 * unit, {}});
 }
@@ -71,10 +67,8 @@ void draw_legend_entry(Canvas& canvas, const LegendEntry& entry, const Vec2& at,
         canvas.fill(swatch, entry.pen.colour);
         canvas.frame(swatch, {colours::black, 0.08 * unit, {}});
     }
-    if (entry.kind == LegendEntry::Kind::point)
-        draw_gauge(canvas, {at.x() + 0.5 * sample, at.y() - 0.25 * unit}, unit);
-    canvas.text(entry.text, {at.x() + 2.6 * unit, at.y()},
-                {unit, Across::left, Upward::middle, 0.0, false, false, {}});
+    if (entry.kind == LegendEntry::Kind::point) draw_gauge(canvas, {at.x() + 0.5 * sample, at.y() - 0.25 * unit}, unit);
+    canvas.text(entry.text, {at.x() + 2.6 * unit, at.y()}, {unit, Across::left, Upward::middle, 0.0, false, false, {}});
 }
 
 void draw_scale(Canvas& canvas, double metres, double pixels, const Vec2& at, double unit) {
@@ -82,9 +76,8 @@ void draw_scale(Canvas& canvas, double metres, double pixels, const Vec2& at, do
     const Vec2 tip(at.x() + wide, at.y() + 0.25 * tall), foot(tip.x(), at.y() - 0.5 * tall);
     const Vec2 notch(tip.x(), foot.y() + 0.25 * tall);
     canvas.fill({{tip.x() - wide, foot.y()}, notch, tip}, colours::black);
-    canvas.stroke(
-        {{tip.x() - wide, foot.y()}, notch, {tip.x() + wide, foot.y()}, tip, {tip.x() - wide, foot.y()}},
-        {colours::black, 0.08 * unit, {}});
+    canvas.stroke({{tip.x() - wide, foot.y()}, notch, {tip.x() + wide, foot.y()}, tip, {tip.x() - wide, foot.y()}},
+                  {colours::black, 0.08 * unit, {}});
     TextStyle style{0.9 * unit, Across::centre, Upward::bottom, 0.0, true, false, {}};
     canvas.text("N", {tip.x(), tip.y() + 0.1 * unit}, style);
 

@@ -67,8 +67,7 @@ ColourRange colour_range(const std::vector<double>& field, double shown_above, C
         std::vector<double> sorted = shown;
         if (map == Colormap::diverging)
             for (double& value : sorted) value = std::abs(value);
-        const auto place =
-            sorted.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(sorted.size()));
+        const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(sorted.size()));
         std::nth_element(sorted.begin(), place, sorted.end());
         const double smallest = *std::min_element(sorted.begin(), sorted.end());
         range.high = *place > 0.0 ? round_limit(*place) : 0.0;
@@ -83,10 +82,9 @@ ColourRange colour_range(const std::vector<double>& field, double shown_above, C
     return range;
 }
 
-std::optional<std::array<double, 4>> covered_extent(const GridGeometry& grid,
-                                                    const std::vector<double>& field, double shown_above) {
-    expect(field.size() == static_cast<std::size_t>(grid.size()),
-           "the field of a figure has one value per node");
+std::optional<std::array<double, 4>> covered_extent(const GridGeometry& grid, const std::vector<double>& field,
+                                                    double shown_above) {
+    expect(field.size() == static_cast<std::size_t>(grid.size()), "the field of a figure has one value per node");
     std::array<Index, 4> box{grid.nx, grid.ny, -1, -1};
     for (Index j = 0; j < grid.ny; ++j)
         for (Index i = 0; i < grid.nx; ++i) {
@@ -179,8 +177,7 @@ double contour_interval(const MapFigure& figure, const std::array<double, 4>& vi
     for (Index j = 0; j < g.ny; ++j)
         for (Index i = 0; i < g.nx; ++i) {
             const double z = figure.bed.at(i, j);
-            const bool seen =
-                g.x(i) >= view[0] && g.x(i) <= view[2] && g.y(j) >= view[1] && g.y(j) <= view[3];
+            const bool seen = g.x(i) >= view[0] && g.x(i) <= view[2] && g.y(j) >= view[1] && g.y(j) <= view[3];
             if (!seen || std::isnan(z)) continue;
             low = std::min(low, z);
             high = std::max(high, z);
@@ -209,15 +206,13 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
         legend.push_back(entry(Kind::area, colours::missed, 0.0, "surveyed only"));
     }
     const auto [name, unit] = name_and_unit(figure.outline_field.empty() ? figure.field_label : figure.outline_label);
-    legend.push_back(
-        entry(Kind::line, colours::black, 0.1 * u,
-              fmt::format("{} {:g}{}{}", name, figure.shown_above, unit.empty() ? "" : " ", unit)));
+    legend.push_back(entry(Kind::line, colours::black, 0.1 * u,
+                           fmt::format("{} {:g}{}{}", name, figure.shown_above, unit.empty() ? "" : " ", unit)));
     if (figure.survey)
-        legend.push_back(
-            entry(Kind::cased_line, colours::survey, figure.survey_pen() * u, "surveyed outline"));
+        legend.push_back(entry(Kind::cased_line, colours::survey, figure.survey_pen() * u, "surveyed outline"));
     if (!figure.profiles.empty()) {
-        legend.push_back(entry(Kind::cased_line, colours::black, 0.12 * u,
-                               figure.shows_overlay() ? "runout path" : "profile"));
+        legend.push_back(
+            entry(Kind::cased_line, colours::black, 0.12 * u, figure.shows_overlay() ? "runout path" : "profile"));
         legend.back().pen.dash = {0.55 * u, 0.3 * u};
     }
     if (!figure.gauges.empty()) legend.push_back(entry(Kind::point, colours::black, 1.0, "gauge"));
@@ -264,8 +259,7 @@ void set_ticks(MapLayout& layout) {
     layout.y_ticks = ticks_between(layout.y0, y1, std::clamp(rows, 2, 9));
     for (int most = 9; most >= 2; --most) {
         layout.x_ticks = ticks_between(layout.x0, x1, most);
-        const double room =
-            layout.x_ticks.at.size() > 1 ? (layout.x_ticks.at[1] - layout.x_ticks.at[0]) / m : 1e9;
+        const double room = layout.x_ticks.at.size() > 1 ? (layout.x_ticks.at[1] - layout.x_ticks.at[0]) / m : 1e9;
         if (widest(layout.x_ticks.labels, layout.text(Across::centre, Upward::top)) + 1.2 * u < room) break;
     }
 }

@@ -42,8 +42,8 @@ ColourRange colour_range(const std::vector<double>& field, double shown_above, C
 
 /// [xmin, ymin, xmax, ymax] of all nodes where |field| exceeds the limit, half a cell wider; nothing when
 /// none.
-std::optional<std::array<double, 4>> covered_extent(const GridGeometry& grid,
-                                                    const std::vector<double>& field, double shown_above);
+std::optional<std::array<double, 4>> covered_extent(const GridGeometry& grid, const std::vector<double>& field,
+                                                    double shown_above);
 /// The smallest rectangle round both.
 std::array<double, 4> united(const std::array<double, 4>& a, const std::array<double, 4>& b);
 std::array<double, 4> extent_of(const Polygons& polygons);
@@ -68,9 +68,7 @@ struct MapLayout {
     }
     /// Nodes at the centres of the frame's pixels.
     GridGeometry pixel_grid() const;
-    TextStyle text(Across across, Upward upward) const {
-        return {unit, across, upward, 0.0, false, false, {}};
-    }
+    TextStyle text(Across across, Upward upward) const { return {unit, across, upward, 0.0, false, false, {}}; }
     double row_height() const { return 2.3 * unit; }
 };
 

@@ -12,12 +12,12 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "vtk_io/figures/actors_3d.h"
 #include "vtk_io/figures/map_figure_block.h"
 #include "vtk_io/figures/map_figure_furniture.h"
 #include "vtk_io/figures/map_figure_paint.h"
 #include "vtk_io/figures/map_figure_piece.h"
 #include "vtk_io/figures/offscreen.h"
-#include "vtk_io/figures/actors_3d.h"
 #include "vtk_io/hillshade.h"
 #include "vtk_io/level_lines.h"
 
@@ -46,8 +46,8 @@ public:
     explicit BlockDrawing(const PerspectiveFigure& figure)
         : figure_(figure),
           unit_(text_unit(figure.width, figure.height)),
-          colours_(colours_within(figure.field, figure.outline_field, figure.shown_above, figure.colormap,
-                                  figure.range)),
+          colours_(
+              colours_within(figure.field, figure.outline_field, figure.shown_above, figure.colormap, figure.range)),
           captions_(make_captions(figure.title, figure.footer, unit_, figure.width)) {
         const MapBox box = block_of(figure);
         origin_ = {0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])};
@@ -78,7 +78,7 @@ private:
     double foot_ = 0.0, azimuth_ = 0.0;
     Vec3 eye_{0, 0, 0};
     Vec3 target_{0, 0, 0};  ///< seen in the middle
-    Rectangle room_;  ///< of the picture, for the block [px]
+    Rectangle room_;        ///< of the picture, for the block [px]
     Eigen::Matrix4d to_unit_square_ = Eigen::Matrix4d::Identity();
 };
 
@@ -102,8 +102,8 @@ void BlockDrawing::build(const MapBox& box) {
     if (!figure_.outline_field.empty()) {
         const Raster outlined{figure_.bed.geometry, figure_.outline_field, "", ""};
         outlined_ = resampled(outlined, surface_.geometry, Between::linear);
-        field_fine.values = inside_outline(field_fine.values,
-                                           resampled(outlined, fine.geometry, Between::linear).values, shown_above);
+        field_fine.values =
+            inside_outline(field_fine.values, resampled(outlined, fine.geometry, Between::linear).values, shown_above);
         shown_above = kAll;
     }
     double low = 1e300;
@@ -126,8 +126,8 @@ void BlockDrawing::lines(vtkRenderer* renderer) const {
     const double lift = 0.0015 * g.cell * static_cast<double>(std::max(g.nx, g.ny));
     Raster shown = outlined_;
     for (double& value : shown.values) value = std::isnan(value) ? 0.0 : std::abs(value);
-    renderer->AddActor(draped_actor(level_lines(shown, figure_.shown_above), surface_, lift, origin_,
-                                    colours::black, 0.1 * unit_));
+    renderer->AddActor(
+        draped_actor(level_lines(shown, figure_.shown_above), surface_, lift, origin_, colours::black, 0.1 * unit_));
     double low = 1e300, high = -1e300;
     for (const double z : surface_.values)
         if (!std::isnan(z)) low = std::min(low, z), high = std::max(high, z);
@@ -140,8 +140,8 @@ void BlockDrawing::lines(vtkRenderer* renderer) const {
     faint.a = 110;
     renderer->AddActor(draped_actor(contours, surface_, lift, origin_, faint, 1.0));
     const double x1 = g.x_max(), y1 = g.y_max();
-    renderer->AddActor(draped_actor({{{g.x0, g.y0}, {x1, g.y0}, {x1, y1}, {g.x0, y1}, {g.x0, g.y0}}},
-                                    surface_, 0.0, origin_, colours::note, 1.5));
+    renderer->AddActor(draped_actor({{{g.x0, g.y0}, {x1, g.y0}, {x1, y1}, {g.x0, y1}, {g.x0, g.y0}}}, surface_, 0.0,
+                                    origin_, colours::note, 1.5));
     if (!figure_.survey) return;
     std::vector<Polyline> rings;
     for (const Polygon& part : figure_.survey->parts)
@@ -202,8 +202,7 @@ void BlockDrawing::aim_from_eye(vtkRenderer* renderer) {
 void BlockDrawing::aim(vtkRenderer* renderer) {
     const GridGeometry& g = surface_.geometry;
     const double down = figure_.look_down_deg * kDegree;
-    const Vec3 ahead(std::sin(azimuth_) * std::cos(down), std::cos(azimuth_) * std::cos(down),
-                     -std::sin(down));
+    const Vec3 ahead(std::sin(azimuth_) * std::cos(down), std::cos(azimuth_) * std::cos(down), -std::sin(down));
     const Vec3 right(std::cos(azimuth_), -std::sin(azimuth_), 0.0);
     const Vec3 up = right.cross(ahead);
     const double size = g.cell * static_cast<double>(g.nx + g.ny);
@@ -290,8 +289,7 @@ void BlockDrawing::explanations(Canvas& canvas) const {
         draw_legend_entry(canvas, entry, {u, captions_.footer_height() + 1.6 * u}, u);
     }
     const GridGeometry& g = surface_.geometry;
-    const double x = 0.5 * g.cell * static_cast<double>(g.nx - 1),
-                 y = 0.5 * g.cell * static_cast<double>(g.ny - 1);
+    const double x = 0.5 * g.cell * static_cast<double>(g.nx - 1), y = 0.5 * g.cell * static_cast<double>(g.ny - 1);
     const std::vector<double> sides = figure_.eye ? std::vector<double>{} : std::vector<double>{-1.0, 1.0};
     for (const double side : sides) {  // walls that face the eye; from a place of its own it may not see their feet
         if (side * eye_.y() > y) edge_length(canvas, {-x, side * y, foot_}, {x, side * y, foot_}, 2.0 * x);
@@ -300,8 +298,7 @@ void BlockDrawing::explanations(Canvas& canvas) const {
 
     const Vec3 centre = figure_.eye ? target_ : Vec3(0.0, 0.0, foot_);
     const Vec2 north = on_picture(centre + Vec3(0, 0.1 * (x + y), 0)) - on_picture(centre);
-    const Vec2 along = north.norm() > 0.0 ? Vec2(north.normalized()) : Vec2(0, 1),
-               across(-along.y(), along.x());
+    const Vec2 along = north.norm() > 0.0 ? Vec2(north.normalized()) : Vec2(0, 1), across(-along.y(), along.x());
     const Vec2 at(w - 5.0 * u, std::max(middle - 0.5 * tall - 5.0 * u, 3.5 * u));
     const Vec2 tip = at + 1.2 * u * along, foot = at - 0.9 * u * along, notch = at - 0.45 * u * along;
     const Vec2 left = foot + 0.6 * u * across, right = foot - 0.6 * u * across;
@@ -313,10 +310,8 @@ void BlockDrawing::explanations(Canvas& canvas) const {
 
 }  // namespace
 
-bool render_perspective(const PerspectiveFigure& figure, const std::filesystem::path& png,
-                        std::string& why_not) {
-    expect(figure.field.size() == figure.bed.values.size(),
-           "the field of a view has one value per node of the bed");
+bool render_perspective(const PerspectiveFigure& figure, const std::filesystem::path& png, std::string& why_not) {
+    expect(figure.field.size() == figure.bed.values.size(), "the field of a view has one value per node of the bed");
     why_not = no_renderer_reason();
     if (!why_not.empty()) return false;
     BlockDrawing drawing(figure);

@@ -29,15 +29,14 @@ struct PerspectiveFigure {
     };
     std::optional<Eye> eye;
     Objects3d objects;  ///< stand on the terrain and have to be in view as well
-    int width = 1600;                            ///< [px]
-    int height = 1100;                           ///< [px]
+    int width = 1600;   ///< [px]
+    int height = 1100;  ///< [px]
 
     const std::vector<double>& outlined() const { return outline_field.empty() ? field : outline_field; }
 };
 
 /// Draws the block into a PNG of width x height, without vertical exaggeration. False with a reason when
 /// there is no renderer (no file is made); UserError when the file cannot be written.
-bool render_perspective(const PerspectiveFigure& figure, const std::filesystem::path& png,
-                        std::string& why_not);
+bool render_perspective(const PerspectiveFigure& figure, const std::filesystem::path& png, std::string& why_not);
 
 }  // namespace frana

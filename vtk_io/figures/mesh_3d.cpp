@@ -67,8 +67,7 @@ public:
 
     BarrierSolid solid() {
         for (const auto& t : solid_.mesh->triangles) add({corner(t[0]), corner(t[1]), corner(t[2])});
-        for (const auto& edge : sharp_edges(*solid_.mesh, sides_.front().size))
-            add_edge(edge.front(), edge.back());
+        for (const auto& edge : sharp_edges(*solid_.mesh, sides_.front().size)) add_edge(edge.front(), edge.back());
         paint();
         sum_load();
         far_first();
@@ -125,8 +124,7 @@ private:
         if (!(area.norm() > 0.0)) return;
         const Vec3 normal = area.normalized();
         const std::vector<std::size_t> turned_to = sides_of(normal);
-        for (const std::size_t n : turned_to)
-            cut_up(triangle, normal, sides_[n], n == turned_to.front());
+        for (const std::size_t n : turned_to) cut_up(triangle, normal, sides_[n], n == turned_to.front());
     }
 
     /// Along the lines between the patches of a side.

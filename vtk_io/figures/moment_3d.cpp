@@ -12,8 +12,7 @@ namespace {
 /// The value that a share of all lies below; the list is put out of order.
 double percentile(std::vector<double>& values, double share) {
     if (values.empty()) return 0.0;
-    const auto at =
-        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
@@ -62,8 +61,7 @@ Moment3d moment_3d(const LoadedParticles& particles, std::vector<BarrierSolid> b
                  *velocity = column("velocity"), *model = column("model"), *depth = column("depth"),
                  *ground = column("elevation");
     if (particles.count > 0 && (!position || !volume || (!speed && !velocity)))
-        throw UserError(
-            "the frames hold no volume or no speed of the points; add them to output.fields and run again");
+        throw UserError("the frames hold no volume or no speed of the points; add them to output.fields and run again");
     Moment3d moment;
     moment.time = particles.time;
     moment.barriers = std::move(barriers);
@@ -72,8 +70,7 @@ Moment3d moment_3d(const LoadedParticles& particles, std::vector<BarrierSolid> b
     for (Index k = 0; k < particles.count; ++k) {
         Moment3d::Piece piece;
         piece.place = Vec3(position[3 * k], position[3 * k + 1], position[3 * k + 2]);
-        const Vec3 v =
-            velocity ? Vec3(velocity[3 * k], velocity[3 * k + 1], velocity[3 * k + 2]) : Vec3(0, 0, 0);
+        const Vec3 v = velocity ? Vec3(velocity[3 * k], velocity[3 * k + 1], velocity[3 * k + 2]) : Vec3(0, 0, 0);
         piece.speed = speed ? speed[k] : v.norm();
         piece.ground = ground ? ground[k] : piece.place.z();
         piece.is_column = model && model[k] == 0.0;
@@ -105,8 +102,7 @@ void Shared3d::add(const Moment3d& moment) {
         hold(around(barrier));
         for (const auto& piece : barrier.pieces) pressure_ = std::max(pressure_, piece.pressure);
     }
-    if (const BarrierSolid* barrier = moment.most_loaded();
-        barrier && barrier->load.head<2>().norm() > load_) {
+    if (const BarrierSolid* barrier = moment.most_loaded(); barrier && barrier->load.head<2>().norm() > load_) {
         load_ = barrier->load.head<2>().norm();
         force_ = barrier->load.head<2>().normalized();
         at_load_ = barrier->middle_of_load.head<2>();

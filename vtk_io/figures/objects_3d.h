@@ -43,7 +43,6 @@ struct Objects3d {
 };
 
 /// Draws an inset with its upper left corner there, no larger than `most` [px].
-void draw_inset(Canvas& canvas, const Objects3d::Inset& inset, const Vec2& corner, const Vec2& most,
-                double unit);
+void draw_inset(Canvas& canvas, const Objects3d::Inset& inset, const Vec2& corner, const Vec2& most, double unit);
 
 }  // namespace frana

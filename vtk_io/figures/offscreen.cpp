@@ -78,16 +78,14 @@ private:
             problem_ = "the program does not export its glewInit (link it with -rdynamic)";
             return;
         }
-        problem_ =
-            "EGL offers no display without a screen (on Debian: apt-get install libegl1 libgl1-mesa-dri)";
+        problem_ = "EGL offers no display without a screen (on Debian: apt-get install libegl1 libgl1-mesa-dri)";
         if (open_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY) && make_context()) return;
         const auto query = entry<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
         std::array<EGLDeviceEXT, 16> devices{};
         EGLint count = 0;
         if (!query || !query(static_cast<EGLint>(devices.size()), devices.data(), &count)) return;
         for (EGLint i = 0; i < count; ++i)
-            if (open_display(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)]) && make_context())
-                return;
+            if (open_display(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)]) && make_context()) return;
     }
 
     template <class Function>
@@ -165,9 +163,8 @@ struct Offscreen::Window {
         vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
         vtkNew<vtkCallbackCommand> callback;
         callback->SetCallback(answer);
-        for (const unsigned long event :
-             {vtkCommand::WindowMakeCurrentEvent, vtkCommand::WindowIsCurrentEvent,
-              vtkCommand::WindowSupportsOpenGLEvent, vtkCommand::WindowIsDirectEvent})
+        for (const unsigned long event : {vtkCommand::WindowMakeCurrentEvent, vtkCommand::WindowIsCurrentEvent,
+                                          vtkCommand::WindowSupportsOpenGLEvent, vtkCommand::WindowIsDirectEvent})
             vtk->AddObserver(event, callback);
         vtk->SetMultiSamples(4);
         vtk->SetSize(width, height);
@@ -260,8 +257,7 @@ Pixels read_png(const std::filesystem::path& png) {
     reader->Update();
     vtkImageData* image = reader->GetOutput();
     const int channels = image->GetNumberOfScalarComponents();
-    expect(image->GetScalarType() == VTK_UNSIGNED_CHAR && channels >= 3,
-           "a PNG of three or four bytes a pixel");
+    expect(image->GetScalarType() == VTK_UNSIGNED_CHAR && channels >= 3, "a PNG of three or four bytes a pixel");
     Pixels pixels(image->GetDimensions()[0], image->GetDimensions()[1]);
     const auto* data = static_cast<const unsigned char*>(image->GetScalarPointer());
     for (int y = 0; y < pixels.height; ++y)

@@ -168,8 +168,8 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
     while (at < text.size()) {
         const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
         const std::string word = text.substr(at, end - at);
-        const bool fits = !lines.empty() && text[at - 1] != '\n' &&
-                          text_size(lines.back() + " " + word, style).x() <= width;
+        const bool fits =
+            !lines.empty() && text[at - 1] != '\n' && text_size(lines.back() + " " + word, style).x() <= width;
         if (fits)
             lines.back() += " " + word;
         else
@@ -246,8 +246,7 @@ void Canvas::image(const Pixels& pixels, int x, int y) {
 }
 
 void Canvas::fill(const std::vector<Vec2>& convex, const Colour& colour) {
-    for (std::size_t i = 2; i < convex.size(); ++i)
-        sheet_->triangle(convex[0], convex[i - 1], convex[i], colour);
+    for (std::size_t i = 2; i < convex.size(); ++i) sheet_->triangle(convex[0], convex[i - 1], convex[i], colour);
 }
 
 void Canvas::fill(const Rectangle& r, const Colour& colour) {
@@ -266,13 +265,13 @@ void Canvas::stroke(const std::vector<Vec2>& line, const Pen& pen) {
         const Vec2 d = (points[1] - points[0]).cwiseAbs();
         const double width = std::max(1.0, std::round(pen.width));
         if (d.y() == 0.0)
-            edge = sides({{points[0].x(), snapped(points[0].y(), width)},
-                          {points[1].x(), snapped(points[1].y(), width)}},
-                         width);
+            edge =
+                sides({{points[0].x(), snapped(points[0].y(), width)}, {points[1].x(), snapped(points[1].y(), width)}},
+                      width);
         if (d.x() == 0.0)
-            edge = sides({{snapped(points[0].x(), width), points[0].y()},
-                          {snapped(points[1].x(), width), points[1].y()}},
-                         width);
+            edge =
+                sides({{snapped(points[0].x(), width), points[0].y()}, {snapped(points[1].x(), width), points[1].y()}},
+                      width);
     }
     for (std::size_t i = 1; i < edge.size(); ++i) {
         sheet_->triangle(edge[i - 1][0], edge[i - 1][1], edge[i][1], pen.colour);

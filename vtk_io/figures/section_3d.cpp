@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vtk_io/figures/map_figure_furniture.h"
-#include "vtk_io/figures/offscreen.h"
 #include "vtk_io/figures/colours_3d.h"
 #include "vtk_io/figures/figure_3d.h"
+#include "vtk_io/figures/map_figure_furniture.h"
 #include "vtk_io/figures/mesh_3d.h"
+#include "vtk_io/figures/offscreen.h"
 
 namespace frana {
 namespace {
@@ -73,8 +73,7 @@ private:
             const Vec2 p = piece.place.head<2>();
             const double reach = piece.is_column ? 0.5 * piece.size : 2.0 * figure_.moment.typical_size;
             const double s = plane_.distance(p);
-            if (std::abs(plane_.off_plane(p)) <= reach && s >= 0.0 && s <= plane_.length)
-                near_.push_back(&piece);
+            if (std::abs(plane_.off_plane(p)) <= reach && s >= 0.0 && s <= plane_.length) near_.push_back(&piece);
         }
         std::stable_sort(near_.begin(), near_.end(), [&](const Piece* a, const Piece* b) {
             return std::abs(plane_.off_plane(a->place.head<2>())) > std::abs(plane_.off_plane(b->place.head<2>()));
@@ -101,8 +100,7 @@ private:
         const double tall = std::max(scale_ * (high_ - low_), std::min(most, 14.0 * unit_));
         high_ = low_ + tall / scale_;
         const double x0 = left + 0.5 * (wide - scale_ * plane_.length);
-        frame_ = {std::round(x0), std::round(foot), std::round(x0 + scale_ * plane_.length),
-                  std::round(foot + tall)};
+        frame_ = {std::round(x0), std::round(foot), std::round(x0 + scale_ * plane_.length), std::round(foot + tall)};
         height_ = static_cast<int>(std::lround(frame_.y1 + head));
     }
 
@@ -126,10 +124,9 @@ private:
         constexpr int kParts = 24;  // for a top that follows the ground
         for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
             for (int n = 0; n < kParts; ++n) {
-                const double step = (crossings[k + 1] - crossings[k]) / kParts,
-                             from = crossings[k] + n * step;
-                parts.push_back({from, from + step, top_of(barrier, plane_.at(from + 0.5 * step)), n == 0,
-                                 n == kParts - 1});
+                const double step = (crossings[k + 1] - crossings[k]) / kParts, from = crossings[k] + n * step;
+                parts.push_back(
+                    {from, from + step, top_of(barrier, plane_.at(from + 0.5 * step)), n == 0, n == kParts - 1});
             }
         return parts;
     }
@@ -182,9 +179,8 @@ private:
                 const double s = plane_.distance(a.head<2>() + (b - a).head<2>() * (u / (u - v)));
                 const double inward = plane_.along.dot(piece.normal.head<2>()) > 0.0 ? -strip : strip;
                 const Vec2 p = pixel(s, a.z()), q = pixel(s, top.z());
-                canvas.fill(
-                    Rectangle{std::min(p.x(), p.x() + inward), p.y(), std::max(p.x(), p.x() + inward), q.y()},
-                    colours_.of_pressure(piece.pressure));
+                canvas.fill(Rectangle{std::min(p.x(), p.x() + inward), p.y(), std::max(p.x(), p.x() + inward), q.y()},
+                            colours_.of_pressure(piece.pressure));
             }
             for (const Stretch& part : cut(barrier)) {
                 const Vec2 a = pixel(part.from, low_), b = pixel(part.to, part.top);
@@ -280,8 +276,7 @@ private:
     void bars(Canvas& canvas) const {
         const std::vector<ColourBar> bars = colours_.bars();
         const double gap = 1.5 * unit_, x = std::round(frame_.x1 + 1.8 * unit_);
-        const double each =
-            std::min((frame_.height() + gap) / static_cast<double>(bars.size()) - gap, 16.0 * unit_);
+        const double each = std::min((frame_.height() + gap) / static_cast<double>(bars.size()) - gap, 16.0 * unit_);
         for (std::size_t n = 0; n < bars.size(); ++n) {
             const double top = frame_.y1 - static_cast<double>(n) * (each + gap);
             draw_colour_bar(canvas, {x, std::round(top - each), x + std::round(1.1 * unit_), std::round(top)},
@@ -295,7 +290,7 @@ private:
     double unit_;
     Captions captions_;
     std::vector<const Piece*> near_;
-    std::vector<MeshCut> mesh_cuts_;  ///< of the barriers that are meshes
+    std::vector<MeshCut> mesh_cuts_;               ///< of the barriers that are meshes
     double low_ = 0.0, high_ = 1.0, scale_ = 1.0;  ///< elevations in view [m]; [px/m]
     Rectangle frame_;
     int height_ = 1;

@@ -9,10 +9,10 @@
 namespace frana::bench {
 namespace {
 
-constexpr double kCell = 5.0;      ///< [m]
+constexpr double kCell = 5.0;  ///< [m]
 constexpr double kPi = 3.14159265358979323846;
-constexpr Index kRoom = 48;        ///< [cells]
-constexpr double kDepth = 4.0;     ///< [m]
+constexpr Index kRoom = 48;     ///< [cells]
+constexpr double kDepth = 4.0;  ///< [m]
 
 /// A place of the lattice, in half cells from the blob's centre.
 struct Place {

@@ -13,8 +13,10 @@ constexpr Index kRoom = 12;  ///< free cells around the block
 SolidLaw law_of(BodyLaw law) {
     const double bulk = kDensity * kSoundSpeed * kSoundSpeed;
     switch (law) {
-        case BodyLaw::fluid: return solid::Fluid{bulk, 0.0};
-        case BodyLaw::bingham: return solid::Bingham{bulk, 5e4, 10.0, 500.0};
+        case BodyLaw::fluid:
+            return solid::Fluid{bulk, 0.0};
+        case BodyLaw::bingham:
+            return solid::Bingham{bulk, 5e4, 10.0, 500.0};
         case BodyLaw::drucker_prager: {
             constexpr double kPoisson = 0.3;  // of the modulus that gives that sound, lambda + 2 G, Young's has a share
             const double young = bulk * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson);
@@ -28,9 +30,12 @@ SolidLaw law_of(BodyLaw law) {
 
 const char* name_of(BodyLaw law) {
     switch (law) {
-        case BodyLaw::fluid: return "solid_flow";
-        case BodyLaw::bingham: return "solid_flow_bingham";
-        case BodyLaw::drucker_prager: return "solid_flow_drucker_prager";
+        case BodyLaw::fluid:
+            return "solid_flow";
+        case BodyLaw::bingham:
+            return "solid_flow_bingham";
+        case BodyLaw::drucker_prager:
+            return "solid_flow_drucker_prager";
     }
     throw InternalError("unknown law");
 }

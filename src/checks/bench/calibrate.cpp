@@ -6,8 +6,8 @@
 #include <limits>
 #include <memory>
 
-#include "base/simd.h"
 #include "base/error.h"
+#include "base/simd.h"
 #include "checks/bench/team_clock.h"
 #include "mpm/tile_grid.h"
 
@@ -38,7 +38,9 @@ Lap least(int threads, int rounds, Body&& body) {
     return best;
 }
 
-struct Triad { double cpu_GBps, wall_GBps; };
+struct Triad {
+    double cpu_GBps, wall_GBps;
+};
 
 Triad triad(int threads, Index bytes, int rounds) {
     const Index count = std::max<Index>(bytes / static_cast<Index>(sizeof(double)), 1);

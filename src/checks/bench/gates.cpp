@@ -35,7 +35,8 @@ std::vector<Gate> gates(const Report& report) {
     constexpr bool kAtLeast = true;
     return {
         {"double, one thread: ns x triad GB/s [B]", 640, 400, false, ns(full) * triad},
-        {"two threads over one (wall)", 1.7, 1.9, kAtLeast, speed_up(full, find(report, "depth_averaged", reference, 2))},
+        {"two threads over one (wall)", 1.7, 1.9, kAtLeast,
+         speed_up(full, find(report, "depth_averaged", reference, 2))},
         {"fewest to most particles: growth of ns", 1.35, 1.15, false, growth},
         {"blob on 1 % of a grid over a tight grid", 1.10, 1.0, false,
          ratio(one("depth_averaged_wide"), one("depth_averaged_tight"))},

@@ -11,7 +11,7 @@ namespace frana::bench {
 struct Gate {
     std::string what;
     double gate = 0.0, aim = 0.0;
-    bool at_least = false;  ///< otherwise at most
+    bool at_least = false;                                       ///< otherwise at most
     double measured = std::numeric_limits<double>::quiet_NaN();  ///< not measured
     bool met() const { return at_least ? measured >= gate : measured <= gate; }
 };

@@ -98,7 +98,9 @@ public:
     Index bytes() const { return flow().particle_bytes(); }
     std::uint64_t hash() const { return hash_of(flow().body().points); }
     /// Nodes of the tiles that points touch.
-    double nodes() const { return static_cast<double>(kTile * kTile * static_cast<Index>(flow().body().active.work.size())); }
+    double nodes() const {
+        return static_cast<double>(kTile * kTile * static_cast<Index>(flow().body().active.work.size()));
+    }
 
 private:
     const StructuredFlow& flow() const { return both_ ? both_->columns() : *alone_; }
@@ -155,8 +157,8 @@ public:
             // A phase of several clock readings a step (deposit, grid update) still goes over its arrays once a step.
             const double calls = std::min<double>(static_cast<double>(phase.calls), plan_.window_steps);
             const double bytes = traffic.particle + traffic.node * solver_.nodes() / particles;
-            phases.push_back({phase.name, phase.cpu_seconds * scale, phase.seconds * scale,
-                              bytes * calls / plan_.window_steps});
+            phases.push_back(
+                {phase.name, phase.cpu_seconds * scale, phase.seconds * scale, bytes * calls / plan_.window_steps});
             phases.front().bytes += phases.back().bytes;
             other.cpu_ns = std::max(0.0, other.cpu_ns - phases.back().cpu_ns);
             other.wall_ns = std::max(0.0, other.wall_ns - phases.back().wall_ns);

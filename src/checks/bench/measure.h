@@ -22,9 +22,9 @@ struct Plan {
 /// Cost of a phase, or of the whole step ("full"); "other" is what the solver records under no phase.
 struct PhaseCost {
     std::string name;
-    double cpu_ns = 0.0;    ///< CPU time per particle and step: whole step: team_clock.h; phase: stepping thread
-    double wall_ns = 0.0;   ///< wall time per particle and step
-    double bytes = 0.0;     ///< memory traffic per particle and step, modelled (checks/bench/traffic.h)
+    double cpu_ns = 0.0;   ///< CPU time per particle and step: whole step: team_clock.h; phase: stepping thread
+    double wall_ns = 0.0;  ///< wall time per particle and step
+    double bytes = 0.0;    ///< memory traffic per particle and step, modelled (checks/bench/traffic.h)
 };
 
 struct Cost {

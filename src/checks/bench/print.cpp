@@ -24,9 +24,9 @@ std::string name_of(const Timed& timed, const PhaseCost& phase) {
 std::string calibration_lines(const Calibration& c) {
     std::string text;
     for (const auto& [threads, speed] : c.triad_GBps)
-        text += fmt::format("triad, {} thread{}: {:.1f} GB/s by CPU time, {:.1f} by wall time (arrays of {} MB)\n",
-                            threads, threads == 1 ? "" : "s", speed, c.triad_wall_GBps.at(threads),
-                            c.array_bytes / 1000000);
+        text +=
+            fmt::format("triad, {} thread{}: {:.1f} GB/s by CPU time, {:.1f} by wall time (arrays of {} MB)\n", threads,
+                        threads == 1 ? "" : "s", speed, c.triad_wall_GBps.at(threads), c.array_bytes / 1000000);
     return text + fmt::format("node-touch: {:.1f} ns by CPU time, {:.1f} by wall time\n", c.node_touch_ns,
                               c.node_touch_wall_ns);
 }
@@ -44,7 +44,8 @@ std::string phase_lines(const Report& report) {
 
 std::string frame_lines(const Report& report) {
     if (report.frames.empty()) return "";
-    std::string text = fmt::format("{:44} {:>9} {:>9} {:>9}\n", "one frame, one thread", "fields", "wall [ms]", "steps");
+    std::string text =
+        fmt::format("{:44} {:>9} {:>9} {:>9}\n", "one frame, one thread", "fields", "wall [ms]", "steps");
     for (const FrameCost& cost : report.frames)
         text += fmt::format("{:44} {:>9} {:>9.2f} {:>9.2f}\n", cost.name, cost.fields, 1e3 * cost.seconds, cost.steps);
     return text + "\n";
@@ -55,9 +56,11 @@ std::string gate_lines(const Report& report) {
     for (const Gate& gate : gates(report)) {
         const bool known = !std::isnan(gate.measured);
         text += fmt::format("{:52} {:>9} {} {:>6} {:>9}  {}\n", gate.what,
-                            known ? fmt::format("{:.2f}", gate.measured) : "-", gate.at_least ? ">=" : "<=",
-                            fmt::format("{:g}", gate.gate), fmt::format("{:g}", gate.aim),
-                            !known ? "not measured" : gate.met() ? "met" : "MISSED");
+                            known ? fmt::format("{:.2f}", gate.measured) : "-",
+                            gate.at_least ? ">=" : "<=", fmt::format("{:g}", gate.gate), fmt::format("{:g}", gate.aim),
+                            !known       ? "not measured"
+                            : gate.met() ? "met"
+                                         : "MISSED");
     }
     return text;
 }
@@ -87,10 +90,10 @@ std::string json_kernel(const Report& report, const Timed& timed, const PhaseCos
         name_of(timed, phase), cost.particles, cost.threads, cost.ns(phase), phase.bytes,
         stream_share(report, cost, phase), phase.cpu_ns, phase.wall_ns);
     if (&phase == &cost.full())
-        text += fmt::format(R"(, "particles_end": {}, "steps": {}, "bytes_per_particle": {:.6g}, )"
-                            R"("nodes_per_particle": {:.6g}, "hash": "{:016x}")",
-                            cost.particles_end, cost.steps, cost.bytes_per_particle, cost.nodes_per_particle,
-                            cost.hash);
+        text +=
+            fmt::format(R"(, "particles_end": {}, "steps": {}, "bytes_per_particle": {:.6g}, )"
+                        R"("nodes_per_particle": {:.6g}, "hash": "{:016x}")",
+                        cost.particles_end, cost.steps, cost.bytes_per_particle, cost.nodes_per_particle, cost.hash);
     return text + "}";
 }
 
@@ -102,8 +105,8 @@ std::string json_speeds(const std::map<int, double>& speeds) {
 }
 
 std::string json_frame(const FrameCost& cost) {
-    return fmt::format(R"({{"writer": "{}", "fields": {}, "wall_ms": {:.6g}, "steps": {:.6g}}})", cost.name, cost.fields,
-                       1e3 * cost.seconds, cost.steps);
+    return fmt::format(R"({{"writer": "{}", "fields": {}, "wall_ms": {:.6g}, "steps": {:.6g}}})", cost.name,
+                       cost.fields, 1e3 * cost.seconds, cost.steps);
 }
 
 std::string json_gate(const Gate& gate) {
@@ -115,8 +118,8 @@ std::string json_gate(const Gate& gate) {
 }  // namespace
 
 std::string table_of(const Report& report) {
-    return calibration_lines(report.calibration) + "\n" + phase_lines(report) + "\n" + frame_lines(report) + gate_lines(report) + "\n" +
-           hash_lines(report) + warning(report);
+    return calibration_lines(report.calibration) + "\n" + phase_lines(report) + "\n" + frame_lines(report) +
+           gate_lines(report) + "\n" + hash_lines(report) + warning(report);
 }
 
 std::string json_of(const Report& report) {
@@ -129,10 +132,11 @@ std::string json_of(const Report& report) {
     for (const FrameCost& cost : report.frames) frames += (frames.empty() ? "\n  " : ",\n  ") + json_frame(cost);
     for (const Gate& gate : gates(report)) held += (held.empty() ? "\n  " : ",\n  ") + json_gate(gate);
     const Calibration& c = report.calibration;
-    return fmt::format("{{\"stream_triad_GBps\": {},\n\"stream_triad_wall_GBps\": {},\n\"node_touch_ns\": {:.6g},\n"
-                       "\"same_bits\": {},\n\"kernels\": [{}],\n\"frames\": [{}],\n\"gates\": [{}]}}\n",
-                       json_speeds(c.triad_GBps), json_speeds(c.triad_wall_GBps), c.node_touch_ns, same_bits(report),
-                       kernels, frames, held);
+    return fmt::format(
+        "{{\"stream_triad_GBps\": {},\n\"stream_triad_wall_GBps\": {},\n\"node_touch_ns\": {:.6g},\n"
+        "\"same_bits\": {},\n\"kernels\": [{}],\n\"frames\": [{}],\n\"gates\": [{}]}}\n",
+        json_speeds(c.triad_GBps), json_speeds(c.triad_wall_GBps), c.node_touch_ns, same_bits(report), kernels, frames,
+        held);
 }
 
 }  // namespace frana::bench

@@ -7,10 +7,14 @@ namespace frana::bench {
 
 const char* name_of(ColumnsThat what) {
     switch (what) {
-        case ColumnsThat::hold: return "structured/elastic";
-        case ColumnsThat::break_up: return "structured/breaking";
-        case ColumnsThat::are_grains: return "structured/grains";
-        case ColumnsThat::drain: return "mixture";
+        case ColumnsThat::hold:
+            return "structured/elastic";
+        case ColumnsThat::break_up:
+            return "structured/breaking";
+        case ColumnsThat::are_grains:
+            return "structured/grains";
+        case ColumnsThat::drain:
+            return "mixture";
     }
     throw InternalError("unknown columns");
 }

@@ -15,7 +15,7 @@ namespace frana::bench {
 namespace {
 
 constexpr Index kReference = 500000, kFewest = 1000;
-constexpr double kEmptiness = 100.0;     ///< of the wide grid
+constexpr double kEmptiness = 100.0;      ///< of the wide grid
 constexpr Index kWideParticles = 671089;  ///< fill one per cent of 4096 x 4096 cells: a larger grid fills the memory
 
 /// Scenes that are held against one another, timed in turns with one thread: what else the machine does meets all alike.
@@ -105,8 +105,7 @@ void require_sensible(const Options& options) {
             fmt::format("{}: found {}; expected {}; choose a number in this range", option, found, expected));
     };
     for (const Index count : options.particles)
-        if (count < kFewest || count > 100000000)
-            refuse("--particles", count, fmt::format("{} to 100000000", kFewest));
+        if (count < kFewest || count > 100000000) refuse("--particles", count, fmt::format("{} to 100000000", kFewest));
     for (const int threads : options.threads)
         if (threads < 1 || threads > 1024) refuse("--threads", threads, "1 to 1024");
     expect(!options.particles.empty() && !options.threads.empty(), "a bench without particles or threads");
@@ -200,9 +199,8 @@ const Timed* find(const Report& report, const std::string& model, Index particle
 }
 
 Index reference_particles(const Options& options) {
-    return *std::min_element(options.particles.begin(), options.particles.end(), [](Index a, Index b) {
-        return std::abs(a - kReference) < std::abs(b - kReference);
-    });
+    return *std::min_element(options.particles.begin(), options.particles.end(),
+                             [](Index a, Index b) { return std::abs(a - kReference) < std::abs(b - kReference); });
 }
 
 }  // namespace frana::bench

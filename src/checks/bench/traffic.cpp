@@ -3,9 +3,9 @@
 namespace frana::bench {
 namespace {
 
-constexpr double kRead = 8.0, kWrite = 16.0;  ///< a double; an update costs the same as a write
-constexpr double kNode4 = 32.0;               ///< Deposit or Motion, read
-constexpr double kPlaced = 3.0, kHeld = 11.0; ///< numbers of a point: place and mass; what it carries (Carried)
+constexpr double kRead = 8.0, kWrite = 16.0;   ///< a double; an update costs the same as a write
+constexpr double kNode4 = 32.0;                ///< Deposit or Motion, read
+constexpr double kPlaced = 3.0, kHeld = 11.0;  ///< numbers of a point: place and mass; what it carries (Carried)
 
 /// Share of a double that a number takes which points carry.
 double held(const Flow& flow) { return flow.columns.single ? 0.5 : 1.0; }
@@ -25,9 +25,7 @@ Traffic gather(const Flow& flow) {
 }
 
 /// In one sweep points deposit from the cache.
-Traffic carry(const Flow& flow) {
-    return {gather(flow).particle, gather(flow).node + deposit(flow).node};
-}
+Traffic carry(const Flow& flow) { return {gather(flow).particle, gather(flow).node + deposit(flow).node}; }
 
 Traffic grid_update(const Flow& flow) {
     const double force = flow.nodes.forced ? kNode4 : 0.0;
@@ -97,7 +95,8 @@ Traffic traffic_of(const std::string& phase, const StructuredBody& body) {
         return {0.0, level.node + smooth.node + 6.0};
     }
     if (phase == "nodes") return {0.0, node + 2.0 * kNode4 + 8.0 * kRead + grains * (4.0 * kRead + 2.0 * kRead)};
-    if (phase == "gather")  // replaced: v, its gradient, pull, layer; changed: place, depth, stress, damage, strain, domain
+    if (phase ==
+        "gather")  // replaced: v, its gradient, pull, layer; changed: place, depth, stress, damage, strain, domain
         return {(8.0 + 2.0 + 1.0 + 4.0 + 2.0 + grains * 4.0 + water * 5.0) * kWrite + 3.0 * kRead, kNode4};
     return {};
 }

@@ -45,10 +45,11 @@ std::string json_text(const std::string& text) {
 
 std::string json_of(const Failure& failure) {
     const Violation& v = failure.found;
-    std::string text = fmt::format("{{\"model\": \"{}\", \"scene\": {}, \"invariant\": {}, \"value\": {}, \"step\": {}, "
-                                   "\"time\": {}, \"text\": {}",
-                                   word_of(failure.model), failure.n, json_text(v.invariant), json_number(v.value), v.step, json_number(v.time),
-                                   json_text(v.text));
+    std::string text = fmt::format(
+        "{{\"model\": \"{}\", \"scene\": {}, \"invariant\": {}, \"value\": {}, \"step\": {}, "
+        "\"time\": {}, \"text\": {}",
+        word_of(failure.model), failure.n, json_text(v.invariant), json_number(v.value), v.step, json_number(v.time),
+        json_text(v.text));
     if (failure.shrunk.trials > 0)
         text += fmt::format(", \"shrunk_trials\": {}, \"shrunk_steps\": {}, \"shrunk_particles\": {}",
                             failure.shrunk.trials, failure.shrunk.draft.steps, failure.shrunk.verdict.particles);
@@ -83,25 +84,28 @@ Campaign run(const Plan& plan, const std::function<void(const Failure&)>& report
 
 std::string table_of(const Campaign& c) {
     const std::uint64_t end = c.plan.first + static_cast<std::uint64_t>(c.scenes);
-    std::string text = fmt::format("seed {}, scenes {} to {}: {} run, {} refused, {} failed; {} steps, {:.3g} "
-                                   "particle-steps, {:.1f} s\n",
-                                   c.plan.seed, c.plan.first, end, c.scenes, c.refused, c.failures.size(), c.steps,
-                                   c.particle_steps, c.seconds);
-    if (c.parted > 0) text += fmt::format("{} whose mirror images parted by round-off that the flow made grow\n", c.parted);
-    text += fmt::format("{:<14} {:>8} {:>8} {:>8} {:>8} {:>10}\n", "model", "scenes", "refused", "failed", "steps", "ms a scene");
+    std::string text = fmt::format(
+        "seed {}, scenes {} to {}: {} run, {} refused, {} failed; {} steps, {:.3g} "
+        "particle-steps, {:.1f} s\n",
+        c.plan.seed, c.plan.first, end, c.scenes, c.refused, c.failures.size(), c.steps, c.particle_steps, c.seconds);
+    if (c.parted > 0)
+        text += fmt::format("{} whose mirror images parted by round-off that the flow made grow\n", c.parted);
+    text += fmt::format("{:<14} {:>8} {:>8} {:>8} {:>8} {:>10}\n", "model", "scenes", "refused", "failed", "steps",
+                        "ms a scene");
     for (const auto& [model, part] : c.mix)
-        text += fmt::format("{:<14} {:>8} {:>8} {:>8} {:>8} {:>10.1f}\n", word_of(model), part.scenes, part.refused, part.failed,
-                            part.steps, 1e3 * part.seconds / static_cast<double>(part.scenes));
+        text += fmt::format("{:<14} {:>8} {:>8} {:>8} {:>8} {:>10.1f}\n", word_of(model), part.scenes, part.refused,
+                            part.failed, part.steps, 1e3 * part.seconds / static_cast<double>(part.scenes));
     for (const auto& [what, count] : c.refusals) text += fmt::format("{} refused: {}\n", count, what);
-    text += fmt::format("{:<10} {:>8} {:>16} {:<14} {:>8}\n", "invariant", "failed", "worst / allowed", "  of", "scene");
+    text +=
+        fmt::format("{:<10} {:>8} {:>16} {:<14} {:>8}\n", "invariant", "failed", "worst / allowed", "  of", "scene");
     for (const std::string& name : invariant_names()) {
         const auto worst = c.worst.find(name);
         const auto broken = c.broken.find(name);
         if (worst == c.worst.end() && broken == c.broken.end()) continue;
         text += fmt::format("{:<10} {:>8} ", name, broken == c.broken.end() ? 0 : broken->second);
         text += worst == c.worst.end() ? std::string(16, ' ') + "\n"
-                                       : fmt::format("{:>16.3g}   {:<14} {:>6}\n", worst->second.value, word_of(worst->second.model),
-                                                     worst->second.n);
+                                       : fmt::format("{:>16.3g}   {:<14} {:>6}\n", worst->second.value,
+                                                     word_of(worst->second.model), worst->second.n);
     }
     return text;
 }
@@ -113,15 +117,17 @@ std::string json_of(const Campaign& c) {
                              worst.empty() ? "\n  " : ",\n  ", json_text(name), json_number(value.value),
                              word_of(value.model), value.n);
     for (const auto& [model, part] : c.mix)
-        mix += fmt::format("{}{{\"model\": \"{}\", \"scenes\": {}, \"refused\": {}, \"failed\": {}, \"steps\": {}, "
-                           "\"seconds\": {}}}",
-                           mix.empty() ? "\n  " : ",\n  ", word_of(model), part.scenes, part.refused, part.failed, part.steps,
-                           json_number(part.seconds));
+        mix += fmt::format(
+            "{}{{\"model\": \"{}\", \"scenes\": {}, \"refused\": {}, \"failed\": {}, \"steps\": {}, "
+            "\"seconds\": {}}}",
+            mix.empty() ? "\n  " : ",\n  ", word_of(model), part.scenes, part.refused, part.failed, part.steps,
+            json_number(part.seconds));
     for (const Failure& failure : c.failures) failures += (failures.empty() ? "\n  " : ",\n  ") + json_of(failure);
-    return fmt::format("{{\"seed\": {}, \"first\": {}, \"scenes\": {}, \"refused\": {}, \"parted\": {}, \"steps\": {}, "
-                       "\"particle_steps\": {}, \"seconds\": {},\n\"mix\": [{}],\n\"worst\": [{}],\n\"failures\": [{}]}}\n",
-                       c.plan.seed, c.plan.first, c.scenes, c.refused, c.parted, c.steps, json_number(c.particle_steps),
-                       json_number(c.seconds), mix, worst, failures);
+    return fmt::format(
+        "{{\"seed\": {}, \"first\": {}, \"scenes\": {}, \"refused\": {}, \"parted\": {}, \"steps\": {}, "
+        "\"particle_steps\": {}, \"seconds\": {},\n\"mix\": [{}],\n\"worst\": [{}],\n\"failures\": [{}]}}\n",
+        c.plan.seed, c.plan.first, c.scenes, c.refused, c.parted, c.steps, json_number(c.particle_steps),
+        json_number(c.seconds), mix, worst, failures);
 }
 
 }  // namespace frana::stress

@@ -9,24 +9,31 @@ namespace frana::stress {
 struct Plan {
     std::vector<Model> models = all_models();  ///< to draw of
     std::uint64_t seed = 1;
-    std::uint64_t first = 0;   ///< number of the first case
-    Index scenes = 0;          ///< at most so many; 0: as many as the time allows
-    double seconds = 60.0;     ///< wall time for running cases; shrinking comes on top
-    Index most_shrunk = 20;    ///< failures beyond this are counted only
-    Index shrink_trials = 300; ///< for each
+    std::uint64_t first = 0;    ///< number of the first case
+    Index scenes = 0;           ///< at most so many; 0: as many as the time allows
+    double seconds = 60.0;      ///< wall time for running cases; shrinking comes on top
+    Index most_shrunk = 20;     ///< failures beyond this are counted only
+    Index shrink_trials = 300;  ///< for each
 };
 
 struct Failure {
     Model model = Model::depth_averaged;
-    std::uint64_t n = 0;       ///< number of the case in the series
-    Violation found;           ///< as drawn
-    Shrunk shrunk;             ///< trials 0: not tried
+    std::uint64_t n = 0;  ///< number of the case in the series
+    Violation found;      ///< as drawn
+    Shrunk shrunk;        ///< trials 0: not tried
 };
 
-struct Worst { double value = 0.0; Model model = Model::depth_averaged; std::uint64_t n = 0; };
+struct Worst {
+    double value = 0.0;
+    Model model = Model::depth_averaged;
+    std::uint64_t n = 0;
+};
 
 /// What became of the scenes of one model.
-struct Part { Index scenes = 0, refused = 0, failed = 0, steps = 0; double seconds = 0.0; };
+struct Part {
+    Index scenes = 0, refused = 0, failed = 0, steps = 0;
+    double seconds = 0.0;
+};
 
 struct Campaign {
     Plan plan;
@@ -36,8 +43,8 @@ struct Campaign {
     std::map<Model, Part> mix;
     std::map<std::string, Index> refusals;  ///< by what they say
     std::vector<Failure> failures;
-    std::map<std::string, Worst> worst;  ///< by invariant, in units of what is allowed, over cases that passed
-    std::map<std::string, Index> broken; ///< cases by the invariant that broke
+    std::map<std::string, Worst> worst;   ///< by invariant, in units of what is allowed, over cases that passed
+    std::map<std::string, Index> broken;  ///< cases by the invariant that broke
 };
 
 /// Runs the plan; `report` is told of each failure once it has been shrunk, `stop` is asked before each case.

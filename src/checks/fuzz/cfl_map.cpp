@@ -11,8 +11,8 @@ namespace {
 
 using Function = double (*)(double, double);
 
-constexpr Index kNodes = 25;     ///< along each side
-constexpr double kLength = 24.0; ///< [m], cells of 1 m
+constexpr Index kNodes = 25;      ///< along each side
+constexpr double kLength = 24.0;  ///< [m], cells of 1 m
 
 const char* word(Shape shape) {
     return shape == Shape::linear ? "linear" : shape == Shape::quadratic ? "quadratic" : "cubic";
@@ -20,10 +20,14 @@ const char* word(Shape shape) {
 
 const char* word(Transfer transfer) {
     switch (transfer) {
-        case Transfer::tpic: return "tpic";
-        case Transfer::apic: return "apic";
-        case Transfer::flip: return "flip";
-        case Transfer::pic: return "pic";
+        case Transfer::tpic:
+            return "tpic";
+        case Transfer::apic:
+            return "apic";
+        case Transfer::flip:
+            return "flip";
+        case Transfer::pic:
+            return "pic";
     }
     throw InternalError("unknown transfer");
 }
@@ -138,8 +142,8 @@ CflRow cfl_row(const Method& method, Index steps) {
 
 std::string cfl_table(const std::vector<CflRow>& rows) {
     std::string text = fmt::format("largest stable scheme.cfl, of at most {}, by points a cell\n", cfl_ladder().back());
-    text += fmt::format("{:<20} {:>6} {:>6} {:>6} {:>6}  {}\n", "", 1, 4, 9, 16,
-                        "what breaks first beyond, at 4 points");
+    text +=
+        fmt::format("{:<20} {:>6} {:>6} {:>6} {:>6}  {}\n", "", 1, 4, 9, 16, "what breaks first beyond, at 4 points");
     std::string last, reason;
     for (const CflRow& row : rows) {
         if (row.method.name() != last) {

@@ -9,7 +9,7 @@ struct Method {
     std::string preset = "default";
     Shape shape = Shape::quadratic;
     Transfer transfer = Transfer::tpic;
-    int per_side = 2;  ///< points a cell and direction
+    int per_side = 2;          ///< points a cell and direction
     std::string name() const;  ///< "quadratic tpic"
 };
 
@@ -25,7 +25,10 @@ std::vector<Method> cfl_methods();
 
 /// The suite: a dam break on level ground, a column that collapses, streams that meet, a bowl that swings, a slide on
 /// 40 degrees, a viscous mass and a thin film. All have an energy law.
-struct SuiteScene { std::string name; Scene scene; };
+struct SuiteScene {
+    std::string name;
+    Scene scene;
+};
 std::vector<SuiteScene> cfl_suite(const Method& method);
 
 /// Runs the suite at rising fractions, `steps` steps each.

@@ -20,7 +20,7 @@ public:
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
         return z ^ (z >> 31);
     }
-    double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }                  ///< [0, 1)
+    double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  ///< [0, 1)
     double between(double low, double high) { return low + (high - low) * unit(); }
     double decades(double low, double high) { return low * std::pow(high / low, unit()); }  ///< even in the logarithm
     Index below(Index n) { return static_cast<Index>(bits() % static_cast<std::uint64_t>(n)); }

@@ -72,7 +72,8 @@ Scene scene_of(const Draft& draft) {
 }
 
 bool same(const Draft& a, const Draft& b) {
-    if (a.model != b.model || a.keys != b.keys || a.steps != b.steps || a.rasters.size() != b.rasters.size()) return false;
+    if (a.model != b.model || a.keys != b.keys || a.steps != b.steps || a.rasters.size() != b.rasters.size())
+        return false;
     for (const auto& [name, raster] : a.rasters) {
         const Raster& other = b.rasters.at(name);
         if (!(raster.geometry == other.geometry)) return false;
@@ -91,12 +92,18 @@ const std::vector<Model>& all_models() {
 
 const char* word_of(Model model) {
     switch (model) {
-        case Model::depth_averaged: return "depth_averaged";
-        case Model::solid_flow: return "solid_flow";
-        case Model::structured: return "structured";
-        case Model::water: return "water";
-        case Model::mixture: return "mixture";
-        case Model::staged: return "staged";
+        case Model::depth_averaged:
+            return "depth_averaged";
+        case Model::solid_flow:
+            return "solid_flow";
+        case Model::structured:
+            return "structured";
+        case Model::water:
+            return "water";
+        case Model::mixture:
+            return "mixture";
+        case Model::staged:
+            return "staged";
     }
     throw InternalError("unknown model");
 }
@@ -110,9 +117,10 @@ std::vector<Model> models_of(const std::string& words) {
         for (const Model model : all_models())
             if (word == word_of(model)) models.push_back(model);
         if (models.size() == before)
-            throw UserError(fmt::format("--model: found \"{}\"; expected all, or some of depth_averaged, solid_flow, "
-                                        "structured, water, mixture, staged with commas between; choose of these",
-                                        word));
+            throw UserError(
+                fmt::format("--model: found \"{}\"; expected all, or some of depth_averaged, solid_flow, "
+                            "structured, water, mixture, staged with commas between; choose of these",
+                            word));
     }
     if (models.empty()) throw UserError("--model: found no word; expected all, or the models to draw; name one");
     return models;
@@ -120,10 +128,14 @@ std::vector<Model> models_of(const std::string& words) {
 
 const char* word_of(Mirror mirror) {
     switch (mirror) {
-        case Mirror::none: return "none";
-        case Mirror::x: return "x";
-        case Mirror::y: return "y";
-        case Mirror::diagonal: return "diagonal";
+        case Mirror::none:
+            return "none";
+        case Mirror::x:
+            return "x";
+        case Mirror::y:
+            return "y";
+        case Mirror::diagonal:
+            return "diagonal";
     }
     throw InternalError("unknown mirror");
 }

@@ -17,11 +17,11 @@ enum class Mirror { none, x, y, diagonal };
 
 /// What must hold of a scene beyond what holds of any.
 struct Claims {
-    bool rests = false;             ///< nothing moves by one bit (a lake: no more than its level asks for)
-    Mirror mirror = Mirror::none;   ///< x: west and east change places, y: south and north, diagonal: x and y
-    bool threads = false;           ///< one thread and two give the same bits
-    bool resumes = false;           ///< kept half way and taken up again it ends with the same bits
-    bool resolved = false;          ///< the grid resolves its depth and bed: linear shapes keep energy too
+    bool rests = false;            ///< nothing moves by one bit (a lake: no more than its level asks for)
+    Mirror mirror = Mirror::none;  ///< x: west and east change places, y: south and north, diagonal: x and y
+    bool threads = false;          ///< one thread and two give the same bits
+    bool resumes = false;          ///< kept half way and taken up again it ends with the same bits
+    bool resolved = false;         ///< the grid resolves its depth and bed: linear shapes keep energy too
 };
 
 struct Draft {

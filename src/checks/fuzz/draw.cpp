@@ -22,8 +22,10 @@ void for_each_pair(const GridGeometry& grid, Mirror mirror, Body&& body) {
 /// The second half of each raster becomes the image of the first, times `sign`.
 void reflect(Raster& raster, Mirror mirror, double sign) {
     for_each_pair(raster.geometry, mirror, [&](Index i, Index j, Index a, Index b) {
-        if (j * raster.geometry.nx + i < b * raster.geometry.nx + a) raster.at(a, b) = sign * raster.at(i, j);
-        else if (i == a && j == b && sign < 0.0) raster.at(i, j) = 0.0;
+        if (j * raster.geometry.nx + i < b * raster.geometry.nx + a)
+            raster.at(a, b) = sign * raster.at(i, j);
+        else if (i == a && j == b && sign < 0.0)
+            raster.at(i, j) = 0.0;
     });
 }
 
@@ -119,7 +121,9 @@ void draw_lake(Dice& dice, Draft& draft) {
 namespace {
 
 /// Numbers of a series of its own: every model draws other scenes from one seed.
-std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) { return Dice(seed ^ (salt * 0x9fb21c651e98df25u)).bits(); }
+std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) {
+    return Dice(seed ^ (salt * 0x9fb21c651e98df25u)).bits();
+}
 
 constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kScene = 16;  // salts
 
@@ -156,12 +160,18 @@ namespace {
 void draw_other(Dice& dice, Draft& draft) {
     draft.steps = 25 + dice.below(50);
     switch (draft.model) {
-        case Model::depth_averaged: break;
-        case Model::solid_flow: return draw_solid_flow(dice, draft);
-        case Model::structured: return draw_structured(dice, draft);
-        case Model::water: return draw_water(dice, draft);
-        case Model::mixture: return draw_mixture(dice, draft);
-        case Model::staged: return draw_staged(dice, draft);
+        case Model::depth_averaged:
+            break;
+        case Model::solid_flow:
+            return draw_solid_flow(dice, draft);
+        case Model::structured:
+            return draw_structured(dice, draft);
+        case Model::water:
+            return draw_water(dice, draft);
+        case Model::mixture:
+            return draw_mixture(dice, draft);
+        case Model::staged:
+            return draw_staged(dice, draft);
     }
 }
 

@@ -49,14 +49,19 @@ void draw_bed_law(Dice& dice, Draft& draft);
 void draw_bed_keys(Dice& dice, Draft& draft, const std::string& law);
 /// Where the material lies on the ground of the draft: depths of `least` to `most` cells, no more than `pixels` of them,
 /// half of the time in motion.
-struct ReleaseKind { double least, most; Index pixels; };
+struct ReleaseKind {
+    double least, most;
+    Index pixels;
+};
 void draw_release(Dice& dice, Draft& draft, const ReleaseKind& kind);
 /// Makes the ground flatter until no node is more than `rise` cells higher than its neighbour.
 void flatten(Draft& draft, double rise);
 /// Ground for material that is not the depth-averaged flow's: as draw_terrain, at most as steep as it draws.
 void draw_ground(Dice& dice, Draft& draft);
 /// What is let go, as it is drawn so far: how deep it is, how fast, and how fast that can become [m], [m/s].
-struct Scales { double deepest, volume, speed, wave, gravity; };
+struct Scales {
+    double deepest, volume, speed, wave, gravity;
+};
 Scales scales_of(const Draft& draft);
 
 }  // namespace frana::stress

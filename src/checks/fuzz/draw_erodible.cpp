@@ -23,17 +23,22 @@ void draw_erodible(Dice& dice, Draft& draft) {
     const bool other_scheme = draft.has("scheme.preset") || draft.has("scheme.shape");
     if (draft.claims.rests || other_scheme) return;
     const Parameter& law = *find_parameter("erodible.law");
-    const std::string word = law.choices[1 + static_cast<std::size_t>(dice.below(static_cast<Index>(law.choices.size()) - 1))];
+    const std::string word =
+        law.choices[1 + static_cast<std::size_t>(dice.below(static_cast<Index>(law.choices.size()) - 1))];
     say(draft, "erodible.law", word);
     const double deepest = dice.decades(1e-3, 0.3) * draft.dem().geometry.cell;
-    if (draft.claims.mirror != Mirror::none || dice.chance(0.4)) say(draft, "erodible.depth", deepest);
-    else draw_layer(dice, draft, deepest);
+    if (draft.claims.mirror != Mirror::none || dice.chance(0.4))
+        say(draft, "erodible.depth", deepest);
+    else
+        draw_layer(dice, draft, deepest);
     for (const Parameter& key : parameters()) {
         if (key.table() != "erodible" || std::count(key.used_by.begin(), key.used_by.end(), word) == 0) continue;
         if (key.kind != Kind::number || key.range.high < 1e300) continue;
         const bool needed = std::count(key.required_by.begin(), key.required_by.end(), word) > 0;
-        if (needed) say(draft, key.key, dice.decades(1e-5, 10.0));
-        else if (key.fallback && dice.chance(0.5)) say(draft, key.key, std::get<double>(*key.fallback) * dice.decades(1e-3, 1e3));
+        if (needed)
+            say(draft, key.key, dice.decades(1e-5, 10.0));
+        else if (key.fallback && dice.chance(0.5))
+            say(draft, key.key, std::get<double>(*key.fallback) * dice.decades(1e-3, 1e3));
     }
     if (dice.chance(0.5)) say(draft, "erodible.momentum", dice.one_of({0.5, 1.0, dice.unit()}));
     if (dice.chance(0.3)) say(draft, "erodible.density", dice.decades(100.0, 3000.0));

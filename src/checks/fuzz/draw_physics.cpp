@@ -47,8 +47,8 @@ void draw_bed_keys(Dice& dice, Draft& draft, const std::string& law) {
     for (const Parameter& key : parameters()) {
         if (key.switch_key != "material.bed.law" || !has(key.required_by, law) || draft.has(key.instead_of)) continue;
         const double low = std::isinf(key.range.low) ? 0.0 : key.range.low;
-        say(draft, key.key, std::isinf(key.range.high) ? low + dice.decades(1e-4, 1e6)
-                                                       : dice.between(low, key.range.high));
+        say(draft, key.key,
+            std::isinf(key.range.high) ? low + dice.decades(1e-4, 1e6) : dice.between(low, key.range.high));
     }
 }
 
@@ -92,7 +92,8 @@ void draw_scheme(Dice& dice, Draft& draft) {
     std::string shape = paper ? dice.one_of({"linear", "quadratic"})
                               : dice.one_of({"quadratic", "quadratic", "quadratic", "quadratic", "linear", "cubic"});
     std::string transfer = dice.chance(paper ? 0.4 : 0.3) ? dice.one_of({"tpic", "apic", "flip", "pic"})
-                                                          : paper ? "pic" : "tpic";
+                           : paper                        ? "pic"
+                                                          : "tpic";
     if (shape == "linear" && transfer == "apic") transfer = "tpic";
     if (shape != (paper ? "linear" : "quadratic")) say(draft, "scheme.shape", shape);
     if (transfer != (paper ? "pic" : "tpic")) say(draft, "scheme.transfer", transfer);

@@ -111,8 +111,8 @@ void draw_particles(Dice& dice, Draft& draft, Index pixels) {
 
 void draw_release(Dice& dice, Draft& draft) {
     Raster depth = draw_depths(dice, draft.dem());
-    const Index pixels = static_cast<Index>(
-        std::count_if(depth.values.begin(), depth.values.end(), [](double h) { return h > 0.0; }));
+    const Index pixels =
+        static_cast<Index>(std::count_if(depth.values.begin(), depth.values.end(), [](double h) { return h > 0.0; }));
     if (dice.chance(0.15)) draw_exits(dice, draft, depth);
     draft.rasters["depth.tif"] = depth;
     draft.keys["release.depth"] = "\"depth.tif\"";

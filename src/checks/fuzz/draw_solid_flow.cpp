@@ -15,8 +15,8 @@ std::string key(const std::string& stage, const char* name) { return stage + "."
 
 /// A law of 3D material, as strong and stiff as its depth asks for within some powers of ten.
 void draw_law(Dice& dice, Draft& draft, const std::string& stage, const Scales& of) {
-    const std::string law =
-        dice.one_of({"fluid", "fluid", "fluid", "bingham", "herschel_bulkley", "drucker_prager", "drucker_prager", "elastic"});
+    const std::string law = dice.one_of(
+        {"fluid", "fluid", "fluid", "bingham", "herschel_bulkley", "drucker_prager", "drucker_prager", "elastic"});
     const double density = dice.decades(300.0, 3000.0), weight = density * of.gravity * of.deepest;
     say(draft, "material.density", density);
     say(draft, key(stage, "law"), law);
@@ -24,7 +24,8 @@ void draw_law(Dice& dice, Draft& draft, const std::string& stage, const Scales& 
     const double thick = density * of.wave * of.deepest;
     if (law == "fluid" && dice.chance(0.5)) say(draft, key(stage, "viscosity"), thick * dice.decades(1e-6, 1e-1));
     if (law == "bingham") say(draft, key(stage, "viscosity"), thick * dice.decades(1e-6, 1e-1));
-    if (law == "bingham" || law == "herschel_bulkley") say(draft, key(stage, "yield_stress"), weight * dice.decades(1e-3, 3.0));
+    if (law == "bingham" || law == "herschel_bulkley")
+        say(draft, key(stage, "yield_stress"), weight * dice.decades(1e-3, 3.0));
     if (law == "herschel_bulkley") {
         say(draft, key(stage, "consistency"), thick * dice.decades(1e-6, 1e-2));
         say(draft, key(stage, "exponent"), dice.between(0.2, 1.0));
@@ -43,7 +44,8 @@ void draw_law(Dice& dice, Draft& draft, const std::string& stage, const Scales& 
 }
 
 void draw_walls(Dice& dice, Draft& draft, const std::string& stage) {
-    if (dice.chance(0.3)) draft.keys[key(stage, "closed")] = dice.one_of({"[\"west\"]", "[\"north\", \"east\"]", "[\"south\"]"});
+    if (dice.chance(0.3))
+        draft.keys[key(stage, "closed")] = dice.one_of({"[\"west\"]", "[\"north\", \"east\"]", "[\"south\"]"});
     if (!dice.chance(0.2)) return;
     const GridGeometry& g = draft.dem().geometry;
     const auto place = [&] {

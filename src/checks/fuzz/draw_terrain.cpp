@@ -119,7 +119,8 @@ void flatten(Draft& draft, double rise) {
     double largest = 0.0;
     for (Index j = 0; j + 1 < g.ny; ++j)
         for (Index i = 0; i + 1 < g.nx; ++i)
-            largest = std::max({largest, std::abs(dem.at(i + 1, j) - dem.at(i, j)), std::abs(dem.at(i, j + 1) - dem.at(i, j))});
+            largest = std::max(
+                {largest, std::abs(dem.at(i + 1, j) - dem.at(i, j)), std::abs(dem.at(i, j + 1) - dem.at(i, j))});
     if (largest <= rise * g.cell) return;
     const double low = *std::min_element(dem.values.begin(), dem.values.end());
     for (double& z : dem.values) z = single(low + (z - low) * rise * g.cell / largest);

@@ -10,7 +10,7 @@ namespace frana::stress {
 /// What of a scene decides on which invariants hold, and how well.
 struct Facts {
     Claims claims;
-    double gravity = 9.81;       ///< [m/s^2]
+    double gravity = 9.81;  ///< [m/s^2]
     Index nodes_x = 0, nodes_y = 0;
     bool walls = false;
     bool steep = true;
@@ -20,8 +20,8 @@ struct Facts {
     /// bed, by the factor `stretch` = sqrt(1 + B^2) between level and steepest.
     bool energy_law = true;
     double stretch = 1.0;
-    double release_depth = 0.0;  ///< largest of the release; nodes see it averaged over a cell and more [m]
-    double release_energy = 0.0; ///< that its depth alone could set free [J]
+    double release_depth = 0.0;   ///< largest of the release; nodes see it averaged over a cell and more [m]
+    double release_energy = 0.0;  ///< that its depth alone could set free [J]
     /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
     double hidden_energy = 0.0;
     double loose = 0.0;          ///< deepest that an erodible bed may sink [m]
@@ -34,17 +34,17 @@ struct Facts {
     double cell = 1.0;           ///< [m]
     double steepest = 0.0;       ///< largest slope of the bed that a velocity follows; none on shallow terrain [1]
     bool lake = false;
-    double level_error = 0.0;    ///< of a lake: how far its surface is off the level at the start [m]
-    double level_round_off = 0.0; ///< of elevations, depths and their sum in a lake [m]
-    double one_cell_bend = 0.0;  ///< largest second difference of the bed between neighbouring nodes [m]
-    double density = 0.0;        ///< of the columns or points [kg/m^3]
-    bool all_in_points = true;   ///< no mass but that of points: no free water, nothing on its way between two models
-    bool in_3d = false;          ///< 3D points, some of the time
-    double cell_3d = 0.0;     ///< of their grid [m]
-    bool cancels = false;        ///< impulses of weight and pressure are recorded each, and cancel where material rests
-    double displaces = 0.0;      ///< weight of the water that columns can displace [N]
-    double bears = 1.0;          ///< share of that which bears them (WaterExchange::pore_pressure) [1]
-    bool virtual_mass = false;   ///< columns carry water's inertia: they part from it by what a step gets wrong
+    double level_error = 0.0;      ///< of a lake: how far its surface is off the level at the start [m]
+    double level_round_off = 0.0;  ///< of elevations, depths and their sum in a lake [m]
+    double one_cell_bend = 0.0;    ///< largest second difference of the bed between neighbouring nodes [m]
+    double density = 0.0;          ///< of the columns or points [kg/m^3]
+    bool all_in_points = true;     ///< no mass but that of points: no free water, nothing on its way between two models
+    bool in_3d = false;            ///< 3D points, some of the time
+    double cell_3d = 0.0;          ///< of their grid [m]
+    bool cancels = false;       ///< impulses of weight and pressure are recorded each, and cancel where material rests
+    double displaces = 0.0;     ///< weight of the water that columns can displace [N]
+    double bears = 1.0;         ///< share of that which bears them (WaterExchange::pore_pressure) [1]
+    bool virtual_mass = false;  ///< columns carry water's inertia: they part from it by what a step gets wrong
     double highest_rain = -std::numeric_limits<double>::infinity();  ///< highest ground that rain falls on [m]
 };
 /// Of a simulation that make_simulation() made of `scene` and that has not moved.

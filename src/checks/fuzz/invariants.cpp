@@ -22,10 +22,10 @@ double sum_of(const std::vector<double>& values) {
 }
 
 std::vector<double> numbers_of(const Status& s) {
-    return {s.time,       s.dt,           s.mass,        s.mass_left,   s.momentum[0],      s.momentum[1],
-            s.impulse[0], s.impulse[1],   s.kinetic,     s.potential,   s.momentum_left[0], s.momentum_left[1],
-            s.dissipated, s.energy_left,  s.max_depth,   s.max_speed,   s.p2g_mass_error,   s.p2g_momentum_error,
-            s.mean_speed, s.covered_area, s.front,       s.stored,      s.bed.mass,        s.bed.eroded,
+    return {s.time,       s.dt,           s.mass,      s.mass_left, s.momentum[0],      s.momentum[1],
+            s.impulse[0], s.impulse[1],   s.kinetic,   s.potential, s.momentum_left[0], s.momentum_left[1],
+            s.dissipated, s.energy_left,  s.max_depth, s.max_speed, s.p2g_mass_error,   s.p2g_momentum_error,
+            s.mean_speed, s.covered_area, s.front,     s.stored,    s.bed.mass,         s.bed.eroded,
             s.bed.energy, s.bed.deepest};
 }
 
@@ -45,8 +45,9 @@ double near_open_sides(const Facts& facts, const PointStates& points) {
 }  // namespace
 
 const std::vector<std::string>& invariant_names() {
-    static const std::vector<std::string> names = {"finite", "positive", "mass",   "momentum", "energy",  "speed",
-                                                   "head",   "rest",     "symmetry", "threads", "resume", "numerics", "program"};
+    static const std::vector<std::string> names = {"finite", "positive", "mass",   "momentum", "energy",
+                                                   "speed",  "head",     "rest",   "symmetry", "threads",
+                                                   "resume", "numerics", "program"};
     return names;
 }
 
@@ -98,8 +99,8 @@ std::optional<Violation> Watch::observe(const Snapshot& state) {
     if (auto broken = finite(state)) return broken;  // the others would compare with what is no number
     note_extremes(state);
     std::optional<Violation> first;
-    for (const auto check : {&Watch::positive, &Watch::mass, &Watch::momentum, &Watch::energy, &Watch::speed, &Watch::head,
-                             &Watch::rest, &Watch::symmetry}) {
+    for (const auto check : {&Watch::positive, &Watch::mass, &Watch::momentum, &Watch::energy, &Watch::speed,
+                             &Watch::head, &Watch::rest, &Watch::symmetry}) {
         auto broken = (this->*check)(state);
         if (!first) first = std::move(broken);
     }
@@ -144,7 +145,8 @@ std::optional<Violation> Watch::mass(const Snapshot& state) {
 
 std::optional<Violation> Watch::momentum(const Snapshot& state) {
     // A step rounds each point's velocity some ten times, half of them on the way to the nodes.
-    const double roundings = 16.0 * static_cast<double>(state.between.step + 10) + static_cast<double>(points_ + most_nodes_);
+    const double roundings =
+        16.0 * static_cast<double>(state.between.step + 10) + static_cast<double>(points_ + most_nodes_);
     double speed = fastest_;
     if (facts_.cancels) speed += facts_.gravity * state.now.time + std::sqrt(facts_.gravity * deepest_);
     const double allowed = kEps * most_mass_ * speed * roundings;  // two sums over points, half a unit each time
@@ -169,7 +171,7 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     // What leaves is recorded with the bed of the nearest node, half a cell away at most.
     const double held_back = near_open_sides(facts_, start_.points) + near_open_sides(facts_, state.points);
     const double recorded = facts_.gravity * (std::abs(now.mass_left) * (facts_.one_cell_drop + deepest_) +
-                                            held_back * facts_.one_cell_drop);
+                                              held_back * facts_.one_cell_drop);
     const double round_off = kEps * static_cast<double>(points_ + most_nodes_) * std::abs(first.potential);
     const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
     const double slope = slope_uphill();

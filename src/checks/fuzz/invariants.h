@@ -14,14 +14,16 @@ struct Violation {
     std::string invariant;  ///< one of invariant_names()
     double value = 0.0;     ///< what was found, in units of what is allowed; infinite when no number tells
     Index step = 0;
-    double time = 0.0;      ///< [s]
-    std::string text;       ///< what was found
+    double time = 0.0;  ///< [s]
+    std::string text;   ///< what was found
 };
 
 const std::vector<std::string>& invariant_names();
 
 /// What differences between mirrored nodes are measured by.
-struct Scale { double depth = 0.0, speed = 0.0; };  ///< [m], [m/s]
+struct Scale {
+    double depth = 0.0, speed = 0.0;
+};  ///< [m], [m/s]
 /// Largest difference of mirrored nodes, of depth over the scale's, of momentum over the product of both [1].
 double asymmetry(const Facts& facts, const std::vector<NodeState>& nodes, const Scale& scale);
 
@@ -137,16 +139,16 @@ private:
 
     Facts facts_;
     Snapshot start_;
-    double mass_ = 0.0;            ///< of the start, compensated [kg]
-    double most_mass_ = 0.0;       ///< at a time so far; rain adds to it [kg]
+    double mass_ = 0.0;                    ///< of the start, compensated [kg]
+    double most_mass_ = 0.0;               ///< at a time so far; rain adds to it [kg]
     double highest_ = 0.0, lowest_ = 0.0;  ///< surface of the start, bed so far [m]
-    double deepest_ = 0.0;         ///< so far [m]
-    double fastest_ = 0.0;         ///< point or node so far [m/s]
-    double change_ = 0.0;          ///< of the velocity across a cell at a point, largest so far, with affine transfers [m/s]
-    double at_hand_ = 0.0;         ///< kinetic energy of the start, and what its depth alone could set free [J]
-    double turned_over_ = 0.0;     ///< largest kinetic and dissipated energy and change of potential so far [J]
-    Index points_ = 0;             ///< most so far
-    Index most_nodes_ = 0;         ///< with material, where it is not all in points
+    double deepest_ = 0.0;                 ///< so far [m]
+    double fastest_ = 0.0;                 ///< point or node so far [m/s]
+    double change_ = 0.0;   ///< of the velocity across a cell at a point, largest so far, with affine transfers [m/s]
+    double at_hand_ = 0.0;  ///< kinetic energy of the start, and what its depth alone could set free [J]
+    double turned_over_ = 0.0;  ///< largest kinetic and dissipated energy and change of potential so far [J]
+    Index points_ = 0;          ///< most so far
+    Index most_nodes_ = 0;      ///< with material, where it is not all in points
     std::map<std::string, double> worst_;
 };
 

@@ -94,11 +94,13 @@ void add_material(const Draft& draft, std::vector<Change>& changes) {
 /// Keys at their defaults, fewer points, no motion.
 void add_defaults(const Draft& draft, std::vector<Change>& changes) {
     for (const auto& [key, value] : draft.keys) {
-        if (is_needed(key) || (is_pile(draft) && holds_pile(key)) || (is_lake(draft) && key == "boundary.sides")) continue;
+        if (is_needed(key) || (is_pile(draft) && holds_pile(key)) || (is_lake(draft) && key == "boundary.sides"))
+            continue;
         const std::string name = key;
         changes.push_back([name](Draft& d) { d.keys.erase(name); });
     }
-    for (const char* table : {"scheme.", "material.rheology.", "material.bed.", "release.velocity", "barrier#0.", "water."}) {
+    for (const char* table :
+         {"scheme.", "material.rheology.", "material.bed.", "release.velocity", "barrier#0.", "water."}) {
         const std::string prefix = table;
         if (is_pile(draft) && holds_pile(prefix)) continue;
         changes.push_back([prefix](Draft& d) {  // all of a table, since a law's keys need one another

@@ -69,7 +69,8 @@ void compare_bits(const Scene& scene, const Claims& claims, Verdict& verdict) {
     if (!claims.threads && !claims.resumes) return;
     const Bits bits = run_with(scene, 1, verdict.steps);
     if (claims.threads)
-        compare("threads", bits, run_with(scene, 2, verdict.steps), "one thread and two end with different bits", verdict);
+        compare("threads", bits, run_with(scene, 2, verdict.steps), "one thread and two end with different bits",
+                verdict);
     if (claims.resumes && !verdict.broken)
         compare("resume", bits, run_with_pause(scene, verdict.steps),
                 "a run that was kept half way and taken up again ends with different bits", verdict);

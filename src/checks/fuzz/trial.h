@@ -11,9 +11,9 @@ struct Verdict {
     std::optional<Violation> broken;  ///< the first invariant that broke, if any did
     bool refused = false;             ///< `text` says why the scene was no scene
     std::string text;
-    Index steps = 0, particles = 0;   ///< particles: most at a time
-    double time = 0.0;                ///< simulated [s]
-    bool parted = false;              ///< its mirror images parted by round-off that the flow made grow (has_grown)
+    Index steps = 0, particles = 0;       ///< particles: most at a time
+    double time = 0.0;                    ///< simulated [s]
+    bool parted = false;                  ///< its mirror images parted by round-off that the flow made grow (has_grown)
     std::map<std::string, double> worst;  ///< by invariant, in units of what is allowed
 };
 

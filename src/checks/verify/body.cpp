@@ -22,8 +22,7 @@ void for_each_part(const Vec3& low, const Vec3& high, double cell, int per_cell,
     for (Index k = 0; k < count[2]; ++k)
         for (Index j = 0; j < count[1]; ++j)
             for (Index i = 0; i < count[0]; ++i)
-                take(low + Vec3((static_cast<double>(i) + 0.5) * size[0],
-                                (static_cast<double>(j) + 0.5) * size[1],
+                take(low + Vec3((static_cast<double>(i) + 0.5) * size[0], (static_cast<double>(j) + 0.5) * size[1],
                                 (static_cast<double>(k) + 0.5) * size[2]),
                      size.prod());
 }
@@ -32,8 +31,8 @@ GridGeometry3d grid_around(const Frame3& frame, const Vec3& low, const Vec3& hig
     constexpr double kRoom = 4.0;  // cells: what images of points on a surface reach
     Vec3 least = frame.at(low), most = least;
     for (int corner = 1; corner < 8; ++corner) {
-        const Vec3 x = frame.at(
-            {corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
+        const Vec3 x =
+            frame.at({corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
         least = least.cwiseMin(x), most = most.cwiseMax(x);
     }
     GridGeometry3d g;

@@ -40,14 +40,17 @@ std::vector<Residual> published_blocks() {
     const Slab block{30, 0.3};
     double coulomb = std::max({std::abs(block.drive() - 2.35628724), 1e-1 * std::abs(block.speed(5) - 11.781436),
                                1e-1 * std::abs(block.travel(5) - 29.453590)});
-    struct Row { Slab slab; double drive, terminal, speed, travel; };
+    struct Row {
+        Slab slab;
+        double drive, terminal, speed, travel;
+    };
     double voellmy = 0.0;
     for (const Row& row : {Row{{30, 0.2, 1000, 2}, 3.205858, 25.565403, 21.715171, 130.30041},
                            Row{{35, 0.155, 4000, 1}, 4.381223, 42.266198, 32.821112, 188.34438},
                            Row{{25, 0.1, 500, 1.5}, 3.256797, 15.779436, 15.278879, 106.02380}})
-        voellmy = std::max({voellmy, std::abs(row.slab.drive() - row.drive),
-                            std::abs(row.slab.terminal() - row.terminal), std::abs(row.slab.speed(10) - row.speed),
-                            0.1 * std::abs(row.slab.travel(10) - row.travel)});
+        voellmy =
+            std::max({voellmy, std::abs(row.slab.drive() - row.drive), std::abs(row.slab.terminal() - row.terminal),
+                      std::abs(row.slab.speed(10) - row.speed), 0.1 * std::abs(row.slab.travel(10) - row.travel)});
     const double toe = std::sqrt(2 * Slab{35, 0.4}.drive() * 100.0);
     return {{"printed a, v, x of the 30 degree block", coulomb, 5.1e-8},
             {"printed a, v_inf, v, x of the Voellmy slabs", voellmy, 6e-7},

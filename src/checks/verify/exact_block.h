@@ -10,7 +10,7 @@ namespace frana::verify {
 struct Slab {
     double slope_deg, mu;
     double xi = std::numeric_limits<double>::infinity();  ///< Voellmy's turbulence coefficient [m/s^2]
-    double thickness = 1.0;                                ///< [m]
+    double thickness = 1.0;                               ///< [m]
     double gravity = 9.81;
 
     double drive() const;           ///< g (sin - mu cos) [m/s^2], 0 where friction holds

@@ -19,7 +19,9 @@ double slope(const F& f, double s) {
 }
 
 /// What is left of the shallow-water equations at one place and time: mass [m/s], momentum in x and y [m/s^2].
-struct Left { double mass, x, y; };
+struct Left {
+    double mass, x, y;
+};
 Left left_at(const Bowl& bowl, double x, double y, double t) {
     const BowlState w = bowl.at(x, y, t);
     const auto level = [&](double px, double py) { return bowl.at(px, py, t).depth + bowl.bed(px, py); };
@@ -28,8 +30,8 @@ Left left_at(const Bowl& bowl, double x, double y, double t) {
                w.u * slope([&](double s) { return bowl.at(s, y, t).*which; }, x) +
                w.v * slope([&](double s) { return bowl.at(x, s, t).*which; }, y);
     };
-    const double spread = slope([&](double s) { return bowl.at(s, y, t).u; }, x) +
-                          slope([&](double s) { return bowl.at(x, s, t).v; }, y);
+    const double spread =
+        slope([&](double s) { return bowl.at(s, y, t).u; }, x) + slope([&](double s) { return bowl.at(x, s, t).v; }, y);
     return {along(&BowlState::depth) + w.depth * spread,
             along(&BowlState::u) + kGravity * slope([&](double s) { return level(s, y); }, x),
             along(&BowlState::v) + kGravity * slope([&](double s) { return level(x, s); }, y)};

@@ -9,7 +9,9 @@
 namespace frana::verify {
 
 /// Depth [m] and velocity [m/s]; beyond the shoreline the formula of the depth goes on below zero.
-struct BowlState { double depth, u, v; };
+struct BowlState {
+    double depth, u, v;
+};
 
 /// A swing in the square [0, 4 m]^2, or in the strip [0, 4 m] x [0, 1 m], about x = 2 m.
 struct Bowl {
@@ -18,10 +20,10 @@ struct Bowl {
     double period = 0.0;  ///< [s]
     double volume = 0.0;  ///< [m^3]
     double swing = 0.0;   ///< total energy above that of the same water at rest, over its density [m^5/s^2]
-    Function bed, rest;                                    ///< elevation [m]; depth of the same water at rest [m]
+    Function bed, rest;   ///< elevation [m]; depth of the same water at rest [m]
     std::function<BowlState(double x, double y, double t)> at;
-    std::function<double(double t)> centre_x;              ///< of mass [m]
-    std::vector<Residual> published;                       ///< numbers printed in the literature, less ours
+    std::function<double(double t)> centre_x;  ///< of mass [m]
+    std::vector<Residual> published;           ///< numbers printed in the literature, less ours
 };
 
 Bowl planar_bowl();       ///< the surface stays a plane and turns

@@ -7,7 +7,9 @@
 namespace frana::verify {
 
 /// State at a ratio s = (x - x_dam) / t [m/s].
-struct WaveState { double depth, velocity; };
+struct WaveState {
+    double depth, velocity;
+};
 
 /// Water of depth hl behind a dam, dry bed before it.
 struct Ritter {

@@ -65,7 +65,10 @@ std::vector<Residual> RoundDeposit::residuals() const {
 }
 
 InclineDeposit::InclineDeposit(const YieldMaterial& material, double slope, double volume)
-    : material_(material), slope_(slope), volume_(volume), plug_(material.length() / std::sin(slope)),
+    : material_(material),
+      slope_(slope),
+      volume_(volume),
+      plug_(material.length() / std::sin(slope)),
       least_(std::sin(slope) * std::sin(slope)) {
     double low = least_, high = 1.0;  // share of the plug's thickness at the wall: the volume grows with it
     for (int k = 0; k < 200; ++k) {
@@ -76,9 +79,7 @@ InclineDeposit::InclineDeposit(const YieldMaterial& material, double slope, doub
     front_ = foot_ - behind(least_);
 }
 
-double InclineDeposit::distance(double share) const {
-    return plug_ / std::tan(slope_) * (-share - std::log1p(-share));
-}
+double InclineDeposit::distance(double share) const { return plug_ / std::tan(slope_) * (-share - std::log1p(-share)); }
 
 double InclineDeposit::behind(double share) const {
     return std::cos(slope_) * distance(share) - plug_ * share * std::sin(slope_);
@@ -120,8 +121,8 @@ std::vector<Residual> InclineDeposit::residuals() const {
     std::vector<Residual> all{{"volume / given - 1", volume / volume_ - 1, 1e-6},
                               {"rho g h e / (1 + Z' e) / tau_Y - 1", drive * depth(x) / material_.length() - 1, 1e-8},
                               {"published: plug 0.029352 m", known.plug() - 0.029352, 5e-7}};
-    for (const auto& [share, length] : {std::pair{0.25, 0.00627}, {0.5, 0.03215}, {0.75, 0.10592}, {0.9, 0.23348},
-                                        {0.99, 0.60178}})
+    for (const auto& [share, length] :
+         {std::pair{0.25, 0.00627}, {0.5, 0.03215}, {0.75, 0.10592}, {0.9, 0.23348}, {0.99, 0.60178}})
         all.push_back({"published: distance from the front", known.distance(share) - length, 5e-6});
     return all;
 }

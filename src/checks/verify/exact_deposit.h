@@ -18,18 +18,18 @@ struct YieldMaterial {
 /// rho g h |dh/dx| = tau_Y on flat ground, from a wall at x = 0.
 struct FlatDeposit {
     YieldMaterial material;
-    double volume;  ///< per width [m^2]
-    double front() const;                  ///< (9 rho g V^2 / (8 tau_Y))^(1/3) [m]
-    double depth(double x) const;          ///< sqrt(2 tau_Y (x_f - x) / (rho g)) [m]
-    double contour(double level) const;    ///< where the depth is `level` [m]
+    double volume;                       ///< per width [m^2]
+    double front() const;                ///< (9 rho g V^2 / (8 tau_Y))^(1/3) [m]
+    double depth(double x) const;        ///< sqrt(2 tau_Y (x_f - x) / (rho g)) [m]
+    double contour(double level) const;  ///< where the depth is `level` [m]
     std::vector<Residual> residuals() const;
 };
 
 /// The same round an axis.
 struct RoundDeposit {
     YieldMaterial material;
-    double volume;  ///< of the full circle [m^3]
-    double front() const;                  ///< (225 rho g V^2 / (128 pi^2 tau_Y))^(1/5) [m]
+    double volume;         ///< of the full circle [m^3]
+    double front() const;  ///< (225 rho g V^2 / (128 pi^2 tau_Y))^(1/5) [m]
     double depth(double r) const;
     double contour(double level) const;
     std::vector<Residual> residuals() const;
@@ -41,20 +41,20 @@ struct RoundDeposit {
 class InclineDeposit {
 public:
     InclineDeposit(const YieldMaterial& material, double slope, double volume);
-    double plug() const { return plug_; }        ///< h_c = tau_Y / (rho g sin th) [m]
-    double front() const { return front_; }      ///< map distance of the foremost place from the wall [m]
-    double depth(double x) const;                ///< vertical [m]
-    double contour(double level) const;          ///< map place of that vertical depth [m]
+    double plug() const { return plug_; }    ///< h_c = tau_Y / (rho g sin th) [m]
+    double front() const { return front_; }  ///< map distance of the foremost place from the wall [m]
+    double depth(double x) const;            ///< vertical [m]
+    double contour(double level) const;      ///< map place of that vertical depth [m]
     /// Distance up-slope from the foot of the front, along the bed [m].
     double distance(double share) const;
     std::vector<Residual> residuals() const;
 
 private:
-    double behind(double share) const;           ///< map distance of the surface with H = share from H = 0 [m]
-    double held(double share) const;             ///< volume per width between the front and there [m^2]
+    double behind(double share) const;  ///< map distance of the surface with H = share from H = 0 [m]
+    double held(double share) const;    ///< volume per width between the front and there [m^2]
     YieldMaterial material_;
     double slope_, volume_, plug_, front_ = 0.0, foot_ = 0.0;
-    double least_;                               ///< H of the front's vertical edge; below it the surface overhangs
+    double least_;  ///< H of the front's vertical edge; below it the surface overhangs
 };
 
 }  // namespace frana::verify

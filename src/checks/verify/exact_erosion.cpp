@@ -68,7 +68,8 @@ GrowingCap::State GrowingCap::at(double t) const {
     const double loss = (1.0 - kappa) * eps;
     const auto peak = [&](double time, double length) { return height * half_length * std::exp(eps * time) / length; };
     const auto rates = [&](double time, const verify::State<4>& y) {  // L, L', x_c, u_c
-        return verify::State<4>{y[1], 2.0 * gravity * cosine * peak(time, y[0]) / y[0] - loss * y[1], y[3], a - loss * y[3]};
+        return verify::State<4>{y[1], 2.0 * gravity * cosine * peak(time, y[0]) / y[0] - loss * y[1], y[3],
+                                a - loss * y[3]};
     };
     const auto y = integrate<4>(rates, 0.0, t, {half_length, 0.0, 0.0, 0.0}, 1e-3);
     return {y[0], y[1], y[2], y[3], peak(t, y[0])};
@@ -81,7 +82,8 @@ std::vector<Residual> eroding_slab_residuals() {
     const double rate = 0.02, t = 20.0, d = 1e-3;
     for (const auto& [kappa, speed] : {std::pair<double, double>{0.0, 41.822067}, {0.5, 45.269507}, {1.0, 49.125745}}) {
         slab.kappa = kappa;
-        const SlabState now = slab.at_rate(rate, t), before = slab.at_rate(rate, t - d), after = slab.at_rate(rate, t + d);
+        const SlabState now = slab.at_rate(rate, t), before = slab.at_rate(rate, t - d),
+                        after = slab.at_rate(rate, t + d);
         list.push_back(printed("speed of the slab", now.speed, speed, 5e-7));
         const double force = slab.drive() * now.thickness - (1.0 - kappa) * rate * now.speed;
         list.push_back({"h du/dt - (a h - (1 - kappa) E u)",

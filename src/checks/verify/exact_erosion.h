@@ -6,7 +6,9 @@
 namespace frana::verify {
 
 /// Speed along the bed, way along it and thickness of a slab.
-struct SlabState { double speed, way, thickness; };
+struct SlabState {
+    double speed, way, thickness;
+};
 
 /// An infinite layer on a plane with Coulomb friction: h du/dt = a h - (1 - kappa) E u, dh/dt = E.
 struct ErodingSlab {
@@ -38,7 +40,9 @@ struct Trench {
 struct GrowingCap {
     double slope_deg = 35.0, friction_deg = 25.0, gravity = 9.81;
     double height = 4.0, half_length = 80.0, eps = 0.05, kappa = 0.0;
-    struct State { double half_length, spreading, centre, speed, height; };
+    struct State {
+        double half_length, spreading, centre, speed, height;
+    };
     State at(double t) const;
 };
 

@@ -12,7 +12,9 @@ constexpr Index kCells = 3000;
 
 double minmod(double a, double b) { return a * b <= 0.0 ? 0.0 : std::abs(a) < std::abs(b) ? a : b; }
 
-struct Flux { double mass = 0.0, momentum = 0.0; };
+struct Flux {
+    double mass = 0.0, momentum = 0.0;
+};
 
 Flux physical(double h, double u) { return {h * u, h * u * u + 0.5 * kGravity * h * h}; }
 
@@ -76,14 +78,12 @@ double dam_error(double hr, Index cells) {
 /// equation into R'' = 2 g H/R with H R^2 constant). L1 error after the radius has about doubled.
 double cap_error(Index cells) {
     constexpr double height = 1.0, radius = 4.0, end = 1.2;
-    LineWater water(LineWater::Symmetry::axis, 16.0, cells, [&](double r) {
-        return std::max(0.0, height * (1 - r * r / (radius * radius)));
-    });
+    LineWater water(LineWater::Symmetry::axis, 16.0, cells,
+                    [&](double r) { return std::max(0.0, height * (1 - r * r / (radius * radius))); });
     water.advance(end);
     const double grown2 = radius * radius + 2 * kGravity * height * end * end;
-    return error_of(water, [&](double r) {
-        return std::max(0.0, height * radius * radius / grown2 * (1 - r * r / grown2));
-    });
+    return error_of(water,
+                    [&](double r) { return std::max(0.0, height * radius * radius / grown2 * (1 - r * r / grown2)); });
 }
 
 }  // namespace
@@ -139,8 +139,7 @@ void LineWater::rates(const std::vector<State>& from, std::vector<State>& rate) 
         const Flux out = between(high_[i].h, high_[i].q, out_side.h, out_side.q);
         const double squeeze = 0.25 * kGravity * (low_[i].h * low_[i].h + high_[i].h * high_[i].h);
         const double a = face(i), b = face(i + 1), c = content(i);
-        rate[i] = {(a * in.mass - b * out.mass) / c,
-                   (a * in.momentum - b * out.momentum + (b - a) * squeeze) / c};
+        rate[i] = {(a * in.mass - b * out.mass) / c, (a * in.momentum - b * out.momentum + (b - a) * squeeze) / c};
         in = out;
     }
 }

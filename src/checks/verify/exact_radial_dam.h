@@ -24,7 +24,9 @@ public:
     double cell() const { return cell_; }
 
 private:
-    struct State { double h = 0.0, q = 0.0; };
+    struct State {
+        double h = 0.0, q = 0.0;
+    };
     double face(Index i) const;
     double content(Index i) const;
     double fastest() const;

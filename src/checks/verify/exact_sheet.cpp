@@ -65,8 +65,7 @@ std::vector<Residual> BagnoldSheet::residuals() const {
     const double mean = mean_of([&](double w) { return 2 * w * speed(thickness * (1 - w * w)); }, 0.0, 1.0, 128);
     const double z = 0.3 * thickness, d = 1e-4 * thickness;  // difference formula: (d / (h - z))^2 / 24
     const double shear = (speed(z + d) - speed(z - d)) / (2 * d);
-    const double i = shear * law.grain_diameter /
-                     std::sqrt(law.solid_fraction * g * std::cos(slope) * (thickness - z));
+    const double i = shear * law.grain_diameter / std::sqrt(law.solid_fraction * g * std::cos(slope) * (thickness - z));
     const double mu = law.mu_s + (law.mu_2 - law.mu_s) / (law.i0 / i + 1);
     const BagnoldSheet known{{std::tan(21 * kDegree), std::tan(33 * kDegree), 0.3, 1e-3, 0.6}, 26 * kDegree, 0.02};
     return {{"mean of the profile / mean speed - 1", mean / mean_speed() - 1, 1e-9},

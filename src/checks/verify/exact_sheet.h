@@ -14,8 +14,8 @@ struct BinghamSheet {
     double thickness;                         ///< [m]
     double g = 9.81;
 
-    double plug() const;            ///< thickness that just stands, h_c = tau_Y / (rho g sin th) [m]
-    double speed(double z) const;   ///< [m/s]
+    double plug() const;           ///< thickness that just stands, h_c = tau_Y / (rho g sin th) [m]
+    double speed(double z) const;  ///< [m/s]
     /// (rho g sin th h^2 / (3 mu)) (1 - h_c/h)^2 (1 + h_c/(2h)); 0 when h <= h_c [m/s]
     double mean_speed() const;
     /// Mean of the profile, the law at a sheared place, and the published mean and surface speed.

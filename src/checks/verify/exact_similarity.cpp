@@ -22,8 +22,7 @@ SimilarityPile::SimilarityPile(double slope_deg, double friction_deg, double len
 /// g'' = 2 B / (g^2 f), f'' = 2 D / (g f^2) - C f' / ((A - C) t): friction turns with the velocity, linearised.
 State<4> SimilarityPile::rate(double time, const State<4>& y) const {
     const auto& [g, g_rate, f, f_rate] = y;
-    return {g_rate, 2 * spread_ / (g * g * f), f_rate,
-            2 * spread_ / (g * f * f) - brake_ * f_rate / (drive_ * time)};
+    return {g_rate, 2 * spread_ / (g * g * f), f_rate, 2 * spread_ / (g * f * f) - brake_ * f_rate / (drive_ * time)};
 }
 
 SimilarityPile::Shape SimilarityPile::shape(double t, double start) const {

@@ -11,7 +11,9 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 
 /// Mass and momentum equation of (h, u)(x, t) by central differences of fourth order: what is left, and the terms.
-struct Balance { double mass, momentum, mass_terms, momentum_terms; };
+struct Balance {
+    double mass, momentum, mass_terms, momentum_terms;
+};
 
 template <class Wave>
 Balance balance(const Wave& wave, double x, double t, double step) {
@@ -75,7 +77,9 @@ std::vector<Residual> SlopeDam::residuals() const {
 
 std::vector<Residual> SlopeDam::published() {
     const SlopeDam dam = avaframe();
-    struct Row { double t, front, rear, h, u; };
+    struct Row {
+        double t, front, rear, h, u;
+    };
     double worst = 0.0;
     for (const Row& row : {Row{1, 6.1235, -2.9242, 0.458060, 2.132861}, Row{2, 12.4304, -5.6650, 0.471881, 2.255121},
                            Row{5, 32.4514, -12.7872, 0.514576, 2.621898}}) {

@@ -9,7 +9,9 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 
 /// Integral of s^(n-1) (1 - s^2)^(1/3) from 0 to 1, n = 1, 2: B(n/2, 4/3) / 2.
-double shape_integral(int n) { return 0.5 * std::tgamma(0.5 * n) * std::tgamma(4.0 / 3) / std::tgamma(0.5 * n + 4.0 / 3); }
+double shape_integral(int n) {
+    return 0.5 * std::tgamma(0.5 * n) * std::tgamma(4.0 / 3) / std::tgamma(0.5 * n + 4.0 / 3);
+}
 
 /// dh/dt + (1/r^k) d(r^k q)/dr over its first term, q = -(g / (3 nu)) h^3 dh/dr, by central differences at `r`.
 template <class Sheet>

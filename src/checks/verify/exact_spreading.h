@@ -11,8 +11,8 @@ namespace frana::verify {
 struct PlanarSpreading {
     double nu, volume;  ///< kinematic viscosity [m^2/s], volume per width [m^2]
     double g = 9.81;
-    double front(double t) const;                  ///< 1.41124477 (g A^3 t / (3 nu))^(1/5) [m]
-    double depth(double x, double t) const;        ///< h(0) (1 - (x/x_N)^2)^(1/3) [m]
+    double front(double t) const;            ///< 1.41124477 (g A^3 t / (3 nu))^(1/5) [m]
+    double depth(double x, double t) const;  ///< h(0) (1 - (x/x_N)^2)^(1/3) [m]
     double speed(double x, double t) const { return x < front(t) ? x / (5 * t) : 0.0; }
     double contour(double level, double t) const;  ///< where the depth is `level` [m]
     std::vector<Residual> residuals() const;
@@ -22,7 +22,7 @@ struct PlanarSpreading {
 struct RoundSpreading {
     double nu, volume;  ///< [m^2/s], of the full circle [m^3]
     double g = 9.81;
-    double front(double t) const;                  ///< 0.89391385 (g V^3 t / (3 nu))^(1/8) [m]
+    double front(double t) const;  ///< 0.89391385 (g V^3 t / (3 nu))^(1/8) [m]
     double depth(double r, double t) const;
     double speed(double r, double t) const { return r < front(t) ? r / (8 * t) : 0.0; }
     double contour(double level, double t) const;
@@ -38,11 +38,11 @@ struct InclineSpreading {
     double nu, volume;  ///< [m^2/s], volume per width [m^2]
     double slope;       ///< [rad]
     double g = 9.81;
-    double outer_front(double t) const;          ///< X_N [m]
-    double front_thickness(double t) const;      ///< h_N [m]
-    double length(double t) const;               ///< h_N cot th [m]
-    double front(double t) const;                ///< X_f [m]
-    double thickness(double along, double t) const;  ///< at X [m]
+    double outer_front(double t) const;                      ///< X_N [m]
+    double front_thickness(double t) const;                  ///< h_N [m]
+    double length(double t) const;                           ///< h_N cot th [m]
+    double front(double t) const;                            ///< X_f [m]
+    double thickness(double along, double t) const;          ///< at X [m]
     double contour(double thickness_there, double t) const;  ///< X near the front of that thickness [m]
     /// The rounded step: h/h_N at a distance behind the front, in h_N cot th.
     static double step(double distance);

@@ -88,9 +88,8 @@ double stop_of(const Track& track, double mu, double start, Normal normal) {
         const double from = s, step = (end - s) / std::ceil((end - s) / longest);
         for (double n = 1.0; s < end; n += 1.0) {
             const State<1> next = rk4_step(rate, s, y, step);
-            if (next[0] <= 0.0) return s + bisect(0.0, step, [&](double part) {
-                return rk4_step(rate, s, y, part)[0] > 0.0;
-            });
+            if (next[0] <= 0.0)
+                return s + bisect(0.0, step, [&](double part) { return rk4_step(rate, s, y, part)[0] > 0.0; });
             y = next;
             s = from + n * step < end - 0.5 * step ? from + n * step : end;
         }
@@ -101,9 +100,8 @@ double stop_of(const Track& track, double mu, double start, Normal normal) {
 double place_of(const Track& track, double start, double t) { return swing(track, start, t)[0]; }
 
 double energy_line(const Track& track, double mu, double start) {
-    return bisect(start, start + (track.z(start) - track.z(1e6)) / mu, [&](double s) {
-        return track.slope(s) < -mu || track.z(start) - mu * (s - start) > track.z(s);
-    });
+    return bisect(start, start + (track.z(start) - track.z(1e6)) / mu,
+                  [&](double s) { return track.slope(s) < -mu || track.z(start) - mu * (s - start) > track.z(s); });
 }
 
 std::vector<Residual> track_residuals(const Track& track, double mu, double start) {

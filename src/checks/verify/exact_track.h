@@ -11,9 +11,9 @@ namespace frana::verify {
 class Track {
 public:
     virtual ~Track() = default;
-    virtual double z(double s) const = 0;       ///< [m]
-    virtual double slope(double s) const = 0;   ///< dz/ds [1]
-    virtual double curvature(double s) const = 0;  ///< d2z/ds2 [1/m]
+    virtual double z(double s) const = 0;            ///< [m]
+    virtual double slope(double s) const = 0;        ///< dz/ds [1]
+    virtual double curvature(double s) const = 0;    ///< d2z/ds2 [1/m]
     virtual std::vector<double> joints() const = 0;  ///< where the curvature jumps, rising
 };
 

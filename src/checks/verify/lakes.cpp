@@ -32,7 +32,8 @@ Scene scene_of(const Lake& lake, const Setup& setup, Placement placement) {
     scene.sides = Sides::wall;
     scene.still_surface = lake.level;
     if (setup.preset == "paper") scene.scheme.still_level = lake.level;
-    place(scene, [&](double x, double y) { return lake.level - lake.bed(x, y); }, placement, setup.per_side);
+    place(
+        scene, [&](double x, double y) { return lake.level - lake.bed(x, y); }, placement, setup.per_side);
     return scene;
 }
 

@@ -5,7 +5,9 @@ namespace frana::verify {
 const std::vector<PeerCurve>& peers() {
     static const std::vector<PeerCurve> all = {
         // OpenNHM/AvaFrame efeb01c3 (com1DFA), triangular placement, time of its step loop; error at t = 5.00 s.
-        {"similarity", "l2_depth", "AvaFrame",
+        {"similarity",
+         "l2_depth",
+         "AvaFrame",
          {{0.031, 3.54e-2}, {0.035, 2.60e-2}, {0.50, 1.03e-2}, {4.54, 8.4e-3}, {15.5, 7.7e-3}, {28.0, 6.3e-3}}},
         {"slope_dam", "l2_depth", "AvaFrame", {{0.074, 4.96e-2}, {1.09, 2.24e-2}, {9.5, 1.59e-2}, {60.9, 9.6e-3}}},
         // geoflows/dclaw 28ec749a on clawpack 5.14, one level, order 2, cfl 0.4.

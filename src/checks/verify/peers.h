@@ -6,7 +6,9 @@
 
 namespace frana::verify {
 
-struct PeerPoint { double seconds, error; };
+struct PeerPoint {
+    double seconds, error;
+};
 
 struct PeerCurve {
     std::string problem;   ///< as in the library

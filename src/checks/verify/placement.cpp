@@ -55,11 +55,16 @@ double Noise::next() {
 
 const char* name_of(Placement placement) {
     switch (placement) {
-        case Placement::aligned: return "aligned";
-        case Placement::shifted: return "shifted";
-        case Placement::r2: return "r2";
-        case Placement::half_jitter: return "half";
-        case Placement::full_jitter: return "full";
+        case Placement::aligned:
+            return "aligned";
+        case Placement::shifted:
+            return "shifted";
+        case Placement::r2:
+            return "r2";
+        case Placement::half_jitter:
+            return "half";
+        case Placement::full_jitter:
+            return "full";
     }
     return "";
 }

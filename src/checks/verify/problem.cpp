@@ -8,9 +8,9 @@ namespace frana::verify {
 
 double Measurement::value(const std::string& quantity) const {
     const std::pair<const char*, double> known[] = {
-        {"l1_depth", l1_depth},       {"l2_depth", l2_depth},       {"linf_depth", linf_depth},
-        {"l1_momentum", l1_momentum}, {"l2_momentum", l2_momentum}, {"front_error", front_error},
-        {"mass_error", mass_error},   {"energy_error", energy_error}, {"observed_order", observed_order},
+        {"l1_depth", l1_depth},        {"l2_depth", l2_depth},         {"linf_depth", linf_depth},
+        {"l1_momentum", l1_momentum},  {"l2_momentum", l2_momentum},   {"front_error", front_error},
+        {"mass_error", mass_error},    {"energy_error", energy_error}, {"observed_order", observed_order},
         {"wall_seconds", wall_seconds}};
     for (const auto& [name_of, number] : known)
         if (quantity == name_of) return number;

@@ -14,9 +14,9 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  ///< a quant
 
 /// What a user may vary in a problem.
 struct Setup {
-    Index cells = 100;               ///< along the problem's reference length
-    std::string preset = "default";  ///< "paper", or "float": the default with scheme.precision = "float"
-    int per_side = 2;                ///< points a cell and direction
+    Index cells = 100;                      ///< along the problem's reference length
+    std::string preset = "default";         ///< "paper", or "float": the default with scheme.precision = "float"
+    int per_side = 2;                       ///< points a cell and direction
     std::function<void(Scene&)> edit = {};  ///< last word on the scene: a component switched off, another cfl
 };
 
@@ -32,13 +32,14 @@ struct Measurement {
     std::string name, preset;
     Index cells = 0, particles = 0, steps = 0;
     int per_side = 2;
-    int dimensions = 2;          ///< in which points are per_side a cell
-    double wall_seconds = 0.0;   ///< of the time loop
+    int dimensions = 2;         ///< in which points are per_side a cell
+    double wall_seconds = 0.0;  ///< of the time loop
     double l1_depth = kNone, l2_depth = kNone, linf_depth = kNone;
     double l1_momentum = kNone, l2_momentum = kNone;  ///< of depth times velocity
-    double front_error = kNone;  ///< [m]
-    double mass_error = kNone;   ///< |V + V_left - V_0| / V_0
-    double energy_error = kNone; ///< residual of the energy budget over the largest kinetic or dissipated energy, signed
+    double front_error = kNone;                       ///< [m]
+    double mass_error = kNone;                        ///< |V + V_left - V_0| / V_0
+    double energy_error =
+        kNone;  ///< residual of the energy budget over the largest kinetic or dissipated energy, signed
     std::vector<Extra> extras;
     double observed_order = kNone;  ///< of Problem::order_of, against the next coarser grid; none at round-off
 
@@ -70,18 +71,18 @@ struct Gate {
 };
 
 struct Problem {
-    std::string name;                     ///< lower-case word, as `frana verify NAME` has it
-    std::string title;                    ///< one line: what happens, and whose solution it is
-    std::vector<Index> grids;             ///< three or more unless the answer is exact on any grid
+    std::string name;          ///< lower-case word, as `frana verify NAME` has it
+    std::string title;         ///< one line: what happens, and whose solution it is
+    std::vector<Index> grids;  ///< three or more unless the answer is exact on any grid
     std::function<std::vector<Residual>()> residuals;
     std::function<Measurement(const Setup&)> run;
     std::vector<Gate> gates = {};
-    std::string order_of = "l1_depth";    ///< quantity whose order is observed
-    bool needs_level = false;             ///< the paper preset is given the still level
-    bool takes_minutes = false;           ///< runs when it is named only
-    bool finest_is_long = false;          ///< half a minute or more: `frana verify --coarse` leaves the last grid out
-    bool in_3d = false;                ///< of the 3D model: knows no presets
-    bool has_presets = true;              ///< false: of a model on the plane that knows none
+    std::string order_of = "l1_depth";  ///< quantity whose order is observed
+    bool needs_level = false;           ///< the paper preset is given the still level
+    bool takes_minutes = false;         ///< runs when it is named only
+    bool finest_is_long = false;        ///< half a minute or more: `frana verify --coarse` leaves the last grid out
+    bool in_3d = false;                 ///< of the 3D model: knows no presets
+    bool has_presets = true;            ///< false: of a model on the plane that knows none
 };
 
 /// The problem's grids; "coarse" those without a last one that takes long.

@@ -10,10 +10,10 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kSpeed = 12.0, kDepth = 0.5;           ///< of the stream [m/s], [m]
-constexpr double kFoot = 220.0, kLength = 300.0;        ///< of the bank; of the track [m]
-constexpr double kFirst = 10.0, kLast = 210.0;          ///< ends of the stream at the start [m]
-constexpr double kRise = 3.0, kEnd = 10.0;              ///< [m], [s]
+constexpr double kSpeed = 12.0, kDepth = 0.5;     ///< of the stream [m/s], [m]
+constexpr double kFoot = 220.0, kLength = 300.0;  ///< of the bank; of the track [m]
+constexpr double kFirst = 10.0, kLast = 210.0;    ///< ends of the stream at the start [m]
+constexpr double kRise = 3.0, kEnd = 10.0;        ///< [m], [s]
 constexpr double kGravity = 9.81;
 
 /// What Bernoulli's equation says about the stream on top, [m/s]: the faster root of u^2/2 + g q/u = head.
@@ -30,7 +30,9 @@ std::vector<Residual> residuals() {
             {"faster than waves: gravity times depth over speed squared, below 1", kGravity * h / (u * u), 1.0}};
 }
 
-struct OnTop { double speed = 0.0, depth = 0.0; };
+struct OnTop {
+    double speed = 0.0, depth = 0.0;
+};
 
 /// Means over 10 m, 20 to 30 m behind the top of the bank, relative to the exact values.
 OnTop errors(const Frame& frame, double top) {
@@ -56,9 +58,8 @@ Measurement run_bed_steps(const Setup& setup) {
         {{"steep", 2.0}, {"bank_4m", 4.0}, {"bank_16m", 16.0}}};
     for (const auto& [name, width] : bed_steps) {
         const double wide = width;
-        Scene scene = scene_on(length + 1, 9, cell, [wide](double x, double) {
-            return kRise * std::clamp((x - kFoot) / wide, 0.0, 1.0);
-        });
+        Scene scene = scene_on(length + 1, 9, cell,
+                               [wide](double x, double) { return kRise * std::clamp((x - kFoot) / wide, 0.0, 1.0); });
         scene.sides = Sides::wall;
         fill(scene, [](double x, double) { return x > kFirst && x < kLast ? kDepth : 0.0; }, {setup.per_side});
         scene.particles.vx.assign(scene.particles.vx.size(), kSpeed);
@@ -75,12 +76,16 @@ Measurement run_bed_steps(const Setup& setup) {
 }  // namespace
 
 std::vector<Problem> bed_step_problems() {
-    Problem problem{"bank", "a stream of 12 m/s climbs 3 m within 2, 4 and 16 m: head and flux are kept",
-                    {50, 100, 200}, residuals, run_bed_steps};
+    Problem problem{"bank",
+                    "a stream of 12 m/s climbs 3 m within 2, 4 and 16 m: head and flux are kept",
+                    {50, 100, 200},
+                    residuals,
+                    run_bed_steps};
     problem.order_of = "steep_speed";
     for (const char* quantity : {"steep_speed", "bank_4m_speed", "bank_16m_speed"})
         for (const Index cells : {100, 200})
-            problem.gates.push_back({cells, quantity, 0.01, "a sixteenth of what is missed where the bank turns nothing"});
+            problem.gates.push_back(
+                {cells, quantity, 0.01, "a sixteenth of what is missed where the bank turns nothing"});
     problem.gates.push_back({0, "mass_error", 1e-13, "round-off"});
     return {problem};
 }

@@ -46,7 +46,9 @@ Measurement run_block_coulomb(const Setup& setup) {
 
 /// Means over the points that started within two cells of the centre (0, 0) of a disc so wide that they do not feel
 /// its rim: speed along the bed [m/s], way along and across the slide [m].
-struct Middle { double speed, along, across; };
+struct Middle {
+    double speed, along, across;
+};
 Middle middle_of(Trial& trial, const Slide& slide) {
     const Seeds& seeds = trial.scene().particles;
     const Frame frame = trial.simulation().frame();
@@ -94,7 +96,10 @@ Measurement run_block_voellmy(const Setup& setup) {
 }
 
 /// What a plane carries: a layer 1 m thick, or a blob 2 m high and 40 m wide.
-struct Load { double slope_deg, mu; bool blob; };
+struct Load {
+    double slope_deg, mu;
+    bool blob;
+};
 
 struct Stand {
     double farthest;  ///< that a point which started within 60 m of the centre has moved in 10 s [m]
@@ -151,20 +156,27 @@ std::vector<Residual> voellmy_residuals() {
 
 std::vector<Problem> block_problems() {
     const Gate volume{0, "mass_error", 1e-13, "round-off"};
-    Problem coulomb{"block_coulomb", "thin block on planes of 10 to 60 degrees turned 0 to 45 degrees: a t^2 / 2",
-                    {25, 50, 100}, published_blocks, run_block_coulomb};
+    Problem coulomb{"block_coulomb",
+                    "thin block on planes of 10 to 60 degrees turned 0 to 45 degrees: a t^2 / 2",
+                    {25, 50, 100},
+                    published_blocks,
+                    run_block_coulomb};
     coulomb.gates = {{0, "travel_error", 1e-8, "goal; an earlier code 1e-9"},
                      {0, "cross_drift", 1e-7, "1e-8 of the travel; an earlier code 2e-9"},
                      volume};
     Problem voellmy{"block_voellmy",
                     "infinite slab with Voellmy friction, turned 0 and 27 degrees: tanh to its end speed",
-                    {12, 25}, voellmy_residuals, run_block_voellmy};
+                    {12, 25},
+                    voellmy_residuals,
+                    run_block_voellmy};
     voellmy.gates = {{0, "speed_error", 1e-6, "goal; an earlier code 4e-9"},
                      {0, "travel_error", 1e-3, "canon B5, at the default time step"},
                      volume};
     Problem holds{"block_static",
                   "layers and a blob below the friction angle, turned 0 to 45 degrees: not one bit moves",
-                  {12, 25}, {}, run_block_static};
+                  {12, 25},
+                  {},
+                  run_block_static};
     holds.gates = {{0, "displacement", 0.0, "static friction is a bound, not a force"},
                    {0, "barely_moving", 1e-6, "as the slab that moves: friction solve is exact"},
                    volume};

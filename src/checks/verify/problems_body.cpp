@@ -23,10 +23,9 @@ struct Bar {
         s.density = density;
         s.law = solid::Elastic::of(young, 0.0);
         s.grid = grid_around(frame, {-0.5 * length, 0, 0}, {1.5 * length, side, side}, cell);
-        for_each_part({0, 0, 0}, {length, side, side}, cell, setup.per_side,
-                      [&](const Vec3& x, double volume) {
-                          s.points.add(frame.at(x), frame.at({v(x.x()), 0, 0}), density * volume);
-                      });
+        for_each_part({0, 0, 0}, {length, side, side}, cell, setup.per_side, [&](const Vec3& x, double volume) {
+            s.points.add(frame.at(x), frame.at({v(x.x()), 0, 0}), density * volume);
+        });
         return s;
     }
 };
@@ -111,8 +110,7 @@ Measurement run_disc(const Setup& setup) {
     s.affine = Affine::apic;
     s.grid = grid_around({}, {-1.3, -1.3, 0}, {1.3, 1.3, side}, cell);
     for_each_part({-1, -1, 0}, {1, 1, side}, cell, setup.per_side, [&](const Vec3& x, double volume) {
-        if (std::hypot(x.x(), x.y()) < kRadius)
-            s.points.add(x, {-kSpin * x.y(), kSpin * x.x(), 0}, s.density * volume);
+        if (std::hypot(x.x(), x.y()) < kRadius) s.points.add(x, {-kSpin * x.y(), kSpin * x.x(), 0}, s.density * volume);
     });
     Mpm3d flow(s);
     flow.advance(1e-9);  // points learn the motion around them
@@ -138,7 +136,8 @@ BarImpact strike(const Setup& setup, double turn) {
     const Frame3 frame = turned_about_y(turn);
     const Vec3 along = frame.at({1, 0, 0});
     const double side = 4.0 * bar.length / static_cast<double>(setup.cells), v0 = 1e-3 * bar.wave();
-    SolidScene s = bar.scene(setup, [&](double) { return -v0; }, frame);
+    SolidScene s = bar.scene(
+        setup, [&](double) { return -v0; }, frame);
     s.surfaces.push_back(Surface::plane({0, 0, 0}, along));
     Mpm3d flow(s);
     const double back = 2.0 * bar.length / bar.wave();
@@ -171,9 +170,9 @@ Measurement run_bar_impact(const Setup& setup) {
 /// base, and what pushes it more brakes it more: v_along + mu v_across = v_0 + g (sin - mu cos) t at any
 /// time.
 struct Slide3 {
-    double speed_error;   ///< of v_along + mu v_across, over what is gained
-    double weight_error;  ///< of the plane's push across, over the weight
-    double sunk;          ///< of the centre, across the plane [cells]
+    double speed_error;     ///< of v_along + mu v_across, over what is gained
+    double weight_error;    ///< of the plane's push across, over the weight
+    double sunk;            ///< of the centre, across the plane [cells]
     double friction_error;  ///< of friction's work, over the push times the way
     double numerical_loss;  ///< over the energy turned over
     Measurement run;
@@ -189,9 +188,8 @@ Slide3 slide(const Setup& setup, double mu) {
     s.law = solid::Elastic::of(1e6, 0.3);
     s.grid = grid_around(frame, {0, 0, 0}, {3.5, side, 0.6}, cell);
     s.surfaces = {Surface::plane({0, 0, 0}, across, Hold::free, mu)};
-    for_each_part({0.3, 0, 0}, {1.3, side, 0.5}, cell, setup.per_side, [&](const Vec3& x, double volume) {
-        s.points.add(frame.at(x), kStart * along, s.density * volume);
-    });
+    for_each_part({0.3, 0, 0}, {1.3, side, 0.5}, cell, setup.per_side,
+                  [&](const Vec3& x, double volume) { s.points.add(frame.at(x), kStart * along, s.density * volume); });
     Mpm3d flow(s);
     const Vec3 start = flow.status().centre;
     const double height = flow.status().potential;
@@ -233,8 +231,7 @@ Measurement run_sliding_block(const Setup& setup) {
 
 std::vector<Problem> body_problems() {
     const Gate closed{0, "momentum_residual", 1e-12, "round-off"};
-    Problem bar{
-        "vibrating_bar", "a free elastic bar in its first mode: period 2 L / c", {16, 32, 64}, {}, run_bar};
+    Problem bar{"vibrating_bar", "a free elastic bar in its first mode: period 2 L / c", {16, 32, 64}, {}, run_bar};
     bar.order_of = "frequency_error";
     bar.gates = {{64, "frequency_error", 0.01, "what is asked of a 3D model here"},
                  {64, "numerical_loss", 0.005, "a bar that vibrates loses nothing; second order from 3 % at 16"},
@@ -246,33 +243,31 @@ std::vector<Problem> body_problems() {
                    {},
                    run_elastic_column};
     column.order_of = "stress_error";
-    column.gates = {{32, "stress_error", 0.01, "what is asked of a 3D model here"},
-                    {32, "force_error", 0.01, "that"},
-                    closed};
+    column.gates = {
+        {32, "stress_error", 0.01, "what is asked of a 3D model here"}, {32, "force_error", 0.01, "that"}, closed};
     Problem disc{"rotating_disc", "an elastic disc turns once: angular momentum stays", {8}, {}, run_disc};
     disc.order_of = "angular_momentum_error";
     disc.gates = {{0, "angular_momentum_error", 1e-10, "what is asked of a 3D model here"},
                   {0, "numerical_loss", 0.01, "what the disc does not hold by its spin and its stretch"},
                   closed};
-    Problem impact{
-        "bar_impact", "an elastic bar strikes a wall, along the grid and turned by 20 degrees: stress rho c v", {16, 32, 64}, {}, run_bar_impact};
+    Problem impact{"bar_impact",
+                   "an elastic bar strikes a wall, along the grid and turned by 20 degrees: stress rho c v",
+                   {16, 32, 64},
+                   {},
+                   run_bar_impact};
     impact.order_of = "stress_error";
     impact.gates = {{0, "stress_error", 0.01, "as the bar's frequency"},
                     {0, "stress_error_askew", 0.01, "as the bar's frequency"},
                     closed};
-    Problem block{"sliding_block",
-                  "an elastic block on a turned incline: a = g (sin - mu cos)",
-                  {8, 16},
-                  {},
-                  run_sliding_block};
+    Problem block{
+        "sliding_block", "an elastic block on a turned incline: a = g (sin - mu cos)", {8, 16}, {}, run_sliding_block};
     block.order_of = "speed_error";
-    block.gates = {
-        {0, "speed_error", 1e-3, "friction is solved exactly but where it holds"},
-        {0, "weight_error", 0.025, "rocking on its elastic base, 2 H / (pi c t) and its harmonics"},
-        {0, "friction_error", 0.03, "the sole rocks: its speed is not the centre's"},
-        {0, "numerical_loss", 0.02, "of the height that it lost"},
-        {0, "sunk", 0.25, "compression by its weight, and the points' own size"},
-        closed};
+    block.gates = {{0, "speed_error", 1e-3, "friction is solved exactly but where it holds"},
+                   {0, "weight_error", 0.025, "rocking on its elastic base, 2 H / (pi c t) and its harmonics"},
+                   {0, "friction_error", 0.03, "the sole rocks: its speed is not the centre's"},
+                   {0, "numerical_loss", 0.02, "of the height that it lost"},
+                   {0, "sunk", 0.25, "compression by its weight, and the points' own size"},
+                   closed};
     for (Problem* problem : {&bar, &column, &disc, &impact, &block}) problem->in_3d = true;
     return {bar, column, disc, impact, block};
 }

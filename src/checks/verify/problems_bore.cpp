@@ -66,8 +66,7 @@ SolidScene stream(const Bore& bore, double end, const Setup& setup) {
                 const double x = (static_cast<double>(i) + 0.5) * spacing;
                 const double z = (static_cast<double>(k) + 0.5) * spacing;
                 const double p = kDensity * kGravity * (kDepth - z);
-                s.points.add({x, across * cell, z}, {-bore.speed(), 0, 0}, kDensity * part / (1.0 - p / bulk),
-                             p);
+                s.points.add({x, across * cell, z}, {-bore.speed(), 0, 0}, kDensity * part / (1.0 - p / bulk), p);
             }
     return s;
 }
@@ -112,13 +111,11 @@ Measurement run_strong_bore(const Setup& setup) { return run_bores(setup, {3.0},
 /// Mass and momentum across the bore, seen from it; and the forces that the canon of these problems lists.
 std::vector<Residual> bore_residuals() {
     std::vector<Residual> list;
-    for (const auto& [froude, listed] :
-         {std::pair{1.0, 2.35464}, {2.0, 1.52597}, {3.0, 1.31436}, {5.0, 1.17038}}) {
+    for (const auto& [froude, listed] : {std::pair{1.0, 2.35464}, {2.0, 1.52597}, {3.0, 1.31436}, {5.0, 1.17038}}) {
         const Bore bore{froude};
         const double in = bore.speed() + bore.retreat(), out = bore.retreat(), h = bore.depth();
         const double thrust_in = kDepth * in * in + 0.5 * kGravity * kDepth * kDepth;
-        list.push_back(
-            {fmt::format("mass through a bore at Fr = {}", froude), h * out / (kDepth * in) - 1.0, 1e-12});
+        list.push_back({fmt::format("mass through a bore at Fr = {}", froude), h * out / (kDepth * in) - 1.0, 1e-12});
         list.push_back({fmt::format("momentum through a bore at Fr = {}", froude),
                         (h * out * out + 0.5 * kGravity * h * h) / thrust_in - 1.0, 1e-12});
         list.push_back({fmt::format("listed force at Fr = {}", froude), bore.force() / listed - 1.0, 5e-6});

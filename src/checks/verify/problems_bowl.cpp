@@ -33,7 +33,9 @@ double energy_of(const Status& status) { return status.kinetic + status.potentia
 
 /// Largest difference between depths that a symmetry of the square carries into one another, over the largest depth:
 /// mirrors of x and y, and the exchange of x and y.
-struct Asymmetry { double mirror = 0.0, exchange = 0.0; };
+struct Asymmetry {
+    double mirror = 0.0, exchange = 0.0;
+};
 Asymmetry asymmetry(const Frame& frame) {
     const Index n = frame.grid.nx;
     const double* h = frame.node("depth")->data;
@@ -78,8 +80,10 @@ Measurement swing(const Bowl& bowl, const Setup& setup, int periods) {
 
 std::vector<Problem> bowl_problems() {
     const Gate volume{0, "mass_error", 1e-13, "round-off"};
-    Problem planar{"thacker_planar", "a tilted plane of water turns in a bowl, 3 periods (Thacker 1981)",
-                   {50, 100, 200}, [] { return residuals_of(planar_bowl()); },
+    Problem planar{"thacker_planar",
+                   "a tilted plane of water turns in a bowl, 3 periods (Thacker 1981)",
+                   {50, 100, 200},
+                   [] { return residuals_of(planar_bowl()); },
                    [](const Setup& s) { return swing(planar_bowl(), s, 3); }};
     planar.gates = {{100, "l1_depth", 4e-3, "goal; an earlier code 2.4e-3"},
                     {100, "energy_drift", 1e-3, "goal; an earlier code -1e-4"},
@@ -89,8 +93,10 @@ std::vector<Problem> bowl_problems() {
     period.title = "a tilted plane of water turns in a bowl, one period (Thacker 1981)";
     period.run = [](const Setup& s) { return swing(planar_bowl(), s, 1); };
     period.gates = {{100, "l1_depth", 5e-3, "goal; GeoClaw 2.6e-2 at 100"}, volume};
-    Problem radial{"thacker_radial", "a round mound of water falls and rises in a bowl, 3 periods (Thacker 1981)",
-                   {50, 100, 200}, [] { return residuals_of(radial_bowl()); },
+    Problem radial{"thacker_radial",
+                   "a round mound of water falls and rises in a bowl, 3 periods (Thacker 1981)",
+                   {50, 100, 200},
+                   [] { return residuals_of(radial_bowl()); },
                    [](const Setup& s) { return swing(radial_bowl(), s, 3); }};
     radial.gates = {{100, "l1_depth", 5e-3, "goal; an earlier code 3.5e-3"},
                     {200, "l1_depth", 2e-3, "goal; an earlier code 1.3e-3"},
@@ -99,8 +105,10 @@ std::vector<Problem> bowl_problems() {
                     {0, "mirror_error", 1e-12, "the canon's radial symmetry: round-off"},
                     {0, "exchange_error", 1e-12, "the canon's radial symmetry: round-off"},
                     volume};
-    Problem trough{"trough", "water swings in a parabolic trough, 5 periods (Thacker 1981, in one dimension)",
-                   {100, 200, 400}, [] { return residuals_of(parabolic_trough()); },
+    Problem trough{"trough",
+                   "water swings in a parabolic trough, 5 periods (Thacker 1981, in one dimension)",
+                   {100, 200, 400},
+                   [] { return residuals_of(parabolic_trough()); },
                    [](const Setup& s) { return swing(parabolic_trough(), s, 5); }};
     trough.gates = {{400, "l1_depth", 5e-3, "suggested by the canon at 401 nodes"}, volume};
     return {planar, period, radial, trough};

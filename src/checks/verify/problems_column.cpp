@@ -65,8 +65,13 @@ Measurement run_stiff_column(const Setup& setup, double stiffness, double& runou
     constexpr double kLength = 0.1, kHeight = 0.05, kDensity = 1600.0;
     const double cell = kHeight / static_cast<double>(setup.cells);
     const solid::Elastic soft = stiff_enough(kDensity, kHeight);
-    const Heap heap{kLength, kHeight, kDensity, 31.0 * kDegree, {stiffness * soft.lambda, stiffness * soft.shear},
-                    0.3, 4.0 * std::sqrt(kHeight / kGravity) + 0.1};
+    const Heap heap{kLength,
+                    kHeight,
+                    kDensity,
+                    31.0 * kDegree,
+                    {stiffness * soft.lambda, stiffness * soft.shear},
+                    0.3,
+                    4.0 * std::sqrt(kHeight / kGravity) + 0.1};
     Mpm3d flow(heap.scene(cell, setup.per_side));
     Measurement m = run_body(flow, heap.end);
     runout = tip(flow, cell) / kLength - 1.0;
@@ -93,8 +98,13 @@ Measurement run_column_collapse(const Setup& setup) {
     for (const double a : {0.5, 1.0, 2.0, 3.0}) {
         const double height = a * kLength, law = a < 2.3 ? 1.2 * a : 1.9 * std::pow(a, 2.0 / 3.0);
         const double cell = std::min(kLength, height) / static_cast<double>(setup.cells);
-        const Heap heap{kLength, height, kDensity, kPhi, stiff_enough(kDensity, height),
-                        (2.0 + 1.5 * law) * kLength, 4.0 * std::sqrt(height / kGravity) + 0.1};
+        const Heap heap{kLength,
+                        height,
+                        kDensity,
+                        kPhi,
+                        stiff_enough(kDensity, height),
+                        (2.0 + 1.5 * law) * kLength,
+                        4.0 * std::sqrt(height / kGravity) + 0.1};
         Mpm3d flow(heap.scene(cell, setup.per_side));
         m = joined(m, run_body(flow, heap.end));
         const double runout = tip(flow, cell) / kLength - 1.0;
@@ -122,8 +132,9 @@ Measurement run_column_bars(const Setup& setup) {
     constexpr double kMeasured[][2] = {{0.0001, 0.0992}, {0.1001, 0.0776}, {0.2, 0.0474},
                                        {0.3022, 0.0215}, {0.4022, 0.0037}, {0.4423, 0.0015}};
     const double cell = kHeight / static_cast<double>(setup.cells);
-    const Heap heap{kLength, kHeight, 2650.0, 19.8 * kDegree,
-                    solid::Elastic::of(3.0 * 0.7e6 * (1.0 - 2.0 * kPoisson), kPoisson), 0.6, 0.8};
+    const Heap heap{
+        kLength, kHeight, 2650.0, 19.8 * kDegree, solid::Elastic::of(3.0 * 0.7e6 * (1.0 - 2.0 * kPoisson), kPoisson),
+        0.6,     0.8};
     Mpm3d flow(heap.scene(cell, setup.per_side));
     Measurement m = run_body(flow, heap.end);
     double sum = 0.0;
@@ -162,8 +173,13 @@ Measurement run_column_grains(const Setup& setup) {
     std::vector<std::pair<std::string, double>> found;
     for (const Grains& g : kGrains) {
         const double height = g.aspect * kLength, cell = std::min(kLength, height) / static_cast<double>(setup.cells);
-        const Heap heap{kLength, height, kDensity, std::atan(kFriction), stiff_enough(kDensity, height),
-                        1.5 * g.half_length * height, 4.0 * std::sqrt(height / kGravity) + 0.1};
+        const Heap heap{kLength,
+                        height,
+                        kDensity,
+                        std::atan(kFriction),
+                        stiff_enough(kDensity, height),
+                        1.5 * g.half_length * height,
+                        4.0 * std::sqrt(height / kGravity) + 0.1};
         Mpm3d flow(heap.scene(cell, setup.per_side));
         m = joined(m, run_body(flow, heap.end));
         const double tenth = 0.1 * g.half_length * height;
@@ -208,8 +224,7 @@ struct Slump {
     /// How far from the middle both fronts are, without the outermost 0.2 % of the points [m].
     double front() const {
         std::vector<double> away;
-        for (Index p = 0; p < flow.body().points.count(); ++p)
-            away.push_back(std::abs(flow.position(p).x() - kMiddle));
+        for (Index p = 0; p < flow.body().points.count(); ++p) away.push_back(std::abs(flow.position(p).x() - kMiddle));
         std::sort(away.begin(), away.end());
         return away[static_cast<std::size_t>(0.998 * static_cast<double>(away.size() - 1))];
     }
@@ -298,8 +313,7 @@ std::vector<Residual> heap_residuals() {
         const double s = end * (k + 0.5) / kParts;
         volume += 2.0 * s * heap.depth(heap.front() - s * s) * end / kParts;
     }
-    return {{"slope of the heap less its law", worst, 1e-8},
-            {"volume of the heap", volume - Slump::kFirst, 1e-7}};
+    return {{"slope of the heap less its law", worst, 1e-8}, {"volume of the heap", volume - Slump::kFirst, 1e-7}};
 }
 
 }  // namespace
@@ -326,9 +340,8 @@ std::vector<Problem> column_problems() {
                  {},
                  run_column_bars};
     bars.order_of = "surface_error";
-    bars.gates = {{0, "front_share", 0.2, "as of sand"},
-                  {0, "surface_error", 0.0625, "half a cell of the height"},
-                  closed};
+    bars.gates = {
+        {0, "front_share", 0.2, "as of sand"}, {0, "surface_error", 0.0625, "half a cell of the height"}, closed};
     Problem grains{"column_grains",
                    "plane columns of grains simulated one by one (Lagree et al. 2011): final profiles",
                    {8},

@@ -43,7 +43,9 @@ Exact exact_of(const Wave& wave) {
 
 Measurement run_ritter(const Setup& setup) {
     const Ritter wave{1.0};
-    Trial trial(channel(setup.cells, [](double x, double) { return x < kDam ? 1.0 : 0.0; }, setup), setup);
+    Trial trial(channel(
+                    setup.cells, [](double x, double) { return x < kDam ? 1.0 : 0.0; }, setup),
+                setup);
     trial.run_to(kEnd);
     Measurement m = trial.measure(exact_of(wave));
     // The tip is infinitely thin: the contour of a hundredth of hl stands where (2 c - s)^2 = 0.09 g hl.
@@ -56,7 +58,9 @@ Measurement run_ritter(const Setup& setup) {
 Measurement run_stoker(const Setup& setup, double hl, double hr, double end_scale) {
     const Stoker wave(hl, hr);
     const double end = kEnd * end_scale;
-    Trial trial(channel(setup.cells, [&](double x, double) { return x < kDam ? hl : hr; }, setup), setup);
+    Trial trial(channel(
+                    setup.cells, [&](double x, double) { return x < kDam ? hl : hr; }, setup),
+                setup);
     trial.run_to(end);
     const auto state = [&](double x) { return wave.at((x - kDam) / end); };
     Measurement m = trial.measure(
@@ -87,21 +91,28 @@ std::vector<Residual> ritter_residuals() {
 }  // namespace
 
 std::vector<Problem> dam_break_problems() {
-    Problem ritter{"ritter", "dam break on a dry bed, exact fan (Ritter 1892)", {100, 200, 400, 800}, ritter_residuals,
+    Problem ritter{"ritter",
+                   "dam break on a dry bed, exact fan (Ritter 1892)",
+                   {100, 200, 400, 800},
+                   ritter_residuals,
                    run_ritter};
     ritter.gates = {{200, "l1_depth", 8e-3, "goal; an earlier code 6.7e-3"},
                     {800, "l1_depth", 2.3e-3, "goal; an earlier code 1.8e-3"},
                     {400, "l1_depth", 4e-3, "GeoClaw 3.6e-3 at 400"},
                     {0, "mass_error", 1e-13, "round-off"}};
-    Problem stoker{"stoker", "dam break onto shallow water, 1 m on 0.2 m: fan and shock (Stoker 1957)",
-                   {100, 200, 400, 800}, [] { return Stoker(1.0, 0.2).residuals(); },
+    Problem stoker{"stoker",
+                   "dam break onto shallow water, 1 m on 0.2 m: fan and shock (Stoker 1957)",
+                   {100, 200, 400, 800},
+                   [] { return Stoker(1.0, 0.2).residuals(); },
                    [](const Setup& s) { return run_stoker(s, 1.0, 0.2, 1.0); }};
     stoker.gates = {{200, "l1_depth", 7.2e-3, "goal"},
                     {800, "l1_depth", 2e-3, "goal"},
                     {400, "l1_depth", 4e-3, "GeoClaw 2.0e-3 at 400, goal 4e-3"},
                     {200, "total_variation", 1.15, "goal; exact 0.80 m"},
                     {0, "mass_error", 1e-13, "round-off"}};
-    Problem deep{"stoker_deep", "dam break 10 m on 1 m: a strong shock (Stoker 1957)", {100, 200, 400},
+    Problem deep{"stoker_deep",
+                 "dam break 10 m on 1 m: a strong shock (Stoker 1957)",
+                 {100, 200, 400},
                  [] { return Stoker(10.0, 1.0).residuals(); },
                  [](const Setup& s) { return run_stoker(s, 10.0, 1.0, 0.3); }};
     deep.gates = {{0, "mass_error", 1e-13, "round-off"}};

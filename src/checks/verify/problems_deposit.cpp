@@ -109,17 +109,28 @@ std::vector<Residual> flat_residuals() { return FlatDeposit{{1000.0, 50.0}, 1.0}
 }  // namespace
 
 std::vector<Problem> deposit_problems() {
-    Problem arrest{"bingham_arrest", "a Bingham column 2 m x .5 m slumps on flat ground and arrests, 400 s", {30, 60, 120},
-                   flat_residuals, run_arrest};
+    Problem arrest{"bingham_arrest",
+                   "a Bingham column 2 m x .5 m slumps on flat ground and arrests, 400 s",
+                   {30, 60, 120},
+                   flat_residuals,
+                   run_arrest};
     arrest.gates = {{60, "wall_depth_error", 1e-2, "goal"},
                     {60, "front_cells", 1.0, "goal"},
                     {60, "l1_depth", 2.5e-2, "goal; 6.9e-3 is still to flow at 400 s"},
                     {0, "mass_error", 1e-13, "round-off"}};
-    Problem incline{"bingham_incline", "a Bingham column slumps on 10 deg and arrests (Liu and Mei 1989)", {25, 50, 100},
-                    [] { return incline_deposit().residuals(); }, run_incline};
+    Problem incline{"bingham_incline",
+                    "a Bingham column slumps on 10 deg and arrests (Liu and Mei 1989)",
+                    {25, 50, 100},
+                    [] { return incline_deposit().residuals(); },
+                    run_incline};
     incline.gates = {{0, "mass_error", 1e-13, "round-off"}};
-    Problem axial{"bingham_axial", "a Bingham cylinder slumps on flat ground and arrests", {20, 30, 40},
-                  [] { return RoundDeposit{{1000.0, 50.0}, 1.0}.residuals(); }, run_axial};
+    Problem axial{"bingham_axial",
+                  "a Bingham cylinder slumps on flat ground and arrests",
+                  {20, 30, 40},
+                  [] {
+                      return RoundDeposit{{1000.0, 50.0}, 1.0}.residuals();
+                  },
+                  run_axial};
     axial.gates = {{30, "l1_depth", 5e-2, "goal"}, {0, "mass_error", 1e-13, "round-off"}};
     return {arrest, incline, axial};
 }

@@ -58,9 +58,11 @@ struct SlabRun {
 
 void add_slab(const Setup& setup, const SlabRun& run, Measurement& m) {
     constexpr double kLength = 300.0, kRoom = 150.0;
-    const double slope = run.slab.slope_deg * kDegree, cosine = std::cos(slope), cell = 100.0 / static_cast<double>(setup.cells);
+    const double slope = run.slab.slope_deg * kDegree, cosine = std::cos(slope),
+                 cell = 100.0 / static_cast<double>(setup.cells);
     const Index nx = static_cast<Index>(std::ceil((kLength + run.exact.way * cosine + 2.0 * kRoom) / cell)) + 1;
-    Scene scene = scene_on(nx, 7, cell, [&](double x, double) { return -std::tan(slope) * x; }, -kRoom);
+    Scene scene = scene_on(
+        nx, 7, cell, [&](double x, double) { return -std::tan(slope) * x; }, -kRoom);
     scene.sides = Sides::wall;
     scene.bed_law = run.friction;
     fill(scene, [&](double x, double) { return x > 0.0 && x < kLength ? run.slab.thickness / cosine : 0.0; },
@@ -81,7 +83,8 @@ void add_slab(const Setup& setup, const SlabRun& run, Measurement& m) {
     worst("thickness_error", std::abs(found.thickness / run.exact.thickness - 1.0));
     worst("travel_error", std::abs(found.way / run.exact.way - 1.0));
     worst("balance_error", balance_error(first, trial.simulation().status()));
-    m.particles = one.particles, m.steps += one.steps, m.wall_seconds += one.wall_seconds, m.mass_error = one.mass_error;
+    m.particles = one.particles, m.steps += one.steps, m.wall_seconds += one.wall_seconds,
+    m.mass_error = one.mass_error;
 }
 
 Measurement run_slabs(const Setup& setup, const std::vector<SlabRun>& runs) {
@@ -138,14 +141,17 @@ Measurement run_trench(const Setup& setup) {
     trench.thickness = 1e-10;
     ErodingSlab block;
     block.thickness = trench.thickness;
-    const double cosine = std::cos(block.slope_deg * kDegree), cell = trench.length * cosine / static_cast<double>(setup.cells);
+    const double cosine = std::cos(block.slope_deg * kDegree),
+                 cell = trench.length * cosine / static_cast<double>(setup.cells);
     const double end = block.time_to(trench.growth, trench.way), front = trench.length * cosine;
     const Index ahead = static_cast<Index>(std::ceil(trench.way * cosine / cell)) + 20, behind = setup.cells + 20;
-    Scene scene = scene_on(ahead + behind + 1, 7, cell, [&](double x, double) { return -std::tan(block.slope_deg * kDegree) * x; },
-                           -static_cast<double>(behind) * cell);
+    Scene scene = scene_on(
+        ahead + behind + 1, 7, cell, [&](double x, double) { return -std::tan(block.slope_deg * kDegree) * x; },
+        -static_cast<double>(behind) * cell);
     scene.sides = Sides::wall;
     scene.bed_law = bed::Coulomb{block.mu};
-    fill(scene, [&](double x, double) { return x > -front && x < 0.0 ? trench.thickness / cosine : 0.0; }, {setup.per_side});
+    fill(scene, [&](double x, double) { return x > -front && x < 0.0 ? trench.thickness / cosine : 0.0; },
+         {setup.per_side});
     add_bed(scene, erosion::Growth{trench.growth}, 0.0, 1.0 * trench.thickness);
     Trial trial(std::move(scene), setup);
     const auto centre = [&] { return trial.point_mean([](double x, double) { return x; }); };
@@ -158,7 +164,8 @@ Measurement run_trench(const Setup& setup) {
     double error = 0.0, size = 0.0;
     for (Index i = 0; i < frame.grid.nx; ++i) {
         const auto exact = [&](double x, double) { return trench.depth(x / cosine) / cosine; };
-        const double e = spline_average(exact, frame.grid.x(i), cell), found = taken[frame.grid.ny / 2 * frame.grid.nx + i];
+        const double e = spline_average(exact, frame.grid.x(i), cell),
+                     found = taken[frame.grid.ny / 2 * frame.grid.nx + i];
         error += std::abs(found - e), size += e;
     }
     const Status& now = trial.simulation().status();
@@ -180,8 +187,9 @@ void add_cap(const Setup& setup, double kappa, Measurement& m) {
     const double cell = 2.0 * cap.half_length * cosine / static_cast<double>(setup.cells);
     const double from = -(cap.half_length + 20.0) * cosine - 4.0 * cell;
     const double to = (end.centre + end.half_length + 20.0) * cosine + 4.0 * cell;
-    Scene scene = scene_on(static_cast<Index>(std::ceil((to - from) / cell)) + 1, 7, cell,
-                           [&](double x, double) { return -std::tan(slope) * x; }, from);
+    Scene scene = scene_on(
+        static_cast<Index>(std::ceil((to - from) / cell)) + 1, 7, cell,
+        [&](double x, double) { return -std::tan(slope) * x; }, from);
     scene.sides = Sides::wall;
     scene.terrain = TerrainModel::linearised;
     scene.bed_law = bed::Coulomb{std::tan(cap.friction_deg * kDegree)};
@@ -196,14 +204,16 @@ void add_cap(const Setup& setup, double kappa, Measurement& m) {
     const Status first = trial.simulation().status();
     trial.run_to(kEnd);
     const auto share = [&](double x) { return (x / cosine - end.centre) / end.half_length; };
-    const Measurement one = trial.measure(
-        {[&](double x, double) { return end.height * std::max(0.0, 1.0 - share(x) * share(x)) / cosine; },
-         [&](double x, double) { return (end.speed + share(x) * end.spreading) * cosine; }});
+    const Measurement one =
+        trial.measure({[&](double x, double) { return end.height * std::max(0.0, 1.0 - share(x) * share(x)) / cosine; },
+                       [&](double x, double) { return (end.speed + share(x) * end.spreading) * cosine; }});
     const Status& now = trial.simulation().status();
     const double centre = trial.point_mean([](double x, double) { return x; }) / cosine;
     const char* name = kappa == 0.0 ? "" : "jump_";
-    if (kappa == 0.0) m = one;
-    else m.add("jump_l1_depth", one.l1_depth), m.add("jump_l1_momentum", one.l1_momentum);
+    if (kappa == 0.0)
+        m = one;
+    else
+        m.add("jump_l1_depth", one.l1_depth), m.add("jump_l1_momentum", one.l1_momentum);
     m.add(std::string(name) + "centre_error", centre / end.centre - 1.0);
     m.add(std::string(name) + "growth_error", std::log(now.mass / first.mass) / (cap.eps * kEnd) - 1.0);
     m.add(std::string(name) + "balance_error", balance_error(first, now));
@@ -219,9 +229,9 @@ Measurement run_cap(const Setup& setup) {
 Measurement run_lake(const Setup& setup) {
     Measurement m;
     double fastest = 0.0, taken = 0.0;
-    for (const ErosionLaw& law : {ErosionLaw(erosion::Growth{0.1}), ErosionLaw(erosion::Steady{0.1}),
-                                  ErosionLaw(erosion::Shear{0.1, 0.0, 1.0}), ErosionLaw(erosion::Energy{10.0}),
-                                  ErosionLaw(erosion::Jump{0.0})}) {
+    for (const ErosionLaw& law :
+         {ErosionLaw(erosion::Growth{0.1}), ErosionLaw(erosion::Steady{0.1}), ErosionLaw(erosion::Shear{0.1, 0.0, 1.0}),
+          ErosionLaw(erosion::Energy{10.0}), ErosionLaw(erosion::Jump{0.0})}) {
         Scene scene = scene_of(lake_island(), setup, Placement::full_jitter);
         add_bed(scene, law, 0.0, 2.0);
         scene.erodible->evolves = true;
@@ -231,7 +241,8 @@ Measurement run_lake(const Setup& setup) {
             taken = std::max(taken, now.bed.eroded);
         });
         const Measurement one = trial.measure();
-        m.particles = one.particles, m.steps += one.steps, m.wall_seconds += one.wall_seconds, m.mass_error = one.mass_error;
+        m.particles = one.particles, m.steps += one.steps, m.wall_seconds += one.wall_seconds,
+        m.mass_error = one.mass_error;
     }
     m.add("max_speed", fastest, "m/s");
     m.add("taken", taken, "kg");
@@ -242,30 +253,45 @@ Measurement run_lake(const Setup& setup) {
 
 std::vector<Problem> erosion_problems() {
     const Gate mass{0, "balance_error", 1e-13, "round-off"};
-    const auto exact = [](const char* quantity) { return Gate{0, quantity, 1e-3, "second order in the step, as with drag"}; };
-    Problem constant{"slab_constant", "a slab on 30 degrees takes its bed at a constant rate, kappa 0, 1/2 and 1", {10, 20, 40},
-                     eroding_slab_residuals, run_constant};
-    Problem growth{"slab_growth", "a slab on 30 degrees grows by its way, kappa 0, 1/2 and 1 (Hungr 1995)", {10, 20, 40},
-                   growing_slab_residuals, run_growth};
-    Problem voellmy{"slab_voellmy_growth", "the same with Voellmy's drag", {10, 20, 40}, voellmy_slab_residuals, run_voellmy};
+    const auto exact = [](const char* quantity) {
+        return Gate{0, quantity, 1e-3, "second order in the step, as with drag"};
+    };
+    Problem constant{"slab_constant",
+                     "a slab on 30 degrees takes its bed at a constant rate, kappa 0, 1/2 and 1",
+                     {10, 20, 40},
+                     eroding_slab_residuals,
+                     run_constant};
+    Problem growth{"slab_growth",
+                   "a slab on 30 degrees grows by its way, kappa 0, 1/2 and 1 (Hungr 1995)",
+                   {10, 20, 40},
+                   growing_slab_residuals,
+                   run_growth};
+    Problem voellmy{
+        "slab_voellmy_growth", "the same with Voellmy's drag", {10, 20, 40}, voellmy_slab_residuals, run_voellmy};
     for (Problem* slab : {&constant, &growth, &voellmy}) {
         slab->order_of = "speed_error";
         slab->gates = {exact("speed_error"), exact("thickness_error"), exact("travel_error"), mass};
     }
-    Problem trench{"trench", "what a thin block takes of its bed on 300 m, where", {5, 10, 20, 40}, trench_residuals, run_trench};
+    Problem trench{
+        "trench", "what a thin block takes of its bed on 300 m, where", {5, 10, 20, 40}, trench_residuals, run_trench};
     trench.order_of = "l1_trench";
-    trench.gates = {{10, "l1_trench", 2e-2, "goal"},
-                    {20, "l1_trench", 6e-3, "the bed loses where its points have arrived: half a step, a quarter of a cell"},
-                    {0, "growth_error", 1e-12, "an exponential of each point's own way"},
-                    mass};
-    Problem cap{"cap_growth", "a cap on 35 degrees spreads as it grows at a steady rate, kappa 0 and 1", {20, 40, 80, 160},
-                growing_cap_residuals, run_cap};
+    trench.gates = {
+        {10, "l1_trench", 2e-2, "goal"},
+        {20, "l1_trench", 6e-3, "the bed loses where its points have arrived: half a step, a quarter of a cell"},
+        {0, "growth_error", 1e-12, "an exponential of each point's own way"},
+        mass};
+    Problem cap{"cap_growth",
+                "a cap on 35 degrees spreads as it grows at a steady rate, kappa 0 and 1",
+                {20, 40, 80, 160},
+                growing_cap_residuals,
+                run_cap};
     cap.gates = {{80, "l1_depth", 1e-2, "goal; one dimension in a prototype 4.7e-3"},
                  {80, "l1_momentum", 1e-2, "goal"},
                  {80, "jump_l1_depth", 1e-2, "goal"},
                  {0, "growth_error", 1e-12, "exact in time"},
                  mass};
-    Problem lake{"erosion_lake", "the lake around an island over a loose bed, five laws: nothing is taken", {50}, {}, run_lake};
+    Problem lake{
+        "erosion_lake", "the lake around an island over a loose bed, five laws: nothing is taken", {50}, {}, run_lake};
     lake.gates = {{0, "max_speed", 0.0, "rest to the last bit"}, {0, "taken", 0.0, "what rests takes nothing"}};
     return {constant, growth, voellmy, trench, cap, lake};
 }

@@ -10,7 +10,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kSlope = 0.2;    ///< tangent
+constexpr double kSlope = 0.2;  ///< tangent
 constexpr double kDensity = 1800.0;
 const double kCosine = 1.0 / std::sqrt(1.0 + kSlope * kSlope);
 
@@ -29,9 +29,8 @@ struct Channel {
     double width() const { return 6.0 * cell; }
     Scene scene(const BedLaw& law) const {
         const Index nx = static_cast<Index>(std::lround(length / cell)) + 1;
-        Scene scene = scene_on(nx, 7, cell, [this](double x, double) {
-            return x > length - 3.5 * cell ? Raster::nodata : -kSlope * x;
-        });
+        Scene scene = scene_on(
+            nx, 7, cell, [this](double x, double) { return x > length - 3.5 * cell ? Raster::nodata : -kSlope * x; });
         scene.sides = Sides::wall;
         scene.density = kDensity;
         scene.bed_law = law;
@@ -53,7 +52,8 @@ struct Channel {
         for (std::size_t n = 0; n + 1 < time.size(); ++n)
             for (int part = 1; part <= kParts; ++part) {
                 const double share = static_cast<double>(part) / kParts;
-                add(time[n] + share * (time[n + 1] - time[n]), discharge[n] + share * (discharge[n + 1] - discharge[n]));
+                add(time[n] + share * (time[n + 1] - time[n]),
+                    discharge[n] + share * (discharge[n + 1] - discharge[n]));
             }
         scene.inflows = {inflow};
     }
@@ -68,7 +68,8 @@ double volume_error(DepthAveraged& run) {
 /// A flood into a closed basin, at each step up to one row; nothing is there before.
 Measurement run_volume(const Setup& setup) {
     const double cell = 40.0 / static_cast<double>(setup.cells);
-    Scene scene = scene_on(setup.cells + 1, setup.cells + 1, cell, [](double x, double y) { return 0.1 * x + 0.05 * y; });
+    Scene scene =
+        scene_on(setup.cells + 1, setup.cells + 1, cell, [](double x, double y) { return 0.1 * x + 0.05 * y; });
     scene.sides = Sides::wall;
     scene.bed_law = bed::Manning{0.05, 0.0};
     Inflow inflow;
@@ -107,10 +108,11 @@ BehindFront behind_front(const BedLaw& law, const Setup& setup) {
     trial.run_to(kEnd);
     const double way = exact.speed * kEnd;
     BehindFront result;
-    result.measurement = trial.measure({[&](double, double) { return exact.depth; },
-                                        [&](double, double) { return exact.speed; },
-                                        {},
-                                        [&](double x, double) { return x > kLine + 10.0 && x < kLine + way - kFront; }});
+    result.measurement =
+        trial.measure({[&](double, double) { return exact.depth; },
+                       [&](double, double) { return exact.speed; },
+                       {},
+                       [&](double x, double) { return x > kLine + 10.0 && x < kLine + way - kFront; }});
     // Half of the depth, from the middle row.
     double front = kLine;
     for (double x = kLine; x < kLine + 1.5 * way; x += 0.1 * channel.cell) {
@@ -154,7 +156,8 @@ std::vector<Residual> normal_residuals() {
     const double bingham = kDensity * 9.81 * s * sheared * sheared * (3.0 * h - sheared) / (6.0 * 200.0);
     return {{"Voellmy: h = (q^2 / (xi (sin - mu cos)))^(1/3)",
              std::abs(flow(bed::Voellmy{0.08, 400.0}).thickness / voellmy - 1.0), 1e-12},
-            {"Manning: h = (n q / sqrt(sin))^(3/5)", std::abs(flow(bed::Manning{0.05, 0.0}).thickness / manning - 1.0), 1e-12},
+            {"Manning: h = (n q / sqrt(sin))^(3/5)", std::abs(flow(bed::Manning{0.05, 0.0}).thickness / manning - 1.0),
+             1e-12},
             {"Bingham: q = rho g sin hs^2 (3 h - hs) / (6 eta)", std::abs(bingham / q - 1.0), 1e-12},
             {"0.697908 m by Voellmy's law", std::abs(voellmy - 0.697908), 5e-7}};
 }
@@ -165,10 +168,11 @@ Measurement run_wave(const Setup& setup) {
     const BedLaw law = bed::Voellmy{0.08, 400.0};
     const Channel channel{1000.0 / static_cast<double>(setup.cells), kLine + kAway + 80.0, kLine};
     Scene scene = channel.scene(law);
-    channel.feed(scene, {0.0, kStart, kStart + kRise, kStart + 2.0 * kRise, 2.0 * kEnd}, {kBase, kBase, kPeak, kBase, kBase},
-                 setup.per_side);
+    channel.feed(scene, {0.0, kStart, kStart + kRise, kStart + 2.0 * kRise, 2.0 * kEnd},
+                 {kBase, kBase, kPeak, kBase, kBase}, setup.per_side);
     const Uniform base = uniform(law, kBase), peak = uniform(law, kPeak);
-    fill(scene, [&](double x, double) { return x > kLine && x < kLine + kAway + 60.0 ? base.depth : 0.0; }, {setup.per_side});
+    fill(scene, [&](double x, double) { return x > kLine && x < kLine + kAway + 60.0 ? base.depth : 0.0; },
+         {setup.per_side});
     for (double& speed : scene.particles.vx) speed = base.speed;
     const Polyline gauge{{kLine + kAway, -1.0}, {kLine + kAway, channel.width() + 1.0}};
     scene.sections = {{"end", gauge, true}};
@@ -205,23 +209,32 @@ Measurement run_wave(const Setup& setup) {
 
 std::vector<Problem> inflow_problems() {
     const Gate mass{0, "mass_error", 1e-13, "round-off"};
-    Problem volume{"inflow_volume", "a flood through an oblique line into a closed basin that is empty before",
-                   {20, 40, 80}, [] { return std::vector<Residual>{}; }, run_volume};
+    Problem volume{"inflow_volume",
+                   "a flood through an oblique line into a closed basin that is empty before",
+                   {20, 40, 80},
+                   [] { return std::vector<Residual>{}; },
+                   run_volume};
     volume.order_of = "";
     volume.has_presets = false;
     volume.gates = {mass,
                     {0, "volume_error", 1e-13, "round-off"},
                     {0, "worst_volume_error", 1e-13, "round-off, at every step up to one row"}};
-    Problem normal{"inflow_normal", "4 m2/s come in onto a dry slope of 0.2 at the speed of uniform flow: Voellmy, Manning, Bingham",
-                   {50, 100, 200}, normal_residuals, run_normal};
+    Problem normal{"inflow_normal",
+                   "4 m2/s come in onto a dry slope of 0.2 at the speed of uniform flow: Voellmy, Manning, Bingham",
+                   {50, 100, 200},
+                   normal_residuals,
+                   run_normal};
     normal.order_of = "l1_depth";
     normal.has_presets = false;
     normal.gates = {mass};
     for (const char* law : {"voellmy", "manning", "bingham"})
         for (const char* what : {"_depth", "_speed"})
             normal.gates.push_back({200, std::string(law) + what, 5e-3, "goal, behind the front"});
-    Problem wave{"inflow_wave", "a triangle from 4 to 8 m2/s on uniform flow: its peak 1 km away, by the kinematic celerity",
-                 {250, 500}, [] { return std::vector<Residual>{}; }, run_wave};
+    Problem wave{"inflow_wave",
+                 "a triangle from 4 to 8 m2/s on uniform flow: its peak 1 km away, by the kinematic celerity",
+                 {250, 500},
+                 [] { return std::vector<Residual>{}; },
+                 run_wave};
     wave.order_of = "";
     wave.has_presets = false;
     wave.gates = {mass, {500, "peak_time_error", 3e-2, "goal"}, {0, "volume_error", 1e-13, "round-off"}};

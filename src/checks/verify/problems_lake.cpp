@@ -26,7 +26,9 @@ double surface_error(const Frame& frame, double level) {
 }
 
 /// What one lake does at worst.
-struct Unrest { double speed = 0.0, surface = 0.0; };
+struct Unrest {
+    double speed = 0.0, surface = 0.0;
+};
 Unrest unrest_of(const Lake& lake, Trial& trial, double end) {
     Unrest worst;
     trial.run_to(end, [&](const Status& now) { worst.speed = std::max(worst.speed, now.max_speed_on_map); });
@@ -111,15 +113,20 @@ Problem problem_of(const std::string& name, const std::string& title, const std:
 }  // namespace
 
 std::vector<Problem> lake_problems() {
-    Problem waves{"lake_ripple", "faint ripples on the lake around the island die away or at least do not grow, 60 s",
-                  {50}, {}, ripple};
+    Problem waves{"lake_ripple",
+                  "faint ripples on the lake around the island die away or at least do not grow, 60 s",
+                  {50},
+                  {},
+                  ripple};
     waves.gates = {{0, "kinetic_growth", 1.0, "no source of energy"}, {0, "mass_error", 1e-13, "round-off"}};
     return {waves,
             problem_of("lake_z1", "lake at rest over a smooth bump (Fois et al. 2024, Z1), 11 set-ups", {50}, lake_z1),
             problem_of("lake_z2", "lake at rest over a step (Fois et al. 2024, Z2), 11 set-ups", {50}, lake_z2),
             problem_of("lake_island", "lake at rest around an island, 11 set-ups", {50, 40, 60}, lake_island),
-            problem_of("lake_bump", "lake at rest on both sides of an emerged bump, 11 set-ups; no flow over it, for "
-                       "want of an inflow", {100, 50, 200}, lake_bump)};
+            problem_of("lake_bump",
+                       "lake at rest on both sides of an emerged bump, 11 set-ups; no flow over it, for "
+                       "want of an inflow",
+                       {100, 50, 200}, lake_bump)};
 }
 
 }  // namespace frana::verify

@@ -15,7 +15,7 @@ struct Sheet {
     static constexpr double kGravity = 9.81, kDensity = 1000.0, kWidthCells = 3.0;
     double length = 12.0;
     double sound_speed = 10.0;  ///< over sqrt(g), of 1 m
-    double floor = 0.0;   ///< how far above nodes [cells]
+    double floor = 0.0;         ///< how far above nodes [cells]
     SolidLaw law = solid::Fluid{};
 
     double bulk() const { return kDensity * sound_speed * sound_speed * kGravity; }

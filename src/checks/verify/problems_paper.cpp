@@ -10,7 +10,9 @@ namespace frana::verify {
 namespace {
 
 /// Errors of table 1, absolute, over the points: of the depth [m3], [m], and of depth times velocity [m4/s], [m2/s].
-struct Table1 { double l1_h = 0.0, max_h = 0.0, l1_hu = 0.0, max_hu = 0.0; };
+struct Table1 {
+    double l1_h = 0.0, max_h = 0.0, l1_hu = 0.0, max_hu = 0.0;
+};
 
 /// Bed at a place between four nodes, bilinear as the paper's points see it [m].
 double bed_at(const Raster& bed, double x, double y) {
@@ -116,12 +118,21 @@ Measurement run_obstacle(const Setup& setup) {
 }  // namespace
 
 std::vector<Problem> paper_problems() {
-    Problem table{"lake_paper", "lakes Z1 and Z2 of known level in the paper's own preset (Fois et al. 2024, table 1)",
-                  {50}, {}, run_table};
+    Problem table{"lake_paper",
+                  "lakes Z1 and Z2 of known level in the paper's own preset (Fois et al. 2024, table 1)",
+                  {50},
+                  {},
+                  run_table};
     const std::string source = "table 1 of the paper";
-    table.gates = {{0, "max_speed", 1e-12, "goal"}, {0, "l1_h", 2e-12, source}, {0, "max_h", 3e-13, source},
-                   {0, "l1_hu", 2e-13, source},           {0, "max_hu", 3e-14, source}};
-    Problem mud{"obstacle", "mud splits around a bump and joins again (Fois et al. 2024, section 4.2)", {150}, {},
+    table.gates = {{0, "max_speed", 1e-12, "goal"},
+                   {0, "l1_h", 2e-12, source},
+                   {0, "max_h", 3e-13, source},
+                   {0, "l1_hu", 2e-13, source},
+                   {0, "max_hu", 3e-14, source}};
+    Problem mud{"obstacle",
+                "mud splits around a bump and joins again (Fois et al. 2024, section 4.2)",
+                {150},
+                {},
                 run_obstacle};
     mud.gates = {{0, "p2g_mass", 1e-13, "round-off of sums over 1e4 points"},
                  {0, "p2g_momentum", 1e-13, "round-off of sums over 1e4 points"},

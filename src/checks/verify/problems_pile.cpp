@@ -93,8 +93,11 @@ Measurement run_piles(const Setup& setup) {
 }  // namespace
 
 std::vector<Problem> pile_problems() {
-    Problem pile{"pile", "cones and paraboloids below their friction angle on planes of 11 and 35 deg, 24 set-ups",
-                 {60}, pile_residuals, run_piles};
+    Problem pile{"pile",
+                 "cones and paraboloids below their friction angle on planes of 11 and 35 deg, 24 set-ups",
+                 {60},
+                 pile_residuals,
+                 run_piles};
     pile.gates = {{0, "displacement", 0.0, "friction holds to the last bit"},
                   {0, "max_speed", 0.0, "friction holds to the last bit"},
                   {0, "mass_error", 0.0, "nothing moves"}};

@@ -53,12 +53,17 @@ Measurement run_dam(const Setup& setup, double outer, double level) {
 
 std::vector<Problem> radial_dam_problems() {
     const Gate volume{0, "mass_error", 1e-13, "round-off"};
-    Problem dry{"radial_dam", "round dam break on a dry bed, against a radial reference of 3000 cells", {80, 160, 320},
-                [] { return reference(0.0).residuals(); }, [](const Setup& s) { return run_dam(s, 0.0, 0.01); }};
+    Problem dry{"radial_dam",
+                "round dam break on a dry bed, against a radial reference of 3000 cells",
+                {80, 160, 320},
+                [] { return reference(0.0).residuals(); },
+                [](const Setup& s) { return run_dam(s, 0.0, 0.01); }};
     const std::string source = "a fifth above what an earlier code had: ";
     dry.gates = {{160, "l1_depth", 4e-2, source + "3.3e-2"}, {320, "l1_depth", 2e-2, source + "1.7e-2"}, volume};
-    Problem wet{"radial_dam_wet", "round dam break onto shallow water, against a radial reference of 3000 cells",
-                {80, 160, 320}, [] { return reference(0.2).residuals(); },
+    Problem wet{"radial_dam_wet",
+                "round dam break onto shallow water, against a radial reference of 3000 cells",
+                {80, 160, 320},
+                [] { return reference(0.2).residuals(); },
                 [](const Setup& s) { return run_dam(s, 0.2, 0.25); }};
     wet.gates = {{160, "l1_depth", 2.4e-2, source + "2.0e-2"}, {320, "l1_depth", 1.3e-2, source + "1.07e-2"}, volume};
     return {dry, wet};

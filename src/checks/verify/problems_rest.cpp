@@ -56,8 +56,7 @@ double pressure_error(const Mpm3d& flow) {
         const double exact = kDensity * kGravity * std::max(0.0, kDeepest - flow.position(p).z());
         sum += std::pow(-flow.stress(p).trace() / 3.0 - exact, 2);
     }
-    return std::sqrt(sum / static_cast<double>(flow.body().points.count())) /
-           (kDensity * kGravity * kDeepest);
+    return std::sqrt(sum / static_cast<double>(flow.body().points.count())) / (kDensity * kGravity * kDeepest);
 }
 
 /// What bed and wall carry in some time: the bed the weight, the wall a triangle of pressure.
@@ -86,9 +85,7 @@ Rest rest(const SolidLaw& law, double bed_friction, bool stops, const Setup& set
     StagedRun run(wedge(law, bed_friction, setup));
     const Mpm3d& flow = *run.points();
     const std::vector<Vec3> start = places(flow);
-    const auto worse = [](const Forces& f) {
-        return std::max(std::abs(f.bed_error), std::abs(f.wall_error));
-    };
+    const auto worse = [](const Forces& f) { return std::max(std::abs(f.bed_error), std::abs(f.wall_error)); };
     Rest r{};
     r.pressure_at_start = pressure_error(flow);
     std::vector<Vec3> half = flow.body().impulse;
@@ -118,8 +115,7 @@ Rest rest(const SolidLaw& law, double bed_friction, bool stops, const Setup& set
 /// Water, whose creep nothing ends; water on a rough bed; and mud, which stops.
 Measurement run_conversion_at_rest(const Setup& setup) {
     constexpr double kYield = 100.0;  // of the mud [Pa]: a hundredth of the deepest pressure
-    const Rest water = rest(solid::Fluid{}, 0.0, false, setup),
-               rough = rest(solid::Fluid{}, 0.3, true, setup),
+    const Rest water = rest(solid::Fluid{}, 0.0, false, setup), rough = rest(solid::Fluid{}, 0.3, true, setup),
                mud = rest(solid::Bingham{0.0, 100.0 * kYield, 1.0, kYield}, 0.0, true, setup);
     Measurement m = joined(joined(water.run, rough.run), mud.run);
     m.add("pressure_at_start", water.pressure_at_start);

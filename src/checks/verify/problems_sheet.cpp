@@ -21,7 +21,9 @@ struct Slab {
 };
 
 /// Largest error of depth and velocity in the middle, relative.
-struct SlabErrors { double depth = 0.0, speed = 0.0; };
+struct SlabErrors {
+    double depth = 0.0, speed = 0.0;
+};
 
 SlabErrors errors(const Frame& frame, const Slab& slab, double azimuth) {
     const double *h = frame.node("depth")->data, *v = frame.node("velocity")->data;
@@ -34,8 +36,9 @@ SlabErrors errors(const Frame& frame, const Slab& slab, double azimuth) {
             if (away > 0.1 * slab.length) continue;
             const Index k = j * frame.grid.nx + i;
             worst.depth = std::max(worst.depth, std::abs(h[k] * std::cos(slab.slope) / slab.thickness - 1));
-            worst.speed = std::max(worst.speed, std::hypot(v[3 * k] - exact[0], v[3 * k + 1] - exact[1],
-                                                           v[3 * k + 2] - exact[2]) / slab.speed);
+            worst.speed = std::max(
+                worst.speed,
+                std::hypot(v[3 * k] - exact[0], v[3 * k + 1] - exact[1], v[3 * k + 2] - exact[2]) / slab.speed);
         }
     return worst;
 }
@@ -45,10 +48,9 @@ Measurement run_slab(const Setup& setup, const Slab& slab) {
     double turned = 0.0;
     for (const double azimuth : {0.0, 27 * kDegree}) {
         const double fall = std::tan(slab.slope);
-        Scene scene = scene_on(setup.cells + 1, setup.cells + 1, slab.length / static_cast<double>(setup.cells),
-                               [&](double x, double y) {
-                                   return -fall * (x * std::cos(azimuth) + y * std::sin(azimuth));
-                               });
+        Scene scene =
+            scene_on(setup.cells + 1, setup.cells + 1, slab.length / static_cast<double>(setup.cells),
+                     [&](double x, double y) { return -fall * (x * std::cos(azimuth) + y * std::sin(azimuth)); });
         scene.density = slab.density;
         scene.bed_law = slab.law;
         fill(scene, [&](double, double) { return slab.thickness / std::cos(slab.slope); }, {setup.per_side});
@@ -68,14 +70,19 @@ Measurement run_slab(const Setup& setup, const Slab& slab) {
 }
 
 Slab bingham_slab(const BinghamSheet& sheet, double length, double end) {
-    return {length, sheet.slope, sheet.thickness, sheet.density, bed::Bingham{sheet.viscosity, sheet.yield_stress, 0.0},
-            sheet.mean_speed(), end};
+    return {length,
+            sheet.slope,
+            sheet.thickness,
+            sheet.density,
+            bed::Bingham{sheet.viscosity, sheet.yield_stress, 0.0},
+            sheet.mean_speed(),
+            end};
 }
 
 Problem slab_problem(const char* name, const char* title, std::function<std::vector<Residual>()> residuals,
                      const Slab& slab, const Gate& gate) {
-    Problem problem{name, title, {60, 90, 120}, std::move(residuals),
-                    [slab](const Setup& setup) { return run_slab(setup, slab); }};
+    Problem problem{
+        name, title, {60, 90, 120}, std::move(residuals), [slab](const Setup& setup) { return run_slab(setup, slab); }};
     problem.order_of = "speed_error";
     Gate turned = gate;
     turned.quantity = "speed_error_turned";
@@ -91,15 +98,15 @@ std::vector<Problem> sheet_problems() {
     const BinghamSheet newton{1500.0, 5000.0, 0.0, 15 * kDegree, 1.0};
     const BagnoldSheet bagnold{{std::tan(21 * kDegree), std::tan(33 * kDegree), 0.3, 1e-3, 0.6}, 26 * kDegree, 0.02};
     const Slab granular{80.0, bagnold.slope, bagnold.thickness, 1500.0, bagnold.law, bagnold.mean_speed(), 24.0};
-    return {slab_problem("bingham_flow", "uniform Bingham flow down 15 deg, straight and turned 27 deg",
-                         [bingham] { return bingham.residuals(); }, bingham_slab(bingham, 240.0, 5.0),
-                         {120, "speed_error", 1e-10, "goal"}),
-            slab_problem("newton_flow", "uniform Newtonian flow down 15 deg, straight and turned 27 deg",
-                         [newton] { return newton.residuals(); }, bingham_slab(newton, 240.0, 5.0),
-                         {120, "speed_error", 1e-10, "as bingham_flow"}),
-            slab_problem("bagnold", "uniform granular flow, mu(I), down 26 deg (Bagnold's profile)",
-                         [bagnold] { return bagnold.residuals(); }, granular,
-                         {120, "speed_error", 1e-3, "goal 0.1 %"})};
+    return {
+        slab_problem("bingham_flow", "uniform Bingham flow down 15 deg, straight and turned 27 deg",
+                     [bingham] { return bingham.residuals(); }, bingham_slab(bingham, 240.0, 5.0),
+                     {120, "speed_error", 1e-10, "goal"}),
+        slab_problem("newton_flow", "uniform Newtonian flow down 15 deg, straight and turned 27 deg",
+                     [newton] { return newton.residuals(); }, bingham_slab(newton, 240.0, 5.0),
+                     {120, "speed_error", 1e-10, "as bingham_flow"}),
+        slab_problem("bagnold", "uniform granular flow, mu(I), down 26 deg (Bagnold's profile)",
+                     [bagnold] { return bagnold.residuals(); }, granular, {120, "speed_error", 1e-3, "goal 0.1 %"})};
 }
 
 }  // namespace frana::verify

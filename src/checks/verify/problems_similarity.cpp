@@ -86,8 +86,11 @@ Measurement run_similarity(const Setup& setup) {
 }  // namespace
 
 std::vector<Problem> similarity_problems() {
-    Problem pile{"similarity", "pile sliding and spreading on 35 degrees, friction 25 degrees (Hutter et al. 1993)",
-                 {40, 80, 160}, [] { return joined(SimilarityPile::residuals(), steep_pile_residuals()); }, run_similarity};
+    Problem pile{"similarity",
+                 "pile sliding and spreading on 35 degrees, friction 25 degrees (Hutter et al. 1993)",
+                 {40, 80, 160},
+                 [] { return joined(SimilarityPile::residuals(), steep_pile_residuals()); },
+                 run_similarity};
     pile.order_of = "l2_depth";
     pile.gates = {{80, "l2_depth", 8e-3, "goal; AvaFrame 8.4e-3 with 27k points, an earlier code 7.6e-3"},
                   {80, "rotation_spread", 2e-4, "goal; an earlier code 1e-4"},

@@ -14,7 +14,8 @@ namespace {
 /// A strip of six cells' width from x0 to x1 on a plane that falls along x.
 Scene strip(double cell, double x0, double x1, double slope, double mu) {
     const Index nx = static_cast<Index>(std::lround((x1 - x0) / cell)) + 1;
-    Scene scene = scene_on(nx, 7, cell, [slope](double x, double) { return -slope * x; }, x0);
+    Scene scene = scene_on(
+        nx, 7, cell, [slope](double x, double) { return -slope * x; }, x0);
     scene.sides = Sides::wall;
     scene.bed_law = bed::Coulomb{mu};
     return scene;
@@ -112,16 +113,20 @@ std::vector<Problem> slope_flow_problems() {
     const Gate volume{0, "mass_error", 1e-13, "round-off"};
     Problem slope{"coulomb_slope",
                   "dry dam break on a slope of 0.4 with friction 0.2, shallow form (Mangeney et al. 2000)",
-                  {100, 200, 400, 800}, [] { return SlopeDam{1.0, 9.81, 9.81 * 0.2}.residuals(); }, run_coulomb_slope};
+                  {100, 200, 400, 800},
+                  [] {
+                      return SlopeDam{1.0, 9.81, 9.81 * 0.2}.residuals();
+                  },
+                  run_coulomb_slope};
     slope.gates = {{200, "l1_depth", 3.3e-2, "goal; an earlier code 2.7e-2"},
                    {800, "l1_depth", 9e-3, "goal; an earlier code 7.4e-3"},
                    volume};
-    Problem dam{"slope_dam", "dam break on 22 degrees, friction 21 degrees, steep terrain (Mangeney et al. 2000)",
-                {25, 50, 100, 200},
-                [] {
-                    return joined(joined(SlopeDam::avaframe().residuals(), SlopeDam::published()), steep_dam_residuals());
-                },
-                run_slope_dam};
+    Problem dam{
+        "slope_dam",
+        "dam break on 22 degrees, friction 21 degrees, steep terrain (Mangeney et al. 2000)",
+        {25, 50, 100, 200},
+        [] { return joined(joined(SlopeDam::avaframe().residuals(), SlopeDam::published()), steep_dam_residuals()); },
+        run_slope_dam};
     dam.order_of = "l2_depth";
     dam.gates = {{100, "l2_depth", 1.5e-2, "goal; AvaFrame 1.6e-2, D-Claw 2.6e-2, an earlier code 1.6e-2"},
                  {100, "l2_momentum", 3e-2, "goal; AvaFrame 5.5e-2, D-Claw 3.2e-2"},
@@ -130,7 +135,9 @@ std::vector<Problem> slope_flow_problems() {
                  volume};
     Problem cap{"sliding_cap",
                 "cap that slides and spreads on a slope of 0.6, friction 0.3, shallow form (Savage and Hutter 1989)",
-                {100, 200, 400, 800}, [] { return kCap.residuals(); }, run_sliding_cap};
+                {100, 200, 400, 800},
+                [] { return kCap.residuals(); },
+                run_sliding_cap};
     cap.gates = {{200, "l1_depth", 6e-3, "goal; an earlier code 3.9e-3"},
                  {800, "l1_depth", 1.5e-3, "goal; an earlier code 9.2e-4; order 1 from the gate at 200"},
                  {200, "centre_error", 3e-4, "goal; an earlier code 1.3e-4"},

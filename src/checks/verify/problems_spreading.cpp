@@ -111,12 +111,15 @@ Measurement run_incline(const Setup& setup) {
 std::vector<Problem> spreading_problems() {
     const Gate mass{0, "mass_error", 1e-13, "round-off"};
     const auto front = [](Index cells) { return Gate{cells, "front_law", 1e-2, "goal 1 %"}; };
-    Problem planar{"huppert", "a viscous sheet spreads on flat ground (Huppert 1982)", {40, 80, 120},
-                   [] { return PlanarSpreading{0.2, 1.0}.residuals(); }, run_planar, {front(120), mass}};
-    Problem round{"huppert_round", "a viscous sheet spreads round an axis (Huppert 1982)", {20, 40, 60},
-                  [] { return RoundSpreading{0.2, 3.0}.residuals(); }, run_round, {front(60), mass}};
-    Problem incline{"huppert_incline", "a viscous sheet runs down 20 deg (Huppert 1982)", {60, 120, 240},
-                    [] { return kIncline.residuals(); }, run_incline, {front(240), mass}};
+    Problem planar{"huppert",     "a viscous sheet spreads on flat ground (Huppert 1982)",
+                   {40, 80, 120}, [] { return PlanarSpreading{0.2, 1.0}.residuals(); },
+                   run_planar,    {front(120), mass}};
+    Problem round{"huppert_round", "a viscous sheet spreads round an axis (Huppert 1982)",
+                  {20, 40, 60},    [] { return RoundSpreading{0.2, 3.0}.residuals(); },
+                  run_round,       {front(60), mass}};
+    Problem incline{"huppert_incline", "a viscous sheet runs down 20 deg (Huppert 1982)",
+                    {60, 120, 240},    [] { return kIncline.residuals(); },
+                    run_incline,       {front(240), mass}};
     return {planar, round, incline};
 }
 

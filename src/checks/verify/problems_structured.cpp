@@ -99,8 +99,7 @@ struct StructuredSlide {
     };
     End run(const Setup& setup) const {
         const double cell = 1.0 / static_cast<double>(setup.cells), t = std::tan(slope_deg * kDegree);
-        const Vec2 fall(std::cos(turn_deg * kDegree), std::sin(turn_deg * kDegree)),
-            side(-fall.y(), fall.x());
+        const Vec2 fall(std::cos(turn_deg * kDegree), std::sin(turn_deg * kDegree)), side(-fall.y(), fall.x());
         StructuredScene s;
         s.ground = terrain_ground([=](double, double) { return Vec2(-t * fall); });
         s.bed_law = bed::Coulomb{std::tan(bed_deg * kDegree)};
@@ -171,8 +170,7 @@ Measurement run_structured_stand(const Setup& setup) {
         StructuredFlow flow(block(cohesion, 0.0));
         const double length = length_of(flow);
         run(flow);
-        moved = std::max(
-            {moved, std::abs(length_of(flow) - length), flow.status().max_speed, flow.status().damage});
+        moved = std::max({moved, std::abs(length_of(flow) - length), flow.status().max_speed, flow.status().damage});
     }
     StructuredFlow weak(block(0.1e3, 5.0));  // 0.04 m
     const double length = length_of(weak);
@@ -221,8 +219,7 @@ Measurement run_structured_dam(const Setup& setup) {
 
 std::vector<Problem> structured_problems() {
     const Gate closed{0, "momentum_residual", 1e-12, "round-off"}, mass{0, "mass_error", 1e-14, "round-off"};
-    Problem spin{
-        "structured_spin", "V1: an elastic block turns once: spin, energy, angle", {12, 24}, {}, run_spin};
+    Problem spin{"structured_spin", "V1: an elastic block turns once: spin, energy, angle", {12, 24}, {}, run_spin};
     spin.order_of = "kinetic_lost";
     spin.gates = {{24, "spin_error", 1e-3, "an earlier code 2e-5"},
                   {24, "kinetic_lost", 5e-3, "an earlier code 3.4e-3"},
@@ -264,13 +261,11 @@ std::vector<Problem> structured_problems() {
                    {0, "whole", 0.01, "an earlier code: broken everywhere"},
                    closed,
                    mass};
-    Problem dam{
-        "structured_dam", "V16: grains behind a dam: Ritter with Ka g", {100, 200}, {}, run_structured_dam};
-    dam.gates = {
-        {100, "l1_depth", 2.4e-2, "a fifth above 1.98e-2; the form without it had 4.4e-2"},
-        {200, "l1_depth", 1.45e-2, "a fifth above 1.21e-2; the form without it had 4.3e-2"},
-        closed,
-        mass};
+    Problem dam{"structured_dam", "V16: grains behind a dam: Ritter with Ka g", {100, 200}, {}, run_structured_dam};
+    dam.gates = {{100, "l1_depth", 2.4e-2, "a fifth above 1.98e-2; the form without it had 4.4e-2"},
+                 {200, "l1_depth", 1.45e-2, "a fifth above 1.21e-2; the form without it had 4.3e-2"},
+                 closed,
+                 mass};
     std::vector<Problem> all = {spin, bar, slide, stand, dam};
     for (Problem& problem : all) problem.has_presets = false;
     return all;

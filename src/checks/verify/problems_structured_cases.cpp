@@ -60,7 +60,7 @@ double short_of(double least, double value) { return std::max(0.0, least - value
 Measurement run_clay_flume(const Setup& setup) {
     const double cell = 0.3 / static_cast<double>(setup.cells);
     const Fragmented soft = broken(clay_flume(kSoftClay, cell, setup.per_side), 0.6),
-                 stiff = broken(clay_flume(kStiffClay, cell, setup.per_side), 0.6);
+                     stiff = broken(clay_flume(kStiffClay, cell, setup.per_side), 0.6);
     Measurement m = together({soft, stiff});
     m.add("soft_coverage", soft.coverage);
     m.add("soft_off", soft.coverage - 0.55);
@@ -73,9 +73,7 @@ Measurement run_clay_flume(const Setup& setup) {
 /// 140.
 Measurement run_blocks_2(const Setup& setup) {
     const double cell = 100.0 / static_cast<double>(setup.cells);
-    const auto run = [&](double cohesion) {
-        return broken(convex_block(cohesion, cell, setup.per_side), 14.0);
-    };
+    const auto run = [&](double cohesion) { return broken(convex_block(cohesion, cell, setup.per_side), 14.0); };
     const Fragmented a = run(200e3), held = run(140e3), parted = run(80e3), b = run(60e3);
     Measurement m = together({a, held, parted, b});
     m.add("damage_2a", a.damage);
@@ -96,7 +94,7 @@ Measurement run_blocks_3(const Setup& setup) {
         return broken(valley_block(cohesion, fan, cell, setup.per_side), end);
     };
     const Fragmented a = run(400e3, -0.2, 16.0), slope = run(28e3, -0.2, 10.0), b = run(28e3, -0.2, 16.0),
-                 c = run(15e3, 0.1, 10.0);
+                     c = run(15e3, 0.1, 10.0);
     Measurement m = together({a, slope, b, c});
     m.add("damage_3a", a.damage);
     m.add("slope_3b", slope.damage);
@@ -131,19 +129,15 @@ std::vector<Problem> structured_case_problems() {
     Problem convex{
         "blocks_2", "a block over a convex slope: whole or in two, by its cohesion", {30, 40}, {}, run_blocks_2};
     convex.order_of = "damage_2b";
-    convex.gates = {
-        {0, "damage_2a", 0.0, "a quarter above what bends it: 144 kPa of tension, 97 kPa of cohesion"},
-        {0, "held_missing", 0.0, "threshold between 80 and 140 kPa"},
-        {0, "parted_missing", 0.0, "threshold between 80 and 140 kPa"},
-        {0, "missing_2b", 0.0, "an earlier code: 0.45 and 0.44"},
-        torn,
-        closed,
-        mass};
-    Problem valley{"blocks_3",
-                   "a block into a valley: whole, broken on the fan, or grains at once",
-                   {30, 40},
-                   {},
-                   run_blocks_3};
+    convex.gates = {{0, "damage_2a", 0.0, "a quarter above what bends it: 144 kPa of tension, 97 kPa of cohesion"},
+                    {0, "held_missing", 0.0, "threshold between 80 and 140 kPa"},
+                    {0, "parted_missing", 0.0, "threshold between 80 and 140 kPa"},
+                    {0, "missing_2b", 0.0, "an earlier code: 0.45 and 0.44"},
+                    torn,
+                    closed,
+                    mass};
+    Problem valley{
+        "blocks_3", "a block into a valley: whole, broken on the fan, or grains at once", {30, 40}, {}, run_blocks_3};
     valley.order_of = "damage_3b";
     valley.gates = {{0, "damage_3a", 0.0, "yields nowhere"},
                     {0, "slope_3b", 0.0, "12.7 m of Bell's height, 12 m of block"},

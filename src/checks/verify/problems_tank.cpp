@@ -46,14 +46,13 @@ struct PressureFit {
 PressureFit fit_pressure(const Mpm3d& flow, const Frame3& frame) {
     double n = 0.0, z = 0.0, p = 0.0, zz = 0.0, zp = 0.0, pp = 0.0;
     for (Index k = 0; k < flow.body().points.count(); ++k) {
-        const double height = (frame.turn.transpose() * flow.position(k)).z(),
-                     pressure = -flow.stress(k).trace() / 3.0;
+        const double height = (frame.turn.transpose() * flow.position(k)).z(), pressure = -flow.stress(k).trace() / 3.0;
         n += 1.0, z += height, p += pressure;
         zz += height * height, zp += height * pressure, pp += pressure * pressure;
     }
     const double slope = (n * zp - z * p) / (n * zz - z * z), at_bed = (p - slope * z) / n;
-    const double off = pp - 2.0 * (at_bed * p + slope * zp) + n * at_bed * at_bed + 2.0 * at_bed * slope * z +
-                       slope * slope * zz;
+    const double off =
+        pp - 2.0 * (at_bed * p + slope * zp) + n * at_bed * at_bed + 2.0 * at_bed * slope * z + slope * slope * zz;
     return {at_bed, std::sqrt(std::max(0.0, off) / n)};
 }
 
@@ -72,8 +71,7 @@ Measurement run_tank(const Setup& setup) {
         const Vec3 start = flow.status().centre;
         const double mass = flow.status().mass;
         const Measurement run = run_body(flow, kEnd, [&](const Mpm3d& now) {
-            if (half.empty() && now.status().time >= 0.5 * kEnd)
-                half = now.body().impulse, since = now.status().time;
+            if (half.empty() && now.status().time >= 0.5 * kEnd) half = now.body().impulse, since = now.status().time;
         });
         m = joined(m, run);
         const auto force = [&](std::size_t s) {
@@ -156,7 +154,9 @@ Measurement run_dam_far(const Setup& setup) {
         double wrong = 0.0;
         for (std::size_t n = 0; n < volume.size(); ++n) {
             const double x = (static_cast<double>(n) + 0.5) * kSlab - kReservoir;
-            const double exact = x < -c * t ? 1.0 : x > 2.0 * c * t ? 0.0 : std::pow(2.0 * c - x / t, 2) / (9.0 * kGravity);
+            const double exact = x < -c * t        ? 1.0
+                                 : x > 2.0 * c * t ? 0.0
+                                                   : std::pow(2.0 * c - x / t, 2) / (9.0 * kGravity);
             wrong += std::abs(volume[n] / (kSlab * width) - exact) * kSlab;
         }
         found.emplace_back("depth_error_" + std::to_string(static_cast<int>(t)), wrong / (c * t));
@@ -177,18 +177,16 @@ std::vector<Residual> tank_residuals() {
 }  // namespace
 
 std::vector<Problem> tank_problems() {
-    Problem tank{
-        "tank",
-        "water at rest in a tank along the grid and turned by 20 degrees: pressure, forces, no motion",
-        {8, 16},
-        tank_residuals,
-        run_tank};
+    Problem tank{"tank",
+                 "water at rest in a tank along the grid and turned by 20 degrees: pressure, forces, no motion",
+                 {8, 16},
+                 tank_residuals,
+                 run_tank};
     tank.order_of = "wall_force_error";
     const std::string slice = "a slice of the same scheme was within it";
-    tank.gates = {
-        {16, "bed_pressure_error", 0.01, slice},        {16, "bed_force_error", 0.005, slice},
-        {16, "wall_force_error", 0.005, slice},         {16, "pressure_noise", 0.02, slice},
-        {16, "max_speed", 0.008, "that slice, turned"}, {0, "momentum_residual", 1e-12, "round-off"}};
+    tank.gates = {{16, "bed_pressure_error", 0.01, slice},        {16, "bed_force_error", 0.005, slice},
+                  {16, "wall_force_error", 0.005, slice},         {16, "pressure_noise", 0.02, slice},
+                  {16, "max_speed", 0.008, "that slice, turned"}, {0, "momentum_residual", 1e-12, "round-off"}};
     Problem dam{"dam_front",
                 "a column of water 1 m by 2 m slumps: its front at five times (Martin and Moyce 1952)",
                 {8, 16},
@@ -204,8 +202,9 @@ std::vector<Problem> tank_problems() {
                 {8},
                 {},
                 run_dam_far};
-    far.gates = {{0, "depth_error_3", 0.05, "the start is still felt: the front of a slice of the same scheme was 5 % short"},
-                 {0, "momentum_residual", 1e-12, "round-off"}};
+    far.gates = {
+        {0, "depth_error_3", 0.05, "the start is still felt: the front of a slice of the same scheme was 5 % short"},
+        {0, "momentum_residual", 1e-12, "round-off"}};
     for (Problem* problem : {&tank, &dam, &far}) problem->in_3d = true;
     return {tank, dam, far};
 }

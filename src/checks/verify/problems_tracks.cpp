@@ -34,7 +34,10 @@ Trial on_course(const Course& course, const Setup& setup, double mu, Curvature c
 }
 
 /// Release on the energy line: a track and where on it the blob starts.
-struct Release { TrackPointer track; double mu, start; };
+struct Release {
+    TrackPointer track;
+    double mu, start;
+};
 
 /// Cells per kilometre. The blob has a few points within 1.2 cells: paths of points that start apart cross before
 /// they stop, which a field of velocities cannot follow; for so small a blob that loss is second order in the cell.
@@ -68,7 +71,9 @@ Measurement run_energy_line(const Release& release, const Setup& setup) {
 
 Problem energy_problem(const std::string& name, const std::string& title, const Release& release, double gate,
                        const std::string& source) {
-    Problem problem{name, title, {100, 200, 400},
+    Problem problem{name,
+                    title,
+                    {100, 200, 400},
                     [release] { return track_residuals(*release.track, release.mu, release.start); },
                     [release](const Setup& setup) { return run_energy_line(release, setup); }};
     problem.order_of = "stop_error";
@@ -127,8 +132,11 @@ std::vector<Problem> track_problems() {
     const Release hockey{hockey_stick(34, 100), 0.4, -650.0};
     // AvaFrame's avaParabola; the centre of its release polygon.
     const Release avaframe{parabola(2 * std::tan(34 * kDegree), 2200 / std::tan(34 * kDegree)), 0.4, 1692.5};
-    Problem bowl{"bowl", "thin blob swinging in a spherical bowl of 100 m from 35 degrees, against the pendulum",
-                 {25, 50, 100}, [] { return pendulum_residuals(kRadius, kAngle); }, run_bowl};
+    Problem bowl{"bowl",
+                 "thin blob swinging in a spherical bowl of 100 m from 35 degrees, against the pendulum",
+                 {25, 50, 100},
+                 [] { return pendulum_residuals(kRadius, kAngle); },
+                 run_bowl};
     bowl.order_of = "stop_error";
     const std::string earlier = "what an earlier code had";
     bowl.gates = {{0, "mass_error", 1e-13, "round-off"}, {100, "stop_error", 0.077, earlier}};

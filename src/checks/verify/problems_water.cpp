@@ -36,9 +36,8 @@ Stillness stillness(const Lake& lake, const Setup& setup, bool heaped, bool stee
     scene.start = [&](double x, double y) { return WaterState{std::max(0.0, lake.level - ground(x, y))}; };
     WaterFlow flow(scene);
     Stillness still;
-    still.run = run_water(flow, kTime, [&](const WaterFlow& now) {
-        still.speed = std::max(still.speed, now.status().max_speed);
-    });
+    still.run = run_water(flow, kTime,
+                          [&](const WaterFlow& now) { still.speed = std::max(still.speed, now.status().max_speed); });
     for (Index j = 0; j < scene.grid.ny; ++j)
         for (Index i = 0; i < scene.grid.nx; ++i)
             if (flow.at(i, j).depth > kWet)
@@ -50,8 +49,7 @@ Measurement run_lake(const Setup& setup) {
     Measurement m;
     double speed = 0.0, surface = 0.0, mass = 0.0, wall = 0.0;
     std::vector<Extra> speeds;
-    const std::pair<const char*, Lake> lakes[] = {
-        {"bump", lake_z1()}, {"step", lake_z2()}, {"island", lake_island()}};
+    const std::pair<const char*, Lake> lakes[] = {{"bump", lake_z1()}, {"step", lake_z2()}, {"island", lake_island()}};
     for (const auto& [name, lake] : lakes)
         for (const bool heaped : {false, true}) {
             const Stillness still = stillness(lake, setup, heaped, heaped);
@@ -94,14 +92,12 @@ double last_contour(const WaterFlow& flow, double level) {
 
 /// A dam break; `level` is the depth whose contour stands at `front` [m].
 template <class Wave>
-Measurement break_dam(const Wave& wave, double hl, double hr, double level, double front,
-                      const Setup& setup) {
+Measurement break_dam(const Wave& wave, double hl, double hr, double level, double front, const Setup& setup) {
     WaterFlow flow(channel(setup.cells, [&](double x, double) { return x < kDam ? hl : hr; }));
     Measurement m = run_water(flow, kEnd);
     const auto state = [&](double x) { return wave.at((x - kDam) / kEnd); };
     add_norms(flow,
-              {[&](double x, double) { return state(x).depth; },
-               [&](double x, double) { return state(x).velocity; }},
+              {[&](double x, double) { return state(x).depth; }, [&](double x, double) { return state(x).velocity; }},
               m);
     m.front_error = last_contour(flow, level) - (kDam + kEnd * front);
     m.add("total_variation", total_variation(flow), "m");
@@ -156,14 +152,12 @@ Measurement run_radial_dam(const Setup& setup) {
     scene.start = [&](double x, double y) { return WaterState{cell_mean(column, x, y, cell)}; };
     WaterFlow flow(scene);
     Measurement m = run_water(flow, RadialDam::kEnd);
-    const auto speed = [&](double x, double y) {
-        return reference.at(std::hypot(x, y)).velocity / std::hypot(x, y);
-    };
-    add_norms(flow,
-              {[&](double x, double y) { return reference.at(std::hypot(x, y)).depth; },
-               [&](double x, double y) { return x * speed(x, y); },
-               [&](double x, double y) { return y * speed(x, y); }},
-              m);
+    const auto speed = [&](double x, double y) { return reference.at(std::hypot(x, y)).velocity / std::hypot(x, y); };
+    add_norms(
+        flow,
+        {[&](double x, double y) { return reference.at(std::hypot(x, y)).depth; },
+         [&](double x, double y) { return x * speed(x, y); }, [&](double x, double y) { return y * speed(x, y); }},
+        m);
     double deep = 0.0;
     for (Index j = 0; j < half; ++j)
         for (Index i = 0; i < half; ++i) deep += flow.at(i, j).depth > kLevel;
@@ -174,8 +168,7 @@ Measurement run_radial_dam(const Setup& setup) {
 }  // namespace
 
 std::vector<Problem> water_problems() {
-    const Gate volume{0, "mass_error", 1e-13, "round-off"},
-        closed{0, "momentum_residual", 1e-12, "round-off"};
+    const Gate volume{0, "mass_error", 1e-13, "round-off"}, closed{0, "momentum_residual", 1e-12, "round-off"};
     Problem lake{"water_lake",
                  "lakes at rest over a bump, a step and around an island, confined mass in them or not",
                  {50},
@@ -185,11 +178,8 @@ std::vector<Problem> water_problems() {
                   {0, "surface_error", 1e-13, "round-off of 10 m"},
                   volume};
     const std::string own = "a fifth above its own figure: ";
-    Problem ritter{"water_ritter",
-                   "V15: free water: dam break on a dry bed (Ritter 1892)",
-                   {100, 200, 400, 800},
-                   {},
-                   run_ritter};
+    Problem ritter{
+        "water_ritter", "V15: free water: dam break on a dry bed (Ritter 1892)", {100, 200, 400, 800}, {}, run_ritter};
     ritter.gates = {{400, "l1_depth", 2.1e-3, own + "1.7e-3; GeoClaw 3.6e-3"},
                     {800, "l1_depth", 1.05e-3, own + "8.6e-4"}};
     Problem stoker{"water_stoker",
@@ -216,8 +206,7 @@ std::vector<Problem> water_problems() {
     radial.gates = {{100, "l1_depth", 1.4e-2, own + "1.17e-2"},
                     {200, "l1_depth", 5.5e-3, own + "4.6e-3"},
                     {200, "energy_drift", 3.2e-2, own + "-2.7e-2"}};
-    Problem dam{
-        "water_radial_dam", "free water: round dam break on a dry bed", {80, 160, 320}, {}, run_radial_dam};
+    Problem dam{"water_radial_dam", "free water: round dam break on a dry bed", {80, 160, 320}, {}, run_radial_dam};
     dam.gates = {{160, "l1_depth", 2.5e-2, own + "2.1e-2"}, {320, "l1_depth", 1.22e-2, own + "1.02e-2"}};
     std::vector<Problem> all = {lake, ritter, stoker, planar, radial, dam};
     for (Problem& problem : all) {

@@ -12,8 +12,8 @@ constexpr Index kAcross = 3;  ///< cells across
 
 /// A sheet of 1 m starts from rest down a plane under friction: away from the ends its speed is
 /// u = u_n tanh(a t / u_n), u_n the normal flow's (Manning's h^(2/3) sqrt(S) / n for small slopes).
-double normal_flow_error(double slope, bool steep, const WaterFriction& friction, Index cells,
-                         double& residual, Measurement& m) {
+double normal_flow_error(double slope, bool steep, const WaterFriction& friction, Index cells, double& residual,
+                         Measurement& m) {
     constexpr double kPlane = 4000.0, kTime = 60.0, kDepth = 1.0;
     WaterScene scene;
     scene.grid = cells_over(cells, kAcross, kPlane / static_cast<double>(cells));
@@ -42,8 +42,7 @@ Measurement run_normal(const Setup& setup) {
     double residual = 0.0;
     m.add("speed_error", normal_flow_error(0.01, false, {Law::manning, 0.03}, setup.cells, residual, m));
     m.add("steep_error", normal_flow_error(0.8, true, {Law::manning, 0.1}, setup.cells, residual, m));
-    m.add("darcy_error",
-          normal_flow_error(0.01, true, {Law::darcy_weisbach, 0.07}, setup.cells, residual, m));
+    m.add("darcy_error", normal_flow_error(0.01, true, {Law::darcy_weisbach, 0.07}, setup.cells, residual, m));
     m.add("momentum_residual", residual);
     return m;
 }
@@ -60,14 +59,12 @@ Measurement run_rain(const Setup& setup) {
     scene.steep = false;
     WaterFlow flow(scene);
     double before = 0.0, after = 0.0;  // what has left, at the last step and the one before it
-    Measurement m = run_water(
-        flow, kTime, [&](const WaterFlow& now) { before = after, after = now.status().ledger.left; });
+    Measurement m =
+        run_water(flow, kTime, [&](const WaterFlow& now) { before = after, after = now.status().ledger.left; });
     const double width = static_cast<double>(kAcross) * scene.grid.cell;
     add_norms(flow,
               {[&](double x, double) { return std::pow(kManning * kRain * x / std::sqrt(kSlope), 0.6); },
-               [&](double x, double) {
-                   return kRain * x / std::pow(kManning * kRain * x / std::sqrt(kSlope), 0.6);
-               }},
+               [&](double x, double) { return kRain * x / std::pow(kManning * kRain * x / std::sqrt(kSlope), 0.6); }},
               m);
     m.add("outflow_error", (after - before) / flow.status().dt / (kRain * kLength * width) - 1.0);
     return m;
@@ -76,8 +73,7 @@ Measurement run_rain(const Setup& setup) {
 }  // namespace
 
 std::vector<Problem> water_slope_problems() {
-    const Gate volume{0, "mass_error", 1e-13, "round-off"},
-        closed{0, "momentum_residual", 1e-12, "round-off"};
+    const Gate volume{0, "mass_error", 1e-13, "round-off"}, closed{0, "momentum_residual", 1e-12, "round-off"};
     Problem normal{"water_normal",
                    "V15: free water: down a plane to the normal flow of Manning, and of Darcy and Weisbach",
                    {100},
@@ -91,9 +87,9 @@ std::vector<Problem> water_slope_problems() {
                  {50, 100},
                  {},
                  run_rain};
-    rain.gates = {{100, "l1_depth", 2.3e-3,
-                   "a fifth above its own figure; the kinematic wave leaves out h' of 7 mm in 100 m"},
-                  {0, "outflow_error", 1e-3, "what falls runs off; 0.2 per mille is still on its way"}};
+    rain.gates = {
+        {100, "l1_depth", 2.3e-3, "a fifth above its own figure; the kinematic wave leaves out h' of 7 mm in 100 m"},
+        {0, "outflow_error", 1e-3, "what falls runs off; 0.2 per mille is still on its way"}};
     std::vector<Problem> all = {normal, rain};
     for (Problem& problem : all) {
         problem.has_presets = false;

@@ -62,7 +62,8 @@ void rain_fed_film(const Setup& setup, Measurement& m) {
     Film film;
     film.add(run_water(flow, kTime), m);
     const auto depth = [&](double x) { return std::cbrt(3.0 * kNu * kRain * x / (scene.gravity * kSlope)); };
-    add_norms(flow, {[&](double x, double) { return depth(x); }, [&](double x, double) { return kRain * x / depth(x); }}, m);
+    add_norms(flow,
+              {[&](double x, double) { return depth(x); }, [&](double x, double) { return kRain * x / depth(x); }}, m);
 }
 
 Measurement run_film(const Setup& setup) {

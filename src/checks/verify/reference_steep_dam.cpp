@@ -42,7 +42,9 @@ void SteepDam::accelerate(double dt) {
 
 std::size_t SteepDam::parcel_at(double x) const {
     const auto next = std::upper_bound(x_.begin(), x_.end(), x);
-    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(next - x_.begin(), 1, static_cast<std::ptrdiff_t>(x_.size()) - 1)) - 1;
+    return static_cast<std::size_t>(
+               std::clamp<std::ptrdiff_t>(next - x_.begin(), 1, static_cast<std::ptrdiff_t>(x_.size()) - 1)) -
+           1;
 }
 
 /// Linear between the middles of parcels.
@@ -75,7 +77,8 @@ std::vector<Residual> steep_dam_residuals() {
         off += std::abs(gentle.depth_at(x) - exact), whole += exact;
     }
     const double tangent = std::tan(22 * M_PI / 180), friction = std::tan(21 * M_PI / 180);
-    const SteepDam fine({tangent, friction, 1.0, 9.81}, kBehind, kEnd, 8000), coarse({tangent, friction, 1.0, 9.81}, kBehind, kEnd, 4000);
+    const SteepDam fine({tangent, friction, 1.0, 9.81}, kBehind, kEnd, 8000),
+        coarse({tangent, friction, 1.0, 9.81}, kBehind, kEnd, 4000);
     double apart = 0.0, all = 0.0;
     for (double x = -15.0; x < 40.0; x += 0.05)
         apart += std::abs(fine.depth_at(x) - coarse.depth_at(x)), all += fine.depth_at(x);

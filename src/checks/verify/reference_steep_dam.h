@@ -12,7 +12,9 @@ namespace frana::verify {
 /// flow, leapfrog in time: no grid, no diffusion. Errors fall with the parcels to the power one (the front's last parcel).
 class SteepDam {
 public:
-    struct Plane { double slope, friction, depth, gravity; };  ///< tangents, vertical depth [m], [m/s^2]
+    struct Plane {
+        double slope, friction, depth, gravity;
+    };  ///< tangents, vertical depth [m], [m/s^2]
     SteepDam(const Plane& plane, double behind, double end, int parcels);
 
     double depth_at(double x) const;     ///< at `end` [m]
@@ -25,8 +27,8 @@ private:
     std::size_t parcel_at(double x) const;
 
     Plane plane_;
-    double mass_;                   ///< of a parcel, as an area [m2]
-    std::vector<double> x_, u_;     ///< edges of the parcels and their velocities
+    double mass_;                ///< of a parcel, as an area [m2]
+    std::vector<double> x_, u_;  ///< edges of the parcels and their velocities
 };
 
 /// How far the solution changes with half the parcels, and that without friction and on a gentle slope it is Ritter's.

@@ -178,8 +178,9 @@ std::vector<Residual> steep_pile_residuals() {
     const SimilarityPile::Shape shape = theory.shape(kEnd);
     const auto of = [](const SteepPile& pile) { return [&pile](double x, double y) { return pile.at(x, y).depth; }; };
     const auto printed = [&](double x, double y) { return theory.at(shape, x / cosine, y).depth / cosine; };
-    return {{"linearised, the polynomial map against the similarity solution", apart(printed, of(linear)), 1e-10},
-            {"the steep map of degree 5 against degree 7", apart(of(seven), of(five)), 1e-5}};  // 1e-3 of what it measures
+    return {
+        {"linearised, the polynomial map against the similarity solution", apart(printed, of(linear)), 1e-10},
+        {"the steep map of degree 5 against degree 7", apart(of(seven), of(five)), 1e-5}};  // 1e-3 of what it measures
 }
 
 }  // namespace frana::verify

@@ -16,23 +16,31 @@ namespace frana::verify {
 /// the equations in the mean over the mass (Galerkin), Runge-Kutta in time. No grid, no diffusion.
 class SteepPile {
 public:
-    struct Plane { double slope, friction, height, length_x, length_y, gravity; };
+    struct Plane {
+        double slope, friction, height, length_x, length_y, gravity;
+    };
     enum class Form { steep, linearised };
 
     SteepPile(const Plane& plane, Form form, int degree, double end, double step = 0.01);
 
-    struct Place { double depth = 0.0, u = 0.0, v = 0.0; };  ///< [m], [m/s]
-    Place at(double x, double y) const;                      ///< at `end`
-    double centre() const;                                   ///< x of the mass [m]
+    struct Place {
+        double depth = 0.0, u = 0.0, v = 0.0;
+    };                                   ///< [m], [m/s]
+    Place at(double x, double y) const;  ///< at `end`
+    double centre() const;               ///< x of the mass [m]
 
 private:
-    struct Motion { Eigen::VectorXd x, y, u, v; };  ///< coefficients of places and velocities
-    struct Basis { Eigen::MatrixXd value, by_a, by_b, by_aa, by_ab, by_bb; };  ///< at the quadrature points
-    struct Local;                                   ///< the map and what follows of it at one place of the start
+    struct Motion {
+        Eigen::VectorXd x, y, u, v;
+    };  ///< coefficients of places and velocities
+    struct Basis {
+        Eigen::MatrixXd value, by_a, by_b, by_aa, by_ab, by_bb;
+    };             ///< at the quadrature points
+    struct Local;  ///< the map and what follows of it at one place of the start
 
     Motion rate(const Motion& now) const;
-    Vec2 steep(const Local& here) const;                       ///< acceleration [m/s^2]
-    Vec2 linearised(const Local& here, double fall) const;     ///< the same; `fall`: speed of the centre [m/s]
+    Vec2 steep(const Local& here) const;                    ///< acceleration [m/s^2]
+    Vec2 linearised(const Local& here, double fall) const;  ///< the same; `fall`: speed of the centre [m/s]
     Local local(const Motion& now, Index point) const;
 
     Plane plane_;

@@ -17,11 +17,13 @@ Scene Slide::scene(const Function& z) const {
     const double x0 = node(std::min(c * start, c * reach) - margin);
     const double y0 = node(std::min(s * start, s * reach) - margin);
     const double x1 = std::max(c * start, c * reach) + margin, y1 = std::max(s * start, s * reach) + margin;
-    Scene scene = scene_on(count(x0, x1), count(y0, y1), cell,
-                           [&](double x, double y) { return z(along(x, y), across(x, y)); }, x0, y0);
-    fill(scene, [&](double x, double y) {
-        return std::hypot(x - c * start, y - s * start) < radius * cell ? depth * cell : 0.0;
-    }, {per_side});
+    Scene scene = scene_on(
+        count(x0, x1), count(y0, y1), cell, [&](double x, double y) { return z(along(x, y), across(x, y)); }, x0, y0);
+    fill(scene,
+         [&](double x, double y) {
+             return std::hypot(x - c * start, y - s * start) < radius * cell ? depth * cell : 0.0;
+         },
+         {per_side});
     return scene;
 }
 

@@ -20,7 +20,9 @@ struct Slide {
 };
 
 /// Mass-weighted means over a blob's points.
-struct BlobState { double along, across, height, energy; };  ///< [m], [m], bed [m], V^2/2 + g z [m^2/s^2]
+struct BlobState {
+    double along, across, height, energy;
+};  ///< [m], [m], bed [m], V^2/2 + g z [m^2/s^2]
 BlobState blob_state(Trial& trial, const Slide& slide, const Function& z);
 
 }  // namespace frana::verify

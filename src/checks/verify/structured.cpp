@@ -30,8 +30,8 @@ void add_block(StructuredScene& scene, const StructuredBlock& block) {
         for (Index i = 0; i < nx; ++i)
             scene.points.add({block.low.x() + (static_cast<double>(i) + 0.5) * dx,
                               block.low.y() + (static_cast<double>(j) + 0.5) * dy, block.velocity.x(),
-                              block.velocity.y(), scene.density * block.depth * dx * dy, block.depth,
-                              block.cohesion, block.damage});
+                              block.velocity.y(), scene.density * block.depth * dx * dy, block.depth, block.cohesion,
+                              block.damage});
 }
 
 GridGeometry grid_over(const Vec2& low, const Vec2& high, double cell) {
@@ -51,8 +51,7 @@ void add_channel(StructuredScene& scene, double low, double high) {
     scene.obstacles.push_back(right), scene.obstacles.push_back(left);
 }
 
-Measurement run_structured(StructuredFlow& flow, double end,
-                           const std::function<void(const StructuredFlow&)>& each) {
+Measurement run_structured(StructuredFlow& flow, double end, const std::function<void(const StructuredFlow&)>& each) {
     const auto start = std::chrono::steady_clock::now();
     const StructuredStatus first = flow.status();
     double given = std::sqrt(2.0 * first.kinetic * first.mass);  // of the points, whichever way they go

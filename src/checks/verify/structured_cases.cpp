@@ -54,8 +54,7 @@ StructuredScene clay_flume(const Clay& clay, double cell, int per_side) {
     s.obstacles.push_back(wall);
     StructuredBlock block;
     block.low = {-kLength, kSide}, block.high = {0.0, kSide + kWidth};
-    block.depth = 0.1, block.cohesion = clay.cohesion, block.velocity = {2.39, 0.0},
-    block.per_side = per_side;
+    block.depth = 0.1, block.cohesion = clay.cohesion, block.velocity = {2.39, 0.0}, block.per_side = per_side;
     add_block(s, block);
     return s;
 }
@@ -117,9 +116,9 @@ std::vector<ShownBlock> shown_blocks(const std::string& problem) {
     std::vector<ShownBlock> shown;
     if (problem == "clay_flume")
         for (const auto& [name, clay] : {std::pair{"soft", kSoftClay}, std::pair{"stiff", kStiffClay}})
-            shown.push_back(
-                {name, std::string("Clay flume, the ") + name + " clay after 0.6 s", clay_flume(clay, 0.0125),
-                 0.6, [](double x, double) { return -x * std::tan((x < 0.0 ? 42.0 : 5.0) * kDegree); }});
+            shown.push_back({name, std::string("Clay flume, the ") + name + " clay after 0.6 s",
+                             clay_flume(clay, 0.0125), 0.6,
+                             [](double x, double) { return -x * std::tan((x < 0.0 ? 42.0 : 5.0) * kDegree); }});
     const auto add = [&](const char* name, const char* title, const StructuredScene& scene, double end) {
         shown.push_back({name, title, scene, end, height_along_x(scene.ground)});
     };
@@ -154,8 +153,8 @@ NodeMaps node_maps(const StructuredFlow& flow) {
             }
     }
     for (std::size_t node = 0; node < maps.depth.size(); ++node)
-        maps.damage[node] = maps.depth[node] > 0.0 ? maps.damage[node] / maps.depth[node]
-                                                   : std::numeric_limits<double>::quiet_NaN();
+        maps.damage[node] =
+            maps.depth[node] > 0.0 ? maps.damage[node] / maps.depth[node] : std::numeric_limits<double>::quiet_NaN();
     return maps;
 }
 

@@ -51,11 +51,16 @@ const std::vector<Component>& components() {
 
 const std::vector<StudyColumn>& study_columns() {
     static const std::vector<StudyColumn> all = {
-        {"lake_bump", 100, "max_speed", "lake v"},       {"ritter", 200, "l1_depth", "ritter"},
-        {"stoker", 200, "l1_depth", "stoker"},          {"stoker", 200, "total_variation", "stoker TV"},
-        {"thacker_planar", 50, "l1_depth", "planar"},   {"thacker_radial", 50, "l1_depth", "radial"},
-        {"thacker_radial", 50, "energy_drift", "rad. dE"}, {"coulomb_slope", 200, "l1_depth", "coul.slope"},
-        {"sliding_cap", 200, "l1_depth", "cap"},        {"similarity", 80, "l2_depth", "similarity"},
+        {"lake_bump", 100, "max_speed", "lake v"},
+        {"ritter", 200, "l1_depth", "ritter"},
+        {"stoker", 200, "l1_depth", "stoker"},
+        {"stoker", 200, "total_variation", "stoker TV"},
+        {"thacker_planar", 50, "l1_depth", "planar"},
+        {"thacker_radial", 50, "l1_depth", "radial"},
+        {"thacker_radial", 50, "energy_drift", "rad. dE"},
+        {"coulomb_slope", 200, "l1_depth", "coul.slope"},
+        {"sliding_cap", 200, "l1_depth", "cap"},
+        {"similarity", 80, "l2_depth", "similarity"},
         {"energy_parabola", 200, "stop_error", "en. line"},
     };
     return all;

@@ -46,21 +46,22 @@ std::vector<std::string> differences(const std::string& table, const std::string
     std::vector<std::string> found;
     for (std::size_t k = 0; k < std::max(now.size(), then.size()); ++k) {
         if (k < now.size() && k < then.size() && alike_lines(now[k], then[k], tolerance)) continue;
-        found.push_back("was " + (k < then.size() ? then[k] : "nothing") + "\nnow " + (k < now.size() ? now[k] : "nothing"));
+        found.push_back("was " + (k < then.size() ? then[k] : "nothing") + "\nnow " +
+                        (k < now.size() ? now[k] : "nothing"));
     }
     return found;
 }
 
 std::string table_head() {
-    return fmt::format("{:16} {:7} {:>5} {:>3} {:>8} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10} {:>9} {:>10} {:>6}", "problem",
-                       "preset", "cells", "ppc", "points", "steps", "L1 h", "L2 h", "Linf h", "L1 hu", "L2 hu", "front [m]",
-                       "mass", "energy", "order");
+    return fmt::format("{:16} {:7} {:>5} {:>3} {:>8} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10} {:>9} {:>10} {:>6}",
+                       "problem", "preset", "cells", "ppc", "points", "steps", "L1 h", "L2 h", "Linf h", "L1 hu",
+                       "L2 hu", "front [m]", "mass", "energy", "order");
 }
 
 std::string table_row(const Measurement& m, bool with_time) {
     std::string row = fmt::format(
-        "{:16} {:7} {:>5} {:>3} {:>8} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10} {:>9} {:>10} {:>6}", m.name, m.preset, m.cells,
-        m.per_cell(), m.particles, m.steps, number(m.l1_depth), number(m.l2_depth), number(m.linf_depth),
+        "{:16} {:7} {:>5} {:>3} {:>8} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10} {:>9} {:>10} {:>6}", m.name, m.preset,
+        m.cells, m.per_cell(), m.particles, m.steps, number(m.l1_depth), number(m.l2_depth), number(m.linf_depth),
         number(m.l1_momentum), number(m.l2_momentum), number(m.front_error), number(m.mass_error),
         number(m.energy_error), std::isnan(m.observed_order) ? "-" : fmt::format("{:.2f}", m.observed_order));
     for (const Extra& extra : m.extras)
@@ -72,8 +73,9 @@ std::string table_row(const Measurement& m, bool with_time) {
 std::string json_of(const std::vector<Measurement>& measurements) {
     std::string text = "[";
     for (const Measurement& m : measurements) {
-        text += fmt::format("{}\n  {{\"name\": \"{}\", \"preset\": \"{}\", \"cells\": {}, \"particles\": {}, \"steps\": {}",
-                            &m == measurements.data() ? "" : ",", m.name, m.preset, m.cells, m.particles, m.steps);
+        text +=
+            fmt::format("{}\n  {{\"name\": \"{}\", \"preset\": \"{}\", \"cells\": {}, \"particles\": {}, \"steps\": {}",
+                        &m == measurements.data() ? "" : ",", m.name, m.preset, m.cells, m.particles, m.steps);
         text += fmt::format(", \"points_per_cell\": {}", m.per_cell());
         for (const char* key : {"wall_seconds", "l1_depth", "l2_depth", "linf_depth", "l1_momentum", "l2_momentum",
                                 "front_error", "mass_error", "energy_error", "observed_order"})

@@ -25,9 +25,9 @@ void set_preset(Scene& scene, const std::string& preset);
 
 /// Exact fields at the end time.
 struct Exact {
-    Function depth = {};                                     ///< [m]
-    Function u = {}, v = {};                                 ///< velocity [m/s]; without: no momentum norm
-    std::function<bool(double x, double y)> where = {};      ///< nodes that count; without: all
+    Function depth = {};                                 ///< [m]
+    Function u = {}, v = {};                             ///< velocity [m/s]; without: no momentum norm
+    std::function<bool(double x, double y)> where = {};  ///< nodes that count; without: all
 };
 
 /// A run: preset and edit applied, advanced to `end`, timed; fills steps, particles, times, mass and energy error.
@@ -56,7 +56,9 @@ private:
 };
 
 /// Relative norms of a node field pair against another: {L1, L2, Linf}.
-struct Norms { double l1 = kNone, l2 = kNone, linf = kNone; };
+struct Norms {
+    double l1 = kNone, l2 = kNone, linf = kNone;
+};
 Norms depth_norms(const Frame& frame, const Exact& exact);
 Norms momentum_norms(const Frame& frame, const Exact& exact);
 

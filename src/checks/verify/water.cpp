@@ -65,8 +65,7 @@ void add_norms(const WaterFlow& flow, const ExactWater& exact, Measurement& m) {
         e1 += error, e2 += error * error, em = std::max(em, error);
         h1 += h, h2 += h * h, hm = std::max(hm, h);
         if (!exact.u) return;
-        const Vec2 q = h * Vec2(exact.u(x, y), exact.v ? exact.v(x, y) : 0.0),
-                   miss = s.depth * Vec2(s.u, s.v) - q;
+        const Vec2 q = h * Vec2(exact.u(x, y), exact.v ? exact.v(x, y) : 0.0), miss = s.depth * Vec2(s.u, s.v) - q;
         p1 += miss.norm(), p2 += miss.squaredNorm(), q1 += q.norm(), q2 += q.squaredNorm();
     });
     m.l1_depth = e1 / h1, m.l2_depth = std::sqrt(e2 / h2), m.linf_depth = em / hm;

@@ -8,7 +8,9 @@ namespace frana::bed {
 
 /// Shares of the depth of a Bingham sheet: its plug (yield stress over bed stress) and the sheared rest, each to full
 /// relative precision.
-struct SheetShares { double plug, sheared; };
+struct SheetShares {
+    double plug, sheared;
+};
 
 /// src/shallow/THEORY.md (43): the root z in (0, 1] of z^3 - (3 + b + d) z + 2 + b = 0, b, d >= 0 (Fois et al. 2024, eq. 5, corrected:
 /// |v| = tau_B h / (6 mu) (2 + z)(1 - z)^2, then b = 0 and d = 6 mu |v| / (tau_Y h)). Near z = 1, where two roots meet,
@@ -36,7 +38,8 @@ struct Bingham {
     static constexpr const char* name = "bingham";
     static constexpr const char* is = "";
     static std::vector<Key<Bingham>> keys() {
-        return {friction_angle(&Bingham::mu, Missing::none), friction(&Bingham::mu, Missing::none),
+        return {friction_angle(&Bingham::mu, Missing::none),
+                friction(&Bingham::mu, Missing::none),
                 {&Bingham::viscosity, "viscosity", "Pa s", ranges::positive, "viscosity of the sheared layer"},
                 {&Bingham::yield_stress, "yield_stress", "Pa", ranges::not_negative,
                  "stress below which the layer does not shear"}};
@@ -49,8 +52,7 @@ struct Bingham {
         const double h = bed.thickness, coulomb = mu * bed.normal_gravity, left = driven - dt * coulomb;
         if (left <= 0.0) return 0.0;
         const double rate = 3.0 * viscosity / (bed.density * h * h);  // of a Newtonian sheet [1/s]
-        if (yield_stress <= 0.0)
-            return relaxed_speed(s0, left / (1.0 + rate * dt), dt, [&](double) { return rate; });
+        if (yield_stress <= 0.0) return relaxed_speed(s0, left / (1.0 + rate * dt), dt, [&](double) { return rate; });
         const double yield = yield_stress / (bed.density * h * bed.kappa);  // deceleration of the plug [m/s^2]
         if (left <= dt * yield) return 0.0;
         if (viscosity <= 0.0) return left - dt * yield;

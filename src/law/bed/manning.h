@@ -14,7 +14,8 @@ struct Manning {
     static constexpr const char* name = "manning";
     static constexpr const char* is = "";
     static std::vector<Key<Manning>> keys() {
-        return {friction_angle(&Manning::mu, Missing::none), friction(&Manning::mu, Missing::none),
+        return {friction_angle(&Manning::mu, Missing::none),
+                friction(&Manning::mu, Missing::none),
                 {&Manning::n, "manning_n", "s/m^(1/3)", ranges::above_to(0.0, 1.0), "Manning's roughness"}};
     }
     double friction_at_rest() const { return mu; }

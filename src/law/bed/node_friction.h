@@ -26,7 +26,8 @@ template <class Law>
         Double4 speed = {};
         for (int n = 0; n < 4; ++n)
             speed[n] = law.speed_after(BedState{bed.normal_gravity[n], bed.thickness[n], bed.kappa[n], bed.cosine[n],
-                                                bed.gravity, bed.density}, s0[n], driven[n], dt);
+                                                bed.gravity, bed.density},
+                                       s0[n], driven[n], dt);
         return speed;
     }
 }
@@ -38,16 +39,17 @@ inline double speeds_after(const Law& law, const BedState& bed, double s0, doubl
 /// A grid update that friction braked, and the drift that follows it.
 template <class Real>
 struct BrakedOf {
-    Real before;   ///< speed before the grid update, along the driven direction [m/s]
-    Real driven;   ///< speed that the grid update would give without friction [m/s]
-    Real speed;    ///< that friction left [m/s]
+    Real before;                ///< speed before the grid update, along the driven direction [m/s]
+    Real driven;                ///< speed that the grid update would give without friction [m/s]
+    Real speed;                 ///< that friction left [m/s]
     double velocity_dt, drift;  ///< [s]; no drift: nothing to correct
 };
 
 /// The speed, or the mean speed over the coming drift if friction ends the motion in it, and holds: the speed in the
 /// drift's middle, where the leapfrog stands, would leave the stop short by up to brake drift^2 / 8.
 template <class Real, class Law>
-[[gnu::always_inline]] inline Real mean_if_stopping(const Law& law, const BedStateOf<Real>& state, const BrakedOf<Real>& b) {
+[[gnu::always_inline]] inline Real mean_if_stopping(const Law& law, const BedStateOf<Real>& state,
+                                                    const BrakedOf<Real>& b) {
     if constexpr (std::is_same_v<Law, bed::None>) return b.speed;
     if (b.drift <= 0.0) return b.speed;
     const Real friction = law.friction_at_rest() * state.normal_gravity, drive = (b.driven - b.before) / b.velocity_dt,

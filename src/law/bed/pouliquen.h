@@ -26,8 +26,12 @@ struct Pouliquen {
                 fastest,
                 {&P::i0, "i0", "1", ranges::positive, "inertial number between slow and fast", Missing::usual},
                 {&P::grain_diameter, "grain_diameter", "m", ranges::positive, "diameter of the grains"},
-                {&P::solid_fraction, "solid_fraction", "1", {0.0, 1.0, true, true},
-                 "share of the volume that is grains", Missing::usual}};
+                {&P::solid_fraction,
+                 "solid_fraction",
+                 "1",
+                 {0.0, 1.0, true, true},
+                 "share of the volume that is grains",
+                 Missing::usual}};
     }
     double friction_at_rest() const { return mu_s; }
 

@@ -14,8 +14,10 @@ struct Voellmy {
     static constexpr const char* name = "voellmy";
     static constexpr const char* is = "";
     static std::vector<Key<Voellmy>> keys() {
-        return {friction_angle(&Voellmy::mu), friction(&Voellmy::mu),
-                {&Voellmy::xi, "xi", "m/s^2", ranges::positive, "Voellmy's turbulence coefficient: larger runs faster"}};
+        return {
+            friction_angle(&Voellmy::mu),
+            friction(&Voellmy::mu),
+            {&Voellmy::xi, "xi", "m/s^2", ranges::positive, "Voellmy's turbulence coefficient: larger runs faster"}};
     }
     double friction_at_rest() const { return mu; }
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "law/key.h"
 #include "law/erosion/state.h"
+#include "law/key.h"
 
 namespace frana::erosion {
 
@@ -15,8 +15,8 @@ struct Energy {
     static constexpr bool kProportional = false;
     static constexpr bool kSeesEroded = false;
     static std::vector<laws::Key<Energy>> keys() {
-        return {{&Energy::energy, "energy", "J/kg", ranges::positive, "work of friction that loosens a kilogram of the bed",
-                 laws::Missing::usual}};
+        return {{&Energy::energy, "energy", "J/kg", ranges::positive,
+                 "work of friction that loosens a kilogram of the bed", laws::Missing::usual}};
     }
 
     /// src/shallow/THEORY.md (70)

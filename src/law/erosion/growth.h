@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "law/key.h"
 #include "law/erosion/state.h"
+#include "law/key.h"
 
 namespace frana::erosion {
 

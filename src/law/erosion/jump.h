@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "law/key.h"
 #include "law/erosion/state.h"
+#include "law/key.h"
 
 namespace frana::erosion {
 

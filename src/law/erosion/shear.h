@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "law/key.h"
 #include "law/erosion/state.h"
+#include "law/key.h"
 
 namespace frana::erosion {
 
@@ -11,9 +11,9 @@ namespace frana::erosion {
 /// 2569, of RAMMS): E = rate while the depth taken is below e_m = k (tau - tau_c), and none for tau <= tau_c. Their numbers
 /// are of the debris flows of the Illgraben.
 struct Shear {
-    double erosion_rate = 0.025;         ///< [m/s]
-    double threshold = 1000.0;           ///< tau_c [Pa]
-    double depth_per_stress = 1e-4;      ///< k [m/Pa]
+    double erosion_rate = 0.025;     ///< [m/s]
+    double threshold = 1000.0;       ///< tau_c [Pa]
+    double depth_per_stress = 1e-4;  ///< k [m/Pa]
 
     static constexpr const char* name = "shear";
     static constexpr const char* is = "";
@@ -22,8 +22,8 @@ struct Shear {
     static std::vector<laws::Key<Shear>> keys() {
         return {{&Shear::erosion_rate, "rate", "m/s", ranges::positive, "speed at which the bed sinks, normal to it",
                  laws::Missing::usual},
-                {&Shear::threshold, "threshold", "Pa", ranges::not_negative,
-                 "basal stress up to which the bed resists", laws::Missing::usual},
+                {&Shear::threshold, "threshold", "Pa", ranges::not_negative, "basal stress up to which the bed resists",
+                 laws::Missing::usual},
                 {&Shear::depth_per_stress, "depth_per_stress", "m/Pa", ranges::positive,
                  "depth that can be taken at most, for each pascal above the threshold", laws::Missing::usual}};
     }

@@ -5,13 +5,13 @@ namespace frana::erosion {
 
 /// A column over its bed. Lengths are normal to the bed, speeds along it.
 struct State {
-    double thickness = 0.0;     ///< of the flow, > 0 [m]
-    double speed = 0.0;         ///< along the bed, > 0 [m/s]
-    double stress = 0.0;        ///< traction of the bed law on the flow's base [Pa]
-    double eroded = 0.0;        ///< depth that was taken here already, of laws with kSeesEroded [m]
-    double density = 0.0;       ///< of the flow [kg/m^3]
-    double bed_density = 0.0;   ///< [kg/m^3]
-    double dt = 0.0;            ///< [s]
+    double thickness = 0.0;    ///< of the flow, > 0 [m]
+    double speed = 0.0;        ///< along the bed, > 0 [m/s]
+    double stress = 0.0;       ///< traction of the bed law on the flow's base [Pa]
+    double eroded = 0.0;       ///< depth that was taken here already, of laws with kSeesEroded [m]
+    double density = 0.0;      ///< of the flow [kg/m^3]
+    double bed_density = 0.0;  ///< [kg/m^3]
+    double dt = 0.0;           ///< [s]
 };
 
 }  // namespace frana::erosion

@@ -9,7 +9,9 @@ namespace frana {
 
 /// Symmetric plane tensor: stress [Pa] or strain rate [1/s]. Real: double, or Double4 for four points at once.
 template <class Real>
-struct PlaneOf { Real xx{}, yy{}, xy{}; };
+struct PlaneOf {
+    Real xx{}, yy{}, xy{};
+};
 using Plane = PlaneOf<double>;
 
 /// What a rheology sees of a point.

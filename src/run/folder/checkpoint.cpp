@@ -67,8 +67,8 @@ std::string case_text(const CaseFile& file) {
 std::string sum_of_bed(const Raster& bed) {
     const GridGeometry& grid = bed.geometry;
     Checksum sum;
-    sum.add_all(std::array<double, 5>{grid.x0, grid.y0, grid.cell, static_cast<double>(grid.nx),
-                                      static_cast<double>(grid.ny)});
+    sum.add_all(
+        std::array<double, 5>{grid.x0, grid.y0, grid.cell, static_cast<double>(grid.nx), static_cast<double>(grid.ny)});
     sum.add_all(bed.values);
     return fmt::format("{:016x}", sum.sum());
 }
@@ -135,10 +135,10 @@ void require_same(const fs::path& file, const CheckpointLabels& there, const Che
     };
     for (const char* name : {"version", "precision"})
         if (differs(name))
-            throw refused(fmt::format("found a state of {} {}; expected {} {}", name, label(there, name), name,
-                                      label(here, name)),
-                          std::string(name) == "version" ? "use the program that left it"
-                                                         : "give scheme.precision as it was");
+            throw refused(
+                fmt::format("found a state of {} {}; expected {} {}", name, label(there, name), name,
+                            label(here, name)),
+                std::string(name) == "version" ? "use the program that left it" : "give scheme.precision as it was");
     if (differs("case"))
         throw refused("found the state of another case: " + difference(label(there, "case"), label(here, "case")),
                       "give the case and the --set it was left with");
@@ -159,8 +159,8 @@ void require_same(const fs::path& file, const CheckpointLabels& there, const Che
 CheckpointLabels checkpoint_labels(const Scene& scene, const CaseFile& file) {
     return {{"version", FRANA_VERSION},
             {"precision", scene.scheme.precision == Precision::single ? "float" : "double"},
-            {"build", fmt::format("{}, {}, march {}, commit {}", FRANA_BUILD_TYPE, FRANA_COMPILER, FRANA_ARCH,
-                                  FRANA_COMMIT)},
+            {"build",
+             fmt::format("{}, {}, march {}, commit {}", FRANA_BUILD_TYPE, FRANA_COMPILER, FRANA_ARCH, FRANA_COMMIT)},
             {"case", case_text(file)},
             {"inputs", sums_of_inputs(file)},
             {"bed", sum_of_bed(scene.bed)},
@@ -195,8 +195,7 @@ void CheckpointKeeper::save(double time, const State& state) {
         });
         ++progress_.written;
     } catch (const std::exception& error) {
-        if (progress_.failed == 0)
-            progress_.first_failure = fmt::format("t = {:.6g} s: {}", time, error.what());
+        if (progress_.failed == 0) progress_.first_failure = fmt::format("t = {:.6g} s: {}", time, error.what());
         ++progress_.failed;
     }
     last_ = std::chrono::steady_clock::now();

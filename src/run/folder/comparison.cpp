@@ -110,13 +110,15 @@ std::string deposit_table(const Comparison& c) {
 Polyline only_line(const fs::path& file, const std::string& crs_wkt, std::vector<std::string>& log) {
     const std::vector<Polyline> lines = GdalReader().read_lines(file, crs_wkt, log);
     if (lines.size() != 1)
-        throw UserError(fmt::format("{}: holds {} lines; expected one, the path from the release to the toe; export "
-                                    "that one alone",
-                                    file.string(), lines.size()));
+        throw UserError(
+            fmt::format("{}: holds {} lines; expected one, the path from the release to the toe; export "
+                        "that one alone",
+                        file.string(), lines.size()));
     if (!(length_of(lines.front()) > 0.0))
-        throw UserError(fmt::format("{}: its line has no length; expected the path from the release to the toe; draw "
-                                    "it again",
-                                    file.string()));
+        throw UserError(
+            fmt::format("{}: its line has no length; expected the path from the release to the toe; draw "
+                        "it again",
+                        file.string()));
     return lines.front();
 }
 

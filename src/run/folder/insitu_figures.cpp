@@ -48,9 +48,7 @@ std::string title_of(const Scene& scene, const std::string& what, const Frame& f
     return fmt::format("{}: {}, t = {:.2f} s", scene.title.empty() ? scene.name : scene.title, what, frame.status.time);
 }
 
-bool is_depth(const std::string& field) {
-    return field == "depth" || field == "thickness" || field == "peak_depth";
-}
+bool is_depth(const std::string& field) { return field == "depth" || field == "thickness" || field == "peak_depth"; }
 
 /// What may be below zero, and is coloured so.
 bool is_signed(const std::string& field) {
@@ -153,12 +151,11 @@ public:
         for (const std::string& field : entry_.fields) {
             if (field == "elevation" || field == "surface") continue;
             const std::string unit = scalar(frame.nodes, field, "the grid").unit;
-            chart.panels.push_back({fmt::format("{} [{}]", words(field), unit),
-                                    {curve(field, Curve::Kind::line)}, false, {}, 1.0});
+            chart.panels.push_back(
+                {fmt::format("{} [{}]", words(field), unit), {curve(field, Curve::Kind::line)}, false, {}, 1.0});
         }
-        pictures_.add(number, [&](const fs::path& png, std::string& why_not) {
-            return render_chart(chart, png, why_not);
-        });
+        pictures_.add(number,
+                      [&](const fs::path& png, std::string& why_not) { return render_chart(chart, png, why_not); });
     }
 
 private:

@@ -57,8 +57,9 @@ struct Seen {
     GridGeometry grid;
     double deepest = 0.0, thin = 0.0, last_time = 0.0, busy_time = 0.0, busiest = -1.0;
     Index busy_nodes = 0;  ///< with flow at busy_time
-    std::map<std::string, double> largest;  ///< of depth, speed, cohesion, stress, effective_stress (size of any component), of
-                                            ///< water_depth, and of bound_depth, which is the rest
+    std::map<std::string, double>
+        largest;  ///< of depth, speed, cohesion, stress, effective_stress (size of any component), of
+                  ///< water_depth, and of bound_depth, which is the rest
     Extent extent;
 };
 
@@ -276,8 +277,9 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     for (const auto& piece : figure.moment.material)
         if (!piece.is_column) extent.add(piece.place.x(), piece.place.y(), piece.place.z());
     const double middle = 0.5 * (extent.zmin + extent.zmax);
-    extent = Extent{box[0], box[2], box[1], box[3], std::isfinite(middle) ? middle : 0.0,
-                    std::isfinite(middle) ? middle : 0.0, {}, {}};
+    extent = Extent{
+        box[0], box[2], box[1], box[3], std::isfinite(middle) ? middle : 0.0, std::isfinite(middle) ? middle : 0.0,
+        {},     {}};
     const double reach = reach_of(extent), distance = 0.75 * reach / std::tan(15.0 * pi / 180.0);  // seen askew
     const Place focal = extent.middle();
     const Place position{focal[0] - distance * std::sin(eye.azimuth) * std::cos(eye.down),
@@ -333,13 +335,14 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     look["range"]["stress"] = {-stress, stress};
     if (shows("structure")) look["range"]["cohesion"] = {0.0, round_up(seen.largest["cohesion"])};
     if (shows("phases"))
-        for (const char* name : {"water_depth", "bound_depth"}) look["range"][name] = {0.0, round_up(seen.largest[name])};
+        for (const char* name : {"water_depth", "bound_depth"})
+            look["range"][name] = {0.0, round_up(seen.largest[name])};
     look["range"]["effective_stress"] = {-round_up(seen.largest["effective_stress"]), 0.0};
     // Some 400 crosses on the flow, since a narrow one has no room for wide distances; but they must be large enough to
     // see when all that was ever covered is in view.
     const double across = std::max(seen.extent.xmax - seen.extent.xmin, seen.extent.ymax - seen.extent.ymin);
-    const double nodes_apart = std::max(std::sqrt(static_cast<double>(seen.busy_nodes) / 400.0),
-                                        across / seen.grid.cell / 80.0);
+    const double nodes_apart =
+        std::max(std::sqrt(static_cast<double>(seen.busy_nodes) / 400.0), across / seen.grid.cell / 80.0);
     const auto stride = std::max<Index>(1, std::llround(nodes_apart));
     look["cross"] = {{"stride", stride},
                      {"scale", 2.5 * static_cast<double>(stride) * seen.grid.cell / stress},

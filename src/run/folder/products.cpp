@@ -54,16 +54,15 @@ Raster raster_of(const Frame& frame, const ProductRule& rule, const std::string&
     for (Index node = 0; node < frame.grid.size(); ++node) {
         const double value = field->data[node * field->components + rule.component];
         const bool never = (time && !(value >= 0.0)) || (inner && !lies(node));
-        if (!std::isnan(elevation->data[node]) && !never)
-            raster.values[static_cast<std::size_t>(node)] = value;
+        if (!std::isnan(elevation->data[node]) && !never) raster.values[static_cast<std::size_t>(node)] = value;
     }
     return raster;
 }
 
 /// Not every solver knows it; all others must be there.
 bool needed(const std::string& name) {
-    for (const char* other : {"peak_dynamic_pressure", "final_damage", "final_water_depth", "eroded_depth", "deposited_depth",
-                              "bed_change", "final_elevation"})
+    for (const char* other : {"peak_dynamic_pressure", "final_damage", "final_water_depth", "eroded_depth",
+                              "deposited_depth", "bed_change", "final_elevation"})
         if (name == other) return false;
     return true;
 }
@@ -74,9 +73,7 @@ bool is_of(const Frame& last, const ProductRule& rule) {
     return last.node(rule.field) != nullptr || needed(rule.name);
 }
 
-fs::path raster_file(const fs::path& run_dir, const std::string& name) {
-    return run_dir / "rasters" / (name + ".tif");
-}
+fs::path raster_file(const fs::path& run_dir, const std::string& name) { return run_dir / "rasters" / (name + ".tif"); }
 
 }  // namespace
 
@@ -97,8 +94,7 @@ const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, con
 }
 
 double area_deeper(const Raster& depth, double limit) {
-    const auto deeper =
-        std::count_if(depth.values.begin(), depth.values.end(), [&](double h) { return h > limit; });
+    const auto deeper = std::count_if(depth.values.begin(), depth.values.end(), [&](double h) { return h > limit; });
     return static_cast<double>(deeper) * depth.geometry.cell * depth.geometry.cell;
 }
 

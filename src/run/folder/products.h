@@ -21,8 +21,7 @@ struct ProductRaster {
 class LastFields : public Observer {
 public:
     /// `crs_wkt` goes into every raster.
-    LastFields(std::string crs_wkt, std::vector<ProductRaster>& into)
-        : crs_wkt_(std::move(crs_wkt)), into_(into) {}
+    LastFields(std::string crs_wkt, std::vector<ProductRaster>& into) : crs_wkt_(std::move(crs_wkt)), into_(into) {}
     std::string name() const override { return "last fields"; }
     void end(const Frame& last) override;
 

@@ -29,28 +29,29 @@ std::string row(const std::string& name, const std::string& value) {
 std::string heading(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = fmt::format("# {}\n\n", r.title);
-    text += fmt::format(
-        "Case `{}`, frana {}, {} to {} UTC, {} thread{}. The run ended at t = {:.6g} s: {}.\n\n", r.name,
-        FRANA_VERSION, s.started, s.ended, r.threads, r.threads == 1 ? "" : "s", s.last.time, reason_text(s));
-    if (!r.command_line.empty())
-        text += fmt::format("The case file was overridden by `{}`.\n\n", r.command_line);
+    text += fmt::format("Case `{}`, frana {}, {} to {} UTC, {} thread{}. The run ended at t = {:.6g} s: {}.\n\n",
+                        r.name, FRANA_VERSION, s.started, s.ended, r.threads, r.threads == 1 ? "" : "s", s.last.time,
+                        reason_text(s));
+    if (!r.command_line.empty()) text += fmt::format("The case file was overridden by `{}`.\n\n", r.command_line);
     return text;
 }
 
 /// Of two phases each has its own volume: that of the grains is without pores.
 std::string left_text(const RunRecord& r) {
     if (!r.extras.water) return fmt::format("{:.6g} m3", r.summary.last.mass_left / r.density);
-    return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.extras.water->solids_left / r.density, r.extras.water->left);
+    return fmt::format("{:.6g} m3 of grains and {:.6g} m3 of water", r.extras.water->solids_left / r.density,
+                       r.extras.water->left);
 }
 
 /// "took 12 300 m3 (growth 1.8), 0.7 m deep at most, budget 3e-16": volumes as they are in the flow.
 std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
     const double had = r.summary.first.mass;
-    return fmt::format("the flow took {:.6g} m3 of it (its mass grew {:.3g} times), {:.3g} m deep at most; left behind {:.6g} "
-                       "m3; balance {:.1e}",
-                       bed.eroded / r.density, had > 0.0 ? (had + bed.eroded) / had : 1.0, bed.deepest,
-                       bed.deposited / r.density, budget(r.summary.first, r.summary.last).bed_error);
+    return fmt::format(
+        "the flow took {:.6g} m3 of it (its mass grew {:.3g} times), {:.3g} m deep at most; left behind {:.6g} "
+        "m3; balance {:.1e}",
+        bed.eroded / r.density, had > 0.0 ? (had + bed.eroded) / had : 1.0, bed.deepest, bed.deposited / r.density,
+        budget(r.summary.first, r.summary.last).bed_error);
 }
 
 std::string results(const RunRecord& r) {
@@ -58,12 +59,13 @@ std::string results(const RunRecord& r) {
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
     text += row("release volume", fmt::format("{:.6g} m3", r.release_volume));
     if (r.extras.inflow)
-        text += row("came in through lines", fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", r.extras.inflow->volume,
-                                                         r.extras.inflow->expected, r.extras.inflow->volume - r.extras.inflow->expected));
-    text += row("simulated time", fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end,
-                                              s.steps, s.frames));
-    text += row("deepest flow",
-                fmt::format("{:.4g} m at t = {:.4g} s", s.extremes.max_depth, s.extremes.max_depth_time));
+        text += row("came in through lines",
+                    fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", r.extras.inflow->volume,
+                                r.extras.inflow->expected, r.extras.inflow->volume - r.extras.inflow->expected));
+    text += row("simulated time",
+                fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end, s.steps, s.frames));
+    text +=
+        row("deepest flow", fmt::format("{:.4g} m at t = {:.4g} s", s.extremes.max_depth, s.extremes.max_depth_time));
     text += row("fastest flow, along the bed",
                 fmt::format("{:.4g} m/s at t = {:.4g} s", s.extremes.max_speed, s.extremes.max_speed_time));
     text += row("largest dynamic pressure, density times speed squared",
@@ -86,7 +88,8 @@ std::string results(const RunRecord& r) {
                                                b.damage, b.pairs, b.torn, b.numerical));
     }
     if (r.extras.breakage)
-        text += row("steps for each that the depth-averaged flow would need", fmt::format("{:.3g}", r.extras.breakage->sub_cycling));
+        text += row("steps for each that the depth-averaged flow would need",
+                    fmt::format("{:.3g}", r.extras.breakage->sub_cycling));
     if (r.extras.points_apart) {
         const PointsApart& a = *r.extras.points_apart;
         text += row("pieces of points in space, more than a cell apart",
@@ -104,17 +107,15 @@ std::string budgets(const RunRecord& r) {
     std::string text =
         "## Budgets\n\n| Balance | At the start | At the end | Left the domain | Residual |\n"
         "|---|---|---|---|---|\n";
-    text += fmt::format("| mass [kg] | {:.8g} | {:.8g} | {:.4g} | {:.1e} of the initial mass |\n",
-                        s.first.mass, s.last.mass, s.last.mass_left, b.mass_error);
-    if (s.last.mass_in > 0.0)
-        text += fmt::format("| of it came in [kg] | 0 | {:.8g} | | |\n", s.last.mass_in);
+    text += fmt::format("| mass [kg] | {:.8g} | {:.8g} | {:.4g} | {:.1e} of the initial mass |\n", s.first.mass,
+                        s.last.mass, s.last.mass_left, b.mass_error);
+    if (s.last.mass_in > 0.0) text += fmt::format("| of it came in [kg] | 0 | {:.8g} | | |\n", s.last.mass_in);
     for (const std::size_t axis : {0, 1})
         text += fmt::format("| momentum {} [kg m/s] | {:.4g} | {:.4g} (impulse {:.4g}) | {:.4g} | {:.1e} |\n",
-                            axis == 0 ? "x" : "y", s.first.momentum[axis], s.last.momentum[axis],
-                            s.last.impulse[axis], s.last.momentum_left[axis], b.momentum_residual[axis]);
-    text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {:.4g} | {:.2e} |\n",
-                        s.first.kinetic + s.first.potential, s.last.kinetic + s.last.potential + s.last.stored,
-                        s.last.energy_left, b.energy_residual);
+                            axis == 0 ? "x" : "y", s.first.momentum[axis], s.last.momentum[axis], s.last.impulse[axis],
+                            s.last.momentum_left[axis], b.momentum_residual[axis]);
+    text += fmt::format("| energy [J] | {:.5g} | {:.5g} | {:.4g} | {:.2e} |\n", s.first.kinetic + s.first.potential,
+                        s.last.kinetic + s.last.potential + s.last.stored, s.last.energy_left, b.energy_residual);
     text += fmt::format(
         "\nOf the energy at the end, {:.4g} J are kinetic; {:.4g} J were dissipated. Particles to grid, "
         "worst step: mass {:.1e}, momentum {:.1e} (relative).\n\n",
@@ -122,7 +123,8 @@ std::string budgets(const RunRecord& r) {
     if (r.extras.water) {
         const WaterBudget& w = *r.extras.water;
         text += fmt::format(
-            "Water [m3]: {:.8g} at the start and {:.4g} of rain; now {:.8g} free and {:.8g} in columns (these released {:.4g}), "
+            "Water [m3]: {:.8g} at the start and {:.4g} of rain; now {:.8g} free and {:.8g} in columns (these released "
+            "{:.4g}), "
             "{:.4g} infiltrated, {:.4g} left; residual {:.1e}.\n\n",
             w.given, w.rained, w.free, w.confined, w.released, w.infiltrated, w.left, w.residual);
     }
@@ -148,8 +150,7 @@ std::string figures(const RunRecord& r) {
 
 std::string parameter_table(const RunRecord& r) {
     std::string text = "## What was run\n\n| Key | Value | Unit |\n|---|---|---|\n";
-    for (const GivenKey& key : r.given)
-        text += fmt::format("| `{}` | {} | {} |\n", key.key, cell(key.value), key.unit);
+    for (const GivenKey& key : r.given) text += fmt::format("| `{}` | {} | {} |\n", key.key, cell(key.value), key.unit);
     text += fmt::format(
         "\nThe grid has {} x {} nodes, {:.6g} m apart; {} particles at the start, {} at the end. "
         "Keys that are not listed have their defaults: see `resolved.toml`.\n\n",
@@ -197,9 +198,9 @@ std::string barriers(const RunRecord& r) {
             continue;
         }
         text += fmt::format(
-            "| {} | {:.4g} s | {:.4g} N at {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n",
-            b.name, b.first_contact, b.peak_force, b.peak_force_time, b.impulse[0], b.impulse[1],
-            b.impulse[2], b.run_up, b.overtopped);
+            "| {} | {:.4g} s | {:.4g} N at {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n", b.name,
+            b.first_contact, b.peak_force, b.peak_force_time, b.impulse[0], b.impulse[1], b.impulse[2], b.run_up,
+            b.overtopped);
     }
     if (hardest > 0.0)
         text += fmt::format(
@@ -219,15 +220,17 @@ std::string barriers(const RunRecord& r) {
 std::string sections(const RunRecord& r) {
     if (r.sections.empty()) return "";
     std::string text =
-        "## Sections\n\n| Section | Positive towards | Volume that passed | Largest discharge | Integral of the discharge |\n"
+        "## Sections\n\n| Section | Positive towards | Volume that passed | Largest discharge | Integral of the "
+        "discharge |\n"
         "|---|---|---|---|---|\n";
     for (const SectionSummary& s : r.sections) {
         constexpr double kDegrees = 180.0 / 3.14159265358979323846;
         const double azimuth = std::fmod(std::atan2(s.towards.x(), s.towards.y()) * kDegrees + 360.0, 360.0);
-        text += fmt::format("| {} | {:.0f} degrees from north | {:.6g} m3 | {:.4g} m3/s at {:.4g} s | {:.4g} m3 |\n", s.name,
-                            azimuth, s.volume, s.peak, s.peak_time, s.integral);
+        text += fmt::format("| {} | {:.0f} degrees from north | {:.6g} m3 | {:.4g} m3/s at {:.4g} s | {:.4g} m3 |\n",
+                            s.name, azimuth, s.volume, s.peak, s.peak_time, s.integral);
     }
-    return text + "\nThe volume is counted by the columns that passed and is exact; the discharge is that of the nodes.\n\n";
+    return text +
+           "\nThe volume is counted by the columns that passed and is exact; the discharge is that of the nodes.\n\n";
 }
 
 std::string times(const RunSummary& s) {
@@ -256,8 +259,9 @@ std::string remarks(const RunRecord& r) {
 std::string report_markdown(const RunRecord& record, const std::filesystem::path& run_dir) {
     const std::vector<Product> products = products_in(run_dir);
     const std::string survey = record.comparison ? comparison_section(*record.comparison) : "";
-    return heading(record) + remarks(record) + results(record) + survey + sections(record) + barriers(record) + budgets(record) +
-           figures(record) + parameter_table(record) + files(record, products) + times(record.summary);
+    return heading(record) + remarks(record) + results(record) + survey + sections(record) + barriers(record) +
+           budgets(record) + figures(record) + parameter_table(record) + files(record, products) +
+           times(record.summary);
 }
 
 std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_dir) {
@@ -268,26 +272,26 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
     };
     std::string text;
     text += fmt::format("{}: {} (t = {:.6g} s)\n", r.title, reason_text(s), s.last.time);
-    text += fmt::format(
-        "  computed   {} steps, {} particles, {:.3g} M particle-steps/s, {} ({:.0f} % output)\n", s.steps,
-        s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
-        clock_text(s.wall_seconds), 100.0 * s.output_share());
-    text += fmt::format("  released   {:.6g} m3; {} left the domain; mass error {:.1e}\n",
-                        r.release_volume, left_text(r), budget(s.first, s.last).mass_error);
-    text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n",
-                        s.extremes.max_depth, s.extremes.max_speed, s.extremes.max_front);
-    text += fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m\n",
-                        r.footprint_area, r.footprint_depth, r.final_depth);
+    text +=
+        fmt::format("  computed   {} steps, {} particles, {:.3g} M particle-steps/s, {} ({:.0f} % output)\n", s.steps,
+                    s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
+                    clock_text(s.wall_seconds), 100.0 * s.output_share());
+    text += fmt::format("  released   {:.6g} m3; {} left the domain; mass error {:.1e}\n", r.release_volume,
+                        left_text(r), budget(s.first, s.last).mass_error);
+    text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,
+                        s.extremes.max_speed, s.extremes.max_front);
+    text += fmt::format("  covered    {:.5g} m2 deeper than {:.3g} m; deepest at the end {:.4g} m\n", r.footprint_area,
+                        r.footprint_depth, r.final_depth);
     if (r.comparison) text += fmt::format("  survey     {}\n", comparison_line(*r.comparison));
     text += fmt::format("  report     {}\n", place("report.md"));
     text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());
     text += fmt::format("  ParaView   {}\n", place("grid.pvd"));
-    text += fmt::format("  QGIS       {}\n", is_there(products, "rasters/peak_depth.tif")
-                                                 ? (run_dir / "rasters").string()
-                                                 : place("footprint.geojson"));
-    text += fmt::format("  remarks    {}\n",
-                        r.warnings.empty() ? std::string("none")
-                                           : fmt::format("{}, listed in the report", r.warnings.size()));
+    text +=
+        fmt::format("  QGIS       {}\n", is_there(products, "rasters/peak_depth.tif") ? (run_dir / "rasters").string()
+                                                                                      : place("footprint.geojson"));
+    text += fmt::format("  remarks    {}\n", r.warnings.empty()
+                                                 ? std::string("none")
+                                                 : fmt::format("{}, listed in the report", r.warnings.size()));
     return text;
 }
 

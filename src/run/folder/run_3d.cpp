@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "run/folder/run_film.h"
-#include "vtk_io/figures/film.h"
 #include "vtk_io/figures/figure_3d.h"
+#include "vtk_io/figures/film.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -18,7 +18,9 @@ namespace {
 class Run3d {
 public:
     explicit Run3d(const FigureSource& source)
-        : source_(source), times_(particle_times(source.run_dir)), loads_(barrier_times(source.run_dir)),
+        : source_(source),
+          times_(particle_times(source.run_dir)),
+          loads_(barrier_times(source.run_dir)),
           meshes_(read_barrier_meshes(source.run_dir)) {
         if (!times_.empty()) named_ = read_particles(source.run_dir, -1).columns.count("model") > 0;
     }
@@ -69,10 +71,9 @@ public:
         figure.moment = moment(number);
         figure.view = view;
         figure.title = fmt::format("{}: points in space, t = {:.{}f} s", source_.title, time(number), digits);
-        figure.footer =
-            figure.moment.typical_size > 0.0
-                ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
-                : source_.footer;
+        figure.footer = figure.moment.typical_size > 0.0
+                            ? fmt::format("points of {:.2g} m; {}", figure.moment.typical_size, source_.footer)
+                            : source_.footer;
         figure.width = source_.width;
         figure.height = std::max(source_.width * 7 / 10, 300);
         return figure;
@@ -138,8 +139,7 @@ void add_some(const Moment3d& moment, std::vector<Vec3>& places) {
 
 }  // namespace
 
-void draw_3d(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                std::vector<std::string>& warnings) {
+void draw_3d(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
     if (!has_points(source)) return;
     try {
         const Run3d run(source);
@@ -156,15 +156,12 @@ void draw_3d(const FigureSource& source, std::vector<DrawnFigure>& figures,
                                                    one.name, one.caption));
                 continue;
             }
-            attempt(source, {"figures/view_" + one.name + ".png", "points in space " + one.caption}, figures,
-                    warnings, [&](const fs::path& png, std::string& why_not) {
-                        return render_3d(figure, png, why_not);
-                    });
+            attempt(source, {"figures/view_" + one.name + ".png", "points in space " + one.caption}, figures, warnings,
+                    [&](const fs::path& png, std::string& why_not) { return render_3d(figure, png, why_not); });
             figure.title += ", section along the flow";
-            attempt(source, {"figures/section_" + one.name + ".png", "section along the flow " + one.caption},
-                    figures, warnings, [&](const fs::path& png, std::string& why_not) {
-                        return render_section(figure, png, why_not);
-                    });
+            attempt(source, {"figures/section_" + one.name + ".png", "section along the flow " + one.caption}, figures,
+                    warnings,
+                    [&](const fs::path& png, std::string& why_not) { return render_section(figure, png, why_not); });
         }
     } catch (const UserError& error) {
         warnings.push_back(fmt::format("figures/view_points.png was not drawn: {}", error.what()));
@@ -172,36 +169,34 @@ void draw_3d(const FigureSource& source, std::vector<DrawnFigure>& figures,
 }
 
 void draw_film_3d(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
-                     std::vector<std::string>& warnings) {
+                  std::vector<std::string>& warnings) {
     if (!has_points(source)) return;
-    attempt(
-        source, {"figures/film_points." + kind, "points in space through time"}, figures, warnings,
-        [&](const fs::path& film, std::string& why_not) {
-            why_not = no_film_reason();
-            if (!why_not.empty()) return false;
-            const Run3d run(source);
-            Shared3d shared;  // every output is read twice, so that they need not fit the memory together
-            std::vector<Index> shown;
-            std::vector<Vec3> room;
-            for (Index number = 0; number < run.count(); ++number) {
-                const Moment3d moment = run.moment(number);
-                if (moment.typical_size <= 0.0) continue;
-                shared.add(moment);
-                shown.push_back(number);
-                add_some(moment, room);
-            }
-            if (shown.empty()) return why_not = "no output has points in space", false;
-            const ViewAngles3d look =
-                best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
-            return make_film(
-                film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
+    attempt(source, {"figures/film_points." + kind, "points in space through time"}, figures, warnings,
+            [&](const fs::path& film, std::string& why_not) {
+                why_not = no_film_reason();
+                if (!why_not.empty()) return false;
+                const Run3d run(source);
+                Shared3d shared;  // every output is read twice, so that they need not fit the memory together
+                std::vector<Index> shown;
+                std::vector<Vec3> room;
+                for (Index number = 0; number < run.count(); ++number) {
+                    const Moment3d moment = run.moment(number);
+                    if (moment.typical_size <= 0.0) continue;
+                    shared.add(moment);
+                    shown.push_back(number);
+                    add_some(moment, room);
+                }
+                if (shown.empty()) return why_not = "no output has points in space", false;
+                const ViewAngles3d look =
+                    best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
+                return make_film(film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
                     const Index number = shown[static_cast<std::size_t>(k)];
                     Figure3d figure = run.figure(number, shared.view(), run.digits());
                     figure.look = look;  // one for all, and one scale
                     figure.room = room;
                     return render_3d(figure, png, why_not);
                 });
-        });
+            });
 }
 
 }  // namespace frana

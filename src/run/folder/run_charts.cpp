@@ -34,9 +34,7 @@ Column thinned(const Column& values) {
     return result;
 }
 
-Curve curve(const std::string& name, const Column& x, const Column& y) {
-    return {name, thinned(x), thinned(y), {}};
-}
+Curve curve(const std::string& name, const Column& x, const Column& y) { return {name, thinned(x), thinned(y), {}}; }
 
 /// First row of every output of a profile's table, and one past the end.
 std::vector<std::size_t> outputs_of(const Column& t) {
@@ -48,8 +46,7 @@ std::vector<std::size_t> outputs_of(const Column& t) {
 }
 
 /// Outputs to be shown: first, last, and the one nearest to `time` or two between.
-std::vector<std::size_t> moments(const Column& t, const std::vector<std::size_t>& starts,
-                                 std::optional<double> time) {
+std::vector<std::size_t> moments(const Column& t, const std::vector<std::size_t>& starts, std::optional<double> time) {
     const std::size_t last = starts.size() - 2;
     std::vector<std::size_t> chosen = {0, last / 3, 2 * last / 3, last};
     if (time) {
@@ -81,8 +78,7 @@ ChartFigure profile_chart(const FigureSource& source, const std::string& name, c
     for (const std::size_t k : moments(t, starts, source.time)) {
         const std::string label = fmt::format("t = {:.4g} s", t[starts[k]]);
         const auto add = [&](ChartPanel& panel, const char* column) {
-            panel.curves.push_back(
-                {label, x, part(table.column(column), starts[k], starts[k + 1]), Curve::Kind::line});
+            panel.curves.push_back({label, x, part(table.column(column), starts[k], starts[k + 1]), Curve::Kind::line});
         };
         add(ground, "surface");
         add(depth, "depth");
@@ -116,10 +112,10 @@ ChartFigure energy_chart(const FigureSource& source, const Table& history) {
                      curve("residual", t, history.column("energy_residual"))};
     // Where points are, what they hold and how they lost it: parts of "dissipated".
     const std::vector<std::pair<const char*, const char*>> in_3d = {{"stored in points", "stored"},
-                                                                       {"points' friction", "points_friction"},
-                                                                       {"lost to walls", "points_walls"},
-                                                                       {"lost in the material", "points_material"},
-                                                                       {"lost by the scheme", "points_numerical"}};
+                                                                    {"points' friction", "points_friction"},
+                                                                    {"lost to walls", "points_walls"},
+                                                                    {"lost in the material", "points_material"},
+                                                                    {"lost by the scheme", "points_numerical"}};
     ChartPanel points{"energy of points [J]", {}, false, {}, 1.0};
     bool any = false;
     for (const auto& [name, column] : in_3d) {
@@ -140,8 +136,7 @@ ChartFigure motion_chart(const FigureSource& source, const Table& history) {
     figure.height = std::max(source.width * 4 / 5, 300);
     ChartPanel speed{"speed [m/s]", {}, false, {}, 1.0}, front{"front [m]", {}, false, {}, 1.0},
         errors{"relative error [1]", {}, true, {}, 1.0};
-    speed.curves = {curve("fastest", t, history.column("max_speed")),
-                    curve("mean", t, history.column("mean_speed"))};
+    speed.curves = {curve("fastest", t, history.column("max_speed")), curve("mean", t, history.column("mean_speed"))};
     front.curves = {curve("from the release's centre", t, history.column("front"))};
     errors.curves = {curve("mass", t, sizes(history.column("mass_error"))),
                      curve("mass, particles to grid", t, sizes(history.column("p2g_mass_error"))),
@@ -195,8 +190,8 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
 
 void draw_profile(const FigureSource& source, const std::string& name, std::vector<DrawnFigure>& figures,
                   std::vector<std::string>& warnings) {
-    attempt(source, {fmt::format("figures/profile_{}.png", name), fmt::format("profile {}", name)}, figures,
-            warnings, [&](const fs::path& png, std::string& why_not) {
+    attempt(source, {fmt::format("figures/profile_{}.png", name), fmt::format("profile {}", name)}, figures, warnings,
+            [&](const fs::path& png, std::string& why_not) {
                 const Table table = read_table(source.run_dir / "profiles" / (name + ".csv"));
                 if (table.rows() == 0) {
                     why_not = "its table has no rows";
@@ -206,19 +201,16 @@ void draw_profile(const FigureSource& source, const std::string& name, std::vect
             });
 }
 
-void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                 std::vector<std::string>& warnings) {
+void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
     if (source.gauges.empty()) return;
     attempt(source, {"figures/gauges_flow.png", "depth and speed at the gauges"}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) {
-                return render_chart(gauge_chart(source), png, why_not);
-            });
+            [&](const fs::path& png, std::string& why_not) { return render_chart(gauge_chart(source), png, why_not); });
 }
 
 void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
     if (source.sections.empty()) return;
-    attempt(source, {"figures/sections_discharge.png", "discharge through the sections, and the volume that passed"}, figures,
-            warnings, [&](const fs::path& png, std::string& why_not) {
+    attempt(source, {"figures/sections_discharge.png", "discharge through the sections, and the volume that passed"},
+            figures, warnings, [&](const fs::path& png, std::string& why_not) {
                 return render_chart(section_chart(source), png, why_not);
             });
 }
@@ -231,8 +223,8 @@ void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures
     std::sort(tables.begin(), tables.end());
     for (const fs::path& file : tables) {
         const std::string name = file.stem().string();
-        attempt(source, {fmt::format("figures/barrier_{}.png", name), fmt::format("barrier {}", name)}, figures, warnings,
-                [&](const fs::path& png, std::string& why_not) {
+        attempt(source, {fmt::format("figures/barrier_{}.png", name), fmt::format("barrier {}", name)}, figures,
+                warnings, [&](const fs::path& png, std::string& why_not) {
                     const Table table = read_table(file);
                     if (table.rows() == 0) {
                         why_not = "its table has no rows";
@@ -243,10 +235,8 @@ void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures
     }
 }
 
-void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                  std::vector<std::string>& warnings) {
-    const auto draw = [&](const DrawnFigure& figure,
-                          ChartFigure (*chart_of)(const FigureSource&, const Table&)) {
+void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+    const auto draw = [&](const DrawnFigure& figure, ChartFigure (*chart_of)(const FigureSource&, const Table&)) {
         attempt(source, figure, figures, warnings, [&](const fs::path& png, std::string& why_not) {
             const Table history = read_table(source.run_dir / "history.csv");
             if (history.rows() == 0) {

@@ -13,8 +13,7 @@ void draw_profile(const FigureSource& source, const std::string& name, std::vect
                   std::vector<std::string>& warnings);
 
 /// figures/gauges_flow.png: depth and speed of all gauges over time; nothing without gauges.
-void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                 std::vector<std::string>& warnings);
+void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
 
 /// figures/sections_discharge.png: discharge through all sections over time, and the volume that passed; nothing without.
 void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
@@ -23,7 +22,6 @@ void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures
 void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
 
 /// figures/budget_energy.png and budget_motion.png, from history.csv.
-void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                  std::vector<std::string>& warnings);
+void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
 
 }  // namespace frana

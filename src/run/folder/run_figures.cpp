@@ -7,9 +7,9 @@
 #include "base/error.h"
 #include "compare/overlap.h"
 #include "run/folder/cutoff.h"
+#include "run/folder/run_3d.h"
 #include "run/folder/run_charts.h"
 #include "run/folder/run_film.h"
-#include "run/folder/run_3d.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/figures/map_figure_perspective.h"
 
@@ -36,8 +36,8 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     if (product.name.find("stress") != std::string::npos) map.colormap = Colormap::diverging;
     if (product.name.find("damage") != std::string::npos) map.range = {0.0, 1.0};
     map.title = fmt::format("{}: {}", source.title, what);
-    map.field_label =
-        fmt::format("{} [{}]", what.substr(0, what.find(" at ")), pascal ? "kPa" : product.unit);  // the title has the moment
+    map.field_label = fmt::format("{} [{}]", what.substr(0, what.find(" at ")),
+                                  pascal ? "kPa" : product.unit);  // the title has the moment
     map.survey = source.survey;
     for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
     for (const Section& section : source.sections) map.profiles.push_back({section.name, section.line});
@@ -90,7 +90,8 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     if (const ProductRaster* damage = find_product(source.rasters, "final_damage"))
         draw_map(source, *damage, "damage at the end", figures, warnings, find_product(source.rasters, "final_depth"));
     if (const ProductRaster* water = find_product(source.rasters, "final_water_depth"))
-        draw_map(source, *water, "free water at the end", figures, warnings, find_product(source.rasters, "peak_depth"));
+        draw_map(source, *water, "free water at the end", figures, warnings,
+                 find_product(source.rasters, "peak_depth"));
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
         draw_view(source, *peak, figures, warnings);
     draw_overlay(source, figures, warnings);
@@ -104,8 +105,7 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     return figures;
 }
 
-void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                  std::vector<std::string>& warnings) {
+void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
     const ProductRaster* peak = find_product(source.rasters, "peak_depth");
     if (!source.survey || peak == nullptr || source.bed.values.empty()) return;
     attempt(source, {"figures/compare.png", "simulated and surveyed extent"}, figures, warnings,
@@ -116,9 +116,10 @@ void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
                 if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
                 map.simulated = pixel_outline(peak->raster, source.footprint_depth);
                 const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
-                map.footer = fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
-                                         areas.hit, areas.beyond, areas.missed, areas.iou()) +
-                             source.footer;
+                map.footer =
+                    fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
+                                areas.hit, areas.beyond, areas.missed, areas.iou()) +
+                    source.footer;
                 return render_map(map, png, why_not);
             });
 }

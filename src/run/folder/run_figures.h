@@ -26,10 +26,10 @@ struct FigureSource {
     std::vector<Profile> profiles;
     std::vector<Gauge> gauges;
     std::vector<Section> sections;
-    bool in_3d = false;                 ///< the case has a stage of 3D points
+    bool in_3d = false;                    ///< the case has a stage of 3D points
     std::vector<BarrierTop> barrier_tops;  ///< in the case's order
-    std::optional<double> time;       ///< of the profiles besides the first and the last [s]
-    int width = 1400, height = 1200;  ///< of the maps; charts are as wide and 0.6 as high [pixels]
+    std::optional<double> time;            ///< of the profiles besides the first and the last [s]
+    int width = 1400, height = 1200;       ///< of the maps; charts are as wide and 0.6 as high [pixels]
 };
 
 /// Draws all figures into figures/ and returns those that were made. A picture that cannot be drawn is one
@@ -43,8 +43,7 @@ void draw_map(const FigureSource& source, const ProductRaster& product, const st
 
 /// figures/compare.png: the simulated extent (all pixels of peak_depth above footprint_depth) and the surveyed one;
 /// nothing without a survey, the terrain or the peak depth.
-void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                  std::vector<std::string>& warnings);
+void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
 
 /// Draws into a PNG; false with a reason when that is not possible.
 using Draw = std::function<bool(const std::filesystem::path& png, std::string& why_not)>;

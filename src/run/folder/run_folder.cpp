@@ -36,15 +36,16 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "survey_(areas|outlines)\\.vtp", "the survey on the terrain, for ParaView", false},
         {"", "terrain\\.vti", "bed elevation, slope and hillshade", false},
         {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
-        {"rasters",
-         "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]))\\.tif",
+        {"rasters", "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]))\\.tif",
          "GeoTIFF", false},
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
         {"sections", "[^.].*\\.csv", "discharge through a line and the volume that passed it, after every step", false},
-        {"barriers", "[^.].*\\.csv", "forces and moments on a barrier, run-up and what went over, after every step", false},
-        {"figures", "((map|view|section|filmstrip|profile|gauges|sections|barrier|budget)_[^.].*|compare)\\.png", "figure", false},
+        {"barriers", "[^.].*\\.csv", "forces and moments on a barrier, run-up and what went over, after every step",
+         false},
+        {"figures", "((map|view|section|filmstrip|profile|gauges|sections|barrier|budget)_[^.].*|compare)\\.png",
+         "figure", false},
         {"figures", "film_[^.].*\\.(mp4|gif)", "film", false},
         {"insitu", "[^.].*\\.csv", "looked at while the case ran", false},
         {"insitu", "[^.].*\\.pvd", "looked at while the case ran, for ParaView", false},
@@ -93,9 +94,8 @@ std::vector<fs::path> all_files_of(const fs::path& run_dir, const ProductKind& k
 
 /// A UserError with the way out that is the same for every trouble with the folder.
 UserError trouble(const fs::path& run_dir, const std::string& what) {
-    return UserError(
-        fmt::format("{}: {}; expected a folder that can be written to; choose another one with --out",
-                    run_dir.string(), what));
+    return UserError(fmt::format("{}: {}; expected a folder that can be written to; choose another one with --out",
+                                 run_dir.string(), what));
 }
 
 std::string relative_to(const fs::path& run_dir, const fs::path& file) {
@@ -179,8 +179,8 @@ void clear(const fs::path& run_dir, const OtherFiles& others, const std::functio
             if (name == "run.json" || stays(kind) || is_others(others, run_dir, file)) continue;
             fs::remove(file, failure);
             if (failure)
-                throw trouble(run_dir, fmt::format("{} of an earlier run cannot be removed: {}", name,
-                                                   failure.message()));
+                throw trouble(run_dir,
+                              fmt::format("{} of an earlier run cannot be removed: {}", name, failure.message()));
         }
 }
 
@@ -191,9 +191,10 @@ std::vector<fs::path> files_in_the_way(const fs::path& run_dir, const std::vecto
         for (const fs::path& file : found) {
             if (!same_file(file, inputs[i])) continue;
             if (i == 0 && same_file(file, run_dir / "case.toml")) continue;  // is kept as it is
-            throw UserError(fmt::format("{}: the case reads this file and a run writes one of its name; expected a "
-                                        "folder without the case's inputs; choose another one with --out",
-                                        file.string()));
+            throw UserError(
+                fmt::format("{}: the case reads this file and a run writes one of its name; expected a "
+                            "folder without the case's inputs; choose another one with --out",
+                            file.string()));
         }
     if (!inputs.empty())
         found.erase(std::remove_if(found.begin(), found.end(),
@@ -278,18 +279,20 @@ std::vector<std::string> files_made(const fs::path& run_dir) {
 void require_room_for_run(const fs::path& run_dir, const std::vector<fs::path>& inputs, Overwrite overwrite) {
     const std::vector<fs::path> found = files_in_the_way(run_dir, inputs);
     if (overwrite == Overwrite::no && !found.empty())
-        throw UserError(fmt::format("{}: found {}, which a run would replace; expected a folder without a run's files; "
-                                    "choose another one with --out, give --overwrite to replace an earlier run, or "
-                                    "--resume to go on with it",
-                                    run_dir.string(), names_of(run_dir, found)));
+        throw UserError(
+            fmt::format("{}: found {}, which a run would replace; expected a folder without a run's files; "
+                        "choose another one with --out, give --overwrite to replace an earlier run, or "
+                        "--resume to go on with it",
+                        run_dir.string(), names_of(run_dir, found)));
     if (overwrite == Overwrite::no) return;
     const OtherFiles others = other_files(run_dir);
     for (const fs::path& file : found)
         if (has_one_name(run_dir, file) && is_others(others, run_dir, file))
-            throw UserError(fmt::format("{}: found a file that no run left there, by the list in run.json; expected a "
-                                        "folder without files of such names; choose another one with --out, or move it "
-                                        "away",
-                                        file.string()));
+            throw UserError(
+                fmt::format("{}: found a file that no run left there, by the list in run.json; expected a "
+                            "folder without files of such names; choose another one with --out, or move it "
+                            "away",
+                            file.string()));
 }
 
 void prepare_run_folder(const fs::path& run_dir, const std::vector<fs::path>& inputs, Overwrite overwrite) {

@@ -46,8 +46,8 @@ void require_room_for_run(const std::filesystem::path& run_dir, const std::vecto
 
 /// Creates the folder and removes the files of an earlier run, which are those that its run.json lists. Everything
 /// else stays. Throws UserError as above, and when the folder is a file, cannot be made or cannot be written to.
-void prepare_run_folder(const std::filesystem::path& run_dir,
-                        const std::vector<std::filesystem::path>& inputs = {}, Overwrite overwrite = Overwrite::no);
+void prepare_run_folder(const std::filesystem::path& run_dir, const std::vector<std::filesystem::path>& inputs = {},
+                        Overwrite overwrite = Overwrite::no);
 
 /// Removes what a run leaves at its end (report, rasters, figures, ...) and half-written files of a run that was
 /// killed; series and tables stay, for the run to go on with. Throws UserError as above.

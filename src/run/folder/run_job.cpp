@@ -10,20 +10,20 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "compare/flow_width.h"
-#include "run/folder/comparison.h"
-#include "run/folder/cutoff.h"
-#include "run/folder/run_figures.h"
-#include "run/folder/run_film.h"
-#include "run/folder/run_folder.h"
-#include "run/folder/run_3d.h"
-#include "run/folder/run_insitu.h"
-#include "run/folder/states.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
 #include "observe/history.h"
 #include "observe/only_fields.h"
 #include "observe/profiles.h"
 #include "observe/sections.h"
+#include "run/folder/comparison.h"
+#include "run/folder/cutoff.h"
+#include "run/folder/run_3d.h"
+#include "run/folder/run_figures.h"
+#include "run/folder/run_film.h"
+#include "run/folder/run_folder.h"
+#include "run/folder/run_insitu.h"
+#include "run/folder/states.h"
 #include "run/simulation.h"
 #include "terrain/part_of.h"
 #include "vtk_io/survey_vtp.h"
@@ -143,8 +143,8 @@ std::unique_ptr<Observer> make_sections(const Scene& scene, const fs::path& run_
 
 void note_cutoff(RunRecord& record, const fs::path& run_dir) {
     record.pictures_cut_off = true;
-    record.warnings.push_back(fmt::format("interrupted while pictures were drawn; `frana figures {}` draws all of them",
-                                          run_dir.string()));
+    record.warnings.push_back(
+        fmt::format("interrupted while pictures were drawn; `frana figures {}` draws all of them", run_dir.string()));
 }
 
 /// The pictures that the case asks for. An end that is asked for meanwhile leaves a whole run with fewer of them.
@@ -167,9 +167,10 @@ void draw(const FigureSource& source, const Output& output, RunRecord& record) {
 }  // namespace
 
 std::string cutoff_sentence(const fs::path& run_dir) {
-    return fmt::format("interrupted while pictures were drawn; all else of the run is in {0}; `frana figures {0}` "
-                       "draws the pictures",
-                       run_dir.string());
+    return fmt::format(
+        "interrupted while pictures were drawn; all else of the run is in {0}; `frana figures {0}` "
+        "draws the pictures",
+        run_dir.string());
 }
 
 Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vector<BarrierSummary>& barriers,
@@ -206,8 +207,12 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 
-    const RunPlan plan{scene.end, scene.output.every, scene.stop_at_rest, record.end < record.whole_end,
-                       scene.bed.geometry.cell, scene.rest_fraction};
+    const RunPlan plan{scene.end,
+                       scene.output.every,
+                       scene.stop_at_rest,
+                       record.end < record.whole_end,
+                       scene.bed.geometry.cell,
+                       scene.rest_fraction};
     record.summary = run(simulation, plan, observers, interrupt, progress, keeper);
     record.extras = simulation.extras();
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);

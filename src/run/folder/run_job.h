@@ -12,8 +12,8 @@
 namespace frana {
 
 /// The observers that the scene's output asks for, writing into `run_dir`. `rasters` is filled at the end.
-Observers make_observers(const Scene& scene, const std::filesystem::path& run_dir, std::vector<BarrierSummary>& barriers,
-                         std::vector<ProductRaster>& rasters);
+Observers make_observers(const Scene& scene, const std::filesystem::path& run_dir,
+                         std::vector<BarrierSummary>& barriers, std::vector<ProductRaster>& rasters);
 
 /// What is said of a run whose pictures were cut off.
 std::string cutoff_sentence(const std::filesystem::path& run_dir);
@@ -22,8 +22,7 @@ std::string cutoff_sentence(const std::filesystem::path& run_dir);
 /// `record` comes from begin_record(). The returned record has the summary, figures and warnings. A
 /// NumericsError of the simulation is kept in its summary; UserError when a file cannot be written. With a
 /// `keeper` the state is kept while it runs, and the run goes on from the keeper's state if it has one.
-RunRecord carry_out(const Scene& scene, Simulation& simulation, const std::filesystem::path& run_dir,
-                    RunRecord record, const Interrupt& interrupt, Progress& progress,
-                    CheckpointKeeper* keeper = nullptr);
+RunRecord carry_out(const Scene& scene, Simulation& simulation, const std::filesystem::path& run_dir, RunRecord record,
+                    const Interrupt& interrupt, Progress& progress, CheckpointKeeper* keeper = nullptr);
 
 }  // namespace frana

@@ -18,7 +18,8 @@ namespace {
 
 /// Whether the file that was opened still has its name; the run that ended may have removed it in between.
 bool has_its_name(int opened, const fs::path& file) {
-    struct stat here {}, there {};
+    struct stat here {
+    }, there{};
     return ::fstat(opened, &here) == 0 && ::stat(file.c_str(), &there) == 0 && here.st_ino == there.st_ino;
 }
 
@@ -36,9 +37,10 @@ RunLock::RunLock(const fs::path& run_dir) : file_(run_dir / ".frana.lock") {
     for (int attempt = 0; attempt < 100; ++attempt) {
         opened_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (opened_ < 0 && errno == ELOOP)
-            throw UserError(fmt::format("{}: found a link; expected the lock of a run, whose content is replaced; "
-                                        "remove the link, or choose another folder with --out",
-                                        file_.string()));
+            throw UserError(
+                fmt::format("{}: found a link; expected the lock of a run, whose content is replaced; "
+                            "remove the link, or choose another folder with --out",
+                            file_.string()));
         if (opened_ < 0) return;  // the same
         const bool locked = ::flock(opened_, LOCK_EX | LOCK_NB) == 0;
         const bool busy = !locked && errno == EWOULDBLOCK;
@@ -46,9 +48,10 @@ RunLock::RunLock(const fs::path& run_dir) : file_(run_dir / ".frana.lock") {
         ::close(opened_);
         opened_ = -1;
         if (busy)
-            throw UserError(fmt::format("{}: found a run of {} that is still going on there; expected a folder of its "
-                                        "own; wait for its end, or choose another folder with --out",
-                                        run_dir.string(), holder(file_)));
+            throw UserError(
+                fmt::format("{}: found a run of {} that is still going on there; expected a folder of its "
+                            "own; wait for its end, or choose another folder with --out",
+                            run_dir.string(), holder(file_)));
     }
     if (opened_ < 0) return;
     const std::string process = fmt::format("{}\n", ::getpid());

@@ -101,8 +101,12 @@ Json energy_json(const RunSummary& s) {
 
 Json bed_json(const RunSummary& s) {
     const Status::Bed& bed = s.last.bed;
-    return {{"unit", "kg"},          {"initial", bed.initial},          {"eroded", bed.eroded},
-            {"deposited", bed.deposited}, {"final", bed.mass},          {"relative_error", budget(s.first, s.last).bed_error},
+    return {{"unit", "kg"},
+            {"initial", bed.initial},
+            {"eroded", bed.eroded},
+            {"deposited", bed.deposited},
+            {"final", bed.mass},
+            {"relative_error", budget(s.first, s.last).bed_error},
             {"deepest", {{"unit", "m"}, {"eroded", bed.deepest}}}};
 }
 
@@ -186,7 +190,9 @@ std::string reason_text(const RunSummary& summary) {
 /// Why the run ended, and what was in motion then.
 Json rest_json(const RunSummary& s) {
     const bool by_rule = s.reason == "end" || s.reason == "rest";
-    return {{"reason", !by_rule ? s.reason : stopped_in_motion(s) ? "stopped by the rule" : "at rest"},
+    return {{"reason", !by_rule               ? s.reason
+                       : stopped_in_motion(s) ? "stopped by the rule"
+                                              : "at rest"},
             {"moving_mass_share", s.motion.share()},
             {"faster_than", s.slow},
             {"fastest", s.motion.fastest}};
@@ -262,44 +268,43 @@ std::string run_json(const RunRecord& record) {
     const double per_second = s.wall_seconds > 0.0 ? s.particle_steps / s.wall_seconds : 0.0;
     Json figures = Json::array();
     for (const DrawnFigure& figure : record.figures) figures.push_back(figure.path);
-    Json json = {
-        {"version", FRANA_VERSION},
-        {"build", {{"type", FRANA_BUILD_TYPE}, {"compiler", FRANA_COMPILER}, {"arch", FRANA_ARCH}}},
-        {"case", record.name},
-        {"title", record.title},
-        {"caption", record.caption},
-        {"case_file", record.case_file},
-        {"overrides", record.command_line},
-        {"started", s.started},
-        {"ended", s.ended},
-        {"host_threads", std::thread::hardware_concurrency()},
-        {"threads", record.threads},
-        {"exit_reason", s.reason},
-        {"rest", rest_json(s)},
-        {"failure", s.failure_text},
-        {"simulated_time", s.last.time},
-        {"steps", s.steps},
-        {"frames", s.frames},
-        {"grid", {{"nx", record.grid.nx}, {"ny", record.grid.ny}, {"cell", record.grid.cell}}},
-        {"particles", {{"initial", record.particles}, {"final", s.last.particles}}},
-        {"release_volume", record.release_volume},
-        {"wall_seconds", time_json(s)},
-        {"particle_steps", s.particle_steps},
-        {"particle_steps_per_second", per_second},
-        {"budgets", {{"mass", mass_json(s)}, {"momentum", momentum_json(s)}, {"energy", energy_json(s)}}},
-        {"results", results_json(record)},
-        {"flow_width_cells", flow_width_cells(record)},
-        {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},
-        {"figures", figures},
-        {"insitu", insitu_json(record.insitu)},
-        {"barriers", barriers_json(record.barriers)},
-        {"checkpoints",
-         {{"written", record.checkpoints.written},
-          {"failed", record.checkpoints.failed},
-          {"resumed_at", record.checkpoints.resumed_at}}},
-        {"remarks", record.warnings},
-        {"warnings", record.warnings},  // their earlier name
-        {"files", record.files}};
+    Json json = {{"version", FRANA_VERSION},
+                 {"build", {{"type", FRANA_BUILD_TYPE}, {"compiler", FRANA_COMPILER}, {"arch", FRANA_ARCH}}},
+                 {"case", record.name},
+                 {"title", record.title},
+                 {"caption", record.caption},
+                 {"case_file", record.case_file},
+                 {"overrides", record.command_line},
+                 {"started", s.started},
+                 {"ended", s.ended},
+                 {"host_threads", std::thread::hardware_concurrency()},
+                 {"threads", record.threads},
+                 {"exit_reason", s.reason},
+                 {"rest", rest_json(s)},
+                 {"failure", s.failure_text},
+                 {"simulated_time", s.last.time},
+                 {"steps", s.steps},
+                 {"frames", s.frames},
+                 {"grid", {{"nx", record.grid.nx}, {"ny", record.grid.ny}, {"cell", record.grid.cell}}},
+                 {"particles", {{"initial", record.particles}, {"final", s.last.particles}}},
+                 {"release_volume", record.release_volume},
+                 {"wall_seconds", time_json(s)},
+                 {"particle_steps", s.particle_steps},
+                 {"particle_steps_per_second", per_second},
+                 {"budgets", {{"mass", mass_json(s)}, {"momentum", momentum_json(s)}, {"energy", energy_json(s)}}},
+                 {"results", results_json(record)},
+                 {"flow_width_cells", flow_width_cells(record)},
+                 {"p2g_error_max", {{"mass", s.extremes.p2g_mass_error}, {"momentum", s.extremes.p2g_momentum_error}}},
+                 {"figures", figures},
+                 {"insitu", insitu_json(record.insitu)},
+                 {"barriers", barriers_json(record.barriers)},
+                 {"checkpoints",
+                  {{"written", record.checkpoints.written},
+                   {"failed", record.checkpoints.failed},
+                   {"resumed_at", record.checkpoints.resumed_at}}},
+                 {"remarks", record.warnings},
+                 {"warnings", record.warnings},  // their earlier name
+                 {"files", record.files}};
     if (record.extras.points_apart) json["points_apart"] = apart_json(*record.extras.points_apart);
     if (record.extras.breakage) json["structure"] = breakage_json(*record.extras.breakage);
     if (record.extras.water) json["budgets"]["water"] = water_json(*record.extras.water);

@@ -77,23 +77,24 @@ void require_columns(const Loaded& loaded, const fs::path& frames) {
     const auto model = loaded.columns.find("model");
     if (model == loaded.columns.end()) return;
     if (std::none_of(model->second.begin(), model->second.end(), [](double m) { return m != 0.0; })) return;
-    throw UserError(fmt::format(
-        "{}: its particles are points in space already at that time; expected columns; give a --time before the stage in "
-        "space begins, or after it has ended",
-        frames.string()));
+    throw UserError(
+        fmt::format("{}: its particles are points in space already at that time; expected columns; give a --time "
+                    "before the stage in "
+                    "space begins, or after it has ended",
+                    frames.string()));
 }
 
 /// No file of ours has such numbers; one that was changed or damaged may.
 void require_valid(const FlowColumns& columns, const fs::path& frames) {
     const auto refuse = [&](std::size_t p, const char* what, double found, const char* expected) {
-        throw UserError(fmt::format("{}: {} of particle {} is {}; expected {}; run the case again", frames.string(), what,
-                                    columns.id[p], found, expected));
+        throw UserError(fmt::format("{}: {} of particle {} is {}; expected {}; run the case again", frames.string(),
+                                    what, columns.id[p], found, expected));
     };
     for (std::size_t p = 0; p < columns.count(); ++p) {
         const std::pair<const char*, double> numbers[] = {
-            {"depth", columns.depth[p]},  {"mass", columns.mass[p]},    {"volume", columns.volume[p]},
-            {"velocity", columns.vx[p]},  {"velocity", columns.vy[p]},  {"pressure", columns.bed_pressure[p]},
-            {"position", columns.x[p]},   {"position", columns.y[p]},   {"position", columns.bed[p]}};
+            {"depth", columns.depth[p]}, {"mass", columns.mass[p]},   {"volume", columns.volume[p]},
+            {"velocity", columns.vx[p]}, {"velocity", columns.vy[p]}, {"pressure", columns.bed_pressure[p]},
+            {"position", columns.x[p]},  {"position", columns.y[p]},  {"position", columns.bed[p]}};
         for (const auto& [what, number] : numbers)
             if (!std::isfinite(number)) refuse(p, what, number, "a finite number");
         if (columns.depth[p] < 0.0) refuse(p, "depth", columns.depth[p], "0 or more");
@@ -220,7 +221,8 @@ RunState read_run_state(const fs::path& run_dir, double time) {
 Raster bed_of_run(const fs::path& run_dir) {
     const bool vtk = fs::exists(run_dir / "terrain.vti");
     if (!vtk && !fs::exists(run_dir / "run.h5")) throw no_frames(run_dir, "terrain.vti");
-    Raster bed = vtk ? vtk_bed(run_dir) : between_writes([&] { return read_hdf5_particles(run_dir / "run.h5", 0).bed; });
+    Raster bed =
+        vtk ? vtk_bed(run_dir) : between_writes([&] { return read_hdf5_particles(run_dir / "run.h5", 0).bed; });
     bed.crs_wkt = crs_of(run_dir);
     return bed;
 }

@@ -17,11 +17,16 @@ using Json = nlohmann::ordered_json;
 std::string escaped(const std::string& text) {
     std::string result;
     for (const char letter : text) {
-        if (letter == '&') result += "&amp;";
-        else if (letter == '<') result += "&lt;";
-        else if (letter == '>') result += "&gt;";
-        else if (letter == '"') result += "&quot;";
-        else result += letter;
+        if (letter == '&')
+            result += "&amp;";
+        else if (letter == '<')
+            result += "&lt;";
+        else if (letter == '>')
+            result += "&gt;";
+        else if (letter == '"')
+            result += "&quot;";
+        else
+            result += letter;
     }
     return result;
 }
