@@ -21,6 +21,18 @@ struct CloseDataset {
                                 CPLGetLastErrorMsg()));
 }
 
+std::string feature(const std::vector<Vec2>& ring) {
+    std::string corners;
+    for (std::size_t k = 0; k <= ring.size(); ++k) {
+        const Vec2& corner = ring[k % ring.size()];
+        corners += fmt::format("{}[{:.10g}, {:.10g}]", k ? ", " : "", corner.x(), corner.y());
+    }
+    return fmt::format(
+        "{{\"type\": \"Feature\", \"properties\": {{}}, \"geometry\":\n"
+        "{{\"type\": \"Polygon\", \"coordinates\": [[{}]]}}}}",
+        corners);
+}
+
 }  // namespace
 
 void write_made_raster(const std::filesystem::path& file, const Raster& raster) {
@@ -46,16 +58,10 @@ void write_made_raster(const std::filesystem::path& file, const Raster& raster) 
     target.commit();
 }
 
-void write_made_outline(const std::filesystem::path& file, const std::vector<Vec2>& ring) {
-    std::string corners;
-    for (std::size_t k = 0; k <= ring.size(); ++k) {
-        const Vec2& corner = ring[k % ring.size()];
-        corners += fmt::format("{}[{:.10g}, {:.10g}]", k ? ", " : "", corner.x(), corner.y());
-    }
-    write_text(file, fmt::format("{{\"type\": \"FeatureCollection\", \"features\": [\n"
-                                 "{{\"type\": \"Feature\", \"properties\": {{}}, \"geometry\":\n"
-                                 "{{\"type\": \"Polygon\", \"coordinates\": [[{}]]}}}}]}}\n",
-                                 corners));
+void write_made_outline(const std::filesystem::path& file, const MadeOutline& outline) {
+    std::string features = feature(outline.ring);
+    for (const std::vector<Vec2>& ring : outline.others) features += ",\n" + feature(ring);
+    write_text(file, fmt::format("{{\"type\": \"FeatureCollection\", \"features\": [\n{}]}}\n", features));
 }
 
 void write_scene(const MadeScene& scene, const std::filesystem::path& folder) {
@@ -65,7 +71,7 @@ void write_scene(const MadeScene& scene, const std::filesystem::path& folder) {
         throw UserError(fmt::format("{}: the folder cannot be made ({}); choose another with --out", folder.string(),
                                     problem.message()));
     for (const MadeRaster& made : scene.rasters) write_made_raster(folder / made.file, made.raster);
-    for (const MadeOutline& made : scene.outlines) write_made_outline(folder / made.file, made.ring);
+    for (const MadeOutline& made : scene.outlines) write_made_outline(folder / made.file, made);
 }
 
 }  // namespace frana

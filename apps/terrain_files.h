@@ -10,8 +10,8 @@ namespace frana {
 /// reason.
 void write_made_raster(const std::filesystem::path& file, const Raster& raster);
 
-/// Writes an outline as GeoJSON in map coordinates. UserError when the file cannot be written.
-void write_made_outline(const std::filesystem::path& file, const std::vector<Vec2>& ring);
+/// Writes outlines as GeoJSON in map coordinates, a feature each. UserError when the file cannot be written.
+void write_made_outline(const std::filesystem::path& file, const MadeOutline& outline);
 
 /// All files of a scene into a folder, which is made if need be.
 void write_scene(const MadeScene& scene, const std::filesystem::path& folder);

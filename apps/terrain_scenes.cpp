@@ -181,7 +181,9 @@ const std::vector<NamedScene>& made_scenes() {
         {"blocks", "slopes and valleys for a block (van den Bout et al. 2021, 4)", blocks},
         {"debris_flow", "gully with a fan before it", debris_flow},
         {"tiff_particles", "picture of 100 x 100 pixels (Fois et al. 2025, 4.1)", tiff_particles},
-        {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track}};
+        {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track},
+        {"loose_gully", "gully with loose ground in its bed, and a fan", loose_gully},
+        {"fan", "fan with houses below a gully", fan}};
     return scenes;
 }
 

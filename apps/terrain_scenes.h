@@ -14,10 +14,11 @@ struct MadeRaster {
     Raster raster;
 };
 
-/// An outline that a case reads: one ring, not closed.
+/// Outlines that a case reads: rings, not closed.
 struct MadeOutline {
     std::string file;  ///< "release.geojson"
     std::vector<Vec2> ring;
+    std::vector<std::vector<Vec2>> others = {};  ///< further ones in the same file
 };
 
 /// Everything that is generated for one case.
@@ -63,6 +64,11 @@ MadeScene tiff_particles();
 /// A parabola of 34 degrees at its head and 12 at its foot, then flat ground, with a channel down its middle;
 /// 5 m cells.
 MadeScene avalanche_track();
+/// A gully of 30 degrees at its head and 9 at its mouth, and the fan before it, with a raster of the loose ground in its bed
+/// and a scar at its head; 2.5 m cells.
+MadeScene loose_gully();
+/// A fan of 8 degrees at its apex and 4 at its foot below a gully, with its outline and nine houses; 2.5 m cells.
+MadeScene fan();
 
 /// A scene by name.
 struct NamedScene {

@@ -17,6 +17,13 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
+/// Outlines stay smooth where there is no terrain.
+std::vector<double> depth_without_gaps(const ProductRaster& depth) {
+    std::vector<double> values = depth.raster.values;
+    for (double& value : values) value = std::isnan(value) ? 0.0 : value;
+    return values;
+}
+
 /// `extent`: the depth that says where the flow is, for a field that is no depth.
 MapFigure map_of(const FigureSource& source, const ProductRaster& product, const std::string& what,
                  const ProductRaster* extent) {
@@ -29,8 +36,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
         for (double& value : map.field) value *= 1e-3;
     map.shown_above = source.footprint_depth;
     if (!depth && extent && extent->raster.values.size() == map.field.size()) {
-        map.outline_field = extent->raster.values;
-        for (double& value : map.outline_field) value = std::isnan(value) ? 0.0 : value;  // outlines stay smooth
+        map.outline_field = depth_without_gaps(*extent);
         map.outline_label = extent->name == "peak_depth" ? "peak depth [m]" : "depth [m]";
     }
     if (product.name.find("stress") != std::string::npos) map.colormap = Colormap::diverging;
@@ -46,6 +52,26 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     map.width = source.width;
     map.height = source.height;
     return map;
+}
+
+/// What the flow took of its bed and left there, loss blue and gain red, over the flow's extent.
+void draw_change_map(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                     std::vector<std::string>& warnings) {
+    const ProductRaster *change = find_product(source.rasters, "bed_change"),
+                        *peak = find_product(source.rasters, "peak_depth");
+    if (change == nullptr || peak == nullptr) return;
+    double most = 0.0;
+    for (const double value : change->raster.values) most = std::fmax(most, std::abs(value));
+    if (most == 0.0) return;
+    attempt(source, {"figures/map_bed_change.png", "change of the bed"}, figures, warnings,
+            [&](const fs::path& png, std::string& why_not) {
+                MapFigure map = map_of(source, *change, "change of the bed", nullptr);
+                map.outline_field = depth_without_gaps(*peak);
+                map.outline_label = "peak depth [m]";
+                map.colormap = Colormap::diverging;
+                map.range = {-most, most};
+                return render_map(map, png, why_not);
+            });
 }
 
 /// The peak depth on the terrain, seen up the slope.
@@ -92,6 +118,7 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     if (const ProductRaster* water = find_product(source.rasters, "final_water_depth"))
         draw_map(source, *water, "free water at the end", figures, warnings,
                  find_product(source.rasters, "peak_depth"));
+    draw_change_map(source, figures, warnings);
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
         draw_view(source, *peak, figures, warnings);
     draw_overlay(source, figures, warnings);
