@@ -103,6 +103,19 @@ private:
 
 }  // namespace
 
+TEST_CASE("Points that rest before they could split do so all the same, and in a run that is resumed too", "[resume]") {
+    // One point a cell splits at once where it may. Steps are so short that six of them come before the first chance.
+    Scene scene = scene_on(40, 40, 1.0, [](double, double) { return 0.0; });
+    scene.bed_law = bed::Coulomb{3.0};
+    scene.scheme.cfl = 0.1;
+    verify::place(
+        scene, [](double x, double y) { return std::hypot(x - 20, y - 20) < 6 ? 0.1 : 0.0; },
+        verify::Placement::aligned, 1);
+    const auto straight = check_resume(scene, 4.0, 1, 1);
+    CHECK(straight->status().max_speed == 0.0);
+    CHECK(straight->status().particles == 4 * scene.particles.count());
+}
+
 TEST_CASE("A kept state goes on with the same bits, with points that split, merge and leave", "[resume]") {
     const Threads restored;
     const Scene scene = slide();

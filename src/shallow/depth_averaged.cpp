@@ -142,6 +142,7 @@ void DepthAveraged::advance(double until) {
     const double share = share_of_ordinary_step();
     const double dt = timed_("kick and friction", [&] { return update_nodes(step_length(until)); });
     flow_.carried_share = 1.0 - share;
+    flow_.rest.settled = since_split_ == 0.0 || flow_.scheme.paper_pressure;  // that preset does neither
     since_split_ += share;
     const bool due = since_split_ >= (1.0 - 1e-9) * kStepsBetweenSplits;
     timed_("kick and friction", [&] { mirror_motion(flow_); });

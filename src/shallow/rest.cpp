@@ -146,7 +146,7 @@ void note_rest(Flow& flow, Index n, bool at_rest) {
     std::uint8_t& quiet = flow.active.quiet[tile];
     if (!at_rest || !flow.scheme.sleep)
         quiet = 0;
-    else if (quiet + 1 < kAsleep || may_sleep(flow, tile))
+    else if (quiet + 1 < kAsleep || (flow.rest.settled && may_sleep(flow, tile)))
         quiet = std::min<std::uint8_t>(quiet + 1, kAsleep);
 }
 

@@ -1,8 +1,9 @@
 #pragma once
 // Material at rest sleeps, tile by tile: what cannot change is not computed again, and the run has the same bits.
 //
-// A tile sleeps when kAsleep gathers (mpm/tile_grid.h) in a row found all its points without velocity and gradient: its
-// points then stay as they are, and so does what they deposit. While any tile sleeps, a step goes over
+// A tile sleeps when kAsleep gathers (mpm/tile_grid.h) in a row found all its points without velocity and gradient, and
+// splitting and merging, which come every few steps, have found nothing to do there since: its points then stay as they
+// are, and so does what they deposit. While any tile sleeps, a step goes over
 // - the points of tiles awake and of tiles that touch a node in motion or deposited anew (`gathers`),
 // - the points of tiles that touch a node which a tile awake touches (`deposits`): its sums are made again, in their order,
 // - the nodes near such nodes (`active`). All others keep what they had, and sums over tiles count them as they are.
@@ -38,6 +39,7 @@ struct Rest {
     LazyArray<std::uint8_t> known;   ///< 1: was on the work list of the last deposit
     std::vector<std::uint8_t> gathers, deposits;  ///< by position in ActiveTiles
     bool some_asleep = false;                     ///< in the present deposit; otherwise it is of all points
+    bool settled = false;                         ///< points were split and merged after the last gather
     std::vector<Index> work_before;               ///< work list of the last deposit
     std::vector<SavedGroup> saved;
 };
