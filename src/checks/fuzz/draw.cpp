@@ -125,7 +125,7 @@ std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) {
     return Dice(seed ^ (salt * 0x9fb21c651e98df25u)).bits();
 }
 
-constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kScene = 16;  // salts
+constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kInflow = 4, kScene = 16;  // salts
 
 }  // namespace
 
@@ -148,6 +148,8 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
             if (kind < 0.27) mirror(draft, dice.one_of({Mirror::x, Mirror::y, Mirror::diagonal}));
             Dice loose(salted(seed, kLoose), n);
             if (loose.chance(0.2)) draw_erodible(loose, draft);
+            Dice inflow(salted(seed, kInflow), n);
+            if (inflow.chance(0.15)) draw_inflow(inflow, draft);
         }
     }
     draft.keys["time.end"] = "1.0e6";

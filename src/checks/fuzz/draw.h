@@ -34,6 +34,8 @@ void draw_pile(Dice& dice, Draft& draft);
 void draw_lake(Dice& dice, Draft& draft);
 /// Loose ground under what is drawn so far, where the scheme knows that.
 void draw_erodible(Dice& dice, Draft& draft);
+/// A line through which more comes in, where the terrain has room for one.
+void draw_inflow(Dice& dice, Draft& draft);
 /// Makes every raster, and velocity, its own mirror image.
 void mirror(Draft& draft, Mirror mirror);
 

@@ -113,6 +113,38 @@ void learn_release(const Scene& scene, Facts& facts) {
     }
 }
 
+/// Of nodes up to eight cells from a place: lines that are drawn are that long [m].
+double highest_around(const Raster& bed, const Vec2& at) {
+    constexpr Index kAround = 8;
+    const GridGeometry& g = bed.geometry;
+    const auto i0 = static_cast<Index>(std::lround((at.x() - g.x0) / g.cell));
+    const auto j0 = static_cast<Index>(std::lround((at.y() - g.y0) / g.cell));
+    double highest = -std::numeric_limits<double>::infinity();
+    for (Index j = std::max<Index>(0, j0 - kAround); j <= std::min(g.ny - 1, j0 + kAround); ++j)
+        for (Index i = std::max<Index>(0, i0 - kAround); i <= std::min(g.nx - 1, i0 + kAround); ++i)
+            if (std::isfinite(bed.at(i, j))) highest = std::max(highest, bed.at(i, j));
+    return highest;
+}
+
+/// What comes in counts as if it had been there.
+void learn_inflows(const Scene& scene, Facts& facts) {
+    for (const Inflow& inflow : scene.inflows) {
+        double highest = -std::numeric_limits<double>::infinity(), deepest = 0.0, volume = 0.0;
+        for (const Vec2& corner : inflow.line) highest = std::max(highest, highest_around(scene.bed, corner));
+        for (std::size_t n = 0; n < inflow.time.size(); ++n) {
+            const double speed = inflow.speed[n];
+            facts.inflow_speed = std::max(facts.inflow_speed, std::hypot(1.0, facts.steepest) * speed);
+            if (speed > 0.0) deepest = std::max(deepest, inflow.discharge[n] / (speed * inflow.width()));
+            if (n > 0)
+                volume += 0.5 * (inflow.discharge[n] + inflow.discharge[n - 1]) * (inflow.time[n] - inflow.time[n - 1]);
+        }
+        facts.release_depth = std::max(facts.release_depth, deepest);
+        facts.highest_inflow = std::max(facts.highest_inflow, highest + deepest);
+        facts.release_energy +=
+            scene.density * volume * (0.5 * scene.gravity * deepest + 0.5 * facts.inflow_speed * facts.inflow_speed);
+    }
+}
+
 /// A bed that sinks may become steeper, and bends that no Hessian of the start has.
 void learn_erodible(const ErodibleBed& bed, const Flow& flow, Facts& facts) {
     facts.erodes = true;
@@ -129,6 +161,7 @@ void learn_erodible(const ErodibleBed& bed, const Flow& flow, Facts& facts) {
 void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
     learn_bed(scene, flow, facts);
     if (scene.erodible) learn_erodible(*scene.erodible, flow, facts);
+    learn_inflows(scene, facts);
     if (scene.still_surface) {
         facts.lake = true;
         facts.level_error = off_level(flow, *scene.still_surface);

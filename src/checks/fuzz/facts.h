@@ -24,9 +24,11 @@ struct Facts {
     double release_energy = 0.0;  ///< that its depth alone could set free [J]
     /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
     double hidden_energy = 0.0;
-    double loose = 0.0;          ///< deepest that an erodible bed may sink [m]
-    bool erodes = false;         ///< the flow takes up its bed
-    bool linear = false;         ///< linear shape functions
+    double loose = 0.0;                                                ///< deepest that an erodible bed may sink [m]
+    double inflow_speed = 0.0;                                         ///< fastest that comes in through a line [m/s]
+    double highest_inflow = -std::numeric_limits<double>::infinity();  ///< its highest surface [m]
+    bool erodes = false;                                               ///< the flow takes up its bed
+    bool linear = false;                                               ///< linear shape functions
     double turn = 0.0;           ///< largest change of the slope across a cell that turns velocities [1]
     bool affine = false;         ///< points bring the nodes a velocity that changes along the gradient they carry
     bool carried_depth = false;  ///< pressure is that of the depth which points carry, not of the nodes' (paper preset)

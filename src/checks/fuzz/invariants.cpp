@@ -54,7 +54,7 @@ const std::vector<std::string>& invariant_names() {
 Watch::Watch(const Facts& facts, const Snapshot& start) : facts_(facts), start_(start) {
     mass_ = facts.all_in_points ? sum_of(start.points.mass) : start.now.mass;
     most_mass_ = mass_;
-    highest_ = facts.highest_rain, lowest_ = kInfinite;
+    highest_ = std::max(facts.highest_rain, facts.highest_inflow), lowest_ = kInfinite;
     at_hand_ = start.now.kinetic + facts.release_energy;
     deepest_ = facts.release_depth;
     for (std::size_t p = 0; p < start.points.mass.size(); ++p)
@@ -134,10 +134,11 @@ std::optional<Violation> Watch::positive(const Snapshot& state) {
 std::optional<Violation> Watch::mass(const Snapshot& state) {
     const double present = facts_.all_in_points ? sum_of(state.points.mass) : state.between.mass;
     const Status::Bed& bed = state.between.bed;
-    const double of_bed = bed.mass - bed.initial;
-    const double error = std::abs(present + state.between.mass_left + of_bed - mass_);
+    const double of_bed = bed.mass - bed.initial, came = state.between.mass_in;
+    const double error = std::abs(present + state.between.mass_left + of_bed - came - mass_);
     double share = 0.5 * kEps * static_cast<double>(points_ + state.between.step);
     if (!facts_.all_in_points) share = std::max(share, kMassShare);
+    if (came > 0.0) share = std::max(share, kMassShare);     // rows sum up to the table, to round-off
     if (facts_.erodes) share = std::max(share, kMassShare);  // nodes lose what points gain, to round-off of the sums
     const double allowed = share * (most_mass_ + std::abs(state.between.mass_left) + bed.initial);
     return judged("mass", error, allowed, state, "mass lost or gained [kg]");
@@ -170,8 +171,9 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
                           (now.stored - first.stored) + (now.energy_left - first.energy_left);
     // What leaves is recorded with the bed of the nearest node, half a cell away at most.
     const double held_back = near_open_sides(facts_, start_.points) + near_open_sides(facts_, state.points);
-    const double recorded = facts_.gravity * (std::abs(now.mass_left) * (facts_.one_cell_drop + deepest_) +
-                                              held_back * facts_.one_cell_drop);
+    const double recorded =
+        facts_.gravity * ((std::abs(now.mass_left) + now.mass_in) * (facts_.one_cell_drop + deepest_) +
+                          held_back * facts_.one_cell_drop);
     const double round_off = kEps * static_cast<double>(points_ + most_nodes_) * std::abs(first.potential);
     const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
     const double slope = slope_uphill();
@@ -191,7 +193,8 @@ double Watch::beyond(double bound) const {
 std::optional<Violation> Watch::speed(const Snapshot& state) {
     if (facts_.virtual_mass) return std::nullopt;
     const double uphill = facts_.energy_law ? std::hypot(1.0, slope_uphill()) : 1.0;  // otherwise in `stretch`
-    const double wave = start_.fastest() + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
+    const double wave =
+        std::max(start_.fastest(), facts_.inflow_speed) + 2.0 * uphill * std::sqrt(facts_.gravity * deepest_);
     const double drop = std::max(0.0, highest_ - lowest_);
     const double bound = facts_.stretch * facts_.stretch * std::sqrt(wave * wave + 2.0 * facts_.gravity * drop);
     return judged("speed", state.max_speed, (1.0 + beyond(bound)) * bound, state, "speed beyond the energy line [m/s]");
@@ -202,8 +205,9 @@ std::optional<Violation> Watch::head(const Snapshot& state) {
     if (!facts_.in_3d) return std::nullopt;
     const double steep = facts_.stretch * facts_.stretch * (1.0 + kConvergence);
     constexpr double kBlow = 3.0;  // of the speed that heavy and light come with
-    const double front = 2.0 * std::sqrt(facts_.gravity * deepest_), blow = kBlow * start_.fastest() + front;
-    const double wave = std::max(steep * (start_.fastest() + front), blow);
+    const double front = 2.0 * std::sqrt(facts_.gravity * deepest_),
+                 blow = kBlow * std::max(start_.fastest(), facts_.inflow_speed) + front;
+    const double wave = std::max(steep * (std::max(start_.fastest(), facts_.inflow_speed) + front), blow);
     const double share = std::max(kEnergyShare, facts_.stretch > 1.0 ? steep * steep - 1.0 : 0.0);
     double worst = 0.0, found = 0.0, allowed = 1.0;
     for (std::size_t p = 0; p < state.points.mass.size(); ++p) {
