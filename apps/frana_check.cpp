@@ -56,8 +56,17 @@ std::string release_text(const ReleaseSummary& release) {
     text +=
         fmt::format("            volume {:.9g} m3 from raster or polygon, {:.9g} m3 in particles, difference {:.1e}\n",
                     r.volume, r.particle_volume, r.relative_error);
+    if (release.at > 0.0) text += fmt::format("            enters at {:.6g} s\n", release.at);
+    if (release.when_hit) text += "            enters when the flow reaches it\n";
     return text + fmt::format("            bed slope {:.1f} to {:.1f} degrees, {:.1f} on average\n",
                               release.slope_min_deg, release.slope_max_deg, release.slope_mean_deg);
+}
+
+/// Also of those that enter later.
+Index particles_of(const Scene& scene) {
+    Index count = 0;
+    for (const Seeds* seeds : scene.all_particles()) count += seeds->count();
+    return count;
 }
 
 std::string total_text(const BuiltScene& built) {
@@ -71,7 +80,7 @@ std::string total_text(const BuiltScene& built) {
     const double density =
         water ? (1.0 - water->share) * built.scene.density + water->share * water->exchange.material.fluid_density
               : built.scene.density;
-    return fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n", built.scene.particles.count(),
+    return fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n", particles_of(built.scene),
                        particle_volume, volume, particle_volume * density);
 }
 
@@ -82,7 +91,6 @@ struct Forecast {
 };
 
 Forecast forecast(const Scene& scene) {
-    const Seeds& seeds = scene.particles;
     const auto& bed = scene.bed;
     double lowest = INFINITY;
     for (const double z : bed.values)
@@ -90,14 +98,17 @@ Forecast forecast(const Scene& scene) {
     double speed = 0.0;
     double depth = 0.0;
     double top = lowest;
-    for (std::size_t p = 0; p < seeds.x.size(); ++p) {
-        const auto i =
-            std::clamp<Index>(std::lround((seeds.x[p] - bed.geometry.x0) / bed.geometry.cell), 0, bed.geometry.nx - 1);
-        const auto j =
-            std::clamp<Index>(std::lround((seeds.y[p] - bed.geometry.y0) / bed.geometry.cell), 0, bed.geometry.ny - 1);
-        speed = std::max(speed, std::hypot(seeds.vx[p], seeds.vy[p]));
-        depth = std::max(depth, seeds.depth[p]);
-        if (!std::isnan(bed.at(i, j))) top = std::max(top, bed.at(i, j) + seeds.depth[p]);
+    for (const Seeds* of : scene.all_particles()) {
+        const Seeds& seeds = *of;
+        for (std::size_t p = 0; p < seeds.x.size(); ++p) {
+            const auto i = std::clamp<Index>(std::lround((seeds.x[p] - bed.geometry.x0) / bed.geometry.cell), 0,
+                                             bed.geometry.nx - 1);
+            const auto j = std::clamp<Index>(std::lround((seeds.y[p] - bed.geometry.y0) / bed.geometry.cell), 0,
+                                             bed.geometry.ny - 1);
+            speed = std::max(speed, std::hypot(seeds.vx[p], seeds.vy[p]));
+            depth = std::max(depth, seeds.depth[p]);
+            if (!std::isnan(bed.at(i, j))) top = std::max(top, bed.at(i, j) + seeds.depth[p]);
+        }
     }
     Forecast result;
     double wave = std::sqrt(scene.gravity * depth);
@@ -146,7 +157,7 @@ std::string stage_text(const Scene& scene) {
 
 std::string forecast_text(const Scene& scene) {
     const Forecast f = forecast(scene);
-    const double per_step = double(scene.particles.count()) * seconds_per_particle_step;
+    const double per_step = double(particles_of(scene)) * seconds_per_particle_step;
     std::string text =
         fmt::format("steps       {:.0f} (as fast as at the start) to {:.0f} (in free fall, {:.3g} m/s), for {} s\n",
                     f.fewest_steps, f.most_steps, f.fall_speed, scene.end);

@@ -55,17 +55,25 @@ void complete(Sets& sets) {
     }
 }
 
-const std::string kLeast = "[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = 1\n[time]\nend = 1\n";
+/// One release is there to hit the other.
+const std::string kLeast =
+    "[terrain]\ndem = \"dem.tif\"\n[[release]]\ndepth = 1\n[[release]]\ndepth = 1\n[time]\nend = 1\n";
 const std::map<std::string, std::string> kTables = {
     {"stage", "[[stage]]\nmodel = \"solid_flow\"\n"},
     {"inflow", "[[inflow]]\nname = \"a\"\nline = [[0, 0], [9, 0]]\nvolume = 10\n"},
     {"section", "[[section]]\nname = \"a\"\nline = [[0, 0], [9, 0]]\n"},
     {"barrier", "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"}};
 
+/// "release.at" -> "release.0.at"; other keys as they are.
+std::string in_first_table(const std::string& key) {
+    const std::size_t dot = key.find('.');
+    return among(repeated_tables(), key.substr(0, dot)) ? key.substr(0, dot) + ".0" + key.substr(dot) : key;
+}
+
 void parse(Sets sets, const std::vector<std::string>& tables) {
     complete(sets);
     std::vector<std::string> arguments;
-    for (const auto& [key, value] : sets) arguments.push_back(key + "=" + value);
+    for (const auto& [key, value] : sets) arguments.push_back(in_first_table(key) + "=" + value);
     CAPTURE(arguments);
     std::string text = kLeast;
     for (const std::string& table : tables) text += kTables.at(table);
@@ -83,8 +91,8 @@ std::string sentence(const Combination& row, const Values& partner, const std::s
                      const std::string& other) {
     const bool table = row.refused.are == Are::tables;
     const std::string with = row.said.empty() ? " with " + partner.key + " = " + in_message(partner, other) : row.said;
-    return (table ? "case.toml:7: " + row.refused.key + ".0" : "--set " + row.refused.key) + ": found " +
-           in_message(row.refused, value) + with + "; " + row.expected + "; " + row.way_out;
+    return (table ? "case.toml:9: " + row.refused.key + ".0" : "--set " + in_first_table(row.refused.key)) +
+           ": found " + in_message(row.refused, value) + with + "; " + row.expected + "; " + row.way_out;
 }
 
 }  // namespace

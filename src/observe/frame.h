@@ -26,8 +26,8 @@ struct Status : Clock {
     Index particles = 0;
     double mass = 0.0;       ///< [kg]
     double mass_left = 0.0;  ///< left through open sides or exits since the start [kg]
-    double mass_in = 0.0;    ///< came in through lines since the start [kg]; its momentum and energy count as what
-                             ///< did not leave
+    double mass_in = 0.0;    ///< came in through lines, or was released later, since the start [kg]; its momentum
+                             ///< and energy count as what did not leave
     std::array<double, 2> momentum{};       ///< [kg m/s]
     std::array<double, 2> impulse{};        ///< of all forces since the start [kg m/s]; with walls their push
                                             ///< is recorded as what closes the balance
@@ -97,6 +97,14 @@ struct InflowBudget {
     double expected = 0.0;  ///< by the tables, up to the last row of each that came in [m3]
 };
 
+/// What became of a release that was to enter later.
+struct LateEntry {
+    std::string name;
+    double volume = 0.0;            ///< [m3]
+    std::optional<double> at;       ///< when it was to [s]; nothing: when the flow reaches it
+    std::optional<double> entered;  ///< [s]; nothing: it did not yet
+};
+
 /// Free water, and that which columns confine.
 struct WaterBudget {
     double given = 0.0, free = 0.0, confined = 0.0;      ///< at the start, all; now [m3]
@@ -114,6 +122,7 @@ struct Extras {
     std::optional<PointsApart> points_apart;  ///< what 3D points have come apart into
     std::optional<WaterBudget> water;         ///< where the water is and has gone
     std::optional<InflowBudget> inflow;       ///< what came in through lines
+    std::vector<LateEntry> late;              ///< releases that enter later, in the order of the case
 };
 
 /// A face of a barrier in patches, and what material gave to each since the start.

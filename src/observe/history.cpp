@@ -44,7 +44,8 @@ const std::vector<std::string>& columns() {
                                                    "points_volume",
                                                    "max_speed_on_map",
                                                    "eroded_mass",
-                                                   "deposited_mass"};
+                                                   "deposited_mass",
+                                                   "mass_in"};
     return names;
 }
 
@@ -105,7 +106,8 @@ void History::add(const Status& now) {
                                      now.in_3d.volume,
                                      now.max_speed_on_map,
                                      now.bed.eroded,
-                                     now.bed.deposited};
+                                     now.bed.deposited,
+                                     now.mass_in};
     for (std::size_t i = 0; i < row.size(); ++i)
         if (!std::isfinite(row[i]))
             throw NumericsError(fmt::format("step {} at t = {} s: {} is not finite", now.step, now.time, columns()[i]));

@@ -15,6 +15,12 @@ struct Seeds {
     std::vector<double> size;    ///< edge of the point's square patch [m]
 
     Index count() const { return static_cast<Index>(x.size()); }
+
+    /// Those of `from` with numbers from `begin` to before `end`, behind the ones that are here.
+    void append(const Seeds& from, Index begin, Index end) {
+        for (auto column : {&Seeds::x, &Seeds::y, &Seeds::vx, &Seeds::vy, &Seeds::volume, &Seeds::depth, &Seeds::size})
+            (this->*column).insert((this->*column).end(), (from.*column).begin() + begin, (from.*column).begin() + end);
+    }
 };
 
 }  // namespace frana

@@ -183,6 +183,8 @@ private:
         ReleaseSummary summary;
         summary.name = fmt::format("release.{}", i);
         summary.table = i;
+        summary.at = case_.number(fmt::format("release.{}.at", i));
+        summary.when_hit = case_.flag(fmt::format("release.{}.when_hit", i));
         for (const char* name : {"outline", "mask", "depth", "surface"}) {
             const std::string key = fmt::format("release.{}.{}", i, name);
             if (case_.given(key) && case_.is_text(key)) summary.name += fmt::format(" ({})", case_.word(key));
@@ -230,6 +232,26 @@ private:
                 deepest = std::max(deepest, scene_.particles.depth[static_cast<std::size_t>(p)]);
             check_volume(i, reports[i]);
         }
+        take_out_late();
+    }
+
+    /// Those that enter later are no particles of the start.
+    void take_out_late() {
+        const auto is_late = [](const ReleaseSummary& release) { return release.at > 0.0 || release.when_hit; };
+        if (std::none_of(built_.releases.begin(), built_.releases.end(), is_late)) return;
+        Seeds at_start;
+        Index p = 0, table = -1;
+        for (const ReleaseSummary& release : built_.releases) {
+            const Index end = p + release.report.count;
+            if (is_late(release) && release.table != table)
+                scene_.late.push_back({release.name, release.at, {}, 0}), table = release.table;
+            if (release.when_hit) scene_.late.back().at.reset();
+            (is_late(release) ? scene_.late.back().seeds : at_start).append(scene_.particles, p, end);
+            p = end;
+        }
+        scene_.particles = std::move(at_start);
+        Index id = scene_.particles.count();
+        for (LateRelease& late : scene_.late) late.first_id = id, id += late.seeds.count();
     }
 
     /// One release up to one level, at rest, over the whole window or within an outline that holds its shore: a lake,
@@ -239,6 +261,7 @@ private:
         if (case_.count("release") != 1 || !given("surface") || case_.is_text("release.0.surface")) return;
         const double level = case_.number("release.0.surface");
         if (given("mask") || given("velocity")) return;
+        if (built_.releases[0].at > 0.0 || built_.releases[0].when_hit) return;
         if (given("outline") && !holds_shore(releases_[0], scene_.bed, level)) return;
         scene_.still_surface = level;
     }

@@ -41,6 +41,8 @@ private:
     void check_alternatives(const std::string& prefix, const std::string& table);
     void check_unused(const std::string& prefix, const std::string& table);
     void check_release(const std::string& prefix);
+    void check_release_time(const std::string& prefix);
+    void check_something_flows();
     void check_layer(const std::string& prefix);
     void check_barrier(const std::string& prefix);
     void check_inflow(const std::string& prefix);

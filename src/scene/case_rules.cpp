@@ -58,6 +58,7 @@ void CaseReader::check_rules() {
     check_tables();
     for (const char* table : {"inflow", "profile", "gauge", "section", "barrier", "insitu", "camera"})
         check_line_names(table);
+    check_something_flows();
     check_meaning();
     check_combinations();
 }
@@ -131,6 +132,7 @@ void CaseReader::check_unused(const std::string& prefix, const std::string& tabl
 
 void CaseReader::check_release(const std::string& prefix) {
     check_layer(prefix);
+    check_release_time(prefix);
     const auto there = [&](const char* name) {
         return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
     };
@@ -150,6 +152,37 @@ void CaseReader::check_release(const std::string& prefix) {
         wrong(prefix + "included_in_dem", "found true together with surface",
               "expected depth, since the elevation model is the surface already",
               "give depth = ..., a number or a raster of the thickness");
+}
+
+/// resolved.toml writes the defaults of both keys.
+void CaseReader::check_release_time(const std::string& prefix) {
+    const auto there = [&](const char* name) { return case_.given(prefix + name); };
+    const double at = there("at") ? case_.number(prefix + "at") : 0.0;
+    const bool when_hit = there("when_hit") && case_.flag(prefix + "when_hit");
+    if (at > 0.0 && when_hit)
+        wrong(prefix + "at", "found together with when_hit",
+              "expected one of the two: a time, or the flow that sets it going", "remove one of them");
+    if (case_.given("time.end") && at > 0.0 && at >= case_.number("time.end"))
+        wrong(prefix + "at", fmt::format("found {:.6g} s", at),
+              fmt::format("expected a time before time.end = {:.6g} s, or it never enters", case_.number("time.end")),
+              "give an earlier time, or run longer");
+    if ((at > 0.0 || when_hit) && there("included_in_dem") && case_.flag(prefix + "included_in_dem"))
+        wrong(prefix + "included_in_dem",
+              fmt::format("found true together with {}", when_hit ? "when_hit" : "at above 0"),
+              "expected false: the bed is cut at the start, and would be a pit until the release enters",
+              "remove it, and give an elevation model without the mass");
+}
+
+/// Releases that wait for a flow need one.
+void CaseReader::check_something_flows() {
+    const Index count = case_.count("release");
+    if (count == 0 || case_.count("inflow") > 0 || misread_.count("inflow") > 0) return;
+    for (Index i = 0; i < count; ++i) {
+        const std::string key = fmt::format("release.{}.when_hit", i);
+        if (!case_.given(key) || !case_.flag(key)) return;
+    }
+    wrong("release.0.when_hit", "found true for every release, and no [[inflow]]",
+          "expected something that flows by itself, to hit them", "remove when_hit from one of them");
 }
 
 void CaseReader::check_layer(const std::string& prefix) {
@@ -236,9 +269,10 @@ void CaseReader::check_combinations() {
     std::set<std::string> done;
     const auto unread = [&](const Values& values) { return misread_.count(values.key) > 0; };
     for (const Combination& row : combinations()) {
-        const std::string& key = row.refused.key;
         if (unread(row.refused) || std::any_of(row.with.begin(), row.with.end(), unread)) continue;
-        if (!row.found(case_) || unused(key) || !done.insert(key + row.expected).second) continue;
+        if (!row.found(case_)) continue;
+        const std::string key = row.refused.key_in(case_);
+        if (unused(key) || !done.insert(key + row.expected).second) continue;
         if (row.refused.are != Values::Are::tables) {
             wrong(key, row.found_text(case_), row.expected, row.way_out);
             continue;

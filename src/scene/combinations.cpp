@@ -28,7 +28,38 @@ std::string value_text(const CaseFile& file, const Values& values) {
     if (of_words(values.are)) return "\"" + file.word(values.key) + "\"";
     if (values.are == Are::on) return "true";
     if (values.are == Are::tables) return (values.key[0] == 'i' ? "an " : "a ") + values.key;
-    return fmt::format("{:.6g}", file.number(values.key));
+    return fmt::format("{:.6g}", file.number(values.key_in(file)));
+}
+
+/// "release.at" -> "release.0.at", "release.1.at", as many as there are; other keys as they are.
+std::vector<std::string> keys_of(const CaseFile& file, const std::string& key) {
+    const std::size_t dot = key.find('.');
+    const std::string table = key.substr(0, dot);
+    if (dot == std::string::npos || !among(repeated_tables(), table)) return {key};
+    std::vector<std::string> keys;
+    for (Index i = 0; i < file.count(table); ++i) keys.push_back(fmt::format("{}.{}{}", table, i, key.substr(dot)));
+    return keys;
+}
+
+bool holds(const CaseFile& file, const Values& values, const std::string& key) {
+    if (values.are == Are::tables) return file.count(key) > 0;
+    if (!file.has(key)) return false;
+    switch (values.are) {
+        case Are::words:
+            return among(values.words, file.word(key));
+        case Are::others:
+            return !among(values.words, file.word(key));
+        case Are::without:
+            return !among(file.words(key), values.words.front());
+        case Are::above_zero:
+            return file.number(key) > 0.0;
+        case Are::zero:
+            return file.number(key) == 0.0;
+        case Are::on:
+            return file.flag(key);
+        default:
+            return !file.flag(key);
+    }
 }
 
 Values is(const char* key, std::vector<std::string> words) { return {key, Are::words, std::move(words)}; }
@@ -172,6 +203,26 @@ void add_space(std::vector<Combination>& table) {
                      " with a stage"});
 }
 
+/// Only the depth-averaged flow, with its own scheme, takes in releases later.
+void add_late_releases(std::vector<Combination>& table) {
+    for (const Values& late : {Values{"release.at", Are::above_zero}, Values{"release.when_hit", Are::on}}) {
+        const std::string none = late.are == Are::on ? "expected false: " : "expected 0: ";
+        table.push_back({late,
+                         {is_not("material.structure.law", {"none"})},
+                         none + "what holds together, and water, begin at the start",
+                         "remove it, or the structure"});
+        table.push_back({late,
+                         {{"stage", Are::tables}},
+                         none + "releases enter the depth-averaged flow alone",
+                         "remove it, or the stage",
+                         " with a stage"});
+        table.push_back({late,
+                         {is("scheme.preset", {"paper"})},
+                         none + "that preset begins with all of its particles",
+                         "remove it, or use the default preset"});
+    }
+}
+
 std::string with_text(const Combination& row) {
     std::string text;
     for (const Values& values : row.with) text += (text.empty() ? "" : ", or ") + values.text();
@@ -180,25 +231,10 @@ std::string with_text(const Combination& row) {
 
 }  // namespace
 
-bool Values::hold(const CaseFile& file) const {
-    if (are == Are::tables) return file.count(key) > 0;
-    if (!file.has(key)) return false;
-    switch (are) {
-        case Are::words:
-            return among(words, file.word(key));
-        case Are::others:
-            return !among(words, file.word(key));
-        case Are::without:
-            return !among(file.words(key), words.front());
-        case Are::above_zero:
-            return file.number(key) > 0.0;
-        case Are::zero:
-            return file.number(key) == 0.0;
-        case Are::on:
-            return file.flag(key);
-        default:
-            return !file.flag(key);
-    }
+std::string Values::key_in(const CaseFile& file) const {
+    for (const std::string& one : keys_of(file, key))
+        if (holds(file, *this, one)) return one;
+    return {};
 }
 
 std::string Values::text() const {
@@ -223,9 +259,9 @@ std::string Values::text() const {
 }
 
 bool Combination::found(const CaseFile& file) const {
-    if (refused.are != Are::tables && !file.given(refused.key)) return false;
-    return refused.hold(file) &&
-           std::any_of(with.begin(), with.end(), [&](const Values& values) { return values.hold(file); });
+    const std::string key = refused.key_in(file);
+    if (key.empty() || (refused.are != Are::tables && !file.given(key))) return false;
+    return std::any_of(with.begin(), with.end(), [&](const Values& values) { return values.hold(file); });
 }
 
 std::string Combination::found_text(const CaseFile& file) const {
@@ -242,6 +278,7 @@ const std::vector<Combination>& combinations() {
         add_water(table);
         add_erodible_bed(table);
         add_space(table);
+        add_late_releases(table);
         table.push_back({is_not("output.film", {"none"}),
                          {{"output.formats", Are::without, {"vtk"}}},
                          "expected the frames that a film is made of",

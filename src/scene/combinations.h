@@ -11,12 +11,14 @@ namespace frana {
 /// Some of the values that a key can have, or tables of a name that are there at all.
 struct Values {
     enum class Are { words, others, without, above_zero, zero, on, off, tables };
-    std::string key;  ///< of tables their name
+    std::string key;  ///< of tables their name; "release.at" is that of any [[release]]
     Are are = Are::words;
     std::vector<std::string> words = {};  ///< those, all others, or (without) what a list of words lacks
 
     /// Whether the case has one of them, by default or given.
-    bool hold(const CaseFile& file) const;
+    bool hold(const CaseFile& file) const { return !key_in(file).empty(); }
+    /// The key that has one of them, of repeated tables the first: "release.1.at"; empty: none has.
+    std::string key_in(const CaseFile& file) const;
     /// `scheme.shape = "cubic"`, `terrain.model other than "steep"`.
     std::string text() const;
 };

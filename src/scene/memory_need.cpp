@@ -67,7 +67,9 @@ double most_points(const Scene& scene) {
 }
 
 MemoryNeed memory_need(const Scene& scene) {
-    const double nodes = double(scene.bed.geometry.size()), particles = double(scene.particles.count());
+    const double nodes = double(scene.bed.geometry.size());
+    double particles = 0.0;
+    for (const Seeds* seeds : scene.all_particles()) particles += double(seeds->count());
     MemoryNeed need = memory_need(scene.wider ? 0.0 : nodes, particles, scene.output.vtk);
     if (scene.wider) need.nodes = memory_of_part(nodes);
     if (scene.erodible) need.nodes += (scene.erodible->evolves ? erodible_rate + path_rate : erodible_rate) * nodes;

@@ -72,6 +72,10 @@ void add_release(Table& table) {
     table.push_back(velocity);
     table.push_back(flag("release.included_in_dem", false,
                          "the mass still stands in the elevation model and is cut out of the bed"));
+    table.push_back(number("release.at", "s", not_negative, 0.0, "when the release enters the run"));
+    table.push_back(flag("release.when_hit", false,
+                         "the release enters in the step in which a node that it covers is first deeper than "
+                         "output.footprint_depth in the flow (secondary release)"));
     Parameter per_cell = make("particles.per_cell", Kind::integer, "1", "particles in a full cell of the grid");
     per_cell.range = between(1.0, 400.0);
     per_cell.fallback = 4.0;

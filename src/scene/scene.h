@@ -100,6 +100,20 @@ struct Inflow {
     }
 };
 
+/// A release that enters the run later.
+struct LateRelease {
+    std::string name;
+    std::optional<double> at;  ///< [s]; nothing: when the flow first covers a node of its
+    Seeds seeds;
+    Index first_id = 0;  ///< of its particles, which are numbered on from there
+
+    double volume() const {
+        double sum = 0.0;
+        for (const double part : seeds.volume) sum += part;
+        return sum;
+    }
+};
+
 /// From a time on, the material in a window of the map is 3D points (solid3d/mpm3d.h); what flows into the
 /// window later becomes points as it crosses the edge, and what flows out of it columns.
 struct SolidStage {
@@ -208,6 +222,7 @@ struct Scene {
 
     Seeds particles;                      ///< material at the start
     std::vector<Inflow> inflows;          ///< material that comes in later
+    std::vector<LateRelease> late;        ///< likewise, all of a release at once
     std::optional<double> still_surface;  ///< level of a release given as one horizontal surface at rest [m]: the
                                           ///< points' masses are then fitted so that it starts at exact rest
     BedLaw bed_law;
@@ -230,6 +245,13 @@ struct Scene {
     std::optional<SolidStage> solid;      ///< where and when the run goes into space
 
     std::vector<std::string> log;  ///< remarks made while building (resampling, nodata, ...)
+
+    /// Material at the start, and that of each late release.
+    std::vector<const Seeds*> all_particles() const {
+        std::vector<const Seeds*> all = {&particles};
+        for (const LateRelease& release : late) all.push_back(&release.seeds);
+        return all;
+    }
 };
 
 }  // namespace frana

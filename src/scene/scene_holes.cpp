@@ -10,9 +10,11 @@
 namespace frana {
 
 double hole_wall_height(const Scene& scene) {
-    const std::vector<double>& depth = scene.particles.depth;
+    double deepest = 0.0;
+    for (const Seeds* seeds : scene.all_particles())
+        for (const double depth : seeds->depth) deepest = std::max(deepest, depth);
     const double two_cells = 2.0 * scene.bed.geometry.cell;
-    return two_cells + std::min(two_cells, depth.empty() ? 0.0 : *std::max_element(depth.begin(), depth.end()));
+    return two_cells + std::min(two_cells, deepest);
 }
 
 void remark_on_holes(std::vector<std::string>& log, const Holes& holes, const GridGeometry& g, bool open,

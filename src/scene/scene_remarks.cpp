@@ -97,8 +97,10 @@ void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>&
         remark_on(scene.log, Remark::release_slope, place, {release.slope_max_deg});
         remark_on(scene.log, Remark::release_depth, place, {release.max_depth});
     }
-    if (scene.particles.count() == 0 && !scene.inflows.empty()) return;  // all is still to come in
-    remark_on(scene.log, Remark::few_particles, file.place("particles.per_cell"), {double(scene.particles.count())});
+    Index count = 0;
+    for (const Seeds* seeds : scene.all_particles()) count += seeds->count();
+    if (count == 0 && !scene.inflows.empty()) return;  // all is still to come in
+    remark_on(scene.log, Remark::few_particles, file.place("particles.per_cell"), {double(count)});
 }
 
 void remark_on_gaps(const Raster& field, const NodeMarks& claimed, const std::string& place,

@@ -28,7 +28,8 @@ double drift_before_carry(const Scheme& scheme) { return scheme.shape == Shape::
 
 double least_split_mass(const Scene& scene) {
     double largest = 0.0;
-    for (const double volume : scene.particles.volume) largest = std::max(largest, volume);
+    for (const Seeds* seeds : scene.all_particles())
+        for (const double volume : seeds->volume) largest = std::max(largest, volume);
     if (!scene.inflows.empty()) largest = std::max(largest, Feed(scene.inflows).largest_column());
     return scene.scheme.split_min_mass * largest * scene.density;
 }
@@ -57,6 +58,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     flow_.columns.single = scene.scheme.precision == Precision::single;
     if (!scene.sections.empty()) passages_.emplace(scene.sections, flow_.grid);
     if (!scene.inflows.empty()) feed_.emplace(scene.inflows);
+    if (!scene.late.empty()) late_.emplace(scene.late, flow_.grid.geometry());
     choose_sleep();
     if (start == Start::resumed) return;
     flow_.columns.with_real([&](auto real) { place<decltype(real)>(scene.particles); });
@@ -77,6 +79,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     if (fit_) fit_->level_error = off_level(flow_, *scene.still_surface);
     start_momentum_ = status_.momentum;
     signal_ += std::sqrt(flow_.gravity * status_.max_depth);
+    if (late_) enter_late();
 }
 
 /// Seeds become columns behind those that are there: positions in cells, square domains.
@@ -118,7 +121,9 @@ void DepthAveraged::place(const Seeds& seeds) {
         centre_ /= mass;
     else if (feed_)
         centre_ = (feed_->middle() - Vec2(flow_.grid.geometry().x0, flow_.grid.geometry().y0)) / flow_.cell;
-    splitter_.set_next_id(seeds.count());
+    else if (late_)
+        centre_ = (late_->middle() - Vec2(flow_.grid.geometry().x0, flow_.grid.geometry().y0)) / flow_.cell;
+    splitter_.set_next_id(late_ ? late_->next_id(seeds.count()) : seeds.count());
     sorter_.sort(c, flow_.grid, {}, flow_.active);
 }
 
@@ -139,6 +144,7 @@ void DepthAveraged::level_points(double level) {
 
 /// One step: the nodes are updated and braked, the points are carried and deposit where they arrive.
 void DepthAveraged::advance(double until) {
+    if (late_) until = std::min(until, late_->next());  // that time is hit
     const double share = share_of_ordinary_step();
     const double dt = timed_("kick and friction", [&] { return update_nodes(step_length(until)); });
     flow_.carried_share = 1.0 - share;
@@ -163,6 +169,7 @@ void DepthAveraged::advance(double until) {
     if (erosion_) timed_("erosion", [&] { erode(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
+    if (late_) enter_late();
 }
 
 /// Grid updates the nodes for a step of `dt` or, where forces drive them much farther than the step was chosen for, a
@@ -259,6 +266,7 @@ void DepthAveraged::erode(double dt) {
 void DepthAveraged::make_merger() {
     merger_.emplace(flow_);
     if (feed_) merger_.emplace(std::max(merger_->most(), feed_->in_a_square(flow_.cell)));
+    if (late_) merger_.emplace(std::max(merger_->most(), late_->most_in_a_square()));
 }
 
 Index DepthAveraged::split_points() {
@@ -375,6 +383,11 @@ Index DepthAveraged::particle_bytes() const {
 
 std::vector<std::string> DepthAveraged::remarks() const {
     std::vector<std::string> remarks = remarks_on_lost(lost_in_holes_, status_.mass + status_.mass_left);
+    for (const LateEntry& late : extras().late)
+        if (!late.at && !late.entered)
+            remarks.push_back(
+                fmt::format("{}: its {:.6g} m3 did not enter: no flow deeper than {:.3g} m reached it (when_hit)",
+                            late.name, late.volume, footprint_depth_));
     if (!fit_) return remarks;
     constexpr double kLevel = 1e-6;  // [cells]; far above round-off, and currents of it are slow
     const bool rests = fit_->level_error <= kLevel * flow_.cell;

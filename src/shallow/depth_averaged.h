@@ -1,5 +1,6 @@
 #pragma once
 // The depth-averaged material point method (THEORY.md) on steep, curved terrain, or the choices of Fois et al. 2024.
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -9,6 +10,7 @@
 #include "shallow/erosion.h"
 #include "shallow/feed.h"
 #include "shallow/grid_update.h"
+#include "shallow/late.h"
 #include "shallow/mass_fit.h"
 #include "shallow/merge.h"
 #include "shallow/passages.h"
@@ -27,8 +29,11 @@ public:
     const Status& status() const override { return status_; }
     double longest_step() const override;
     MovingMass motion(const MotionQuery& query) const override;
-    bool may_rest() const override { return !more_comes(); }
-    bool more_comes() const override { return feed_ && !feed_->over(); }
+    /// What has just entered has not moved yet.
+    bool may_rest() const override { return !more_comes() && (!late_ || status_.dt > 0.0); }
+    bool more_comes() const override {
+        return (feed_ && !feed_->over()) || (late_ && late_->next() < std::numeric_limits<double>::infinity());
+    }
     Frame frame() override;
     std::vector<PhaseTime> timings() const override { return timed_.times(); }
     Sample at(const Vec2& point) const override;
@@ -107,6 +112,10 @@ private:
     void adapt_points(bool deposit_follows, bool due, bool points_left, bool fed);
     void erode(double dt);
     void take_rows();
+    void enter_late();
+    void take_late(const std::vector<const LateRelease*>& releases);
+    template <class Real>
+    double place_late(const LateRelease& release, PointSums& came);
     void support_inflows();
     double potential_of_support() const;
     void choose_sleep();
@@ -136,7 +145,8 @@ private:
     std::optional<Merger> merger_;    ///< nothing when the scheme does not merge
     std::optional<Erosion> erosion_;  ///< nothing when the bed is rock
     TileSorter sorter_;
-    std::optional<Feed> feed_;  ///< nothing without inflows
+    std::optional<Feed> feed_;          ///< nothing without inflows
+    std::optional<LateReleases> late_;  ///< nothing without late releases
     struct Supported {
         Index k;
         double before;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/compensated_sum.h"
 #include "base/error.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/sides.h"
@@ -135,6 +136,62 @@ void DepthAveraged::take_rows() {
             signal_, std::hypot(rows.seeds.vx[n], rows.seeds.vy[n]) + std::sqrt(flow_.gravity * rows.seeds.depth[n]));
     if (before == 0) status_.dt = 0.0, since_split_ = 0.0;  // as at a start
     if (feed_->over()) wake_all(flow_), choose_sleep();
+}
+
+/// Releases whose time has come, and those that the flow has reached. What enters may reach others.
+void DepthAveraged::enter_late() {
+    const auto reached = [this](Index i, Index j) {
+        return flow_.is_in_reach(i, j) && flow_.nodes.depth[flow_.grid.at(i, j)] > footprint_depth_;
+    };
+    for (;;) {
+        const std::vector<const LateRelease*>& releases = late_->enter(status_.time, reached);
+        if (releases.empty()) return;
+        take_late(releases);
+    }
+}
+
+/// Returns the kinetic energy that it brings [J].
+template <class Real>
+double DepthAveraged::place_late(const LateRelease& release, PointSums& came) {
+    Columns& c = flow_.columns;
+    const Index before = c.count();
+    append<Real>(release.seeds, release.first_id);
+    Carried<Real>& held = c.carried<Real>();
+    double kinetic = 0.0;
+    CompensatedSum mass(came.left_mass);
+    for (Index p = before; p < c.count(); ++p) {
+        for (auto* zero : {&held.cxx, &held.cxy, &held.cyx, &held.cyy, &held.r1y, &held.r2x}) (*zero)[p] = Real{0};
+        const Index k = flow_.grid.nearest(c.x[p], c.y[p]);
+        kinetic += kinetic_of<Real>(flow_, p, k);
+        leave<Real>(flow_, p, k, came);
+        mass.add(c.mass[p]);
+    }
+    came.left_mass = mass.value();
+    return kinetic;
+}
+
+/// All that moves is brought to the present, so that the next step is as at a start for all of it. Potential energy comes in as
+/// the nodes count it.
+void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
+    if (flow_.columns.count() > 0) catch_up();
+    status_.dt = 0.0, since_split_ = 0.0;
+    wake_all(flow_);
+    const double potential = status_.potential, signal = signal_;
+    PointSums came;
+    double kinetic = 0.0;
+    flow_.columns.with_real([&](auto real) {
+        for (const LateRelease* release : releases) kinetic += place_late<decltype(real)>(*release, came);
+    });
+    status_.mass_in += came.left_mass;
+    status_.momentum_left[0] -= came.left_px;
+    status_.momentum_left[1] -= came.left_py;
+    status_.kinetic += kinetic;  // of nodes, and to the next grid update only
+    signal_ = status_.max_speed_on_map;
+    sorter_.sort(flow_.columns, flow_.grid, {}, flow_.active);
+    drift_ = 0.0;
+    arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest_step()); }));
+    signal_ = std::max(signal, status_.max_speed_on_map + std::sqrt(flow_.gravity * status_.max_depth));
+    status_.energy_left -= kinetic + (status_.potential - potential);
 }
 
 /// Drops the points at exits and deposits the others again, recording what left as at other exits.

@@ -40,6 +40,7 @@ void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
     store_ = std::move(from.store_);
     status_ = from.status_, fit_ = from.fit_, start_momentum_ = from.start_momentum_;
     if (feed_) feed_->take_over(*from.feed_), choose_sleep();
+    if (late_) late_->take_over(*from.late_);
     if (passages_) passages_->take_over(*from.passages_);
     lost_in_holes_ = from.lost_in_holes_;
     signal_ = from.signal_, since_split_ = from.since_split_, stress_power_ = from.stress_power_;

@@ -43,7 +43,7 @@ double potential(const Flow& flow, Index k, double mass) {
 }  // namespace
 
 /// Beside what may come in nothing sleeps: its nodes have depth that no column tells of.
-void DepthAveraged::choose_sleep() { flow_.scheme.sleep = sleeps_ && !more_comes(); }
+void DepthAveraged::choose_sleep() { flow_.scheme.sleep = sleeps_ && !(feed_ && !feed_->over()); }
 
 /// Before walls fold the deposit and the surface is made. Its nodes count as touched.
 void DepthAveraged::support_inflows() {
@@ -88,7 +88,9 @@ double DepthAveraged::potential_of_support() const {
 
 Extras DepthAveraged::extras() const {
     Extras extras;
-    if (feed_) extras.inflow = InflowBudget{status_.mass_in / flow_.density, feed_->expected()};
+    const double late = late_ ? late_->entered_volume() : 0.0;
+    if (feed_) extras.inflow = InflowBudget{status_.mass_in / flow_.density - late, feed_->expected()};
+    if (late_) extras.late = late_->entries();
     return extras;
 }
 

@@ -60,6 +60,7 @@ void DepthAveraged::serialize(Archive& archive) {
     if (erosion_) erosion_->serialize(archive, flow_);
     timed_.serialize(archive);
     if (feed_) feed_->serialize(archive), choose_sleep();
+    if (late_) late_->serialize(archive);
     if (passages_) archive.array("passed", passages_->passed());
     if (!archive.loading()) return;
     flow_.rest.some_asleep = false;  // what sleeps is found again; it changes no bit

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "mpm/domain.h"
@@ -143,6 +144,19 @@ Merger::Merger(const Flow& flow) {
         const Squares squares(flow, n, sorted.data(), order_.data(), square_.data());
         for (Index s = 0; s < kSide * kSide; ++s) most_ = std::max(most_, squares.held(s));
     }
+}
+
+Index Merger::most_of(const Seeds& seeds, const GridGeometry& grid) {
+    std::map<std::pair<Index, Index>, Index> held;
+    Index most = 0;
+    for (std::size_t p = 0; p < seeds.x.size(); ++p) {
+        const double u = 2.0 * ((seeds.x[p] - grid.x0) / grid.cell), v = 2.0 * ((seeds.y[p] - grid.y0) / grid.cell);
+        const double left = std::floor(u), below = std::floor(v);
+        if (near_edge(u, left) || near_edge(u, left + 1.0) || near_edge(v, below) || near_edge(v, below + 1.0))
+            continue;
+        most = std::max(most, ++held[{static_cast<Index>(left), static_cast<Index>(below)}]);
+    }
+    return most;
 }
 
 void Merger::make_room(const ActiveTiles& active) {

@@ -10,6 +10,8 @@ public:
     explicit Merger(const Flow& flow);
     explicit Merger(Index most) : most_(most) {}
     Index most() const { return most_; }  ///< points that such a square may hold
+    /// Of points at the places of seeds, how many such a square holds at most.
+    static Index most_of(const Seeds& seeds, const GridGeometry& grid);
     /// In every half-cell square with more points than that, the two whose union adds least to the second moments
     /// (m_a m_b / (m_a + m_b) |x_a - x_b|^2; Ward 1963) become one: mass, place, velocity and its gradient are the
     /// mass-weighted means, the domain is the rectangle with the union's second moments. Mass and momentum are kept

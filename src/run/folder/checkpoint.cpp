@@ -73,10 +73,11 @@ std::string sum_of_bed(const Raster& bed) {
     return fmt::format("{:016x}", sum.sum());
 }
 
-std::string sum_of_particles(const Seeds& seeds) {
+std::string sum_of_particles(const Scene& scene) {
     Checksum sum;
-    for (const auto* column : {&seeds.x, &seeds.y, &seeds.vx, &seeds.vy, &seeds.volume, &seeds.depth, &seeds.size})
-        sum.add_all(*column);
+    for (const Seeds* of : scene.all_particles())
+        for (const auto* column : {&of->x, &of->y, &of->vx, &of->vy, &of->volume, &of->depth, &of->size})
+            sum.add_all(*column);
     return fmt::format("{:016x}", sum.sum());
 }
 
@@ -164,7 +165,7 @@ CheckpointLabels checkpoint_labels(const Scene& scene, const CaseFile& file) {
             {"case", case_text(file)},
             {"inputs", sums_of_inputs(file)},
             {"bed", sum_of_bed(scene.bed)},
-            {"particles", sum_of_particles(scene.particles)}};
+            {"particles", sum_of_particles(scene)}};
 }
 
 std::unique_ptr<CheckpointFile> open_checkpoint(const fs::path& run_dir, const CheckpointLabels& labels) {

@@ -54,6 +54,15 @@ std::string bed_text(const RunRecord& r) {
         budget(r.summary.first, r.summary.last).bed_error);
 }
 
+/// "300 m3 at t = 12.4 s, when the flow reached it".
+std::string late_text(const LateEntry& late) {
+    if (late.entered)
+        return fmt::format("{:.6g} m3 at t = {:.6g} s{}", late.volume, *late.entered,
+                           late.at ? "" : ", when the flow reached it");
+    return late.at ? fmt::format("{:.6g} m3 did not: the run ended before t = {:.6g} s", late.volume, *late.at)
+                   : fmt::format("{:.6g} m3 did not: the flow did not reach it", late.volume);
+}
+
 std::string results(const RunRecord& r) {
     const RunSummary& s = r.summary;
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
@@ -62,6 +71,7 @@ std::string results(const RunRecord& r) {
         text += row("came in through lines",
                     fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", r.extras.inflow->volume,
                                 r.extras.inflow->expected, r.extras.inflow->volume - r.extras.inflow->expected));
+    for (const LateEntry& late : r.extras.late) text += row("entered later: " + late.name, late_text(late));
     text += row("simulated time",
                 fmt::format("{:.6g} s of {:.6g} s, {} steps, {} frames", s.last.time, r.end, s.steps, s.frames));
     text +=

@@ -219,6 +219,17 @@ Json inflow_json(const InflowBudget& inflow) {
     return {{"unit", "m3"}, {"volume", inflow.volume}, {"expected", inflow.expected}, {"relative_error", error}};
 }
 
+Json late_json(const std::vector<LateEntry>& entries) {
+    Json list = Json::array();
+    for (const LateEntry& late : entries)
+        list.push_back({{"name", late.name},
+                        {"volume", late.volume},
+                        {"when_hit", !late.at},
+                        {"at", late.at ? Json(*late.at) : Json(nullptr)},
+                        {"entered", late.entered ? Json(*late.entered) : Json(nullptr)}});
+    return list;
+}
+
 Json sections_json(const std::vector<SectionSummary>& sections) {
     Json list = Json::array();
     for (const SectionSummary& s : sections)
@@ -309,6 +320,7 @@ std::string run_json(const RunRecord& record) {
     if (record.extras.breakage) json["structure"] = breakage_json(*record.extras.breakage);
     if (record.extras.water) json["budgets"]["water"] = water_json(*record.extras.water);
     if (record.extras.inflow) json["budgets"]["inflow"] = inflow_json(*record.extras.inflow);
+    if (!record.extras.late.empty()) json["late_releases"] = late_json(record.extras.late);
     if (s.last.bed.initial > 0.0) json["budgets"]["bed"] = bed_json(s);
     if (!record.sections.empty()) json["sections"] = sections_json(record.sections);
     return json.dump(2) + "\n";

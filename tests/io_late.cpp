@@ -1,0 +1,90 @@
+// Releases that enter later, by the program: record, report, table, resume.
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "observe/table.h"
+#include "plane_case.h"
+
+using namespace frana;
+namespace fs = std::filesystem;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+const char* const kBed = "[material.bed]\nlaw = \"voellmy\"\nmu = 0.05\nxi = 400\n[output]\nevery = 2\n";
+
+std::string release(const std::string& name, const std::string& rest) {
+    return "[[release]]\noutline = \"" + name + "\"\ndepth = 1.5\n" + rest;
+}
+
+std::string rectangle_text(double x0, double y0, double x1, double y1) {
+    return fmt::format(R"({{"type": "Feature", "properties": {{}}, "geometry": {{"type": "Polygon", "coordinates":
+                       [[[{0}, {1}], [{2}, {1}], [{2}, {3}], [{0}, {3}], [{0}, {1}]]]}}}})",
+                       x0, y0, x1, y1);
+}
+
+/// Down the plane from the release of the plane case lies another, which is hit, and beside it one with a time, and one that
+/// nothing reaches.
+struct Releases : PlaneCase {
+    Releases() {
+        write_text(folder() / "below.geojson", rectangle_text(70, 30, 90, 70));
+        write_text(folder() / "timed.geojson", rectangle_text(100, 40, 120, 60));
+        write_text(folder() / "never.geojson", rectangle_text(10, 80, 15, 85));
+        write_text(file(), "[terrain]\ndem = \"dem.asc\"\n" + release("release.geojson", "") +
+                               release("below.geojson", "when_hit = true\n") + release("timed.geojson", "at = 3.3\n") +
+                               release("never.geojson", "when_hit = true\n") + "[time]\nend = 9\n" + kBed);
+    }
+};
+
+Json record_of(const fs::path& run_dir) { return Json::parse(text_of(run_dir / "run.json")); }
+
+}  // namespace
+
+TEST_CASE("The record, the report and the table tell when late releases entered, and how much", "[program][late]") {
+    const Releases plane;
+    const Outcome check = plane.frana("check CASE");
+    CHECK(check.code == 0);
+    CHECK_THAT(check.out, Contains("enters when the flow reaches it") && Contains("enters at 3.3 s"));
+    const fs::path dir = plane.folder() / "out";
+    CHECK(plane.frana("run CASE --quiet --out " + dir.string()).code == 0);
+    const Json json = record_of(dir), late = json["late_releases"];
+    REQUIRE(late.size() == 3);
+    CHECK(late[0]["name"] == "release.1 (below.geojson)");
+    CHECK(late[0]["when_hit"] == true);
+    CHECK(late[0]["at"].is_null());
+    CHECK(late[0]["volume"].get<double>() == Approx(1200.0).epsilon(1e-12));
+    const double hit = late[0]["entered"].get<double>();
+    CHECK(hit > 0.5);
+    CHECK(late[1]["at"] == 3.3);
+    CHECK(late[1]["entered"] == 3.3);
+    CHECK(late[2]["entered"].is_null());
+    CHECK(json["release_volume"].get<double>() == Approx(1800.0).epsilon(1e-12));
+    CHECK(json["budgets"]["mass"]["came_in"].get<double>() == Approx(1000.0 * 1800.0).epsilon(1e-12));
+    CHECK(std::abs(json["budgets"]["mass"]["relative_error"].get<double>()) < 1e-13);
+    const Table table = read_table(dir / "history.csv");
+    const std::vector<double> t = table.column("t"), in = table.column("mass_in");
+    for (std::size_t n = 0; n < t.size(); ++n) {
+        const double came = (t[n] >= hit ? 1.2e6 : 0.0) + (t[n] >= 3.3 ? 6e5 : 0.0);
+        CHECK(in[n] == Approx(came).epsilon(1e-12));
+    }
+    const std::string report = text_of(dir / "report.md");
+    for (const char* text :
+         {"| entered later: release.1 (below.geojson) | 1200 m3 at t = ", ", when the flow reached it |",
+          "| entered later: release.2 (timed.geojson) | 600 m3 at t = 3.3 s |",
+          "37.5 m3 did not: the flow did not reach it",
+          "release.3 (never.geojson): its 37.5 m3 did not enter: no flow deeper than 0.1 m"})
+        CHECK_THAT(report, Contains(text));
+}
+
+TEST_CASE("A run that is stopped between its late releases goes on with the same bits", "[program][late]") {
+    const Releases plane;
+    const std::string straight = (plane.folder() / "straight").string(), parts = (plane.folder() / "parts").string();
+    const std::string run = "run CASE --quiet --set output.formats=[] ";
+    CHECK(plane.frana(run + "--threads 1 --out " + straight).code == 0);
+    CHECK(plane.frana(run + "--until 3.1 --threads 2 --out " + parts).code == 0);
+    CHECK(record_of(parts)["late_releases"][1]["entered"].is_null());
+    CHECK(plane.frana(run + "--resume --threads 2 --out " + parts).code == 0);
+    CHECK(text_of(fs::path(parts) / "history.csv") == text_of(fs::path(straight) / "history.csv"));
+    CHECK(record_of(parts)["late_releases"] == record_of(straight)["late_releases"]);
+}

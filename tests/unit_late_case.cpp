@@ -1,0 +1,91 @@
+// Releases that enter later, of a case: what they become, and what is refused.
+#include "catch.h"
+#include "scene/build_scene.h"
+#include "slope_case.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+const std::string kHead = "[terrain]\ndem = \"dem.tif\"\n[time]\nend = 20\n";
+const std::string kFirst = "[[release]]\noutline = \"release.geojson\"\ndepth = 2\n";
+const std::string kSecond = "[[release]]\noutline = \"second.geojson\"\ndepth = 1\n";
+
+FakeGis two_outlines() {
+    FakeGis gis = slope_gis();
+    gis.polygons["second.geojson"] = rectangle(1020, 2050, 1040, 2080);
+    return gis;
+}
+
+Scene built(const std::string& text) {
+    return build_scene(CaseFile::parse(kHead + text, "slide/case.toml"), two_outlines());
+}
+
+bool says(const std::string& text, const std::string& end) {
+    const std::string problem = only_problem([&] { built(text); });
+    CAPTURE(problem);
+    return problem.find(end) != std::string::npos && problem.find("; expected") != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("A release with a time has the particles that it would have at the start", "[scene][late]") {
+    const Scene now = built(kSecond + kFirst), later = built(kSecond + "at = 7.5\n" + kFirst),
+                hit = built(kSecond + "when_hit = true\n" + kFirst);
+    REQUIRE(later.late.size() == 1);
+    REQUIRE(hit.late.size() == 1);
+    CHECK(now.late.empty());
+    CHECK(later.late[0].name == "release.0 (second.geojson)");
+    CHECK(later.late[0].at == 7.5);
+    CHECK_FALSE(hit.late[0].at.has_value());
+    const Index count = later.late[0].seeds.count();
+    CHECK(count == 20 * 30 * 4 / 25);
+    CHECK(later.late[0].volume() == Approx(600.0).epsilon(1e-12));
+    CHECK(later.late[0].first_id == later.particles.count());
+    CHECK(now.particles.count() == later.particles.count() + count);
+    for (Index p = 0; p < count; ++p) {
+        CHECK(later.late[0].seeds.x[p] == now.particles.x[p]);
+        CHECK(hit.late[0].seeds.volume[p] == now.particles.volume[p]);
+    }
+    CHECK(later.particles.x.front() == now.particles.x[static_cast<std::size_t>(count)]);
+    CHECK(later.particles.depth.back() == now.particles.depth.back());
+}
+
+TEST_CASE("at = 0 is a release at the start, and so is one whose defaults were written out", "[scene][late]") {
+    CHECK(built(kFirst + "at = 0.0\nwhen_hit = false\n").late.empty());
+    CHECK(built(kSecond + "at = 0.0\nwhen_hit = true\n" + kFirst).late.size() == 1);
+    const CaseFile file = CaseFile::parse(kHead + kSecond + "when_hit = true\n" + kFirst, "slide/case.toml");
+    CHECK_NOTHROW(CaseFile::parse(resolved_toml(file), "slide/resolved.toml"));
+}
+
+TEST_CASE("All releases may enter later, and their features' depths are one release", "[scene][late]") {
+    FakeGis gis = two_outlines();
+    gis.polygons["release.geojson"].parts.push_back(rectangle(1110, 2050, 1120, 2080).parts[0]);
+    gis.attributes["h"] = {2.0, 1.0};
+    const std::string text =
+        kHead + "[[release]]\noutline = \"release.geojson\"\ndepth = \"field:h\"\nat = 3\n" + kSecond + "at = 1\n";
+    const Scene scene = build_scene(CaseFile::parse(text, "slide/case.toml"), gis);
+    CHECK(scene.particles.count() == 0);
+    REQUIRE(scene.late.size() == 2);
+    CHECK(scene.late[0].volume() == Approx(2.0 * 1500.0 + 300.0).epsilon(1e-12));
+    CHECK(scene.late[0].at == 3.0);
+    CHECK(scene.late[1].at == 1.0);
+    CHECK(scene.late[1].first_id == scene.late[0].seeds.count());
+}
+
+TEST_CASE("What a late release cannot be is said in a sentence", "[scene][late]") {
+    CHECK(says(kFirst + kSecond + "at = 20\n", "release.1.at: found 20 s; expected a time before time.end = 20 s"));
+    CHECK(says(kFirst + kSecond + "at = -1\n", "release.1.at: found -1"));
+    CHECK(says(kFirst + kSecond + "at = 2\nwhen_hit = true\n", "release.1.at: found together with when_hit"));
+    CHECK(says(kFirst + "when_hit = true\n" + kSecond + "when_hit = true\n",
+               "release.0.when_hit: found true for every release, and no [[inflow]]"));
+    CHECK(says(kFirst + kSecond + "at = 2\nincluded_in_dem = true\n",
+               "release.1.included_in_dem: found true together with at above 0"));
+    CHECK(says(kFirst + kSecond + "when_hit = true\nincluded_in_dem = true\n",
+               "release.1.included_in_dem: found true together with when_hit"));
+    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\n";
+    CHECK(says(kFirst + kSecond + "at = 2\n" + stage, "release.1.at: found 2 with a stage"));
+    CHECK(says(kFirst + kSecond + "at = 2\n[scheme]\npreset = \"paper\"\n",
+               "release.1.at: found 2 with scheme.preset = \"paper\""));
+}
