@@ -13,6 +13,7 @@ class FakeGis : public frana::GisReader {
 public:
     std::map<std::string, frana::Raster> rasters;
     std::map<std::string, frana::Polygons> polygons;
+    std::map<std::string, std::vector<frana::Polyline>> lines;
     std::map<std::string, std::vector<double>> attributes;  ///< of the polygons of any file
 
     frana::Raster read_dem(const std::filesystem::path& file, const frana::DemRequest&,
@@ -49,9 +50,10 @@ public:
         if (found == attributes.end()) throw frana::UserError(file.string() + ": no such attribute");
         return {read_polygons(file, crs, log), found->second};
     }
-    std::vector<frana::Polyline> read_lines(const std::filesystem::path&, const std::string&,
+    std::vector<frana::Polyline> read_lines(const std::filesystem::path& file, const std::string&,
                                             std::vector<std::string>&) const override {
-        return {};
+        const auto found = lines.find(file.filename().string());
+        return found == lines.end() ? std::vector<frana::Polyline>() : found->second;
     }
 
 private:

@@ -272,3 +272,22 @@ TEST_CASE("Lines are read and reprojected like outlines", "[gdal]") {
                                                  wkt_of("EPSG:32632"), log);
     CHECK(degrees.at(0).at(0).x() == Approx(408833.0).margin(2000.0));
 }
+
+TEST_CASE("A file of one line gives it, and another is refused by its layer and what it holds", "[gdal]") {
+    GeoJson json;
+    std::vector<std::string> log;
+    const auto line = [&](const std::string& features, const std::string& crs = "") {
+        return GdalReader().read_line(json.write(features), crs, log);
+    };
+    CHECK(line(feature("LineString", "[[0,0],[5,0],[5,7]]")) == Polyline{{0, 0}, {5, 0}, {5, 7}});
+    CHECK(line(feature("MultiLineString", "[[[1,1],[2,2]]]")) == Polyline{{1, 1}, {2, 2}});
+    CHECK(line(feature("LineString", "[[7.26,61.96],[7.27,61.97]]"), wkt_of("EPSG:32632")).at(0).x() ==
+          Approx(408833.0).margin(2000.0));
+    const auto refusal = [&](const std::string& features) { return user_error([&] { line(features); }); };
+    const std::string two =
+        refusal(feature("LineString", "[[0,0],[5,0]]") + "," + feature("LineString", "[[1,1],[2,2]]"));
+    CHECK(contains(two, ".geojson: layer \""));
+    CHECK(contains(two, "\" holds 2 lines; expected one line of two points or more"));
+    CHECK(contains(refusal(feature("Polygon", square)), "holds 1 polygon; expected one line"));
+    CHECK(contains(refusal(""), "the file holds no features; expected one line"));
+}

@@ -88,3 +88,18 @@ TEST_CASE("A flood that is stopped in the middle of its table goes on with the s
     CHECK(text_of(fs::path(parts) / "history.csv") == text_of(fs::path(straight) / "history.csv"));
     CHECK(record_of(parts)["budgets"]["inflow"] == record_of(straight)["budgets"]["inflow"]);
 }
+
+TEST_CASE("A flood through the line of a vector file is that through its points", "[program][inflow]") {
+    const Flood plane;
+    write_text(plane.folder() / "line.geojson",
+               R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates":
+               [[40, 35], [40, 65]]}})");
+    const std::string points = (plane.folder() / "points").string(), file = (plane.folder() / "file").string();
+    const std::string run = "run CASE --quiet --set output.formats=[] --until 4 ";
+    CHECK(plane.frana(run + "--out " + points).code == 0);
+    CHECK(plane.frana(run + "--set inflow.0.line=line.geojson --set section.0.line=line.geojson --out " + file).code ==
+          0);
+    CHECK(text_of(fs::path(points) / "history.csv") == text_of(fs::path(file) / "history.csv"));
+    CHECK_THAT(text_of(fs::path(file) / "resolved.toml"), Contains("line.geojson\""));
+    CHECK(plane.frana("check " + (fs::path(file) / "resolved.toml").string()).code == 0);
+}

@@ -75,6 +75,42 @@ TEST_CASE("The side and the speed of an inflow may be given", "[scene][inflow]")
     CHECK(number.inflows[0].speed == std::vector<double>(2, 7.0 / std::sqrt(1.25)));
 }
 
+TEST_CASE("The line of an inflow, and of a section, may be that of a vector file", "[scene][inflow][sections]") {
+    FakeGis gis = slope_gis();
+    gis.lines["line.geojson"] = {{{1100, 2050}, {1100, 2050}, {1100, 2080}}};  // its first point twice
+    gis.lines["two.geojson"] = {{{1100, 2050}, {1100, 2060}}, {{1100, 2070}, {1100, 2080}}};
+    gis.lines["dot.geojson"] = {{{1100, 2050}, {1100, 2050}}};
+    const auto scene_of = [&](const std::string& file) {
+        const std::string text =
+            with("line = \"" + file + "\"\nvolume = 1000\n[[section]]\nname = \"a\"\nline = \"" + file + "\"\n");
+        return build_scene(CaseFile::parse(text, "slide/case.toml"), gis);
+    };
+    const Scene drawn = built(with(kLine + "volume = 1000\n[[section]]\nname = \"a\"\n" + kLine)),
+                read = scene_of("line.geojson");
+    CHECK(read.inflows[0].line == drawn.inflows[0].line);
+    CHECK(read.inflows[0].speed == drawn.inflows[0].speed);
+    CHECK(read.sections[0].line == drawn.sections[0].line);
+    CHECK(read.sections[0].to_right == drawn.sections[0].to_right);
+    const auto problems_of = [&](const std::string& file) {
+        try {
+            scene_of(file);
+        } catch (const UserError& error) {
+            return error.problems();
+        }
+        return std::vector<std::string>();
+    };
+    for (const auto& [file, text] :
+         {std::pair("two.geojson", "slide/two.geojson: holds 2 lines; expected one"),
+          std::pair("dot.geojson", "found a line of one point; expected two that are apart")}) {
+        const std::vector<std::string> problems = problems_of(file);
+        CAPTURE(problems);
+        REQUIRE(problems.size() == 2);
+        for (const std::string& problem : problems) CHECK(problem.find(text) != std::string::npos);
+        CHECK(problems[0].find("section.0.line: ") != std::string::npos);
+        CHECK(problems[1].find("inflow.0.line: ") != std::string::npos);
+    }
+}
+
 TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
     const std::string volume = "volume = 1000\n";
     CHECK(says(problem_of(with(kLine)), "table", "not given, and no volume either"));

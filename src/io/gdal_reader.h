@@ -53,6 +53,9 @@ public:
 
     std::vector<Polyline> read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
                                      std::vector<std::string>& log) const override;
+    /// UserError with the layer, and what it holds, when that is not one line.
+    Polyline read_line(const std::filesystem::path& file, const std::string& crs_wkt,
+                       std::vector<std::string>& log) const override;
 };
 
 /// Version of the GDAL library in use, such as "3.6.2".

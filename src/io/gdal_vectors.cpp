@@ -282,4 +282,20 @@ std::vector<Polyline> GdalReader::read_lines(const std::filesystem::path& file, 
     return lines;
 }
 
+Polyline GdalReader::read_line(const std::filesystem::path& file, const std::string& crs_wkt,
+                               std::vector<std::string>& log) const {
+    Source source = open_source(file, crs_wkt, log);
+    std::vector<Polyline> lines;
+    Census census;
+    for_each_geometry(source, census, [&](const OGRFeature&, const OGRGeometry& geometry, const std::string& where) {
+        collect_lines(geometry, census, fmt::format("{}: {}", file.string(), where), lines);
+    });
+    if (lines.size() == 1) return lines.front();
+    OGRLayer* layer = chosen_layer(source);
+    throw UserError(
+        fmt::format("{}: {} holds {}; expected one line of two points or more; draw it as one and export it again",
+                    file.string(), layer ? fmt::format("layer \"{}\"", layer->GetName()) : "the file",
+                    census.features == 0 ? "no features" : census.text()));
+}
+
 }  // namespace frana

@@ -36,8 +36,8 @@ public:
         read_releases();
         read_survey();
         read_profiles_and_gauges();
-        scene_.sections = read_sections(case_, scene_, problems_);
-        read_inflows(case_, scene_, problems_);
+        scene_.sections = read_sections(case_, reader_, scene_, problems_);
+        read_inflows(case_, reader_, scene_, problems_);
         scene_.solid = read_solid_stage(case_, scene_, problems_);
         read_barriers(case_, reader_, meshes_, scene_, problems_);
         scene_.structure = read_structure(case_, scene_, problems_);

@@ -118,10 +118,7 @@ std::vector<std::pair<std::string, std::filesystem::path>> CaseFile::named_files
     std::vector<std::pair<std::string, std::filesystem::path>> files;
     for (const auto& [key, setting] : settings_) {
         const Parameter* parameter = find_parameter(key);
-        const bool names_files =
-            parameter && (parameter->kind == Kind::path || parameter->kind == Kind::number_or_path ||
-                          parameter->kind == Kind::numbers_or_paths);
-        if (!names_files || !is_text(key)) continue;
+        if (!parameter || !names_files(parameter->kind) || !is_text(key)) continue;
         if (const auto* one = std::get_if<std::string>(&setting.value))
             if (!names_field(*one)) files.emplace_back(key, resolve(split_layer(*one).file));
         if (const auto* several = std::get_if<std::vector<std::string>>(&setting.value))

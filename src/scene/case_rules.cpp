@@ -23,9 +23,7 @@ std::string concrete(const std::string& prefix, const std::string& key) {
 }
 
 std::vector<std::string> files_of(const Parameter& parameter, const Value& value) {
-    const bool files = parameter.kind == Kind::path || parameter.kind == Kind::number_or_path ||
-                       parameter.kind == Kind::numbers_or_paths;
-    if (!files) return {};
+    if (!names_files(parameter.kind)) return {};
     if (const auto* one = std::get_if<std::string>(&value)) return {*one};
     if (const auto* several = std::get_if<std::vector<std::string>>(&value)) return *several;
     return {};

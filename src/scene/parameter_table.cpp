@@ -90,8 +90,9 @@ void add_release(Table& table) {
 void add_inflow(Table& table) {
     table.push_back(required(make("inflow.name", Kind::name, "", "name of the inflow in reports")));
     Parameter line =
-        make("inflow.line", Kind::points, "m",
-             "line through which material comes in, across the flow and as wide as that: [[x, y], [x, y], ...]");
+        make("inflow.line", Kind::points_or_path, "m",
+             "line through which material comes in, across the flow and as wide as that: [[x, y], [x, y], ...], or a "
+             "vector file of one line");
     line.length = 2;
     table.push_back(required(line));
     Parameter towards =
@@ -259,8 +260,9 @@ void add_run(Table& table) {
     table.push_back(required(point));
     table.push_back(required(make("section.name", Kind::name, "", "name of the section's file")));
     Parameter through =
-        make("section.line", Kind::points, "m",
-             "line through which the discharge is recorded, down the slope as positive: [[x, y], [x, y], ...]");
+        make("section.line", Kind::points_or_path, "m",
+             "line through which the discharge is recorded, down the slope as positive: [[x, y], [x, y], ...], or a "
+             "vector file of one line");
     through.length = 2;
     table.push_back(required(through));
     add_barriers(table);

@@ -114,6 +114,9 @@ std::string Parameter::expected() const {
             return fmt::format("a list of {} numbers", length) + in_unit + fmt::format(" or of {} rasters", length);
         case Kind::points:
             return fmt::format("a list of {} or more points [x, y]", length) + in_unit;
+        case Kind::points_or_path:
+            return fmt::format("a list of {} or more points [x, y]", length) + in_unit +
+                   " or the name of a vector file";
         case Kind::words:
             return std::string(may_be_empty ? "an empty list, or a list of \"" : "a list of \"") +
                    joined(choices, "\", \"") + "\"";
@@ -121,6 +124,11 @@ std::string Parameter::expected() const {
             return "\"all\" or a list of \"" + joined(choices, "\", \"") + "\"";
     }
     throw InternalError("internal error: a kind of parameter without text");
+}
+
+bool names_files(Kind kind) {
+    return kind == Kind::path || kind == Kind::number_or_path || kind == Kind::numbers_or_paths ||
+           kind == Kind::points_or_path;
 }
 
 std::string without_numbers(const std::string& key) {

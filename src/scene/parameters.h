@@ -26,9 +26,13 @@ enum class Kind {
     numbers,           ///< Parameter::length doubles; length 0: one or more
     numbers_or_paths,  ///< Parameter::length doubles or as many std::string (rasters)
     points,            ///< Vec2, at least Parameter::length
+    points_or_path,    ///< the same or std::string (a vector file)
     words,             ///< std::string, each one of Parameter::choices; none with Parameter::may_be_empty
     words_or_all       ///< the same, or the text "all" (held as an empty list)
 };
+
+/// Whether a text of that kind names a file.
+bool names_files(Kind kind);
 
 /// Another default that holds when the key `when` has the value `is`.
 struct OtherDefault {

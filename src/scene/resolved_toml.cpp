@@ -60,9 +60,7 @@ private:
 
     std::string value_text(const Parameter& parameter, const Value& value) const {
         if (parameter.kind == Kind::words_or_all && std::get<std::vector<std::string>>(value).empty()) return "\"all\"";
-        const bool files = parameter.kind == Kind::path || parameter.kind == Kind::number_or_path ||
-                           parameter.kind == Kind::numbers_or_paths;
-        if (!files) return toml_text(value);
+        if (!names_files(parameter.kind)) return toml_text(value);
         if (const auto* one = std::get_if<std::string>(&value)) return toml_text(absolute(*one));
         if (const auto* several = std::get_if<std::vector<std::string>>(&value)) {
             std::vector<std::string> paths;

@@ -20,8 +20,8 @@ constexpr Index kMostParts = 4000;  ///< of all
 
 class InflowReader {
 public:
-    InflowReader(const CaseFile& file, Index i, Scene& scene)
-        : case_(file), prefix_(fmt::format("inflow.{}.", i)), scene_(scene), bed_(scene.bed) {}
+    InflowReader(const CaseFile& file, Index i, const GisReader& reader, Scene& scene)
+        : case_(file), prefix_(fmt::format("inflow.{}.", i)), reader_(reader), scene_(scene), bed_(scene.bed) {}
 
     /// Nothing when something is wrong.
     std::optional<Inflow> read(Problems& problems) {
@@ -29,10 +29,12 @@ public:
             return problems.attempt(case_.place(prefix_ + key), work);
         };
         inflow_.name = case_.word(prefix_ + "name");
-        inflow_.line = case_.points(prefix_ + "line");
         inflow_.spacing = bed_.geometry.cell / std::sqrt(case_.number("particles.per_cell"));
         Hydrograph table;
-        bool good = attempt("line", [&] { require_ground(); });
+        bool good = attempt("line", [&] {
+            inflow_.line = read_line(case_, prefix_ + "line", reader_, bed_.crs_wkt, scene_.log);
+            require_ground();
+        });
         good = good && attempt(given("towards") ? "towards" : "line", [&] { choose_side(); });
         good &= attempt(given("table") ? "table" : "volume", [&] {
             table = hydrograph();
@@ -205,6 +207,7 @@ private:
 
     const CaseFile& case_;
     std::string prefix_;
+    const GisReader& reader_;
     Scene& scene_;
     const Raster& bed_;
     Inflow inflow_;
@@ -212,9 +215,9 @@ private:
 
 }  // namespace
 
-void read_inflows(const CaseFile& file, Scene& scene, Problems& problems) {
+void read_inflows(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     for (Index i = 0; i < file.count("inflow"); ++i) {
-        std::optional<Inflow> inflow = InflowReader(file, i, scene).read(problems);
+        std::optional<Inflow> inflow = InflowReader(file, i, reader, scene).read(problems);
         if (!inflow) continue;
         scene.log.push_back(inflow_sentence(inflow->name, facts_of(*inflow, scene.gravity)));
         scene.inflows.push_back(std::move(*inflow));

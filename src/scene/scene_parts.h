@@ -40,14 +40,19 @@ std::vector<Release> read_release(const CaseFile& file, Index i, Scene& scene, c
 void read_barriers(const CaseFile& file, const GisReader& reader, const MeshReader& meshes, Scene& scene,
                    Problems& problems);
 
+/// A key that holds points, or names a vector file of one line, which is brought to `crs_wkt`; points on one another are
+/// dropped. Throws UserError; remarks go to `log`.
+Polyline read_line(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
+                   std::vector<std::string>& log);
+
 /// How much the ground rises on average to the right of a line, along the line's normals [1].
 double rise_across(const Polyline& line, const Raster& bed);
 /// All [[section]] of a scene that has its terrain; down the slope of the ground counts as positive.
-std::vector<Section> read_sections(const CaseFile& file, const Scene& scene, Problems& problems);
+std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
 
 /// All [[inflow]] of a scene that has its terrain and its laws. What is wrong with them goes to `problems`, what they bring to
 /// the scene's log.
-void read_inflows(const CaseFile& file, Scene& scene, Problems& problems);
+void read_inflows(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
 
 /// [material.structure] of a scene that has its terrain and its barriers. What does not fit together goes to `problems`.
 std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems);

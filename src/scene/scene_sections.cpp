@@ -1,4 +1,4 @@
-// [[section]] of the case file.
+// [[section]] of the case file, and lines as keys give them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,15 @@
 #include "scene/scene_parts.h"
 
 namespace frana {
+
+Polyline read_line(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
+                   std::vector<std::string>& log) {
+    Polyline line = file.is_text(key) ? reader.read_line(file.path(key), crs_wkt, log) : file.points(key);
+    line.erase(std::unique(line.begin(), line.end()), line.end());
+    if (line.size() < 2)
+        throw UserError("found a line of one point; expected two that are apart; draw it from one bank to the other");
+    return line;
+}
 
 double rise_across(const Polyline& line, const Raster& bed) {
     const GridGeometry& g = bed.geometry;
@@ -27,12 +36,16 @@ double rise_across(const Polyline& line, const Raster& bed) {
     return length > 0.0 ? sum / length : 0.0;
 }
 
-std::vector<Section> read_sections(const CaseFile& file, const Scene& scene, Problems& problems) {
+std::vector<Section> read_sections(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
     std::vector<Section> sections;
     const auto e = (scene.wider ? scene.wider->grid : scene.bed.geometry).pixel_extent();
     for (Index i = 0; i < file.count("section"); ++i) {
         const std::string prefix = fmt::format("section.{}.", i);
-        const Polyline& line = file.points(prefix + "line");
+        Polyline line;
+        const bool read = problems.attempt(file.place(prefix + "line"), [&] {
+            line = read_line(file, prefix + "line", reader, scene.bed.crs_wkt, scene.log);
+        });
+        if (!read) continue;
         const bool there = std::any_of(line.begin(), line.end(), [&](const Vec2& point) {
             return point.x() >= e[0] && point.x() <= e[2] && point.y() >= e[1] && point.y() <= e[3];
         });

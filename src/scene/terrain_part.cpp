@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/layer_name.h"
 #include "scene/bed_smoothing.h"
+#include "scene/scene_parts.h"
 #include "terrain/part_of.h"
 
 namespace frana {
@@ -27,6 +28,16 @@ bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
     return true;
 }
 
+/// Of all tables of a name.
+void take_lines(const CaseFile& file, const std::string& table, const GisReader& reader, const Raster& whole,
+                std::vector<Vec2>& points) {
+    std::vector<std::string> said_later;
+    for (Index i = 0; i < file.count(table); ++i) {
+        const Polyline line = read_line(file, fmt::format("{}.{}.line", table, i), reader, whole.crs_wkt, said_later);
+        points.insert(points.end(), line.begin(), line.end());
+    }
+}
+
 std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& reader, const Raster& whole) {
     std::vector<Vec2> points;
     std::vector<std::string> said_later;
@@ -36,8 +47,7 @@ std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& rea
         if (file.given(table + "layer")) name += kLayerMark + file.word(table + "layer");
         take_corners(reader.read_polygons(name, whole.crs_wkt, said_later), points);
     }
-    for (Index i = 0; i < file.count("inflow"); ++i)
-        for (const Vec2& point : file.points(fmt::format("inflow.{}.line", i))) points.push_back(point);
+    take_lines(file, "inflow", reader, whole, points);
     return points;
 }
 
@@ -64,21 +74,21 @@ std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene&
     constexpr Index kToGo = 512;   // nodes: most flows of a hillslope end within
     const NodeBox all = NodeBox::all(whole.geometry);
     TerrainPart part;
+    std::vector<Vec2> others;
     try {
         part.box = common(cells_of(corners_of_material(file, reader, whole), whole.geometry), all);
         part.shown = shown_places(file, reader, whole);
+        take_lines(file, "section", reader, whole, others);
     } catch (const UserError&) {
         return {};  // told when it is read for good
     }
     if (part.box.nx == 0 || part.box.ny == 0) return {};
     part.box = widened(part.box, clear_of_edge(scene, whole.geometry.cell) + kListed + kToGo);
-    std::vector<Vec2> others = part.shown;
+    others.insert(others.end(), part.shown.begin(), part.shown.end());
     for (Index i = 0; i < file.count("gauge"); ++i) {
         const auto& xy = file.numbers(fmt::format("gauge.{}.point", i));
         others.emplace_back(xy[0], xy[1]);
     }
-    for (Index i = 0; i < file.count("section"); ++i)
-        for (const Vec2& point : file.points(fmt::format("section.{}.line", i))) others.push_back(point);
     part.box = common(united(part.box, common(widened(cells_of(others, whole.geometry), 2), all)), all);
     if (part.box == all) return {};
     return part;

@@ -42,6 +42,8 @@ public:
                 return numbers_or_paths(node);
             case Kind::points:
                 return points(node);
+            case Kind::points_or_path:
+                return node.is_string() ? wrapped(path(node)) : points(node);
             case Kind::words:
                 if (parameter_.may_be_empty && node.is_array() && node.as_array()->empty())
                     return Value(std::vector<std::string>{});

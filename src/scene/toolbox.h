@@ -70,6 +70,13 @@ public:
     /// All lines of a vector file, likewise.
     virtual std::vector<Polyline> read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
                                              std::vector<std::string>& log) const = 0;
+    /// Of a vector file with one line, likewise.
+    virtual Polyline read_line(const std::filesystem::path& file, const std::string& crs_wkt,
+                               std::vector<std::string>& log) const {
+        const std::vector<Polyline> lines = read_lines(file, crs_wkt, log);
+        if (lines.size() == 1) return lines.front();
+        throw UserError(file.string() + ": holds " + std::to_string(lines.size()) + " lines; expected one");
+    }
 };
 
 struct DistanceField;

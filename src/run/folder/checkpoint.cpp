@@ -25,8 +25,7 @@ bool changes_nothing(const std::string& key) { return key == "output.checkpoint_
 /// What a file holds is compared by its sum; where it lies says nothing.
 std::string without_paths(const std::string& key, const std::string& value) {
     const Parameter* parameter = find_parameter(key);
-    const bool may_be_path = parameter && (parameter->kind == Kind::path || parameter->kind == Kind::number_or_path ||
-                                           parameter->kind == Kind::numbers_or_paths);
+    const bool may_be_path = parameter && names_files(parameter->kind);
     return may_be_path && value.find('"') != std::string::npos ? "a file" : value;
 }
 
