@@ -178,6 +178,9 @@ int check_command(const CheckOptions& options) {
     std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
     for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
     std::cout << total_text(built) << width_text(built.scene) << forecast_text(built.scene);
+    if (built.scene.friction)
+        for (const FrictionPart& part : built.scene.friction->parts)
+            std::cout << fmt::format("friction    {}: {}\n", part.name, friction_sentence(part));
     for (const Barrier& barrier : built.scene.barriers)
         std::cout << (barrier.shape ? fmt::format("barrier     {}, a mesh\n", barrier.name)
                       : barrier.top ? fmt::format("barrier     {}, up to {:.6g} m\n", barrier.name, *barrier.top)

@@ -150,11 +150,12 @@ TEST_CASE("A law needs its parameters and refuses those of others", "[case]") {
     CHECK(problem_of(least + "[material.bed]\nlaw = \"voellmy\"\nmu = 0.4\n") ==
           "case.toml:7: material.bed.xi: not given, but material.bed.law = \"voellmy\" needs it; expected a "
           "number above 0 "
-          "[m/s^2], Voellmy's turbulence coefficient: larger runs faster; add xi = ... under [material.bed]");
+          "[m/s^2] or the name of a raster, Voellmy's turbulence coefficient: larger runs faster; add xi = ... under "
+          "[material.bed]");
     CHECK(problem_of(least + "[material.bed]\nlaw = \"coulomb\"\n") ==
           "case.toml:7: material.bed.friction_angle_deg: not given, but material.bed.law = \"coulomb\" needs "
           "it (or mu); "
-          "expected a number at least 0 and below 90 [degree], friction angle at the bed; add "
+          "expected a number at least 0 and below 90 [degree] or the name of a raster, friction angle at the bed; add "
           "friction_angle_deg = ... "
           "under [material.bed]");
     CHECK(problem_of(least + "[material.bed]\nlaw = \"coulomb\"\nmu = 0.4\nfriction_angle_deg = 20\n") ==

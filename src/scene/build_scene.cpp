@@ -35,6 +35,7 @@ public:
         problems_.throw_if_any();  // nothing below can be judged without terrain
         read_releases();
         read_survey();
+        read_friction(case_, reader_, scene_, problems_);
         read_profiles_and_gauges();
         scene_.sections = read_sections(case_, reader_, scene_, problems_);
         read_inflows(case_, reader_, scene_, problems_);

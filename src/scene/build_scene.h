@@ -28,6 +28,9 @@ struct BuiltScene {
     std::vector<ReleaseSummary> releases;
 };
 
+/// "12300 m2, mu 0.12, xi 300 to 500 m/s^2".
+std::string friction_sentence(const FrictionPart& part);
+
 /// Reads the terrain and the releases through `reader`, barriers of any shape through `meshes`, makes the
 /// particles, and checks all of it: outlines that leave the terrain, releases without volume, nodata within three
 /// cells of material. Throws one UserError with every problem found.

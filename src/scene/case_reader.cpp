@@ -24,6 +24,13 @@ bool is_repeated(const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// "material.zone" of "material.zone.0.mu"; empty: no repeated table's key.
+std::string repeated_table_of(const std::string& key) {
+    for (const std::string& name : repeated_tables())
+        if (key.compare(0, name.size() + 1, name + ".") == 0) return name;
+    return {};
+}
+
 std::vector<std::string> names_in(const std::string& table) {
     std::vector<std::string> names;
     for (const Parameter& parameter : parameters())
@@ -209,9 +216,9 @@ void CaseReader::apply_set(const std::string& argument) {
 /// That the number of a repeated table in a --set key exists or is the next one, which it then adds; and that
 /// other keys carry no number.
 bool CaseReader::count_repeated(const std::string& key, const std::string& place) {
-    const std::string table = key.substr(0, key.find('.'));
+    const std::string table = repeated_table_of(key);
     const std::string plain = without_numbers(key);
-    if (!is_repeated(table)) {
+    if (table.empty()) {
         if (key == plain) return true;
         problems_.add(place, "found a number in the key", "expected " + plain, "remove the number");
         return false;

@@ -46,6 +46,7 @@ private:
     void check_layer(const std::string& prefix);
     void check_barrier(const std::string& prefix);
     void check_inflow(const std::string& prefix);
+    void check_zone(const std::string& prefix);
     void check_line_names(const std::string& table);
     void check_meaning();
     void check_combinations();

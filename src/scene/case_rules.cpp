@@ -79,6 +79,7 @@ void CaseReader::check_tables() {
             if (table == "release") check_release(prefix);
             if (table == "barrier") check_barrier(prefix);
             if (table == "inflow") check_inflow(prefix);
+            if (table == "material.zone") check_zone(prefix);
         }
     }
 }
@@ -233,6 +234,38 @@ void CaseReader::check_inflow(const std::string& prefix) {
         wrong(prefix + "peak", "found together with table", "expected it with volume only", "remove one of them");
 }
 
+/// A zone has a place, and says something of the case's bed law and of nothing else.
+void CaseReader::check_zone(const std::string& prefix) {
+    const auto there = [&](const std::string& name) {
+        return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
+    };
+    if (!there("outline") && !there("above") && !there("below"))
+        wrong(prefix + "outline", "not given, and no above or below either", "expected where the zone is",
+              "add outline = ..., above = ... or below = ... under [[material.zone]]");
+    if (case_.given(prefix + "above") && case_.given(prefix + "below") &&
+        case_.number(prefix + "above") >= case_.number(prefix + "below"))
+        wrong(prefix + "above", fmt::format("found {:.6g}", case_.number(prefix + "above")),
+              fmt::format("expected less than below = {:.6g}", case_.number(prefix + "below")), "correct one of them");
+    if (misread_.count("material.bed.law")) return;
+    const std::string& law = case_.word("material.bed.law");
+    std::string known;
+    bool any = false;
+    for (const laws::SharedKey& key : laws::Catalogue<BedLaw>::keys()) {
+        const bool used = contains(key.used_by, law);
+        if (used) known += (known.empty() ? "" : ", ") + key.name;
+        any = any || there(key.name);
+    }
+    if (known.empty()) known = "none";
+    for (const laws::SharedKey& key : laws::Catalogue<BedLaw>::keys())
+        if (there(key.name) && !contains(key.used_by, law))
+            wrong(prefix + key.name, fmt::format("found, but material.bed.law = \"{}\" does not use it", law),
+                  fmt::format("expected keys of that law: {}", known), "remove it, or choose material.bed.law");
+    if (!any)
+        problems_.add(line_of(prefix), case_.table_place(prefix.substr(0, prefix.size() - 1)),
+                      "found no number of the bed law in it", fmt::format("expected keys of it: {}", known),
+                      "add one of them, or remove the zone");
+}
+
 void CaseReader::check_line_names(const std::string& table) {
     std::map<std::string, std::string> seen;
     for (Index i = 0; i < case_.count(table); ++i) {
@@ -255,8 +288,8 @@ void CaseReader::check_meaning() {
     }
     for (const laws::SharedKey& key : laws::Catalogue<BedLaw>::keys()) {
         const std::string name = "material.bed." + key.name, smaller = "material.bed." + key.more_than;
-        if (!key.more_than.empty() && case_.given(name) && case_.given(smaller) &&
-            case_.number(name) <= case_.number(smaller))
+        const auto number = [&](const std::string& of) { return case_.given(of) && !case_.is_text(of); };
+        if (!key.more_than.empty() && number(name) && number(smaller) && case_.number(name) <= case_.number(smaller))
             wrong(name, fmt::format("found {}", case_.number(name)),
                   fmt::format("expected more than {} = {}", key.more_than, case_.number(smaller)), key.way_out);
     }
@@ -272,7 +305,8 @@ void CaseReader::check_combinations() {
         const std::string key = row.refused.key_in(case_);
         if (unused(key) || !done.insert(key + row.expected).second) continue;
         if (row.refused.are != Values::Are::tables) {
-            wrong(key, row.found_text(case_), row.expected, row.way_out);
+            wrong(row.refused.are == Values::Are::rasters ? raster_in(case_, key) : key, row.found_text(case_),
+                  row.expected, row.way_out);
             continue;
         }
         const std::string first = key + ".0";

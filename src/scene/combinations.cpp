@@ -27,6 +27,7 @@ bool of_words(Are are) { return are == Are::words || are == Are::others; }
 std::string value_text(const CaseFile& file, const Values& values) {
     if (of_words(values.are)) return "\"" + file.word(values.key) + "\"";
     if (values.are == Are::on) return "true";
+    if (values.are == Are::rasters) return "a raster";
     if (values.are == Are::tables) return (values.key[0] == 'i' ? "an " : "a ") + values.key;
     return fmt::format("{:.6g}", file.number(values.key_in(file)));
 }
@@ -229,9 +230,33 @@ std::string with_text(const Combination& row) {
     return text;
 }
 
+/// What has one friction everywhere.
+void add_zones(std::vector<Combination>& table) {
+    for (const Values& friction : {Values{"material.zone", Are::tables}, Values{"material.bed", Are::rasters}}) {
+        table.push_back({friction,
+                         {{"stage", Are::tables}},
+                         "expected one friction everywhere: points in space know no zones",
+                         "remove it, or the stage",
+                         " with a stage"});
+        table.push_back({friction,
+                         {is_not("material.structure.law", {"none"})},
+                         "expected one friction everywhere: structured columns and water know no zones",
+                         "remove it, or the structure"});
+    }
+}
+
 }  // namespace
 
+std::string raster_in(const CaseFile& file, const std::string& table) {
+    for (const Parameter& parameter : parameters())
+        if (parameter.table() == table && parameter.kind == Kind::number_or_path && file.given(parameter.key) &&
+            file.is_text(parameter.key))
+            return parameter.key;
+    return {};
+}
+
 std::string Values::key_in(const CaseFile& file) const {
+    if (are == Are::rasters) return raster_in(file, key);
     for (const std::string& one : keys_of(file, key))
         if (holds(file, *this, one)) return one;
     return {};
@@ -253,6 +278,8 @@ std::string Values::text() const {
             return key + " = true";
         case Are::off:
             return key + " = false";
+        case Are::rasters:
+            return "a raster in [" + key + "]";
         default:
             return "[[" + key + "]]";
     }
@@ -279,6 +306,7 @@ const std::vector<Combination>& combinations() {
         add_erodible_bed(table);
         add_space(table);
         add_late_releases(table);
+        add_zones(table);
         table.push_back({is_not("output.film", {"none"}),
                          {{"output.formats", Are::without, {"vtk"}}},
                          "expected the frames that a film is made of",

@@ -8,10 +8,15 @@
 
 namespace frana {
 
+/// The first key of a table of the case that a raster is given for; empty: none.
+std::string raster_in(const CaseFile& file, const std::string& table);
+
 /// Some of the values that a key can have, or tables of a name that are there at all.
 struct Values {
-    enum class Are { words, others, without, above_zero, zero, on, off, tables };
-    std::string key;  ///< of tables their name; "release.at" is that of any [[release]]
+    enum class Are { words, others, without, above_zero, zero, on, off, tables, rasters };
+    std::string
+        key;  ///< of tables their name, of rasters that of the table whose keys they stand for; "release.at" is that
+              ///< of any [[release]]
     Are are = Are::words;
     std::vector<std::string> words = {};  ///< those, all others, or (without) what a list of words lacks
 

@@ -129,22 +129,43 @@ void add_inflow(Table& table) {
 
 /// Laws bring their own keys.
 template <class Law>
-void add_law(Table& table, const std::string& of, const std::string& is) {
+void add_law(Table& table, const std::string& of, const std::string& is, Kind kind = Kind::number) {
     using Laws = laws::Catalogue<Law>;
     const std::string law = of + ".law", meaning = is + Laws::other_names();
     table.push_back(choice(law.c_str(), Laws::words(), "none", meaning.c_str()));
     for (const laws::SharedKey& key : Laws::keys()) {
         const std::string name = of + "." + key.name;
         Parameter row = number(name.c_str(), key.unit.c_str(), key.range, key.meaning.c_str());
+        row.kind = kind;
         if (key.usual) row.fallback = *key.usual;
         if (!key.instead_of.empty()) row.instead_of = of + "." + key.instead_of;
         table.push_back(with(row, law.c_str(), key.used_by, key.needed_by));
     }
 }
 
+/// Where friction is another: any key of the bed law.
+void add_zones(Table& table) {
+    const char* const everywhere = "not bounded so";
+    table.push_back(absent(make("material.zone.outline", Kind::path, "",
+                                "polygons of the zone: any OGR vector file; later zones win, and nodes have the "
+                                "friction of the zone that they lie in"),
+                           everywhere));
+    table.push_back(
+        absent(number("material.zone.above", "m", any_number, "elevation from which on it is the zone"), everywhere));
+    table.push_back(
+        absent(number("material.zone.below", "m", any_number, "elevation below which it is the zone"), everywhere));
+    for (const laws::SharedKey& key : laws::Catalogue<BedLaw>::keys()) {
+        const std::string name = "material.zone." + key.name;
+        Parameter row = number(name.c_str(), key.unit.c_str(), key.range, key.meaning.c_str());
+        if (!key.instead_of.empty()) row.instead_of = "material.zone." + key.instead_of;
+        table.push_back(absent(row, "as without the zone"));
+    }
+}
+
 void add_material(Table& table) {
     table.push_back(number("material.density", "kg/m^3", positive, 1000.0, "density of the mass"));
-    add_law<BedLaw>(table, "material.bed", "friction between the mass and its bed");
+    add_law<BedLaw>(table, "material.bed", "friction between the mass and its bed", Kind::number_or_path);
+    add_zones(table);
     add_law<Rheology>(table, "material.rheology", "stress inside the mass");
     add_structure(table);
     add_erodible(table);
@@ -293,8 +314,8 @@ const std::vector<Parameter>& parameters() {
 }
 
 const std::vector<std::string>& repeated_tables() {
-    static const std::vector<std::string> names = {"release", "inflow", "profile", "gauge", "section",
-                                                   "barrier", "stage",  "insitu",  "camera"};
+    static const std::vector<std::string> names = {"release", "inflow",  "material.zone", "profile", "gauge",
+                                                   "section", "barrier", "stage",         "insitu",  "camera"};
     return names;
 }
 

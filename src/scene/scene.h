@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "convert/profile.h"
-#include "law/bed/laws.h"
+#include "law/bed/law_map.h"
 #include "law/erosion/laws.h"
 #include "law/free_water.h"
 #include "law/rheology/laws.h"
@@ -98,6 +98,16 @@ struct Inflow {
         for (std::size_t k = 0; k + 1 < line.size(); ++k) sum += (line[k + 1] - line[k]).norm();
         return sum;
     }
+    /// Of the line, half of its width from either end.
+    Vec2 middle() const {
+        double left = 0.5 * width();
+        for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+            const double part = (line[k + 1] - line[k]).norm();
+            if (part > 0.0 && left <= part) return line[k] + left / part * (line[k + 1] - line[k]);
+            left -= part;
+        }
+        return line.back();
+    }
 };
 
 /// A release that enters the run later.
@@ -183,6 +193,24 @@ struct ErodibleBed {
     bool evolves = true;      ///< the ground sinks by what is taken; otherwise it is only counted
 };
 
+/// Where one part of a friction holds that differs in space, and what it has there.
+struct FrictionPart {
+    struct Extent {
+        std::string key, unit;
+        double low, high;
+    };
+    std::string name;             ///< "material.zone.0 (fan.geojson)", "elsewhere"
+    double area = 0.0;            ///< of its nodes on the map, those apart that later zones have [m^2]
+    std::vector<Extent> extents;  ///< of each parameter that differs somewhere
+};
+
+/// Friction that differs in space (shallow/THEORY.md, section 19).
+struct Friction {
+    bed::LawMap laws;                 ///< on the nodes of the bed
+    std::vector<std::string> keys;    ///< of the parameters that differ
+    std::vector<FrictionPart> parts;  ///< zones in their order, then what is outside of them
+};
+
 /// What is written, and when.
 struct Output {
     double every = 1.0;  ///< [s]; frames are hit exactly
@@ -220,12 +248,13 @@ struct Scene {
     std::optional<double>
         hole_top;  ///< of walls there, above the ground beside them [m]; nothing: material leaves there
 
-    Seeds particles;                      ///< material at the start
-    std::vector<Inflow> inflows;          ///< material that comes in later
-    std::vector<LateRelease> late;        ///< likewise, all of a release at once
-    std::optional<double> still_surface;  ///< level of a release given as one horizontal surface at rest [m]: the
-                                          ///< points' masses are then fitted so that it starts at exact rest
-    BedLaw bed_law;
+    Seeds particles;                           ///< material at the start
+    std::vector<Inflow> inflows;               ///< material that comes in later
+    std::vector<LateRelease> late;             ///< likewise, all of a release at once
+    std::optional<double> still_surface;       ///< level of a release given as one horizontal surface at rest [m]: the
+                                               ///< points' masses are then fitted so that it starts at exact rest
+    BedLaw bed_law;                            ///< its mean where friction differs in space
+    std::shared_ptr<const Friction> friction;  ///< nothing: bed_law everywhere
     Rheology rheology;
     Scheme scheme;
 

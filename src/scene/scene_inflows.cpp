@@ -190,7 +190,7 @@ private:
                 fmt::format("found velocity = \"normal\" on ground that rises by {:.3g} degrees; expected a slope "
                             "that the flow goes down; {}",
                             -degrees, way_out));
-        const bed::NormalFlow flow = bed::normal_flow(scene_.bed_law, discharge / inflow_.width(),
+        const bed::NormalFlow flow = bed::normal_flow(bed_law_at(scene_, inflow_.middle()), discharge / inflow_.width(),
                                                       {inflow_.slope, scene_.gravity, scene_.density});
         if (flow.speed == 0.0)
             throw UserError(

@@ -12,7 +12,8 @@ template <class Law>
 Law law_of(const CaseFile& file, const std::string& table) {
     return laws::Catalogue<Law>::make(file.word(table + ".law"), [&](const std::string& name) {
         const std::string key = table + "." + name;
-        return file.has(key) ? std::optional<double>(file.number(key)) : std::nullopt;
+        const bool number = file.has(key) && !file.is_text(key);  // a raster is for scene_friction.cpp
+        return number ? std::optional<double>(file.number(key)) : std::nullopt;
     });
 }
 

@@ -79,16 +79,23 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
     remark_on(scene.log, given ? Remark::density : Remark::density_not_given, file.place("material.density"),
               {file.number("material.density")});
     const auto angle = [&](const std::string& key, bool tangent) {
-        if (!file.given(key)) return;
+        if (!file.given(key) || file.is_text(key)) return;
         const double value = file.number(key);
         remark_on(scene.log, Remark::friction, file.place(key), {tangent ? std::atan(value) * degrees : value});
     };
-    for (const char* key : {"material.bed.mu", "material.bed.mu_s", "material.bed.mu_2"}) angle(key, true);
-    for (const char* key : {"material.bed.friction_angle_deg", "material.structure.friction_angle_deg"})
-        angle(key, false);
+    const auto xi = [&](const std::string& key) {
+        if (file.given(key) && !file.is_text(key))
+            remark_on(scene.log, Remark::xi, file.place(key), {file.number(key)});
+    };
+    std::vector<std::string> tables = {"material.bed."};
+    for (Index i = 0; i < file.count("material.zone"); ++i) tables.push_back(fmt::format("material.zone.{}.", i));
+    for (const std::string& table : tables) {
+        for (const char* key : {"mu", "mu_s", "mu_2"}) angle(table + key, true);
+        angle(table + "friction_angle_deg", false);
+        xi(table + "xi");
+    }
+    angle("material.structure.friction_angle_deg", false);
     for (Index i = 0; i < file.count("stage"); ++i) angle(fmt::format("stage.{}.friction_angle_deg", i), false);
-    if (file.given("material.bed.xi"))
-        remark_on(scene.log, Remark::xi, file.place("material.bed.xi"), {file.number("material.bed.xi")});
 }
 
 void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene) {

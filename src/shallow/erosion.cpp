@@ -102,6 +102,18 @@ struct GroundOfFour {
     }
 };
 
+/// The bed law under four points: that of the run, or those of the nodes nearest to them.
+template <class Friction>
+decltype(auto) law_under(const Friction& friction, const Flow& flow, const Double4& x, const Double4& y) {
+    if constexpr (std::is_same_v<Friction, LawOfEachNode>) {
+        std::array<Index, 4> k{};
+        for (int n = 0; n < 4; ++n) k[static_cast<std::size_t>(n)] = flow.grid.nearest(x[n], y[n]);
+        return LawsHere<Double4>(*flow.laws, k);
+    } else {
+        return (friction);
+    }
+}
+
 /// What the law alone takes of the speeds of four points on the map [m/s^2]: over a time in which no flow changes much.
 template <class Law>
 Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 speed) {
@@ -265,12 +277,14 @@ void Erosion::find_demand(Flow& flow, double dt) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
         for_each_eroding_coloured(flow, [&](Index n) {
-            std::visit(
-                [&](const auto& law, const auto& friction) {
-                    using Law = std::decay_t<decltype(law)>;
-                    demand_of_tile<Law, std::decay_t<decltype(friction)>, Real>(flow, n, dt, law, friction);
-                },
-                law_, friction_);
+            const auto demand = [&](const auto& law, const auto& friction) {
+                using Law = std::decay_t<decltype(law)>;
+                demand_of_tile<Law, std::decay_t<decltype(friction)>, Real>(flow, n, dt, law, friction);
+            };
+            if (flow.laws)
+                std::visit([&](const auto& law) { demand(law, LawOfEachNode{}); }, law_);
+            else
+                std::visit(demand, law_, friction_);
             spread<Real>(flow, n, wanted_, demand_);
         });
     });
@@ -291,7 +305,9 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         const Mask4 moves = (on_map > kSlowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
         for (Array* column : {&wanted_, &speed_, &braked_}) store(&(*column)[p], none, lanes);
         if (!any(moves)) return;
-        const MeansOfFour means(flow.grid, load(&c.x[p], lanes), load(&c.y[p], lanes));
+        const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
+        const MeansOfFour means(flow.grid, x, y);
+        const auto& below = law_under(friction, flow, x, y);
         // Those that rest do as if they moved: nothing comes of it.
         const Double4 one = all(1.0), u = select(moves, on_map, one);
         const Double4 ux = select(moves, vx, one), uy = select(moves, vy, none);
@@ -304,7 +320,7 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
             if (pass == 1)
                 for (int lane = 0; lane < lanes; ++lane)
                     at_middle[lane] = std::sqrt(speed_left(gain[lane], brake[lane] * dt / u[lane]));
-            if (feels) brake = decelerations(friction, ground.below, at_middle * u);
+            if (feels) brake = decelerations(below, ground.below, at_middle * u);
             for (int lane = 0; lane < lanes; ++lane) {
                 if (!moves[lane]) continue;
                 const double thickness = ground.below.thickness[lane], speed = at_middle[lane] * ground.speed[lane];

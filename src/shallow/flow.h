@@ -6,6 +6,7 @@
 #include "scene/scene.h"
 #include "shallow/bed_geometry.h"
 #include "shallow/columns.h"
+#include "shallow/node_laws.h"
 #include "shallow/nodes.h"
 #include "shallow/rest.h"
 
@@ -31,7 +32,9 @@ struct Flow {
         : Flow({scene.bed.geometry, scene.density, scene.gravity, scene.sides == Sides::wall,
                 scene.terrain != TerrainModel::shallow, scene.rheology.index() != 0 || scene.scheme.paper_pressure,
                 scene.scheme},
-               make_bed_geometry(scene, TileGrid(scene.bed.geometry))) {}
+               make_bed_geometry(scene, TileGrid(scene.bed.geometry))) {
+        if (scene.friction) laws.emplace(scene.friction->laws, grid);
+    }
     Flow(const FlowSetup& setup, BedGeometry of)
         : grid(setup.grid),
           bed(std::move(of)),
@@ -52,6 +55,7 @@ struct Flow {
 
     TileGrid grid;
     BedGeometry bed;
+    std::optional<NodeLaws> laws;  ///< nothing: one bed law everywhere
     Nodes nodes;
     Columns columns;
     ActiveTiles active;

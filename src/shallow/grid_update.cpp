@@ -88,8 +88,9 @@ public:
             Node<double> node = prepared(flow, k);
             for (double* driving : {&node.ex, &node.ey, &node.acceleration_x, &node.acceleration_y}) *driving *= kFirm;
             const typename Terrain::template Bed<double> bed(flow, k);
-            const Updated<double> after = updated(flow, bed, node, 1.0);
-            held = after.vx == 0.0 && after.vy == 0.0 && rests_midway(flow, bed, node);
+            const auto& law = law_at<double>(flow, k);
+            const Updated<double> after = updated(flow, bed, node, law, 1.0);
+            held = after.vx == 0.0 && after.vy == 0.0 && rests_midway(flow, bed, node, law);
         });
         return held;
     }
@@ -116,6 +117,15 @@ private:
         parts_[tile] = work.total();
     }
 
+    /// The law of a node, or those of four in a row.
+    template <class Real>
+    decltype(auto) law_at(const Flow& flow, Index k) const {
+        if constexpr (std::is_same_v<Law, LawOfEachNode>)
+            return LawsHere<Real>(*flow.laws, k);
+        else
+            return (law_);
+    }
+
     static NodeGroups moving_groups(const Flow& flow, Index tile) {
         NodeGroups moving = 0;
         for_each_four_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
@@ -135,7 +145,8 @@ private:
         if ((f[0] & f[1] & f[2] & f[3] & kInside) == kInside && !pressure_on_points_ && dt > 0.0 &&
             inside(flow, i, j)) {
             const Node<Double4> node = prepared_four(flow, k);
-            const auto after = updated(flow, typename Terrain::template Bed<Double4>(flow, k), node, dt);
+            const auto after =
+                updated(flow, typename Terrain::template Bed<Double4>(flow, k), node, law_at<Double4>(flow, k), dt);
             add(flow, node, after, 1.0, work.four);
             Double4 out[4];
             transpose(after.vx, after.vy, node.depth, after.velocity_share, out);
@@ -162,7 +173,8 @@ private:
             if (j == 0 || j == flow.grid.ny() - 1) node.ey = node.acceleration_y = node.loss_y = node.vy = 0.0;
         }
         const typename Terrain::template Bed<double> bed(flow, k);
-        const Updated<double> after = dt > 0.0 ? updated(flow, bed, node, dt) : resting_clock(bed, node);
+        const Updated<double> after =
+            dt > 0.0 ? updated(flow, bed, node, law_at<double>(flow, k), dt) : resting_clock(bed, node);
         motion.vx = after.vx;
         motion.vy = after.vy;
         motion.velocity_share = after.velocity_share;
@@ -258,19 +270,20 @@ private:
     }
 
     /// Gentle terrain: a = -g grad(eta), friction with N = g.
-    template <class Real>
-    Updated<Real> updated(const Flow& flow, const GentleBed<Real>&, const Node<Real>& n, double dt) const {
+    template <class Real, class Here>
+    Updated<Real> updated(const Flow& flow, const GentleBed<Real>&, const Node<Real>& n, const Here& law,
+                          double dt) const {
         const double g = flow.gravity;
         const Real dx = n.vx + dt * (n.acceleration_x - g * n.ex), dy = n.vy + dt * (n.acceleration_y - g * n.ey);
         const Real one = Real{} + 1.0, level = Real{} + g;
         const BedStateOf<Real> state{level, max(n.law_depth, Real{} + 1e-9), one, one, g, flow.density};
-        return braked(state, n, dx, dy, Real{}, Real{}, level, dt);
+        return braked(state, n, law, dx, dy, Real{}, Real{}, level, dt);
     }
 
     /// Steep terrain: a = -g_c drive, g_c = (g + v.H.v)+ at the middle of the step.
-    template <class Real, Curvature kCurvature, bool kLinear>
+    template <class Real, Curvature kCurvature, bool kLinear, class Here>
     Updated<Real> updated(const Flow& flow, const SteepBed<Real, kCurvature, kLinear>& bed, const Node<Real>& n,
-                          double dt) const {
+                          const Here& law, double dt) const {
         const double g = flow.gravity;
         const Real cosine = 1.0 / sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
         const Drive<Real> slope = bed.drive(n.ex, n.ey, cosine);
@@ -278,7 +291,7 @@ private:
         Drive<Real> driving = bed.driving(slope, g, high, n.vx, n.vy, cosine);
         Real gravity = bed.gravity(g, n.vx, n.vy);
         if constexpr (kCurvature != Curvature::none) {
-            const auto [mx, my] = midpoint(bed, n, driving, g, cosine, dt);
+            const auto [mx, my] = midpoint(bed, n, law, driving, g, cosine, dt);
             driving = bed.driving(slope, g, high, mx, my, cosine);
             gravity = bed.gravity(g, mx, my);
         }
@@ -289,7 +302,7 @@ private:
         const Real normal = kCurvature == Curvature::full ? gravity : Real{} + g;
         const BedStateOf<Real> state{
             normal * cosine / kappa, max(n.law_depth * cosine, Real{} + 1e-9), kappa, cosine, g, flow.density};
-        return braked(state, n, dx, dy, bed.bx, bed.by, max(Real{} + g, gravity), dt);
+        return braked(state, n, law, dx, dy, bed.bx, bed.by, max(Real{} + g, gravity), dt);
     }
 
     /// Depth a cell away, up its gradient: what pushes a node at the foot of a column is the column.
@@ -298,37 +311,41 @@ private:
         return n.depth + flow.cell * (abs(n.ex - bed.bx) + abs(n.ey - bed.by));
     }
 
-    bool rests_midway(const Flow&, const GentleBed<double>&, const Node<double>&) const { return true; }
-    template <Curvature kCurvature, bool kLinear>
-    bool rests_midway(const Flow& flow, const SteepBed<double, kCurvature, kLinear>& bed, const Node<double>& n) const {
+    template <class Here>
+    bool rests_midway(const Flow&, const GentleBed<double>&, const Node<double>&, const Here&) const {
+        return true;
+    }
+    template <Curvature kCurvature, bool kLinear, class Here>
+    bool rests_midway(const Flow& flow, const SteepBed<double, kCurvature, kLinear>& bed, const Node<double>& n,
+                      const Here& law) const {
         if constexpr (kCurvature == Curvature::none) return true;
         const double g = flow.gravity, cosine = 1.0 / std::sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
         const Drive<double> slope = bed.drive(n.ex, n.ey, cosine);
-        const auto [mx, my] = midpoint(bed, n, {g * slope.x, g * slope.y}, g, cosine, 1.0);
+        const auto [mx, my] = midpoint(bed, n, law, Drive<double>{g * slope.x, g * slope.y}, g, cosine, 1.0);
         return mx == 0.0 && my == 0.0;
     }
 
     /// Velocity in the middle of the step, driven and braked by Coulomb friction: makes v.H.v second order.
-    template <class Real, Curvature kCurvature, bool kLinear>
-    std::pair<Real, Real> midpoint(const SteepBed<Real, kCurvature, kLinear>& bed, const Node<Real>& n,
+    template <class Real, Curvature kCurvature, bool kLinear, class Here>
+    std::pair<Real, Real> midpoint(const SteepBed<Real, kCurvature, kLinear>& bed, const Node<Real>& n, const Here& law,
                                    const Drive<Real>& driving, double g, Real cosine, double dt) const {
         const Real mx = n.vx - 0.5 * dt * driving.x, my = n.vy - 0.5 * dt * driving.y;
         const Real along = mx * bed.bx + my * bed.by, speed2 = mx * mx + my * my;
         const Real normal = kCurvature == Curvature::full ? bed.gravity(g, n.vx, n.vy) : Real{} + g;
         // Speed lost to friction, over the speed: normal force over kappa is normal * cosine * speed / sqrt(...).
-        const Real lost = 0.5 * dt * law_.friction_at_rest() * normal * cosine;
+        const Real lost = 0.5 * dt * law.friction_at_rest() * normal * cosine;
         const Real share_left = select(speed2 > 0.0, max(Real{}, 1.0 - lost / sqrt(speed2 + along * along)), Real{});
         return {mx * share_left, my * share_left};
     }
 
-    template <class Real>
-    Updated<Real> braked(const BedStateOf<Real>& state, const Node<Real>& n, Real dx, Real dy, Real bx, Real by,
-                         Real wave_gravity, double dt) const {
+    template <class Real, class Here>
+    Updated<Real> braked(const BedStateOf<Real>& state, const Node<Real>& n, const Here& law, Real dx, Real dy, Real bx,
+                         Real by, Real wave_gravity, double dt) const {
         // A node that forces stopped has the share kept of the slowest, or round-off would decide what flip's points keep.
         const Real driven = max(sqrt(dx * dx + dy * dy), Real{} + kSlowest), unit = 1.0 / driven;
         const Real s0 = max(Real{}, (n.vx * dx + n.vy * dy) * unit);
-        const BrakedOf<Real> braking{s0, driven, speeds_after(law_, state, s0, driven, dt), dt, drift_};
-        const Real speed = mean_if_stopping(law_, state, braking);
+        const BrakedOf<Real> braking{s0, driven, speeds_after(law, state, s0, driven, dt), dt, drift_};
+        const Real speed = mean_if_stopping(law, state, braking);
         const Real share_left = speed * unit, vx = dx * share_left, vy = dy * share_left, vz = vx * bx + vy * by;
         const Real kinetic = 0.5 * (vx * vx + vy * vy + vz * vz);
         // Work of friction: its impulse times the mean speed of the step; none where nothing moves. And what bores
@@ -349,6 +366,8 @@ private:
 
 template <class Terrain>
 std::unique_ptr<GridUpdateKernel> with_law(const Scene& scene) {
+    if (scene.friction)
+        return std::make_unique<Kernel<LawOfEachNode, Terrain>>(LawOfEachNode{}, scene.scheme.paper_pressure);
     return std::visit(
         [&](const auto& law) -> std::unique_ptr<GridUpdateKernel> {
             return std::make_unique<Kernel<std::decay_t<decltype(law)>, Terrain>>(law, scene.scheme.paper_pressure);

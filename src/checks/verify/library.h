@@ -19,6 +19,7 @@ std::vector<Problem> radial_dam_problems();       // problems_radial_dam.cpp
 std::vector<Problem> slope_flow_problems();       // problems_slope_flow.cpp
 std::vector<Problem> similarity_problems();       // problems_similarity.cpp
 std::vector<Problem> block_problems();            // problems_blocks.cpp
+std::vector<Problem> zone_problems();             // problems_zones.cpp
 std::vector<Problem> track_problems();            // problems_tracks.cpp
 std::vector<Problem> bed_step_problems();         // problems_bed_step.cpp
 std::vector<Problem> sheet_problems();            // problems_sheet.cpp

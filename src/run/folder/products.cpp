@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_writer.h"
+#include "scene/parameters.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -87,6 +88,26 @@ std::vector<ProductRaster> product_rasters(const Frame& last, const std::string&
     return rasters;
 }
 
+std::vector<ProductRaster> friction_rasters(const Scene& scene) {
+    std::vector<ProductRaster> rasters;
+    if (!scene.friction) return rasters;
+    for (const std::string& name : scene.friction->keys) {
+        Raster raster = scene.bed;
+        raster.source = name;
+        const std::vector<double> values = bed::parameter_on_nodes(scene.friction->laws, name);
+        for (std::size_t node = 0; node < values.size(); ++node)
+            if (!std::isnan(raster.values[node])) raster.values[node] = values[node];
+        const Parameter& key = *find_parameter("material.bed." + name);
+        rasters.push_back({name, key.unit, key.meaning, std::move(raster)});
+    }
+    return rasters;
+}
+
+bool is_friction(const std::string& name) {
+    const Parameter* key = find_parameter("material.bed." + name);
+    return key != nullptr && key->kind == Kind::number_or_path;
+}
+
 const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, const std::string& name) {
     const auto found = std::find_if(rasters.begin(), rasters.end(),
                                     [&](const ProductRaster& product) { return product.name == name; });
@@ -108,13 +129,15 @@ std::vector<ProductRaster> read_rasters(const fs::path& run_dir) {
     std::vector<ProductRaster> rasters;
     const GdalReader reader;
     const double far = 1e300;
-    for (const ProductRule& rule : rules) {
-        const fs::path file = raster_file(run_dir, rule.name);
-        if (!fs::exists(file)) continue;
+    const auto read = [&](const std::string& name, const std::string& unit, const std::string& description) {
+        const fs::path file = raster_file(run_dir, name);
+        if (!fs::exists(file)) return;
         std::vector<std::string> log;
-        Raster raster = reader.read_raster(file, {-far, -far, far, far}, "", log);
-        rasters.push_back({rule.name, rule.unit, rule.description, std::move(raster)});
-    }
+        rasters.push_back({name, unit, description, reader.read_raster(file, {-far, -far, far, far}, "", log)});
+    };
+    for (const ProductRule& rule : rules) read(rule.name, rule.unit, rule.description);
+    for (const Parameter& key : parameters())
+        if (is_friction(key.name()) && key.table() == "material.bed") read(key.name(), key.unit, key.meaning);
     return rasters;
 }
 

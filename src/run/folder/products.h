@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "observe/observer.h"
+#include "scene/scene.h"
 #include "terrain/raster.h"
 
 namespace frana {
@@ -35,6 +36,12 @@ private:
 /// final_water_depth beside it, eroded_depth, deposited_depth, bed_change and final_elevation of an erodible bed. Negative
 /// arrival times and all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
+
+/// The parameters of a friction that differs in space, as the nodes have them: mu, xi, ... Nothing where it does not.
+std::vector<ProductRaster> friction_rasters(const Scene& scene);
+
+/// Whether a raster of that name is one of those.
+bool is_friction(const std::string& name);
 
 /// The raster of that name, or nullptr.
 const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, const std::string& name);

@@ -8,6 +8,7 @@
 #include "run/folder/comparison.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_record.h"
+#include "scene/build_scene.h"
 
 namespace frana {
 namespace {
@@ -243,6 +244,13 @@ std::string sections(const RunRecord& r) {
            "\nThe volume is counted by the columns that passed and is exact; the discharge is that of the nodes.\n\n";
 }
 
+std::string friction(const RunRecord& r) {
+    if (r.friction.empty()) return "";
+    std::string text = "## Friction\n\n| Where | Area and friction |\n|---|---|\n";
+    for (const FrictionPart& part : r.friction) text += row(part.name, friction_sentence(part));
+    return text + "\nLater zones win. `rasters/` has each parameter as the nodes had it.\n\n";
+}
+
 std::string times(const RunSummary& s) {
     std::string text = "## Wall time\n\n| Part | Seconds | Share |\n|---|---|---|\n";
     const double total = std::max(s.wall_seconds, 1e-9);
@@ -270,7 +278,7 @@ std::string report_markdown(const RunRecord& record, const std::filesystem::path
     const std::vector<Product> products = products_in(run_dir);
     const std::string survey = record.comparison ? comparison_section(*record.comparison) : "";
     return heading(record) + remarks(record) + results(record) + survey + sections(record) + barriers(record) +
-           budgets(record) + figures(record) + parameter_table(record) + files(record, products) +
+           friction(record) + budgets(record) + figures(record) + parameter_table(record) + files(record, products) +
            times(record.summary);
 }
 

@@ -119,6 +119,10 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
         draw_map(source, *water, "free water at the end", figures, warnings,
                  find_product(source.rasters, "peak_depth"));
     draw_change_map(source, figures, warnings);
+    for (const ProductRaster& product : source.rasters)
+        if (is_friction(product.name))
+            draw_map(source, product, product.name + " under the flow", figures, warnings,
+                     find_product(source.rasters, "peak_depth"));
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
         draw_view(source, *peak, figures, warnings);
     draw_overlay(source, figures, warnings);

@@ -12,10 +12,20 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "scene/parameters.h"
 
 namespace frana {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+/// "(mu|xi|...)": rasters of friction have the names of the bed laws' keys.
+static std::string friction_names() {
+    std::string names;
+    for (const Parameter& key : parameters())
+        if (key.table() == "material.bed" && key.kind == Kind::number_or_path)
+            names += (names.empty() ? "(" : "|") + key.name();
+    return names + ")";
+}
 
 const std::vector<ProductKind>& product_kinds() {
     static const std::vector<ProductKind> kinds = {
@@ -38,6 +48,7 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
         {"rasters", "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]))\\.tif",
          "GeoTIFF", false},
+        {"rasters", friction_names() + "\\.tif", "GeoTIFF of the friction as it was used", false},
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},

@@ -223,6 +223,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     }
     for (const std::string& warning : insitu_warnings(record.insitu)) record.warnings.push_back(warning);
     note_results(record, rasters);
+    for (ProductRaster& friction : friction_rasters(scene)) rasters.push_back(std::move(friction));
     const Raster bed = shown_bed(scene, simulation, rasters);
     if (scene.output.vtk && scene.wider) write_terrain(run_dir, bed);
 

@@ -153,6 +153,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.grid = scene.wider ? scene.wider->grid : scene.bed.geometry;
     record.has_crs = !scene.bed.crs_wkt.empty();
     record.density = scene.density;
+    if (scene.friction) record.friction = scene.friction->parts;
     record.particles = scene.particles.count();
     for (const double volume : scene.particles.volume) record.release_volume += volume;
     record.end = record.whole_end = scene.end;
@@ -242,6 +243,17 @@ Json sections_json(const std::vector<SectionSummary>& sections) {
     return list;
 }
 
+Json friction_json(const std::vector<FrictionPart>& parts) {
+    Json list = Json::array();
+    for (const FrictionPart& part : parts) {
+        Json one = {{"name", part.name}, {"area", part.area}};
+        for (const FrictionPart::Extent& of : part.extents)
+            one[of.key] = {{"unit", of.unit}, {"low", of.low}, {"high", of.high}};
+        list.push_back(one);
+    }
+    return list;
+}
+
 Json breakage_json(const Breakage& b) {
     return {{"mean_damage", b.damage},
             {"pieces", b.pieces},
@@ -322,6 +334,7 @@ std::string run_json(const RunRecord& record) {
     if (record.extras.inflow) json["budgets"]["inflow"] = inflow_json(*record.extras.inflow);
     if (!record.extras.late.empty()) json["late_releases"] = late_json(record.extras.late);
     if (s.last.bed.initial > 0.0) json["budgets"]["bed"] = bed_json(s);
+    if (!record.friction.empty()) json["friction"] = friction_json(record.friction);
     if (!record.sections.empty()) json["sections"] = sections_json(record.sections);
     return json.dump(2) + "\n";
 }

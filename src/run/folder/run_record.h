@@ -55,6 +55,7 @@ struct RunRecord {
     std::vector<InsituTally> insitu;
     std::vector<BarrierSummary> barriers;
     std::vector<SectionSummary> sections;
+    std::vector<FrictionPart> friction;  ///< where it differs in space
     CheckpointKeeper::Progress checkpoints;
     Extras extras;
     std::vector<std::string> warnings;

@@ -1,0 +1,321 @@
+// Friction that differs in space: rasters under [material.bed], and [[material.zone]].
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/combinations.h"
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+using laws::Key;
+
+constexpr const char* kLaw = "material.bed.";
+
+bool is_raster(const CaseFile& file, const std::string& key) { return file.given(key) && file.is_text(key); }
+
+std::string where(const GridGeometry& g, std::size_t k) {
+    const auto n = static_cast<Index>(k);
+    return fmt::format("x {:.10g}, y {:.10g}", g.x(n % g.nx), g.y(n / g.nx));
+}
+
+/// Of the pixel that holds a point; nodata beyond the raster.
+double pixel_at(const Raster& raster, double x, double y) {
+    const GridGeometry& g = raster.geometry;
+    const double i = std::floor((x - g.x0) / g.cell + 0.5), j = std::floor((y - g.y0) / g.cell + 0.5);
+    if (!(i >= 0.0 && j >= 0.0 && i < static_cast<double>(g.nx) && j < static_cast<double>(g.ny)))
+        return Raster::nodata;
+    return raster.at(static_cast<Index>(i), static_cast<Index>(j));
+}
+
+/// All pixels with data lie in a key's range.
+void require_range(const Raster& pixels, const Range& range, const std::string& file) {
+    std::size_t bad = 0, first = 0;
+    for (std::size_t k = pixels.values.size(); k-- > 0;)
+        if (!std::isnan(pixels.values[k]) && !range.holds(pixels.values[k])) ++bad, first = k;
+    if (bad == 0) return;
+    throw UserError(
+        fmt::format("{}: found {} pixel(s) out of range, such as {:.6g} at {}; expected numbers {}; correct them", file,
+                    bad, pixels.values[first], where(pixels.geometry, first), range.text()));
+}
+
+/// The nodes inside a polygon, row by row: between its first and second crossing of the row, its third and fourth, ...
+void mark_inside(const Polygon& polygon, const GridGeometry& grid, NodeMarks& marks) {
+    std::vector<double> crossings;
+    for (Index j = 0; j < grid.ny; ++j) {
+        crossings.clear();
+        const double y = grid.y(j);
+        for (const auto& ring : polygon.rings)
+            for (std::size_t k = 0; k < ring.size(); ++k) {
+                const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+                if ((a.y() <= y) == (b.y() <= y)) continue;
+                crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+            }
+        std::sort(crossings.begin(), crossings.end());
+        for (std::size_t n = 0; n + 1 < crossings.size(); n += 2) {
+            const auto node = [&](double x) {
+                const double i = std::ceil((x - grid.x0) / grid.cell);
+                return static_cast<Index>(std::clamp(i, 0.0, static_cast<double>(grid.nx)));
+            };
+            const Index row = j * grid.nx;
+            std::fill(marks.begin() + row + node(crossings[n]), marks.begin() + row + node(crossings[n + 1]), char{1});
+        }
+    }
+}
+
+std::string name_of(const CaseFile& file, const std::string& zone) {
+    return file.given(zone + ".outline") ? fmt::format("{} ({})", zone, file.word(zone + ".outline")) : zone;
+}
+
+/// The laws of all nodes, laid one over the other: the case's own, rasters, zones.
+template <class Law>
+class LawLayers {
+public:
+    LawLayers(const CaseFile& file, const GisReader& reader, Scene& scene, Law law)
+        : case_(file),
+          reader_(reader),
+          scene_(scene),
+          grid_(scene.bed.geometry),
+          keys_(Law::keys()),
+          laws_(scene.bed.values.size(), law),
+          part_(scene.bed.values.size(), 0) {}
+
+    void lay_rasters(Problems& problems) {
+        for (const Key<Law>& key : keys_) {
+            const std::string name = kLaw + std::string(key.name);
+            if (is_raster(case_, name)) problems.attempt(case_.place(name), [&] { lay_raster(key, name); });
+        }
+    }
+
+    void lay_zones(Problems& problems) {
+        for (Index i = 0; i < case_.count("material.zone"); ++i)
+            problems.attempt(case_.table_place(fmt::format("material.zone.{}", i)), [&] { lay_zone(i); });
+    }
+
+    /// Every node of the ground has all parameters, and they go together.
+    void check() const {
+        for (const Key<Law>& key : keys_) {
+            std::size_t bad = 0, first = 0;
+            for (std::size_t k = laws_.size(); k-- > 0;)
+                if (is_ground(k) && std::isnan(laws_[k].*key.parameter)) ++bad, first = k;
+            if (bad > 0 && key.name == bed::plain_name(keys_, key.parameter)) refuse_gaps(key.name, bad, first);
+            if (*key.more_than != '\0') require_more(key);
+        }
+    }
+
+    std::shared_ptr<const Friction> friction() {
+        fill_gaps();
+        Friction all;
+        for (const Key<Law>& key : keys_)
+            if (key.name == bed::plain_name(keys_, key.parameter) && is_said(key.parameter))
+                all.keys.push_back(key.name);
+        const Index zones = case_.count("material.zone");
+        for (Index i = 0; i <= zones; ++i) {
+            const bool zone = i < zones;
+            FrictionPart part = part_of(static_cast<std::uint32_t>(zone ? i + 1 : 0));
+            part.name = zone        ? name_of(case_, fmt::format("material.zone.{}", i))
+                        : zones > 0 ? "elsewhere"
+                                    : "everywhere";
+            if (zone && part.area == 0.0)
+                scene_.log.push_back(fmt::format("{}: later zones cover all of it",
+                                                 case_.table_place(fmt::format("material.zone.{}", i))));
+            if (zone || part.area > 0.0) all.parts.push_back(std::move(part));
+        }
+        all.laws = bed::law_map(laws_);
+        return std::make_shared<const Friction>(std::move(all));
+    }
+
+    /// Its parameters are those of the nodes on average.
+    Law mean() const {
+        Law law = laws_.front();
+        for (const Key<Law>& key : keys_) {
+            double sum = 0.0, count = 0.0;
+            for (std::size_t k = 0; k < laws_.size(); ++k)
+                if (is_ground(k)) sum += laws_[k].*key.parameter, count += 1.0;
+            law.*key.parameter = sum / count;
+        }
+        return law;
+    }
+
+private:
+    bool is_ground(std::size_t k) const { return !std::isnan(scene_.bed.values[k]); }
+
+    template <class Body>
+    void for_each_node(Body&& body) const {
+        for (Index j = 0; j < grid_.ny; ++j)
+            for (Index i = 0; i < grid_.nx; ++i)
+                body(static_cast<std::size_t>(j * grid_.nx + i), grid_.x(i), grid_.y(j));
+    }
+
+    /// Of the pixel at each node. Where there is none: the key's default, or NaN.
+    void lay_raster(const Key<Law>& key, const std::string& name) {
+        const std::filesystem::path path = case_.path(name);
+        const Raster pixels = reader_.read_raster(path, grid_.pixel_extent(), scene_.bed.crs_wkt, scene_.log);
+        require_range(pixels, key.range, path.string());
+        Index gaps = 0;
+        for_each_node([&](std::size_t k, double x, double y) {
+            const double value = pixel_at(pixels, x, y);
+            if (!std::isnan(value)) {
+                laws_[k].*key.parameter = key.convert(value);
+                return;
+            }
+            if (is_ground(k)) ++gaps;
+            if (key.missing == laws::Missing::refused) laws_[k].*key.parameter = Raster::nodata;
+        });
+        if (gaps > 0 && key.missing != laws::Missing::refused)
+            scene_.log.push_back(fmt::format("{}: {:.3g} % of the terrain's nodes have no data there; they have {:.6g}",
+                                             case_.place(name), 100.0 * double(gaps) / double(grid_.size()),
+                                             Law{}.*key.parameter));
+    }
+
+    /// By outline, by elevation, or what both have.
+    NodeMarks nodes_of(const std::string& zone) const {
+        NodeMarks marks(laws_.size(), 1);
+        if (case_.given(zone + ".outline")) {
+            std::fill(marks.begin(), marks.end(), char{0});
+            const Polygons outline =
+                reader_.read_polygons(case_.path(zone + ".outline"), scene_.bed.crs_wkt, scene_.log);
+            for (const Polygon& polygon : outline.parts) mark_inside(polygon, grid_, marks);
+        }
+        const auto limit = [&](const char* name, double otherwise) {
+            return case_.given(zone + name) ? case_.number(zone + name) : otherwise;
+        };
+        const double low = limit(".above", -INFINITY), high = limit(".below", INFINITY);
+        for (std::size_t k = 0; k < marks.size(); ++k) {
+            const double z = scene_.bed.values[k];
+            if (z < low || z >= high) marks[k] = 0;
+        }
+        return marks;
+    }
+
+    void lay_zone(Index number) {
+        const std::string zone = fmt::format("material.zone.{}", number);
+        const NodeMarks marks = nodes_of(zone);
+        bool any = false;
+        for (std::size_t k = 0; k < marks.size(); ++k) {
+            if (!marks[k]) continue;
+            any = any || is_ground(k);
+            part_[k] = static_cast<std::uint32_t>(number + 1);
+            for (const Key<Law>& key : keys_)
+                if (const std::string name = zone + "." + key.name; case_.given(name))
+                    laws_[k].*key.parameter = key.convert(case_.number(name));
+        }
+        if (!any)
+            throw UserError(
+                "found no node of the terrain in it; expected some; correct the outline, its CRS or the elevations, or "
+                "remove the zone");
+    }
+
+    [[noreturn]] void refuse_gaps(const std::string& key, std::size_t count, std::size_t first) const {
+        throw UserError(fmt::format(
+            "found no value at {} of {} nodes, such as {}; expected one at each, since {}{} has no default; fill the "
+            "gaps of the raster, or give {} there by a [[material.zone]]",
+            count, laws_.size(), where(grid_, first), kLaw, key, key));
+    }
+
+    void require_more(const Key<Law>& key) const {
+        const auto smaller = std::find_if(keys_.begin(), keys_.end(),
+                                          [&](const auto& k) { return std::string(k.name) == key.more_than; });
+        for (std::size_t k = 0; k < laws_.size(); ++k) {
+            const double value = laws_[k].*key.parameter, other = laws_[k].*(smaller->parameter);
+            if (!is_ground(k) || value > other) continue;
+            throw UserError(fmt::format("found {} = {:.6g} at {}; expected more than {} = {:.6g} there; {}", key.name,
+                                        value, where(grid_, k), key.more_than, other, key.way_out));
+        }
+    }
+
+    /// Beyond the ground nothing is known, and nothing moves.
+    void fill_gaps() {
+        const Law middle = mean();
+        for (std::size_t k = 0; k < laws_.size(); ++k)
+            for (const Key<Law>& key : keys_)
+                if (std::isnan(laws_[k].*key.parameter)) laws_[k].*key.parameter = middle.*key.parameter;
+    }
+
+    /// Whether a raster or a zone says something of a parameter, by any of its keys.
+    bool is_said(double Law::*parameter) const {
+        for (const Key<Law>& key : keys_) {
+            if (key.parameter != parameter) continue;
+            if (is_raster(case_, kLaw + std::string(key.name))) return true;
+            for (Index i = 0; i < case_.count("material.zone"); ++i)
+                if (case_.given(fmt::format("material.zone.{}.{}", i, key.name))) return true;
+        }
+        return false;
+    }
+
+    FrictionPart part_of(std::uint32_t number) const {
+        FrictionPart part;
+        std::vector<const Key<Law>*> shown;
+        for (const Key<Law>& key : keys_)
+            if (key.name == bed::plain_name(keys_, key.parameter) && is_said(key.parameter)) {
+                shown.push_back(&key);
+                part.extents.push_back({key.name, key.unit, INFINITY, -INFINITY});
+            }
+        for (std::size_t k = 0; k < laws_.size(); ++k) {
+            if (part_[k] != number || !is_ground(k)) continue;
+            part.area += grid_.cell * grid_.cell;
+            for (std::size_t n = 0; n < shown.size(); ++n) {
+                const double value = laws_[k].*(shown[n]->parameter);
+                part.extents[n].low = std::min(part.extents[n].low, value);
+                part.extents[n].high = std::max(part.extents[n].high, value);
+            }
+        }
+        if (part.area == 0.0) part.extents.clear();
+        return part;
+    }
+
+    const CaseFile& case_;
+    const GisReader& reader_;
+    Scene& scene_;
+    const GridGeometry& grid_;
+    std::vector<Key<Law>> keys_;
+    std::vector<Law> laws_;            ///< of the nodes; NaN: a parameter that is not known
+    std::vector<std::uint32_t> part_;  ///< of the nodes: 0, or the number of their zone + 1
+};
+
+}  // namespace
+
+bool friction_differs(const CaseFile& file) {
+    return file.count("material.zone") > 0 || !raster_in(file, "material.bed").empty();
+}
+
+void read_friction(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
+    if (!friction_differs(file)) return;
+    std::visit(
+        [&](const auto& law) {
+            LawLayers layers(file, reader, scene, law);
+            const bool good = problems.empty();
+            layers.lay_rasters(problems);
+            layers.lay_zones(problems);
+            if (good && !problems.empty()) return;
+            if (!problems.attempt(file.place("material.bed.law"), [&] { layers.check(); })) return;
+            scene.friction = layers.friction();
+            scene.bed_law = layers.mean();
+        },
+        BedLaw(scene.bed_law));
+}
+
+BedLaw bed_law_at(const Scene& scene, const Vec2& point) {
+    if (!scene.friction) return scene.bed_law;
+    const GridGeometry& g = scene.bed.geometry;
+    const auto node = [&](double at, Index count) {
+        return static_cast<Index>(std::clamp(std::floor(at / g.cell + 0.5), 0.0, static_cast<double>(count - 1)));
+    };
+    return scene.friction->laws.at(
+        static_cast<std::size_t>(node(point.y() - g.y0, g.ny) * g.nx + node(point.x() - g.x0, g.nx)));
+}
+
+std::string friction_sentence(const FrictionPart& part) {
+    std::string text = fmt::format("{:.6g} m2", part.area);
+    for (const FrictionPart::Extent& of : part.extents) {
+        text += fmt::format(", {} {:.6g}", of.key, of.low);
+        if (of.high > of.low) text += fmt::format(" to {:.6g}", of.high);
+        if (of.unit != "1") text += " " + of.unit;
+    }
+    return text;
+}
+
+}  // namespace frana

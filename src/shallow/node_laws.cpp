@@ -1,0 +1,55 @@
+#include "shallow/node_laws.h"
+
+#include <algorithm>
+
+#include "law/bed/node_friction.h"
+
+namespace frana {
+namespace {
+
+/// Where zones meet, and on rasters, four nodes have different laws.
+template <class Law>
+Double4 one_by_one(const std::vector<Law>& laws, const std::array<std::uint32_t, 4>& place,
+                   const BedStateOf<Double4>& bed, const Double4& s0, const Double4& driven, double dt) {
+    Double4 speed = {};
+    for (int n = 0; n < 4; ++n) {
+        const BedState one{bed.normal_gravity[n], bed.thickness[n], bed.kappa[n],
+                           bed.cosine[n],         bed.gravity,      bed.density};
+        speed[n] = laws[place[static_cast<std::size_t>(n)]].speed_after(one, s0[n], driven[n], dt);
+    }
+    return speed;
+}
+
+}  // namespace
+
+NodeLaws::NodeLaws(const bed::LawMap& all, const TileGrid& grid) : laws(all.laws), place(grid.size()) {
+    std::visit(
+        [this](const auto& table) {
+            for (const auto& law : table) at_rest.push_back(law.friction_at_rest());
+        },
+        laws);
+    const Index rows = grid.size() / grid.stride() - kTile, columns = grid.stride() - kTile;
+    for (Index j = -kTile; j < rows; ++j)
+        for (Index i = -kTile; i < columns; ++i) {
+            const Index row = std::clamp<Index>(j, 0, grid.ny() - 1), column = std::clamp<Index>(i, 0, grid.nx() - 1);
+            place[grid.at(i, j)] = all.place[static_cast<std::size_t>(row * grid.nx() + column)];
+        }
+}
+
+void LawsHere<Double4>::brake(const BedStateOf<Double4>& bed, const Double4& s0, const Double4& driven, double dt,
+                              Double4& speed) const {
+    const bool same = place[0] == place[1] && place[0] == place[2] && place[0] == place[3];
+    std::visit(
+        [&](const auto& laws) {
+            speed =
+                same ? speeds_after(laws[place[0]], bed, s0, driven, dt) : one_by_one(laws, place, bed, s0, driven, dt);
+        },
+        all->laws);
+}
+
+double speeds_after(const LawsHere<double>& here, const BedState& bed, double s0, double driven, double dt) {
+    return std::visit([&](const auto& laws) { return double{laws[here.place].speed_after(bed, s0, driven, dt)}; },
+                      here.all->laws);
+}
+
+}  // namespace frana
