@@ -162,6 +162,12 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
         [&] { action = [&] { return adding_to(options.run_dir, [&] { return compare_command(options); }); }; });
 }
 
+    command->add_option("--bed-change", options.bed_change,
+                        "raster of the difference of two surveys, after minus before [m]");
+    command
+        ->add_option("--bed-change-noise", options.bed_change_noise,
+                     "change within the noise of both surveys, which counts as none [m]; default 0.1")
+        ->check(CLI::NonNegativeNumber);
 void add_states(CLI::App& app, StatesOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("states", "write the ParaView states of a run again, after it was moved");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();

@@ -8,6 +8,7 @@
 #include "frana_commands.h"
 #include "frana_figures.h"
 #include "run/folder/comparison.h"
+#include "run/folder/run_charts.h"
 #include "run/folder/states.h"
 #include "vtk_io/survey_vtp.h"
 
@@ -31,6 +32,14 @@ void require_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& 
                             (run_dir / "rasters" / (product.name + ".tif")).string()));
 }
 
+void require_erodible(const CompareOptions& options, const std::vector<ProductRaster>& rasters) {
+    if (options.bed_change.empty() || find_product(rasters, "bed_change") != nullptr) return;
+    throw UserError(
+        fmt::format("{}: is not there, since the run had no erodible bed; expected one for --bed-change; give the case "
+                    "an [erodible] table and run it again",
+                    (options.run_dir / "rasters" / "bed_change.tif").string()));
+}
+
 /// compare.md: the comparison on one page, with its picture.
 std::string page(const FigureSource& source, const Comparison& comparison, const std::vector<DrawnFigure>& figures) {
     std::string text = fmt::format("# {}\n\n", source.title) + comparison_section(comparison);
@@ -47,17 +56,20 @@ int compare_command(const CompareOptions& options) {
     require_rasters(options.run_dir, source.rasters);
     const Raster& peak = find_product(source.rasters, "peak_depth")->raster;
 
-    const Survey survey = read_survey_files({options.survey, options.deposit, options.path}, peak, warnings);
+    require_erodible(options, source.rasters);
+    const Survey survey = read_survey_files(
+        {options.survey, options.deposit, options.path, options.bed_change, options.bed_change_noise}, peak, warnings);
     const bool bed_known = !source.bed.values.empty();
     const Comparison comparison =
         compare_rasters(source.rasters, bed_known ? &source.bed : nullptr, source.footprint_depth, survey);
 
     const fs::path json = options.json.empty() ? options.run_dir / "compare.json" : options.json;
-    write_text(json, comparison_json(comparison));  // before the picture: scores are worth more
+    write_scores(options.run_dir, json, comparison);  // before the picture: scores are worth more
     std::vector<DrawnFigure> figures;
     source.survey = survey.footprint;
     source.runout_path = comparison.path;
     if (bed_known) draw_overlay(source, figures, warnings);
+    if (!comparison.bed_change_steps.empty()) draw_bed_change(source, figures, warnings);
     write_text(options.run_dir / "compare.md", page(source, comparison, figures));
 
     if (bed_known && fs::exists(options.run_dir / "grid.pvd")) {

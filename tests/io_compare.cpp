@@ -8,6 +8,7 @@
 #include "catch.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_writer.h"
+#include "observe/table.h"
 #include "program.h"
 #include "vtk_io/figures/offscreen.h"
 
@@ -76,6 +77,21 @@ const char* const contract[] = {"true_positive_area",
 Raster peak_depth(const fs::path& run_dir) {
     std::vector<std::string> log;
     return GdalReader().read_raster(run_dir / "rasters" / "peak_depth.tif", {-1e9, -1e9, 1e9, 1e9}, "", log);
+}
+
+const std::string loose = "[erodible]\ndepth = 1.0\nlaw = \"growth\"\ngrowth = 0.05\n";
+
+Raster raster_of(const fs::path& run_dir, const char* name) {
+    std::vector<std::string> log;
+    return GdalReader().read_raster(run_dir / "rasters" / name, {-1e9, -1e9, 1e9, 1e9}, "", log);
+}
+
+/// What a second survey would see of a run.
+Raster ground_change(const fs::path& run_dir) {
+    Raster change = raster_of(run_dir, "bed_change.tif");
+    const Raster lying = raster_of(run_dir, "final_depth.tif");
+    for (std::size_t k = 0; k < change.values.size(); ++k) change.values[k] += lying.values[k];
+    return change;
 }
 
 }  // namespace
@@ -231,4 +247,68 @@ TEST_CASE("A picture that cannot be drawn is a warning; scores that cannot be wr
     const Outcome no_scores = slope.frana("compare run --survey footprint.geojson --json nowhere/scores.json");
     CHECK(no_scores.code == 2);
     CHECK_THAT(no_scores.err, Contains("nowhere/scores.json"));
+}
+
+TEST_CASE("compare holds changes of the ground against a survey, in total and along the path",
+          "[compare][bed_change]") {
+    const Slope slope(R"(["vtk", "geotiff"])", loose);
+    // Longer than the others, so that the flow leaves ground that it eroded.
+    REQUIRE(slope.frana("run case.toml --out run --overwrite --quiet --set time.end=7").code == 0);
+    Raster twice = ground_change(slope.run_dir());
+    for (double& change : twice.values) change *= 2.0;
+    write_geotiff(slope.path() / "dod.tif", twice, "m", "after minus before");
+    const std::string compare = "compare run --survey footprint.geojson";
+    const Outcome done = slope.frana(compare + " --bed-change dod.tif --bed-change-noise 0");
+    REQUIRE(done.code == 0);
+    const Json json = Json::parse(text_of(slope.run_dir() / "compare.json"))["bed_change"];
+    constexpr double single = 1e-6;  // of the files
+    CHECK(json["simulated"]["eroded"].get<double>() > 10.0);
+    CHECK(json["simulated"]["deposited"].get<double>() > 10.0);
+    CHECK(json["eroded_error"].get<double>() == Approx(-0.5).epsilon(single));
+    CHECK(json["deposited_error"].get<double>() == Approx(-0.5).epsilon(single));
+    CHECK(json["misplaced_share"].get<double>() < single);
+    CHECK(json["rmse"].get<double>() >= json["mae"].get<double>());
+    const Table table = read_table(slope.run_dir() / "compare_bed_change.csv");
+    REQUIRE(table.rows() > 5);
+    for (const std::string what : {"eroded", "deposited"}) {
+        double sum = 0.0;
+        for (const double volume : table.column("surveyed_" + what)) sum += volume;
+        CHECK(sum == Approx(json["surveyed"][what].get<double>()));
+    }
+    CHECK(table.column("simulated_balance").back() ==
+          Approx(json["simulated"]["deposited"].get<double>() - json["simulated"]["eroded"].get<double>()));
+    CHECK_THAT(text_of(slope.run_dir() / "compare.md"), Contains("| Change of the ground against `dod.tif`"));
+    if (no_renderer_reason().empty()) CHECK(fs::exists(slope.run_dir() / "figures" / "compare_bed_change.png"));
+
+    // An answer from another comparison does not stay.
+    REQUIRE(slope.frana(compare).code == 0);
+    CHECK_FALSE(Json::parse(text_of(slope.run_dir() / "compare.json")).contains("bed_change"));
+    CHECK_FALSE(fs::exists(slope.run_dir() / "compare_bed_change.csv"));
+}
+
+TEST_CASE("Changes of the ground in a case are compared at the end; what cannot be is refused",
+          "[compare][bed_change]") {
+    const Slope rock;
+    const Raster any = raster_of(rock.run_dir(), "peak_depth.tif");
+    write_geotiff(rock.path() / "dod.tif", Raster::filled(any.geometry, -0.25), "m", "after minus before");
+    GridGeometry east = any.geometry;
+    east.x0 += 5000.0;
+    write_geotiff(rock.path() / "away.tif", Raster::filled(east, -0.25), "m", "after minus before");
+    const std::string compare = "compare run --survey footprint.geojson --bed-change ";
+    const Outcome no_bed = rock.frana(compare + "dod.tif");
+    CHECK(no_bed.code == 2);
+    CHECK_THAT(no_bed.err, Contains("bed_change.tif: is not there, since the run had no erodible bed; expected"));
+    write_text(rock.path() / "case.toml",
+               text_of(rock.path() / "case.toml") + loose +
+                   "[survey]\nfootprint = \"footprint.geojson\"\nbed_change = \"dod.tif\"\n");
+    REQUIRE(rock.frana("run case.toml --out run --overwrite --quiet").code == 0);
+    const Json json = Json::parse(text_of(rock.run_dir() / "compare.json"))["bed_change"];
+    CHECK(json["surveyed"]["eroded"].get<double>() > 0.0);
+    CHECK(json["noise"] == 0.1);
+    const std::string report = text_of(rock.run_dir() / "report.md");
+    CHECK_THAT(report, Contains("| Change of the ground against") && Contains("compare_bed_change.csv"));
+    const Outcome away = rock.frana(compare + "away.tif");
+    CHECK(away.code == 2);
+    CHECK_THAT(away.err, Contains("away.tif: has no value within") && Contains("; expected the difference of two"));
+    CHECK(rock.frana("check case.toml --set survey.bed_change=\"away.tif\"").code == 2);
 }

@@ -22,6 +22,7 @@ public:
         result_.survey = survey.footprint.source;
         result_.path_source = survey.path_source;
         result_.deposit_source = survey.deposit_source;
+        result_.bed_change_source = survey.bed_change_source;
         result_.limit = run.limit;
         result_.cell = run.peak_depth->geometry.cell;
         step_ = result_.cell / steps_per_cell;
@@ -38,6 +39,7 @@ public:
         }
         if (survey_.deposit && run_.final_depth)
             result_.deposit = deposit_errors(*run_.final_depth, *survey_.deposit, run_.limit);
+        compare_beds();
         make_remarks();
         return std::move(result_);
     }
@@ -81,6 +83,22 @@ private:
             scores.reach = farthest_from(result_.path.front(), outline);
         }
         return scores;
+    }
+
+    void compare_beds() {
+        if (!survey_.bed_change || !run_.bed_change) return;
+        const Raster change = surface_change(*run_.bed_change, run_.final_depth, run_.arrival_time);
+        const double noise = survey_.bed_change_noise;
+        result_.bed_change = bed_change_errors(change, *survey_.bed_change, noise);
+        result_.bed_change_steps = bed_change_along(result_.path, change, *survey_.bed_change, noise);
+        const BedChangeErrors& errors = *result_.bed_change;
+        if (!(errors.surveyed.all() > 0.0))
+            remark("{} changes nowhere by more than {:.3g} m outside of the release, so its errors are no numbers",
+                   result_.bed_change_source, noise);
+        if (errors.unsurveyed.all() > 0.0)
+            remark(
+                "{:.6g} m3 of the simulated changes of the bed lie where {} has no data and are in none of its errors",
+                errors.unsurveyed.all(), result_.bed_change_source);
     }
 
     template <class... Parts>

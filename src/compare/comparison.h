@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/bed_change.h"
 #include "compare/deposit.h"
 #include "compare/overlap.h"
 #include "compare/runout.h"
@@ -17,15 +18,19 @@ struct SimulatedRun {
     const Raster* arrival_time = nullptr;  ///< or null: no steepest path
     const Raster* bed = nullptr;           ///< or null: no steepest path
     double limit = 0.1;                    ///< deeper counts as covered [m]
+    const Raster* bed_change = nullptr;    ///< or null: the bed is rock
 };
 
 /// What was surveyed.
 struct Survey {
-    Polygons footprint;             ///< polygons that do not overlap
-    std::optional<Polyline> path;   ///< for the runout; nothing: the steepest one from the release
-    std::optional<Raster> deposit;  ///< thickness [m] on pixels of the run, maybe more around them
-    std::string path_source;        ///< file of the path
-    std::string deposit_source;     ///< file of the thickness
+    Polygons footprint;                ///< polygons that do not overlap
+    std::optional<Polyline> path;      ///< for the runout; nothing: the steepest one from the release
+    std::optional<Raster> deposit;     ///< thickness [m] on pixels of the run, maybe more around them
+    std::string path_source;           ///< file of the path
+    std::string deposit_source;        ///< file of the thickness
+    std::optional<Raster> bed_change;  ///< after minus before [m], likewise
+    double bed_change_noise = 0.1;     ///< of that [m]
+    std::string bed_change_source;     ///< file of that
 };
 
 /// Scores of one simulated extent.
@@ -37,7 +42,7 @@ struct ExtentScores {
 };
 
 struct Comparison {
-    std::string survey, path_source, deposit_source;
+    std::string survey, path_source, deposit_source, bed_change_source;
     double limit = 0.1;
     double cell = 1.0;
     ExtentScores trace;                 ///< everything ever covered, as Fois et al. (2024), section 4.3
@@ -45,7 +50,9 @@ struct Comparison {
     Polyline path;                      ///< empty: none
     double surveyed_runout = Raster::nodata, surveyed_reach = Raster::nodata;
     std::optional<DepositErrors> deposit;
-    Rings outline;  ///< of the trace
+    std::optional<BedChangeErrors> bed_change;
+    std::vector<BedChangeStep> bed_change_steps;  ///< along the path
+    Rings outline;                                ///< of the trace
     std::vector<std::string> remarks;
 };
 

@@ -109,25 +109,6 @@ Polyline smoothed(const Polyline& line, Index reach) {
     return result;
 }
 
-/// Place along the path of its point nearest to p [m]; the last segment goes on without end.
-double place_along(const Polyline& path, const Vec2& p) {
-    double best = INFINITY, place = 0.0, before = 0.0;
-    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
-        const Vec2 along = path[k + 1] - path[k];
-        const double length = along.norm();
-        if (!(length > 0.0)) continue;
-        double t = nearest_fraction(path[k], path[k + 1], p);
-        if (k + 2 == path.size()) t = std::max(t, (p - path[k]).dot(along) / (length * length));
-        const double distance = (p - path[k] - t * along).norm();
-        if (distance < best) {
-            best = distance;
-            place = before + t * length;
-        }
-        before += length;
-    }
-    return place;
-}
-
 }  // namespace
 
 Polyline steepest_path(const Raster& bed, const Vec2& start) {
@@ -156,6 +137,24 @@ std::optional<Vec2> release_middle(const Raster& arrival_time) {
     return *std::min_element(released.begin(), released.end(), [&](const Vec2& a, const Vec2& b) {
         return (a - centroid).squaredNorm() < (b - centroid).squaredNorm();
     });
+}
+
+double place_along(const Polyline& path, const Vec2& p) {
+    double best = INFINITY, place = 0.0, before = 0.0;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+        const Vec2 along = path[k + 1] - path[k];
+        const double length = along.norm();
+        if (!(length > 0.0)) continue;
+        double t = nearest_fraction(path[k], path[k + 1], p);
+        if (k + 2 == path.size()) t = std::max(t, (p - path[k]).dot(along) / (length * length));
+        const double distance = (p - path[k] - t * along).norm();
+        if (distance < best) {
+            best = distance;
+            place = before + t * length;
+        }
+        before += length;
+    }
+    return place;
 }
 
 double reach_along(const Polyline& path, const Rings& outline, double step) {

@@ -16,6 +16,9 @@ Polyline steepest_path(const Raster& bed, const Vec2& start);
 /// Released are the nodes whose arrival time is 0.
 std::optional<Vec2> release_middle(const Raster& arrival_time);
 
+/// Place along a path of its point nearest to p [m]; the last segment goes on without end.
+double place_along(const Polyline& path, const Vec2& p);
+
 /// The path's horizontal length up to the point of it that is nearest to the outline's farthest one [m]: the
 /// largest, over the outline, of the place along the path of the nearest point on it. A path that ends too early goes
 /// on straight. NaN without rings. `step` [m]: how closely the outline's edges are looked at.

@@ -46,10 +46,10 @@ public:
     Polygons read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt, std::vector<std::string>& log) const override;
 
-    /// Thickness of a surveyed deposit on the pixels of `grid`, which is widened by whole pixels to all of the
+    /// Thickness of a surveyed deposit, or a surveyed change of the bed, on the pixels of `grid`, which is widened by whole pixels to all of the
     /// raster, so that no volume is lost. UserError as read_onto and read_survey.
     Raster read_deposit(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
-                        std::vector<std::string>& log) const;
+                        std::vector<std::string>& log) const override;
 
     std::vector<Polyline> read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
                                      std::vector<std::string>& log) const override;

@@ -34,7 +34,7 @@ public:
         read_terrain();
         problems_.throw_if_any();  // nothing below can be judged without terrain
         read_releases();
-        read_survey();
+        read_survey(case_, reader_, scene_, problems_);
         read_friction(case_, reader_, scene_, problems_);
         read_profiles_and_gauges();
         scene_.sections = read_sections(case_, reader_, scene_, problems_);
@@ -281,15 +281,6 @@ private:
             scene_.log.push_back(
                 fmt::format("release.{}: its {:.6g} m3 are cut out of the bed (included_in_dem)", table, volume));
         }
-    }
-
-    void read_survey() {
-        if (!case_.given("survey.footprint")) return;
-        scene_.footprint = case_.path("survey.footprint");
-        problems_.attempt(case_.place("survey.footprint"), [&] {
-            scene_.survey =
-                reader_.read_survey(scene_.footprint, terrain().pixel_extent(), scene_.bed.crs_wkt, scene_.log);
-        });
     }
 
     const GridGeometry& terrain() const { return scene_.wider ? scene_.wider->grid : scene_.bed.geometry; }

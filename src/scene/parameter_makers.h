@@ -26,6 +26,9 @@ void add_water(Table& table);
 void add_barriers(Table& table);
 void add_stages(Table& table);
 
+/// The keys of [survey] (parameter_table_survey.cpp).
+void add_survey(Table& table);
+
 namespace rows {
 
 using namespace ranges;

@@ -289,10 +289,7 @@ void add_run(Table& table) {
     add_barriers(table);
     add_stages(table);
     add_insitu(table);
-    table.push_back(absent(make("survey.footprint", Kind::path, "",
-                                "surveyed extent that the run is compared with: any OGR vector file of polygons, or a "
-                                "raster that is above 0 there"),
-                           "no survey"));
+    add_survey(table);
 }
 
 Table make_table() {

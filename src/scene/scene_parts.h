@@ -53,6 +53,10 @@ void read_barriers(const CaseFile& file, const GisReader& reader, const MeshRead
 Polyline read_line(const CaseFile& file, const std::string& key, const GisReader& reader, const std::string& crs_wkt,
                    std::vector<std::string>& log);
 
+/// [survey] of a scene that has its terrain: the footprint is read, other files are tried. What is wrong with them goes to
+/// `problems`.
+void read_survey(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
+
 /// How much the ground rises on average to the right of a line, along the line's normals [1].
 double rise_across(const Polyline& line, const Raster& bed);
 /// All [[section]] of a scene that has its terrain; down the slope of the ground counts as positive.

@@ -51,6 +51,11 @@ public:
     /// The same, averaged / interpolated onto `grid`.
     virtual Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                              std::vector<std::string>& log) const = 0;
+    /// Heights or thicknesses of a survey on the pixels of `grid`; readers that can also widen it to all of the raster.
+    virtual Raster read_deposit(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
+                                std::vector<std::string>& log) const {
+        return read_onto(file, grid, crs_wkt, log);
+    }
     /// All polygons of a vector file, reprojected to `crs_wkt` when both are known and differ.
     virtual Polygons read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                    std::vector<std::string>& log) const = 0;

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "base/atomic_file.h"
 #include "io/gdal_reader.h"
+#include "observe/table.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -50,6 +51,26 @@ void add_deposit(Json& json, const DepositErrors& deposit) {
     json["deposit_volume_survey"] = deposit.surveyed_volume;
     json["deposit_volume_unsurveyed"] = deposit.unsurveyed_volume;
     json["deposit_compared_area"] = deposit.compared_area;
+}
+
+Json volumes(const BedVolumes& v) { return {{"eroded", v.eroded}, {"deposited", v.deposited}}; }
+
+Json bed_change_json(const Comparison& c) {
+    const BedChangeErrors& b = *c.bed_change;
+    return {{"survey", c.bed_change_source},
+            {"noise", b.noise},
+            {"simulated", volumes(b.simulated)},
+            {"surveyed", volumes(b.surveyed)},
+            {"eroded_error", number(b.eroded_error())},
+            {"deposited_error", number(b.deposited_error())},
+            {"misplaced_volume", b.misplaced},
+            {"misplaced_share", number(b.misplaced_share())},
+            {"mae", number(b.mae)},
+            {"rmse", number(b.rmse)},
+            {"compared_area", b.compared_area},
+            {"simulated_within_noise", volumes(b.within_noise)},
+            {"simulated_unsurveyed", volumes(b.unsurveyed)},
+            {"surveyed_in_release", volumes(b.release)}};
 }
 
 const Raster* raster_named(const std::vector<ProductRaster>& rasters, const char* name) {
@@ -107,19 +128,30 @@ std::string deposit_table(const Comparison& c) {
     return text + "\n";
 }
 
-Polyline only_line(const fs::path& file, const std::string& crs_wkt, std::vector<std::string>& log) {
-    const std::vector<Polyline> lines = GdalReader().read_lines(file, crs_wkt, log);
-    if (lines.size() != 1)
-        throw UserError(
-            fmt::format("{}: holds {} lines; expected one, the path from the release to the toe; export "
-                        "that one alone",
-                        file.string(), lines.size()));
-    if (!(length_of(lines.front()) > 0.0))
-        throw UserError(
-            fmt::format("{}: its line has no length; expected the path from the release to the toe; draw "
-                        "it again",
-                        file.string()));
-    return lines.front();
+std::string bed_change_table(const Comparison& c) {
+    if (!c.bed_change) return "";
+    const BedChangeErrors& b = *c.bed_change;
+    std::string text =
+        fmt::format("| Change of the ground against `{}` | eroded | deposited |\n|---|---|---|\n", c.bed_change_source);
+    const auto add = [&](const char* name, const std::string& eroded, const std::string& deposited) {
+        text += fmt::format("| {} | {} | {} |\n", name, eroded, deposited);
+    };
+    const auto add_volumes = [&](const char* name, const BedVolumes& v) {
+        add(name, fmt::format("{:.6g}", v.eroded), fmt::format("{:.6g}", v.deposited));
+    };
+    add_volumes("simulated volume [m3]", b.simulated);
+    add_volumes("surveyed volume [m3]", b.surveyed);
+    add("volume error [%]", value(100.0 * b.eroded_error(), "{:+.1f}"), value(100.0 * b.deposited_error(), "{:+.1f}"));
+    add_volumes("simulated within the noise [m3]", b.within_noise);
+    add_volumes("surveyed in the release [m3]", b.release);
+    return text +
+           fmt::format(
+               "\nSimulated is the change of the bed with what lies on it at the end, as a second survey would see it. "
+               "Changes of at most {:.3g} m count as none, and the release is left out. Misplaced: {:.6g} m3, {} % of "
+               "the surveyed volume. Where one of the two changes ({:.6g} m2): mean absolute error {} m, root mean "
+               "square error {} m.\n\n",
+               b.noise, b.misplaced, value(100.0 * b.misplaced_share(), "{:.1f}"), b.compared_area,
+               value(b.mae, "{:.3g}"), value(b.rmse, "{:.3g}"));
 }
 
 }  // namespace
@@ -132,20 +164,27 @@ Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Rast
     run.arrival_time = raster_named(rasters, "arrival_time");
     run.bed = bed;
     run.limit = limit;
+    run.bed_change = raster_named(rasters, "bed_change");
     return compare(run, survey);
 }
 
 Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vector<std::string>& log) {
     const GdalReader reader;
     Survey survey;
-    survey.footprint = reader.read_survey(files.footprint, like.geometry.pixel_extent(), like.crs_wkt, log);
+    if (!files.footprint.empty())
+        survey.footprint = reader.read_survey(files.footprint, like.geometry.pixel_extent(), like.crs_wkt, log);
     if (!files.path.empty()) {
-        survey.path = only_line(files.path, like.crs_wkt, log);
+        survey.path = read_survey_path(reader, files.path, like.crs_wkt, log);
         survey.path_source = files.path.string();
     }
     if (!files.deposit.empty()) {
         survey.deposit = reader.read_deposit(files.deposit, like.geometry, like.crs_wkt, log);
         survey.deposit_source = files.deposit.string();
+    }
+    if (!files.bed_change.empty()) {
+        survey.bed_change = read_bed_change(reader, files.bed_change, like.geometry, like.crs_wkt, log);
+        survey.bed_change_source = files.bed_change.string();
+        survey.bed_change_noise = files.bed_change_noise;
     }
     return survey;
 }
@@ -161,9 +200,32 @@ std::string comparison_json(const Comparison& c) {
         json["deposit"] = c.deposit_source;
         add_deposit(json, *c.deposit);
     }
+    if (c.bed_change) json["bed_change"] = bed_change_json(c);
     if (c.final) add_scores(json["final_extent"], *c.final, c);
     json["remarks"] = c.remarks;
     return json.dump(2) + "\n";
+}
+
+void write_scores(const fs::path& run_dir, const fs::path& json, const Comparison& c) {
+    write_text(json, comparison_json(c));
+    const fs::path file = run_dir / "compare_bed_change.csv";
+    std::error_code none;
+    if (c.bed_change_steps.empty()) {  // what an earlier comparison left is not of this one
+        fs::remove(file, none);
+        fs::remove(run_dir / "figures" / "compare_bed_change.png", none);
+        return;
+    }
+    TableWriter table(
+        file, {"distance [m]", "x [m]", "y [m]", "simulated_eroded [m3]", "simulated_deposited [m3]",
+               "surveyed_eroded [m3]", "surveyed_deposited [m3]", "simulated_balance [m3]", "surveyed_balance [m3]"});
+    double ours = 0.0, theirs = 0.0;
+    for (const BedChangeStep& step : c.bed_change_steps) {
+        ours += step.simulated.deposited - step.simulated.eroded;
+        theirs += step.surveyed.deposited - step.surveyed.eroded;
+        table.add({step.distance, step.point.x(), step.point.y(), step.simulated.eroded, step.simulated.deposited,
+                   step.surveyed.eroded, step.surveyed.deposited, ours, theirs});
+    }
+    table.flush();
 }
 
 std::string comparison_section(const Comparison& c) {
@@ -175,7 +237,7 @@ std::string comparison_section(const Comparison& c) {
         c.survey, c.cell, c.limit,
         c.path.empty() ? std::string("no known path")
                        : (c.path_source.find("steepest") == 0 ? "the " + c.path_source : "`" + c.path_source + "`"));
-    text += extent_table(c) + deposit_table(c);
+    text += extent_table(c) + deposit_table(c) + bed_change_table(c);
     for (const std::string& remark : c.remarks) text += fmt::format("- {}\n", remark);
     return text + (c.remarks.empty() ? "" : "\n");
 }

@@ -6,24 +6,26 @@
 
 #include "compare/comparison.h"
 #include "run/folder/products.h"
+#include "scene/survey_files.h"
 
 namespace frana {
-
-/// A survey's files; the last two may be empty.
-struct SurveyFiles {
-    std::filesystem::path footprint, deposit, path;
-};
 
 /// The run's rasters held against a survey that was read. `bed` is null when the terrain is not known.
 Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Raster* bed, double limit,
                            const Survey& survey);
 
-/// Reads the files onto the grid of `like` (a raster of the run). Remarks go to `log`. UserError for a file that
-/// cannot be used.
+/// Reads the files onto the grid of `like` (a raster of the run); any may be empty. Remarks go to `log`.
+/// UserError for a file that cannot be used.
 Survey read_survey_files(const SurveyFiles& files, const Raster& like, std::vector<std::string>& log);
 
 /// compare.json as text: contract in the README. Numbers that do not exist are null.
 std::string comparison_json(const Comparison& comparison);
+
+/// compare.json and, where changes of the bed were compared along a path, compare_bed_change.csv in `run_dir`: for each
+/// step of the path its distance, middle, volumes, and what the steps so far gave less what they took. UserError when they
+/// cannot be written.
+void write_scores(const std::filesystem::path& run_dir, const std::filesystem::path& json,
+                  const Comparison& comparison);
 
 /// The scores as a section of report.md: heading, tables, remarks. No picture.
 std::string comparison_section(const Comparison& comparison);

@@ -169,6 +169,21 @@ ChartFigure section_chart(const FigureSource& source) {
     return figure;
 }
 
+ChartFigure bed_change_chart(const FigureSource& source, const Table& table) {
+    ChartFigure figure = chart(source, "change of the ground along the path", "distance along the path [m]");
+    figure.height = std::max(source.width * 4 / 5, 300);
+    const Column& distance = table.column("distance");
+    ChartPanel eroded{"eroded [m3]", {}, false, {}, 1.0}, deposited{"deposited [m3]", {}, false, {}, 1.0},
+        balance{"deposited less eroded so far [m3]", {}, false, {}, 1.4};
+    for (const std::string whose : {"simulated", "surveyed"}) {
+        eroded.curves.push_back(curve(whose, distance, table.column(whose + "_eroded")));
+        deposited.curves.push_back(curve(whose, distance, table.column(whose + "_deposited")));
+        balance.curves.push_back(curve(whose, distance, table.column(whose + "_balance")));
+    }
+    figure.panels = {eroded, deposited, balance};
+    return figure;
+}
+
 ChartFigure barrier_chart(const FigureSource& source, const std::string& name, const Table& table) {
     ChartFigure figure = chart(source, "barrier " + name, "time [s]");
     figure.height = std::max(source.width * 4 / 5, 300);
@@ -212,6 +227,20 @@ void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures
     attempt(source, {"figures/sections_discharge.png", "discharge through the sections, and the volume that passed"},
             figures, warnings, [&](const fs::path& png, std::string& why_not) {
                 return render_chart(section_chart(source), png, why_not);
+            });
+}
+
+void draw_bed_change(const FigureSource& source, std::vector<DrawnFigure>& figures,
+                     std::vector<std::string>& warnings) {
+    const fs::path file = source.run_dir / "compare_bed_change.csv";
+    std::error_code none;
+    if (!fs::exists(file, none)) return;
+    attempt(source,
+            {"figures/compare_bed_change.png",
+             "change of the ground along the path, simulated and surveyed: volumes in "
+             "steps of equal length"},
+            figures, warnings, [&](const fs::path& png, std::string& why_not) {
+                return render_chart(bed_change_chart(source, read_table(file)), png, why_not);
             });
 }
 

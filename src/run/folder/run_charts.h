@@ -21,6 +21,9 @@ void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures
 /// figures/barrier_<name>.png: force, run-up and what went over each barrier with a table in barriers/.
 void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
 
+/// figures/compare_bed_change.png: changes of the ground along the path, from compare_bed_change.csv; nothing without it.
+void draw_bed_change(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+
 /// figures/budget_energy.png and budget_motion.png, from history.csv.
 void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
 

@@ -126,6 +126,7 @@ std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<st
     if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
         draw_view(source, *peak, figures, warnings);
     draw_overlay(source, figures, warnings);
+    draw_bed_change(source, figures, warnings);
     draw_filmstrip(source, figures, warnings);
     for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
     draw_gauges(source, figures, warnings);

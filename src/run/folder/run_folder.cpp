@@ -46,7 +46,9 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "survey_(areas|outlines)\\.vtp", "the survey on the terrain, for ParaView", false},
         {"", "terrain\\.vti", "bed elevation, slope and hillshade", false},
         {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
-        {"rasters", "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]))\\.tif",
+        {"rasters",
+         "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]|elevation|damage|water_"
+         "depth)|(eroded|deposited)_depth|bed_change)\\.tif",
          "GeoTIFF", false},
         {"rasters", friction_names() + "\\.tif", "GeoTIFF of the friction as it was used", false},
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
@@ -55,7 +57,8 @@ const std::vector<ProductKind>& product_kinds() {
         {"sections", "[^.].*\\.csv", "discharge through a line and the volume that passed it, after every step", false},
         {"barriers", "[^.].*\\.csv", "forces and moments on a barrier, run-up and what went over, after every step",
          false},
-        {"figures", "((map|view|section|filmstrip|profile|gauges|sections|barrier|budget)_[^.].*|compare)\\.png",
+        {"figures",
+         "((map|view|section|filmstrip|profile|gauges|sections|barrier|budget)_[^.].*|compare(_bed_change)?)\\.png",
          "figure", false},
         {"figures", "film_[^.].*\\.(mp4|gif)", "film", false},
         {"insitu", "[^.].*\\.csv", "looked at while the case ran", false},
@@ -65,6 +68,7 @@ const std::vector<ProductKind>& product_kinds() {
         {"states", ".*\\.pvsm", "ParaView state, File > Load State", false},
         {"states", "look\\.json", "colour ranges and cameras of the states", false},
         {"", "compare\\.(json|md)", "comparison with a survey", false},
+        {"", "compare_bed_change\\.csv", "changes of the ground along the path, simulated and surveyed", false},
         {"", "checkpoint\\.h5", "last state", false}};
     return kinds;
 }

@@ -77,13 +77,14 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
                          const std::vector<ProductRaster>& rasters, RunRecord& record) {
     if (!scene.survey || find_product(rasters, "peak_depth") == nullptr) return;
     try {
-        Survey survey;
+        const Raster& peak = find_product(rasters, "peak_depth")->raster;
+        SurveyFiles others = record.survey_files;
+        others.footprint.clear();  // was read with the scene
+        Survey survey = read_survey_files(others, peak, record.warnings);
         survey.footprint = *scene.survey;
         Comparison comparison = compare_rasters(rasters, &bed, scene.output.footprint_depth, survey);
-        write_text(run_dir / "compare.json", comparison_json(comparison));
-        if (scene.output.vtk)
-            write_survey(run_dir, bed, find_product(rasters, "peak_depth")->raster, comparison.limit,
-                         rings_of(survey.footprint));
+        write_scores(run_dir, run_dir / "compare.json", comparison);
+        if (scene.output.vtk) write_survey(run_dir, bed, peak, comparison.limit, rings_of(survey.footprint));
         record.comparison = std::move(comparison);
     } catch (const UserError& error) {
         record.warnings.push_back(fmt::format("the run was not compared with the survey: {}", error.what()));

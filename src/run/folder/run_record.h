@@ -12,6 +12,7 @@
 #include "run/folder/checkpoint.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
+#include "scene/survey_files.h"
 
 namespace frana {
 
@@ -50,6 +51,7 @@ struct RunRecord {
     double flow_width = Raster::nodata;  ///< median over the footprint's length, compare/flow_width.h [m]
     int threads = 1;
     std::optional<Comparison> comparison;  ///< with the survey, when the case gives one
+    SurveyFiles survey_files;
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;

@@ -1,0 +1,68 @@
+#include "scene/survey_files.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scene/case_file.h"
+
+namespace frana {
+namespace {
+
+/// Whether any node of `grid` has a value in a raster on the same pixels, which may have more or fewer of them.
+bool known_on(const Raster& raster, const GridGeometry& grid) {
+    const GridGeometry& g = raster.geometry;
+    const auto left = static_cast<Index>(std::lround((grid.x0 - g.x0) / g.cell));
+    const auto low = static_cast<Index>(std::lround((grid.y0 - g.y0) / g.cell));
+    for (Index j = 0; j < grid.ny; ++j)
+        for (Index i = 0; i < grid.nx; ++i) {
+            const Index si = i + left, sj = j + low;
+            if (si >= 0 && sj >= 0 && si < g.nx && sj < g.ny && std::isfinite(raster.at(si, sj))) return true;
+        }
+    return false;
+}
+
+}  // namespace
+
+SurveyFiles survey_files(const CaseFile& file) {
+    SurveyFiles files;
+    const auto path = [&](const char* key) { return file.given(key) ? file.path(key) : std::filesystem::path(); };
+    files.footprint = path("survey.footprint");
+    files.deposit = path("survey.deposit");
+    files.path = path("survey.path");
+    files.bed_change = path("survey.bed_change");
+    files.bed_change_noise = file.number("survey.bed_change_noise");
+    return files;
+}
+
+Polyline read_survey_path(const GisReader& reader, const std::filesystem::path& file, const std::string& crs_wkt,
+                          std::vector<std::string>& log) {
+    const std::vector<Polyline> lines = reader.read_lines(file, crs_wkt, log);
+    if (lines.size() != 1)
+        throw UserError(
+            fmt::format("{}: holds {} lines; expected one, the path from the release to the toe; export "
+                        "that one alone",
+                        file.string(), lines.size()));
+    double length = 0.0;
+    for (std::size_t k = 0; k + 1 < lines[0].size(); ++k) length += (lines[0][k + 1] - lines[0][k]).norm();
+    if (!(length > 0.0))
+        throw UserError(
+            fmt::format("{}: its line has no length; expected the path from the release to the toe; draw "
+                        "it again",
+                        file.string()));
+    return lines.front();
+}
+
+Raster read_bed_change(const GisReader& reader, const std::filesystem::path& file, const GridGeometry& grid,
+                       const std::string& crs_wkt, std::vector<std::string>& log) {
+    Raster change = reader.read_deposit(file, grid, crs_wkt, log);
+    change.source = file.string();
+    if (known_on(change, grid)) return change;
+    const auto e = grid.pixel_extent();
+    throw UserError(fmt::format(
+        "{}: has no value within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}, where the run is; expected the "
+        "difference of two surveys of this place; check its coordinates and its CRS",
+        file.string(), e[0], e[2], e[1], e[3]));
+}
+
+}  // namespace frana
