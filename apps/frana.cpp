@@ -92,6 +92,12 @@ void add_describe(CLI::App& app, DescribeOptions& options, Action& action) {
     command->add_flag("--combinations", options.combinations, "what is refused together, and what to do instead")
         ->excludes(wanted)
         ->excludes(page);
+    command
+        ->add_flag(
+            "--parameters", options.parameters,
+            "friction and density by the kind of mass, with sources, as a page of Markdown (cases/PARAMETERS.md)")
+        ->excludes(wanted)
+        ->excludes(page);
     command->callback([&] { action = [&] { return describe_command(options); }; });
 }
 
@@ -156,18 +162,18 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
     command->add_option("--survey", options.survey, "surveyed extent: polygons, or a raster that is above 0 there")
         ->required();
     command->add_option("--deposit", options.deposit, "raster of the surveyed deposit's thickness [m]");
-    command->add_option("--path", options.path, "line for the runout; default the steepest from the release");
-    command->add_option("--json", options.json, "file of the scores; default RUN_DIR/compare.json");
-    command->callback(
-        [&] { action = [&] { return adding_to(options.run_dir, [&] { return compare_command(options); }); }; });
-}
-
     command->add_option("--bed-change", options.bed_change,
                         "raster of the difference of two surveys, after minus before [m]");
     command
         ->add_option("--bed-change-noise", options.bed_change_noise,
                      "change within the noise of both surveys, which counts as none [m]; default 0.1")
         ->check(CLI::NonNegativeNumber);
+    command->add_option("--path", options.path, "line for the runout; default the steepest from the release");
+    command->add_option("--json", options.json, "file of the scores; default RUN_DIR/compare.json");
+    command->callback(
+        [&] { action = [&] { return adding_to(options.run_dir, [&] { return compare_command(options); }); }; });
+}
+
 void add_states(CLI::App& app, StatesOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("states", "write the ParaView states of a run again, after it was moved");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();

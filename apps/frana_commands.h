@@ -69,7 +69,7 @@ struct CheckOptions {
 /// `frana particles CASE --out FILE [--count N] [--set key=value]...`
 struct DescribeOptions {
     std::string key;  ///< a key, a table or the beginning of either; empty: all
-    bool markdown = false, combinations = false;
+    bool markdown = false, combinations = false, parameters = false;
 };
 
 struct ParticlesOptions {

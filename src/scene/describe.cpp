@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "scene/combinations.h"
+#include "scene/parameter_ranges.h"
 #include "scene/parameters.h"
 
 namespace frana {
@@ -52,7 +53,7 @@ std::string entry(const Parameter& parameter) {
     text += fmt::format("    value:   {}\n", parameter.expected());
     text += fmt::format("    default: {}\n", default_text(parameter));
     for (const std::string& condition : conditions(parameter)) text += "    " + condition + "\n";
-    return text;
+    return text + ranges_in_words(parameter.key);
 }
 
 std::string heading(const std::string& table) {

@@ -6,6 +6,7 @@
 #include "law/rheology/laws.h"
 #include "scene/inflow_table.h"
 #include "scene/parameter_makers.h"
+#include "scene/parameter_ranges.h"
 
 namespace frana {
 namespace {
@@ -14,6 +15,11 @@ using namespace rows;
 
 void add_terrain(Table& table) {
     table.push_back(absent(make("case.title", Kind::text, "", "title of reports and figures"), "the case's name"));
+    Parameter kind = make("case.kind", Kind::choice, "",
+                          "what moves: values of friction and density outside of its common ranges are remarked upon "
+                          "(cases/PARAMETERS.md)");
+    for (const MassKind& mass : mass_kinds()) kind.choices.push_back(mass.name);
+    table.push_back(absent(kind, "no ranges are known"));
     table.push_back(
         required(make("terrain.dem", Kind::path, "", "elevation model: any GDAL raster, CRS projected in metres")));
     Parameter window = make("terrain.window", Kind::numbers, "m",
@@ -163,7 +169,9 @@ void add_zones(Table& table) {
 }
 
 void add_material(Table& table) {
-    table.push_back(number("material.density", "kg/m^3", positive, 1000.0, "density of the mass"));
+    Parameter density = number("material.density", "kg/m^3", positive, 1000.0, "density of the mass");
+    for (const MassKind& mass : mass_kinds()) density.otherwise.push_back({"case.kind", mass.name, mass.density});
+    table.push_back(density);
     add_law<BedLaw>(table, "material.bed", "friction between the mass and its bed", Kind::number_or_path);
     add_zones(table);
     add_law<Rheology>(table, "material.rheology", "stress inside the mass");

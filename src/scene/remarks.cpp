@@ -16,7 +16,7 @@ constexpr double none = std::numeric_limits<double>::infinity();
 const std::vector<RemarkRow>& remark_table() {
     static const std::vector<RemarkRow> table = {
         {Remark::density_not_given, "density not given", none, none,
-         "not given, so it is {value:.6g} kg/m3; expected the density of the mass; give it"},
+         "not given, so it is {value:.6g} kg/m3{what}; expected the density of the mass; give it"},
         {Remark::density, "density", 100.0, 4000.0,
          "found {value:.6g} kg/m3; expected {low:g} to {high:g}; check its unit"},
         {Remark::friction, "friction angle", 2.0, 60.0,
@@ -25,6 +25,9 @@ const std::vector<RemarkRow>& remark_table() {
          "mu, or the other way round"},
         {Remark::xi, "turbulence coefficient", 20.0, none,
          "found {value:.6g} m/s^2; expected {low:g} or more; check whether it is Voellmy's xi and in this unit"},
+        {Remark::kind_range, "value outside of the kind", none, none,
+         "found {value:.4g}; expected {what}, as in cases/PARAMETERS.md; check the value and its unit, or change "
+         "case.kind"},
         {Remark::release_slope, "slope of the release", -none, 60.0,
          "found a bed of up to {value:.3g} degrees under it; expected {high:g} at most, since hardly any mass holds on "
          "steeper ground; check the outline and the elevation model there"},

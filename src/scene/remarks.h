@@ -14,6 +14,7 @@ enum class Remark {
     density,
     friction,
     xi,
+    kind_range,
     release_slope,
     release_depth,
     few_particles,

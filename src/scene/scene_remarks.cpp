@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/parameter_ranges.h"
 #include "scene/remarks.h"
 #include "scene/scene_parts.h"
 
@@ -66,6 +67,27 @@ void remark_feet(Scene& scene, const std::string& place) {
     remark_on(scene.log, Remark::high_as_in_feet, place, {highest, 0.0, files});
 }
 
+/// Given numbers that lie outside of what the kind of mass has.
+void remark_on_kind(const CaseFile& file, Scene& scene) {
+    if (!file.has("case.kind")) return;
+    const std::string &kind = file.word("case.kind"), &law = file.word("material.bed.law");
+    for (const char* key : {"material.density", "material.bed.mu", "material.bed.friction_angle_deg", "material.bed.xi",
+                            "material.bed.manning_n", "material.bed.yield_stress", "material.bed.viscosity",
+                            "material.rheology.yield_stress", "material.rheology.viscosity"}) {
+        if (!file.given(key) || file.is_text(key)) continue;
+        const RangeKey known = range_key(key);
+        const std::optional<Plausible> range = plausible(kind, known.key, law);
+        if (!range) continue;
+        constexpr double round_off = 1e-9;
+        const double value = file.number(key), low = known.scale(range->low), high = known.scale(range->high);
+        if (value >= low * (1.0 - round_off) && value <= high * (1.0 + round_off)) continue;
+        const std::string& unit = find_parameter(key)->unit;
+        remark_on(
+            scene.log, Remark::kind_range, file.place(key),
+            {value, 0.0, fmt::format("{:.4g} to {:.4g}{} for {}", low, high, unit == "1" ? "" : " " + unit, kind)});
+    }
+}
+
 }  // namespace
 
 void remark_on_terrain(const CaseFile& file, Scene& scene) {
@@ -77,7 +99,8 @@ void remark_on_terrain(const CaseFile& file, Scene& scene) {
 void remark_on_material(const CaseFile& file, Scene& scene) {
     const bool given = file.given("material.density");
     remark_on(scene.log, given ? Remark::density : Remark::density_not_given, file.place("material.density"),
-              {file.number("material.density")});
+              {file.number("material.density"), 0.0,
+               file.has("case.kind") ? " (case.kind = \"" + file.word("case.kind") + "\")" : ""});
     const auto angle = [&](const std::string& key, bool tangent) {
         if (!file.given(key) || file.is_text(key)) return;
         const double value = file.number(key);
@@ -96,6 +119,7 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
     }
     angle("material.structure.friction_angle_deg", false);
     for (Index i = 0; i < file.count("stage"); ++i) angle(fmt::format("stage.{}.friction_angle_deg", i), false);
+    remark_on_kind(file, scene);
 }
 
 void remark_on_releases(const CaseFile& file, const std::vector<ReleaseSummary>& releases, Scene& scene) {

@@ -1,0 +1,93 @@
+// The table itself, and what is looked up in it.
+#include "scene/parameter_ranges.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frana {
+namespace {
+
+constexpr const char* mu = "material.bed.mu";
+constexpr const char* xi = "material.bed.xi";
+constexpr const char* manning = "material.bed.manning_n";
+constexpr const char* density = "material.density";
+constexpr const char* yield = "material.rheology.yield_stress";
+constexpr const char* viscosity = "material.rheology.viscosity";
+constexpr const char* salm =
+    "Voellmy-Salm classes, raster tool of the Norwegian Geotechnical Institute "
+    "(norwegian-geotechnical-institute/Avaframe-Workshop)";
+constexpr const char* martinelli = "Martinelli, Lang and Mears 1980, J. Glaciol.";
+constexpr const char* obrien = "O'Brien and Julien 1988, J. Hydraul. Eng. 114, table 2; Geotechnics 2025, 5, 37";
+constexpr const char* jop = "Jop, Forterre and Pouliquen 2006, Nature 441, 727";
+constexpr const char* common = "";
+
+}  // namespace
+
+const std::vector<MassKind>& mass_kinds() {
+    static const std::vector<MassKind> kinds = {
+        {"snow", 300.0, "flowing snow of avalanches"},
+        {"debris_flow", 1900.0, "water with stones and fines"},
+        {"rock_avalanche", 2100.0, "broken rock"},
+        {"mud", 1600.0, "water with fines"},
+    };
+    return kinds;
+}
+
+const std::vector<ParameterRange>& parameter_ranges() {
+    static const std::vector<ParameterRange> table = {
+        {"snow", mu, "voellmy", 0.14, 0.47, "all sizes, grounds, altitudes and return periods", salm},
+        {"snow", xi, "voellmy", 900.0, 4000.0, "all sizes, grounds and altitudes", salm},
+        {"snow", mu, "voellmy", 0.155, 0.155, "ten very long run-outs, for zoning",
+         "Buser and Frutiger 1980, J. Glaciol."},
+        {"snow", xi, "voellmy", 1120.0, 1120.0, "ten very long run-outs, for zoning",
+         "Buser and Frutiger 1980, J. Glaciol."},
+        {"snow", mu, "voellmy", 0.15, 0.15, "large design avalanches", martinelli},
+        {"snow", xi, "voellmy", 1200.0, 1600.0, "large design avalanches", martinelli},
+        {"snow", xi, "voellmy", 700.0, 800.0, "hard slab, slow wet slab, soft slab through timber", martinelli},
+        {"snow", density, "", 200.0, 400.0, "flowing snow", common},
+        {"debris_flow", mu, "", 0.03, 0.40, "back-analysed events", common},
+        {"debris_flow", xi, "voellmy", 100.0, 1000.0, "back-analysed events; granular ones lower, muddy ones higher",
+         common},
+        {"debris_flow", manning, "manning", 0.10, 0.18, "back-analysed events", common},
+        {"debris_flow", yield, "", 500.0, 5000.0, "field estimates", common},
+        {"debris_flow", viscosity, "", 10.0, 1000.0, "field estimates", common},
+        {"debris_flow", density, "", 1700.0, 2100.0, "flowing", common},
+        {"rock_avalanche", mu, "voellmy", 0.03, 0.35, "back-analysed events; on glaciers and wet ground lowest",
+         common},
+        {"rock_avalanche", xi, "voellmy", 100.0, 1000.0, "back-analysed events", common},
+        {"rock_avalanche", mu, "coulomb", 0.25, 0.58, "bulk friction, 14 to 30 degrees", common},
+        {"rock_avalanche", density, "", 1800.0, 2400.0, "broken rock", common},
+        {"mud", yield, "", 0.54, 528.0, "13 samples at volume concentrations of 0.30 to 0.40", obrien},
+        {"mud", viscosity, "", 0.042, 34.0, "13 samples at volume concentrations of 0.30 to 0.40", obrien},
+        {"mud", yield, "", 20.0, 500.0, "mudflows; earth flows reach 10 000 Pa", common},
+        {"mud", viscosity, "", 1.0, 100.0, "mudflows", common},
+        {"mud", manning, "manning", 0.03, 0.06, "hyperconcentrated flows", common},
+        {"mud", density, "", 1300.0, 1900.0, "flowing", common},
+        {"", "material.bed.mu_s", "pouliquen", 0.38, 0.38, "glass beads", jop},
+        {"", "material.bed.mu_2", "pouliquen", 0.64, 0.64, "glass beads", jop},
+        {"", "material.bed.i0", "pouliquen", 0.279, 0.279, "glass beads", jop},
+    };
+    return table;
+}
+
+RangeKey range_key(const std::string& key) {
+    const auto same = [](double value) { return value; };
+    if (key == "material.bed.friction_angle_deg")
+        return {mu, [](double tangent) { return std::atan(tangent) * 180.0 / 3.14159265358979323846; }};
+    if (key == "material.bed.yield_stress") return {yield, same};
+    if (key == "material.bed.viscosity") return {viscosity, same};
+    return {key, same};
+}
+
+std::optional<Plausible> plausible(const std::string& kind, const std::string& key, const std::string& law) {
+    std::optional<Plausible> all;
+    for (const ParameterRange& row : parameter_ranges()) {
+        if (row.kind != kind || row.key != key || (*row.law && row.law != law)) continue;
+        if (!all) all = Plausible{row.low, row.high};
+        all->low = std::min(all->low, row.low);
+        all->high = std::max(all->high, row.high);
+    }
+    return all;
+}
+
+}  // namespace frana
