@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/layer_name.h"
 #include "io/gdal_crs.h"
+#include "io/gdal_features.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_shapes.h"
 
@@ -256,7 +257,37 @@ ValuedPolygons polygons_of(const std::filesystem::path& file, const std::string&
     return valued;
 }
 
+/// What a feature has besides its geometry.
+std::vector<std::pair<std::string, Attribute>> attributes_of(const OGRFeature& feature) {
+    std::vector<std::pair<std::string, Attribute>> attributes;
+    for (int n = 0; n < feature.GetFieldCount(); ++n) {
+        if (!feature.IsFieldSetAndNotNull(n)) continue;
+        const OGRFieldDefn& field = *feature.GetFieldDefnRef(n);
+        const OGRFieldType type = field.GetType();
+        Attribute value = std::string(feature.GetFieldAsString(n));
+        if (type == OFTReal) value = feature.GetFieldAsDouble(n);
+        if (type == OFTInteger || type == OFTInteger64) value = static_cast<long long>(feature.GetFieldAsInteger64(n));
+        attributes.emplace_back(field.GetNameRef(), std::move(value));
+    }
+    return attributes;
+}
+
 }  // namespace
+
+std::vector<AttributedPolygon> read_attributed_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                                        std::vector<std::string>& log) {
+    Source source = open_source(file, crs_wkt, log);
+    std::vector<AttributedPolygon> all;
+    Census census;
+    for_each_geometry(
+        source, census, [&](const OGRFeature& feature, const OGRGeometry& geometry, const std::string& where) {
+            std::vector<Polygon> parts;
+            collect_polygons(geometry, census,
+                             [&](const OGRPolygon& polygon) { append_valid(polygon, where, source, parts); });
+            for (Polygon& part : parts) all.push_back({std::move(part), attributes_of(feature)});
+        });
+    return all;
+}
 
 Polygons GdalReader::read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                    std::vector<std::string>& log) const {

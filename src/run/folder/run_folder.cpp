@@ -52,6 +52,7 @@ const std::vector<ProductKind>& product_kinds() {
          "GeoTIFF", false},
         {"rasters", friction_names() + "\\.tif", "GeoTIFF of the friction as it was used", false},
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
+        {"", "results\\.gpkg", "barriers with the attributes of their features and what hit them, for a GIS", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
         {"sections", "[^.].*\\.csv", "discharge through a line and the volume that passed it, after every step", false},

@@ -91,6 +91,17 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
     }
 }
 
+/// results.gpkg, when the case has barriers with outlines. Trouble is a warning here as well.
+void leave_barrier_results(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
+                           RunRecord& record) {
+    if (!scene.output.geotiff) return;
+    try {
+        write_barrier_results(run_dir / "results.gpkg", record.barrier_sources, record.barriers, rasters);
+    } catch (const UserError& error) {
+        record.warnings.push_back(fmt::format("the barriers were not written for a GIS: {}", error.what()));
+    }
+}
+
 /// states/, when there are files for them to show. Trouble is a warning here as well.
 void leave_states(const Scene& scene, const fs::path& run_dir, RunRecord& record) {
     if (!scene.output.vtk) return;
@@ -232,6 +243,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
         if (scene.output.geotiff) write_rasters(run_dir, rasters);
         if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
             write_outline(run_dir, peak->raster, scene.output.footprint_depth);
+        leave_barrier_results(scene, run_dir, rasters, record);
     });
     timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {

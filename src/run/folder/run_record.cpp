@@ -149,6 +149,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.title = scene.title.empty() ? scene.name : scene.title;
     record.case_file = scene.case_file.string();
     record.survey_files = survey_files(file);
+    record.barrier_sources = barrier_sources(file);
     record.given = given_keys(file);
     record.caption = caption_of(scene, record.given);
     record.grid = scene.wider ? scene.wider->grid : scene.bed.geometry;

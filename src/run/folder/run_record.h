@@ -9,6 +9,7 @@
 #include "observe/barriers.h"
 #include "observe/insitu.h"
 #include "observe/sections.h"
+#include "run/folder/barrier_results.h"
 #include "run/folder/checkpoint.h"
 #include "run/run_loop.h"
 #include "scene/scene.h"
@@ -52,6 +53,7 @@ struct RunRecord {
     int threads = 1;
     std::optional<Comparison> comparison;  ///< with the survey, when the case gives one
     SurveyFiles survey_files;
+    std::vector<BarrierSource> barrier_sources;
     RunSummary summary;
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;

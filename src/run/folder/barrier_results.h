@@ -1,0 +1,33 @@
+#pragma once
+// What a run did to barriers, such as buildings, as polygons for a GIS.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "observe/barriers.h"
+#include "run/folder/products.h"
+
+namespace frana {
+
+class CaseFile;
+
+/// A [[barrier]] of the case with an outline.
+struct BarrierSource {
+    std::string name;  ///< with `each` the barriers are NAME_1, NAME_2, ... in the order of the file's polygons
+    std::filesystem::path outline;
+    bool each = false;
+};
+
+/// Those of the case, in its order.
+std::vector<BarrierSource> barrier_sources(const CaseFile& file);
+
+/// A GeoPackage with layer "barriers": every polygon of every outline with the attributes of its feature, and
+/// - barrier: its name; peak_force_N: the largest horizontal force on the barrier, as in the report, where forces are known;
+/// - peak_pressure_Pa (density times speed squared), peak_depth_m: the largest, and hit_s: the earliest arrival, on pixels
+///   that it touches and their neighbours, since the flow goes round it; nothing where it was not reached.
+/// An attribute of the same name gets "_input" at its end. No file without sources. UserError when one cannot be read, or
+/// the file cannot be written.
+void write_barrier_results(const std::filesystem::path& gpkg, const std::vector<BarrierSource>& sources,
+                           const std::vector<BarrierSummary>& summaries, const std::vector<ProductRaster>& rasters);
+
+}  // namespace frana

@@ -1,0 +1,124 @@
+// Barriers as polygons for a GIS: attributes of the input, and what the run did to them, read back by GDAL.
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "catch.h"
+#include "io/gdal_features.h"
+#include "io/gdal_reader.h"
+#include "program.h"
+#include "read_layer.h"
+
+using namespace frana;
+namespace fs = std::filesystem;
+using Catch::Contains;
+
+namespace {
+
+std::string square(double x, double y, double size, const std::string& properties) {
+    const auto p = [](double a, double b) { return "[" + std::to_string(a) + "," + std::to_string(b) + "]"; };
+    return R"({"type":"Feature","properties":{)" + properties + R"(},"geometry":{"type":"Polygon","coordinates":[[)" +
+           p(x, y) + "," + p(x + size, y) + "," + p(x + size, y + size) + "," + p(x, y + size) + "," + p(x, y) + "]]}}";
+}
+
+std::string collection(const std::string& features) {
+    return R"({"type":"FeatureCollection","features":[)" + features + "]}";
+}
+
+/// A slope with a release above three houses: the first below it, the second far to the side, the third below as well.
+class Village {
+public:
+    Village() {
+        std::string dem = "ncols 30\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n";
+        for (int row = 0; row < 20; ++row)
+            for (int column = 0; column < 30; ++column)
+                dem += std::to_string(200.0 - 3.0 * column) + (column < 29 ? " " : "\n");
+        write_text(path() / "dem.asc", dem);
+        write_text(path() / "release.geojson", collection(square(20, 40, 20, "")));
+        write_text(path() / "houses.geojson",
+                   collection(square(75, 42, 8, R"("use":"school","persons":120,"value":1.5,"hit_s":9)") + "," +
+                              square(130, 5, 8, R"("use":"shed","persons":0)") + "," +
+                              square(60, 55, 8, R"("use":"house","value":2)")));
+        write_text(path() / "case.toml",
+                   "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 3\n"
+                   "[material]\ndensity = 1500\nbed.law = \"coulomb\"\nbed.mu = 0.3\n[time]\nend = 6\n[output]\n"
+                   "formats = [\"geotiff\"]\n[[barrier]]\nname = \"house\"\noutline = \"houses.geojson\"\nheight = 6\n"
+                   "each = true\n");
+    }
+    const fs::path& path() const { return folder_.path(); }
+
+private:
+    FreshFolder folder_;
+};
+
+}  // namespace
+
+TEST_CASE("Barriers keep the attributes of their features, with what hit them", "[barriers][results]") {
+    const Village village;
+    const Outcome run = call_frana(village.path(), "run case.toml --out run --quiet");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const Layer layer(village.path() / "run" / "results.gpkg");
+    REQUIRE(layer.get().GetFeatureCount() == 3);
+    const auto type = [&](const char* name) {
+        const OGRFeatureDefn& definition = *layer.get().GetLayerDefn();
+        const int index = definition.GetFieldIndex(name);
+        REQUIRE(index >= 0);
+        return definition.GetFieldDefn(index)->GetType();
+    };
+    CHECK((type("use") == OFTString && type("persons") == OFTInteger64 && type("value") == OFTReal));
+    CHECK((type("hit_s") == OFTReal && type("hit_s_input") == OFTInteger64));
+    const auto known = [](OGRFeature& f, const char* name) {
+        return f.IsFieldSetAndNotNull(f.GetFieldIndex(name)) != 0;
+    };
+    std::vector<OGRFeatureUniquePtr> houses;
+    for (OGRFeatureUniquePtr& feature : layer.get()) houses.push_back(std::move(feature));
+    CHECK(std::string(houses[0]->GetFieldAsString("use")) == "school");
+    CHECK(houses[0]->GetFieldAsInteger64("persons") == 120);
+    CHECK(houses[0]->GetFieldAsInteger64("hit_s_input") == 9);
+    CHECK(std::string(houses[0]->GetFieldAsString("barrier")) == "house_1");
+    CHECK(std::string(houses[2]->GetFieldAsString("barrier")) == "house_3");
+    CHECK(houses[0]->GetGeometryRef()->toPolygon()->get_Area() == Approx(64.0));
+    CHECK(std::string(houses[1]->GetFieldAsString("use")) == "shed");
+    for (const char* name : {"peak_pressure_Pa", "peak_depth_m", "hit_s", "peak_force_N"})
+        CHECK_FALSE(known(*houses[1], name));  // never reached
+    for (const std::size_t n : {0, 2}) {
+        CAPTURE(n);
+        CHECK_FALSE(known(*houses[n], "peak_force_N"));  // columns take a barrier for ground
+        CHECK(houses[n]->GetFieldAsDouble("peak_depth_m") > 0.1);
+        CHECK(houses[n]->GetFieldAsDouble("peak_pressure_Pa") > 1500.0);  // 1 m/s
+    }
+    // The third is 15 m nearer to the release.
+    CHECK(houses[2]->GetFieldAsDouble("hit_s") < houses[0]->GetFieldAsDouble("hit_s"));
+    CHECK_FALSE(known(*houses[2], "persons"));
+}
+
+TEST_CASE("A run again writes the same bytes of its barriers, and lists the file", "[barriers][results]") {
+    const Village village;
+    REQUIRE(call_frana(village.path(), "run case.toml --out a --quiet").code == 0);
+    REQUIRE(call_frana(village.path(), "run case.toml --out b --quiet").code == 0);
+    CHECK(text_of(village.path() / "a" / "results.gpkg") == text_of(village.path() / "b" / "results.gpkg"));
+    CHECK_THAT(text_of(village.path() / "a" / "run.json"), Contains("results.gpkg"));
+    CHECK(call_frana(village.path(), "run case.toml --out a --quiet").code == 2);
+    CHECK(call_frana(village.path(), "run case.toml --out a --quiet --overwrite").code == 0);
+}
+
+TEST_CASE("Attributed polygons come back in the order of the polygons, types widened where features differ",
+          "[results]") {
+    const FreshFolder folder;
+    const fs::path file = folder.path() / "a.gpkg";
+    const Polygon unit{{{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {{0.5, 0.5}, {0.5, 1.0}, {1.0, 1.0}, {1.0, 0.5}}}};
+    write_attributed_polygons(file, "things", "",
+                              {{unit, {{"n", 3LL}, {"x", 2LL}, {"fid", std::string("a")}, {"bad", NAN}}},
+                               {unit, {{"N", 4LL}, {"x", 0.5}, {"mixed", 1LL}}},
+                               {unit, {{"mixed", std::string("b")}}}});
+    std::vector<std::string> log;
+    const auto back = read_attributed_polygons(file, "", log);
+    REQUIRE(back.size() == 3);
+    using Named = std::vector<std::pair<std::string, Attribute>>;
+    CHECK(back[0].attributes == Named{{"n", 3LL}, {"x", 2.0}, {"fid", std::string("a")}});
+    CHECK(back[1].attributes == Named{{"n", 4LL}, {"x", 0.5}, {"mixed", std::string("1")}});
+    CHECK(back[2].attributes == Named{{"mixed", std::string("b")}});
+    CHECK(back[0].polygon.rings.size() == 2);
+    CHECK_THROWS_WITH(write_attributed_polygons(folder.path() / "nowhere" / "a.gpkg", "things", "", {}),
+                      Contains("cannot be written"));
+}
