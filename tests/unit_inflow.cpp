@@ -60,6 +60,25 @@ TEST_CASE("What is wrong with a table is said in a sentence", "[inflow]") {
               .rfind("q.csv: row 2 (t = 9 s): found a velocity of 0 m/s with 2 m3/s", 0) == 0);
 }
 
+TEST_CASE("Rows of r.avaflow are read, with or without their header, and their phases summed", "[inflow]") {
+    const Hydrograph one = parse_hydrograph("T\tQ1\tv1\n0\t0\t2\n60\t3\t4\n", "q.txt");
+    CHECK(one.time == std::vector<double>{0, 60});
+    CHECK(one.discharge == std::vector<double>{0, 3});
+    CHECK(one.velocity == std::vector<double>{2, 4});
+    CHECK(one.remark == "q.txt: taken for rows of r.avaflow, t [s] and Q [m3/s], v [m/s] of 1 phase");
+    // 1 at 8 and 3 at 4 m/s: 4 m3/s that carry 8 + 12 m4/s2.
+    const Hydrograph two = parse_hydrograph("0 1 8 3 4\n10 0 2 0 5\n", "q.txt");
+    CHECK(two.discharge == std::vector<double>{4, 0});
+    CHECK(two.velocity == std::vector<double>{5, 5});
+    CHECK(two.remark.find("of 2 phases, which come in as one: their discharges are summed") != std::string::npos);
+    CHECK(parse_hydrograph("t Q1 v1 Q2 v2 Q3 v3\n0 1 1 1 1 1 1\n9 1 1 1 1 1 1\n", "q.txt").volume() == 27.0);
+    CHECK(problem_of("0 1 1\n5 -1 1\n").rfind("q.csv:2: found -1; expected discharges and velocities", 0) == 0);
+    CHECK(problem_of("0 1 1\n5 1 1 1\n").rfind("q.csv:2: found 4 cells; expected 3", 0) == 0);
+    CHECK(problem_of("0 1 1\n5 nan 1\n").rfind("q.csv:2: found \"nan\"", 0) == 0);
+    CHECK(problem_of("t, v, Q\n0, 1, 1\n9, 1, 1\n").rfind("q.csv: found the column \"t\"; expected a header", 0) == 0);
+    CHECK(parse_hydrograph("t [s], discharge [m3/s]\n0, 1\n60, 3\n", "q.csv").remark.empty());
+}
+
 // Values of V = 1e3, 1e4, 1e5 by a pocket calculator, to three digits.
 TEST_CASE("Empirical peaks and their triangles", "[inflow]") {
     const std::vector<std::vector<double>> known = {{29.5, 178, 1072}, {4.40, 27.2, 168}, {31.6, 215, 1462}};

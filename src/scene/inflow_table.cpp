@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -74,6 +76,24 @@ Column column_of(const std::string& heading, const std::string& source) {
                                 heading, kHeader));
 }
 
+bool is_number(const std::string& cell) {
+    char* end = nullptr;
+    std::strtod(cell.c_str(), &end);
+    return !cell.empty() && *end == '\0';
+}
+
+/// t, Q, v, Q, v, ... without a unit: numbers already, or their names.
+bool is_of_avaflow(const std::vector<std::string>& cells) {
+    if (cells.size() % 2 == 0 || cells.size() < 3 || cells.size() > 7) return false;
+    if (std::all_of(cells.begin(), cells.end(), is_number)) return true;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const char wanted = k == 0 ? 't' : k % 2 == 1 ? 'q' : 'v';
+        const bool named = cells[k].find_first_not_of("tTqQvV123") == std::string::npos && !cells[k].empty();
+        if (!named || std::tolower(static_cast<unsigned char>(cells[k][0])) != wanted) return false;
+    }
+    return true;
+}
+
 double number_of(const std::string& cell, const std::string& source, Index line) {
     char* end = nullptr;
     const double value = std::strtod(cell.c_str(), &end);
@@ -116,6 +136,92 @@ void require_valid(const Hydrograph& table, const std::string& source) {
         throw UserError(source + ": found no discharge above 0; expected some; correct the table");
 }
 
+/// The lines of a text that say something.
+class Lines {
+public:
+    explicit Lines(const std::string& text) : stream_(text) {}
+    bool next() {
+        while (std::getline(stream_, line_)) {
+            ++number_;
+            if (!trimmed(line_).empty() && trimmed(line_)[0] != '#') return true;
+        }
+        return false;
+    }
+    const std::string& line() const { return line_; }
+    Index number() const { return number_; }
+    /// As many cells as there are columns.
+    std::vector<std::string> cells(std::size_t columns, const std::string& source) const {
+        std::vector<std::string> cells = cells_of(line_);
+        if (cells.size() == columns) return cells;
+        throw UserError(fmt::format("{}:{}: found {} cells; expected {} as in the first line; correct the row", source,
+                                    number_, cells.size(), columns));
+    }
+
+private:
+    std::istringstream stream_;
+    std::string line_;
+    Index number_ = 0;
+};
+
+/// A row of r.avaflow: what flows together, at the mean of its speed.
+void add_phases(const std::vector<double>& row, Hydrograph& table) {
+    double sum = 0.0, product = 0.0, fastest = 0.0;
+    for (std::size_t k = 1; k + 1 < row.size(); k += 2) {
+        sum += row[k], product += row[k] * row[k + 1];
+        fastest = std::max(fastest, row[k + 1]);
+    }
+    table.time.push_back(row[0]);
+    table.discharge.push_back(sum);
+    table.velocity.push_back(sum > 0.0 ? product / sum : fastest);
+}
+
+/// All rows, from the first line on.
+Hydrograph rows_of_avaflow(Lines& lines, const std::string& source) {
+    const std::size_t columns = cells_of(lines.line()).size();
+    Hydrograph table;
+    for (bool more = is_number(cells_of(lines.line())[0]) || lines.next(); more; more = lines.next()) {
+        std::vector<double> row;
+        for (const std::string& cell : lines.cells(columns, source))
+            row.push_back(number_of(cell, source, lines.number()));
+        for (std::size_t k = 1; k < columns; k += 2)
+            if (row[k] < 0.0 || row[k + 1] < 0.0)
+                throw UserError(
+                    fmt::format("{}:{}: found {:.6g}; expected discharges and velocities of 0 or more; nothing can "
+                                "flow back through an inflow",
+                                source, lines.number(), std::min(row[k], row[k + 1])));
+        add_phases(row, table);
+    }
+    table.remark = fmt::format("{}: taken for rows of r.avaflow, t [s] and Q [m3/s], v [m/s] of {} phase{}", source,
+                               columns / 2, columns > 3 ? "s, which come in as one: their discharges are summed" : "");
+    return table;
+}
+
+/// The rows behind a header that names columns and units.
+Hydrograph rows_with_units(Lines& lines, const std::string& source) {
+    std::vector<Column> columns;
+    std::array<int, 3> found{};
+    for (const std::string& heading : headings_of(lines.line())) {
+        columns.push_back(column_of(heading, source));
+        ++found[static_cast<std::size_t>(columns.back().what)];
+    }
+    if (found[0] != 1 || found[1] != 1 || found[2] > 1)
+        throw UserError(
+            fmt::format("{}: found {} columns of time, {} of discharge and {} of velocity; {}; correct the header",
+                        source, found[0], found[1], found[2], kHeader));
+    Hydrograph table;
+    while (lines.next()) {
+        const std::vector<std::string> cells = lines.cells(columns.size(), source);
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            const double value = columns[k].unit * number_of(cells[k], source, lines.number());
+            (columns[k].what == Column::What::time        ? table.time
+             : columns[k].what == Column::What::discharge ? table.discharge
+                                                          : table.velocity)
+                .push_back(value);
+        }
+    }
+    return table;
+}
+
 }  // namespace
 
 double Hydrograph::volume() const {
@@ -126,41 +232,10 @@ double Hydrograph::volume() const {
 }
 
 Hydrograph parse_hydrograph(const std::string& text, const std::string& source) {
-    std::istringstream stream(text);
-    std::string line;
-    Index number = 0;
-    const auto next = [&] {
-        while (std::getline(stream, line)) {
-            ++number;
-            if (!trimmed(line).empty() && trimmed(line)[0] != '#') return true;
-        }
-        return false;
-    };
-    if (!next()) throw UserError(fmt::format("{}: found an empty file; {}; fill it", source, kHeader));
-    std::vector<Column> columns;
-    std::array<int, 3> found{};
-    for (const std::string& heading : headings_of(line)) {
-        columns.push_back(column_of(heading, source));
-        ++found[static_cast<std::size_t>(columns.back().what)];
-    }
-    if (found[0] != 1 || found[1] != 1 || found[2] > 1)
-        throw UserError(
-            fmt::format("{}: found {} columns of time, {} of discharge and {} of velocity; {}; correct the header",
-                        source, found[0], found[1], found[2], kHeader));
-    Hydrograph table;
-    while (next()) {
-        const std::vector<std::string> cells = cells_of(line);
-        if (cells.size() != columns.size())
-            throw UserError(fmt::format("{}:{}: found {} cells; expected {} as in the header; correct the row", source,
-                                        number, cells.size(), columns.size()));
-        for (std::size_t k = 0; k < cells.size(); ++k) {
-            const double value = columns[k].unit * number_of(cells[k], source, number);
-            (columns[k].what == Column::What::time        ? table.time
-             : columns[k].what == Column::What::discharge ? table.discharge
-                                                          : table.velocity)
-                .push_back(value);
-        }
-    }
+    Lines lines(text);
+    if (!lines.next()) throw UserError(fmt::format("{}: found an empty file; {}; fill it", source, kHeader));
+    const bool avaflow = is_of_avaflow(cells_of(lines.line()));
+    Hydrograph table = avaflow ? rows_of_avaflow(lines, source) : rows_with_units(lines, source);
     require_valid(table, source);
     return table;
 }

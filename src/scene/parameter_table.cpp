@@ -108,7 +108,8 @@ void add_inflow(Table& table) {
     table.push_back(
         absent(instead(make("inflow.table", Kind::path, "",
                             "CSV of the discharge over time, linear between its rows: a header with units, such "
-                            "as t [s], discharge [m3/s] and, if wanted, velocity [m/s]; or t_min, t_h"),
+                            "as t [s], discharge [m3/s] and, if wanted, velocity [m/s]; or t_min, t_h; or rows of "
+                            "r.avaflow, t Q v for each phase, without units"),
                        "inflow.volume"),
                "volume is needed"));
     table.push_back(

@@ -41,6 +41,7 @@ public:
             require_room(table);
         });
         if (!good) return {};
+        if (!table.remark.empty()) scene_.log.push_back(table.remark);
         inflow_.time = table.time, inflow_.discharge = table.discharge;
         if (!attempt("velocity", [&] { set_speed(table); })) return {};
         return inflow_;
