@@ -67,6 +67,11 @@ TEST_CASE("Steps of a warm run allocate nothing", "[speed]") {
     scene.scheme.precision = GENERATE(Precision::full, Precision::single);
     scene.scheme.split = false;  // arrays grow with the number of points, by an eighth at a time
     verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
+    if (GENERATE(false, true)) {  // two releases that are waited for
+        scene.late = {{"hit", {}, {}, scene.particles.count()}, {"timed", 1e8, {}, scene.particles.count() + 1}};
+        for (LateRelease& late : scene.late) late.seeds.append(scene.particles, 0, 1);
+        scene.late[0].seeds.y[0] = 8.0;  // beside the flow
+    }
     DepthAveraged simulation(scene);
     for (int step = 0; step < 30; ++step) simulation.advance(1e9);
     const auto [most, counted] =
