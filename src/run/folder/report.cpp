@@ -294,7 +294,9 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
         fmt::format("  computed   {} steps, {} particles, {:.3g} M particle-steps/s, {} ({:.0f} % output)\n", s.steps,
                     s.last.particles, s.wall_seconds > 0.0 ? 1e-6 * s.particle_steps / s.wall_seconds : 0.0,
                     clock_text(s.wall_seconds), 100.0 * s.output_share());
-    text += fmt::format("  released   {:.6g} m3; {} left the domain; mass error {:.1e}\n", r.release_volume,
+    const std::string later =
+        s.last.mass_in > 0.0 ? fmt::format("; {:.6g} m3 came in later", s.last.mass_in / r.density) : "";
+    text += fmt::format("  released   {:.6g} m3{}; {} left the domain; mass error {:.1e}\n", r.release_volume, later,
                         left_text(r), budget(s.first, s.last).mass_error);
     text += fmt::format("  deepest    {:.4g} m, fastest {:.4g} m/s, front at {:.5g} m\n", s.extremes.max_depth,
                         s.extremes.max_speed, s.extremes.max_front);
