@@ -29,8 +29,12 @@ void save_draft(const std::filesystem::path& folder, const Draft& draft, const V
                       name.substr(0, name.find('.')));
     Draft as_run = draft;  // what `frana run` is to reach: a little beyond the step that fails
     double end = broken.time > 0.0 ? broken.time : 1.0;
-    for (const auto& [key, value] : draft.keys)  // a case with a stage that begins after its end would be refused
-        if (key.rfind("stage#", 0) == 0 && key.substr(key.find('.')) == ".until") end = std::max(end, std::stod(value));
+    for (const auto& [key, value] :
+         draft.keys) {  // a case whose stage or release begins after its end would be refused
+        const std::string part = key.substr(key.find('.'));
+        const bool stage = key.rfind("stage#", 0) == 0 && part == ".until";
+        if (stage || (key.rfind("release#", 0) == 0 && part == ".at")) end = std::max(end, std::stod(value));
+    }
     as_run.keys["time.end"] = toml_number(1.1 * end);
     as_run.keys["output.every"] = as_run.keys["time.end"];
     const std::string why = fmt::format("# {}, step {}: {}\n# Watched by: frana stress --case case.toml {}\n",

@@ -305,8 +305,7 @@ void CaseReader::check_combinations() {
         const std::string key = row.refused.key_in(case_);
         if (unused(key) || !done.insert(key + row.expected).second) continue;
         if (row.refused.are != Values::Are::tables) {
-            wrong(row.refused.are == Values::Are::rasters ? raster_in(case_, key) : key, row.found_text(case_),
-                  row.expected, row.way_out);
+            wrong(key, row.found_text(case_), row.expected, row.way_out);
             continue;
         }
         const std::string first = key + ".0";

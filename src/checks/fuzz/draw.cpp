@@ -125,7 +125,7 @@ std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) {
     return Dice(seed ^ (salt * 0x9fb21c651e98df25u)).bits();
 }
 
-constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kInflow = 4, kScene = 16;  // salts
+constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kInflow = 4, kLate = 5, kFriction = 6, kScene = 16;  // salts
 
 }  // namespace
 
@@ -150,6 +150,9 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
             if (loose.chance(0.2)) draw_erodible(loose, draft);
             Dice inflow(salted(seed, kInflow), n);
             if (inflow.chance(0.15)) draw_inflow(inflow, draft);
+            Dice late(salted(seed, kLate), n), friction(salted(seed, kFriction), n);
+            if (late.chance(0.1)) draw_late(late, draft);
+            if (friction.chance(0.1)) draw_friction(friction, draft);
         }
     }
     draft.keys["time.end"] = "1.0e6";

@@ -36,6 +36,10 @@ void draw_lake(Dice& dice, Draft& draft);
 void draw_erodible(Dice& dice, Draft& draft);
 /// A line through which more comes in, where the terrain has room for one.
 void draw_inflow(Dice& dice, Draft& draft);
+/// Another release, which enters at a time or when the flow reaches it.
+void draw_late(Dice& dice, Draft& draft);
+/// A zone, or a raster, of a number of the bed law that is drawn so far.
+void draw_friction(Dice& dice, Draft& draft);
 /// Makes every raster, and velocity, its own mirror image.
 void mirror(Draft& draft, Mirror mirror);
 

@@ -113,7 +113,7 @@ void learn_release(const Scene& scene, Facts& facts) {
     }
 }
 
-/// Of nodes up to eight cells from a place: lines that are drawn are that long [m].
+/// Of nodes around a place: lines that are drawn are eight cells long at most [m].
 double highest_around(const Raster& bed, const Vec2& at) {
     constexpr Index kAround = 8;
     const GridGeometry& g = bed.geometry;
@@ -145,6 +145,22 @@ void learn_inflows(const Scene& scene, Facts& facts) {
     }
 }
 
+/// As inflows do.
+void learn_late(const Scene& scene, Facts& facts) {
+    for (const LateRelease& release : scene.late) {
+        const Seeds& seeds = release.seeds;
+        for (std::size_t p = 0; p < seeds.x.size(); ++p) {
+            const double depth = seeds.depth[p], mass = scene.density * seeds.volume[p];
+            const double speed = std::hypot(1.0, facts.steepest) * std::hypot(seeds.vx[p], seeds.vy[p]);
+            facts.inflow_speed = std::max(facts.inflow_speed, speed);
+            facts.release_depth = std::max(facts.release_depth, depth);
+            facts.release_energy += mass * (0.5 * scene.gravity * depth + 0.5 * speed * speed);
+            facts.highest_inflow =
+                std::max(facts.highest_inflow, highest_around(scene.bed, {seeds.x[p], seeds.y[p]}) + depth);
+        }
+    }
+}
+
 /// A bed that sinks may become steeper, and bends that no Hessian of the start has.
 void learn_erodible(const ErodibleBed& bed, const Flow& flow, Facts& facts) {
     facts.erodes = true;
@@ -162,6 +178,7 @@ void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
     learn_bed(scene, flow, facts);
     if (scene.erodible) learn_erodible(*scene.erodible, flow, facts);
     learn_inflows(scene, facts);
+    learn_late(scene, facts);
     if (scene.still_surface) {
         facts.lake = true;
         facts.level_error = off_level(flow, *scene.still_surface);

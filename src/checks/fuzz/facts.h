@@ -25,7 +25,7 @@ struct Facts {
     /// Of release_energy, what the nodes do not see at the start, because they average depths over a cell and more [J].
     double hidden_energy = 0.0;
     double loose = 0.0;                                                ///< deepest that an erodible bed may sink [m]
-    double inflow_speed = 0.0;                                         ///< fastest that comes in through a line [m/s]
+    double inflow_speed = 0.0;                                         ///< fastest that comes in later [m/s]
     double highest_inflow = -std::numeric_limits<double>::infinity();  ///< its highest surface [m]
     bool erodes = false;                                               ///< the flow takes up its bed
     bool linear = false;                                               ///< linear shape functions
