@@ -134,7 +134,7 @@ std::optional<Violation> Watch::positive(const Snapshot& state) {
 std::optional<Violation> Watch::mass(const Snapshot& state) {
     const double present = facts_.all_in_points ? sum_of(state.points.mass) : state.between.mass;
     const Status::Bed& bed = state.between.bed;
-    const double of_bed = bed.mass - bed.initial, came = state.between.mass_in;
+    const double of_bed = bed.mass - bed.initial, came = state.between.mass_in - start_.between.mass_in;
     const double error = std::abs(present + state.between.mass_left + of_bed - came - mass_);
     double share = 0.5 * kEps * static_cast<double>(points_ + state.between.step);
     if (!facts_.all_in_points) share = std::max(share, kMassShare);
@@ -172,7 +172,7 @@ std::optional<Violation> Watch::energy(const Snapshot& state) {
     // What leaves is recorded with the bed of the nearest node, half a cell away at most.
     const double held_back = near_open_sides(facts_, start_.points) + near_open_sides(facts_, state.points);
     const double recorded =
-        facts_.gravity * ((std::abs(now.mass_left) + now.mass_in) * (facts_.one_cell_drop + deepest_) +
+        facts_.gravity * ((std::abs(now.mass_left) + now.mass_in - first.mass_in) * (facts_.one_cell_drop + deepest_) +
                           held_back * facts_.one_cell_drop);
     const double round_off = kEps * static_cast<double>(points_ + most_nodes_) * std::abs(first.potential);
     const double bends = mass_ * facts_.gravity * facts_.one_cell_bend;
