@@ -8,6 +8,7 @@
 #include "coupling/growing_columns.h"
 #include "coupling/walled_columns.h"
 #include "observe/memory_archive.h"
+#include "run/memory_state.h"
 #include "run/run_loop.h"
 
 using namespace frana;
@@ -165,7 +166,43 @@ TEST_CASE("Energy that the scheme loses is not changed by what enters", "[late]"
     CHECK(at_entry == Approx(without).margin(1e-3 * now.kinetic));
 }
 
-TEST_CASE("A release that is hit enters in the step in which a node of its is first deeper than the footprint depth",
+TEST_CASE("A state put aside before a release enters comes back with all that it touches", "[late][erosion][resume]") {
+    Scene scene = shelf();
+    fill(scene, resting);
+    delay(scene, "late", 1.0, sliding);  // tiles away from what is there
+    scene.erodible = ErodibleBed{Raster::filled(scene.bed.geometry, 0.5), scene.density, erosion::Steady{0.5}};
+    DepthAveraged simulation(scene);
+    while (simulation.status().time < 0.9) simulation.advance(0.9);
+    // The bed is kept for the tiles that may have changed, so more of them after a load: its numbers are compared by node.
+    const auto bed = [&] {
+        const Flow& flow = simulation.flow();
+        std::vector<double> numbers;
+        for (Index k = 0; k < flow.grid.size(); ++k)
+            for (const double number :
+                 {flow.bed.z[k], flow.bed.ground[k], flow.bed.slope_x[k], simulation.erosion()->left(k)})
+                numbers.push_back(number);
+        return numbers;
+    };
+    const auto before = bits(simulation);
+    const std::vector<double> bed_before = bed();
+    MemoryState aside;
+    aside.save(simulation);
+    for (int n = 0; n < 3; ++n) simulation.advance(1.0 + 0.1 * n);
+    REQUIRE(simulation.status().time > 1.0);
+    REQUIRE(simulation.status().bed.eroded > 0.0);
+    CHECK((bed() != bed_before));
+    aside.load(simulation);
+    CHECK((bed() == bed_before));
+    const auto after = bits(simulation);
+    REQUIRE(after.size() == before.size());
+    for (const auto& [name, entry] : before) {
+        INFO(name);
+        if (name.rfind("bed/", 0) != 0) CHECK((after.at(name) == entry));
+    }
+    CHECK(simulation.erosion()->status().mass == simulation.erosion()->status().initial);
+}
+
+TEST_CASE("A release that is hit enters in the step in which one of its nodes is first deeper than the footprint depth",
           "[late]") {
     const Scene scene = chain();
     Scene bare = scene;

@@ -18,10 +18,11 @@ WalledColumns::WalledColumns(const Scene& scene, Start start)
 
 /// Looks when a column may have moved by half a cell, and at output times.
 void WalledColumns::advance(double until) {
+    const double before = columns_->status().time;
     columns_->advance(until);
     for (const DepthAveraged::Birth& birth : columns_->take_births()) watch_.inherit(birth.child, birth.parent);
     const Status& now = columns_->status();
-    moved_ += now.max_speed_on_map * now.dt;
+    moved_ += now.max_speed_on_map * (now.time - before);  // where something enters, dt begins anew
     if (moved_ < 0.5 * columns_->flow().cell && now.time < until) return;
     timed_("barriers", [&] { sample(); });
     moved_ = 0.0;

@@ -112,6 +112,7 @@ private:
     void adapt_points(bool deposit_follows, bool due, bool points_left, bool fed);
     void erode(double dt);
     void take_rows();
+    std::vector<Index> tiles_of_a_step() const;
     void enter_late();
     void take_late(const std::vector<const LateRelease*>& releases);
     template <class Real>

@@ -57,7 +57,7 @@ void DepthAveraged::serialize(Archive& archive) {
     serialize_sums(archive);
     serialize_nodes(archive);
     serialize_peaks(archive);
-    if (erosion_) erosion_->serialize(archive, flow_);
+    if (erosion_) erosion_->serialize(archive, flow_, tiles_of_a_step());
     timed_.serialize(archive);
     if (feed_) feed_->serialize(archive), choose_sleep();
     if (late_) late_->serialize(archive);
@@ -122,11 +122,18 @@ void DepthAveraged::serialize_nodes(Archive& archive) {
         serialize_tiles(archive, "force", flow_, tiles, 2, [&](Index k) { return &nodes.deposits()[k].fx; });
 }
 
-/// Where nothing ever was, peaks are zero and are not kept. A step changes those of the work list.
+/// Those whose nodes a step may change: of the work list, and where what is still to come may enter.
+std::vector<Index> DepthAveraged::tiles_of_a_step() const {
+    std::vector<Index> tiles = flow_.active.work;
+    if (late_) late_->add_tiles_to_come(tiles);
+    return tiles;
+}
+
+/// Where nothing ever was, peaks are zero and are not kept.
 void DepthAveraged::serialize_peaks(Archive& archive) {
     const Archive::Part part(archive, "peaks");
     std::vector<Index> tiles;
-    if (archive.aside() && !archive.loading()) tiles = flow_.active.work;
+    if (archive.aside() && !archive.loading()) tiles = tiles_of_a_step();
     for (Index tile = 0; !archive.aside() && !archive.loading() && tile < flow_.grid.tiles(); ++tile) {
         bool reached = false;
         for_each_node_of(flow_.grid, tile, [&](Index k, Index, Index) { reached |= peaks_.depth[k] > 0.0; });

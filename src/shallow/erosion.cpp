@@ -592,7 +592,7 @@ void Erosion::list_reached(const TileGrid& grid, Index far) {
 }
 
 /// All that have changed; aside those that a step may change.
-std::vector<Index> Erosion::tiles_to_keep(const Flow& flow, bool aside) const {
+std::vector<Index> Erosion::tiles_to_keep(const Flow& flow, bool aside, const std::vector<Index>& reached) const {
     const TileGrid& grid = flow.grid;
     std::vector<std::uint8_t> kept(static_cast<std::size_t>(grid.tiles()), 0);
     const Index reach = static_cast<Index>(filter_.size()), far = 2 + (reach + 2) / kTile, width = grid.tiles_x();
@@ -605,7 +605,7 @@ std::vector<Index> Erosion::tiles_to_keep(const Flow& flow, bool aside) const {
             }
     };
     if (aside)
-        for (const Index tile : flow.active.work) add(tile);
+        for (const Index tile : reached) add(tile);
     if (aside && bent_path_)
         for (const Index tile : ledger_tiles_)
             if (tile_pending_[tile] > 0.0) add(tile);
@@ -615,10 +615,10 @@ std::vector<Index> Erosion::tiles_to_keep(const Flow& flow, bool aside) const {
     return tiles;
 }
 
-void Erosion::serialize(Archive& archive, Flow& flow) {
+void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& reached) {
     const Archive::Part part(archive, "bed");
     std::vector<Index> tiles;
-    if (!archive.loading()) tiles = tiles_to_keep(flow, archive.aside());
+    if (!archive.loading()) tiles = tiles_to_keep(flow, archive.aside(), reached);
     archive.array("tile", tiles);
     for (const Index tile : tiles)
         if (tile < 0 || tile >= flow.grid.tiles()) throw misfit("its erodible bed lies outside the grid");

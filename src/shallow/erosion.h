@@ -37,8 +37,8 @@ public:
     double bed_change(Index k) const { return -eroded_depth(k); }                        ///< [m]
     double left(Index k) const { return left_[k]; }                                      ///< [kg]
     bool evolves() const { return evolves_; }
-    /// The ledger, and the bed where it has changed.
-    void serialize(Archive& archive, Flow& flow);
+    /// The ledger, and the bed where it has changed; aside those that a step may change, which reaches the tiles `reached`.
+    void serialize(Archive& archive, Flow& flow, const std::vector<Index>& reached);
 
 private:
     template <class Law, class Friction, class Real>
@@ -68,7 +68,7 @@ private:
     double most_pending(const Flow& flow, Index tile) const;
     void count_tile(const Flow& flow, Index tile);
     void status_changed();
-    std::vector<Index> tiles_to_keep(const Flow& flow, bool aside) const;
+    std::vector<Index> tiles_to_keep(const Flow& flow, bool aside, const std::vector<Index>& reached) const;
     template <class Body>
     void for_each_eroding(const Flow& flow, Body&& body) const;
     template <class Body>

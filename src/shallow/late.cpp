@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "mpm/stored_points.h"
 #include "shallow/merge.h"
@@ -21,12 +22,29 @@ std::vector<std::array<Index, 2>> nodes_of(const Seeds& seeds, const GridGeometr
     return nodes;
 }
 
+/// Each once.
+std::vector<Index> tiles_around(const std::vector<std::array<Index, 2>>& nodes, const TileGrid& grid) {
+    std::set<Index> tiles;
+    const Index width = grid.tiles_x();
+    for (const auto& node : nodes) {
+        const Index tile = grid.tile_of(double(node[0]), double(node[1])), column = tile % width;
+        for (Index dj = -1; dj <= 1; ++dj)
+            for (Index di = -1; di <= 1; ++di) {
+                const Index to = tile + dj * width + di;
+                if (column + di >= 0 && column + di < width && to >= 0 && to < grid.tiles()) tiles.insert(to);
+            }
+    }
+    return {tiles.begin(), tiles.end()};
+}
+
 }  // namespace
 
-LateReleases::LateReleases(const std::vector<LateRelease>& releases, const GridGeometry& grid) : grid_(grid) {
+LateReleases::LateReleases(const std::vector<LateRelease>& releases, const TileGrid& grid) : grid_(grid.geometry()) {
     for (const LateRelease& release : releases) {
         Entry entry{release, {}};
-        if (!release.at) entry.nodes = nodes_of(release.seeds, grid);
+        entry.nodes = nodes_of(release.seeds, grid_);
+        entry.tiles = tiles_around(entry.nodes, grid);
+        if (release.at) entry.nodes.clear();
         entries_.push_back(std::move(entry));
     }
     entering_.reserve(entries_.size());
@@ -77,6 +95,11 @@ std::vector<LateEntry> LateReleases::entries() const {
         if (entry.entered != kNotYet) all.back().entered = entry.entered;
     }
     return all;
+}
+
+void LateReleases::add_tiles_to_come(std::vector<Index>& tiles) const {
+    for (const Entry& entry : entries_)
+        if (entry.entered == kNotYet) tiles.insert(tiles.end(), entry.tiles.begin(), entry.tiles.end());
 }
 
 void LateReleases::serialize(Archive& archive) {

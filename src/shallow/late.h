@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "mpm/tile_grid.h"
 #include "observe/archive.h"
 #include "observe/frame.h"
 #include "scene/scene.h"
@@ -12,7 +13,7 @@ namespace frana {
 
 class LateReleases {
 public:
-    LateReleases(const std::vector<LateRelease>& releases, const GridGeometry& grid);
+    LateReleases(const std::vector<LateRelease>& releases, const TileGrid& grid);
 
     /// When the next one enters by its time [s]; infinite: none.
     double next() const;
@@ -39,6 +40,8 @@ public:
     /// Volume of those that entered [m3].
     double entered_volume() const;
     std::vector<LateEntry> entries() const;
+    /// Adds the tiles that the particles still to come lie in or beside; a tile may come more than once.
+    void add_tiles_to_come(std::vector<Index>& tiles) const;
 
     void serialize(Archive& archive);
     void take_over(const LateReleases& from);
@@ -48,6 +51,7 @@ private:
     struct Entry {
         LateRelease release;
         std::vector<std::array<Index, 2>> nodes;  ///< in whose cells it has particles; of those with a time none
+        std::vector<Index> tiles = {};            ///< that its particles lie in or beside
         double entered = kNotYet;                 ///< [s]
     };
     template <class Reached>
