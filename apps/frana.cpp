@@ -162,12 +162,13 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
     command->add_option("--survey", options.survey, "surveyed extent: polygons, or a raster that is above 0 there")
         ->required();
     command->add_option("--deposit", options.deposit, "raster of the surveyed deposit's thickness [m]");
-    command->add_option("--bed-change", options.bed_change,
-                        "raster of the difference of two surveys, after minus before [m]");
+    CLI::Option* change = command->add_option("--bed-change", options.bed_change,
+                                              "raster of the difference of two surveys, after minus before [m]");
     command
         ->add_option("--bed-change-noise", options.bed_change_noise,
                      "change within the noise of both surveys, which counts as none [m]; default 0.1")
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::NonNegativeNumber)
+        ->needs(change);
     command->add_option("--path", options.path, "line for the runout; default the steepest from the release");
     command->add_option("--json", options.json, "file of the scores; default RUN_DIR/compare.json");
     command->callback(

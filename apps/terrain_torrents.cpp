@@ -52,7 +52,7 @@ MadeScene loose_gully() {
         return 600.0 - at(drop, x) + share * hollow(y - axis(x), 0.55, 4.0) -
                (1.0 - share) * 0.03 * std::abs(y - middle);
     };
-    // Loose ground in the gully's bed: deepest in its middle, none within 60 m of the scar and below the mouth.
+    // Loose ground in the gully's bed: deepest in its middle, none near the scar and below the mouth.
     const auto loose = [&](double x, double y) {
         const double along = smooth_step((x - 160.0) / 60.0) * smooth_step((mouth - x) / 60.0);
         return 1.6 * along * std::max(0.0, 1.0 - squared((y - axis(x)) / 12.0));

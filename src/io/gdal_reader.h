@@ -46,8 +46,8 @@ public:
     Polygons read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt, std::vector<std::string>& log) const override;
 
-    /// Thickness of a surveyed deposit, or a surveyed change of the bed, on the pixels of `grid`, which is widened by whole pixels to all of the
-    /// raster, so that no volume is lost. UserError as read_onto and read_survey.
+    /// Thickness of a surveyed deposit, or a surveyed change of the bed, on the pixels of `grid`, widened by whole pixels to
+    /// all of the raster, so that no volume is lost. UserError as read_onto and read_survey.
     Raster read_deposit(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                         std::vector<std::string>& log) const override;
 

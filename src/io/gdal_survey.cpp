@@ -223,7 +223,7 @@ Raster GdalReader::read_deposit(const fs::path& file, const GridGeometry& grid, 
     if (wide.size() > most)
         throw UserError(
             fmt::format("{}: reaches so far that {} x {} pixels of {:g} m would be needed; expected a "
-                        "deposit near the terrain; cut it with gdalwarp -te",
+                        "survey near the terrain; cut it with gdalwarp -te",
                         file.string(), wide.nx, wide.ny, wide.cell));
     Raster deposit = read_onto(file, wide, crs_wkt, log);
     deposit.source = file.string();

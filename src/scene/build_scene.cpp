@@ -138,12 +138,18 @@ private:
                             "give a larger spacing or a smaller window"}
                 : MemoryUse{"memory",
                             fmt::format("found {} nodes and {} particles, which", scene_.bed.geometry.size(),
-                                        scene_.particles.count()),
+                                        particle_count()),
                             "use fewer particles, a larger grid.cell or a smaller terrain.window"};
         problems_.attempt(case_.file().string(), [&] {
             if (without + 0.1 * need.space > free) require_memory(need.total(), free, use);
         });
         if (need.total() > free && problems_.empty()) scene_.log.push_back(memory_sentence(need.total(), free, use));
+    }
+
+    Index particle_count() const {
+        Index count = 0;
+        for (const Seeds* seeds : scene_.all_particles()) count += seeds->count();
+        return count;
     }
 
     void note_nodata() {

@@ -233,15 +233,16 @@ std::string with_text(const Combination& row) {
 /// What has one friction everywhere.
 void add_zones(std::vector<Combination>& table) {
     for (const Values& friction : {Values{"material.zone", Are::tables}, Values{"material.bed", Are::rasters}}) {
+        const std::string otherwise = friction.are == Are::rasters ? "give a number, or remove" : "remove it, or";
         table.push_back({friction,
                          {{"stage", Are::tables}},
                          "expected one friction everywhere: points in space know no zones",
-                         "remove it, or the stage",
+                         otherwise + " the stage",
                          " with a stage"});
         table.push_back({friction,
                          {is_not("material.structure.law", {"none"})},
                          "expected one friction everywhere: structured columns and water know no zones",
-                         "remove it, or the structure"});
+                         otherwise + " the structure"});
     }
 }
 

@@ -66,6 +66,17 @@ double most_points(const Scene& scene) {
     return std::ceil(volume / std::pow(scene.solid->spacing, 3));
 }
 
+/// Of the laws of nodes, in the scene and in the solver [bytes].
+double memory_of(const Friction& friction) {
+    const double places = 2.0 * sizeof(std::uint32_t) * double(friction.laws.place.size());
+    return places + std::visit(
+                        [](const auto& table) {
+                            using Law = typename std::decay_t<decltype(table)>::value_type;
+                            return (2.0 * sizeof(Law) + sizeof(double)) * double(table.size());
+                        },
+                        friction.laws.laws);
+}
+
 MemoryNeed memory_need(const Scene& scene) {
     const double nodes = double(scene.bed.geometry.size());
     double particles = 0.0;
@@ -73,6 +84,7 @@ MemoryNeed memory_need(const Scene& scene) {
     MemoryNeed need = memory_need(scene.wider ? 0.0 : nodes, particles, scene.output.vtk);
     if (scene.wider) need.nodes = memory_of_part(nodes);
     if (scene.erodible) need.nodes += (scene.erodible->evolves ? erodible_rate + path_rate : erodible_rate) * nodes;
+    if (scene.friction) need.nodes += memory_of(*scene.friction);
     if (scene.structure) need.nodes += structure_rate * nodes;
     if (scene.water) need.nodes += water_rate * nodes;
     const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(),

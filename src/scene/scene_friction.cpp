@@ -42,27 +42,37 @@ void require_range(const Raster& pixels, const Range& range, const std::string& 
                     bad, pixels.values[first], where(pixels.geometry, first), range.text()));
 }
 
+/// Where the edges of a polygon cross each row of nodes [m].
+std::vector<std::vector<double>> crossings_of(const Polygon& polygon, const GridGeometry& grid) {
+    std::vector<std::vector<double>> rows(static_cast<std::size_t>(grid.ny));
+    const auto first_row = [&](double y) {  // that lies at y or above it
+        return static_cast<Index>(std::clamp(std::ceil((y - grid.y0) / grid.cell) - 1.0, 0.0, double(grid.ny)));
+    };
+    for (const auto& ring : polygon.rings)
+        for (std::size_t k = 0; k < ring.size(); ++k) {
+            const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+            const double low = std::min(a.y(), b.y()), high = std::max(a.y(), b.y());
+            for (Index j = first_row(low); j < grid.ny && grid.y(j) < high; ++j)
+                if ((a.y() <= grid.y(j)) != (b.y() <= grid.y(j)))
+                    rows[static_cast<std::size_t>(j)].push_back(a.x() + (grid.y(j) - a.y()) / (b.y() - a.y()) *
+                                                                            (b.x() - a.x()));
+        }
+    return rows;
+}
+
 /// The nodes inside a polygon, row by row: between its first and second crossing of the row, its third and fourth, ...
 void mark_inside(const Polygon& polygon, const GridGeometry& grid, NodeMarks& marks) {
-    std::vector<double> crossings;
-    for (Index j = 0; j < grid.ny; ++j) {
-        crossings.clear();
-        const double y = grid.y(j);
-        for (const auto& ring : polygon.rings)
-            for (std::size_t k = 0; k < ring.size(); ++k) {
-                const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-                if ((a.y() <= y) == (b.y() <= y)) continue;
-                crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
-            }
+    Index row = 0;
+    for (std::vector<double>& crossings : crossings_of(polygon, grid)) {
         std::sort(crossings.begin(), crossings.end());
         for (std::size_t n = 0; n + 1 < crossings.size(); n += 2) {
             const auto node = [&](double x) {
                 const double i = std::ceil((x - grid.x0) / grid.cell);
                 return static_cast<Index>(std::clamp(i, 0.0, static_cast<double>(grid.nx)));
             };
-            const Index row = j * grid.nx;
             std::fill(marks.begin() + row + node(crossings[n]), marks.begin() + row + node(crossings[n + 1]), char{1});
         }
+        row += grid.nx;
     }
 }
 
@@ -142,6 +152,11 @@ public:
 
 private:
     bool is_ground(std::size_t k) const { return !std::isnan(scene_.bed.values[k]); }
+    Index ground_count() const {
+        Index count = 0;
+        for (std::size_t k = 0; k < laws_.size(); ++k) count += is_ground(k);
+        return count;
+    }
 
     template <class Body>
     void for_each_node(Body&& body) const {
@@ -166,9 +181,9 @@ private:
             if (key.missing == laws::Missing::refused) laws_[k].*key.parameter = Raster::nodata;
         });
         if (gaps > 0 && key.missing != laws::Missing::refused)
-            scene_.log.push_back(fmt::format("{}: {:.3g} % of the terrain's nodes have no data there; they have {:.6g}",
-                                             case_.place(name), 100.0 * double(gaps) / double(grid_.size()),
-                                             Law{}.*key.parameter));
+            scene_.log.push_back(fmt::format(
+                "{}: {:.3g} % of the terrain's nodes have no data there; they have {:.6g} where no zone says more",
+                case_.place(name), 100.0 * double(gaps) / double(ground_count()), Law{}.*key.parameter));
     }
 
     /// By outline, by elevation, or what both have.
@@ -213,7 +228,7 @@ private:
         throw UserError(fmt::format(
             "found no value at {} of {} nodes, such as {}; expected one at each, since {}{} has no default; fill the "
             "gaps of the raster, or give {} there by a [[material.zone]]",
-            count, laws_.size(), where(grid_, first), kLaw, key, key));
+            count, ground_count(), where(grid_, first), kLaw, key, key));
     }
 
     void require_more(const Key<Law>& key) const {
@@ -287,10 +302,9 @@ void read_friction(const CaseFile& file, const GisReader& reader, Scene& scene, 
     std::visit(
         [&](const auto& law) {
             LawLayers layers(file, reader, scene, law);
-            const bool good = problems.empty();
             layers.lay_rasters(problems);
             layers.lay_zones(problems);
-            if (good && !problems.empty()) return;
+            if (!problems.empty()) return;  // what was not laid would be missed once more
             if (!problems.attempt(file.place("material.bed.law"), [&] { layers.check(); })) return;
             scene.friction = layers.friction();
             scene.bed_law = layers.mean();

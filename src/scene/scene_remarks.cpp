@@ -67,24 +67,31 @@ void remark_feet(Scene& scene, const std::string& place) {
     remark_on(scene.log, Remark::high_as_in_feet, place, {highest, 0.0, files});
 }
 
-/// Given numbers that lie outside of what the kind of mass has.
+/// A given number, the meaning of which is that of `meaning`, that lies outside of what the kind of mass has.
+void remark_on_kind(const CaseFile& file, const std::string& key, const std::string& meaning, Scene& scene) {
+    if (!file.given(key) || file.is_text(key)) return;
+    const std::string& kind = file.word("case.kind");
+    const RangeKey known = range_key(meaning);
+    const std::optional<Plausible> range = plausible(kind, known.key, file.word("material.bed.law"));
+    if (!range) return;
+    constexpr double round_off = 1e-9;
+    const double value = file.number(key), low = known.scale(range->low), high = known.scale(range->high);
+    if (value >= low * (1.0 - round_off) && value <= high * (1.0 + round_off)) return;
+    const std::string& unit = find_parameter(meaning)->unit;
+    remark_on(scene.log, Remark::kind_range, file.place(key),
+              {value, 0.0, fmt::format("{:.4g} to {:.4g}{} for {}", low, high, unit == "1" ? "" : " " + unit, kind)});
+}
+
+/// Of all zones as well; rasters are not looked at.
 void remark_on_kind(const CaseFile& file, Scene& scene) {
     if (!file.has("case.kind")) return;
-    const std::string &kind = file.word("case.kind"), &law = file.word("material.bed.law");
-    for (const char* key : {"material.density", "material.bed.mu", "material.bed.friction_angle_deg", "material.bed.xi",
-                            "material.bed.manning_n", "material.bed.yield_stress", "material.bed.viscosity",
-                            "material.rheology.yield_stress", "material.rheology.viscosity"}) {
-        if (!file.given(key) || file.is_text(key)) continue;
-        const RangeKey known = range_key(key);
-        const std::optional<Plausible> range = plausible(kind, known.key, law);
-        if (!range) continue;
-        constexpr double round_off = 1e-9;
-        const double value = file.number(key), low = known.scale(range->low), high = known.scale(range->high);
-        if (value >= low * (1.0 - round_off) && value <= high * (1.0 + round_off)) continue;
-        const std::string& unit = find_parameter(key)->unit;
-        remark_on(
-            scene.log, Remark::kind_range, file.place(key),
-            {value, 0.0, fmt::format("{:.4g} to {:.4g}{} for {}", low, high, unit == "1" ? "" : " " + unit, kind)});
+    for (const char* key : {"material.density", "material.rheology.yield_stress", "material.rheology.viscosity"})
+        remark_on_kind(file, key, key, scene);
+    for (const std::string name : {"mu", "friction_angle_deg", "xi", "manning_n", "yield_stress", "viscosity"}) {
+        const std::string of_bed = "material.bed." + name;
+        remark_on_kind(file, of_bed, of_bed, scene);
+        for (Index i = 0; i < file.count("material.zone"); ++i)
+            remark_on_kind(file, fmt::format("material.zone.{}.{}", i, name), of_bed, scene);
     }
 }
 

@@ -69,10 +69,13 @@ std::vector<Named> results_on(const Polygon& polygon, const std::string& barrier
 }
 
 void add_results(AttributedPolygon& polygon, const std::vector<Named>& results) {
-    for (Named& given : polygon.attributes)
-        if (std::any_of(results.begin(), results.end(),
-                        [&](const Named& r) { return same_name(r.first, given.first); }))
-            given.first += "_input";
+    for (std::size_t n = 0; n < polygon.attributes.size(); ++n) {
+        std::string& name = polygon.attributes[n].first;
+        const auto taken = [&](const Named& other) { return &other.first != &name && same_name(other.first, name); };
+        const auto is_taken = [&](const std::vector<Named>& all) { return std::any_of(all.begin(), all.end(), taken); };
+        if (is_taken(results)) name += "_input";
+        while (is_taken(polygon.attributes)) name += "_input";
+    }
     polygon.attributes.insert(polygon.attributes.end(), results.begin(), results.end());
 }
 

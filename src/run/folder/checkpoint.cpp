@@ -8,6 +8,7 @@
 #include "base/atomic_file.h"
 #include "base/checksum.h"
 #include "base/error.h"
+#include "base/layer_name.h"
 #include "base/version.h"
 #include "io/gdal_sum.h"
 #include "run/folder/run_folder.h"
@@ -22,11 +23,13 @@ constexpr const char* kWayOut = "or run without --resume to start at the beginni
 /// Whether two cases that differ in this key alone have the same states.
 bool changes_nothing(const std::string& key) { return key == "output.checkpoint_minutes"; }
 
-/// What a file holds is compared by its sum; where it lies says nothing.
+/// What a file holds is compared by its sum; where it lies says nothing, but its layer does.
 std::string without_paths(const std::string& key, const std::string& value) {
     const Parameter* parameter = find_parameter(key);
     const bool may_be_path = parameter && names_files(parameter->kind);
-    return may_be_path && value.find('"') != std::string::npos ? "a file" : value;
+    if (!may_be_path || value.find('"') == std::string::npos) return value;
+    const std::size_t layer = value.find(kLayerMark);
+    return layer == std::string::npos ? "a file" : "a file" + value.substr(layer);
 }
 
 /// The resolved case as "key = value" by key; repeated tables are numbered.

@@ -147,7 +147,8 @@ std::string bed_change_table(const Comparison& c) {
     return text +
            fmt::format(
                "\nSimulated is the change of the bed with what lies on it at the end, as a second survey would see it. "
-               "Changes of at most {:.3g} m count as none, and the release is left out. Misplaced: {:.6g} m3, {} % of "
+               "Changes of at most {:.3g} m count as none, and the release of the start is left out. Misplaced: {:.6g} "
+               "m3, {} % of "
                "the surveyed volume. Where one of the two changes ({:.6g} m2): mean absolute error {} m, root mean "
                "square error {} m.\n\n",
                b.noise, b.misplaced, value(100.0 * b.misplaced_share(), "{:.1f}"), b.compared_area,
