@@ -18,7 +18,7 @@ struct BedChangeErrors {
     BedVolumes simulated, surveyed;  ///< where the survey has data, outside of the release
     BedVolumes within_noise;         ///< simulated, of at most `noise`; in nothing else
     BedVolumes unsurveyed;           ///< simulated where the survey has no data; in nothing else
-    BedVolumes release;              ///< surveyed where the run was released; in nothing else
+    BedVolumes release;              ///< surveyed where the run began; in nothing else
     double misplaced = 0.0;          ///< where one of the two rises and the other sinks, or only one changes [m3]
     double compared_area = 0.0;      ///< where one of the two changes, and surveyed [m2]
     double mae = 0.0;                ///< mean |simulated - surveyed| over that area [m]; NaN when there is none
@@ -36,8 +36,8 @@ private:
 };
 
 /// What a second survey would see: the change of the bed and, with `lying`, the depth of what lies on it at the end [m].
-/// NaN where the run was released (arrival time 0, when that is known): what stood there before was no bed. All rasters
-/// are on one grid; no data counts as no change.
+/// NaN where the run began (arrival time 0, when that is known): what stood there before was no bed. Places of later
+/// releases are not left out. All rasters are on one grid; no data counts as no change.
 Raster surface_change(const Raster& bed_change, const Raster* lying, const Raster* arrival_time);
 
 /// `surveyed` has the pixels of `simulated` (see surface_change), and may have more around them; there nothing was

@@ -113,7 +113,7 @@ struct Inflow {
 /// A release that enters the run later.
 struct LateRelease {
     std::string name;
-    std::optional<double> at;  ///< [s]; nothing: when the flow first covers a node of its
+    std::optional<double> at;  ///< [s]; nothing: when the flow first covers one of its nodes
     Seeds seeds;
     Index first_id = 0;  ///< of its particles, which are numbered on from there
 
@@ -200,7 +200,7 @@ struct FrictionPart {
         double low, high;
     };
     std::string name;             ///< "material.zone.0 (fan.geojson)", "elsewhere"
-    double area = 0.0;            ///< of its nodes on the map, those apart that later zones have [m^2]
+    double area = 0.0;            ///< of its nodes on the map, without those that later zones have [m^2]
     std::vector<Extent> extents;  ///< of each parameter that differs somewhere
 };
 
