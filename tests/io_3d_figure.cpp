@@ -34,6 +34,7 @@ PatchedFace side(Index number, const Vec2& from, const Vec2& along, double lengt
     face.size = 0.5;
     face.count = {static_cast<Index>(std::ceil(length / 0.5)), 6};
     face.impulse.assign(static_cast<std::size_t>(face.count[0] * face.count[1]), {0.0, 0.0, 0.0});
+    face.area.assign(face.impulse.size(), face.size * face.size);
     return face;
 }
 

@@ -50,6 +50,7 @@ std::vector<PatchedFace> box() {
         face.size = 0.5;
         face.count = {static_cast<Index>(2 * size[right]), static_cast<Index>(2 * size[up])};
         face.impulse.assign(static_cast<std::size_t>(face.count[0] * face.count[1]), {0.0, 0.0, 0.0});
+        face.area.assign(face.impulse.size(), face.size * face.size);
     }
     return faces;
 }

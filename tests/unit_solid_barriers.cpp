@@ -242,9 +242,30 @@ TEST_CASE("Patches of a face tell places apart, and a face's moment is about any
     REQUIRE(ledger.faces().size() == 5);
     const Face& front = ledger.face(1, 3);  // at x = 2, from (2, 5) to (2, 1)
     CHECK(front.patches.count == std::array<Index, 2>{8, 6});
-    const Index patch = front.patches.at({2, 4.2, 0.1});
-    CHECK(patch == 2 * 8 + 1);
-    ledger.add({3, patch, {-2, 0, 1}, Vec3(2, 4.2, 1.1).cross(Vec3(-2, 0, 1))});
-    CHECK((front.patches.impulse[static_cast<std::size_t>(patch)] - Vec3(-2, 0, 1)).norm() == 0.0);
+    // Along the face 0.8 from its corner, 1.1 above its foot; the ground at 0 is a square and a half below that.
+    const auto at = [&](Index row, Index column) {
+        return front.patches.impulse[static_cast<std::size_t>(row * 8 + column)];
+    };
+    const Vec3 given(-2, 0, 1);
+    const auto add = [&](const Vec3& place, double reach) {
+        ledger.add({3, front.patches.around(place, reach, list), given, Vec3(2, 4.2, 1.1).cross(given)});
+    };
+    add({2, 4.2, 1.1}, 0.0);
+    CHECK((at(4, 1) - given).norm() == 0.0);
+    add({2, 2.5, 1.25}, 0.25);  // a node between two columns, in the middle of a row
+    CHECK((at(4, 4) - 0.5 * given).norm() < 1e-12);
+    CHECK((at(4, 5) - 0.5 * given).norm() < 1e-12);
+    add({2, 1.75, 0.0}, 0.25);  // a node on the ground stands for what lies above it
+    CHECK((at(2, 6) - given).norm() < 1e-12);
+    add({2, 3.75, -0.2}, 0.1);  // a node below it: all goes to the first square above
+    CHECK((at(2, 2) - given).norm() < 1e-12);
+    // What material can reach of the squares: nothing in the two rows below the ground, for which a quarter stands.
+    CHECK(front.patches.area[0 * 8 + 3] == Approx(0.25 * 0.25));
+    CHECK(front.patches.area[2 * 8 + 3] == Approx(0.25));
+    const FaceLedger lower({Surface::plane({0, 0, 0.2}, {0, 0, 1}), list[1]}, {0, 0, -1}, {8, 8, 7}, 0.5);
+    CHECK(lower.face(1, 3).patches.area[2 * 8 + 3] == Approx(0.25 * 0.6));
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& impulse : front.patches.impulse) sum += impulse;
+    CHECK((sum - front.impulse).norm() < 1e-12);
     CHECK(FaceLedger::moment_about(front, {2, 4.2, 1.1}).norm() < 1e-12);
 }

@@ -64,7 +64,6 @@ private:
             const Place normal = {face.right[1] * face.up[2] - face.right[2] * face.up[1],
                                   face.right[2] * face.up[0] - face.right[0] * face.up[2],
                                   face.right[0] * face.up[1] - face.right[1] * face.up[0]};
-            const double area = face.size * face.size;
             for (Index b = 0; b < face.count[1]; ++b)
                 for (Index a = 0; a < face.count[0]; ++a, ++n) {
                     const double u = face.size * static_cast<double>(a), v = face.size * static_cast<double>(b);
@@ -74,7 +73,9 @@ private:
                         cells->InsertCellPoint(
                             points->InsertNextPoint(moved(face.corner, face.right, u + du, face.up, v + dv).data()));
                     if (before_.size() <= n) before_.push_back(0.0), peak_.push_back(0.0);
-                    const Place& given = face.impulse[static_cast<std::size_t>(b * face.count[0] + a)];
+                    const auto square = static_cast<std::size_t>(b * face.count[0] + a);
+                    const Place& given = face.impulse[square];
+                    const double area = face.area[square];
                     const double push = std::abs(dot(given, normal));
                     const double mean = span > 0.0 ? (push - before_[n]) / (span * area) : 0.0;
                     if (span > 0.0) before_[n] = push, peak_[n] = std::max(peak_[n], mean);

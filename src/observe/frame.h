@@ -131,6 +131,7 @@ struct PatchedFace {
     std::array<double, 3> corner{}, right{}, up{};  ///< a corner [m]; unit vectors along its edges
     double size = 1.0;                              ///< edge of a patch [m]
     std::array<Index, 2> count{};                   ///< patches along right and up
+    std::vector<double> area;                       ///< of each patch that material can reach [m^2]
     std::vector<std::array<double, 3>> impulse;     ///< on the barrier, row after row from the corner [kg m/s]
 };
 

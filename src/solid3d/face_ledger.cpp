@@ -9,10 +9,11 @@ namespace frana {
 namespace {
 
 Patches squares(const Vec3& origin, const Vec3& right, const Vec3& up, const Vec2& length, double size) {
-    Patches p{origin, right, up, size, {}, {}};
-    for (int n = 0; n < 2; ++n)
-        p.count[static_cast<std::size_t>(n)] =
-            std::max<Index>(1, static_cast<Index>(std::ceil(length[n] / size - 1e-9)));
+    Patches p{origin, right, up, size, {}, {}, {}, {}};
+    for (std::size_t n = 0; n < 2; ++n) {
+        p.extent[n] = std::max(0.0, length[static_cast<Eigen::Index>(n)] / size);
+        p.count[n] = std::max<Index>(1, static_cast<Index>(std::ceil(p.extent[n] - 1e-9)));
+    }
     p.impulse.assign(static_cast<std::size_t>(p.count[0] * p.count[1]), Vec3::Zero());
     return p;
 }
@@ -38,12 +39,59 @@ Patches of_shape(const DistanceField& shape, int number, double cell) {
 
 }  // namespace
 
-Index Patches::at(const Vec3& x) const {
-    const auto place = [&](const Vec3& way, std::size_t n) {
-        const double far = way.dot(x - origin) / size;
-        return static_cast<Index>(std::clamp(far, 0.0, static_cast<double>(count[n] - 1)));
+FacePart Patches::around(const Vec3& x, double reach, const std::vector<Surface>& others) const {
+    constexpr double kLeans = 1e-6;  // of a normal: less, and its surface lies along the way
+    const std::array<const Vec3*, 2> ways{&right, &up};
+    FacePart part;
+    for (std::size_t n = 0; n < 2; ++n) {
+        const double at = ways[n]->dot(x - origin) / size;
+        part.from[n] = at - reach / size, part.to[n] = at + reach / size;
+        for (const Surface& other : others) {
+            if (other.is_barrier()) continue;
+            const Contact c = contact(other, x);
+            const double lean = c.normal.dot(*ways[n]);
+            if (std::abs(lean) < kLeans) continue;
+            const double edge = at - c.distance / lean / size;
+            if (lean > 0.0)
+                part.from[n] = std::max(part.from[n], edge);
+            else
+                part.to[n] = std::min(part.to[n], edge);
+        }
+        part.from[n] = std::clamp(part.from[n], 0.0, extent[n]);
+        part.to[n] = std::clamp(part.to[n], part.from[n], extent[n]);
+    }
+    return part;
+}
+
+void Patches::measure(const std::vector<Surface>& others) {
+    constexpr double kLeast = 0.25;
+    area.clear();
+    for (Index row = 0; row < count[1]; ++row)
+        for (Index column = 0; column < count[0]; ++column) {
+            const double a = static_cast<double>(column) + 0.5, b = static_cast<double>(row) + 0.5;
+            const FacePart part = around(origin + size * (a * right + b * up), 0.5 * size, others);
+            const double share = (part.to[0] - part.from[0]) * (part.to[1] - part.from[1]);
+            area.push_back(std::max(kLeast, share) * size * size);
+        }
+}
+
+void Patches::spread(const FacePart& part, const Vec3& given) {
+    constexpr double kPoint = 1e-9;  // [squares] shorter, a part is a place
+    std::array<Index, 2> first{0, 0}, last{0, 0};
+    for (std::size_t n = 0; n < 2; ++n) {
+        const auto square = [&](double at) { return std::clamp(static_cast<Index>(at), Index{0}, count[n] - 1); };
+        first[n] = square(part.from[n]);
+        last[n] = part.to[n] - part.from[n] > kPoint ? square(part.to[n]) : first[n];
+    }
+    const auto share = [&](std::size_t n, Index square) {
+        if (first[n] == last[n]) return 1.0;
+        const double low = static_cast<double>(square);
+        const double covered = std::min(part.to[n], low + 1.0) - std::max(part.from[n], low);
+        return covered / (part.to[n] - part.from[n]);
     };
-    return place(up, 1) * count[0] + place(right, 0);
+    for (Index row = first[1]; row <= last[1]; ++row)
+        for (Index column = first[0]; column <= last[0]; ++column)
+            impulse[static_cast<std::size_t>(row * count[0] + column)] += share(0, column) * share(1, row) * given;
 }
 
 FaceLedger::FaceLedger(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell) {
@@ -55,6 +103,7 @@ FaceLedger::FaceLedger(const std::vector<Surface>& surfaces, const Vec3& low, co
             Face face{static_cast<int>(s), n, Vec3::Zero(), Vec3::Zero(), {}};
             face.patches = surface.kind == Surface::Kind::prism ? of_prism(*surface.prism, n, low, high, cell)
                                                                 : of_shape(*surface.shape, n, cell);
+            face.patches.measure(surfaces);
             faces_.push_back(std::move(face));
         }
     }
@@ -66,7 +115,7 @@ void FaceLedger::add(const FaceImpulse& part) {
     Face& face = faces_[static_cast<std::size_t>(part.face)];
     face.impulse += part.impulse;
     face.moment += part.moment;
-    face.patches.impulse[static_cast<std::size_t>(part.patch)] += part.impulse;
+    face.patches.spread(part.part, part.impulse);
 }
 
 void FaceLedger::serialize(Archive& archive) {

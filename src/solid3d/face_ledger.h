@@ -7,23 +7,36 @@
 
 namespace frana {
 
+/// A rectangle of a face, from one corner to the other, along its right and up.
+struct FacePart {
+    std::array<double, 2> from{0, 0}, to{0, 0};  ///< [squares]
+};
+
 /// What a face gives to a node, or to a point that it puts back, in one step.
 struct FaceImpulse {
-    int face;      ///< in the ledger
-    Index patch;   ///< of the face
-    Vec3 impulse;  ///< [kg m/s]
-    Vec3 moment;   ///< of the impulse about the grid's origin [kg m^2/s]
+    int face;       ///< in the ledger
+    FacePart part;  ///< of the face, over which the impulse is spread evenly
+    Vec3 impulse;   ///< [kg m/s]
+    Vec3 moment;    ///< of the impulse about the grid's origin [kg m^2/s]
 };
 
 /// A face in squares of about a cell, from `origin` along `right` and `up`.
 struct Patches {
     Vec3 origin{0, 0, 0}, right{1, 0, 0}, up{0, 1, 0};
-    double size = 1.0;                 ///< of a square's edge [m]
-    std::array<Index, 2> count{0, 0};  ///< along right and up
-    std::vector<Vec3> impulse;         ///< on the material since the start, at row * count[0] + column [kg m/s]
+    double size = 1.0;                   ///< of a square's edge [m]
+    std::array<Index, 2> count{0, 0};    ///< along right and up
+    std::array<double, 2> extent{0, 0};  ///< of the face [squares]; the last row and column may stick out
+    std::vector<double> area;            ///< of each square that material can reach [m^2]
+    std::vector<Vec3> impulse;           ///< on the material since the start, at row * count[0] + column [kg m/s]
 
-    /// The square nearest to a place.
-    Index at(const Vec3& x) const;
+    /// What lies within `reach` [m] of a place on the face, and neither beyond the face nor beyond `others`, surfaces
+    /// that bound the material: the part for which a node there stands. Where nothing is left, the nearest place.
+    FacePart around(const Vec3& x, double reach, const std::vector<Surface>& others) const;
+    /// Finds `area`: what of each square is of the face and not beyond `others`, a quarter of it at least, lest single
+    /// points tell too much.
+    void measure(const std::vector<Surface>& others);
+    /// Gives each square the share of an impulse that it has of the part.
+    void spread(const FacePart& part, const Vec3& given);
 };
 
 /// A face of a barrier.

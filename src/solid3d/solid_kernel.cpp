@@ -521,7 +521,8 @@ private:
             }
             if (body.barriers >> t->surface & 1)
                 list_impulse(body, t->surface, t->contact,
-                             {real.m, x, t->normal_change * normal + t->brake, Vec3::Zero(), Vec3::Zero()},
+                             {real.m, x, 0.5 * body.grid.cell(), t->normal_change * normal + t->brake, Vec3::Zero(),
+                              Vec3::Zero()},
                              *given.faces);
             else
                 given.impulse[t->surface] += real.m * (t->normal_change * normal + t->brake);
@@ -536,7 +537,9 @@ private:
     /// What a barrier does to a node or a point: changes its speed, and moves it at the speed it then has.
     struct ImpulseAt {
         double mass;
-        Vec3 place, change, shift, v;
+        Vec3 place;
+        double reach;  ///< of the material that it stands for, along the face [m]
+        Vec3 change, shift, v;
     };
     /// Records it with the face. Not inlined, like all that barriers need, so that scenes without them have the
     /// bits they had: in place, it would share sums with other code, and so change what is fused there.
@@ -547,7 +550,7 @@ private:
         const int face = body.ledger.first(surface) + c.face;
         const Patches& patches = body.ledger.faces()[static_cast<std::size_t>(face)].patches;
         list.push_back(
-            {face, patches.at(source.place - c.distance * c.normal), impulse,
+            {face, patches.around(source.place - c.distance * c.normal, source.reach, body.surfaces), impulse,
              (source.place - body.grid.geometry().origin).cross(impulse) + source.mass * source.shift.cross(source.v)});
     }
 
@@ -875,7 +878,7 @@ private:
             q.x[k][p] += (kHair - c.distance / h) * c.normal[k];
             q.v[k][p] += change[k];
         }
-        list_impulse(body, s, c, {q.mass[p], x, change, (kHair * h - c.distance) * c.normal, v + change},
+        list_impulse(body, s, c, {q.mass[p], x, 0.0, change, (kHair * h - c.distance) * c.normal, v + change},
                      body.point_impulses[static_cast<std::size_t>(tile)]);
         return true;
     }
