@@ -75,6 +75,8 @@ void learn_bed(const Scene& scene, const Flow& flow, Facts& facts) {
     facts.turn = bends.sharpest * flow.cell;
     if (facts.steep) facts.steepest = std::sqrt(steepest2);
     if (!facts.energy_law && facts.steep) facts.stretch = std::sqrt(1.0 + steepest2);
+    // Stiff mud takes back in a step nearly all that weight and pressure give it.
+    facts.cancels = facts.cancels || std::holds_alternative<bed::Bingham>(scene.bed_law);
 }
 
 /// The same as structured columns and water have it: no Hessian bends their paths.
