@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "compare/deposit.h"
 #include "compare/flow_width.h"
 #include "compare/outline.h"
 #include "compare/runout.h"
@@ -30,6 +31,11 @@ struct RunFiles {
                             "with --overwrite",
                             (folder / "rasters" / name).string() + ".tif"));
         return product->raster;
+    }
+    /// What lies there at the end, as flow or as bed.
+    Raster deposit() const {
+        const ProductRaster* bed = find_product(rasters, "deposited_depth");
+        return with_deposit(raster("final_depth"), bed ? &bed->raster : nullptr);
     }
 };
 
@@ -75,7 +81,7 @@ double volume_of(const Raster& depth) {
 
 CellFigures figures_of(const RunFiles& run, const RunFiles& finest, const Path& path, double limit) {
     const Raster &peak = run.raster("peak_depth"), &speed = run.raster("peak_speed");
-    const Raster& deposit = run.raster("final_depth");
+    const Raster deposit = run.deposit();
     constexpr double nearly_all = 0.999;  // the maximum is that of a single node
     const Rings outline = pixel_outline(peak, limit);
     CellFigures figures;
@@ -90,7 +96,7 @@ CellFigures figures_of(const RunFiles& run, const RunFiles& finest, const Path& 
     figures.peak_speed = covered_quantile(speed, peak, limit, nearly_all);
     figures.largest_speed = covered_quantile(speed, peak, limit, 1.0);
     figures.iou = footprints_iou(peak, finest.raster("peak_depth"), limit);
-    figures.elsewhere = share_elsewhere(deposit, finest.raster("final_depth"));
+    figures.elsewhere = share_elsewhere(deposit, finest.deposit());
     const auto& across = run.record["flow_width_cells"];
     figures.cells_across = across.is_number() ? across.get<double>() : Raster::nodata;
     figures.seconds = run.record["wall_seconds"].at("total").get<double>();

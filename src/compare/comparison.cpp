@@ -32,13 +32,15 @@ public:
         choose_path();
         result_.outline = pixel_outline(*run_.peak_depth, run_.limit);
         result_.trace = scores(*run_.peak_depth, result_.outline);
-        if (run_.final_depth) result_.final = scores(*run_.final_depth, pixel_outline(*run_.final_depth, run_.limit));
+        if (run_.final_depth) {
+            lying_ = with_deposit(*run_.final_depth, run_.deposited_depth);
+            result_.final = scores(*lying_, pixel_outline(*lying_, run_.limit));
+        }
         if (!result_.path.empty()) {
             result_.surveyed_runout = reach_along(result_.path, rings_, result_.cell);
             result_.surveyed_reach = farthest_from(result_.path.front(), rings_);
         }
-        if (survey_.deposit && run_.final_depth)
-            result_.deposit = deposit_errors(*run_.final_depth, *survey_.deposit, run_.limit);
+        if (survey_.deposit && lying_) result_.deposit = deposit_errors(*lying_, *survey_.deposit, run_.limit);
         compare_beds();
         make_remarks();
         return std::move(result_);
@@ -149,6 +151,7 @@ private:
     Rings rings_;
     double step_ = 1.0;
     Comparison result_;
+    std::optional<Raster> lying_;  ///< at the end, also what has become bed [m]
 };
 
 }  // namespace

@@ -13,12 +13,13 @@ namespace frana {
 
 /// What was simulated. All rasters on one grid.
 struct SimulatedRun {
-    const Raster* peak_depth = nullptr;    ///< needed
-    const Raster* final_depth = nullptr;   ///< or null: no scores of the final state
-    const Raster* arrival_time = nullptr;  ///< or null: no steepest path
-    const Raster* bed = nullptr;           ///< or null: no steepest path
-    double limit = 0.1;                    ///< deeper counts as covered [m]
-    const Raster* bed_change = nullptr;    ///< or null: the bed is rock
+    const Raster* peak_depth = nullptr;       ///< needed
+    const Raster* final_depth = nullptr;      ///< or null: no scores of the final state
+    const Raster* deposited_depth = nullptr;  ///< or null: nothing became bed; lies with the final depth
+    const Raster* arrival_time = nullptr;     ///< or null: no steepest path
+    const Raster* bed = nullptr;              ///< or null: no steepest path
+    double limit = 0.1;                       ///< deeper counts as covered [m]
+    const Raster* bed_change = nullptr;       ///< or null: the bed is rock
 };
 
 /// What was surveyed.

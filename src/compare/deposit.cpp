@@ -7,6 +7,15 @@
 
 namespace frana {
 
+Raster with_deposit(const Raster& final_depth, const Raster* deposited) {
+    Raster lying = final_depth;
+    if (!deposited) return lying;
+    expect(deposited->values.size() == lying.values.size(), "rasters of one run have the same pixels");
+    for (std::size_t k = 0; k < lying.values.size(); ++k)
+        if (!std::isnan(deposited->values[k])) lying.values[k] += deposited->values[k];
+    return lying;
+}
+
 DepositErrors deposit_errors(const Raster& simulated, const Raster& surveyed, double limit) {
     const GridGeometry &inner = simulated.geometry, &outer = surveyed.geometry;
     expect(inner.cell == outer.cell, "two deposits on the same pixels");

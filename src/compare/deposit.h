@@ -4,6 +4,10 @@
 
 namespace frana {
 
+/// What lies there at the end: the final depth, and what has become bed; `deposited` may be null. NaN in one of them adds
+/// nothing.
+Raster with_deposit(const Raster& final_depth, const Raster* deposited);
+
 struct DepositErrors {
     double simulated_volume = 0.0;   ///< where the survey has data [m3]
     double surveyed_volume = 0.0;    ///< [m3]

@@ -11,7 +11,7 @@ namespace frana {
 /// same run.
 struct Budget {
     double mass_error = 0.0;  ///< (m + m_left + m_bed - m_0 - m_in) / (m_0 + m_in), m_0 with that of the bed [1]
-    double bed_error = 0.0;   ///< of the erodible bed alone, over what it had at the start [1]
+    double bed_error = 0.0;   ///< of the bed alone, over what it had at the start and was given [1]
     std::array<double, 2> momentum_residual{};  ///< P + P_left - P_0 - impulse [kg m/s]
     double energy_residual = 0.0;               ///< (K + E_p + E_s + D + E_left) - (K_0 + E_p0) [J]
 };
@@ -23,7 +23,8 @@ inline Budget budget(const Status& first, const Status& now) {
         (now.mass - first.mass) + (now.mass_left - first.mass_left) + (now.bed.mass - first.bed.mass) - came;
     result.mass_error = had > 0.0 ? lost / had : 0.0;
     const double of_bed = (now.bed.mass - now.bed.initial) + (now.bed.eroded - now.bed.deposited);
-    if (now.bed.initial > 0.0) result.bed_error = of_bed / now.bed.initial;
+    const double bed_had = now.bed.initial + now.bed.deposited;
+    if (bed_had > 0.0) result.bed_error = of_bed / bed_had;
     for (std::size_t axis = 0; axis < 2; ++axis)
         result.momentum_residual[axis] = (now.momentum[axis] - first.momentum[axis]) +
                                          (now.momentum_left[axis] - first.momentum_left[axis]) -

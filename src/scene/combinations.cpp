@@ -27,6 +27,7 @@ bool of_words(Are are) { return are == Are::words || are == Are::others; }
 std::string value_text(const CaseFile& file, const Values& values) {
     if (of_words(values.are)) return "\"" + file.word(values.key) + "\"";
     if (values.are == Are::on) return "true";
+    if (values.are == Are::off) return "false";
     if (values.are == Are::rasters) return "a raster";
     if (values.are == Are::tables) return (values.key[0] == 'i' ? "an " : "a ") + values.key;
     return fmt::format("{:.6g}", file.number(values.key_in(file)));
@@ -157,6 +158,35 @@ void add_erodible_bed(std::vector<Combination>& table) {
                      {erodible},
                      "expected none: no barrier's footing is known to hold",
                      "raise the elevation model there, or remove the erodible bed"});
+}
+
+/// Where material cannot be left behind as bed.
+void add_deposits(std::vector<Combination>& table) {
+    const Values deposits = is_not("deposition.law", {"none"});
+    table.push_back({{"erodible.bed_evolves", Are::off},
+                     {deposits},
+                     "expected true: what is left behind raises the ground",
+                     "remove it, or the deposition"});
+    table.push_back({is_not("scheme.shape", {"quadratic"}),
+                     {deposits},
+                     "expected \"quadratic\", the shapes that share out a bed",
+                     "remove it, or the deposition"});
+    table.push_back({is_not("scheme.preset", {"default"}),
+                     {deposits},
+                     "expected \"default\": particles of the other carry a depth that no bed can take over",
+                     "remove it, or the deposition"});
+    table.push_back({is_not("material.structure.law", {"none"}),
+                     {deposits},
+                     "expected \"none\": a mass that holds together, and water beside it, leave no bed behind",
+                     "remove one of them"});
+    table.push_back({{"stage", Are::tables},
+                     {deposits},
+                     "expected none: points in 3D leave no bed behind",
+                     "remove the stage, or the deposition"});
+    table.push_back({{"barrier", Are::tables},
+                     {deposits},
+                     "expected none: no barrier is known to stand in ground that rises",
+                     "raise the elevation model there, or remove the deposition"});
 }
 
 /// What the schemes of the depth-averaged flow do not know of.
@@ -305,6 +335,7 @@ const std::vector<Combination>& combinations() {
         add_structure(table);
         add_water(table);
         add_erodible_bed(table);
+        add_deposits(table);
         add_space(table);
         add_late_releases(table);
         add_zones(table);

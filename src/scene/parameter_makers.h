@@ -19,6 +19,9 @@ void add_structure(Table& table);
 /// The keys of [erodible] (parameter_table_erodible.cpp).
 void add_erodible(Table& table);
 
+/// The keys of [deposition] (parameter_table_deposition.cpp).
+void add_deposition(Table& table);
+
 /// The keys of [water] (parameter_table_water.cpp).
 void add_water(Table& table);
 

@@ -178,6 +178,7 @@ void add_material(Table& table) {
     add_law<Rheology>(table, "material.rheology", "stress inside the mass");
     add_structure(table);
     add_erodible(table);
+    add_deposition(table);
     add_water(table);
 }
 

@@ -193,6 +193,12 @@ struct ErodibleBed {
     bool evolves = true;      ///< the ground sinks by what is taken; otherwise it is only counted
 };
 
+/// What the flow leaves behind as bed (shallow/erosion.h).
+struct Deposition {
+    std::optional<double> rest;  ///< after so long at rest tiles of it become bed [s]; nothing: never
+    Raster detrainment;  ///< K on the nodes of the terrain: K/u of mass per area and time stays [Pa]; no values: none
+};
+
 /// Where one part of a friction holds that differs in space, and what it has there.
 struct FrictionPart {
     struct Extent {
@@ -268,13 +274,16 @@ struct Scene {
     std::vector<Insitu> insitu;      ///< looked at while the case runs
     std::optional<Polygons> survey;  ///< surveyed footprint, to compare with
     std::vector<Barrier> barriers;
-    std::optional<Structure> structure;   ///< when the material holds together
-    std::optional<WaterPhase> water;      ///< beside a structure
-    std::optional<ErodibleBed> erodible;  ///< nothing: the bed is rock
-    std::optional<SolidStage> solid;      ///< where and when the run goes into space
+    std::optional<Structure> structure;    ///< when the material holds together
+    std::optional<WaterPhase> water;       ///< beside a structure
+    std::optional<ErodibleBed> erodible;   ///< nothing: the bed is rock
+    std::optional<Deposition> deposition;  ///< nothing: none
+    std::optional<SolidStage> solid;       ///< where and when the run goes into space
 
     std::vector<std::string> log;  ///< remarks made while building (resampling, nodata, ...)
 
+    /// The ground follows what is taken or left behind.
+    bool bed_evolves() const { return deposition || (erodible && erodible->evolves); }
     /// Material at the start, and that of each late release.
     std::vector<const Seeds*> all_particles() const {
         std::vector<const Seeds*> all = {&particles};

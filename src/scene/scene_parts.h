@@ -69,6 +69,9 @@ void read_inflows(const CaseFile& file, const GisReader& reader, Scene& scene, P
 /// [material.structure] of a scene that has its terrain and its barriers. What does not fit together goes to `problems`.
 std::optional<Structure> read_structure(const CaseFile& file, const Scene& scene, Problems& problems);
 
+/// [deposition] of a scene that has its bed law; remarks go to the scene's log.
+std::optional<Deposition> read_deposition(const CaseFile& file, Scene& scene);
+
 /// [erodible] of a scene that has its terrain. What is wrong with its files goes to `problems`, remarks to the scene's log.
 std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& reader, Scene& scene,
                                          Problems& problems);

@@ -248,7 +248,7 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     SmoothSlopes slopes = slopes_of(grid, smoothed);
     bed.smooth_x = std::move(slopes.x), bed.smooth_y = std::move(slopes.y);
     if (scene.curvature != Curvature::none) fill_curvature(grid, smoothed, bed);
-    if (scene.erodible && scene.erodible->evolves) bed.smoothed = std::move(smoothed);
+    if (scene.bed_evolves()) bed.smoothed = std::move(smoothed);
     return bed;
 }
 

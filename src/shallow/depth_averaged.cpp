@@ -51,7 +51,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     expect(!scene.wider, "on a part of a terrain columns grow it (coupling/growing_columns.h)");
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
-    if (scene.erodible) {
+    if (scene.erodible || scene.deposition) {
         erosion_.emplace(scene, flow_);
         status_.bed = erosion_->status();
     }
@@ -166,7 +166,11 @@ void DepthAveraged::advance(double until) {
     accumulate_points(points);
     status_.tick(dt, until);
     if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0, fed);
-    if (erosion_) timed_("erosion", [&] { erode(dt); });
+    if (erosion_)
+        timed_("erosion", [&] {
+            erode(dt);
+            settle();
+        });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
     if (late_) enter_late();

@@ -111,6 +111,7 @@ private:
     void serialize_peaks(Archive& archive);
     void adapt_points(bool deposit_follows, bool due, bool points_left, bool fed);
     void erode(double dt);
+    void settle();
     void take_rows();
     std::vector<Index> tiles_of_a_step() const;
     void enter_late();

@@ -160,7 +160,7 @@ void DepthAveraged::node_fields(Frame& frame) {
         if (erosion_) {
             change[n] = erosion_->bed_change(k);
             eroded[n] = erosion_->eroded_depth(k);
-            deposited[n] = 0.0;
+            deposited[n] = erosion_->deposited_depth(k);
         }
         elevation[n] = has_no_data(flow_.bed.exit[k]) ? std::numeric_limits<double>::quiet_NaN() : flow_.bed.z[k];
         surface[n] = elevation[n];

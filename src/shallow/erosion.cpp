@@ -10,6 +10,7 @@
 #include "mpm/stored_points.h"
 #include "mpm/tile_points.h"
 #include "scene/bed_smoothing.h"
+#include "shallow/bed_tiles.h"
 #include "shallow/sub_points_of_four.h"
 
 namespace frana {
@@ -34,24 +35,6 @@ std::vector<double> half_filter(Index passes) {
     }
     while (w.size() > 1 && w.back() < 1e-10) w.pop_back();
     return w;
-}
-
-/// Calls body(tile) for those among a tile and its eight neighbours that are of the domain.
-template <class Body>
-void for_each_around(const TileGrid& grid, Index tile, Body&& body) {
-    const Index width = grid.tiles_x(), column = tile % width;
-    for (Index dj = -1; dj <= 1; ++dj)
-        for (Index di = -1; di <= 1; ++di) {
-            const Index to = tile + dj * width + di;
-            if (column + di >= 0 && column + di < width && to >= 0 && to < grid.tiles()) body(to);
-        }
-}
-
-template <class Body>
-void for_each_in_parallel(const std::vector<Index>& tiles, Body&& body) {
-    const Index count = static_cast<Index>(tiles.size());
-#pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
-    for (Index n = 0; n < count; ++n) body(tiles[static_cast<std::size_t>(n)]);
 }
 
 /// Means of node values at four points.
@@ -114,6 +97,13 @@ decltype(auto) law_under(const Friction& friction, const Flow& flow, const Doubl
     }
 }
 
+/// Nothing to take.
+ErodibleBed rock_of(const Scene& scene) {
+    ErodibleBed bed;
+    bed.density = scene.density;
+    return bed;
+}
+
 /// What the law alone takes of the speeds of four points on the map [m/s^2]: over a time in which no flow changes much.
 template <class Law>
 Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 speed) {
@@ -124,13 +114,19 @@ Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 sp
 }  // namespace
 
 Erosion::Erosion(const Scene& scene, Flow& flow)
-    : law_(scene.erodible->law),
+    : Erosion(scene, scene.erodible ? *scene.erodible : rock_of(scene), flow) {}
+
+Erosion::Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow)
+    : law_(bed.law),
       friction_(scene.bed_law),
-      momentum_(scene.erodible->momentum),
-      min_depth_(scene.erodible->min_depth),
-      density_(scene.erodible->density),
+      momentum_(bed.momentum),
+      min_depth_(bed.min_depth),
+      density_(bed.density),
       per_area_(1.0 / (density_ * flow.area)),
-      evolves_(scene.erodible->evolves),
+      per_area_of_flow_(1.0 / (flow.density * flow.area)),
+      fresh_crumb_(kCrumb * flow.cell / per_area_of_flow_),
+      takes_(scene.erodible.has_value()),
+      evolves_(bed.evolves),
       curved_(scene.terrain != TerrainModel::shallow && scene.curvature == Curvature::full),
       bent_path_(flow.bed.smoothed),
       left_(flow.grid.size()),
@@ -150,7 +146,7 @@ Erosion::Erosion(const Scene& scene, Flow& flow)
     for (Index j = 0; j < grid.ny(); ++j)
         for (Index i = 0; i < grid.nx(); ++i) {
             const Index k = grid.at(i, j);
-            if (flow.bed.exit[k] == 0) initial_[k] = scene.erodible->depth.at(i, j) / per_area_;
+            if (takes_ && flow.bed.exit[k] == 0) initial_[k] = bed.depth.at(i, j) / per_area_;
         }
     if (flow.walls)  // beyond them lies the mirror image
         for (Index j = -kGhosts; j < grid.ny() + kGhosts; ++j)
@@ -160,6 +156,7 @@ Erosion::Erosion(const Scene& scene, Flow& flow)
                 };
                 initial_[grid.at(i, j)] = initial_[grid.at(mirror(i, grid.nx()), mirror(j, grid.ny()))];
             }
+    prepare_deposition(scene, flow);
     for (Index tile = 0; tile < grid.tiles(); ++tile) {
         bool any = false;
         for_each_node_of(grid, tile, [&](Index k, Index, Index) {
@@ -187,9 +184,9 @@ void Erosion::count_tile(const Flow& flow, Index tile) {
     bool any = false;
     double deepest = 0.0;
     for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
-        if (!(initial_[k] > 0.0)) return;
-        mass.add(flow.share(i, j) * left_[k]);
-        any = any || left_[k] > kCrumb * initial_[k];
+        if (!(initial_[k] > 0.0) && !(fresh(k) > 0.0)) return;
+        mass.add(flow.share(i, j) * (left_[k] + fresh(k)));
+        any = any || can_give(k) > 0.0;
         deepest = std::max(deepest, eroded_depth(k));
     });
     tile_mass_[tile] = mass.value(), holds_[tile] = any, tile_deepest_[tile] = deepest;
@@ -206,25 +203,19 @@ void Erosion::status_changed() {
     mass_ = mass.value();
 }
 
-Status::Bed Erosion::status() const { return {initial_mass_, mass_, eroded_.value(), 0.0, energy_.value(), deepest_}; }
-
-template <class Body>
-void Erosion::for_each_eroding(const Flow& flow, Body&& body) const {
-    for_each_tile(flow.active, [&](Index n) {
-        if (eroding_[static_cast<std::size_t>(n)]) body(n);
-    });
+Status::Bed Erosion::status() const {
+    return {initial_mass_, mass_, eroded_.value(), deposited_.value(), energy_.value(), deepest_};
 }
 
-template <class Body>
-void Erosion::for_each_eroding_coloured(const Flow& flow, Body&& body) const {
-    for_each_tile_coloured(flow.active, [&](Index n) {
-        if (eroding_[static_cast<std::size_t>(n)]) body(n);
-    });
+/// What a node can give at most, less than nothing where only a crumb is left [kg].
+double Erosion::can_give(Index k) const {
+    const double old = left_[k] - kCrumb * initial_[k];
+    return fresh(k) > 0.0 ? old + (fresh_[k] - fresh_crumb_) : old;
 }
 
 ExchangeSums Erosion::exchange(Flow& flow, double dt) {
     ExchangeSums all;
-    if (!(dt > 0.0) || !choose(flow)) return all;
+    if (!takes_ || !(dt > 0.0) || !choose(flow)) return all;
     make_room(flow);
     find_demand(flow, dt);
     scarce_ = find_shares(flow);
@@ -315,6 +306,8 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         Double4 eroded = none;
         if constexpr (Law::kSeesEroded)
             eroded = per_area_ * ground.below.cosine * (means.of(initial_, lanes) - means.of(left_, lanes));
+        if (Law::kSeesEroded && deposits_)  // what lies on top was not taken yet
+            eroded = eroded - per_area_of_flow_ * ground.below.cosine * means.of(fresh_, lanes);
         Double4 at_middle = all(1.0), gain = none, brake = none;  // the speed in the middle, over that at hand
         for (int pass = 0; pass < 2; ++pass) {
             if (pass == 1)
@@ -380,6 +373,9 @@ void Erosion::spread(const Flow& flow, Index n, const Array& masses, LazyArray<d
     });
 }
 
+template void Erosion::spread<double>(const Flow&, Index, const Array&, LazyArray<double>&) const;
+template void Erosion::spread<float>(const Flow&, Index, const Array&, LazyArray<double>&) const;
+
 /// Closes the domain at walls: adds what mirror images bring, and gives the nodes beyond what their images have.
 void Erosion::fold(const Flow& flow, LazyArray<double>& field) const {
     if (!flow.walls) return;
@@ -397,7 +393,7 @@ bool Erosion::find_shares(Flow& flow) {
     for (Index n = 0; n < count; ++n) {
         bool scarce = false;
         for_each_node_of(flow.grid, nodes_[static_cast<std::size_t>(n)], [&](Index k, Index, Index) {
-            const double can = std::max(0.0, left_[k] - kCrumb * initial_[k]);
+            const double can = std::max(0.0, can_give(k));
             share_[k] = demand_[k] > can ? can / demand_[k] : 1.0;
             scarce = scarce || share_[k] < 1.0;
         });
@@ -417,7 +413,7 @@ void Erosion::share_out(Flow& flow) {
         fold(flow, taken_);
         for_each_in_parallel(nodes_, [&](Index tile) {
             for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
-                const double can = left_[k] - kCrumb * initial_[k];
+                const double can = can_give(k);
                 const double more = std::max(0.0, std::min(demand_[k], can) - taken_[k]);
                 share_[k] = demand_[k] > 0.0 ? more / demand_[k] : 0.0;
                 taken_[k] += share_[k] * demand_[k];
@@ -488,14 +484,16 @@ void Erosion::lower_tile(Flow& flow, Index tile) {
     double energy = 0.0;
     bool any = false;
     for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
-        const double taken = std::min(scarce_ ? taken_[k] : demand_[k], left_[k]);
+        const double taken = std::min(scarce_ ? taken_[k] : demand_[k], left_[k] + fresh(k));
         demand_[k] = taken_[k] = 0.0;
         if (!(taken > 0.0)) return;
-        const double sinks = evolves_ ? taken * per_area_ : 0.0, rises = taken / (flow.density * flow.area);
+        const double old = taken - take_fresh(k, taken);
+        const double sinks = evolves_ ? old * per_area_ + (taken - old) * per_area_of_flow_ : 0.0,
+                     rises = taken / (flow.density * flow.area);
         const double z = flow.bed.z[k], h = flow.nodes.depth[k];
         energy += flow.share(i, j) * flow.gravity *
                   (taken * (z - sinks + 0.5 * rises) + flow.density * flow.area * h * (rises - sinks));
-        left_[k] -= taken;
+        left_[k] = std::max(0.0, left_[k] - old);
         any = true;
         if (!evolves_) return;
         flow.bed.z[k] -= sinks;
@@ -512,11 +510,19 @@ void Erosion::lower_tile(Flow& flow, Index tile) {
 
 double Erosion::most_pending(const Flow& flow, Index tile) const {
     double most = 0.0;
-    for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { most = std::max(most, -pending_[k]); });
+    for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { most = std::max(most, std::abs(pending_[k])); });
     return most;
 }
 
-/// Slopes follow at once, curvature once the bed has sunk far enough.
+/// Of what is taken of a node the deposit goes first; returns how much that is [kg].
+double Erosion::take_fresh(Index k, double taken) {
+    if (!(fresh(k) > 0.0)) return 0.0;
+    const double of_fresh = std::min(taken, fresh_[k]);
+    fresh_[k] -= of_fresh;
+    return of_fresh;
+}
+
+/// Slopes follow at once, curvature once the bed has moved far enough.
 void Erosion::follow_bed(Flow& flow) {
     const TileGrid& grid = flow.grid;
     next_.clear();
@@ -637,6 +643,7 @@ void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& 
             for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { field[k] = *from++; });
     };
     numbers("left", left_);
+    numbers("fresh", fresh_);
     if (evolves_) {
         numbers("z", flow.bed.z);
         numbers("ground", flow.bed.ground);
@@ -645,8 +652,10 @@ void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& 
     }
     const auto eroded = eroded_.parts(), energy = energy_.parts();
     archive.numbers("sums", {eroded[0], eroded[1], energy[0], energy[1]});
+    if (deposits_) serialize_rest(archive, flow);
     if (!archive.loading()) return;
     for (const Index tile : tiles) {
+        if (deposits_) list_ledger(tile);
         changed_[tile] = 1;
         count_tile(flow, tile);
         if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);

@@ -1,10 +1,12 @@
 #pragma once
-// The flow takes up loose material of its bed: a ledger of mass per node, and the exchange of a step (THEORY.md, section 18).
+// The flow takes up loose material of its bed, and leaves some behind: a ledger of mass per node, and the exchange of a step
+// (THEORY.md, section 18).
 //
 // Points know what they want, nodes what there is. So a point gets the share of its demand that the poorest of its nodes can
 // give to all that want; what nodes have left over goes to those that want it. Where the supply lasts, each node loses what
 // the points that gain deposit there: the surface of flow and bed does not move.
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/compensated_sum.h"
@@ -25,22 +27,29 @@ struct ExchangeSums {
 /// lies beyond, as with the flow's own mass.
 class Erosion {
 public:
-    /// Of a scene that has an erodible bed.
+    /// Of a scene whose bed is erodible, or rock on which material is left behind.
     Erosion(const Scene& scene, Flow& flow);
 
     /// Points gain, the bed loses, in a step of `dt` [s]; after the gather and the sort, before the deposit.
     ExchangeSums exchange(Flow& flow, double dt);
+    /// In the step that `now` has ended, tiles that have been at rest for long enough become bed: whether any did. The
+    /// caller drops the points marked in gone(). They move not, so nothing but mass goes with them.
+    bool settle(Flow& flow, const Clock& now);
+    const std::vector<std::uint8_t>& gone() const { return gone_; }
     /// The bed's numbers of a status.
     Status::Bed status() const;
 
     double eroded_depth(Index k) const { return (initial_[k] - left_[k]) * per_area_; }  ///< along gravity [m]
-    double bed_change(Index k) const { return -eroded_depth(k); }                        ///< [m]
-    double left(Index k) const { return left_[k]; }                                      ///< [kg]
+    double deposited_depth(Index k) const { return fresh(k) * per_area_of_flow_; }       ///< that lies there now [m]
+    double bed_change(Index k) const { return deposited_depth(k) - eroded_depth(k); }    ///< [m]
+    double left(Index k) const { return left_[k]; }                                      ///< of the original bed [kg]
+    double fresh(Index k) const { return deposits_ ? fresh_[k] : 0.0; }                  ///< deposit on top of it [kg]
     bool evolves() const { return evolves_; }
     /// The ledger, and the bed where it has changed; aside those that a step may change, which reaches the tiles `reached`.
     void serialize(Archive& archive, Flow& flow, const std::vector<Index>& reached);
 
 private:
+    Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
     template <class Law, class Friction, class Real>
     void demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction);
     template <class Real>
@@ -54,6 +63,15 @@ private:
 
     double set_back(Flow& flow, Index p, double dx, double dy) const;
     double speed_left(double gain, double braked) const;
+    double can_give(Index k) const;
+    double take_fresh(Index k, double taken);
+    void prepare_deposition(const Scene& scene, const Flow& flow);
+    bool find_settled(Flow& flow, const Clock& now);
+    void give(Flow& flow);
+    void list_given(const Flow& flow);
+    void raise_tile(Flow& flow, Index tile);
+    void list_ledger(Index tile);
+    void serialize_rest(Archive& archive, const Flow& flow);
     bool choose(const Flow& flow);
     void make_room(const Flow& flow);
     void find_demand(Flow& flow, double dt);
@@ -77,8 +95,9 @@ private:
     ErosionLaw law_;
     BedLaw friction_;
     double momentum_, min_depth_, density_;
-    double per_area_;  ///< depth of a mass on a node [m/kg]
-    bool evolves_, curved_, bent_path_;
+    double per_area_, per_area_of_flow_;  ///< depth of a mass on a node, of the original bed and of a deposit [m/kg]
+    double fresh_crumb_;                  ///< of a deposit, that stays [kg]
+    bool takes_, evolves_, curved_, bent_path_;
     std::vector<double> filter_;  ///< one half of the bed's smoothing, from its middle on
 
     LazyArray<double> left_, initial_;  ///< [kg]
@@ -89,7 +108,15 @@ private:
     LazyArray<std::uint8_t> holds_;     ///< per tile of the domain: 1, something is left to take
     LazyArray<std::uint8_t> changed_;   ///< 1: something there is no more as the scene has it
     LazyArray<double> tile_mass_, tile_deepest_;  ///< [kg], [m]
-    std::vector<Index> ledger_tiles_;             ///< that had something at the start
+    std::vector<Index> ledger_tiles_;             ///< that had something at the start, or got something, ascending
+
+    bool deposits_ = false;            ///< material can be left behind
+    std::optional<double> rest_time_;  ///< after which what rests becomes bed [s]; nothing: never
+    LazyArray<double> fresh_;          ///< deposit, of the flow's density [kg]
+    LazyArray<double> rested_;         ///< per tile: time that it had been at rest in step `seen_` [s]
+    LazyArray<Index> seen_;            ///< per tile: the last step that it was at rest in
+    Index last_step_ = 0;              ///< that was looked at
+    std::vector<std::uint8_t> gone_;   ///< points that have become bed
 
     std::vector<std::uint8_t> eroding_;  ///< by position in ActiveTiles
     std::vector<std::uint8_t> marked_;   ///< scratch, per tile of the domain
@@ -101,8 +128,22 @@ private:
     Array wanted_, gained_;              ///< of points; what they wanted they gained, unless something is scarce [kg]
     Array speed_;                        ///< along the bed [m/s]
     Array braked_;                       ///< share of the speed that friction takes in the step [1]
-    CompensatedSum eroded_, energy_;
+    CompensatedSum eroded_, deposited_, energy_;
     double initial_mass_ = 0.0, mass_ = 0.0, deepest_ = 0.0;
 };
+
+template <class Body>
+void Erosion::for_each_eroding(const Flow& flow, Body&& body) const {
+    for_each_tile(flow.active, [&](Index n) {
+        if (eroding_[static_cast<std::size_t>(n)]) body(n);
+    });
+}
+
+template <class Body>
+void Erosion::for_each_eroding_coloured(const Flow& flow, Body&& body) const {
+    for_each_tile_coloured(flow.active, [&](Index n) {
+        if (eroding_[static_cast<std::size_t>(n)]) body(n);
+    });
+}
 
 }  // namespace frana

@@ -125,7 +125,8 @@ std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) {
     return Dice(seed ^ (salt * 0x9fb21c651e98df25u)).bits();
 }
 
-constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kInflow = 4, kLate = 5, kFriction = 6, kScene = 16;  // salts
+constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kInflow = 4, kLate = 5, kFriction = 6, kDeposition = 7,
+                        kScene = 16;  // salts
 
 }  // namespace
 
@@ -153,6 +154,8 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
             Dice late(salted(seed, kLate), n), friction(salted(seed, kFriction), n);
             if (late.chance(0.1)) draw_late(late, draft);
             if (friction.chance(0.1)) draw_friction(friction, draft);
+            Dice deposition(salted(seed, kDeposition), n);
+            if (deposition.chance(0.2)) draw_deposition(deposition, draft);
         }
     }
     draft.keys["time.end"] = "1.0e6";

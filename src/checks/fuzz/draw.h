@@ -34,6 +34,8 @@ void draw_pile(Dice& dice, Draft& draft);
 void draw_lake(Dice& dice, Draft& draft);
 /// Loose ground under what is drawn so far, where the scheme knows that.
 void draw_erodible(Dice& dice, Draft& draft);
+/// A bed that the flow of what is drawn so far becomes, soon after it has come to rest.
+void draw_deposition(Dice& dice, Draft& draft);
 /// A line through which more comes in, where the terrain has room for one.
 void draw_inflow(Dice& dice, Draft& draft);
 /// Another release, which enters at a time or when the flow reaches it.

@@ -46,4 +46,11 @@ void draw_erodible(Dice& dice, Draft& draft) {
     if (dice.chance(0.2)) draft.keys["erodible.bed_evolves"] = "false";
 }
 
+void draw_deposition(Dice& dice, Draft& draft) {
+    const bool other_scheme = draft.has("scheme.preset") || draft.has("scheme.shape");
+    if (draft.claims.rests || other_scheme || draft.has("erodible.bed_evolves")) return;
+    say(draft, "deposition.law", "rest");
+    say(draft, "deposition.time", dice.chance(0.5) ? 0.0 : dice.decades(1e-3, 10.0));
+}
+
 }  // namespace frana::stress

@@ -176,11 +176,21 @@ void learn_erodible(const ErodibleBed& bed, const Flow& flow, Facts& facts) {
     facts.stretch = std::hypot(1.0, facts.steepest);
 }
 
+/// A bed that rises may become as steep as a deposit's own margin, and later flow falls from it.
+void learn_deposition(const Flow& flow, Facts& facts) {
+    facts.erodes = true;
+    facts.energy_law = false;
+    if (!facts.steep) return;
+    facts.steepest += 2.0 * facts.release_depth / flow.cell;
+    facts.stretch = std::hypot(1.0, facts.steepest);
+}
+
 void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
     learn_bed(scene, flow, facts);
     if (scene.erodible) learn_erodible(*scene.erodible, flow, facts);
     learn_inflows(scene, facts);
     learn_late(scene, facts);
+    if (scene.deposition) learn_deposition(flow, facts);
     if (scene.still_surface) {
         facts.lake = true;
         facts.level_error = off_level(flow, *scene.still_surface);

@@ -22,11 +22,11 @@ double sum_of(const std::vector<double>& values) {
 }
 
 std::vector<double> numbers_of(const Status& s) {
-    return {s.time,       s.dt,           s.mass,      s.mass_left, s.momentum[0],      s.momentum[1],
-            s.impulse[0], s.impulse[1],   s.kinetic,   s.potential, s.momentum_left[0], s.momentum_left[1],
-            s.dissipated, s.energy_left,  s.max_depth, s.max_speed, s.p2g_mass_error,   s.p2g_momentum_error,
-            s.mean_speed, s.covered_area, s.front,     s.stored,    s.bed.mass,         s.bed.eroded,
-            s.bed.energy, s.bed.deepest};
+    return {s.time,       s.dt,           s.mass,         s.mass_left, s.momentum[0],      s.momentum[1],
+            s.impulse[0], s.impulse[1],   s.kinetic,      s.potential, s.momentum_left[0], s.momentum_left[1],
+            s.dissipated, s.energy_left,  s.max_depth,    s.max_speed, s.p2g_mass_error,   s.p2g_momentum_error,
+            s.mean_speed, s.covered_area, s.front,        s.stored,    s.bed.mass,         s.bed.eroded,
+            s.bed.energy, s.bed.deepest,  s.bed.deposited};
 }
 
 /// Mass of points whose sub-points an open side may hold back [kg]: those within 3/4 of a cell (shallow/sub_points.h).
@@ -127,7 +127,7 @@ std::optional<Violation> Watch::positive(const Snapshot& state) {
     for (const double m : state.points.mass) bad += !(m > 0.0);
     for (const NodeState& node : state.nodes) bad += node.wet ? !(node.depth > 0.0) : !(node.depth >= 0.0);
     const Status::Bed& bed = state.between.bed;  // what gave more than it had lies below its rock
-    bad += !(bed.mass >= 0.0 && bed.eroded >= 0.0);
+    bad += !(bed.mass >= 0.0 && bed.eroded >= 0.0 && bed.deposited >= 0.0);
     return judged("positive", static_cast<double>(bad), 0.0, state, "masses or depths that are not positive");
 }
 

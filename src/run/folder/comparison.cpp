@@ -162,6 +162,7 @@ Comparison compare_rasters(const std::vector<ProductRaster>& rasters, const Rast
     SimulatedRun run;
     run.peak_depth = raster_named(rasters, "peak_depth");
     run.final_depth = raster_named(rasters, "final_depth");
+    run.deposited_depth = raster_named(rasters, "deposited_depth");
     run.arrival_time = raster_named(rasters, "arrival_time");
     run.bed = bed;
     run.limit = limit;

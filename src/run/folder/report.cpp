@@ -107,7 +107,11 @@ std::string results(const RunRecord& r) {
                     fmt::format("{}; {:.3g} % of the mass outside the largest, {:.3g} % out of its reach", a.pieces,
                                 100.0 * a.apart, 100.0 * a.alone));
     }
-    if (s.last.bed.initial > 0.0) text += row("erodible bed", bed_text(r));
+    if (s.last.bed.initial > 0.0)
+        text += row("erodible bed", bed_text(r));
+    else if (s.last.bed.deposited > 0.0)
+        text += row("became bed", fmt::format("{:.6g} m3; balance {:.1e}", s.last.bed.deposited / r.density,
+                                              budget(s.first, s.last).bed_error));
     text += row("left the domain", left_text(r));
     return text + "\n";
 }

@@ -335,7 +335,7 @@ std::string run_json(const RunRecord& record) {
     if (record.extras.water) json["budgets"]["water"] = water_json(*record.extras.water);
     if (record.extras.inflow) json["budgets"]["inflow"] = inflow_json(*record.extras.inflow);
     if (!record.extras.late.empty()) json["late_releases"] = late_json(record.extras.late);
-    if (s.last.bed.initial > 0.0) json["budgets"]["bed"] = bed_json(s);
+    if (s.last.bed.initial > 0.0 || s.last.bed.deposited > 0.0) json["budgets"]["bed"] = bed_json(s);
     if (!record.friction.empty()) json["friction"] = friction_json(record.friction);
     if (!record.sections.empty()) json["sections"] = sections_json(record.sections);
     return json.dump(2) + "\n";

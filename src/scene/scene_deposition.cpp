@@ -1,0 +1,28 @@
+// [deposition] of a case: what the flow leaves behind as bed.
+#include <fmt/format.h>
+
+#include "scene/scene_parts.h"
+
+namespace frana {
+namespace {
+
+/// Whether the bed law stops what hardly moves; a lake at rest over one that does not is no deposit.
+bool holds_a_push(const Scene& scene) {
+    const BedState state{scene.gravity, 1.0, 1.0, 1.0, scene.gravity, scene.density};
+    return std::visit([&](const auto& law) { return law.speed_after(state, 0.0, 1e-9, 1.0) == 0.0; }, scene.bed_law);
+}
+
+}  // namespace
+
+std::optional<Deposition> read_deposition(const CaseFile& file, Scene& scene) {
+    if (file.word("deposition.law") == "none") return {};
+    Deposition deposition;
+    if (scene.friction || holds_a_push(scene))
+        deposition.rest = file.number("deposition.time");
+    else
+        scene.log.push_back(
+            fmt::format("{}: the bed law holds nothing at rest, so nothing becomes bed", file.place("deposition.law")));
+    return deposition;
+}
+
+}  // namespace frana

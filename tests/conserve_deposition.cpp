@@ -1,0 +1,325 @@
+// Material that rests becomes bed: nothing is lost, the surface stays, later flow runs over it and may take it up again.
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "checks/verify/placement.h"
+#include "observe/budget.h"
+#include "observe/memory_archive.h"
+#include "run/memory_state.h"
+#include "shallow/depth_averaged.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+double cap(double x, double y, double x0, double depth) {
+    const double r2 = ((x - x0) * (x - x0) + (y - 40.3) * (y - 40.3)) / 144.0;
+    return depth * std::max(0.0, 1.0 - r2);
+}
+
+/// A slope above a plain where a slide comes to rest; another one follows at 12 s.
+Scene slope(const std::function<void(Scene&)>& edit = {}) {
+    Scene scene = scene_on(140, 80, 1.0, [](double x, double y) {
+        return (x < 50.0 ? 0.8 * (50.0 - x) : 0.0) + 0.002 * (y - 40) * (y - 40);
+    });
+    scene.bed_law = bed::Coulomb{0.45};
+    fill(scene, [](double x, double y) { return cap(x, y, 22.2, 1.5); });
+    const Seeds first = scene.particles;
+    scene.particles = {};
+    fill(scene, [](double x, double y) { return cap(x, y, 20.1, 2.5); });
+    scene.late.push_back({"second", 12.0, scene.particles, first.count()});
+    scene.particles = first;
+    scene.deposition = Deposition{2.0, {}};
+    if (edit) edit(scene);
+    return scene;
+}
+
+/// Loose ground that is nothing but what came to lie on the rock.
+void make_hungry(Scene& scene) {
+    scene.erodible = ErodibleBed{Raster::filled(scene.bed.geometry, 0.0), scene.density, erosion::Growth{0.05}};
+}
+
+std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
+    MemoryArchive archive;
+    simulation.serialize(archive);
+    auto entries = archive.entries();
+    for (auto one = entries.begin(); one != entries.end();)
+        one = one->first.rfind("clock/", 0) == 0 ? entries.erase(one) : std::next(one);
+    return entries;
+}
+
+void check_same(DepthAveraged& a, DepthAveraged& b) {
+    const auto of_a = bits(a), of_b = bits(b);
+    REQUIRE(of_a.size() == of_b.size());
+    REQUIRE(of_a.count("bed/fresh") == 1);
+    for (const auto& [name, entry] : of_a) {
+        INFO(name);
+        CHECK((of_b.at(name) == entry));
+    }
+    const BedGeometry &x = a.flow().bed, &y = b.flow().bed;
+    const auto size = static_cast<std::size_t>(a.flow().grid.size()) * sizeof(double);
+    for (const auto field : {&BedGeometry::z, &BedGeometry::ground, &BedGeometry::z_min, &BedGeometry::slope_x,
+                             &BedGeometry::slope_y, &BedGeometry::hxx, &BedGeometry::hxy, &BedGeometry::smooth_x})
+        CHECK(std::memcmp((x.*field).data(), (y.*field).data(), size) == 0);
+}
+
+class Threads {
+public:
+    ~Threads() { omp_set_num_threads(before_); }
+
+private:
+    int before_ = omp_get_max_threads();
+};
+
+/// A flow of points at rest but for one tile, and its bed, without a run around them.
+struct Still {
+    explicit Still(const Scene& scene) : flow(scene), erosion(scene, flow), transfer(make_transfer(scene)) {
+        place(scene.particles);
+    }
+    void place(const Seeds& seeds) {
+        Columns& c = flow.columns;
+        c.resize(seeds.count());
+        for (Index p = 0; p < seeds.count(); ++p) {
+            c.x[p] = seeds.x[p], c.y[p] = seeds.y[p], c.id[p] = p, c.mass[p] = seeds.volume[p] * flow.density;
+            c.r1x[p] = c.r2y[p] = 0.5, c.depth[p] = seeds.depth[p];
+            c.r1y[p] = c.r2x[p] = c.vx[p] = c.vy[p] = c.cxx[p] = c.cxy[p] = c.cyx[p] = c.cyy[p] = 0.0;
+        }
+        sorter.sort(c, flow.grid, {}, flow.active);
+    }
+    std::vector<double> levels() {
+        transfer->deposit(flow, 0.1);
+        std::vector<double> all;
+        for (Index j = 0; j < flow.grid.ny(); ++j)
+            for (Index i = 0; i < flow.grid.nx(); ++i) {
+                const Index k = flow.grid.at(i, j);
+                const bool touched = flow.is_in_reach(i, j);
+                all.push_back(flow.bed.z[k] + (touched ? flow.nodes.column_mass[k] / (flow.density * flow.area) : 0.0));
+            }
+        return all;
+    }
+    bool settle() {
+        Clock now;
+        now.step = ++steps, now.dt = 0.5, now.time = 0.5 * static_cast<double>(steps);
+        if (!erosion.settle(flow, now)) return false;
+        sorter.drop(flow.columns, erosion.gone(), flow.active);
+        return true;
+    }
+
+    Flow flow;
+    Erosion erosion;
+    std::unique_ptr<TransferKernel> transfer;
+    TileSorter sorter;
+    Index steps = 0;
+};
+
+Scene puddle() {
+    Scene scene =
+        scene_on(70, 60, 1.0, [](double x, double y) { return 0.3 * std::sin(0.2 * x) * std::cos(0.15 * y); });
+    scene.bed_law = bed::Coulomb{0.5};
+    verify::place(
+        scene, [](double x, double y) { return std::hypot(x - 35, y - 30) < 20 ? 2.0 : 0.0; },
+        verify::Placement::full_jitter, 2);
+    make_hungry(scene);
+    scene.erodible->momentum = 1.0;  // points are not set back: they reach all that they left
+    scene.deposition = Deposition{1.0, {}};
+    return scene;
+}
+
+double farthest(const std::vector<double>& a, const std::vector<double>& b) {
+    double most = 0.0;
+    for (std::size_t n = 0; n < a.size(); ++n) most = std::max(most, std::abs(a[n] - b[n]));
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("The surface does not move when a tile becomes bed, and only tiles do that have rested", "[deposition]") {
+    const Scene scene = puddle();
+    Still still(scene);
+    const Index moving = still.flow.active.tile[4];
+    for (Index p = still.flow.active.begin[4]; p < still.flow.active.begin[5]; ++p) still.flow.columns.cxy[p] = 1e-9;
+    const Index count = still.flow.columns.count(), stay = still.flow.active.begin[5] - still.flow.active.begin[4];
+    REQUIRE((stay > 100 && count > 3 * stay));
+    const std::vector<double> before = still.levels();
+    REQUIRE_FALSE(still.settle());  // half a second of one
+    REQUIRE(still.settle());
+    CHECK(still.flow.columns.count() == stay);
+    for (Index n = 0; n < still.flow.active.count(); ++n)
+        if (still.flow.active.begin[n + 1] > still.flow.active.begin[n]) CHECK(still.flow.active.tile[n] == moving);
+    CHECK(farthest(still.levels(), before) <= 4e-15);  // round-off of 2 m
+    const Status::Bed bed = still.erosion.status();
+    CHECK(bed.deposited > 1000.0);
+    CHECK(std::abs(bed.mass - bed.deposited) <= 1e-14 * bed.deposited);
+}
+
+TEST_CASE("What has become bed is taken up again to the last crumb: the bed is that of the start", "[deposition]") {
+    const Scene scene = puddle();
+    Still still(scene);
+    std::vector<double> start;
+    const auto heights = [&] {
+        std::vector<double> all;
+        for (Index j = 0; j < still.flow.grid.ny(); ++j)
+            for (Index i = 0; i < still.flow.grid.nx(); ++i) all.push_back(still.flow.bed.z[still.flow.grid.at(i, j)]);
+        return all;
+    };
+    const std::vector<double> rock = heights();
+    still.settle(), still.settle();
+    REQUIRE(still.flow.columns.count() == 0);
+    CHECK(farthest(heights(), rock) > 1.5);
+    // The same points come again, in motion.
+    still.place(scene.particles);
+    for (double& vx : still.flow.columns.vx) vx = 1.0;
+    still.transfer->deposit(still.flow, 0.1);
+    double taken = 0.0;
+    for (int n = 0; n < 60; ++n) taken += still.erosion.exchange(still.flow, 1.0).taken;
+    const Status::Bed bed = still.erosion.status();
+    CHECK(taken == Approx(bed.deposited).epsilon(1e-11));
+    CHECK(std::abs(bed.mass - (bed.deposited - bed.eroded)) <= 1e-13 * bed.deposited);
+    CHECK(farthest(heights(), rock) <= 2e-12);  // a crumb of 1e-12 of a cell stays, and round-off
+    CHECK(bed.deepest == 0.0);                  // nothing of the rock
+}
+
+TEST_CASE("Flow, bed and what left have the mass of the start when flow becomes bed", "[deposition]") {
+    for (const bool hungry : {false, true})
+        for (const Sides sides : {Sides::open, Sides::wall}) {
+            INFO("hungry " << hungry << ", walls " << (sides == Sides::wall));
+            const Scene scene = slope([&](Scene& s) {
+                if (hungry) make_hungry(s);
+                s.sides = sides;
+            });
+            DepthAveraged simulation(scene);
+            const Status first = simulation.frame().status;
+            double jump = 0.0, momentum = 0.0;
+            for (bool all_in = false; simulation.status().time < 30.0; all_in = true) {
+                const Status before = simulation.status();
+                simulation.advance(30.0);
+                const Status now = simulation.status();
+                momentum = std::max(momentum, std::hypot(now.momentum[0], now.momentum[1]));
+                REQUIRE(std::abs(budget(first, now).mass_error) <= 1e-13);
+                REQUIRE(std::abs(budget(first, now).bed_error) <= 1e-13);
+                if (now.bed.deposited > before.bed.deposited && all_in && now.particles == 0)
+                    jump = std::max(jump, std::abs(budget(before, now).energy_residual));
+            }
+            const Frame frame = simulation.frame();
+            const Status& now = frame.status;
+            REQUIRE(now.bed.deposited > 0.05 * (now.mass + now.bed.mass));
+            CHECK((now.bed.eroded > 0.0) == hungry);
+            CHECK(jump <= 1e-9 * std::abs(first.potential));
+            for (const double residual : budget(first, now).momentum_residual)
+                CHECK(std::abs(residual) <= 1e-11 * momentum);
+            const double *change = frame.node("bed_change")->data, *deposit = frame.node("deposited_depth")->data;
+            const double* z = frame.node("elevation")->data;
+            const DepthAveraged rock(scene);
+            double off = 0.0, deepest = 0.0;
+            for (Index j = 0; j < frame.grid.ny; ++j)
+                for (Index i = 0; i < frame.grid.nx; ++i) {
+                    const Index n = j * frame.grid.nx + i;
+                    off = std::max(off, std::abs(z[n] - change[n] - rock.flow().bed.z[rock.flow().grid.at(i, j)]));
+                    deepest = std::max(deepest, deposit[n]);
+                    REQUIRE(change[n] == deposit[n]);  // below it is rock
+                }
+            CHECK(off <= 1e-12);  // of 40 m, some hundred times
+            CHECK(deepest > 0.3);
+        }
+}
+
+TEST_CASE("Deposition has the same bits on any number of threads and after it is taken up again",
+          "[deposition][threads]") {
+    const Threads restore;
+    const Scene scene = slope([](Scene& s) { make_hungry(s); });
+    omp_set_num_threads(1);
+    DepthAveraged straight(scene);
+    std::vector<MemoryArchive> kept;
+    for (const double at : {8.0, 11.0, 15.0, 22.0}) {
+        run_to(straight, at);
+        straight.serialize(kept.emplace_back());
+    }
+    run_to(straight, 26.0);
+    REQUIRE(straight.status().bed.deposited > 0.0);
+    REQUIRE(straight.status().bed.eroded > 0.0);
+    for (const int threads : {2, 4}) {
+        omp_set_num_threads(threads);
+        DepthAveraged again(scene);
+        for (const double at : {8.0, 11.0, 15.0, 22.0, 26.0}) run_to(again, at);
+        check_same(again, straight);
+    }
+    for (std::size_t n = 0; n < kept.size(); ++n) {
+        INFO("kept " << n);
+        DepthAveraged resumed(scene, Start::resumed);
+        resumed.serialize(kept[n].rewind());
+        for (const double at : {8.0, 11.0, 15.0, 22.0, 26.0}) run_to(resumed, at);
+        check_same(resumed, straight);
+    }
+}
+
+TEST_CASE("A second surge runs over what the first one left, and takes some of it up", "[deposition]") {
+    const Scene scene = slope([](Scene& s) { make_hungry(s); });
+    DepthAveraged simulation(scene);
+    run_to(simulation, 11.9);
+    const Status before = simulation.status();
+    REQUIRE(before.bed.deposited > 0.05 * before.mass);
+    CHECK(before.bed.mass == Approx(before.bed.deposited - before.bed.eroded).epsilon(1e-12));
+    run_to(simulation, 18.0);
+    const Status after = simulation.status();
+    CHECK(after.bed.eroded - before.bed.eroded > 0.01 * before.bed.deposited);
+    // Over rock, that the first one lies on, the second one takes nothing.
+    const Scene plain = slope();
+    DepthAveraged other(plain);
+    run_to(other, 18.0);
+    CHECK(other.status().bed.eroded == 0.0);
+    CHECK(other.status().bed.mass == Approx(other.status().bed.deposited).epsilon(1e-12));
+}
+
+TEST_CASE("A deposition that nothing has rested long enough for changes no bit of the flow", "[deposition][sleep]") {
+    DepthAveraged with(slope([](Scene& s) { s.deposition->rest = 1e6; }));
+    DepthAveraged without(slope([](Scene& s) { s.deposition.reset(); }));
+    run_to(with, 20.0);
+    run_to(without, 20.0);
+    auto of_with = bits(with);
+    for (const auto& [name, entry] : bits(without)) {
+        INFO(name);
+        if (name != "status/numbers") CHECK((of_with.at(name) == entry));
+    }
+    CHECK(with.status().kinetic == without.status().kinetic);
+}
+
+TEST_CASE("What sleeps becomes bed in the same step as what does not", "[deposition][sleep]") {
+    DepthAveraged sleeps(slope());
+    DepthAveraged awake(slope([](Scene& s) { s.scheme.sleep = false; }));
+    run_to(sleeps, 25.0);
+    run_to(awake, 25.0);
+    REQUIRE(sleeps.status().bed.deposited > 0.0);
+    auto of_awake = bits(awake);
+    for (const char* name : {"bed/fresh", "bed/z", "points/x", "points/mass", "status/numbers"}) {
+        INFO(name);
+        CHECK((of_awake.at(name) == bits(sleeps).at(name)));
+    }
+}
+
+TEST_CASE("A state put aside before tiles become bed is taken up with the bed that it had", "[deposition]") {
+    DepthAveraged simulation(slope());
+    run_to(simulation, 5.0);
+    MemoryState aside;
+    aside.save(simulation);
+    const double had = simulation.status().bed.mass;
+    const auto bed = [&] {
+        std::vector<double> numbers;
+        for (Index k = 0; k < simulation.flow().grid.size(); ++k)
+            for (const double number : {simulation.flow().bed.z[k], simulation.erosion()->fresh(k)})
+                numbers.push_back(number);
+        return numbers;
+    };
+    const std::vector<double> before = bed();
+    for (int n = 0; n < 400 && simulation.status().bed.mass == had; ++n) simulation.advance(11.0);
+    REQUIRE(simulation.status().bed.mass > had);
+    CHECK((bed() != before));
+    aside.load(simulation);
+    CHECK((bed() == before));
+    CHECK(simulation.erosion()->status().mass == had);
+}
