@@ -35,7 +35,7 @@ Scene slope(const std::function<void(Scene&)>& edit = {}) {
     fill(scene, [](double x, double y) { return cap(x, y, 20.1, 2.5); });
     scene.late.push_back({"second", 12.0, scene.particles, first.count()});
     scene.particles = first;
-    scene.deposition = Deposition{2.0, {}};
+    scene.deposition = Deposition{2.0};
     if (edit) edit(scene);
     return scene;
 }
@@ -127,7 +127,7 @@ Scene puddle() {
         verify::Placement::full_jitter, 2);
     make_hungry(scene);
     scene.erodible->momentum = 1.0;  // points are not set back: they reach all that they left
-    scene.deposition = Deposition{1.0, {}};
+    scene.deposition = Deposition{1.0};
     return scene;
 }
 

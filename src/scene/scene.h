@@ -196,7 +196,6 @@ struct ErodibleBed {
 /// What the flow leaves behind as bed (shallow/erosion.h).
 struct Deposition {
     std::optional<double> rest;  ///< after so long at rest tiles of it become bed [s]; nothing: never
-    Raster detrainment;  ///< K on the nodes of the terrain: K/u of mass per area and time stays [Pa]; no values: none
 };
 
 /// Where one part of a friction holds that differs in space, and what it has there.
