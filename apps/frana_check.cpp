@@ -169,6 +169,26 @@ std::string forecast_text(const Scene& scene) {
                        seconds_per_particle_step * 1e9);
 }
 
+/// A line for each barrier, or one for many.
+std::string barriers_text(const Scene& scene) {
+    constexpr std::size_t kFew = 24;
+    if (scene.barriers.size() > kFew) {
+        double lowest = INFINITY, highest = 0.0;
+        for (const Barrier& barrier : scene.barriers)
+            if (!barrier.top && !barrier.shape)
+                lowest = std::min(lowest, barrier.height), highest = std::max(highest, barrier.height);
+        std::string text = fmt::format("barriers    {}", scene.barriers.size());
+        if (highest > 0.0) text += fmt::format(", {:.6g} to {:.6g} m high", lowest, highest);
+        return text + '\n';
+    }
+    std::string text;
+    for (const Barrier& barrier : scene.barriers)
+        text += barrier.shape ? fmt::format("barrier     {}, a mesh\n", barrier.name)
+                : barrier.top ? fmt::format("barrier     {}, up to {:.6g} m\n", barrier.name, *barrier.top)
+                              : fmt::format("barrier     {}, {:.6g} m high\n", barrier.name, barrier.height);
+    return text;
+}
+
 }  // namespace
 
 int check_command(const CheckOptions& options) {
@@ -181,10 +201,7 @@ int check_command(const CheckOptions& options) {
     if (built.scene.friction)
         for (const FrictionPart& part : built.scene.friction->parts)
             std::cout << fmt::format("friction    {}: {}\n", part.name, friction_sentence(part));
-    for (const Barrier& barrier : built.scene.barriers)
-        std::cout << (barrier.shape ? fmt::format("barrier     {}, a mesh\n", barrier.name)
-                      : barrier.top ? fmt::format("barrier     {}, up to {:.6g} m\n", barrier.name, *barrier.top)
-                                    : fmt::format("barrier     {}, {:.6g} m high\n", barrier.name, barrier.height));
+    std::cout << barriers_text(built.scene);
     if (built.scene.solid) std::cout << stage_text(built.scene);
     check_insitu(built.scene);
     for (const Insitu& entry : built.scene.insitu)

@@ -1,4 +1,5 @@
 // Barriers as polygons for a GIS: attributes of the input, and what the run did to them, read back by GDAL.
+#include <algorithm>
 #include <cmath>
 
 #include "base/atomic_file.h"
@@ -90,6 +91,59 @@ TEST_CASE("Barriers keep the attributes of their features, with what hit them", 
     // The third is 15 m nearer to the release.
     CHECK(houses[2]->GetFieldAsDouble("hit_s") < houses[0]->GetFieldAsDouble("hit_s"));
     CHECK_FALSE(known(*houses[2], "persons"));
+}
+
+TEST_CASE("The report has the time of contact of houses that columns reach, and a table has all",
+          "[barriers][results]") {
+    const Village village;
+    REQUIRE(call_frana(village.path(), "run case.toml --out run --quiet").code == 0);
+    const std::string report = text_of(village.path() / "run" / "report.md");
+    CHECK_THAT(report, Contains("| house_2 | none | - | - |") && Contains("First contact is when the depth at a face"));
+    CHECK_THAT(report, !Contains("| house_1 | none") && !Contains("| house_3 | none"));
+    const std::string table = text_of(village.path() / "run" / "barriers.csv");
+    CHECK_THAT(table, Contains("barrier,first_contact [s],peak_force [N],peak_pressure [Pa]"));
+    CHECK_THAT(table, Contains("house_2,,,,,,0,64,,,,,,,,\n"));
+    CHECK(std::count(table.begin(), table.end(), '\n') == 4);
+}
+
+TEST_CASE("A row of houses mirrored about the flow's axis is met alike, side by side", "[barriers][results]") {
+    const Village village;  // the release lies about y = 50, and so does the terrain
+    write_text(village.path() / "houses.geojson",
+               collection(square(75, 32, 8, R"("h":5)") + "," + square(75, 60, 8, R"("h":6)")));
+    REQUIRE(call_frana(village.path(), "run case.toml --out run --quiet").code == 0);
+    const Layer layer(village.path() / "run" / "results.gpkg");
+    std::vector<OGRFeatureUniquePtr> houses;
+    for (OGRFeatureUniquePtr& feature : layer.get()) houses.push_back(std::move(feature));
+    REQUIRE(houses.size() == 2);
+    const auto of = [&](std::size_t n, const std::string& name) { return houses[n]->GetFieldAsDouble(name.c_str()); };
+    // Mirror images differ by round-off of places and sums, which grows while the flow spreads.
+    for (const auto& [south, north] : {std::pair<const char*, const char*>{"north", "south"},
+                                       {"south", "north"},
+                                       {"west", "west"},
+                                       {"east", "east"}})
+        for (const char* what : {"depth_", "pressure_"}) {
+            const std::string unit = what[0] == 'd' ? "_m" : "_Pa";
+            CAPTURE(south, what);
+            CHECK(of(0, what + std::string(south) + unit) ==
+                  Approx(of(1, what + std::string(north) + unit)).epsilon(1e-6));
+        }
+    CHECK(of(0, "hit_s") == Approx(of(1, "hit_s")).epsilon(1e-6));
+    CHECK(of(0, "peak_depth_m") > 0.1);
+    CHECK(of(0, "depth_north_m") > of(0, "depth_south_m"));  // the flow's axis lies to the north of the southern house
+}
+
+TEST_CASE("A height that a feature lacks is refused with its name", "[barriers]") {
+    const Village village;
+    write_text(village.path() / "houses.geojson",
+               collection(square(75, 32, 8, R"("h":5)") + "," + square(75, 60, 8, R"("h":null)")));
+    const std::string text = text_of(village.path() / "case.toml");
+    const std::string fixed = "height = 6";
+    std::string by_field = text;
+    by_field.replace(by_field.find(fixed), fixed.size(), "height_field = \"h\"");
+    write_text(village.path() / "case.toml", by_field);
+    const Outcome check = call_frana(village.path(), "check case.toml");
+    CHECK(check.code == 2);
+    CHECK_THAT(check.err, Contains("houses.geojson") && Contains("h") && Contains("feature"));
 }
 
 TEST_CASE("A run again writes the same bytes of its barriers, and lists the file", "[barriers][results]") {

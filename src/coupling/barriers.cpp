@@ -6,11 +6,15 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error.h"
 #include "particles/bed_points.h"
 #include "solid3d/face_ledger.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
+
+constexpr double kClose = 2.0;  // cells: as far from a barrier run-up counts
 
 /// Elevations of the nodes, `height` higher.
 Raster lifted(Raster bed, double height) {
@@ -62,6 +66,12 @@ Vec3 middle_of(const Surface& barrier, const Raster& bed) {
     const double z = bed_elevation(bed, middle.x(), middle.y());
     middle.z() = std::isfinite(z) ? z : high.z();
     return middle;
+}
+
+/// The nodes that may be within a cell of a box, and some more.
+NodeBox nodes_around(const std::pair<Vec3, Vec3>& box, const GridGeometry& g) {
+    const auto& [low, high] = box;
+    return common(widened(cells_of({low.head<2>(), high.head<2>()}, g), 1), NodeBox::all(g));
 }
 
 /// Whether a node stands in a barrier, or within half a cell of it.
@@ -127,14 +137,32 @@ Surface surface_of(const Barrier& barrier, const Raster& bed, double cell) {
     return surface;
 }
 
+namespace {
+
+/// Of a barrier as columns meet it. Where there are many, each holds the ground around itself alone.
+Surface surface_for_columns(const Barrier& barrier, const Scene& scene) {
+    constexpr std::size_t kFew = 24;  // these hold all of the ground: their tops are interpolated as in space
+    const double cell = cell_for_columns(barrier, scene);
+    if (scene.barriers.size() <= kFew || barrier.outline.parts.empty()) return surface_of(barrier, scene.bed, cell);
+    std::vector<Vec2> corners;
+    for (const Polygon& polygon : barrier.outline.parts)
+        for (const auto& ring : polygon.rings) corners.insert(corners.end(), ring.begin(), ring.end());
+    const GridGeometry& g = scene.bed.geometry;
+    const NodeBox near = common(widened(cells_of(corners, g), 3), NodeBox::all(g));
+    return surface_of(barrier, near.nx > 1 && near.ny > 1 ? part_of(scene.bed, near) : scene.bed, cell);
+}
+
+}  // namespace
+
 Raster with_barriers(const Scene& scene) {
     Raster bed = scene.bed;
     const GridGeometry& g = bed.geometry;
     for (const Barrier& barrier : scene.barriers) {
-        const Surface solid = surface_of(barrier, scene.bed, cell_for_columns(barrier, scene));
+        const Surface solid = surface_for_columns(barrier, scene);
         const auto box = box_of(solid);
-        for (Index j = 0; j < g.ny; ++j)
-            for (Index i = 0; i < g.nx; ++i) {
+        const NodeBox near = nodes_around(box, g);
+        for (Index j = near.j0; j < near.j0 + near.ny; ++j)
+            for (Index i = near.i0; i < near.i0 + near.nx; ++i) {
                 const Vec2 node(g.x(i), g.y(j));
                 if (!near_box(box, node, 0.5 * g.cell)) continue;
                 const double top = top_near(solid, node, g.cell);
@@ -144,57 +172,102 @@ Raster with_barriers(const Scene& scene) {
     return bed;
 }
 
+BarrierTiles::BarrierTiles(const GridGeometry& grid, const std::vector<std::pair<Vec3, Vec3>>& boxes, double margin)
+    : x0_(grid.x0), y0_(grid.y0) {
+    constexpr Index kCells = 4;  // a side: about a house, so that a tile has few barriers
+    size_ = static_cast<double>(kCells) * grid.cell;
+    columns_ = grid.nx / kCells + 1;
+    const Index rows = grid.ny / kCells + 1;
+    last_i_ = static_cast<double>(columns_ - 1), last_j_ = static_cast<double>(rows - 1);
+    std::vector<std::pair<std::size_t, Index>> all;  // tile, number
+    const auto tile = [&](double at, double last) { return static_cast<Index>(std::clamp(at / size_, 0.0, last)); };
+    for (std::size_t n = 0; n < boxes.size(); ++n) {
+        const auto& [low, high] = boxes[n];
+        for (Index j = tile(low.y() - margin - y0_, last_j_); j <= tile(high.y() + margin - y0_, last_j_); ++j)
+            for (Index i = tile(low.x() - margin - x0_, last_i_); i <= tile(high.x() + margin - x0_, last_i_); ++i)
+                all.emplace_back(static_cast<std::size_t>(j * columns_ + i), static_cast<Index>(n));
+    }
+    std::sort(all.begin(), all.end());
+    begin_.assign(static_cast<std::size_t>(columns_ * rows) + 1, 0);
+    for (const auto& entry : all) ++begin_[entry.first + 1], numbers_.push_back(entry.second);
+    for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
+}
+
 ColumnWatch::ColumnWatch(const Scene& scene) : cell_(scene.bed.geometry.cell) {
     for (const Barrier& barrier : scene.barriers) {
-        surfaces_.push_back(surface_of(barrier, scene.bed, cell_for_columns(barrier, scene)));
+        surfaces_.push_back(surface_for_columns(barrier, scene));
         boxes_.push_back(box_of(surfaces_.back()));
         BarrierLoad load;
         load.about = middle_of(surfaces_.back(), scene.bed);
         load.run_up = load.about.z();
         loads_.barriers.push_back(load);
     }
-    seen_.resize(surfaces_.size());
+    tiles_ = BarrierTiles(scene.bed.geometry, boxes_, kClose * cell_);
 }
 
 void ColumnWatch::inherit(Index child, Index parent) {
     const auto c = static_cast<std::size_t>(child), p = static_cast<std::size_t>(parent);
+    if (p >= near_.size() && c >= near_.size()) return;  // neither was near
     make_room(std::max(c, p));
-    for (std::vector<std::uint8_t>& seen : seen_) seen[c] = seen[p];
+    near_[c] = near_[p];
+    if (const auto found = over_.find(parent); found != over_.end())
+        over_[child] = found->second;
+    else
+        over_.erase(child);
     for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * c + axis] = last_[2 * p + axis];
 }
 
 void ColumnWatch::make_room(std::size_t id) {
-    for (std::vector<std::uint8_t>& seen : seen_)
-        if (seen.size() <= id) seen.resize(id + 1, kNever);
+    if (near_.size() <= id) near_.resize(id + 1, 0);
     if (last_.size() < 2 * (id + 1)) last_.resize(2 * (id + 1), 0.0);
 }
 
 void ColumnWatch::sample(const ColumnAt& column) {
-    constexpr double kClose = 2.0;  // cells
+    const auto [first, end] = tiles_.barriers_at(column.place);
+    if (first == end) return;
     const auto id = static_cast<std::size_t>(column.id);
     make_room(id);
     const Vec2 from(last_[2 * id], last_[2 * id + 1]);
-    for (std::size_t n = 0; n < surfaces_.size(); ++n) {
-        const Vec3 top_of_it(column.place.x(), column.place.y(), column.surface);
-        const bool near = stands_near(surfaces_[n], boxes_[n], top_of_it, kClose * cell_, cell_);
-        std::vector<std::uint8_t>& seen = seen_[n];
-        const bool over = near && (std::isfinite(top_of(surfaces_[n], column.place)) ||
-                                   (seen[id] == kAdjacent && crosses(surfaces_[n], boxes_[n], from, column.place)));
-        BarrierLoad& load = loads_.barriers[n];
-        if (near) load.run_up = std::max(load.run_up, column.surface);
-        if (over && seen[id] == kAdjacent) load.overtopped += column.volume;
-        if (over || seen[id] == kNever) seen[id] = over ? kOver : kAdjacent;
-    }
+    const bool came = near_[id] > 0 && near_[id] == round_ - 1;
+    for (const Index* n = first; n != end; ++n) sample_at(static_cast<std::size_t>(*n), column, came ? &from : nullptr);
+    near_[id] = round_;
     for (std::size_t axis = 0; axis < 2; ++axis) last_[2 * id + axis] = column.place[static_cast<Eigen::Index>(axis)];
+}
+
+void ColumnWatch::sample_at(std::size_t n, const ColumnAt& column, const Vec2* from) {
+    const Vec3 top_of_it(column.place.x(), column.place.y(), column.surface);
+    if (!stands_near(surfaces_[n], boxes_[n], top_of_it, kClose * cell_, cell_)) return;
+    const auto barrier = static_cast<Index>(n);
+    const auto found = over_.find(column.id);
+    const bool was_over =
+        found != over_.end() && std::find(found->second.begin(), found->second.end(), barrier) != found->second.end();
+    const bool came_to_it = from != nullptr && !was_over;
+    const bool over = std::isfinite(top_of(surfaces_[n], column.place)) ||
+                      (came_to_it && crosses(surfaces_[n], boxes_[n], *from, column.place));
+    BarrierLoad& load = loads_.barriers[n];
+    load.run_up = std::max(load.run_up, column.surface);
+    if (over && came_to_it) load.overtopped += column.volume;
+    if (over && !was_over) over_[column.id].push_back(barrier);
 }
 
 void ColumnWatch::serialize(Archive& archive) {
     const Archive::Part part(archive, "barriers");
-    for (std::size_t n = 0; n < seen_.size(); ++n) {
-        archive.array("seen_" + std::to_string(n), seen_[n]);
-        archive.numbers("sums_" + std::to_string(n), {&loads_.barriers[n].run_up, &loads_.barriers[n].overtopped});
-    }
+    std::vector<double> sums;
+    for (const BarrierLoad& load : loads_.barriers) sums.insert(sums.end(), {load.run_up, load.overtopped});
+    std::vector<Index> over;  // number of the column, of the barrier
+    for (const auto& entry : over_)
+        for (const Index barrier : entry.second) over.insert(over.end(), {entry.first, barrier});
+    archive.number("round", round_);
+    archive.array("near", near_);
+    archive.array("over", over);
+    archive.array("sums", sums);
     archive.array("last", last_);
+    if (!archive.loading()) return;
+    expect(sums.size() == 2 * loads_.barriers.size(), "a state has the barriers of its scene");
+    for (std::size_t n = 0; n < loads_.barriers.size(); ++n)
+        loads_.barriers[n].run_up = sums[2 * n], loads_.barriers[n].overtopped = sums[2 * n + 1];
+    over_.clear();
+    for (std::size_t k = 0; k + 1 < over.size(); k += 2) over_[over[k]].push_back(over[k + 1]);
 }
 
 BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur) : density_(scene.density) {
@@ -225,7 +298,6 @@ void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
 }
 
 void BarrierWatch::sample(const Mpm3d& flow) {
-    constexpr double kClose = 2.0;  // cells
     const double cell = flow.body().grid.cell();
     for (std::size_t n = 0; n < surfaces_.size(); ++n) {
         const Surface& solid = flow.body().surfaces[static_cast<std::size_t>(surfaces_[n])];

@@ -1,5 +1,7 @@
 #pragma once
 // Barriers as both models see them.
+#include <algorithm>
+#include <map>
 #include <vector>
 
 #include "convert/flow_columns.h"
@@ -36,25 +38,56 @@ struct ColumnAt {
     double volume;   ///< [m3]
 };
 
+/// Which barriers are near a place, told by squares of some cells: the cost does not grow with barriers elsewhere.
+class BarrierTiles {
+public:
+    BarrierTiles() = default;
+    /// Of boxes of barriers, each widened by `margin` [m].
+    BarrierTiles(const GridGeometry& grid, const std::vector<std::pair<Vec3, Vec3>>& boxes, double margin);
+    /// The numbers of the barriers there, ascending: first and end; nullptr twice without any.
+    std::pair<const Index*, const Index*> barriers_at(const Vec2& place) const {
+        const auto i = static_cast<Index>(std::clamp((place.x() - x0_) / size_, 0.0, last_i_));
+        const auto j = static_cast<Index>(std::clamp((place.y() - y0_) / size_, 0.0, last_j_));
+        const auto tile = static_cast<std::size_t>(j * columns_ + i);
+        if (begin_[tile] == begin_[tile + 1]) return {nullptr, nullptr};
+        return {numbers_.data() + begin_[tile], numbers_.data() + begin_[tile + 1]};
+    }
+
+private:
+    double x0_ = 0.0, y0_ = 0.0, size_ = 1.0;  ///< south-west corner, side of a tile [m]
+    double last_i_ = 0.0, last_j_ = 0.0;       ///< of the last tile; places beyond count as in the outer ones
+    Index columns_ = 1;
+    std::vector<Index> numbers_;            ///< tile after tile
+    std::vector<std::size_t> begin_{0, 0};  ///< of each tile in `numbers_`, and the end
+};
+
 /// Which columns run up barriers and over them. Nothing tells how hard they push: barriers are ground to them.
 class ColumnWatch {
 public:
     explicit ColumnWatch(const Scene& scene);
     /// A column was split: what is known of it holds for its part.
     void inherit(Index child, Index parent);
-    /// Takes a column's place. It counts when its way from the last place first leads onto a barrier, and once. Of two
-    /// that merge the one that keeps its number counts for both from then on.
+    /// Samples of all columns near barriers follow. Between two rounds none goes as far as two cells.
+    void begin_round() { ++round_; }
+    /// Whether a barrier may be within two cells of a place: elsewhere there is nothing to sample.
+    bool is_near(const Vec2& place) const { return tiles_.barriers_at(place).first != nullptr; }
+    /// Takes a column's place, once a round where it is near. It counts when its way from the last place first leads onto a
+    /// barrier, and once; a column that was not near before has no way yet. Of two that merge the one that keeps its number
+    /// counts for both from then on.
     void sample(const ColumnAt& column);
     const BarrierLoads& loads() const { return loads_; }
     void serialize(Archive& archive);
 
 private:
     void make_room(std::size_t id);
-    enum Seen : std::uint8_t { kNever, kAdjacent, kOver };
-    std::vector<Surface> surfaces_;                ///< of each barrier
-    std::vector<std::pair<Vec3, Vec3>> boxes_;     ///< around each
-    std::vector<std::vector<std::uint8_t>> seen_;  ///< per barrier, by number of the column
-    std::vector<double> last_;                     ///< x and y of each column's last place, by its number [m]
+    void sample_at(std::size_t n, const ColumnAt& column, const Vec2* from);
+    std::vector<Surface> surfaces_;             ///< of each barrier
+    std::vector<std::pair<Vec3, Vec3>> boxes_;  ///< around each
+    BarrierTiles tiles_;
+    Index round_ = 0;
+    std::vector<Index> near_;  ///< by number of the column: the last round in which it was near a barrier; 0: none
+    std::map<Index, std::vector<Index>> over_;  ///< barriers that a column has been over, by its number; few have
+    std::vector<double> last_;                  ///< x and y of each column's place in that round, by its number [m]
     BarrierLoads loads_;
     double cell_;
 };

@@ -32,8 +32,10 @@ void WalledColumns::sample() {
     const Flow& flow = columns_->flow();
     const GridGeometry& g = flow.grid.geometry();
     const Columns& c = flow.columns;
+    watch_.begin_round();
     for (Index p = 0; p < c.count(); ++p) {
         const Vec2 place(g.x0 + g.cell * c.x[p], g.y0 + g.cell * c.y[p]);
+        if (!watch_.is_near(place)) continue;
         const Sample there = columns_->at(place);
         watch_.sample({c.id[p], place, there.elevation + there.depth, c.mass[p] / density_});
     }

@@ -32,6 +32,7 @@ Barriers::Barriers(std::filesystem::path run_dir, std::vector<std::string> names
 
 void Barriers::begin(const BarrierLoads& loads) {
     expect(loads.barriers.size() == names_.size(), "every barrier has a name");
+    if (!has_tables()) return;
     watched_.resize(names_.size());
     for (std::size_t n = 0; n < names_.size(); ++n) {
         tables_.emplace_back(run_dir_ / "barriers" / (names_[n] + ".csv"), columns_of(loads.barriers[n].faces.size()));
@@ -46,6 +47,7 @@ void Barriers::step(const Status& now, const Probe& probe) {
     if (loads != nullptr && watched_.empty()) begin(*loads);
     time_ = now.time;
     if (loads == nullptr || !(dt > 0.0)) return;
+    if (!has_tables()) return step_without_forces(*loads);
     for (std::size_t n = 0; n < names_.size(); ++n) {
         const BarrierLoad& load = loads->barriers[n];
         Watched& watched = watched_[n];
@@ -76,6 +78,14 @@ void Barriers::step(const Status& now, const Probe& probe) {
     }
 }
 
+void Barriers::step_without_forces(const BarrierLoads& loads) {
+    for (std::size_t n = 0; n < names_.size(); ++n) {
+        summaries_[n].about = loads.barriers[n].about;
+        summaries_[n].run_up = loads.barriers[n].run_up;
+        summaries_[n].overtopped = loads.barriers[n].overtopped;
+    }
+}
+
 /// From the impulse now and that of `blur` ago, or of the beginning.
 double Barriers::mean_force(Watched& watched, const Moment& now, double blur) const {
     std::vector<Moment>& lately = watched.lately;
@@ -94,8 +104,22 @@ void Barriers::observe(const Frame&) {
     for (TableWriter& table : tables_) table.flush();
 }
 
+void Barriers::serialize_without_tables(Archive& archive) {
+    std::vector<double> all;
+    for (const BarrierSummary& s : summaries_)
+        all.insert(all.end(), {s.about[0], s.about[1], s.about[2], s.run_up, s.overtopped});
+    archive.array("summaries", all);
+    if (!archive.loading()) return;
+    expect(all.size() == 5 * summaries_.size(), "a state has the barriers of its case");
+    for (std::size_t n = 0; n < summaries_.size(); ++n) {
+        for (int axis = 0; axis < 3; ++axis) summaries_[n].about[axis] = all[5 * n + static_cast<std::size_t>(axis)];
+        summaries_[n].run_up = all[5 * n + 3], summaries_[n].overtopped = all[5 * n + 4];
+    }
+}
+
 void Barriers::serialize(Archive& archive) {
     archive.numbers("time", {&time_});
+    if (!has_tables()) return serialize_without_tables(archive);
     Index begun = watched_.empty() ? 0 : 1;
     archive.number("begun", begun);
     if (!begun) return;

@@ -11,7 +11,7 @@ namespace frana {
 /// What a run did to a barrier.
 struct BarrierSummary {
     std::string name;
-    double first_contact = -1.0;   ///< [s]; -1: never
+    double first_contact = -1.0;   ///< [s]; -1: never. By force or, with columns alone, by the depth at its faces
     double peak_force = 0.0;       ///< largest horizontal force, mean over `blur` [N]
     double peak_force_time = 0.0;  ///< end of that interval [s]
     double raw_peak_force = 0.0;   ///< largest of a single step: as hard as the artificial sound is fast [N]
@@ -22,10 +22,14 @@ struct BarrierSummary {
     double overtopped = 0.0;       ///< material that was over it at any time [m3]
 };
 
+/// More barriers than these have no table of their own: opening hundreds at every output costs more than steps do.
+inline constexpr std::size_t kMostBarrierTables = 24;
+
 /// barriers/<name>.csv: forces and moments on each barrier after every step, means over the step; appended at
 /// every output. Columns: t [s], fx, fy, fz [N], mx, my, mz [N m], mean_force [N] (horizontal, mean over
 /// `blur` up to now), run_up [m], overtopped [m3], and f0x, f0y, f0z [N], m0x, m0y, m0z [N m] of face 0, and
-/// so on. Where no forces are known (columns alone) t, run_up and overtopped.
+/// so on. Where no forces are known (columns alone) t, run_up and overtopped. More than kMostBarrierTables
+/// barriers, which columns alone can have, leave their summaries only.
 class Barriers final : public Observer {
 public:
     Barriers(std::filesystem::path run_dir, std::vector<std::string> names, std::vector<BarrierSummary>& summaries);
@@ -44,6 +48,9 @@ private:
         std::vector<Moment> lately;  ///< as old as the mean needs, and one before
     };
     void begin(const BarrierLoads& loads);
+    bool has_tables() const { return names_.size() <= kMostBarrierTables; }
+    void step_without_forces(const BarrierLoads& loads);
+    void serialize_without_tables(Archive& archive);
     double mean_force(Watched& watched, const Moment& now, double blur) const;
 
     std::filesystem::path run_dir_;

@@ -45,6 +45,7 @@ private:
     void check_something_flows();
     void check_layer(const std::string& prefix);
     void check_barrier(const std::string& prefix);
+    void check_height_field(const std::string& prefix);
     void check_inflow(const std::string& prefix);
     void check_zone(const std::string& prefix);
     void check_line_names(const std::string& table);

@@ -203,7 +203,7 @@ void CaseReader::check_barrier(const std::string& prefix) {
     if (case_.given(prefix + "each") && case_.flag(prefix + "each") && !there("outline"))
         wrong(prefix + "each", "found without outline", "expected it with outline only", "remove it");
     if (there("mesh")) {
-        for (const char* name : {"outline", "line", "wet", "thickness", "height", "top"})
+        for (const char* name : {"outline", "line", "wet", "thickness", "height", "height_field", "top"})
             if (said(name))
                 wrong(prefix + name, "found together with mesh",
                       "expected the mesh alone, which has its place and height", "remove one of them");
@@ -214,12 +214,24 @@ void CaseReader::check_barrier(const std::string& prefix) {
     if (!there("outline") && !there("line"))
         wrong(prefix + "outline", "not given, and no line or mesh either", "expected where the barrier stands",
               "add outline = ..., line = ... or mesh = ... under [[barrier]]");
-    if (!there("height") && !there("top"))
+    check_height_field(prefix);
+    if (!there("height") && !there("top") && !there("height_field"))
         wrong(prefix + "height", "not given, and no top either", "expected how high the barrier is [m]",
               "add height = ... or top = ... under [[barrier]]");
     if (there("line") || there("outline") == there("line")) return;
     for (const char* name : {"thickness", "wet"})
         if (said(name)) wrong(prefix + name, "found together with outline", "expected it with line only", "remove it");
+}
+
+void CaseReader::check_height_field(const std::string& prefix) {
+    if (!case_.given(prefix + "height_field")) return;
+    const std::string key = prefix + "height_field";
+    if (!case_.given(prefix + "each") || !case_.flag(prefix + "each"))
+        wrong(key, "found without each", "expected it with each = true: every polygon has a height of its own",
+              "add each = true, or give height");
+    for (const char* name : {"height", "top"})
+        if (case_.given(prefix + name))
+            wrong(key, fmt::format("found together with {}", name), "expected one of them", "remove one of them");
 }
 
 void CaseReader::check_inflow(const std::string& prefix) {

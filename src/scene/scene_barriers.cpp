@@ -1,6 +1,7 @@
 // [[barrier]] of the case file.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -30,6 +31,23 @@ void require_wall(const Polyline& line) {
     }
 }
 
+constexpr double kTallest = 500.0;  ///< [m]: what is higher was given in other units, or is an elevation
+
+/// The least distance of two parallels along one of its sides that hold a ring between them [m].
+double width_of(const std::vector<Vec2>& ring) {
+    double width = INFINITY;
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Vec2 side = ring[(k + 1) % ring.size()] - ring[k];
+        const double length = side.norm();
+        if (!(length > 0.0)) continue;
+        const Vec2 across = Vec2(-side.y(), side.x()) / length;
+        double low = INFINITY, high = -INFINITY;
+        for (const Vec2& p : ring) low = std::min(low, across.dot(p)), high = std::max(high, across.dot(p));
+        width = std::min(width, high - low);
+    }
+    return width;
+}
+
 class BarrierReader {
 public:
     BarrierReader(const CaseFile& file, const GisReader& reader, const MeshReader& meshes, Scene& scene,
@@ -38,6 +56,7 @@ public:
 
     void read(Index i) {
         prefix_ = fmt::format("barrier.{}.", i);
+        heights_.clear();
         Barrier barrier;
         barrier.name = given("name") ? case_.word(prefix_ + "name") : fmt::format("barrier_{}", i + 1);
         std::vector<Vec2> vertices;
@@ -55,20 +74,73 @@ public:
         if (given("thickness")) barrier.thickness = case_.number(prefix_ + "thickness");
         if (given("top")) barrier.top = case_.number(prefix_ + "top");
         if (given("height")) barrier.height = case_.number(prefix_ + "height");
+        if (barrier.height > kTallest && given("outline"))
+            problems_.add(case_.place(prefix_ + "height"), fmt::format("found {:.6g} m", barrier.height),
+                          fmt::format("expected up to {:.6g} m above the ground", kTallest),
+                          "correct it; an elevation is given by top");
         barrier.friction = case_.number(prefix_ + "friction");
         barrier.stuck = case_.flag(prefix_ + "stuck");
+        remark_thin(barrier.outline);
         if (!case_.flag(prefix_ + "each")) return scene_.barriers.push_back(std::move(barrier));
-        for (std::size_t n = 0; n < barrier.outline.parts.size(); ++n) {
-            scene_.barriers.push_back(barrier);
-            scene_.barriers.back().name = fmt::format("{}_{}", barrier.name, n + 1);
-            scene_.barriers.back().outline.parts = {barrier.outline.parts[n]};
-        }
+        add_each(barrier);
     }
 
 private:
     bool given(const char* name) const { return case_.given(prefix_ + name); }
     std::string place() const {
         return case_.place(prefix_ + (given("mesh") ? "mesh" : given("line") ? "line" : "outline"));
+    }
+
+    /// Every polygon on the terrain by itself. Files of a whole valley have many beyond it: their numbers are left out.
+    void add_each(const Barrier& barrier) {
+        const auto extent = scene_.bed.geometry.pixel_extent();
+        std::size_t beyond = 0;
+        for (std::size_t n = 0; n < barrier.outline.parts.size(); ++n) {
+            std::vector<Vec2> corners;
+            for (const auto& ring : barrier.outline.parts[n].rings)
+                corners.insert(corners.end(), ring.begin(), ring.end());
+            if (!meets(corners, extent)) {
+                ++beyond;
+                continue;
+            }
+            Barrier one;
+            one.name = fmt::format("{}_{}", barrier.name, n + 1);
+            one.outline.parts = {barrier.outline.parts[n]};
+            one.outline.source = barrier.outline.source;
+            one.top = barrier.top, one.height = heights_.empty() ? barrier.height : heights_[n];
+            one.stuck = barrier.stuck, one.friction = barrier.friction;
+            scene_.barriers.push_back(std::move(one));
+        }
+        if (beyond > 0)
+            scene_.log.push_back(fmt::format("{}: {} of {} polygons are not on the terrain: they are no barriers",
+                                             place(), beyond, barrier.outline.parts.size()));
+    }
+
+    /// Columns see no face thinner than two cells: nodes within half a cell of a polygon stand on it.
+    void remark_thin(const Polygons& outline) const {
+        const double cell = scene_.bed.geometry.cell;
+        const auto thin = std::count_if(outline.parts.begin(), outline.parts.end(), [&](const Polygon& polygon) {
+            return !polygon.rings.empty() && width_of(polygon.rings.front()) < 2.0 * cell;
+        });
+        if (thin > 0 && !scene_.solid)
+            scene_.log.push_back(fmt::format(
+                "{}: {} of {} polygons are thinner than two cells of {:.6g} m: each stands on the cells that "
+                "it cuts; areas in results are those of the file",
+                place(), thin, outline.parts.size(), cell));
+    }
+
+    /// One for each polygon [m].
+    void read_heights(const std::filesystem::path& file, Barrier& barrier) {
+        const std::string& field = case_.word(prefix_ + "height_field");
+        ValuedPolygons valued = reader_.read_valued_polygons(file, field, scene_.bed.crs_wkt, scene_.log);
+        for (std::size_t n = 0; n < valued.values.size(); ++n)
+            if (!(valued.values[n] > 0.0 && valued.values[n] <= kTallest))
+                throw UserError(fmt::format(
+                    "found {} = {:.6g} m at polygon {} of {}; expected a height above 0 and up to {:.6g} m; correct it "
+                    "there, or remove the polygon",
+                    field, valued.values[n], n + 1, file.filename().string(), kTallest));
+        barrier.outline = std::move(valued.polygons);
+        heights_ = std::move(valued.values);
     }
 
     /// Of the 3D stage: x, y of the low corner and of the high one [m].
@@ -83,8 +155,10 @@ private:
             vertices = barrier.line = case_.points(prefix_ + "line");
             return problems_.attempt(place(), [&] { require_wall(barrier.line); });
         }
+        const std::filesystem::path file = case_.path(prefix_ + "outline");
         const bool read = problems_.attempt(place(), [&] {
-            barrier.outline = reader_.read_polygons(case_.path(prefix_ + "outline"), scene_.bed.crs_wkt, scene_.log);
+            if (given("height_field")) return read_heights(file, barrier);
+            barrier.outline = reader_.read_polygons(file, scene_.bed.crs_wkt, scene_.log);
         });
         for (const Polygon& polygon : barrier.outline.parts)
             for (const auto& ring : polygon.rings) vertices.insert(vertices.end(), ring.begin(), ring.end());
@@ -132,6 +206,7 @@ private:
     Scene& scene_;
     Problems& problems_;
     std::string prefix_;
+    std::vector<double> heights_;  ///< of the outline's polygons, where the file gives them [m]
 };
 
 }  // namespace
@@ -145,10 +220,11 @@ void read_barriers(const CaseFile& file, const GisReader& reader, const MeshRead
         const std::size_t before = scene.barriers.size();
         barriers.read(i);
         const std::string place = file.table_place(fmt::format("barrier.{}", i));
-        if (before <= kMost && scene.barriers.size() > kMost)
-            problems.add(place, fmt::format("found {} barriers up to here", scene.barriers.size()),
-                         fmt::format("expected {} at most", kMost),
-                         "put several polygons into one barrier, without each");
+        if (scene.solid && before <= kMost && scene.barriers.size() > kMost)
+            problems.add(
+                place, fmt::format("found {} barriers up to here", scene.barriers.size()),
+                fmt::format("expected {} at most in a run with points in space, which tell no more apart", kMost),
+                "put several polygons into one barrier, without each, or remove the stage");
         for (std::size_t n = before; n < scene.barriers.size(); ++n)
             if (const auto [first, is_new] = tables.emplace(scene.barriers[n].name, i); !is_new && first->second != i)
                 problems.add(place,

@@ -5,44 +5,21 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <unordered_map>
 
-#include "compare/overlap.h"
 #include "io/gdal_features.h"
+#include "run/folder/barrier_hits.h"
 #include "scene/case_file.h"
 
 namespace frana {
 namespace {
 
-/// Pixels that the polygon touches, and their eight neighbours: marks in the order of a raster.
-std::vector<char> pixels_at(const Polygon& polygon, const GridGeometry& grid) {
-    std::vector<char> marks(static_cast<std::size_t>(grid.size()), 0);
-    Polygons one;
-    one.parts = {polygon};
-    for_each_pixel_area(grid, rings_of(one), [&](Index i, Index j, double area) {
-        if (!(area > 0.0)) return;
-        for (Index b = std::max<Index>(0, j - 1); b <= std::min(grid.ny - 1, j + 1); ++b)
-            for (Index a = std::max<Index>(0, i - 1); a <= std::min(grid.nx - 1, i + 1); ++a)
-                marks[static_cast<std::size_t>(b * grid.nx + a)] = 1;
-    });
-    return marks;
-}
-
-/// The largest, or the smallest, of the finite values at the marks; NaN without any.
-double extreme_of(const ProductRaster* product, const std::vector<char>& marks, bool largest) {
-    double found = Raster::nodata;
-    if (product == nullptr) return found;
-    for (std::size_t k = 0; k < marks.size(); ++k) {
-        const double value = product->raster.values[k];
-        if (!marks[k] || !std::isfinite(value)) continue;
-        if (std::isnan(found) || (largest ? value > found : value < found)) found = value;
-    }
-    return found;
-}
-
-double force_on(const std::string& barrier, const std::vector<BarrierSummary>& summaries) {
+/// Of those that forces are known of, by name [N].
+std::unordered_map<std::string, double> forces_of(const std::vector<BarrierSummary>& summaries) {
+    std::unordered_map<std::string, double> forces;
     for (const BarrierSummary& summary : summaries)
-        if (summary.name == barrier && summary.blur > 0.0) return summary.peak_force;
-    return Raster::nodata;
+        if (summary.blur > 0.0) forces.emplace(summary.name, summary.peak_force);
+    return forces;
 }
 
 using Named = std::pair<std::string, Attribute>;
@@ -53,19 +30,18 @@ bool same_name(const std::string& a, const std::string& b) {
                       [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-std::vector<Named> results_on(const Polygon& polygon, const std::string& barrier,
-                              const std::vector<BarrierSummary>& summaries, const std::vector<ProductRaster>& rasters) {
-    const std::vector<char> marks = pixels_at(polygon, rasters.front().raster.geometry);
-    const auto extreme = [&](const char* name, bool largest) {
-        return extreme_of(find_product(rasters, name), marks, largest);
-    };
-    const double depth = extreme("peak_depth", true);
-    const bool reached = depth > 0.0;
-    return {{"barrier", barrier},
-            {"peak_force_N", force_on(barrier, summaries)},
-            {"peak_pressure_Pa", reached ? extreme("peak_dynamic_pressure", true) : Raster::nodata},
-            {"peak_depth_m", reached ? depth : Raster::nodata},
-            {"hit_s", reached ? extreme("arrival_time", false) : Raster::nodata}};
+std::vector<Named> results_on(const Polygon& polygon, const std::string& barrier, double force,
+                              const std::vector<ProductRaster>& rasters) {
+    Polygons one;
+    one.parts = {polygon};
+    const BarrierHit hit = hit_on(one, rasters);
+    std::vector<Named> results{{"barrier", barrier},        {"peak_force_N", force}, {"peak_pressure_Pa", hit.pressure},
+                               {"peak_depth_m", hit.depth}, {"hit_s", hit.time},     {"area_m2", hit.area}};
+    for (std::size_t side = 0; side < kSides.size(); ++side) {
+        results.emplace_back(fmt::format("pressure_{}_Pa", kSides[side]), hit.side_pressure[side]);
+        results.emplace_back(fmt::format("depth_{}_m", kSides[side]), hit.side_depth[side]);
+    }
+    return results;
 }
 
 void add_results(AttributedPolygon& polygon, const std::vector<Named>& results) {
@@ -97,13 +73,16 @@ void write_barrier_results(const std::filesystem::path& gpkg, const std::vector<
                            const std::vector<BarrierSummary>& summaries, const std::vector<ProductRaster>& rasters) {
     if (sources.empty() || rasters.empty()) return;
     const std::string& crs = rasters.front().raster.crs_wkt;
+    const std::unordered_map<std::string, double> forces = forces_of(summaries);
     std::vector<AttributedPolygon> all;
     for (const BarrierSource& source : sources) {
         std::vector<std::string> said_by_the_scene;
         std::size_t n = 0;
         for (AttributedPolygon& polygon : read_attributed_polygons(source.outline, crs, said_by_the_scene)) {
             const std::string name = source.each ? fmt::format("{}_{}", source.name, ++n) : source.name;
-            add_results(polygon, results_on(polygon.polygon, name, summaries, rasters));
+            const auto known = forces.find(name);
+            const double force = known == forces.end() ? BarrierHit::unknown : known->second;
+            add_results(polygon, results_on(polygon.polygon, name, force, rasters));
             all.push_back(std::move(polygon));
         }
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/version.h"
 #include "run/folder/comparison.h"
@@ -197,6 +198,33 @@ std::string files(const RunRecord& r, const std::vector<Product>& products) {
     return text + "\n";
 }
 
+/// The barriers that a report has rows for: all, or the most deeply covered ones of many, in the case's order.
+std::vector<std::size_t> shown_barriers(const RunRecord& r) {
+    std::vector<std::size_t> shown(r.barriers.size());
+    std::iota(shown.begin(), shown.end(), std::size_t{0});
+    if (shown.size() <= kMostBarrierTables || r.barrier_hits.size() != shown.size()) return shown;
+    const auto depth = [&](std::size_t n) {
+        return std::isfinite(r.barrier_hits[n].depth) ? r.barrier_hits[n].depth : 0.0;
+    };
+    std::stable_sort(shown.begin(), shown.end(), [&](std::size_t a, std::size_t b) { return depth(a) > depth(b); });
+    shown.resize(kMostBarrierTables);
+    while (!shown.empty() && depth(shown.back()) == 0.0) shown.pop_back();
+    std::sort(shown.begin(), shown.end());
+    return shown;
+}
+
+std::string barrier_row(const BarrierSummary& b) {
+    const std::string run_up = b.run_up > b.about[2] ? fmt::format("{:.5g} m", b.run_up) : "-";  // where it begins
+    if (b.first_contact < 0.0)
+        return fmt::format("| {} | none | - | - | {} | {:.5g} m3 |\n", b.name, run_up, b.overtopped);
+    if (b.blur <= 0.0)
+        return fmt::format("| {} | {:.4g} s | - | - | {} | {:.5g} m3 |\n", b.name, b.first_contact, run_up,
+                           b.overtopped);
+    return fmt::format("| {} | {:.4g} s | {:.4g} N at {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n",
+                       b.name, b.first_contact, b.peak_force, b.peak_force_time, b.impulse[0], b.impulse[1],
+                       b.impulse[2], b.run_up, b.overtopped);
+}
+
 std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
     std::string text =
@@ -204,18 +232,15 @@ std::string barriers(const RunRecord& r) {
         "Over it |\n"
         "|---|---|---|---|---|---|\n";
     double blur = 0.0, hardest = 0.0;
-    for (const BarrierSummary& b : r.barriers) {
+    for (const BarrierSummary& b : r.barriers)
         blur = std::max(blur, b.blur), hardest = std::max(hardest, b.raw_peak_force);
-        if (b.first_contact < 0.0) {
-            const bool reached = b.run_up > b.about[2];  // where it begins
-            text += fmt::format("| {} | none | - | - | {} | {:.5g} m3 |\n", b.name,
-                                reached ? fmt::format("{:.5g} m", b.run_up) : "-", b.overtopped);
-            continue;
-        }
-        text += fmt::format(
-            "| {} | {:.4g} s | {:.4g} N at {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n", b.name,
-            b.first_contact, b.peak_force, b.peak_force_time, b.impulse[0], b.impulse[1], b.impulse[2], b.run_up,
-            b.overtopped);
+    const std::vector<std::size_t> shown = shown_barriers(r);
+    for (const std::size_t n : shown) text += barrier_row(r.barriers[n]);
+    if (shown.size() < r.barriers.size()) {
+        const auto hit = std::count_if(r.barriers.begin(), r.barriers.end(),
+                                       [](const BarrierSummary& b) { return b.first_contact >= 0.0; });
+        text += fmt::format("\nOf {} barriers {} were hit. These stood deepest; `barriers.csv` has all.\n",
+                            r.barriers.size(), hit);
     }
     if (hardest > 0.0)
         text += fmt::format(
@@ -226,9 +251,11 @@ std::string barriers(const RunRecord& r) {
             "barrier at any time.\n",
             blur, hardest);
     else if (blur <= 0.0)
-        text +=
-            "\nForces are measured on points in space only ([[stage]]); columns take a barrier for ground. Over it: "
-            "columns whose middle came onto it.\n";
+        text += fmt::format(
+            "\nFirst contact is when the depth at a face first exceeds {:.4g} m (`output.footprint_depth`). Forces are "
+            "measured on points in space only ([[stage]]); columns take a barrier for ground. Over it: columns whose "
+            "middle came onto it.\n",
+            r.footprint_depth);
     return text + "\n";
 }
 

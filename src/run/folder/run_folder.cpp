@@ -52,6 +52,7 @@ const std::vector<ProductKind>& product_kinds() {
          "GeoTIFF", false},
         {"rasters", friction_names() + "\\.tif", "GeoTIFF of the friction as it was used", false},
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
+        {"", "barriers\\.csv", "what hit each barrier, when, and from which side", false},
         {"", "results\\.gpkg", "barriers with the attributes of their features and what hit them, for a GIS", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
@@ -155,7 +156,8 @@ bool has_list(const Json& record) {
 bool grows(const ProductKind& kind) {
     for (const char* folder : {"particles", "grid", "profiles", "gauges", "sections", "barriers", "insitu", "insitu/*"})
         if (kind.folder == folder) return true;
-    static const std::regex growing("(history|particles|grid|profiles|barrier|run|terrain|checkpoint|case|resolved).*");
+    static const std::regex growing(
+        "(history|particles|grid|profiles|barrier(s\\\\\\.p|_)|run|terrain|checkpoint|case|resolved).*");
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);
 }
 

@@ -91,6 +91,19 @@ void compare_with_survey(const Scene& scene, const Raster& bed, const fs::path& 
     }
 }
 
+/// When the flow came to barriers that no force is known of, and barriers.csv. Trouble is a warning here as well.
+void leave_barrier_table(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
+                         RunRecord& record) {
+    if (scene.barriers.empty()) return;
+    record.barrier_hits = hits_on(scene.barriers, rasters);
+    note_contacts(record.barrier_hits, record.barriers);
+    try {
+        write_barrier_table(run_dir / "barriers.csv", record.barriers, record.barrier_hits);
+    } catch (const UserError& error) {
+        record.warnings.push_back(fmt::format("the table of the barriers was not written: {}", error.what()));
+    }
+}
+
 /// results.gpkg, when the case has barriers with outlines. Trouble is a warning here as well.
 void leave_barrier_results(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
                            RunRecord& record) {
@@ -243,6 +256,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
         if (scene.output.geotiff) write_rasters(run_dir, rasters);
         if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
             write_outline(run_dir, peak->raster, scene.output.footprint_depth);
+        leave_barrier_table(scene, run_dir, rasters, record);
         leave_barrier_results(scene, run_dir, rasters, record);
     });
     timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });

@@ -9,6 +9,7 @@
 #include "observe/barriers.h"
 #include "observe/insitu.h"
 #include "observe/sections.h"
+#include "run/folder/barrier_hits.h"
 #include "run/folder/barrier_results.h"
 #include "run/folder/checkpoint.h"
 #include "run/run_loop.h"
@@ -58,6 +59,7 @@ struct RunRecord {
     std::vector<DrawnFigure> figures;
     std::vector<InsituTally> insitu;
     std::vector<BarrierSummary> barriers;
+    std::vector<BarrierHit> barrier_hits;  ///< in their order; none before the end of the run
     std::vector<SectionSummary> sections;
     std::vector<FrictionPart> friction;  ///< where it differs in space
     CheckpointKeeper::Progress checkpoints;

@@ -1,0 +1,146 @@
+#include "run/folder/barrier_hits.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "compare/overlap.h"
+#include "terrain/part_of.h"
+
+namespace frana {
+namespace {
+
+/// From the nearest place of an outline to a point; zero inside.
+Vec2 away_from(const Polygons& outline, const Vec2& point) {
+    Vec2 least(INFINITY, INFINITY);
+    bool inside = false;
+    for (const Polygon& polygon : outline.parts)
+        for (const auto& ring : polygon.rings)
+            for (std::size_t k = 0; k < ring.size(); ++k) {
+                const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+                const Vec2 side = b - a;
+                const double length2 = side.squaredNorm();
+                const double share = length2 > 0.0 ? std::clamp((point - a).dot(side) / length2, 0.0, 1.0) : 0.0;
+                const Vec2 away = point - a - share * side;
+                if (!(least.squaredNorm() <= away.squaredNorm())) least = away;
+                if ((a.y() > point.y()) != (b.y() > point.y()) &&
+                    point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * side.x())
+                    inside = !inside;
+            }
+    return inside || !std::isfinite(least.x()) ? Vec2(0, 0) : least;
+}
+
+/// Whether a direction faces each of kSides. Round-off does not decide on a diagonal.
+std::array<bool, 4> sides_of(const Vec2& away) {
+    constexpr double kRoundOff = 1.0 + 1e-9;
+    const double x = std::abs(away.x()), y = std::abs(away.y());
+    const bool upright = y > 0.0 && y * kRoundOff >= x, level = x > 0.0 && x * kRoundOff >= y;
+    return {upright && away.y() > 0.0, level && away.x() > 0.0, upright && away.y() < 0.0, level && away.x() < 0.0};
+}
+
+/// The largest that was met; NaN before.
+void raise(double& most, double value) {
+    if (std::isfinite(value) && !(most >= value)) most = value;
+}
+
+/// The pixels around an outline as a grid of its own, and where it begins among all.
+NodeBox pixels_around(const Polygons& outline, const GridGeometry& grid) {
+    std::vector<Vec2> corners;
+    for (const Polygon& polygon : outline.parts)
+        for (const auto& ring : polygon.rings) corners.insert(corners.end(), ring.begin(), ring.end());
+    return common(widened(cells_of(corners, grid), 2), NodeBox::all(grid));
+}
+
+/// Those that it touches, and their eight neighbours.
+std::vector<char> touched(const Polygons& outline, const GridGeometry& part) {
+    std::vector<char> marks(static_cast<std::size_t>(part.size()), 0);
+    for_each_pixel_area(part, rings_of(outline), [&](Index i, Index j, double area) {
+        if (!(area > 0.0)) return;
+        for (Index b = std::max<Index>(0, j - 1); b <= std::min(part.ny - 1, j + 1); ++b)
+            for (Index a = std::max<Index>(0, i - 1); a <= std::min(part.nx - 1, i + 1); ++a)
+                marks[static_cast<std::size_t>(b * part.nx + a)] = 1;
+    });
+    return marks;
+}
+
+/// What a hit reads.
+struct Fields {
+    const ProductRaster *depth, *pressure, *arrival;
+    static double at(const ProductRaster* field, Index i, Index j) {
+        return field == nullptr ? BarrierHit::unknown : field->raster.at(i, j);
+    }
+};
+
+void add_pixel(BarrierHit& hit, const Fields& fields, Index i, Index j, const Vec2& away) {
+    const double depth = Fields::at(fields.depth, i, j), pressure = Fields::at(fields.pressure, i, j),
+                 time = Fields::at(fields.arrival, i, j);
+    raise(hit.depth, depth), raise(hit.pressure, pressure);
+    if (std::isfinite(time) && !(hit.time <= time)) hit.time = time;
+    const std::array<bool, 4> faces = sides_of(away);
+    for (std::size_t side = 0; side < kSides.size(); ++side)
+        if (faces[side]) raise(hit.side_depth[side], depth), raise(hit.side_pressure[side], pressure);
+}
+
+std::string cell(double value) { return std::isfinite(value) ? fmt::format(",{:.9g}", value) : ","; }
+
+}  // namespace
+
+BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& rasters) {
+    BarrierHit hit;
+    if (outline.parts.empty() || rasters.empty()) return hit;
+    for (const auto& ring : rings_of(outline)) hit.area += ring_area(ring);
+    const GridGeometry& all = rasters.front().raster.geometry;
+    const NodeBox box = pixels_around(outline, all);
+    if (box.nx < 1 || box.ny < 1) return hit;
+    const GridGeometry part = box.of(all);
+    const std::vector<char> marks = touched(outline, part);
+    const Fields fields{find_product(rasters, "peak_depth"), find_product(rasters, "peak_dynamic_pressure"),
+                        find_product(rasters, "arrival_time")};
+    for (Index j = 0; j < part.ny; ++j)
+        for (Index i = 0; i < part.nx; ++i)
+            if (marks[static_cast<std::size_t>(j * part.nx + i)])
+                add_pixel(hit, fields, box.i0 + i, box.j0 + j, away_from(outline, {part.x(i), part.y(j)}));
+    if (hit.depth > 0.0) return hit;
+    BarrierHit none;
+    none.area = hit.area;
+    return none;
+}
+
+std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std::vector<ProductRaster>& rasters) {
+    std::vector<BarrierHit> hits;
+    for (const Barrier& barrier : barriers) hits.push_back(hit_on(barrier.outline, rasters));
+    return hits;
+}
+
+void note_contacts(const std::vector<BarrierHit>& hits, std::vector<BarrierSummary>& summaries) {
+    expect(hits.size() == summaries.size(), "every barrier has a hit");
+    for (std::size_t n = 0; n < hits.size(); ++n)
+        if (!(summaries[n].blur > 0.0) && std::isfinite(hits[n].time)) summaries[n].first_contact = hits[n].time;
+}
+
+void write_barrier_table(const std::filesystem::path& csv, const std::vector<BarrierSummary>& summaries,
+                         const std::vector<BarrierHit>& hits) {
+    expect(hits.size() == summaries.size(), "every barrier has a hit");
+    std::string text =
+        "barrier,first_contact [s],peak_force [N],peak_pressure [Pa],peak_depth [m],run_up [m],overtopped [m3],area "
+        "[m2]";
+    for (const char* side : kSides) text += fmt::format(",pressure_{0} [Pa],depth_{0} [m]", side);
+    text += '\n';
+    for (std::size_t n = 0; n < hits.size(); ++n) {
+        const BarrierSummary& s = summaries[n];
+        const BarrierHit& hit = hits[n];
+        const double none = BarrierHit::unknown;
+        text += s.name + cell(s.first_contact >= 0.0 ? s.first_contact : none) +
+                cell(s.blur > 0.0 ? s.peak_force : none) + cell(hit.pressure) + cell(hit.depth) +
+                cell(s.run_up > s.about[2] ? s.run_up : none) + cell(s.overtopped) + cell(hit.area);
+        for (std::size_t side = 0; side < kSides.size(); ++side)
+            text += cell(hit.side_pressure[side]) + cell(hit.side_depth[side]);
+        text += '\n';
+    }
+    write_text(csv, text);
+}
+
+}  // namespace frana

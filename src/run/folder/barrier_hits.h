@@ -1,0 +1,43 @@
+#pragma once
+// What a run did at the faces of barriers, as its rasters tell it.
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "observe/barriers.h"
+#include "run/folder/products.h"
+
+namespace frana {
+
+/// The sides of a barrier by the directions that they face, in the order of the arrays below.
+inline constexpr std::array<const char*, 4> kSides{"north", "east", "south", "west"};
+
+/// The flow at an outline: on pixels that it touches and on their neighbours, since the flow goes round it. NaN: not reached,
+/// or not known.
+struct BarrierHit {
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    double area = 0.0;          ///< of the outline, as given [m2]
+    double pressure = unknown;  ///< largest density times speed squared [Pa]
+    double depth = unknown;     ///< largest [m]
+    double time = unknown;      ///< first deeper than the footprint depth [s]
+    std::array<double, 4> side_pressure{unknown, unknown, unknown, unknown};  ///< [Pa]
+    std::array<double, 4> side_depth{unknown, unknown, unknown, unknown};     ///< [m]
+};
+
+/// A side has the pixels whose middle lies outside, in its direction (within 45 degrees) from the nearest place of the
+/// outline; on the very diagonal they belong to both sides. The cost is that of the box around the outline.
+BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& rasters);
+
+/// Of all barriers, in their order; of those without an outline (lines, meshes) nothing is known.
+std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std::vector<ProductRaster>& rasters);
+
+/// The time of contact of those that no force is known of is that of their hit.
+void note_contacts(const std::vector<BarrierHit>& hits, std::vector<BarrierSummary>& summaries);
+
+/// barriers.csv: a row for each barrier; what is not known is left empty. UserError when it cannot be written.
+void write_barrier_table(const std::filesystem::path& csv, const std::vector<BarrierSummary>& summaries,
+                         const std::vector<BarrierHit>& hits);
+
+}  // namespace frana

@@ -1,0 +1,158 @@
+// Many buildings as barriers: what a case may have, and what columns do among them.
+#include <cmath>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "coupling/walled_columns.h"
+#include "observe/memory_archive.h"
+#include "scene/build_scene.h"
+#include "slope_case.h"
+
+using namespace frana;
+using namespace frana::test;
+using Catch::Contains;
+
+namespace {
+
+std::string with_houses(const std::string& keys, const std::string& rest = "") {
+    return "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n"
+           "[material]\ndensity = 1500\n[material.bed]\nlaw = \"coulomb\"\nmu = 0.3\n[[barrier]]\nname = \"house\"\n"
+           "outline = \"houses.gpkg\"\n" +
+           keys + rest;
+}
+
+/// Houses of that side in rows on the slope; the one at `from` first.
+Polygons village(int count, double side, double spacing) {
+    Polygons all;
+    for (int n = 0; n < count; ++n) {
+        const double x = 1010 + spacing * (n % 8), y = 2010 + spacing * (n / 8);
+        all.parts.push_back(rectangle(x, y, x + side, y + side).parts[0]);
+    }
+    return all;
+}
+
+Scene scene_of(const std::string& text, const FakeGis& gis) {
+    return build_scene(CaseFile::parse(text, "slide/case.toml"), gis);
+}
+
+bool says(const Scene& scene, const std::string& words) {
+    for (const std::string& line : scene.log)
+        if (line.find(words) != std::string::npos) return true;
+    return false;
+}
+
+Barrier house(double x, double y, double side) {
+    Barrier barrier;
+    barrier.name = "house";
+    barrier.outline = rectangle(x, y, x + side, y + side);
+    barrier.height = 6.0;
+    return barrier;
+}
+
+/// A stream down a channel along x onto houses; their middles lie on y = 60, about which all is symmetric.
+Scene stream(const std::vector<Barrier>& houses) {
+    Scene scene = scene_on(120, 61, 2.0, [](double x, double) { return 100 - 0.3 * x; });
+    scene.bed_law = bed::Coulomb{0.1};
+    fill(scene, [](double x, double y) { return x > 20 && x < 50 && std::abs(y - 60) < 30 ? 2.0 : 0.0; });
+    scene.barriers = houses;
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("Columns alone may have hundreds of barriers, points in space may not", "[scene][barriers]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = village(64, 12, 17);
+    CHECK(scene_of(with_houses("height = 6\neach = true\n"), gis).barriers.size() == 64);
+    const std::string stage = "[[stage]]\nmodel = \"solid_flow\"\nwindow = [1020, 2020, 1100, 2100]\n";
+    const std::string problem = only_problem([&] { scene_of(with_houses("height = 6\neach = true\n", stage), gis); });
+    CHECK_THAT(problem, Contains("found 64 barriers") && Contains("points in space"));
+}
+
+TEST_CASE("Each house has the height of its feature, up to 500 m", "[scene][barriers]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = village(3, 12, 17);
+    gis.attributes["h"] = {4.0, 7.5, 5.0};
+    const std::string keys = "height_field = \"h\"\neach = true\n";
+    const Scene scene = scene_of(with_houses(keys), gis);
+    REQUIRE(scene.barriers.size() == 3);
+    CHECK((scene.barriers[0].height == 4.0 && scene.barriers[1].height == 7.5 && scene.barriers[2].height == 5.0));
+    const auto wrong = [&](const std::string& text) { return only_problem([&] { scene_of(text, gis); }); };
+    CHECK_THAT(wrong(with_houses("height = 501\neach = true\n")), Contains("found 501 m") && Contains("up to 500 m"));
+    CHECK_THAT(wrong(with_houses("height_field = \"floors\"\neach = true\n")), Contains("no such attribute"));
+    CHECK_THAT(wrong(with_houses("height_field = \"h\"\n")), Contains("found without each"));
+    CHECK_THAT(wrong(with_houses(keys + "top = 200\n")), Contains("height_field: found together with top"));
+    for (const double bad : {0.0, 1720.0}) {
+        gis.attributes["h"] = {4.0, bad, 5.0};
+        CHECK_THAT(wrong(with_houses(keys)), Contains("polygon 2 of houses.gpkg"));
+    }
+}
+
+TEST_CASE("Houses beyond the terrain are left out with a remark, the others keep their numbers", "[scene][barriers]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["houses.gpkg"] = village(3, 12, 17);
+    gis.polygons["houses.gpkg"].parts[1] = rectangle(9000, 2010, 9012, 2022).parts[0];
+    const Scene scene = scene_of(with_houses("height = 6\neach = true\n"), gis);
+    REQUIRE(scene.barriers.size() == 2);
+    CHECK((scene.barriers[0].name == "house_1" && scene.barriers[1].name == "house_3"));
+    CHECK(says(scene, "1 of 3 polygons are not on the terrain"));
+}
+
+TEST_CASE("Houses thinner than two cells are remarked upon", "[scene][barriers]") {
+    FakeGis gis = slope_gis();  // cells of 5 m
+    gis.polygons["houses.gpkg"] = village(3, 9.9, 17);
+    gis.polygons["houses.gpkg"].parts[1] = rectangle(1060, 2010, 1071, 2021).parts[0];
+    CHECK(says(scene_of(with_houses("height = 6\neach = true\n"), gis), "2 of 3 polygons are thinner than two cells"));
+    gis.polygons["houses.gpkg"] = village(3, 10.1, 17);
+    CHECK_FALSE(says(scene_of(with_houses("height = 6\neach = true\n"), gis), "thinner"));
+}
+
+TEST_CASE("The ground of many houses is that of each alone", "[barriers]") {
+    std::vector<Barrier> houses;
+    for (int n = 0; n < 40; ++n) houses.push_back(house(30.0 + 20.0 * (n % 8), 10.0 + 20.0 * (n / 8), 7.0));
+    const Scene all = stream(houses);
+    const Raster ground = with_barriers(all);
+    Raster expected = all.bed;
+    for (const Barrier& one : houses) {
+        const Raster raised = with_barriers(stream({one}));
+        for (std::size_t k = 0; k < expected.values.size(); ++k)
+            expected.values[k] = std::max(expected.values[k], raised.values[k]);
+    }
+    CHECK(ground.values == expected.values);  // nodes on whole numbers: the same bits from a part of the ground
+    CHECK(ground.values != all.bed.values);
+}
+
+TEST_CASE("Houses that the flow does not meet change no bit of it, nor of what is known of others", "[barriers]") {
+    const std::vector<Barrier> one{house(80, 56, 8)};
+    std::vector<Barrier> many = one;
+    for (int n = 0; n < 40; ++n)
+        many.push_back(house(190.0 + 10.0 * (n % 4), 4.0 + 11.0 * (n / 4), 4.0));  // beyond its reach
+    WalledColumns a(stream(one)), b(stream(many));
+    for (WalledColumns* run : {&a, &b}) run_to(*run, 5.0);
+    CHECK(a.status().kinetic == b.status().kinetic);
+    CHECK(a.loads()->barriers[0].run_up == b.loads()->barriers[0].run_up);
+    CHECK(a.loads()->barriers[0].run_up > a.loads()->barriers[0].about.z());
+    CHECK(b.loads()->barriers[40].run_up == b.loads()->barriers[40].about.z());
+    CHECK(b.loads()->barriers[40].overtopped == 0.0);
+}
+
+TEST_CASE("Two houses of a symmetric row are met alike, and resume to the last bit", "[barriers]") {
+    std::vector<Barrier> row{house(80, 36, 8), house(80, 76, 8)};  // middles 20 m off the axis to both sides
+    for (int n = 0; n < 30; ++n) row.push_back(house(190.0 + 10.0 * (n % 3), 4.0 + 11.0 * (n / 3), 4.0));
+    const Scene scene = stream(row);
+    WalledColumns run(scene);
+    run_to(run, 3.0);
+    MemoryArchive kept;
+    run.serialize(kept);
+    WalledColumns resumed(scene, Start::resumed);
+    resumed.serialize(kept.rewind());
+    for (WalledColumns* one : {&run, &resumed}) run_to(*one, 6.0);
+    const auto& loads = run.loads()->barriers;
+    CHECK(loads[0].run_up > loads[0].about.z() + 0.1);
+    // Sums of nodes run from south to north: mirror images differ by round-off, which steep fronts amplify.
+    CHECK(loads[0].run_up == Approx(loads[1].run_up).margin(1e-6));
+    for (std::size_t n = 0; n < row.size(); ++n) {
+        CHECK(resumed.loads()->barriers[n].run_up == loads[n].run_up);
+        CHECK(resumed.loads()->barriers[n].overtopped == loads[n].overtopped);
+    }
+}
