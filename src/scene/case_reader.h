@@ -46,6 +46,9 @@ private:
     void check_layer(const std::string& prefix);
     void check_barrier(const std::string& prefix);
     void check_height_field(const std::string& prefix);
+    bool friction_table() const;
+    void check_friction_table();
+    void check_table_numbers();
     void check_inflow(const std::string& prefix);
     void check_zone(const std::string& prefix);
     void check_line_names(const std::string& table);

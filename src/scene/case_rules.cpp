@@ -9,6 +9,7 @@
 #include "law/catalogue.h"
 #include "scene/case_reader.h"
 #include "scene/combinations.h"
+#include "scene/salm_table.h"
 
 namespace frana {
 namespace {
@@ -80,6 +81,7 @@ void CaseReader::check_tables() {
             if (table == "barrier") check_barrier(prefix);
             if (table == "inflow") check_inflow(prefix);
             if (table == "material.zone") check_zone(prefix);
+            if (table == "material.bed") check_friction_table();
         }
     }
 }
@@ -95,6 +97,7 @@ void CaseReader::check_missing(const std::string& prefix, const std::string& tab
         if (choice.empty() || misread_.count(choice) || !case_.has(choice)) continue;
         const std::string& chosen = case_.word(choice);
         if (!contains(parameter.required_by, chosen)) continue;
+        if (table == "material.bed" && friction_table()) continue;  // it says mu and xi
         const std::string other = parameter.instead_of.empty() ? "" : concrete(prefix, parameter.instead_of);
         if (!other.empty() && (there(other) || other < key)) continue;  // of two ways, one complaint
         const std::string either = other.empty() ? "" : fmt::format(" (or {})", find_parameter(other)->name());
@@ -221,6 +224,45 @@ void CaseReader::check_barrier(const std::string& prefix) {
     if (there("line") || there("outline") == there("line")) return;
     for (const char* name : {"thickness", "wet"})
         if (said(name)) wrong(prefix + name, "found together with outline", "expected it with line only", "remove it");
+}
+
+/// Whether [material.bed] names a table; what else it says has been read or is misread.
+bool CaseReader::friction_table() const {
+    return case_.given("material.bed.table") && case_.word("material.bed.table") != "none";
+}
+
+/// A table of friction goes with Voellmy's law alone, and says all of its numbers.
+void CaseReader::check_friction_table() {
+    const std::string of = "material.bed.";
+    if (!friction_table()) return;
+    if (!misread_.count(of + "law") && case_.word(of + "law") != "voellmy")
+        wrong(of + "table", fmt::format("found with law = \"{}\"", case_.word(of + "law")),
+              "expected law = \"voellmy\", whose mu and xi it has", "choose that law, or remove the table");
+    for (const char* name : {"mu", "friction_angle_deg", "xi"})
+        if (case_.given(of + name))
+            wrong(of + name, "found together with table", "expected one of them",
+                  "remove one of them, or give it in a [[material.zone]], which wins over the table");
+    check_table_numbers();
+}
+
+void CaseReader::check_table_numbers() {
+    const std::string of = "material.bed.";
+    const auto grows = [&](const std::string& key) {
+        if (misread_.count(key)) return;
+        const std::vector<double>& limits = case_.numbers(key);
+        for (std::size_t k = 1; k < limits.size(); ++k)
+            if (!(limits[k] > limits[k - 1]))
+                return wrong(key, fmt::format("found {:.6g} after {:.6g}", limits[k], limits[k - 1]),
+                             "expected numbers that grow", "put them in order");
+    };
+    grows(of + "altitude_limits");
+    grows(of + "curvature_limits");
+    if (misread_.count(of + "return_period")) return;
+    const double period = case_.number(of + "return_period");
+    for (const double known : salm::return_periods)
+        if (period == known) return;
+    wrong(of + "return_period", fmt::format("found {:.6g}", period), "expected 10, 30, 100 or 300 years",
+          "choose one of them; the table has no other");
 }
 
 void CaseReader::check_height_field(const std::string& prefix) {

@@ -262,7 +262,8 @@ std::string with_text(const Combination& row) {
 
 /// What has one friction everywhere.
 void add_zones(std::vector<Combination>& table) {
-    for (const Values& friction : {Values{"material.zone", Are::tables}, Values{"material.bed", Are::rasters}}) {
+    for (const Values& friction : {Values{"material.zone", Are::tables}, Values{"material.bed", Are::rasters},
+                                   is_not("material.bed.table", {"none"})}) {
         const std::string otherwise = friction.are == Are::rasters ? "give a number, or remove" : "remove it, or";
         table.push_back({friction,
                          {{"stage", Are::tables}},

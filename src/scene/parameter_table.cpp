@@ -150,6 +150,37 @@ void add_law(Table& table, const std::string& of, const std::string& is, Kind ki
     }
 }
 
+/// Friction of snow by classes of ground, instead of mu and xi.
+void add_friction_table(Table& table) {
+    table.push_back(
+        choice("material.bed.table", {"none", "voellmy-salm"}, "none",
+               "mu and xi of snow by ground, altitude, size and return period, instead of these keys; with "
+               "law = \"voellmy\" only (Voellmy-Salm classes of the raster tool of the Norwegian Geotechnical "
+               "Institute)"));
+    const auto add = [&](const Parameter& row) { table.push_back(with(row, "material.bed.table", {"voellmy-salm"})); };
+    const auto list = [](const char* key, const char* unit, std::vector<double> fallback, const char* meaning) {
+        Parameter row = make(key, Kind::numbers, unit, meaning);
+        row.length = fallback.size();
+        row.fallback = std::move(fallback);
+        return row;
+    };
+    add(number("material.bed.return_period", "a", positive, 300.0, "of the avalanche: 10, 30, 100 or 300 years"));
+    Parameter size = make("material.bed.volume_class", Kind::choice, "",
+                          "of the avalanche: tiny below 5000 m3, small below 25000, medium below 60000, large");
+    size.choices = {"tiny", "small", "medium", "large"};
+    add(absent(size, "that of the released volume"));
+    add(list("material.bed.altitude_limits", "m", {1000.0, 1500.0},
+             "elevations from which on snow has the friction of the middle and of the high zone"));
+    add(number("material.bed.curvature_length", "m", not_negative, 50.0,
+               "side of the squares that the terrain is averaged over before its slope and plan curvature tell classes "
+               "of ground; a choice of frana's"));
+    add(number("material.bed.flat_below_deg", "degree", between(0.0, 90.0), 10.0,
+               "ground gentler than this is flat; a choice of frana's"));
+    add(list("material.bed.curvature_limits", "1/m", {-0.002, 0.002, 0.01},
+             "plan curvatures (hollow contours positive) from which on ground is an open slope, channelled, a gully; "
+             "below the first it is convex; choices of frana's"));
+}
+
 /// Where friction is another: any key of the bed law.
 void add_zones(Table& table) {
     const char* const everywhere = "not bounded so";
@@ -174,6 +205,7 @@ void add_material(Table& table) {
     for (const MassKind& mass : mass_kinds()) density.otherwise.push_back({"case.kind", mass.name, mass.density});
     table.push_back(density);
     add_law<BedLaw>(table, "material.bed", "friction between the mass and its bed", Kind::number_or_path);
+    add_friction_table(table);
     add_zones(table);
     add_law<Rheology>(table, "material.rheology", "stress inside the mass");
     add_structure(table);

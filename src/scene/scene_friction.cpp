@@ -6,6 +6,8 @@
 
 #include "base/error.h"
 #include "scene/combinations.h"
+#include "scene/ground_classes.h"
+#include "scene/salm_table.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -93,6 +95,35 @@ public:
           laws_(scene.bed.values.size(), law),
           part_(scene.bed.values.size(), 0) {}
 
+    /// mu and xi of each node by its ground and altitude.
+    void lay_table(double released) {
+        if (!by_table()) return;
+        const std::string of = kLaw;
+        const auto index_of = [](const auto& names, const std::string& name) {
+            return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+        };
+        const auto* periods = salm::return_periods.begin();
+        const auto period = static_cast<std::size_t>(
+            std::find(periods, salm::return_periods.end(), case_.number(of + "return_period")) - periods);
+        const std::size_t size = case_.given(of + "volume_class")
+                                     ? index_of(salm::size_names, case_.word(of + "volume_class"))
+                                     : static_cast<std::size_t>(std::upper_bound(salm::size_limits.begin(),
+                                                                                 salm::size_limits.end(), released) -
+                                                                salm::size_limits.begin());
+        const std::vector<double>& limits = case_.numbers(of + "altitude_limits");
+        const std::vector<std::uint8_t> grounds = ground_classes(scene_.bed, borders());
+        std::array<double, 4> shares{};
+        const auto share = 100.0 / static_cast<double>(ground_count());
+        for (std::size_t k = 0; k < laws_.size(); ++k) {
+            const double z = scene_.bed.values[k];
+            const std::size_t ground = grounds[k], altitude = (z >= limits[0] ? 1U : 0U) + (z >= limits[1] ? 1U : 0U);
+            set(k, "mu", salm::mu[size][period][ground][altitude]);
+            set(k, "xi", salm::xi[size][ground][altitude]);
+            if (is_ground(k)) shares[ground] += share;
+        }
+        remark_table(size, released, shares);
+    }
+
     void lay_rasters(Problems& problems) {
         for (const Key<Law>& key : keys_) {
             const std::string name = kLaw + std::string(key.name);
@@ -151,6 +182,37 @@ public:
     }
 
 private:
+    bool by_table() const { return friction_by_table(case_); }
+
+    GroundBorders borders() const {
+        GroundBorders all;
+        all.length = case_.number("material.bed.curvature_length");
+        all.flat_below_deg = case_.number("material.bed.flat_below_deg");
+        const std::vector<double>& limits = case_.numbers("material.bed.curvature_limits");
+        std::copy(limits.begin(), limits.end(), all.curvature.begin());
+        return all;
+    }
+
+    void set(std::size_t node, const std::string& name, double value) {
+        for (const Key<Law>& key : keys_)
+            if (name == key.name) laws_[node].*key.parameter = value;
+    }
+
+    void remark_table(std::size_t size, double released, const std::array<double, 4>& shares) {
+        std::string text;
+        for (std::size_t ground = 0; ground < shares.size(); ++ground)
+            text += fmt::format("{}{:.3g} % {}", ground == 0 ? "" : ", ", shares[ground], salm::ground_names[ground]);
+        const GroundBorders all = borders();
+        scene_.log.push_back(fmt::format(
+            "{}: size {}{}, {:.6g} years: {}; what divides the classes is a choice of frana's, not of the table's: "
+            "terrain "
+            "averaged over {:.6g} m, flat below {:.6g} degrees, plan curvatures {:.6g}, {:.6g}, {:.6g} 1/m",
+            case_.place("material.bed.table"), salm::size_names[size],
+            case_.given("material.bed.volume_class") ? "" : fmt::format(" (about {:.3g} m3 are released)", released),
+            case_.number("material.bed.return_period"), text, all.length, all.flat_below_deg, all.curvature[0],
+            all.curvature[1], all.curvature[2]));
+    }
+
     bool is_ground(std::size_t k) const { return !std::isnan(scene_.bed.values[k]); }
     Index ground_count() const {
         Index count = 0;
@@ -254,7 +316,7 @@ private:
     bool is_said(double Law::*parameter) const {
         for (const Key<Law>& key : keys_) {
             if (key.parameter != parameter) continue;
-            if (is_raster(case_, kLaw + std::string(key.name))) return true;
+            if (is_raster(case_, kLaw + std::string(key.name)) || by_table()) return true;
             for (Index i = 0; i < case_.count("material.zone"); ++i)
                 if (case_.given(fmt::format("material.zone.{}.{}", i, key.name))) return true;
         }
@@ -293,15 +355,18 @@ private:
 
 }  // namespace
 
+bool friction_by_table(const CaseFile& file) { return file.word("material.bed.table") != "none"; }
+
 bool friction_differs(const CaseFile& file) {
-    return file.count("material.zone") > 0 || !raster_in(file, "material.bed").empty();
+    return friction_by_table(file) || file.count("material.zone") > 0 || !raster_in(file, "material.bed").empty();
 }
 
-void read_friction(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems) {
+void read_friction(const CaseFile& file, const GisReader& reader, double released, Scene& scene, Problems& problems) {
     if (!friction_differs(file)) return;
     std::visit(
         [&](const auto& law) {
             LawLayers layers(file, reader, scene, law);
+            layers.lay_table(released);
             layers.lay_rasters(problems);
             layers.lay_zones(problems);
             if (!problems.empty()) return;  // what was not laid would be missed once more

@@ -19,11 +19,13 @@ using NodeMarks = std::vector<char>;
 /// Laws, scheme, boundary, time and output of the case; no files are read.
 void set_physics(const CaseFile& file, Scene& scene);
 
-/// Whether the case has zones of friction or rasters of it.
+/// Whether the case takes friction from a table of classes.
+bool friction_by_table(const CaseFile& file);
+/// Whether the case has such a table, zones of friction or rasters of it.
 bool friction_differs(const CaseFile& file);
-/// Rasters under [material.bed], and all [[material.zone]], of a scene that has its terrain and its laws. What is wrong with
+/// The table (`released` [m3] tells the class of size), rasters under [material.bed], and all [[material.zone]], of a scene that has its terrain and its laws. What is wrong with
 /// them goes to `problems`, remarks to the scene's log. Where nothing differs in space nothing happens.
-void read_friction(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
+void read_friction(const CaseFile& file, const GisReader& reader, double released, Scene& scene, Problems& problems);
 /// The bed law of the node nearest to a place.
 BedLaw bed_law_at(const Scene& scene, const Vec2& point);
 
