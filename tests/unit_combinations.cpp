@@ -53,7 +53,11 @@ void complete(Sets& sets) {
     if (any("water.") && sets["water.model"] == "free") give(sets, "material.structure.law", "drucker_prager");
     if (any("material.bed.mu")) give(sets, "material.bed.law", "coulomb");
     if (any("material.structure.")) give(sets, "material.structure.law", "drucker_prager");
+    const auto table = sets.find("material.bed.table");
+    const bool by_table = table != sets.end() && table->second != "none";
+    if (by_table) give(sets, "material.bed.law", "voellmy");
     for (const Parameter& parameter : parameters()) {
+        if (by_table && parameter.table() == "material.bed") continue;  // it says what the law needs
         const auto chosen = sets.find(parameter.switch_key);
         if (chosen != sets.end() && among(parameter.required_by, chosen->second) && !sets.count(parameter.instead_of))
             give(sets, parameter.key, "0.5");
