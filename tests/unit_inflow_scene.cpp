@@ -116,7 +116,7 @@ TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
     CHECK(says(problem_of(with(kLine)), "table", "not given, and no volume either"));
     CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\npeak = \"rickenmann\"\n")), "peak",
                "found together with table"));
-    CHECK(says(problem_of(with(kLine + volume + "area = 3\n")), "area", "found an unknown key"));
+    CHECK(says(problem_of(with(kLine + volume + "areal = 3\n")), "areal", "found an unknown key"));
     CHECK(says(problem_of(with(kLine + volume + "velocity = 0\n")), "velocity", "found 0"));
     CHECK(says(problem_of(with("line = [[1100, 2050], [1100, 2053]]\n" + volume)), "line", "found a line of 3 m"));
     CHECK(says(problem_of(with("line = [[900, 2050], [900, 2080]]\n" + volume)), "line",
@@ -135,6 +135,54 @@ TEST_CASE("What an inflow cannot be is said in a sentence", "[scene][inflow]") {
                "found velocity = \"column\" and a table without one"));
     CHECK(says(problem_of(with(kLine + "volume = 1e9\n")), "volume", "found 1e+09 m3, more than 100 m of depth"));
     CHECK(says(problem_of(with(kLine + "table = \"q.csv\"\n")), "table", "slide/q.csv: found no file"));
+}
+
+TEST_CASE("Material may come in over an area, at rest", "[scene][inflow][area]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["breach.geojson"] = rectangle(1100, 2050, 1120, 2070);
+    const auto scene_of = [&](const std::string& inflow) {
+        return build_scene(CaseFile::parse(with(inflow + "volume = 300\n"), "slide/case.toml"), gis);
+    };
+    const Scene read = scene_of("area = \"breach.geojson\"\n"),
+                drawn = scene_of("area = [[1100, 2050], [1120, 2050], [1120, 2070], [1100, 2070]]\n");
+    for (const Scene* scene : {&read, &drawn}) {
+        REQUIRE(scene->inflows.size() == 1);
+        const Inflow& inflow = scene->inflows[0];
+        CHECK(inflow.area == Approx(400.0).epsilon(1e-12));
+        double sum = 0.0;
+        Vec2 middle(0, 0);
+        for (const Inflow::Patch& patch : inflow.patches) sum += patch.share, middle += patch.share * patch.at;
+        CHECK(sum == Approx(1.0).epsilon(1e-13));
+        CHECK(middle.x() == Approx(1110.0));
+        CHECK(middle.y() == Approx(2060.0));
+        // 0.75 m in all, in layers of a hundredth of a cell of 5 m would be 15: it is fifty, the last one a half.
+        CHECK(inflow.layer == Approx(0.75 / 49.5));
+        CHECK(inflow.speed == std::vector<double>(inflow.time.size(), 0.0));
+        CHECK(std::any_of(scene->log.begin(), scene->log.end(), [](const std::string& line) {
+            return line.rfind("inflow torrent: 300 m3 until ", 0) == 0 &&
+                   line.find("at rest over 400 m2") != std::string::npos;
+        }));
+    }
+    CHECK(scene_of("area = \"breach.geojson\"\n").inflows[0].patches.size() == read.inflows[0].patches.size());
+}
+
+TEST_CASE("What an area of an inflow cannot be is said in a sentence", "[scene][inflow][area]") {
+    const std::string area = "area = [[1100, 2050], [1120, 2050], [1120, 2070]]\n", volume = "volume = 300\n";
+    CHECK(says(problem_of(with(volume)), "line", "not given, and no area either"));
+    CHECK(says(problem_of(with(kLine + area + volume)), "line", "found together with"));
+    CHECK(says(problem_of(with(area + volume + "velocity = 3\n")), "velocity", "found together with area"));
+    CHECK(says(problem_of(with(area + volume + "towards = [1100, 2200]\n")), "towards", "found together with area"));
+    CHECK(says(problem_of(with("area = [[1100, 2050], [1120, 2050]]\n" + volume)), "area", "found "));
+    CHECK(says(problem_of(with("area = [[1100, 2050], [1102, 2050], [1102, 2052]]\n" + volume)), "area",
+               "found an area of 2 m2"));
+    CHECK(says(problem_of(with("area = [[900, 2050], [1120, 2050], [1120, 2070]]\n" + volume)), "area",
+               "found 900, 2050 outside of the terrain"));
+    FakeGis holed = slope_gis();
+    holed.rasters["dem.tif"].at(22, 11) = Raster::nodata;
+    const std::string problem =
+        only_problem([&] { build_scene(CaseFile::parse(with(area + volume), "slide/case.toml"), holed); });
+    CAPTURE(problem);
+    CHECK(problem.find(": inflow.0.area: ") != std::string::npos);
 }
 
 TEST_CASE("A line across a ridge has no side to flow to", "[scene][inflow]") {

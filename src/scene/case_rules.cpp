@@ -280,6 +280,13 @@ void CaseReader::check_inflow(const std::string& prefix) {
     const auto there = [&](const char* name) {
         return case_.given(prefix + name) || misread_.count(prefix + name) > 0;
     };
+    if (!there("line") && !there("area"))
+        wrong(prefix + "line", "not given, and no area either", "expected where the material comes in",
+              "add line = ... or area = ... under [[inflow]]");
+    for (const char* of_line : {"towards", "velocity"})
+        if (case_.given(prefix + of_line) && there("area"))
+            wrong(prefix + of_line, "found together with area",
+                  "expected it with line only: over an area the material comes in at rest", "remove it");
     if (!there("table") && !there("volume"))
         wrong(prefix + "table", "not given, and no volume either",
               "expected the discharge over time, or its volume [m3]",

@@ -15,6 +15,8 @@ InflowFacts facts_of(const Inflow& of, double gravity) {
         static_cast<std::size_t>(std::max_element(of.discharge.begin(), of.discharge.end()) - of.discharge.begin());
     const double cosine = 1.0 / std::sqrt(1.0 + of.slope * of.slope);
     facts.peak = of.discharge[peak], facts.peak_time = of.time[peak], facts.end = of.time.back();
+    facts.area = of.area, facts.layer = of.layer;
+    if (of.area > 0.0) return facts;
     facts.width = of.width();
     facts.slope_deg = std::atan(of.slope) * 180.0 / 3.14159265358979323846;
     facts.speed = of.speed[peak] / cosine;
@@ -24,6 +26,12 @@ InflowFacts facts_of(const Inflow& of, double gravity) {
 }
 
 std::string inflow_sentence(const std::string& name, const InflowFacts& f) {
+    if (f.area > 0.0)
+        return fmt::format(
+            "inflow {}: {:.6g} m3 until {:.6g} s, at most {:.4g} m3/s at {:.6g} s; at rest over {:.5g} m2, in layers "
+            "of "
+            "{:.3g} m; in all a depth of {:.3g} m there, if none of it flowed off",
+            name, f.volume, f.end, f.peak, f.peak_time, f.area, f.layer, f.volume / f.area);
     std::string text = fmt::format(
         "inflow {}: {:.6g} m3 until {:.6g} s, at most {:.4g} m3/s at {:.6g} s; the line is {:.4g} m wide on a slope of "
         "{:.3g} "

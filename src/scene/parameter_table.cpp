@@ -100,7 +100,13 @@ void add_inflow(Table& table) {
              "line through which material comes in, across the flow and as wide as that: [[x, y], [x, y], ...], or a "
              "vector file of one line");
     line.length = 2;
-    table.push_back(required(line));
+    table.push_back(absent(instead(line, "inflow.area"), "area is needed"));
+    Parameter area =
+        make("inflow.area", Kind::points_or_path, "m",
+             "area over which material comes in at rest, such as a spring: the corners of a polygon, [[x, y], "
+             "[x, y], [x, y], ...], or a vector file of polygons");
+    area.length = 3;
+    table.push_back(absent(instead(area, "inflow.line"), "line is needed"));
     Parameter towards =
         make("inflow.towards", Kind::numbers, "m", "a point on the side of the line that the flow goes to: [x, y]");
     towards.length = 2;

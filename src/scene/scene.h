@@ -82,10 +82,19 @@ struct Section {
     bool to_right = true;  ///< what goes from its left to its right counts as positive; otherwise the other way
 };
 
-/// Material that comes in through a line. Between the times of its table all is linear, before and after it nothing comes.
+/// Material that comes in through a line, or at rest over an area. Between the times of its table all is linear, before and
+/// after it nothing comes.
 struct Inflow {
+    /// A patch of the area.
+    struct Patch {
+        Vec2 at;       ///< on the map
+        double share;  ///< of the area [1]
+    };
     std::string name;
     Polyline line;
+    std::vector<Patch> patches;     ///< instead of a line
+    double area = 0.0;              ///< of all patches; 0: through a line [m2]
+    double layer = 0.0;             ///< depth of an area's row over all of it [m]
     bool to_right = true;           ///< it flows to the right of the line; otherwise to its left
     double slope = 0.0;             ///< of the bed under the line, down the flow's direction; below 0: it climbs [1]
     double spacing = 1.0;           ///< of rows, and of columns in them [m]
@@ -98,8 +107,13 @@ struct Inflow {
         for (std::size_t k = 0; k + 1 < line.size(); ++k) sum += (line[k + 1] - line[k]).norm();
         return sum;
     }
-    /// Of the line, half of its width from either end.
+    /// Of the line, half of its width from either end; of an area, its centroid.
     Vec2 middle() const {
+        if (area > 0.0) {
+            Vec2 sum(0, 0);
+            for (const Patch& patch : patches) sum += patch.share * patch.at;
+            return sum;
+        }
         double left = 0.5 * width();
         for (std::size_t k = 0; k + 1 < line.size(); ++k) {
             const double part = (line[k + 1] - line[k]).norm();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "law/bed/normal_flow.h"
+#include "particles/generate.h"
 #include "scene/inflow_facts.h"
 #include "scene/inflow_table.h"
 #include "scene/scene_parts.h"
@@ -15,6 +16,9 @@ namespace {
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr Index kReach = 6;         ///< cells; what holds the flow up behind the line takes so many
 constexpr double kDeepest = 100.0;  ///< more than so much on all of the terrain is a mistake [m]
+/// Over an area a row is complete when so much has come, in cells: the step at the area's edge then hardly pushes, and a
+/// point is no crumb. A slow source, whose whole depth is little more, comes in as so many layers at least.
+constexpr double kLayer = 0.01, kFewestLayers = 50.0;
 constexpr Index kParts = 16;        ///< of an interval of the table, where speeds follow from the discharge
 constexpr Index kMostParts = 4000;  ///< of all
 
@@ -25,29 +29,112 @@ public:
 
     /// Nothing when something is wrong.
     std::optional<Inflow> read(Problems& problems) {
-        const auto attempt = [&](const char* key, auto&& work) {
-            return problems.attempt(case_.place(prefix_ + key), work);
-        };
         inflow_.name = case_.word(prefix_ + "name");
         inflow_.spacing = bed_.geometry.cell / std::sqrt(case_.number("particles.per_cell"));
+        return given("area") ? read_area(problems) : read_line_of_it(problems);
+    }
+
+private:
+    template <class Work>
+    bool attempt(Problems& problems, const char* key, Work&& work) {
+        return problems.attempt(case_.place(prefix_ + key), work);
+    }
+
+    std::optional<Inflow> read_line_of_it(Problems& problems) {
         Hydrograph table;
-        bool good = attempt("line", [&] {
+        bool good = attempt(problems, "line", [&] {
             inflow_.line = read_line(case_, prefix_ + "line", reader_, bed_.crs_wkt, scene_.log);
             require_ground();
         });
-        good = good && attempt(given("towards") ? "towards" : "line", [&] { choose_side(); });
-        good &= attempt(given("table") ? "table" : "volume", [&] {
+        good = good && attempt(problems, given("towards") ? "towards" : "line", [&] { choose_side(); });
+        good &= attempt(problems, given("table") ? "table" : "volume", [&] {
             table = hydrograph();
             require_room(table);
         });
         if (!good) return {};
         if (!table.remark.empty()) scene_.log.push_back(table.remark);
         inflow_.time = table.time, inflow_.discharge = table.discharge;
-        if (!attempt("velocity", [&] { set_speed(table); })) return {};
+        if (!attempt(problems, "velocity", [&] { set_speed(table); })) return {};
         return inflow_;
     }
 
-private:
+    std::optional<Inflow> read_area(Problems& problems) {
+        Hydrograph table;
+        bool good = attempt(problems, "area", [&] { place_patches(polygons()); });
+        good &= attempt(problems, given("table") ? "table" : "volume", [&] {
+            table = hydrograph();
+            require_room(table);
+        });
+        if (!good) return {};
+        if (!table.remark.empty()) scene_.log.push_back(table.remark);
+        if (!table.velocity.empty())
+            scene_.log.push_back(fmt::format(
+                "inflow {}: the velocities of its table are not used; over an area it comes in at rest", inflow_.name));
+        inflow_.time = table.time, inflow_.discharge = table.discharge;
+        inflow_.speed.assign(table.time.size(), 0.0);
+        inflow_.layer = layer_of(table.volume() / inflow_.area);
+        return inflow_;
+    }
+
+    Polygons polygons() {
+        const std::string key = prefix_ + "area";
+        if (case_.is_text(key)) return reader_.read_polygons(case_.path(key), bed_.crs_wkt, scene_.log);
+        Polygons drawn;
+        drawn.parts.push_back({{case_.points(key)}});
+        drawn.source = key;
+        return drawn;
+    }
+
+    /// As a release of that outline has its points; each gets what the outline covers of its patch.
+    void place_patches(const Polygons& outline) {
+        require_within(outline);
+        Release release;
+        release.outline = outline, release.depth = 1.0, release.name = "the area of inflow " + inflow_.name;
+        ParticleOptions options;
+        options.per_cell = case_.number("particles.per_cell");
+        std::vector<ReleaseReport> reports;
+        std::vector<std::string> unused;
+        const Seeds seeds = make_seeds({release}, bed_, options, reports, unused);
+        inflow_.spacing = seeds.size.front();
+        for (const double patch : seeds.volume) inflow_.area += patch;
+        const double cell = bed_.geometry.cell;
+        if (inflow_.area < cell * cell)
+            throw UserError(
+                fmt::format("found an area of {:.3g} m2; expected a cell ({:.6g} m2) at least; enlarge it, or "
+                            "give a smaller grid.cell",
+                            inflow_.area, cell * cell));
+        for (Index p = 0; p < seeds.count(); ++p)
+            inflow_.patches.push_back({{seeds.x[p], seeds.y[p]}, seeds.volume[p] / inflow_.area});
+    }
+
+    /// Between the outer nodes.
+    void require_within(const Polygons& outline) const {
+        const GridGeometry& g = bed_.geometry;
+        const double x1 = g.x(g.nx - 1), y1 = g.y(g.ny - 1), slack = 1e-9 * (std::abs(x1) + std::abs(y1) + 1.0);
+        Index corners = 0;
+        for (const Polygon& polygon : outline.parts)
+            for (const auto& ring : polygon.rings)
+                for (const Vec2& at : ring) {
+                    ++corners;
+                    if (at.x() >= g.x0 - slack && at.y() >= g.y0 - slack && at.x() <= x1 + slack &&
+                        at.y() <= y1 + slack)
+                        continue;
+                    throw UserError(fmt::format(
+                        "found {:.10g}, {:.10g} outside of the terrain; expected all of the area within x "
+                        "{:.10g} to {:.10g}, y {:.10g} to {:.10g}; move it inwards, or widen terrain.window",
+                        at.x(), at.y(), g.x0, x1, g.y0, y1));
+                }
+        if (corners == 0)
+            throw UserError(outline.source +
+                            ": found no polygon; expected the outline of an area; export it as polygons");
+    }
+
+    /// Of all depth that comes. The last row is half of one: no crumb is left over by rounding.
+    double layer_of(double depth) const {
+        const double layers = std::max(kFewestLayers, std::ceil(depth / (kLayer * bed_.geometry.cell)));
+        return depth / (layers - 0.5);
+    }
+
     bool given(const char* name) const { return case_.given(prefix_ + name); }
 
     void require_ground() const {

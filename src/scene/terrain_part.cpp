@@ -40,6 +40,22 @@ void take_lines(const CaseFile& file, const std::string& table, const GisReader&
     }
 }
 
+/// Of lines and areas.
+void take_inflows(const CaseFile& file, const GisReader& reader, const Raster& whole, std::vector<Vec2>& points) {
+    std::vector<std::string> said_later;
+    for (Index i = 0; i < file.count("inflow"); ++i) {
+        const std::string area = fmt::format("inflow.{}.area", i);
+        if (file.given(area) && file.is_text(area)) {
+            take_corners(reader.read_polygons(file.path(area), whole.crs_wkt, said_later), points);
+            continue;
+        }
+        const Polyline line =
+            file.given(area) ? file.points(area)
+                             : read_line(file, fmt::format("inflow.{}.line", i), reader, whole.crs_wkt, said_later);
+        points.insert(points.end(), line.begin(), line.end());
+    }
+}
+
 std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& reader, const Raster& whole) {
     std::vector<Vec2> points;
     std::vector<std::string> said_later;
@@ -49,7 +65,7 @@ std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& rea
         if (file.given(table + "layer")) name += kLayerMark + file.word(table + "layer");
         take_corners(reader.read_polygons(name, whole.crs_wkt, said_later), points);
     }
-    take_lines(file, "inflow", reader, whole, points);
+    take_inflows(file, reader, whole, points);
     return points;
 }
 

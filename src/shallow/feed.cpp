@@ -46,9 +46,18 @@ double volume_until(const Inflow& of, double time) {
     return sum;
 }
 
+/// Over an area the depth that has come goes on as the flow does through a line: a row is complete with its layer.
+Inflow as_way(const Inflow& area) {
+    Inflow of = area;
+    of.area = 0.0, of.spacing = area.layer, of.speed.clear();
+    for (const double discharge : area.discharge) of.speed.push_back(discharge / area.area);
+    return of;
+}
+
 }  // namespace
 
 std::vector<InflowRow> rows_of(const Inflow& of) {
+    if (of.area > 0.0) return rows_of(as_way(of));
     std::vector<InflowRow> rows;
     Through now, begun;
     now.time = begun.time = of.time.front();
@@ -80,6 +89,8 @@ std::vector<InflowRow> rows_of(const Inflow& of) {
 Feed::Feed(const std::vector<Inflow>& inflows) : next_(inflows.size(), 0) {
     for (const Inflow& inflow : inflows) {
         Source source{inflow, rows_of(inflow), {}, inflow.width()};
+        for (const Inflow::Patch& patch : inflow.patches)
+            source.stations.push_back({patch.at, Vec2(0, 0), patch.share});
         for (std::size_t k = 0; k + 1 < inflow.line.size(); ++k) {
             const Vec2 piece = inflow.line[k + 1] - inflow.line[k];
             const double length = piece.norm();
@@ -108,10 +119,14 @@ double Feed::signal(double gravity) const {
     for (std::size_t n = 0; n < sources_.size(); ++n) {
         if (next_[n] >= static_cast<Index>(sources_[n].rows.size())) continue;
         const InflowRow& row = sources_[n].rows[static_cast<std::size_t>(next_[n])];
-        const double depth = row.volume / (sources_[n].width * row.length);
-        fastest = std::max(fastest, row.speed + std::sqrt(gravity * depth));
+        const double speed = sources_[n].rests() ? 0.0 : row.speed;
+        fastest = std::max(fastest, speed + std::sqrt(gravity * sources_[n].depth_of(row)));
     }
     return fastest;
+}
+
+double Feed::Source::depth_of(const InflowRow& row) const {
+    return row.volume / (rests() ? inflow.area : width * row.length);
 }
 
 void Feed::add_row(const Source& source, const InflowRow& row, double way, Columns& columns) {
@@ -121,7 +136,7 @@ void Feed::add_row(const Source& source, const InflowRow& row, double way, Colum
         seeds.x.push_back(place.x()), seeds.y.push_back(place.y());
         seeds.vx.push_back(velocity.x()), seeds.vy.push_back(velocity.y());
         seeds.volume.push_back(station.share * row.volume);
-        seeds.depth.push_back(row.volume / (source.width * row.length));
+        seeds.depth.push_back(source.depth_of(row));
         seeds.size.push_back(source.inflow.spacing);
         columns.from.push_back(station.at);
     }
@@ -138,6 +153,7 @@ const Seeds& Feed::behind(double time, double reach) {
     for (std::size_t n = 0; n < sources_.size(); ++n) {
         const std::vector<InflowRow>& rows = sources_[n].rows;
         auto k = static_cast<std::size_t>(next_[n]);
+        if (sources_[n].rests()) continue;
         if (k >= rows.size() || time < rows[k].begin) continue;
         const InflowRow& row = rows[k];
         const double at = row.before + row.length * (time - row.begin) / (row.complete - row.begin);
@@ -147,11 +163,26 @@ const Seeds& Feed::behind(double time, double reach) {
     return behind_.seeds;
 }
 
+/// Layers that came since the last time are one: columns at the same places would only have to be merged.
+void Feed::take_layers(const Source& source, double time, Index& next) {
+    InflowRow all;
+    for (; next < static_cast<Index>(source.rows.size()); ++next) {
+        const InflowRow& row = source.rows[static_cast<std::size_t>(next)];
+        if (row.complete > time) break;
+        all.volume += row.volume;
+    }
+    if (all.volume > 0.0) add_row(source, all, 0.0, columns_);
+}
+
 const Feed::Columns& Feed::take(double time) {
     columns_.clear();
     for (std::size_t n = 0; n < sources_.size(); ++n) {
         const std::vector<InflowRow>& rows = sources_[n].rows;
         Index& next = next_[n];
+        if (sources_[n].rests()) {
+            take_layers(sources_[n], time, next);
+            continue;
+        }
         for (; next < static_cast<Index>(rows.size()); ++next) {
             const InflowRow& row = rows[static_cast<std::size_t>(next)];
             if (row.complete > time) break;

@@ -1,5 +1,5 @@
 #pragma once
-// Columns that come in through lines, row by row: THEORY (64).
+// Columns that come in through lines, row by row, and over areas, layer by layer: THEORY (64).
 #include <limits>
 #include <vector>
 
@@ -13,8 +13,8 @@ struct InflowRow {
     double complete = 0.0;   ///< when all of it is through the line [s]
     double mean_time = 0.0;  ///< of its volume through the line [s]
     double volume = 0.0;     ///< [m3]
-    double speed = 0.0;      ///< mean of its volume: momentum is exact [m/s]
-    double length = 0.0;     ///< way that it went on meanwhile [m]
+    double speed = 0.0;      ///< mean of its volume: momentum is exact; over an area, at which the layer grows [m/s]
+    double length = 0.0;     ///< way that it went on meanwhile; over an area, the layer [m]
     double begin = 0.0;      ///< when the first of it is at the line [s]
     double before = 0.0;     ///< way that the flow had gone on until then [m]
 };
@@ -70,7 +70,10 @@ private:
         std::vector<InflowRow> rows;
         std::vector<Station> stations;
         double width;  ///< [m]
+        bool rests() const { return inflow.area > 0.0; }
+        double depth_of(const InflowRow& row) const;  ///< [m]
     };
+    void take_layers(const Source& source, double time, Index& next);
     static void add_row(const Source& source, const InflowRow& row, double way, Columns& columns);
 
     std::vector<Source> sources_;

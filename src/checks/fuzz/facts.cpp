@@ -140,6 +140,9 @@ void learn_inflows(const Scene& scene, Facts& facts) {
             if (n > 0)
                 volume += 0.5 * (inflow.discharge[n] + inflow.discharge[n - 1]) * (inflow.time[n] - inflow.time[n - 1]);
         }
+        for (const Inflow::Patch& patch : inflow.patches)
+            highest = std::max(highest, highest_around(scene.bed, patch.at));
+        if (inflow.area > 0.0) deepest = volume / inflow.area;  // if none of it flowed off
         facts.release_depth = std::max(facts.release_depth, deepest);
         facts.highest_inflow = std::max(facts.highest_inflow, highest + deepest);
         facts.release_energy +=
