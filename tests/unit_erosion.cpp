@@ -72,8 +72,9 @@ void check_same(DepthAveraged& a, DepthAveraged& b) {
         CHECK(std::memcmp((x.*field).data(), (y.*field).data(), size) == 0);
 }
 
-const ErosionLaw kLaws[] = {erosion::Growth{0.02}, erosion::Steady{0.2}, erosion::Shear{0.2, 500.0, 1e-4},
-                            erosion::Energy{300.0}, erosion::Jump{300.0}};
+const ErosionLaw kLaws[] = {erosion::Growth{0.02},         erosion::Steady{0.2}, erosion::Shear{0.2, 500.0, 1e-4},
+                            erosion::Energy{300.0},        erosion::Jump{300.0}, erosion::Front{},
+                            erosion::Mechanical{0.05, 0.1}};
 
 }  // namespace
 
@@ -273,4 +274,15 @@ TEST_CASE("Erosion laws give what their papers' numbers say", "[erosion]") {
     CHECK(erosion::Shear{}.rate(s) == 0.0);
     s.eroded = 0.0, s.stress = 900.0;
     CHECK(erosion::Shear{}.rate(s) == 0.0);
+    // A strip as wide as the column, over a layer of 0.3 m.
+    s.left = 0.3, s.edge = 2.5;
+    CHECK(erosion::Front{}.rate(s) == Approx(0.3 * 5.0 / 2.5));
+    s.left = 0.0;
+    CHECK(erosion::Front{}.rate(s) == 0.0);
+    // Coulomb friction of 0.4 on a slope with g cos = 8 m/s2: rho mu - rho_b mu_b = 800 - 320 kg/m3, and rho lambda_m -
+    // rho_b lambda_b = 2000 - 1600 / 1.8 with the drift of the bed.
+    s.normal_gravity = 8.0, s.stress = 2000.0 * 0.4 * 8.0 * 2.0;
+    CHECK(erosion::Mechanical{0.2, 0.5}.rate(s) ==
+          Approx(0.5 * std::sqrt(8.0 * 2.0 * (800.0 - 320.0) / (2000.0 - 1600.0 / 1.8))));
+    CHECK(erosion::Mechanical{0.6, 0.5}.rate(s) == 0.0);
 }

@@ -17,7 +17,8 @@ void add_erodible(Table& table) {
         choice(law, choices, "none",
                "how the flow takes up its bed. growth: by a share of its mass on each metre; steady: in each "
                "second; shear: at a rate, down to what the basal stress allows; energy: by the work of "
-               "friction; jump: by the stress that the bed cannot bear"));
+               "friction; jump: by the stress that the bed cannot bear; front: what lies in its way; mechanical: by "
+               "the shear velocity of the stress that the bed does not hold"));
     Parameter depth =
         make("erodible.depth", Kind::number_or_path, "m",
              "depth of loose material along gravity, or a raster of it; rock where that is 0 or without data");

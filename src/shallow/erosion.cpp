@@ -303,11 +303,16 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         const Double4 one = all(1.0), u = select(moves, on_map, one);
         const Double4 ux = select(moves, vx, one), uy = select(moves, vy, none);
         const GroundOfFour ground(flow, curved_, means, lanes, ux, uy, select(moves, depth, one));
-        Double4 eroded = none;
-        if constexpr (Law::kSeesEroded)
-            eroded = per_area_ * ground.below.cosine * (means.of(initial_, lanes) - means.of(left_, lanes));
-        if (Law::kSeesEroded && deposits_)  // what lies on top was not taken yet
-            eroded = eroded - per_area_of_flow_ * ground.below.cosine * means.of(fresh_, lanes);
+        Double4 eroded = none, left = none, edge = one;
+        if constexpr (Law::kSeesEroded) {
+            const Double4 still = means.of(left_, lanes), scale = per_area_ * ground.below.cosine;
+            eroded = scale * (means.of(initial_, lanes) - still), left = scale * still;
+            if (deposits_) {  // what lies on top was not taken yet
+                const Double4 lies = per_area_of_flow_ * ground.below.cosine * means.of(fresh_, lanes);
+                eroded = eroded - lies, left = left + lies;
+            }
+            edge = sqrt(select(moves, load(&c.mass[p], lanes) / (flow.density * select(moves, depth, one)), one));
+        }
         Double4 at_middle = all(1.0), gain = none, brake = none;  // the speed in the middle, over that at hand
         for (int pass = 0; pass < 2; ++pass) {
             if (pass == 1)
@@ -318,7 +323,9 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
                 if (!moves[lane]) continue;
                 const double thickness = ground.below.thickness[lane], speed = at_middle[lane] * ground.speed[lane];
                 const double stress = flow.density * thickness * ground.below.kappa[lane] * brake[lane];
-                double rate = law.rate({thickness, speed, stress, eroded[lane], flow.density, density_, dt});
+                double rate =
+                    law.rate({thickness, speed, stress, eroded[lane], flow.density, density_, dt,
+                              ground.below.kappa[lane] * ground.below.normal_gravity[lane], left[lane], edge[lane]});
                 if (!Law::kProportional) rate = std::min(rate, speed);  // no faster than the flow slides over the bed
                 const double share = rate * dt * density_ / (flow.density * thickness);
                 gain[lane] = !Law::kProportional ? share : pass == 0 ? share + 0.5 * share * share : std::expm1(share);

@@ -1,0 +1,39 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "law/erosion/state.h"
+#include "law/key.h"
+
+namespace frana::erosion {
+
+/// Flow and bed slide on one another with the shear velocity of the stress that friction in the bed does not hold (after
+/// Pudasaini and Krautblatter 2021, Nat. Commun. 12, for one phase; after Pudasaini and Fischer 2020 the bed that goes has
+/// 1 / (1 + rho_b / rho) of the flow's speed): E = nu sqrt((tau - rho_b mu_b g_n h) / (rho - rho_b / (1 + rho_b / rho))). Its
+/// branch of deposition is left out: E >= 0. tau is of the run's bed law; Coulomb friction is theirs.
+struct Mechanical {
+    double bed_friction = 0.0;    ///< mu_b [1]
+    double shear_velocity = 1.0;  ///< nu, E over the shear velocity [1]
+
+    static constexpr const char* name = "mechanical";
+    static constexpr const char* is = "";
+    static constexpr bool kProportional = false;
+    static constexpr bool kSeesEroded = false;
+    static std::vector<laws::Key<Mechanical>> keys() {
+        return {{&Mechanical::bed_friction, "bed_friction", "1", ranges::positive,
+                 "friction coefficient inside of the bed, which holds it back"},
+                {&Mechanical::shear_velocity, "shear_velocity", "1", ranges::positive,
+                 "speed at which the bed sinks, over the shear velocity of the stress that is left over",
+                 laws::Missing::usual}};
+    }
+
+    /// src/shallow/THEORY.md, section 18
+    double rate(const State& s) const {
+        const double held = s.bed_density * bed_friction * s.normal_gravity * s.thickness;
+        const double inertia = s.density * s.density / (s.density + s.bed_density);
+        return shear_velocity * std::sqrt(std::max(0.0, s.stress - held) / inertia);
+    }
+};
+
+}  // namespace frana::erosion

@@ -1,0 +1,120 @@
+// Erosion laws without a problem of their own in `frana verify`, against closed forms of a slab on a plane.
+#include <cmath>
+
+#include "analytic_scene.h"
+#include "catch.h"
+#include "checks/verify/ode.h"
+#include "shallow/depth_averaged.h"
+
+using namespace frana;
+using namespace frana::test;
+
+namespace {
+
+constexpr double kSlope = 0.5235987755982988, kGravity = 9.81, kMu = 0.3;
+
+/// A slab of 200 m with Coulomb friction on a strip between walls that falls along x by 30 degrees; loose ground from
+/// `begin` on, `loose` deep along gravity.
+Scene slab(double thickness, double speed, double begin, double loose) {
+    const double cell = 4.0, cosine = std::cos(kSlope);
+    Scene scene = scene_on(
+        131, 7, cell, [](double x, double) { return -std::tan(kSlope) * x; }, -100.0);
+    scene.sides = Sides::wall;
+    scene.gravity = kGravity;
+    scene.bed_law = bed::Coulomb{kMu};
+    fill(scene, [&](double x, double) { return x > 0.0 && x < 200.0 ? thickness / cosine : 0.0; });
+    std::fill(scene.particles.vx.begin(), scene.particles.vx.end(), speed * cosine);
+    ErodibleBed bed;
+    bed.density = 1.2 * scene.density, bed.min_depth = 0.0, bed.evolves = false;
+    bed.depth = Raster::filled(scene.bed.geometry, 0.0);
+    const GridGeometry& g = scene.bed.geometry;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) bed.depth.at(i, j) = g.x(i) > begin ? loose : 0.0;
+    scene.erodible = bed;
+    return scene;
+}
+
+/// Thickness [m] and speed along the bed [m/s].
+using State = verify::State<2>;
+
+/// Of the points that began within two cells of the slab's middle.
+State middle_of(DepthAveraged& run, const Seeds& seeds) {
+    const Frame frame = run.frame();
+    const double *speed = frame.particle("speed")->data, *id = frame.particle("id")->data,
+                 *thickness = frame.particle("thickness")->data;
+    State sum{0.0, 0.0};
+    double count = 0.0;
+    for (Index p = 0; p < frame.particle("id")->count; ++p) {
+        const auto first = static_cast<Index>(id[p]);
+        if (first >= seeds.count() || std::abs(seeds.x[first] - 100.0) > 8.0) continue;
+        sum[0] += thickness[p], sum[1] += speed[p], count += 1.0;
+    }
+    REQUIRE(count > 0.0);
+    return {sum[0] / count, sum[1] / count};
+}
+
+}  // namespace
+
+// With Coulomb friction E = c sqrt(h), so sqrt(h) = sqrt(h0) + k t, k = (rho_b / rho) c / 2. Then h du/dt = a h - 2 k sqrt(h) u
+// is (u h)' = a h, and u h = u0 h0 + a (h^(3/2) - h0^(3/2)) / (3 k).
+TEST_CASE("A slab that takes its bed by the mechanical law", "[erosion][verify]") {
+    const double h0 = 1.5, u0 = 2.0, end = 6.0, mu_b = 0.15, nu = 0.03, beta = 1.2;
+    const double normal = kGravity * std::cos(kSlope), a = kGravity * std::sin(kSlope) - kMu * normal;
+    const double c = nu * std::sqrt(normal * (kMu - beta * mu_b) * (1.0 + beta)), k = 0.5 * beta * c;
+    const double root = std::sqrt(h0) + k * end, h = root * root;
+    const double u = (u0 * h0 + a * (h * root - h0 * std::sqrt(h0)) / (3.0 * k)) / h;
+    const State integrated = verify::integrate(
+        [&](double, const State& y) {
+            const double grows = beta * c * std::sqrt(y[0]);
+            return State{grows, a - grows * y[1] / y[0]};
+        },
+        0.0, end, State{h0, u0}, 1e-3);
+    CHECK(integrated[0] == Approx(h).epsilon(1e-10));
+    CHECK(integrated[1] == Approx(u).epsilon(1e-10));
+    REQUIRE(h > 1.2 * h0);  // it matters
+    Scene scene = slab(h0, u0, -1e9, 10.0);
+    scene.erodible->law = erosion::Mechanical{mu_b, nu};
+    DepthAveraged run(scene);
+    run_to(run, end);
+    const State found = middle_of(run, scene.particles);
+    CHECK(found[0] == Approx(h).epsilon(1e-3));
+    CHECK(found[1] == Approx(u).epsilon(1e-3));
+}
+
+TEST_CASE("A bed whose friction holds more than the flow's stress is not taken mechanically", "[erosion]") {
+    Scene scene = slab(1.5, 2.0, -1e9, 10.0);
+    scene.erodible->law = erosion::Mechanical{0.3, 1.0};  // of 1.2 the flow's density
+    DepthAveraged run(scene);
+    run_to(run, 1.0);
+    CHECK(run.status().bed.eroded == 0.0);
+}
+
+// m = m0 + l s and m du/dt = m a - l u^2, all of the layer behind the front taken: u^2 = ((m0 u0)^2 + 2 a (m^3 - m0^3) /
+// (3 l)) / m^2. A slab is no rigid block, its front runs ahead; so its own front tells the mass, and the momentum is that of
+// the mass.
+TEST_CASE("A slab ploughs all of a layer, to its front", "[erosion][verify]") {
+    const double loose = 0.1, begin = 220.0;
+    Scene scene = slab(0.8, 6.0, begin, loose);
+    scene.erodible->law = erosion::Front{};
+    DepthAveraged run(scene);
+    const Status first = run.status();
+    const double along = (kGravity * std::sin(kSlope) - kMu * kGravity * std::cos(kSlope)) * std::cos(kSlope);
+    double pushed = 0.0, before = 0.0;  // [kg m/s]
+    while (run.status().time < 7.0) {
+        const double mass = run.status().mass;
+        run.advance(7.0);
+        pushed += 0.5 * (mass + run.status().mass) * along * (run.status().time - before);
+        before = run.status().time;
+    }
+    const Frame frame = run.frame();
+    double front = 0.0;
+    for (Index p = 0; p < frame.particle("id")->count; ++p)
+        front = std::max(front, frame.particle("position")->data[3 * p]);
+    const double width = 24.0, per_way = 1.2 * scene.density * loose * width;
+    REQUIRE(run.status().mass_left == 0.0);
+    REQUIRE(run.status().bed.eroded > 40.0 * per_way);  // it matters: ten cells
+    // The layer begins within a cell of where its nodes do; the front lies two cells or so ahead of what is all taken.
+    CHECK(run.status().bed.eroded == Approx(per_way * (front - begin)).margin(3.0 * 4.0 * per_way));
+    // Every particle is pushed by a alone, its pressures cancel: the sum of all momentum is exact but for the steps.
+    CHECK(run.frame().status.momentum[0] == Approx(first.momentum[0] + pushed).epsilon(2e-3));
+}
