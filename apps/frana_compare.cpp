@@ -34,10 +34,10 @@ void require_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& 
 
 void require_erodible(const CompareOptions& options, const std::vector<ProductRaster>& rasters) {
     if (options.bed_change.empty() || find_product(rasters, "bed_change") != nullptr) return;
-    throw UserError(
-        fmt::format("{}: is not there, since the run had no erodible bed; expected one for --bed-change; give the case "
-                    "an [erodible] table and run it again",
-                    (options.run_dir / "rasters" / "bed_change.tif").string()));
+    throw UserError(fmt::format(
+        "{}: is not there, since the run's bed did not change; expected a bed that does for --bed-change; give the "
+        "case an [erodible] or a [deposition] table and run it again",
+        (options.run_dir / "rasters" / "bed_change.tif").string()));
 }
 
 /// compare.md: the comparison on one page, with its picture.

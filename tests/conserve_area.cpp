@@ -92,11 +92,25 @@ TEST_CASE("Rain on all of a box with walls lifts its water level and moves nothi
     Scene scene = box([](double, double) { return 2.0; });
     scene.inflows = {pool(0, 0, 24, 20)};
     DepthAveraged run(scene);
+    const Status first = run.status();
     run_to(run, 10.0);
+    // Each layer comes onto what lies there. Of a level lake that is exact.
+    CHECK(std::abs(budget(first, run.status()).energy_residual) < 1e-6 * std::abs(run.status().potential));
     const Frame frame = run.frame();
     const double* depth = frame.node("depth")->data;
     for (Index n = 0; n < frame.grid.size(); ++n) CHECK(depth[n] == Approx(kPool / 480.0).epsilon(1e-9));
     CHECK(run.status().max_speed < 1e-9);
+}
+
+TEST_CASE("What springs on a slope flows before it may become bed", "[inflow][area][deposition]") {
+    Scene scene = box([](double x, double) { return 10.0 - 0.4 * x; });
+    scene.bed_law = bed::Coulomb{0.1};
+    scene.deposition = Deposition{0.0};
+    scene.inflows = {pool(6, 6, 12, 11)};
+    DepthAveraged run(scene);
+    run_to(run, 3.0);
+    CHECK(run.status().max_speed > 0.5 * 3.0);  // of 0.3 g t, at least a sixth
+    CHECK(run.status().bed.deposited < 0.5 * run.status().mass_in);
 }
 
 TEST_CASE("A spring fills a closed box to its volume over its area", "[inflow][area]") {

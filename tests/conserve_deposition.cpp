@@ -196,21 +196,25 @@ TEST_CASE("Flow, bed and what left have the mass of the start when flow becomes 
             DepthAveraged simulation(scene);
             const Status first = simulation.frame().status;
             double jump = 0.0, momentum = 0.0;
-            for (bool all_in = false; simulation.status().time < 30.0; all_in = true) {
+            int jumps = 0;
+            while (simulation.status().time < 30.0) {
                 const Status before = simulation.status();
                 simulation.advance(30.0);
                 const Status now = simulation.status();
                 momentum = std::max(momentum, std::hypot(now.momentum[0], now.momentum[1]));
                 REQUIRE(std::abs(budget(first, now).mass_error) <= 1e-13);
                 REQUIRE(std::abs(budget(first, now).bed_error) <= 1e-13);
-                if (now.bed.deposited > before.bed.deposited && all_in && now.particles == 0)
+                if (now.bed.deposited > before.bed.deposited && now.particles == 0) {
                     jump = std::max(jump, std::abs(budget(before, now).energy_residual));
+                    ++jumps;
+                }
             }
             const Frame frame = simulation.frame();
             const Status& now = frame.status;
             REQUIRE(now.bed.deposited > 0.05 * (now.mass + now.bed.mass));
             CHECK((now.bed.eroded > 0.0) == hungry);
             CHECK(jump <= 1e-9 * std::abs(first.potential));
+            if (!hungry) WARN(jumps);
             for (const double residual : budget(first, now).momentum_residual)
                 CHECK(std::abs(residual) <= 1e-11 * momentum);
             const double *change = frame.node("bed_change")->data, *deposit = frame.node("deposited_depth")->data;

@@ -126,7 +126,7 @@ TEST_CASE("Water at rest pushes a wall by rho g h^2 / 2, low down more than high
         const double middle = (static_cast<double>(row) - static_cast<double>(below) + 0.5) * cell;
         const double rest = middle > 0.0 ? kDensity * kGravity * std::max(0.0, height - middle) * cell * width : 0.0;
         CAPTURE(row, middle);
-        // Shapes reach a cell and a half, from anywhere in a square: what they smear across the water's surface is held
+        // 3 %: what a designer is promised of each square. Shapes reach a cell and a half, from anywhere in a square: what they smear across the water's surface is held
         // against the foot's.
         const bool at_surface = std::abs(middle - height) < 2.0 * cell;
         CHECK(std::abs(rows[row] / kSpan - rest) <= 0.03 * (at_surface ? foot_row : rest));

@@ -264,6 +264,11 @@ TEST_CASE("Patches of a face tell places apart, and a face's moment is about any
     CHECK(front.patches.area[2 * 8 + 3] == Approx(0.25));
     const FaceLedger lower({Surface::plane({0, 0, 0.2}, {0, 0, 1}), list[1]}, {0, 0, -1}, {8, 8, 7}, 0.5);
     CHECK(lower.face(1, 3).patches.area[2 * 8 + 3] == Approx(0.25 * 0.6));
+    // Ground that slopes along the face cuts from below, not from the side.
+    const std::vector<Surface> askew = {Surface::plane({2, 3.75, 0}, Vec3(0, 0.1, 1).normalized()), list[1]};
+    const FacePart foot = front.patches.around({2, 3.75, -0.2}, 0.1, askew);
+    CHECK(0.5 * (foot.from[0] + foot.to[0]) == Approx(2.5));
+    CHECK(foot.from[1] == Approx(2.0));
     Vec3 sum = Vec3::Zero();
     for (const Vec3& impulse : front.patches.impulse) sum += impulse;
     CHECK((sum - front.impulse).norm() < 1e-12);

@@ -15,11 +15,11 @@ namespace frana {
 struct SimulatedRun {
     const Raster* peak_depth = nullptr;       ///< needed
     const Raster* final_depth = nullptr;      ///< or null: no scores of the final state
-    const Raster* deposited_depth = nullptr;  ///< or null: nothing became bed; lies with the final depth
     const Raster* arrival_time = nullptr;     ///< or null: no steepest path
     const Raster* bed = nullptr;              ///< or null: no steepest path
     double limit = 0.1;                       ///< deeper counts as covered [m]
     const Raster* bed_change = nullptr;       ///< or null: the bed is rock
+    const Raster* deposited_depth = nullptr;  ///< or null: nothing became bed; lies with the final depth
 };
 
 /// What was surveyed.

@@ -82,6 +82,7 @@ void CaseReader::check_tables() {
             if (table == "inflow") check_inflow(prefix);
             if (table == "material.zone") check_zone(prefix);
             if (table == "material.bed") check_friction_table();
+            if (table == "survey") check_surveyed_bed();
         }
     }
 }
@@ -231,6 +232,16 @@ bool CaseReader::friction_table() const {
     return case_.given("material.bed.table") && case_.word("material.bed.table") != "none";
 }
 
+/// A change of the bed is held against that of a bed which changes.
+void CaseReader::check_surveyed_bed() {
+    for (const char* law : {"erodible.law", "deposition.law"})
+        if (misread_.count(law) || case_.word(law) != "none") return;
+    for (const char* key : {"survey.bed_change", "survey.bed_change_noise"})
+        if (case_.given(key))
+            wrong(key, "found beside a bed that does not change", "expected [erodible] or [deposition] with it",
+                  "remove it, or add one of them");
+}
+
 /// A table of friction goes with Voellmy's law alone, and says all of its numbers.
 void CaseReader::check_friction_table() {
     const std::string of = "material.bed.";
@@ -242,6 +253,10 @@ void CaseReader::check_friction_table() {
         if (case_.given(of + name))
             wrong(of + name, "found together with table", "expected one of them",
                   "remove one of them, or give it in a [[material.zone]], which wins over the table");
+    if (case_.count("inflow") > 0 && !case_.given(of + "volume_class") && !misread_.count(of + "volume_class"))
+        wrong(of + "volume_class", "not given, and material comes in by [[inflow]]",
+              "expected the size of the avalanche, which releases alone do not tell",
+              "add volume_class = ... under [material.bed]");
     check_table_numbers();
 }
 
@@ -271,9 +286,8 @@ void CaseReader::check_height_field(const std::string& prefix) {
     if (!case_.given(prefix + "each") || !case_.flag(prefix + "each"))
         wrong(key, "found without each", "expected it with each = true: every polygon has a height of its own",
               "add each = true, or give height");
-    for (const char* name : {"height", "top"})
-        if (case_.given(prefix + name))
-            wrong(key, fmt::format("found together with {}", name), "expected one of them", "remove one of them");
+    if (case_.given(prefix + "top"))  // with height it is an alternative
+        wrong(key, "found together with top", "expected one of them", "remove one of them");
 }
 
 void CaseReader::check_inflow(const std::string& prefix) {

@@ -44,7 +44,8 @@ std::uint8_t class_of(const Raster& bed, Index i, Index j, const GroundBorders& 
 
 Raster smoothed(const Raster& raster, double length) {
     const GridGeometry& g = raster.geometry;
-    const auto reach = static_cast<Index>(std::floor(0.5 * length / g.cell));
+    const double most = static_cast<double>(std::max(g.nx, g.ny));
+    const auto reach = static_cast<Index>(std::min(std::floor(0.5 * length / g.cell), most));
     if (reach < 1) return raster;
     Raster rows = raster, all = raster;
     for (Index j = 0; j < g.ny; ++j)

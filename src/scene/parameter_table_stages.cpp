@@ -93,14 +93,14 @@ void add_barriers(Table& table) {
                            "as little as keeps both sides apart: three cells of the stage, up to 4.3 askew"));
     table.push_back(absent(
         instead(number("barrier.height", "m", positive, "height above the bed, which the top follows"), "barrier.top"),
-        "top is needed"));
+        "top or height_field is needed"));
     table.push_back(absent(instead(make("barrier.height_field", Kind::text, "",
                                         "instead of height: attribute of each polygon that holds it [m]; with each"),
                                    "barrier.height"),
                            "height or top is needed"));
     table.push_back(
         absent(instead(number("barrier.top", "m", any_number, "elevation of a level top"), "barrier.height"),
-               "height is needed"));
+               "height or height_field is needed"));
     table.push_back(number("barrier.friction", "1", between(0.0, 10.0), 0.0,
                            "Coulomb's friction coefficient between points in space and the barrier"));
     table.push_back(flag("barrier.stuck", false, "points in space do not slide along the barrier"));

@@ -1,15 +1,10 @@
 // The keys of [survey]: what a run is compared with.
-#include "law/catalogue.h"
-#include "law/erosion/laws.h"
 #include "scene/parameter_makers.h"
 
 namespace frana {
 
 void add_survey(Table& table) {
     using namespace rows;
-    const auto changes_bed = [](Parameter parameter) {
-        return with(std::move(parameter), "erodible.law", laws::Catalogue<ErosionLaw>::words());
-    };
     table.push_back(absent(make("survey.footprint", Kind::path, "",
                                 "surveyed extent that the run is compared with: any OGR vector file of polygons, or a "
                                 "raster that is above 0 there"),
@@ -20,12 +15,12 @@ void add_survey(Table& table) {
     table.push_back(absent(make("survey.path", Kind::path, "",
                                 "line along which runouts and changes of the bed are measured; besides the footprint"),
                            "the steepest path from the release"));
-    table.push_back(absent(changes_bed(make("survey.bed_change", Kind::path, "",
-                                            "raster of the difference of two surveys, after minus before, m; besides "
-                                            "the footprint")),
+    table.push_back(absent(make("survey.bed_change", Kind::path, "",
+                                "raster of the difference of two surveys, after minus before, m; besides "
+                                "the footprint"),
                            "changes of the bed are not compared"));
-    table.push_back(changes_bed(number("survey.bed_change_noise", "m", not_negative, 0.1,
-                                       "change that is within the noise of both surveys and counts as none")));
+    table.push_back(number("survey.bed_change_noise", "m", not_negative, 0.1,
+                           "change that is within the noise of both surveys and counts as none"));
 }
 
 }  // namespace frana

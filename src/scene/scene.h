@@ -107,13 +107,8 @@ struct Inflow {
         for (std::size_t k = 0; k + 1 < line.size(); ++k) sum += (line[k + 1] - line[k]).norm();
         return sum;
     }
-    /// Of the line, half of its width from either end; of an area, its centroid.
+    /// Of the line, half of its width from either end.
     Vec2 middle() const {
-        if (area > 0.0) {
-            Vec2 sum(0, 0);
-            for (const Patch& patch : patches) sum += patch.share * patch.at;
-            return sum;
-        }
         double left = 0.5 * width();
         for (std::size_t k = 0; k + 1 < line.size(); ++k) {
             const double part = (line[k + 1] - line[k]).norm();

@@ -133,8 +133,10 @@ private:
     void read_heights(const std::filesystem::path& file, Barrier& barrier) {
         const std::string& field = case_.word(prefix_ + "height_field");
         ValuedPolygons valued = reader_.read_valued_polygons(file, field, scene_.bed.crs_wkt, scene_.log);
+        const std::array<double, 4> extent = scene_.bed.geometry.pixel_extent();
         for (std::size_t n = 0; n < valued.values.size(); ++n)
-            if (!(valued.values[n] > 0.0 && valued.values[n] <= kTallest))
+            if (meets(valued.polygons.parts[n].rings.front(), extent) &&
+                !(valued.values[n] > 0.0 && valued.values[n] <= kTallest))
                 throw UserError(fmt::format(
                     "found {} = {:.6g} m at polygon {} of {}; expected a height above 0 and up to {:.6g} m; correct it "
                     "there, or remove the polygon",

@@ -1,15 +1,20 @@
 // [deposition] of a case: what the flow leaves behind as bed.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
 
-/// Whether the bed law stops what hardly moves; a lake at rest over one that does not is no deposit.
+/// Whether the bed law, somewhere, stops what hardly moves; a lake at rest over one that does not is no deposit.
 bool holds_a_push(const Scene& scene) {
     const BedState state{scene.gravity, 1.0, 1.0, 1.0, scene.gravity, scene.density};
-    return std::visit([&](const auto& law) { return law.speed_after(state, 0.0, 1e-9, 1.0) == 0.0; }, scene.bed_law);
+    const auto holds = [&](const auto& law) { return law.speed_after(state, 0.0, 1e-9, 1.0) == 0.0; };
+    if (!scene.friction) return std::visit(holds, scene.bed_law);
+    const auto one_holds = [&](const auto& table) { return std::any_of(table.begin(), table.end(), holds); };
+    return std::visit(one_holds, scene.friction->laws.laws);
 }
 
 }  // namespace
@@ -17,7 +22,7 @@ bool holds_a_push(const Scene& scene) {
 std::optional<Deposition> read_deposition(const CaseFile& file, Scene& scene) {
     if (file.word("deposition.law") == "none") return {};
     Deposition deposition;
-    if (scene.friction || holds_a_push(scene))
+    if (holds_a_push(scene))
         deposition.rest = file.number("deposition.time");
     else
         scene.log.push_back(

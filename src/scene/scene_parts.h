@@ -23,8 +23,9 @@ void set_physics(const CaseFile& file, Scene& scene);
 bool friction_by_table(const CaseFile& file);
 /// Whether the case has such a table, zones of friction or rasters of it.
 bool friction_differs(const CaseFile& file);
-/// The table (`released` [m3] tells the class of size), rasters under [material.bed], and all [[material.zone]], of a scene that has its terrain and its laws. What is wrong with
-/// them goes to `problems`, remarks to the scene's log. Where nothing differs in space nothing happens.
+/// The table (`released` [m3] tells the class of size), rasters under [material.bed], and all [[material.zone]], of a
+/// scene that has its terrain and its laws. What is wrong with them goes to `problems`, remarks to the scene's log. Where
+/// nothing differs in space nothing happens.
 void read_friction(const CaseFile& file, const GisReader& reader, double released, Scene& scene, Problems& problems);
 /// The bed law of the node nearest to a place.
 BedLaw bed_law_at(const Scene& scene, const Vec2& point);

@@ -58,9 +58,10 @@ bool Erosion::find_settled(Flow& flow, const Clock& now) {
             const Index tile = active.tile[n];
             const bool asleep = active.quiet[tile] >= kAsleep && active.begin[n] < active.begin[n + 1];
             if (!asleep && !all_rest<Real>(flow, n)) return;
-            rested_[tile] = (seen_[tile] == now.step - 1 ? rested_[tile] : 0.0) + now.dt;
+            const bool again = seen_[tile] == now.step - 1;  // what has just come in has felt no force yet
+            rested_[tile] = again ? rested_[tile] + now.dt : 0.0;
             seen_[tile] = now.step;
-            eroding_[static_cast<std::size_t>(n)] = rested_[tile] >= *rest_time_;
+            eroding_[static_cast<std::size_t>(n)] = again && rested_[tile] >= *rest_time_;
         });
     });
     return std::any_of(eroding_.begin(), eroding_.end(), [](std::uint8_t one) { return one != 0; });
@@ -129,12 +130,12 @@ void Erosion::list_ledger(Index tile) {
     if (place == ledger_tiles_.end() || *place != tile) ledger_tiles_.insert(place, tile);
 }
 
-/// How long each tile has been at rest.
+/// How long each tile has been at rest; below 0, it was not.
 void Erosion::serialize_rest(Archive& archive, const Flow& flow) {
     std::vector<double> rested;
     const std::vector<Index>& tiles = flow.active.tile;
     if (!archive.loading())
-        for (const Index tile : tiles) rested.push_back(seen_[tile] == last_step_ ? rested_[tile] : 0.0);
+        for (const Index tile : tiles) rested.push_back(seen_[tile] == last_step_ ? rested_[tile] : -1.0);
     archive.array("rested", rested);
     archive.number("rested_at", last_step_);
     const auto deposited = deposited_.parts();
@@ -142,7 +143,8 @@ void Erosion::serialize_rest(Archive& archive, const Flow& flow) {
     if (!archive.loading()) return;
     if (rested.size() != tiles.size()) throw misfit("its tiles are not those at rest");
     for (Index tile = 0; tile < flow.grid.tiles(); ++tile) seen_[tile] = -1;
-    for (std::size_t n = 0; n < tiles.size(); ++n) rested_[tiles[n]] = rested[n], seen_[tiles[n]] = last_step_;
+    for (std::size_t n = 0; n < tiles.size(); ++n)
+        if (rested[n] >= 0.0) rested_[tiles[n]] = rested[n], seen_[tiles[n]] = last_step_;
 }
 
 }  // namespace frana

@@ -121,7 +121,12 @@ void DepthAveraged::take_rows() {
             const Index k = flow_.grid.nearest(c.x[p], c.y[p]);
             kinetic += kinetic_of<Real>(flow_, p, k);
             leave<Real>(flow_, p, k, came);
-            const Vec2 from = (rows.from[static_cast<std::size_t>(p - before)] - Vec2(g.x0, g.y0)) / g.cell;
+            const auto n = static_cast<std::size_t>(p - before);
+            const auto i = static_cast<Index>(std::lround(c.x[p])), j = static_cast<Index>(std::lround(c.y[p]));
+            const bool over_area = rows.seeds.vx[n] == 0.0 && rows.seeds.vy[n] == 0.0;  // onto what lies there
+            if (over_area && before > 0 && flow_.is_in_reach(i, j))
+                came.left_energy += c.mass[p] * flow_.gravity * flow_.nodes.depth[k];
+            const Vec2 from = (rows.from[n] - Vec2(g.x0, g.y0)) / g.cell;
             if (passages_) passages_->count(from, {c.x[p], c.y[p]}, c.mass[p]);
         }
     });

@@ -15,7 +15,8 @@ double mass_faster_than(const Columns& columns, const Carried<Real>& held, doubl
 }  // namespace
 
 MovingMass DepthAveraged::motion(const MotionQuery& query) const {
-    MovingMass motion{status_.mass, 0.0, status_.max_speed_on_map, 0};
+    const double became_bed = std::max(0.0, status_.bed.deposited - status_.bed.eroded);  // is at rest
+    MovingMass motion{status_.mass + became_bed, 0.0, status_.max_speed_on_map, 0};
     motion.moving = flow_.columns.with_real([&](auto real) {
         return mass_faster_than(flow_.columns, flow_.columns.carried<decltype(real)>(), query.faster_than);
     });

@@ -142,7 +142,7 @@ Erosion::Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow)
       tile_energy_(flow.grid.tiles()) {
     const TileGrid& grid = flow.grid;
     expect(flow.scheme.shape == Shape::quadratic && !flow.scheme.paper_pressure,
-           "an erodible bed needs quadratic shapes");
+           "a bed that changes needs quadratic shapes");
     for (Index j = 0; j < grid.ny(); ++j)
         for (Index i = 0; i < grid.nx(); ++i) {
             const Index k = grid.at(i, j);

@@ -40,23 +40,28 @@ Patches of_shape(const DistanceField& shape, int number, double cell) {
 }  // namespace
 
 FacePart Patches::around(const Vec3& x, double reach, const std::vector<Surface>& others) const {
-    constexpr double kLeans = 1e-6;  // of a normal: less, and its surface lies along the way
+    constexpr double kLeans = 0.1;  // of a normal: less, and its surface lies along the face
     const std::array<const Vec3*, 2> ways{&right, &up};
     FacePart part;
+    std::array<double, 2> at{0, 0};
     for (std::size_t n = 0; n < 2; ++n) {
-        const double at = ways[n]->dot(x - origin) / size;
-        part.from[n] = at - reach / size, part.to[n] = at + reach / size;
-        for (const Surface& other : others) {
-            if (other.is_barrier()) continue;
-            const Contact c = contact(other, x);
-            const double lean = c.normal.dot(*ways[n]);
-            if (std::abs(lean) < kLeans) continue;
-            const double edge = at - c.distance / lean / size;
-            if (lean > 0.0)
-                part.from[n] = std::max(part.from[n], edge);
-            else
-                part.to[n] = std::min(part.to[n], edge);
-        }
+        at[n] = ways[n]->dot(x - origin) / size;
+        part.from[n] = at[n] - reach / size, part.to[n] = at[n] + reach / size;
+    }
+    for (const Surface& other : others) {
+        if (other.is_barrier()) continue;
+        const Contact c = contact(other, x);
+        // Along the way that leads out of it soonest: along the other one a gentle slope would cut far off.
+        const std::size_t n = std::abs(c.normal.dot(up)) >= std::abs(c.normal.dot(right)) ? 1 : 0;
+        const double lean = c.normal.dot(*ways[n]);
+        if (std::abs(lean) < kLeans) continue;
+        const double edge = at[n] - c.distance / lean / size;
+        if (lean > 0.0)
+            part.from[n] = std::max(part.from[n], edge);
+        else
+            part.to[n] = std::min(part.to[n], edge);
+    }
+    for (std::size_t n = 0; n < 2; ++n) {
         part.from[n] = std::clamp(part.from[n], 0.0, extent[n]);
         part.to[n] = std::clamp(part.to[n], part.from[n], extent[n]);
     }

@@ -77,6 +77,7 @@ struct Fields {
 void add_pixel(BarrierHit& hit, const Fields& fields, Index i, Index j, const Vec2& away) {
     const double depth = Fields::at(fields.depth, i, j), pressure = Fields::at(fields.pressure, i, j),
                  time = Fields::at(fields.arrival, i, j);
+    if (!(depth > 0.0)) return;  // not reached
     raise(hit.depth, depth), raise(hit.pressure, pressure);
     if (std::isfinite(time) && !(hit.time <= time)) hit.time = time;
     const std::array<bool, 4> faces = sides_of(away);
@@ -91,6 +92,7 @@ std::string cell(double value) { return std::isfinite(value) ? fmt::format(",{:.
 BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& rasters) {
     BarrierHit hit;
     if (outline.parts.empty() || rasters.empty()) return hit;
+    hit.area = 0.0;
     for (const auto& ring : rings_of(outline)) hit.area += ring_area(ring);
     const GridGeometry& all = rasters.front().raster.geometry;
     const NodeBox box = pixels_around(outline, all);
@@ -103,10 +105,7 @@ BarrierHit hit_on(const Polygons& outline, const std::vector<ProductRaster>& ras
         for (Index i = 0; i < part.nx; ++i)
             if (marks[static_cast<std::size_t>(j * part.nx + i)])
                 add_pixel(hit, fields, box.i0 + i, box.j0 + j, away_from(outline, {part.x(i), part.y(j)}));
-    if (hit.depth > 0.0) return hit;
-    BarrierHit none;
-    none.area = hit.area;
-    return none;
+    return hit;
 }
 
 std::vector<BarrierHit> hits_on(const std::vector<Barrier>& barriers, const std::vector<ProductRaster>& rasters) {

@@ -18,7 +18,7 @@ inline constexpr std::array<const char*, 4> kSides{"north", "east", "south", "we
 /// or not known.
 struct BarrierHit {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    double area = 0.0;          ///< of the outline, as given [m2]
+    double area = unknown;      ///< of the outline, as given [m2]
     double pressure = unknown;  ///< largest density times speed squared [Pa]
     double depth = unknown;     ///< largest [m]
     double time = unknown;      ///< first deeper than the footprint depth [s]

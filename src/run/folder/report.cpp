@@ -50,7 +50,8 @@ std::string bed_text(const RunRecord& r) {
     const Status::Bed& bed = r.summary.last.bed;
     const double had = r.summary.first.mass;
     return fmt::format(
-        "the flow took {:.6g} m3 of it (its mass grew {:.3g} times), {:.3g} m deep at most; left behind {:.6g} "
+        "the flow took {:.6g} m3 of it and of what it had left behind (its mass grew {:.3g} times), {:.3g} m deep at "
+        "most; left behind {:.6g} "
         "m3; balance {:.1e}",
         bed.eroded / r.density, had > 0.0 ? (had + bed.eroded) / had : 1.0, bed.deepest, bed.deposited / r.density,
         budget(r.summary.first, r.summary.last).bed_error);
@@ -70,7 +71,7 @@ std::string results(const RunRecord& r) {
     std::string text = "## Results\n\n| Quantity | Value |\n|---|---|\n";
     text += row("release volume", fmt::format("{:.6g} m3", r.release_volume));
     if (r.extras.inflow)
-        text += row("came in through lines",
+        text += row("came in by inflows",
                     fmt::format("{:.6g} m3; by the tables {:.6g} m3, difference {:.1e}", r.extras.inflow->volume,
                                 r.extras.inflow->expected, r.extras.inflow->volume - r.extras.inflow->expected));
     for (const LateEntry& late : r.extras.late) text += row("entered later: " + late.name, late_text(late));
@@ -111,7 +112,8 @@ std::string results(const RunRecord& r) {
     if (s.last.bed.initial > 0.0)
         text += row("erodible bed", bed_text(r));
     else if (s.last.bed.deposited > 0.0)
-        text += row("became bed", fmt::format("{:.6g} m3; balance {:.1e}", s.last.bed.deposited / r.density,
+        text += row("became bed", fmt::format("{:.6g} m3, of which {:.6g} m3 lie there at the end; balance {:.1e}",
+                                              s.last.bed.deposited / r.density, s.last.bed.mass / r.density,
                                               budget(s.first, s.last).bed_error));
     text += row("left the domain", left_text(r));
     return text + "\n";
@@ -216,7 +218,8 @@ std::vector<std::size_t> shown_barriers(const RunRecord& r) {
 std::string barrier_row(const BarrierSummary& b) {
     const std::string run_up = b.run_up > b.about[2] ? fmt::format("{:.5g} m", b.run_up) : "-";  // where it begins
     if (b.first_contact < 0.0)
-        return fmt::format("| {} | none | - | - | {} | {:.5g} m3 |\n", b.name, run_up, b.overtopped);
+        return fmt::format("| {} | {} | - | - | {} | {:.5g} m3 |\n", b.name,
+                           b.blur <= 0.0 && b.run_up > b.about[2] ? "-" : "none", run_up, b.overtopped);
     if (b.blur <= 0.0)
         return fmt::format("| {} | {:.4g} s | - | - | {} | {:.5g} m3 |\n", b.name, b.first_contact, run_up,
                            b.overtopped);
@@ -239,8 +242,8 @@ std::string barriers(const RunRecord& r) {
     if (shown.size() < r.barriers.size()) {
         const auto hit = std::count_if(r.barriers.begin(), r.barriers.end(),
                                        [](const BarrierSummary& b) { return b.first_contact >= 0.0; });
-        text += fmt::format("\nOf {} barriers {} were hit. These stood deepest; `barriers.csv` has all.\n",
-                            r.barriers.size(), hit);
+        text += fmt::format("\nOf {} barriers {} were hit.{} `barriers.csv` has all.\n", r.barriers.size(), hit,
+                            shown.empty() ? "" : " These stood deepest.");
     }
     if (hardest > 0.0)
         text += fmt::format(
@@ -252,7 +255,8 @@ std::string barriers(const RunRecord& r) {
             blur, hardest);
     else if (blur <= 0.0)
         text += fmt::format(
-            "\nFirst contact is when the depth at a face first exceeds {:.4g} m (`output.footprint_depth`). Forces are "
+            "\nFirst contact is when the depth at a face first exceeds {:.4g} m (`output.footprint_depth`); of walls "
+            "along lines and of meshes it is not known. Forces are "
             "measured on points in space only ([[stage]]); columns take a barrier for ground. Over it: columns whose "
             "middle came onto it.\n",
             r.footprint_depth);

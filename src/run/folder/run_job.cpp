@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "compare/deposit.h"
 #include "compare/flow_width.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
@@ -69,7 +70,11 @@ void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) 
     record.peak_speed = largest(rasters, "peak_speed");
     record.peak_pressure = largest(rasters, "peak_pressure");
     record.peak_dynamic_pressure = largest(rasters, "peak_dynamic_pressure");
-    record.final_depth = largest(rasters, "final_depth");
+    if (const ProductRaster* last = find_product(rasters, "final_depth")) {
+        const ProductRaster* bed = find_product(rasters, "deposited_depth");
+        for (const double depth : with_deposit(last->raster, bed ? &bed->raster : nullptr).values)
+            if (depth > record.final_depth) record.final_depth = depth;
+    }
 }
 
 /// compare.json, when the case gives a survey. The run is worth more than its scores: trouble is a warning.

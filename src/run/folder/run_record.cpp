@@ -185,7 +185,9 @@ std::string reason_text(const RunSummary& summary) {
         return moves ? "stopped by the rule time.stop_at_rest, what still moves can change the deposit no more: " +
                            motion_text(summary)
                      : "the mass came to rest";
-    if (summary.reason == "left") return "no material is left in the domain";
+    if (summary.reason == "left")
+        return summary.last.bed.deposited > 0.0 ? "no flow is left: it has become bed, or left the domain"
+                                                : "no material is left in the domain";
     if (summary.reason == "interrupted") return "interrupted; everything up to here is valid";
     return summary.reason + ": " + summary.failure_text;
 }
