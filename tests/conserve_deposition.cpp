@@ -185,6 +185,20 @@ TEST_CASE("What has become bed is taken up again to the last crumb: the bed is t
     CHECK(bed.deepest == 0.0);                  // nothing of the rock
 }
 
+TEST_CASE("A lens at rest becomes bed with the energy that it had", "[deposition]") {
+    Scene scene = scene_on(60, 80, 1.0, [](double x, double) { return 10.0 + 0.01 * x; });
+    scene.bed_law = bed::Coulomb{0.45};  // its sides have a quarter at most
+    fill(scene, [](double x, double y) { return cap(x, y, 30.2, 1.5); });
+    scene.deposition = Deposition{1.0};
+    DepthAveraged simulation(scene);
+    const Status first = simulation.frame().status;
+    while (simulation.status().time < 5.0 && simulation.status().particles > 0) simulation.advance(5.0);
+    const Status& now = simulation.status();
+    REQUIRE(now.particles == 0);
+    CHECK(now.bed.deposited == Approx(first.mass).epsilon(1e-13));
+    CHECK(std::abs(budget(first, now).energy_residual) <= 1e-12 * std::abs(first.potential));
+}
+
 TEST_CASE("Flow, bed and what left have the mass of the start when flow becomes bed", "[deposition]") {
     for (const bool hungry : {false, true})
         for (const Sides sides : {Sides::open, Sides::wall}) {
@@ -195,26 +209,18 @@ TEST_CASE("Flow, bed and what left have the mass of the start when flow becomes 
             });
             DepthAveraged simulation(scene);
             const Status first = simulation.frame().status;
-            double jump = 0.0, momentum = 0.0;
-            int jumps = 0;
+            double momentum = 0.0;
             while (simulation.status().time < 30.0) {
-                const Status before = simulation.status();
                 simulation.advance(30.0);
                 const Status now = simulation.status();
                 momentum = std::max(momentum, std::hypot(now.momentum[0], now.momentum[1]));
                 REQUIRE(std::abs(budget(first, now).mass_error) <= 1e-13);
                 REQUIRE(std::abs(budget(first, now).bed_error) <= 1e-13);
-                if (now.bed.deposited > before.bed.deposited && now.particles == 0) {
-                    jump = std::max(jump, std::abs(budget(before, now).energy_residual));
-                    ++jumps;
-                }
             }
             const Frame frame = simulation.frame();
             const Status& now = frame.status;
             REQUIRE(now.bed.deposited > 0.05 * (now.mass + now.bed.mass));
             CHECK((now.bed.eroded > 0.0) == hungry);
-            CHECK(jump <= 1e-9 * std::abs(first.potential));
-            if (!hungry) WARN(jumps);
             for (const double residual : budget(first, now).momentum_residual)
                 CHECK(std::abs(residual) <= 1e-11 * momentum);
             const double *change = frame.node("bed_change")->data, *deposit = frame.node("deposited_depth")->data;

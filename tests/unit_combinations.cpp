@@ -82,6 +82,7 @@ std::string in_first_table(const std::string& key) {
 
 void parse(Sets sets, const std::vector<std::string>& tables) {
     if (among(tables, "material.zone")) give(sets, "material.bed.law", "manning");
+    if (sets.count("erodible.bed_evolves")) give(sets, "erodible.law", "energy");  // which has all of its numbers
     complete(sets);
     std::vector<std::string> arguments;
     for (const auto& [key, value] : sets) arguments.push_back(in_first_table(key) + "=" + value);

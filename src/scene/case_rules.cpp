@@ -236,10 +236,10 @@ bool CaseReader::friction_table() const {
 void CaseReader::check_surveyed_bed() {
     for (const char* law : {"erodible.law", "deposition.law"})
         if (misread_.count(law) || case_.word(law) != "none") return;
-    for (const char* key : {"survey.bed_change", "survey.bed_change_noise"})
-        if (case_.given(key))
-            wrong(key, "found beside a bed that does not change", "expected [erodible] or [deposition] with it",
-                  "remove it, or add one of them");
+    const std::string key = "survey.bed_change";
+    if (case_.given(key))
+        wrong(key, "found beside a bed that does not change", "expected [erodible] or [deposition] with it",
+              "remove it, or add one of them");
 }
 
 /// A table of friction goes with Voellmy's law alone, and says all of its numbers.
