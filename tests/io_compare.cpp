@@ -297,7 +297,7 @@ TEST_CASE("Changes of the ground in a case are compared at the end; what cannot 
     const std::string compare = "compare run --survey footprint.geojson --bed-change ";
     const Outcome no_bed = rock.frana(compare + "dod.tif");
     CHECK(no_bed.code == 2);
-    CHECK_THAT(no_bed.err, Contains("bed_change.tif: is not there, since the run had no erodible bed; expected"));
+    CHECK_THAT(no_bed.err, Contains("bed_change.tif: is not there, since the run's bed did not change; expected"));
     write_text(rock.path() / "case.toml",
                text_of(rock.path() / "case.toml") + loose +
                    "[survey]\nfootprint = \"footprint.geojson\"\nbed_change = \"dod.tif\"\n");
