@@ -286,8 +286,9 @@ void CaseReader::check_height_field(const std::string& prefix) {
     if (!case_.given(prefix + "each") || !case_.flag(prefix + "each"))
         wrong(key, "found without each", "expected it with each = true: every polygon has a height of its own",
               "add each = true, or give height");
-    if (case_.given(prefix + "top"))  // with height it is an alternative
-        wrong(key, "found together with top", "expected one of them", "remove one of them");
+    for (const char* name : {"height", "top"})
+        if (case_.given(prefix + name))
+            wrong(key, fmt::format("found together with {}", name), "expected one of them", "remove one of them");
 }
 
 void CaseReader::check_inflow(const std::string& prefix) {

@@ -94,9 +94,8 @@ void add_barriers(Table& table) {
     table.push_back(absent(
         instead(number("barrier.height", "m", positive, "height above the bed, which the top follows"), "barrier.top"),
         "top or height_field is needed"));
-    table.push_back(absent(instead(make("barrier.height_field", Kind::text, "",
-                                        "instead of height: attribute of each polygon that holds it [m]; with each"),
-                                   "barrier.height"),
+    table.push_back(absent(make("barrier.height_field", Kind::text, "",
+                                "instead of height: attribute of each polygon that holds it [m]; with each"),
                            "height or top is needed"));
     table.push_back(
         absent(instead(number("barrier.top", "m", any_number, "elevation of a level top"), "barrier.height"),
