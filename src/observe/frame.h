@@ -26,7 +26,7 @@ struct Status : Clock {
     Index particles = 0;
     double mass = 0.0;       ///< [kg]
     double mass_left = 0.0;  ///< left through open sides or exits since the start [kg]
-    double mass_in = 0.0;    ///< came in through lines, or was released later, since the start [kg]; its momentum
+    double mass_in = 0.0;    ///< came in by inflows, or was released later, since the start [kg]; its momentum
                              ///< and energy count as what did not leave
     std::array<double, 2> momentum{};       ///< [kg m/s]
     std::array<double, 2> impulse{};        ///< of all forces since the start [kg m/s]; with walls their push
@@ -91,7 +91,7 @@ struct PointsApart {
     double most_apart = 0.0, most_apart_time = 0.0;  ///< largest `apart` of all outputs [1], [s]
 };
 
-/// What came in through lines.
+/// What came in by inflows.
 struct InflowBudget {
     double volume = 0.0;    ///< by the columns' masses [m3]
     double expected = 0.0;  ///< by the tables, up to the last row of each that came in [m3]
@@ -121,7 +121,7 @@ struct Extras {
     std::optional<Breakage> breakage;         ///< what structured material has come apart into
     std::optional<PointsApart> points_apart;  ///< what 3D points have come apart into
     std::optional<WaterBudget> water;         ///< where the water is and has gone
-    std::optional<InflowBudget> inflow;       ///< what came in through lines
+    std::optional<InflowBudget> inflow;       ///< what came in by inflows
     std::vector<LateEntry> late;              ///< releases that enter later, in the order of the case
 };
 

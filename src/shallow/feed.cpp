@@ -163,7 +163,7 @@ const Seeds& Feed::behind(double time, double reach) {
     return behind_.seeds;
 }
 
-/// Layers that came since the last time are one: columns at the same places would only have to be merged.
+/// Layers that came since the last time are one: of each, columns would lie at the same places.
 void Feed::take_layers(const Source& source, double time, Index& next) {
     InflowRow all;
     for (; next < static_cast<Index>(source.rows.size()); ++next) {
