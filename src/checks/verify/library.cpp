@@ -28,6 +28,7 @@ const std::vector<Problem>& library() {
                                  column_problems,
                                  mud_problems,
                                  erosion_problems,
+                                 bed_wave_problems,
                                  structured_problems,
                                  structured_case_problems,
                                  inflow_problems,
