@@ -80,6 +80,19 @@ TEST_CASE("What is wrong with [erodible] is said in one sentence", "[erosion][sc
               "erodible.outline: no material of rectangle on the grid"));
 }
 
+TEST_CASE("What ploughs has to know where its layer lies", "[erosion][scene]") {
+    FakeGis gis = slope_gis();
+    gis.polygons["gully.geojson"] = rectangle(1040, 2020, 1060, 2037.5);
+    gis.rasters["loose.tif"] = sampled(gis.rasters["dem.tif"].geometry, [](double, double) { return 1.0; });
+    CHECK(
+        has(problem_of(gis, "law = \"front\"\ndepth = 0.5\n"),
+            "erodible.law: found \"front\" with loose material on all of the terrain; expected to know where the layer "
+            "lies that the flow ploughs; give erodible.outline, or a raster as erodible.depth"));
+    for (const char* known : {"depth = 0.5\noutline = \"gully.geojson\"\n", "depth = \"loose.tif\"\n"})
+        CHECK(std::holds_alternative<erosion::Front>(
+            scene_of(gis, std::string("law = \"front\"\n") + known).erodible->law));
+}
+
 TEST_CASE("Loose ground that looks like a mistake, or lies outside, is a remark", "[erosion][scene]") {
     FakeGis gis = slope_gis();
     gis.polygons["half.geojson"] = rectangle(990, 2010, 1010, 2030);

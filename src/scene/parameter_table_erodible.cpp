@@ -24,8 +24,10 @@ void add_erodible(Table& table) {
              "depth of loose material along gravity, or a raster of it; rock where that is 0 or without data");
     depth.range = not_negative;
     table.push_back(with(depth, law, words, words));
-    table.push_back(absent(used(make("erodible.outline", Kind::path, "", "polygons outside of which the bed is rock")),
-                           "loose material on all of the terrain"));
+    table.push_back(
+        absent(used(make("erodible.outline", Kind::path, "",
+                         "polygons outside of which the bed is rock; front needs them, or a raster of depth")),
+               "loose material on all of the terrain"));
     table.push_back(absent(used(number("erodible.density", "kg/m^3", positive, "density of the loose material")),
                            "that of the flow, material.density"));
     for (const laws::SharedKey& key : Laws::keys()) {

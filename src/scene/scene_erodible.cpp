@@ -96,12 +96,21 @@ void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
     scene.log.push_back(fmt::format("erodible: up to {:.6g} m3 of loose material can be taken up", volume));
 }
 
+/// What ploughs takes all that lies in its way: that has to end somewhere.
+void require_extent(const CaseFile& file) {
+    if (file.word("erodible.law") != "front" || file.given("erodible.outline") || file.is_text("erodible.depth"))
+        return;
+    throw UserError(
+        "found \"front\" with loose material on all of the terrain; expected to know where the layer lies "
+        "that the flow ploughs; give erodible.outline, or a raster as erodible.depth");
+}
+
 }  // namespace
 
 std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& reader, Scene& scene,
                                          Problems& problems) {
     const std::string& law = file.word("erodible.law");
-    if (law == "none") return {};
+    if (law == "none" || !problems.attempt(file.place("erodible.law"), [&] { require_extent(file); })) return {};
     ErodibleBed bed;
     bed.law = laws::Catalogue<ErosionLaw>::make(law, [&](const std::string& name) {
         const std::string key = "erodible." + name;

@@ -126,7 +126,7 @@ std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) {
 }
 
 constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kInflow = 4, kLate = 5, kFriction = 6, kDeposition = 7,
-                        kScene = 16;  // salts
+                        kSpring = 8, kScene = 16;  // salts
 
 }  // namespace
 
@@ -151,6 +151,8 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
             if (loose.chance(0.2)) draw_erodible(loose, draft);
             Dice inflow(salted(seed, kInflow), n);
             if (inflow.chance(0.15)) draw_inflow(inflow, draft);
+            Dice spring(salted(seed, kSpring), n);
+            if (spring.chance(0.1)) draw_spring(spring, draft);
             Dice late(salted(seed, kLate), n), friction(salted(seed, kFriction), n);
             if (late.chance(0.1)) draw_late(late, draft);
             if (friction.chance(0.1)) draw_friction(friction, draft);

@@ -38,6 +38,8 @@ void draw_erodible(Dice& dice, Draft& draft);
 void draw_deposition(Dice& dice, Draft& draft);
 /// A line through which more comes in, where the terrain has room for one.
 void draw_inflow(Dice& dice, Draft& draft);
+/// An area over which more comes in, at rest, where the terrain has room for one.
+void draw_spring(Dice& dice, Draft& draft);
 /// Another release, which enters at a time or when the flow reaches it.
 void draw_late(Dice& dice, Draft& draft);
 /// A zone, or a raster, of a number of the bed law that is drawn so far.

@@ -8,11 +8,11 @@
 namespace frana::stress {
 namespace {
 
-/// Rock here and there, and depths that jump from pixel to pixel.
-void draw_layer(Dice& dice, Draft& draft, double deepest) {
-    Raster layer = Raster::filled(draft.dem().geometry, 0.0);
+/// Rock here and there, and depths that jump from pixel to pixel; or even.
+void draw_layer(Dice& dice, Draft& draft, double deepest, bool even) {
+    Raster layer = Raster::filled(draft.dem().geometry, even ? single(deepest) : 0.0);
     for (double& depth : layer.values)
-        if (dice.chance(0.7)) depth = single(dice.chance(0.5) ? deepest : dice.between(0.0, deepest));
+        if (!even && dice.chance(0.7)) depth = single(dice.chance(0.5) ? deepest : dice.between(0.0, deepest));
     draft.rasters["loose.tif"] = layer;
     draft.keys["erodible.depth"] = "\"loose.tif\"";
 }
@@ -27,10 +27,11 @@ void draw_erodible(Dice& dice, Draft& draft) {
         law.choices[1 + static_cast<std::size_t>(dice.below(static_cast<Index>(law.choices.size()) - 1))];
     say(draft, "erodible.law", word);
     const double deepest = dice.decades(1e-3, 0.3) * draft.dem().geometry.cell;
-    if (draft.claims.mirror != Mirror::none || dice.chance(0.4))
+    const bool even = draft.claims.mirror != Mirror::none || dice.chance(0.4);
+    if (even && word != "front")  // which asks for an outline or a raster
         say(draft, "erodible.depth", deepest);
     else
-        draw_layer(dice, draft, deepest);
+        draw_layer(dice, draft, deepest, even);
     for (const Parameter& key : parameters()) {
         if (key.table() != "erodible" || std::count(key.used_by.begin(), key.used_by.end(), word) == 0) continue;
         if (key.kind != Kind::number || key.range.high < 1e300) continue;

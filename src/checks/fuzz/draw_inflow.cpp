@@ -1,4 +1,4 @@
-// What comes into a random case through a line.
+// What comes into a random case through a line, or over an area.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 namespace frana::stress {
 namespace {
 
-constexpr Index kInside = 7;  ///< cells from the edge of the terrain and from holes
+constexpr Index kInside = 7;  ///< cells from the edge of the terrain and from holes, of a line
 
-/// Whether ground lies as far around a place, in cells, as an inflow needs it.
-bool has_ground(const Raster& dem, const Vec2& at) {
+/// Whether ground lies as far around a place, in cells.
+bool has_ground(const Raster& dem, const Vec2& at, Index reach = kInside) {
     const auto i0 = static_cast<Index>(std::lround(at.x())), j0 = static_cast<Index>(std::lround(at.y()));
-    for (Index j = j0 - kInside; j <= j0 + kInside; ++j)
-        for (Index i = i0 - kInside; i <= i0 + kInside; ++i)
+    for (Index j = j0 - reach; j <= j0 + reach; ++j)
+        for (Index i = i0 - reach; i <= i0 + reach; ++i)
             if (i < 0 || j < 0 || i >= dem.geometry.nx || j >= dem.geometry.ny || std::isnan(dem.at(i, j)))
                 return false;
     return true;
@@ -51,6 +51,27 @@ void draw_inflow(Dice& dice, Draft& draft) {
     draft.keys["inflow#0.towards"] = toml_point(dem, middle + across);
     say(draft, "inflow#0.volume", volume);
     say(draft, "inflow#0.velocity", speed);
+}
+
+void draw_spring(Dice& dice, Draft& draft) {
+    if (draft.claims.rests || draft.claims.mirror != Mirror::none || draft.has("scheme.preset")) return;
+    const Raster& dem = draft.dem();
+    const double cell = dem.geometry.cell, radius = dice.decades(1.5, 8.0);  // [cells]
+    const Vec2 middle(dice.between(0.1, 0.9) * static_cast<double>(dem.geometry.nx - 1),
+                      dice.between(0.1, 0.9) * static_cast<double>(dem.geometry.ny - 1));
+    const Index corners = 3 + dice.below(4);
+    const double volume = radius * radius * dice.decades(1e-3, 1.0) * cell * cell * cell;
+    if (!has_ground(dem, middle, static_cast<Index>(std::ceil(radius)) + 1)) return;
+    std::string ring;
+    for (Index k = 0; k < corners; ++k) {
+        const double turn = 6.283185307179586 * static_cast<double>(k) / static_cast<double>(corners);
+        const Vec2 corner = middle + dice.between(0.7, 1.0) * radius * Vec2(std::cos(turn), std::sin(turn));
+        ring += (k > 0 ? ", " : "") + toml_point(dem, corner);
+    }
+    const std::string table = draft.has("inflow#0.name") ? "inflow#1." : "inflow#0.";
+    say(draft, table + "name", "spring");
+    draft.keys[table + "area"] = "[" + ring + "]";
+    say(draft, table + "volume", volume);
 }
 
 }  // namespace frana::stress
