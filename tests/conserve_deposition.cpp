@@ -333,3 +333,18 @@ TEST_CASE("A state put aside before tiles become bed is taken up with the bed th
     CHECK((bed() == before));
     CHECK(simulation.erosion()->status().mass == had);
 }
+
+TEST_CASE("Where nothing can rest, a run that is taken up again has the same bits of the bed's rest", "[deposition]") {
+    const Scene scene = slope([](Scene& s) {
+        s.bed_law = bed::None{};
+        s.deposition->rest.reset();  // as the reader of cases does then
+    });
+    DepthAveraged straight(scene);
+    run_to(straight, 3.0);
+    MemoryArchive kept;
+    straight.serialize(kept);
+    DepthAveraged resumed(scene, Start::resumed);
+    resumed.serialize(kept.rewind());
+    for (const double at : {3.0, 6.0}) run_to(straight, at), run_to(resumed, at);  // onto ground that was dry at 3 s
+    check_same(resumed, straight);
+}

@@ -135,7 +135,7 @@ void Erosion::serialize_rest(Archive& archive, const Flow& flow) {
     std::vector<double> rested;
     const std::vector<Index>& tiles = flow.active.tile;
     if (!archive.loading())
-        for (const Index tile : tiles) rested.push_back(seen_[tile] == last_step_ ? rested_[tile] : -1.0);
+        for (const Index tile : tiles) rested.push_back(rest_time_ && seen_[tile] == last_step_ ? rested_[tile] : -1.0);
     archive.array("rested", rested);
     archive.number("rested_at", last_step_);
     const auto deposited = deposited_.parts();
