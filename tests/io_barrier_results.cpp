@@ -1,11 +1,13 @@
 // Barriers as polygons for a GIS: attributes of the input, and what the run did to them, read back by GDAL.
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "base/atomic_file.h"
 #include "catch.h"
 #include "io/gdal_features.h"
 #include "io/gdal_reader.h"
+#include "observe/barriers.h"
 #include "program.h"
 #include "read_layer.h"
 
@@ -154,6 +156,55 @@ TEST_CASE("A run again writes the same bytes of its barriers, and lists the file
     CHECK_THAT(text_of(village.path() / "a" / "run.json"), Contains("results.gpkg"));
     CHECK(call_frana(village.path(), "run case.toml --out a --quiet").code == 2);
     CHECK(call_frana(village.path(), "run case.toml --out a --quiet --overwrite").code == 0);
+}
+
+TEST_CASE("Of many houses the report has those that are covered most, and a resumed run the same bytes of all",
+          "[barriers][results][resume]") {
+    const Village village;
+    std::string houses;
+    for (int row = 0; row < 5; ++row)
+        for (int column = 0; column < 5; ++column)
+            houses += (houses.empty() ? "" : ",") + square(55 + 15 * column, 10 + 17 * row, 8, R"("use":"house")");
+    write_text(village.path() / "houses.geojson", collection(houses));
+    REQUIRE(call_frana(village.path(), "run case.toml --out straight --quiet").code == 0);
+    REQUIRE(call_frana(village.path(), "run case.toml --out parts --quiet --until 2.5").code == 0);
+    REQUIRE(call_frana(village.path(), "run case.toml --out parts --quiet --resume").code == 0);
+    const fs::path straight = village.path() / "straight", parts = village.path() / "parts";
+    for (const char* file : {"results.gpkg", "barriers.csv"}) {
+        CAPTURE(file);
+        CHECK(text_of(parts / file) == text_of(straight / file));
+    }
+    const std::string table = text_of(straight / "barriers.csv");
+    CHECK(std::count(table.begin(), table.end(), '\n') == 26);
+    const auto rows_of = [](const fs::path& run_dir) {  // of the report's table of barriers
+        std::vector<std::string> rows;
+        std::istringstream report(text_of(run_dir / "report.md"));
+        for (std::string line; std::getline(report, line);)
+            if (line.rfind("| house_", 0) == 0) rows.push_back(line);
+        return rows;
+    };
+    const std::vector<std::string> rows = rows_of(straight);
+    CHECK(rows_of(parts) == rows);
+    // Those that the report leaves out are covered by no more than any that it has.
+    const Layer layer(straight / "results.gpkg");
+    REQUIRE(layer.get().GetFeatureCount() == 25);
+    double least_shown = INFINITY, most_left_out = 0.0;
+    std::size_t hit = 0, covered = 0;
+    for (const OGRFeatureUniquePtr& house : layer.get()) {
+        const std::string name = std::string("| ") + house->GetFieldAsString("barrier") + " |";
+        const bool shown =
+            std::any_of(rows.begin(), rows.end(), [&](const std::string& row) { return row.rfind(name, 0) == 0; });
+        const bool reached = house->IsFieldSetAndNotNull(house->GetFieldIndex("peak_depth_m")) != 0;
+        const double depth = reached ? house->GetFieldAsDouble("peak_depth_m") : 0.0;
+        hit += house->IsFieldSetAndNotNull(house->GetFieldIndex("hit_s")) != 0;
+        covered += depth > 0.0;
+        if (shown) least_shown = std::min(least_shown, depth);
+        if (!shown) most_left_out = std::max(most_left_out, depth);
+    }
+    CHECK(most_left_out <= least_shown);
+    CHECK(rows.size() == std::min(covered, kMostBarrierTables));
+    REQUIRE((hit > 3 && hit < 25));
+    CHECK_THAT(text_of(straight / "report.md"), Contains("Of 25 barriers " + std::to_string(hit) + " were hit."));
 }
 
 TEST_CASE("Attributed polygons come back in the order of the polygons, types widened where features differ",

@@ -10,6 +10,7 @@
 #include "io/gdal_writer.h"
 #include "observe/table.h"
 #include "program.h"
+#include "read_raster.h"
 #include "vtk_io/figures/offscreen.h"
 
 using namespace frana;
@@ -74,17 +75,9 @@ const char* const contract[] = {"true_positive_area",
                                 "boundary_distance_mean",
                                 "boundary_distance_p95"};
 
-Raster peak_depth(const fs::path& run_dir) {
-    std::vector<std::string> log;
-    return GdalReader().read_raster(run_dir / "rasters" / "peak_depth.tif", {-1e9, -1e9, 1e9, 1e9}, "", log);
-}
+Raster peak_depth(const fs::path& run_dir) { return raster_of(run_dir, "peak_depth.tif"); }
 
 const std::string loose = "[erodible]\ndepth = 1.0\nlaw = \"growth\"\ngrowth = 0.05\n";
-
-Raster raster_of(const fs::path& run_dir, const char* name) {
-    std::vector<std::string> log;
-    return GdalReader().read_raster(run_dir / "rasters" / name, {-1e9, -1e9, 1e9, 1e9}, "", log);
-}
 
 /// What a second survey would see of a run.
 Raster ground_change(const fs::path& run_dir) {

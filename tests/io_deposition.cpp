@@ -1,0 +1,112 @@
+// A bed that gains and loses, by the program: rasters, record, report, resume.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "plane_case.h"
+#include "read_raster.h"
+
+using namespace frana;
+namespace fs = std::filesystem;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr double kPixel = 25.0, kDensity = 1600.0, kReleased = 1.5 * 30.0 * 40.0;  // [m2], [kg/m3], [m3]
+
+/// A slide that stops on the plane; `more` says what the bed is made of.
+struct Slide : PlaneCase {
+    explicit Slide(const std::string& more = "") {
+        write(
+            "[material]\ndensity = 1600\n[material.bed]\nlaw = \"coulomb\"\nmu = 0.2\n[output]\nevery = 5\n"
+            "formats = [\"geotiff\"]\n[deposition]\nlaw = \"rest\"\ntime = 1\n" +
+            more);
+    }
+    fs::path run(const std::string& name, const std::string& more = "") const {
+        const fs::path dir = folder() / name;
+        const Outcome done = frana("run CASE --quiet --set time.end=20 " + more + " --out " + dir.string());
+        INFO(done.err);
+        REQUIRE(done.code == 0);
+        return dir;
+    }
+};
+
+Json bed_of(const fs::path& run_dir) { return Json::parse(text_of(run_dir / "run.json"))["budgets"]["bed"]; }
+
+double volume(const Raster& depth) {
+    double sum = 0.0;
+    for (const double value : depth.values) sum += value * kPixel;
+    return sum;
+}
+
+/// float32 of elevations up to 100 m and of what their change sums to.
+constexpr double kRounding = 1e-5;
+
+void check_ground(const Slide& slide, const fs::path& run_dir) {
+    const Raster before = raster_in(slide.folder() / "dem.asc"), after = raster_of(run_dir, "final_elevation.tif"),
+                 change = raster_of(run_dir, "bed_change.tif"), left = raster_of(run_dir, "deposited_depth.tif"),
+                 taken = raster_of(run_dir, "eroded_depth.tif");
+    REQUIRE(after.geometry == before.geometry);
+    double rises = 0.0, sums = 0.0;
+    for (std::size_t k = 0; k < before.values.size(); ++k) {
+        rises = std::max(rises, std::abs(after.values[k] - before.values[k] - change.values[k]));
+        sums = std::max(sums, std::abs(left.values[k] - taken.values[k] - change.values[k]));
+    }
+    CHECK(rises < kRounding);
+    CHECK(sums < kRounding);
+    CHECK(*std::min_element(left.values.begin(), left.values.end()) >= 0.0);
+    CHECK(*std::min_element(taken.values.begin(), taken.values.end()) >= 0.0);
+}
+
+}  // namespace
+
+TEST_CASE("What a slide leaves on rock is in the rasters, the record and the report", "[program][deposition]") {
+    const Slide slide;
+    const fs::path dir = slide.run("run");
+    check_ground(slide, dir);
+    const Json bed = bed_of(dir);
+    const double deposited = bed["deposited"].get<double>();
+    CHECK((bed["initial"] == 0.0 && bed["eroded"] == 0.0));
+    CHECK(deposited > 0.5 * kReleased * kDensity);
+    CHECK(bed["final"].get<double>() == Approx(deposited).epsilon(1e-13));
+    CHECK(std::abs(bed["relative_error"].get<double>()) < 1e-13);
+    // Rasters have seven digits.
+    const double lies = volume(raster_of(dir, "deposited_depth.tif"));
+    CHECK(kDensity * lies == Approx(deposited).epsilon(1e-6));
+    CHECK(volume(raster_of(dir, "eroded_depth.tif")) == 0.0);
+    CHECK(lies + volume(raster_of(dir, "final_depth.tif")) == Approx(kReleased).epsilon(1e-6));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("| became bed |"));
+}
+
+TEST_CASE("A bed that is taken up and left again closes its budget in the record and in the rasters",
+          "[program][deposition]") {
+    const Slide slide("[erodible]\ndepth = 0.4\nlaw = \"growth\"\ngrowth = 0.02\n");
+    const fs::path dir = slide.run("run");
+    check_ground(slide, dir);
+    const Json bed = bed_of(dir);
+    const auto mass = [&](const char* name) { return bed[name].get<double>(); };
+    REQUIRE((mass("eroded") > 0.0 && mass("deposited") > 0.0));
+    CHECK(mass("final") == Approx(mass("initial") - mass("eroded") + mass("deposited")).epsilon(1e-13));
+    CHECK(std::abs(mass("relative_error")) < 1e-13);
+    // What was left may have been taken again: the rasters have what lies there at the end.
+    const double changed = volume(raster_of(dir, "bed_change.tif"));
+    CHECK(kDensity * changed == Approx(mass("deposited") - mass("eroded")).epsilon(1e-5));
+    CHECK(changed + volume(raster_of(dir, "final_depth.tif")) == Approx(kReleased).epsilon(1e-6));
+    CHECK_THAT(text_of(dir / "report.md"), Contains("| erodible bed |"));
+}
+
+TEST_CASE("A run that stops while it takes up its bed goes on to the same rasters and budget",
+          "[program][deposition]") {
+    const Slide slide("[erodible]\ndepth = 0.4\nlaw = \"growth\"\ngrowth = 0.02\n");
+    const fs::path straight = slide.run("straight", "--threads 1");
+    const fs::path parts = slide.run("parts", "--threads 2 --until 7");
+    slide.run("parts", "--threads 1 --resume");
+    CHECK(bed_of(parts) == bed_of(straight));
+    CHECK(text_of(parts / "history.csv") == text_of(straight / "history.csv"));
+    for (const char* name : {"deposited_depth.tif", "eroded_depth.tif", "bed_change.tif", "final_elevation.tif",
+                             "final_depth.tif", "peak_depth.tif"}) {
+        CAPTURE(name);
+        CHECK(text_of(parts / "rasters" / name) == text_of(straight / "rasters" / name));
+    }
+}
