@@ -139,7 +139,7 @@ double farthest(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-TEST_CASE("The surface does not move when a tile becomes bed, and only tiles do that have rested", "[deposition]") {
+TEST_CASE("The surface does not move when material becomes bed, and what moves stays", "[deposition]") {
     const Scene scene = puddle();
     Still still(scene);
     const Index moving = still.flow.active.tile[4];
@@ -158,6 +158,64 @@ TEST_CASE("The surface does not move when a tile becomes bed, and only tiles do 
     CHECK(std::abs(bed.mass - bed.deposited) <= 1e-14 * bed.deposited);
 }
 
+TEST_CASE("Points stay that deposit on a node in motion, and they alone, until it has rested", "[deposition]") {
+    const Scene scene = puddle();
+    Still still(scene);
+    const Index i = 37, j = 22, moving = still.flow.grid.at(i, j);
+    const auto touches = [&](double x, double y) {  // at places half a cell wide, sub-points reach an eighth farther
+        return std::abs(x - double(i)) < 1.625 && std::abs(y - double(j)) < 1.625;
+    };
+    const Columns& c = still.flow.columns;
+    const Index near = std::count_if(c.id.begin(), c.id.end(), [&](Index p) { return touches(c.x[p], c.y[p]); });
+    REQUIRE((near > 20 && 10 * near < c.count()));
+    const std::vector<double> before = still.levels();
+    REQUIRE_FALSE(still.settle());
+    still.flow.nodes.motions()[moving].vy = -1e-300;
+    REQUIRE(still.settle());
+    CHECK(c.count() == near);
+    for (Index p = 0; p < c.count(); ++p) CHECK(touches(c.x[p], c.y[p]));
+    CHECK(farthest(still.levels(), before) <= 4e-15);
+    still.flow.nodes.motions()[moving].vy = 0.0;
+    REQUIRE_FALSE(still.settle());  // its clock begins anew
+    REQUIRE(still.settle());
+    CHECK(c.count() == 0);
+}
+
+TEST_CASE("A heap becomes bed while a film slides within the same 16 cells", "[deposition]") {
+    Scene scene = scene_on(40, 16, 1.0, [](double x, double) { return 0.8 * std::max(0.0, x - 9.0); });
+    scene.bed_law = bed::Coulomb{0.45};
+    const auto heap = [](double x, double y) {
+        return std::max(0.0, 0.5 - 0.05 * ((x - 4.1) * (x - 4.1) + (y - 7.6) * (y - 7.6)));
+    };
+    const auto film = [](double x, double y) { return x > 12.0 && x < 14.5 && y > 5.0 && y < 10.0 ? 0.05 : 0.0; };
+    fill(scene, heap);
+    double of_heap = 0.0;
+    for (const double volume : scene.particles.volume) of_heap += volume * scene.density;
+    fill(scene, film);
+    scene.deposition = Deposition{0.5};
+    DepthAveraged simulation(scene);
+    const Flow& flow = simulation.flow();
+    const auto surface = [&] {
+        std::vector<double> all;
+        for (Index j = 0; j < 16; ++j)
+            for (Index i = 0; i < 9; ++i) {
+                const Index k = flow.grid.at(i, j);
+                all.push_back(flow.bed.z[k] + (flow.is_in_reach(i, j) ? flow.nodes.depth[k] : 0.0));
+            }
+        return all;
+    };
+    const std::vector<double> before = surface();
+    double slowest = 1.0;
+    while (simulation.status().time < 1.2) {
+        simulation.advance(1.2);
+        if (simulation.status().time > 0.4) slowest = std::min(slowest, simulation.status().max_speed);
+    }
+    REQUIRE(slowest > 0.5);  // the film never rested
+    for (const double x : flow.columns.x) REQUIRE((x > 9.0 && x < 15.0));
+    CHECK(simulation.status().bed.deposited == Approx(of_heap).epsilon(1e-12));
+    CHECK(farthest(surface(), before) <= 1e-15);
+}
+
 TEST_CASE("What has become bed is taken up again to the last crumb: the bed is that of the start", "[deposition]") {
     const Scene scene = puddle();
     Still still(scene);
@@ -169,7 +227,7 @@ TEST_CASE("What has become bed is taken up again to the last crumb: the bed is t
         return all;
     };
     const std::vector<double> rock = heights();
-    still.settle(), still.settle();
+    still.levels(), still.settle(), still.settle();
     REQUIRE(still.flow.columns.count() == 0);
     CHECK(farthest(heights(), rock) > 1.5);
     // The same points come again, in motion.

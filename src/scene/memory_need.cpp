@@ -23,7 +23,7 @@ constexpr double part_node_rate = 160.0;
 /// Besides, for each node of solids that hold together, and of free water (4 million nodes).
 constexpr double structure_rate = 35.0, water_rate = 140.0;
 /// Likewise of an erodible bed: seven numbers with its depth, two more where the bed's smoothing follows.
-constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 8.0;
+constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 16.0;
 constexpr double graphics_need = 350e6;  ///< besides, for pictures: software OpenGL, 290 to 420 MB
 
 /// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.

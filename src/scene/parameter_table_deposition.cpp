@@ -6,9 +6,9 @@ namespace frana {
 void add_deposition(Table& table) {
     using namespace rows;
     const char* const law = "deposition.law";
-    table.push_back(
-        choice(law, {"none", "rest"}, "none",
-               "how the flow becomes bed. rest: where all of it within 16 x 16 cells has not moved for `time`"));
+    table.push_back(choice(
+        law, {"none", "rest"}, "none",
+        "how the flow becomes bed. rest: particles that do not move, where friction has held the flow for `time`"));
     table.push_back(
         with(number("deposition.time", "s", not_negative, 10.0,
                     "at rest, after which material becomes bed; later flow runs over it as over other ground"),

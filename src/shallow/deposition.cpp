@@ -1,23 +1,28 @@
 // The bed gains: material that has been at rest for a time becomes bed (THEORY.md, section 20).
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "mpm/stored_points.h"
 #include "shallow/bed_tiles.h"
 #include "shallow/erosion.h"
+#include "shallow/sub_points.h"
 
 namespace frana {
 namespace {
 
-/// Whether a tile has points and none of them moves or would turn.
+/// How often what rests is looked for within the time that it has to: each time all that stay close their ranks.
+constexpr double kLooks = 10.0;
+
+/// Whether a step ended a stretch of time, or a time [s] of none.
+bool ends_stretch(const Clock& now, double stretch) {
+    return !(stretch > 0.0) || std::floor(now.time / stretch) != std::floor((now.time - now.dt) / stretch);
+}
+
 template <class Real>
-bool all_rest(const Flow& flow, Index n) {
-    const Carried<Real>& held = flow.columns.carried<Real>();
-    const Index first = flow.active.begin[n], end = flow.active.begin[n + 1];
-    for (Index p = first; p < end; ++p)
-        for (const auto* column : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy})
-            if ((*column)[p] != Real{0}) return false;
-    return first < end;
+bool is_still(const Carried<Real>& held, Index p) {
+    for (const auto* column : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy})
+        if ((*column)[p] != Real{0}) return false;
+    return true;
 }
 
 }  // namespace
@@ -26,48 +31,65 @@ void Erosion::prepare_deposition(const Scene& scene, const Flow& flow) {
     if (!scene.deposition) return;
     deposits_ = true;
     fresh_ = LazyArray<double>(flow.grid.size());
-    rested_ = LazyArray<double>(flow.grid.tiles());
-    seen_ = LazyArray<Index>(flow.grid.tiles());
     ledger_tiles_.reserve(static_cast<std::size_t>(flow.grid.tiles()));  // steps allocate nothing
     rest_time_ = scene.deposition->rest;
+    if (rest_time_) clocks_ = RestClocks(flow.grid);
 }
 
 bool Erosion::settle(Flow& flow, const Clock& now) {
-    if (!rest_time_ || !find_settled(flow, now)) return false;
-    const Index count = flow.columns.count();
-    assign_sparingly(gone_, static_cast<std::size_t>(count), std::uint8_t{0});
-    make_room(flow);
-    for_each_eroding(flow, [&](Index n) {
-        for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-            wanted_[p] = flow.columns.mass[p];
-            gone_[static_cast<std::size_t>(p)] = 1;
-        }
-    });
+    if (!rest_time_) return false;
+    clocks_.tick(flow, now.dt);
+    if (!ends_stretch(now, *rest_time_ / kLooks) || !find_settled(flow)) return false;
     give(flow);
+    for (Index n = 0; n < flow.active.count(); ++n)
+        if (eroding_[static_cast<std::size_t>(n)] || path_moved_) wake(flow, flow.active.tile[n]);
     return true;
 }
 
-/// Counts how long each tile has been at rest, by its points alone: what sleeps is found anew after a load.
-bool Erosion::find_settled(Flow& flow, const Clock& now) {
-    const ActiveTiles& active = flow.active;
-    eroding_.assign(static_cast<std::size_t>(active.count()), 0);
-    last_step_ = now.step;
+/// Which points give all that they have, and their tiles.
+bool Erosion::find_settled(Flow& flow) {
+    eroding_.assign(static_cast<std::size_t>(flow.active.count()), 0);
+    assign_sparingly(gone_, static_cast<std::size_t>(flow.columns.count()), std::uint8_t{0});
+    make_room(flow);
     flow.columns.with_real([&](auto real) {
-        using Real = decltype(real);
-        for_each_tile(active, [&](Index n) {
-            const Index tile = active.tile[n];
-            const bool asleep = active.quiet[tile] >= kAsleep && active.begin[n] < active.begin[n + 1];
-            if (!asleep && !all_rest<Real>(flow, n)) return;
-            const bool again = seen_[tile] == now.step - 1;  // what has just come in has felt no force yet
-            rested_[tile] = again ? rested_[tile] + now.dt : 0.0;
-            seen_[tile] = now.step;
-            eroding_[static_cast<std::size_t>(n)] = again && rested_[tile] >= *rest_time_;
+        for_each_tile(flow.active, [&](Index n) {
+            bool near = false;
+            for_each_around(flow.grid, flow.active.tile[n],
+                            [&](Index to) { near = near || clocks_.any_has_run(to, *rest_time_); });
+            eroding_[static_cast<std::size_t>(n)] = near && choose_settled<decltype(real)>(flow, n);
         });
     });
     return std::any_of(eroding_.begin(), eroding_.end(), [](std::uint8_t one) { return one != 0; });
 }
 
-/// What the points of the tiles chosen give lies on the bed from now on, as they would have deposited it: z rises by what the
+template <class Real>
+bool Erosion::choose_settled(const Flow& flow, Index n) {
+    bool any = false;
+    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+        const bool settles = is_still(flow.columns.carried<Real>(), p) && lies_on_rest<Real>(flow, p);
+        wanted_[p] = settles ? flow.columns.mass[p] : 0.0;
+        gone_[static_cast<std::size_t>(p)] = settles;
+        any = any || settles;
+    }
+    return any;
+}
+
+/// Whether all nodes that a point deposits on have rested: mass on those of its sub-points, momentum on those around itself.
+template <class Real>
+bool Erosion::lies_on_rest(const Flow& flow, Index p) const {
+    const Columns& c = flow.columns;
+    bool rest = true;
+    const auto look = [&](const Quadratic& sx, const Quadratic& sy) {
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i)
+                rest = rest && clocks_.have_run(flow.grid.at(sx.base + i, sy.base + j), *rest_time_);
+    };
+    look(Quadratic(c.x[p]), Quadratic(c.y[p]));
+    if (rest) for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges_of(c.carried<Real>(), p), look);
+    return rest;
+}
+
+/// What the points of the tiles chosen give, `wanted_` of their mass, lies on the bed from now on, as they would have deposited it: z rises by what the
 /// flow's depth falls.
 void Erosion::give(Flow& flow) {
     list_given(flow);
@@ -130,21 +152,10 @@ void Erosion::list_ledger(Index tile) {
     if (place == ledger_tiles_.end() || *place != tile) ledger_tiles_.insert(place, tile);
 }
 
-/// How long each tile has been at rest; below 0, it was not.
-void Erosion::serialize_rest(Archive& archive, const Flow& flow) {
-    std::vector<double> rested;
-    const std::vector<Index>& tiles = flow.active.tile;
-    if (!archive.loading())
-        for (const Index tile : tiles) rested.push_back(rest_time_ && seen_[tile] == last_step_ ? rested_[tile] : -1.0);
-    archive.array("rested", rested);
-    archive.number("rested_at", last_step_);
+void Erosion::serialize_deposition(Archive& archive, const Flow& flow) {
     const auto deposited = deposited_.parts();
     archive.numbers("deposited", {deposited[0], deposited[1]});
-    if (!archive.loading()) return;
-    if (rested.size() != tiles.size()) throw misfit("its tiles are not those at rest");
-    for (Index tile = 0; tile < flow.grid.tiles(); ++tile) seen_[tile] = -1;
-    for (std::size_t n = 0; n < tiles.size(); ++n)
-        if (rested[n] >= 0.0) rested_[tiles[n]] = rested[n], seen_[tiles[n]] = last_step_;
+    if (rest_time_) clocks_.serialize(archive, flow);
 }
 
 }  // namespace frana

@@ -165,12 +165,11 @@ void DepthAveraged::advance(double until) {
     if (passages_) timed_("sections", [&] { passages_->count_moved(flow_); });
     accumulate_points(points);
     status_.tick(dt, until);
-    if (adapts || points.left_count > 0) adapt_points(adapts, due, points.left_count > 0, fed);
-    if (erosion_)
-        timed_("erosion", [&] {
-            erode(dt);
-            settle();
-        });
+    // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
+    if (points.left_count > 0) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
+    if (erosion_) timed_("erosion", [&] { settle(); });
+    if (adapts) adapt_points(due, fed);
+    if (erosion_) timed_("erosion", [&] { erode(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
     if (late_) enter_late();
@@ -235,14 +234,11 @@ NodeSums DepthAveraged::raise_surface() {
     return sums;
 }
 
-/// Every few steps points split where they spread; points that left are dropped; tiles are kept up to date.
-void DepthAveraged::adapt_points(bool deposit_follows, bool due, bool points_left, bool fed) {
+/// Every few steps points split where they spread, and tiles are kept up to date; a deposit follows.
+void DepthAveraged::adapt_points(bool due, bool fed) {
     const bool has_domains = !flow_.scheme.paper_pressure;
     if (due) since_split_ = 0.0;
     const std::vector<std::uint8_t> none;
-    // Dropped, not sorted: nodes have been cleared for the present tiles, and stay so until the next deposit.
-    if (points_left) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
-    if (!deposit_follows) return;
     if (fed) take_rows();
     Index born = 0;
     if (has_domains && due) born = timed_("split", [&] { return split_points(); });

@@ -109,7 +109,7 @@ private:
     void serialize_sums(Archive& archive);
     void serialize_nodes(Archive& archive);
     void serialize_peaks(Archive& archive);
-    void adapt_points(bool deposit_follows, bool due, bool points_left, bool fed);
+    void adapt_points(bool due, bool fed);
     void erode(double dt);
     void settle();
     void take_rows();

@@ -270,7 +270,10 @@ void Erosion::find_demand(Flow& flow, double dt) {
         for_each_eroding_coloured(flow, [&](Index n) {
             const auto demand = [&](const auto& law, const auto& friction) {
                 using Law = std::decay_t<decltype(law)>;
-                demand_of_tile<Law, std::decay_t<decltype(friction)>, Real>(flow, n, dt, law, friction);
+                using Under = std::decay_t<decltype(friction)>;
+                if constexpr (Law::kSeesEroded)
+                    if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, dt, law, friction);
+                demand_of_tile<Law, Under, Real, false>(flow, n, dt, law, friction);
             };
             if (flow.laws)
                 std::visit([&](const auto& law) { demand(law, LawOfEachNode{}); }, law_);
@@ -283,8 +286,9 @@ void Erosion::find_demand(Flow& flow, double dt) {
 }
 
 /// Velocities are those of the step's momentum over the mass before it (leapfrog). In the middle of the step, where the
-/// way and the law are taken, half of the gain shares it: such points have come too far, and are set back.
-template <class Law, class Friction, class Real>
+/// way and the law are taken, half of the gain shares it: such points have come too far, and are set back. kFresh: material
+/// may have been left behind, that a law has not taken yet.
+template <class Law, class Friction, class Real, bool kFresh>
 void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction) {
     Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
@@ -307,7 +311,7 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         if constexpr (Law::kSeesEroded) {
             const Double4 still = means.of(left_, lanes), scale = per_area_ * ground.below.cosine;
             eroded = scale * (means.of(initial_, lanes) - still), left = scale * still;
-            if (deposits_) {  // what lies on top was not taken yet
+            if constexpr (kFresh) {
                 const Double4 lies = per_area_of_flow_ * ground.below.cosine * means.of(fresh_, lanes);
                 eroded = eroded - lies, left = left + lies;
             }
@@ -543,10 +547,12 @@ void Erosion::follow_bed(Flow& flow) {
     }
     for_each_in_parallel(next_, [&](Index tile) { refresh_slopes(grid, flow.bed, tile); });
     for (const Index tile : next_) marked_[static_cast<std::size_t>(tile)] = 0, changed_[tile] = 1;
+    path_moved_ = false;
     if (!bent_path_) return;
     double most = 0.0;  // of all tiles, or what is symmetric would part at their edges
     for (const Index tile : ledger_tiles_) most = std::max(most, tile_pending_[tile]);
     if (!(most > kFollows * grid.cell())) return;
+    path_moved_ = true;
     smooth_into_path(flow);
 }
 
@@ -659,7 +665,7 @@ void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& 
     }
     const auto eroded = eroded_.parts(), energy = energy_.parts();
     archive.numbers("sums", {eroded[0], eroded[1], energy[0], energy[1]});
-    if (deposits_) serialize_rest(archive, flow);
+    if (deposits_) serialize_deposition(archive, flow);
     if (!archive.loading()) return;
     for (const Index tile : tiles) {
         if (deposits_) list_ledger(tile);

@@ -11,7 +11,7 @@
 
 #include "base/compensated_sum.h"
 #include "run/simulation.h"
-#include "shallow/flow.h"
+#include "shallow/rest_clocks.h"
 
 namespace frana {
 
@@ -32,8 +32,9 @@ public:
 
     /// Points gain, the bed loses, in a step of `dt` [s]; after the gather and the sort, before the deposit.
     ExchangeSums exchange(Flow& flow, double dt);
-    /// In the step that `now` has ended, tiles that have been at rest for long enough become bed: whether any did. The
-    /// caller drops the points marked in gone(). They move not, so nothing but mass goes with them.
+    /// In the step that `now` has ended, points that have been at rest for long enough become bed: whether any did. After the
+    /// gather, before anything comes in or points are sorted. The caller drops those marked in gone(). They move not, so
+    /// nothing but mass goes with them.
     bool settle(Flow& flow, const Clock& now);
     const std::vector<std::uint8_t>& gone() const { return gone_; }
     /// The bed's numbers of a status.
@@ -50,7 +51,7 @@ public:
 
 private:
     Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
-    template <class Law, class Friction, class Real>
+    template <class Law, class Friction, class Real, bool kFresh>
     void demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction);
     template <class Real>
     void spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into) const;
@@ -66,12 +67,16 @@ private:
     double can_give(Index k) const;
     double take_fresh(Index k, double taken);
     void prepare_deposition(const Scene& scene, const Flow& flow);
-    bool find_settled(Flow& flow, const Clock& now);
+    bool find_settled(Flow& flow);
+    template <class Real>
+    bool choose_settled(const Flow& flow, Index n);
+    template <class Real>
+    bool lies_on_rest(const Flow& flow, Index p) const;
     void give(Flow& flow);
     void list_given(const Flow& flow);
     void raise_tile(Flow& flow, Index tile);
     void list_ledger(Index tile);
-    void serialize_rest(Archive& archive, const Flow& flow);
+    void serialize_deposition(Archive& archive, const Flow& flow);
     bool choose(const Flow& flow);
     void make_room(const Flow& flow);
     void find_demand(Flow& flow, double dt);
@@ -113,9 +118,8 @@ private:
     bool deposits_ = false;            ///< material can be left behind
     std::optional<double> rest_time_;  ///< after which what rests becomes bed [s]; nothing: never
     LazyArray<double> fresh_;          ///< deposit, of the flow's density [kg]
-    LazyArray<double> rested_;         ///< per tile: time that it had been at rest in step `seen_` [s]
-    LazyArray<Index> seen_;            ///< per tile: the last step that it was at rest in
-    Index last_step_ = 0;              ///< that was looked at
+    RestClocks clocks_;                ///< when there is such a time
+    bool path_moved_ = false;          ///< the smoothed bed did in the last exchange
     std::vector<std::uint8_t> gone_;   ///< points that have become bed
 
     std::vector<std::uint8_t> eroding_;  ///< by position in ActiveTiles

@@ -167,6 +167,12 @@ void note_changed(Flow& flow) {
         if (awake(flow, tile)) add_reach(flow, tile, flow.rest.changed);
 }
 
+void wake(Flow& flow, Index tile) {
+    if (awake(flow, tile)) return;
+    add_reach(flow, tile, flow.rest.changed);
+    flow.active.quiet[tile] = 0;
+}
+
 void start_deposit(Flow& flow, int before, int after) {
     Rest& rest = flow.rest;
     rest.some_asleep = some_asleep(flow);

@@ -53,6 +53,9 @@ void note_rest(Flow& flow, Index n, bool at_rest);
 /// After a gather, before points change tiles: what tiles awake had touched will change.
 void note_changed(Flow& flow);
 
+/// Between a gather and the next deposit: a tile's points will not stay as they are, and what they have touched will change.
+void wake(Flow& flow, Index tile);
+
 /// Whether tiles sleep at this moment.
 bool some_asleep(const Flow& flow);
 

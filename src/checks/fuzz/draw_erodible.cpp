@@ -49,7 +49,7 @@ void draw_erodible(Dice& dice, Draft& draft) {
 
 void draw_deposition(Dice& dice, Draft& draft) {
     const bool other_scheme = draft.has("scheme.preset") || draft.has("scheme.shape");
-    const bool mirrored = draft.claims.mirror != Mirror::none;  // tiles are no mirror images of one another
+    const bool mirrored = draft.claims.mirror != Mirror::none;  // round-off tells in which step a node stops
     if (draft.claims.rests || mirrored || other_scheme || draft.has("erodible.bed_evolves")) return;
     say(draft, "deposition.law", "rest");
     say(draft, "deposition.time", dice.chance(0.5) ? 0.0 : dice.decades(1e-3, 10.0));

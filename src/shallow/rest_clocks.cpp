@@ -1,0 +1,69 @@
+#include "shallow/rest_clocks.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "mpm/stored_points.h"
+
+namespace frana {
+
+RestClocks::RestClocks(const TileGrid& grid) : rested_(grid.size()), longest_(grid.tiles()), known_(grid.tiles()) {
+    tiles_.reserve(static_cast<std::size_t>(grid.tiles()));  // steps allocate nothing
+}
+
+void RestClocks::tick(const Flow& flow, double dt) {
+    for (const Index tile : tiles_)
+        if (!flow.active.in_work[tile]) stop(flow.grid, tile, std::exchange(known_[tile], 0)), longest_[tile] = 0.0;
+    tiles_.assign(flow.active.work.begin(), flow.active.work.end());
+    for_each_work_tile(flow.active, [&](Index, Index tile) { tick_tile(flow, tile, dt); });
+}
+
+void RestClocks::tick_tile(const Flow& flow, Index tile, double dt) {
+    const NodeGroups in_reach = flow.in_reach[tile];
+    stop(flow.grid, tile, std::exchange(known_[tile], in_reach) & ~in_reach);
+    double longest = 0.0;
+    for_each_node_of(flow.grid, tile, in_reach, [&](Index k, Index, Index) {
+        const Motion& after = flow.nodes.motions()[k];
+        const bool rests = after.vx == 0.0 && after.vy == 0.0;
+        rested_[k] = rests ? rested_[k] + dt : 0.0;
+        longest = std::max(longest, rested_[k]);
+    });
+    longest_[tile] = longest;
+}
+
+void RestClocks::stop(const TileGrid& grid, Index tile, NodeGroups groups) {
+    for_each_node_of(grid, tile, groups, [&](Index k, Index, Index) { rested_[k] = 0.0; });
+}
+
+void RestClocks::stop_all(const TileGrid& grid) {
+    for (const Index tile : tiles_) stop(grid, tile, std::exchange(known_[tile], 0)), longest_[tile] = 0.0;
+    tiles_.clear();
+}
+
+void RestClocks::serialize(Archive& archive, const Flow& flow) {
+    const Archive::Part part(archive, "rest");
+    std::vector<std::uint64_t> groups;
+    std::vector<double> rested;
+    if (archive.loading()) stop_all(flow.grid);
+    for (const Index tile : flow.active.work) {
+        if (archive.loading()) break;
+        groups.push_back(known_[tile]);
+        for_each_node_of(flow.grid, tile, known_[tile], [&](Index k, Index, Index) { rested.push_back(rested_[k]); });
+    }
+    archive.array("groups", groups);
+    archive.array("rested", rested);
+    if (!archive.loading()) return;
+    std::size_t expected = 0;
+    for (const NodeGroups of_tile : groups) expected += 4 * static_cast<std::size_t>(__builtin_popcountll(of_tile));
+    if (groups.size() != flow.active.work.size() || rested.size() != expected)
+        throw misfit("its nodes are not those at rest");
+    const double* from = rested.data();
+    for (std::size_t n = 0; n < groups.size(); ++n) {
+        const Index tile = flow.active.work[n];
+        known_[tile] = groups[n];
+        for_each_node_of(flow.grid, tile, groups[n], [&](Index k, Index, Index) { rested_[k] = *from++; });
+    }
+    tiles_.assign(flow.active.work.begin(), flow.active.work.end());
+}
+
+}  // namespace frana

@@ -1,0 +1,37 @@
+#pragma once
+// How long each node has been at rest: what a deposit goes by (THEORY.md, section 20).
+#include <vector>
+
+#include "observe/archive.h"
+#include "shallow/flow.h"
+
+namespace frana {
+
+/// A node rests in a step when material lies on it and the grid update left it no velocity: friction holds it, whatever comes
+/// in from what moves next to it. Clocks run for nodes in reach; elsewhere they stand at 0.
+class RestClocks {
+public:
+    RestClocks() = default;
+    explicit RestClocks(const TileGrid& grid);
+
+    /// After the gather of a step of `dt` [s], while the nodes are those of the deposit before it.
+    void tick(const Flow& flow, double dt);
+    /// Whether a node has rested for `time` [s], one step at least.
+    bool have_run(Index k, double time) const { return rested_[k] > 0.0 && rested_[k] >= time; }
+    /// The same for some node of a tile.
+    bool any_has_run(Index tile, double time) const { return longest_[tile] > 0.0 && longest_[tile] >= time; }
+    /// Those of the work list.
+    void serialize(Archive& archive, const Flow& flow);
+
+private:
+    void tick_tile(const Flow& flow, Index tile, double dt);
+    void stop(const TileGrid& grid, Index tile, NodeGroups groups);
+    void stop_all(const TileGrid& grid);
+
+    LazyArray<double> rested_;     ///< per node [s]
+    LazyArray<double> longest_;    ///< per tile of the domain, of the last tick [s]
+    LazyArray<NodeGroups> known_;  ///< per tile of the domain: groups whose clocks may have run
+    std::vector<Index> tiles_;     ///< those with such groups
+};
+
+}  // namespace frana
