@@ -24,8 +24,8 @@ double cap(double x, double y, double x0, double depth) {
 }
 
 /// A slope above a plain where a slide comes to rest; another one follows at 12 s.
-Scene slope(const std::function<void(Scene&)>& edit = {}) {
-    Scene scene = scene_on(140, 80, 1.0, [](double x, double y) {
+Scene slope(const std::function<void(Scene&)>& edit = {}, Index width = 140) {
+    Scene scene = scene_on(width, 80, 1.0, [](double x, double y) {
         return (x < 50.0 ? 0.8 * (50.0 - x) : 0.0) + 0.002 * (y - 40) * (y - 40);
     });
     scene.bed_law = bed::Coulomb{0.45};
@@ -358,11 +358,39 @@ TEST_CASE("A deposition that nothing has rested long enough for changes no bit o
 }
 
 TEST_CASE("What sleeps becomes bed in the same step as what does not", "[deposition][sleep]") {
-    DepthAveraged sleeps(slope());
-    DepthAveraged awake(slope([](Scene& s) { s.scheme.sleep = false; }));
-    run_to(sleeps, 25.0);
-    run_to(awake, 25.0);
+    // After five seconds tiles sleep whose particles have not all rested for as long. Far away a heap sleeps meanwhile.
+    const double rest = GENERATE(2.0, 5.0);
+    INFO("rest " << rest);
+    const auto scene = [&](bool sleep) {
+        const auto edit = [&](Scene& s) {
+            const Seeds slide = s.particles;
+            const Index id = slide.count() + s.late[0].seeds.count();
+            s.particles = {};
+            fill(s, [](double x, double y) { return cap(x, y, 230.2, 1.5); });
+            s.late.push_back({"far", 9.0, s.particles, id});
+            s.late[0].at = 18.0;  // wakes all
+            s.particles = slide, s.deposition->rest = rest, s.scheme.sleep = sleep;
+        };
+        return slope(edit, 250);
+    };
+    DepthAveraged sleeps(scene(true)), awake(scene(false));
+    Index partly = 0;
+    while (sleeps.status().time < 25.0) {
+        const std::vector<std::uint8_t> quiet = sleeps.flow().active.quiet;
+        const double had = sleeps.status().bed.mass;
+        sleeps.advance(25.0);
+        const ActiveTiles& active = sleeps.flow().active;
+        const bool some = some_asleep(sleeps.flow());
+        for (Index n = 0; some && sleeps.status().bed.mass > had && n < active.count(); ++n)
+            partly += active.begin[n + 1] > active.begin[n] && quiet[active.tile[n]] >= kAsleep &&
+                      active.quiet[active.tile[n]] == 0;
+        awake.advance(25.0);
+        CHECK(awake.status().bed.mass == sleeps.status().bed.mass);
+        REQUIRE(awake.status().mass == sleeps.status().mass);
+        REQUIRE(awake.status().potential == sleeps.status().potential);
+    }
     REQUIRE(sleeps.status().bed.deposited > 0.0);
+    CHECK((partly > 0 || rest < 5.0));
     auto of_awake = bits(awake);
     for (const char* name : {"bed/fresh", "bed/z", "points/x", "points/mass", "status/numbers"}) {
         INFO(name);

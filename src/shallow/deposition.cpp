@@ -41,8 +41,10 @@ bool Erosion::settle(Flow& flow, const Clock& now) {
     clocks_.tick(flow, now.dt);
     if (!ends_stretch(now, *rest_time_ / kLooks) || !find_settled(flow)) return false;
     give(flow);
-    for (Index n = 0; n < flow.active.count(); ++n)
-        if (eroding_[static_cast<std::size_t>(n)] || path_moved_) wake(flow, flow.active.tile[n]);
+    for (const Index tile : next_)  // whose slopes or smoothed bed have changed
+        for_each_around(flow.grid, tile, [&](Index to) {
+            if (flow.active.in_work[to]) wake(flow, to);
+        });
     return true;
 }
 

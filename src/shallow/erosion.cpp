@@ -533,7 +533,7 @@ double Erosion::take_fresh(Index k, double taken) {
     return of_fresh;
 }
 
-/// Slopes follow at once, curvature once the bed has moved far enough.
+/// Slopes follow at once, curvature once the bed has moved far enough. Leaves the tiles where either did in `next_`.
 void Erosion::follow_bed(Flow& flow) {
     const TileGrid& grid = flow.grid;
     next_.clear();
@@ -547,12 +547,10 @@ void Erosion::follow_bed(Flow& flow) {
     }
     for_each_in_parallel(next_, [&](Index tile) { refresh_slopes(grid, flow.bed, tile); });
     for (const Index tile : next_) marked_[static_cast<std::size_t>(tile)] = 0, changed_[tile] = 1;
-    path_moved_ = false;
     if (!bent_path_) return;
     double most = 0.0;  // of all tiles, or what is symmetric would part at their edges
     for (const Index tile : ledger_tiles_) most = std::max(most, tile_pending_[tile]);
     if (!(most > kFollows * grid.cell())) return;
-    path_moved_ = true;
     smooth_into_path(flow);
 }
 

@@ -119,7 +119,6 @@ private:
     std::optional<double> rest_time_;  ///< after which what rests becomes bed [s]; nothing: never
     LazyArray<double> fresh_;          ///< deposit, of the flow's density [kg]
     RestClocks clocks_;                ///< when there is such a time
-    bool path_moved_ = false;          ///< the smoothed bed did in the last exchange
     std::vector<std::uint8_t> gone_;   ///< points that have become bed
 
     std::vector<std::uint8_t> eroding_;  ///< by position in ActiveTiles
