@@ -36,7 +36,7 @@ void require_erodible(const CompareOptions& options, const std::vector<ProductRa
     if (options.bed_change.empty() || find_product(rasters, "bed_change") != nullptr) return;
     throw UserError(fmt::format(
         "{}: is not there, since the run's bed did not change; expected a bed that does for --bed-change; give the "
-        "case an [erodible] or a [deposition] table and run it again",
+        "case an [erodible], a [deposition] or a [forest] table and run it again",
         (options.run_dir / "rasters" / "bed_change.tif").string()));
 }
 

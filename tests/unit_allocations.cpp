@@ -83,6 +83,23 @@ TEST_CASE("Steps of a warm run allocate nothing", "[speed]") {
     CHECK(allocations == before + 1);  // and that would be seen
 }
 
+TEST_CASE("Warm steps among trees allocate nothing", "[speed][forest]") {
+    Scene scene = verify::scene_on(120, 60, 2.0, [](double x, double) { return -0.5 * x; });
+    scene.density = 300.0;
+    scene.bed_law = bed::Voellmy{0.3, 1000.0};
+    scene.scheme.split = false;  // arrays grow with the number of points
+    verify::fill(scene, [](double x, double y) { return x > 20 && x < 80 && y > 20 && y < 90 ? 2.0 : 0.0; }, {2});
+    scene.forest = Forest{Raster::filled(scene.bed.geometry, 100.0), {}};
+    DepthAveraged simulation(scene);
+    for (int step = 0; step < 30; ++step) simulation.advance(1e9);
+    const double before = simulation.status().bed.deposited;
+    const auto [most, counted] =
+        asked_when_warm(simulation, 40, [&]() -> const ActiveTiles& { return simulation.flow().active; });
+    CHECK(counted >= 20);
+    CHECK(most == 0);
+    CHECK(simulation.status().bed.deposited > before);
+}
+
 TEST_CASE("Warm steps in space allocate nothing", "[speed][solid]") {
     Mpm3d flow(lump(solid::Bingham{4e5, 1e5, 10.0, 500.0}));
     for (int step = 0; step < 10; ++step) flow.advance(1e9);

@@ -49,8 +49,8 @@ TEST_CASE("A change of the bed is surveyed besides a footprint, with a noise of 
 TEST_CASE("A change of the bed that cannot be compared is refused before the run", "[scene][bed_change]") {
     const std::string footprint = "[survey]\nfootprint = \"footprint.geojson\"\n";
     CHECK(has(problem_of(footprint + "bed_change = \"dod.tif\"\n"),
-              "slide/case.toml:10: survey.bed_change: found beside a bed that does not change; expected [erodible] or "
-              "[deposition] with it"));
+              "slide/case.toml:10: survey.bed_change: found beside a bed that does not change; expected [erodible], "
+              "[deposition] or [forest] with it"));
     CHECK(has(problem_of(loose + "[survey]\nbed_change = \"dod.tif\"\n"),
               "survey.bed_change: found without survey.footprint; expected the surveyed extent as well"));
     CHECK(has(problem_of(loose + footprint + "bed_change = \"away.tif\"\n"),

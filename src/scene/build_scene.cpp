@@ -45,6 +45,7 @@ public:
         scene_.structure = read_structure(case_, scene_, problems_);
         scene_.erodible = read_erodible(case_, reader_, scene_, problems_);
         scene_.deposition = read_deposition(case_, scene_);
+        scene_.forest = read_forest(case_, reader_, scene_, problems_);
         scene_.water = read_water(case_, reader_, scene_, problems_);
         scene_.insitu = read_insitu(case_, scene_, problems_);
         if (problems_.empty() && !releases_.empty() && require_room_for_particles()) make_particles();

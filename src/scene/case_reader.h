@@ -48,6 +48,7 @@ private:
     void check_height_field(const std::string& prefix);
     bool friction_table() const;
     void check_surveyed_bed();
+    void check_forest();
     void check_friction_table();
     void check_table_numbers();
     void check_inflow(const std::string& prefix);

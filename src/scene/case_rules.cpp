@@ -83,6 +83,7 @@ void CaseReader::check_tables() {
             if (table == "material.zone") check_zone(prefix);
             if (table == "material.bed") check_friction_table();
             if (table == "survey") check_surveyed_bed();
+            if (table == "forest") check_forest();
         }
     }
 }
@@ -236,10 +237,20 @@ bool CaseReader::friction_table() const {
 void CaseReader::check_surveyed_bed() {
     for (const char* law : {"erodible.law", "deposition.law"})
         if (misread_.count(law) || case_.word(law) != "none") return;
+    if (misread_.count("forest.detrainment") || case_.given("forest.detrainment")) return;
     const std::string key = "survey.bed_change";
     if (case_.given(key))
-        wrong(key, "found beside a bed that does not change", "expected [erodible] or [deposition] with it",
+        wrong(key, "found beside a bed that does not change", "expected [erodible], [deposition] or [forest] with it",
               "remove it, or add one of them");
+}
+
+/// What its other keys say is where, and of what flow, trees take something.
+void CaseReader::check_forest() {
+    if (case_.given("forest.detrainment") || misread_.count("forest.detrainment")) return;
+    for (const char* key : {"forest.outline", "forest.max_speed", "forest.max_depth"})
+        if (case_.given(key))
+            wrong(key, "found without detrainment", "expected it with forest.detrainment only",
+                  "add detrainment = ... [Pa] under [forest], or remove it");
 }
 
 /// A table of friction goes with Voellmy's law alone, and says all of its numbers.

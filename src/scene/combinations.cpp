@@ -26,6 +26,7 @@ bool of_words(Are are) { return are == Are::words || are == Are::others; }
 /// As messages write it.
 std::string value_text(const CaseFile& file, const Values& values) {
     if (of_words(values.are)) return "\"" + file.word(values.key) + "\"";
+    if (values.are == Are::given && file.is_text(values.key)) return "\"" + file.word(values.key) + "\"";
     if (values.are == Are::on) return "true";
     if (values.are == Are::off) return "false";
     if (values.are == Are::rasters) return "a raster";
@@ -45,6 +46,7 @@ std::vector<std::string> keys_of(const CaseFile& file, const std::string& key) {
 
 bool holds(const CaseFile& file, const Values& values, const std::string& key) {
     if (values.are == Are::tables) return file.count(key) > 0;
+    if (values.are == Are::given) return file.given(key);
     if (!file.has(key)) return false;
     switch (values.are) {
         case Are::words:
@@ -189,6 +191,35 @@ void add_deposits(std::vector<Combination>& table) {
                      "raise the elevation model there, or remove the deposition"});
 }
 
+/// Where trees cannot take mass out of the flow.
+void add_forest(std::vector<Combination>& table) {
+    const Values forest{"forest.detrainment", Are::given};
+    table.push_back({{"erodible.bed_evolves", Are::off},
+                     {forest},
+                     "expected true: what trees hold back raises the ground",
+                     "remove it, or the forest"});
+    table.push_back({is_not("scheme.shape", {"quadratic"}),
+                     {forest},
+                     "expected \"quadratic\", the shapes that share out a bed",
+                     "remove it, or the forest"});
+    table.push_back({is_not("scheme.preset", {"default"}),
+                     {forest},
+                     "expected \"default\": particles of the other carry a depth that no bed can take over",
+                     "remove it, or the forest"});
+    table.push_back({is_not("material.structure.law", {"none"}),
+                     {forest},
+                     "expected \"none\": a mass that holds together, and water beside it, leave nothing in a forest",
+                     "remove one of them"});
+    table.push_back({{"stage", Are::tables},
+                     {forest},
+                     "expected none: points in 3D leave nothing in a forest",
+                     "remove the stage, or the forest"});
+    table.push_back({{"barrier", Are::tables},
+                     {forest},
+                     "expected none: no barrier is known to stand in ground that rises",
+                     "raise the elevation model there, or remove the forest"});
+}
+
 /// What the schemes of the depth-averaged flow do not know of.
 void add_schemes(std::vector<Combination>& table) {
     const Values paper = is("scheme.preset", {"paper"});
@@ -310,6 +341,8 @@ std::string Values::text() const {
             return key + " = true";
         case Are::off:
             return key + " = false";
+        case Are::given:
+            return key;
         case Are::rasters:
             return "a raster in [" + key + "]";
         default:
@@ -337,6 +370,7 @@ const std::vector<Combination>& combinations() {
         add_water(table);
         add_erodible_bed(table);
         add_deposits(table);
+        add_forest(table);
         add_space(table);
         add_late_releases(table);
         add_zones(table);

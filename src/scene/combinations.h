@@ -13,7 +13,7 @@ std::string raster_in(const CaseFile& file, const std::string& table);
 
 /// Some of the values that a key can have, or tables of a name that are there at all.
 struct Values {
-    enum class Are { words, others, without, above_zero, zero, on, off, tables, rasters };
+    enum class Are { words, others, without, above_zero, zero, on, off, tables, rasters, given };
     std::string
         key;  ///< of tables their name, of rasters that of the table whose keys they stand for; "release.at" is that
               ///< of any [[release]]

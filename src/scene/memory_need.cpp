@@ -23,7 +23,7 @@ constexpr double part_node_rate = 160.0;
 /// Besides, for each node of solids that hold together, and of free water (4 million nodes).
 constexpr double structure_rate = 35.0, water_rate = 140.0;
 /// Likewise of an erodible bed: seven numbers with its depth, two more where the bed's smoothing follows.
-constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 16.0;
+constexpr double erodible_rate = 56.0, path_rate = 16.0, deposition_rate = 16.0, forest_rate = 16.0;
 constexpr double graphics_need = 350e6;  ///< besides, for pictures: software OpenGL, 290 to 420 MB
 
 /// A 3D grid has an entry for each of its tiles, and storage of those that are reached only.
@@ -83,9 +83,9 @@ MemoryNeed memory_need(const Scene& scene) {
     for (const Seeds* seeds : scene.all_particles()) particles += double(seeds->count());
     MemoryNeed need = memory_need(scene.wider ? 0.0 : nodes, particles, scene.output.vtk);
     if (scene.wider) need.nodes = memory_of_part(nodes);
-    if (scene.erodible || scene.deposition)
-        need.nodes += (scene.bed_evolves() ? erodible_rate + path_rate : erodible_rate) * nodes;
-    if (scene.deposition) need.nodes += deposition_rate * nodes;
+    if (scene.bed_changes()) need.nodes += (scene.bed_evolves() ? erodible_rate + path_rate : erodible_rate) * nodes;
+    if (scene.deposition || scene.forest) need.nodes += deposition_rate * nodes;
+    if (scene.forest) need.nodes += forest_rate * nodes;
     if (scene.friction) need.nodes += memory_of(*scene.friction);
     if (scene.structure) need.nodes += structure_rate * nodes;
     if (scene.water) need.nodes += water_rate * nodes;

@@ -22,6 +22,9 @@ void add_erodible(Table& table);
 /// The keys of [deposition] (parameter_table_deposition.cpp).
 void add_deposition(Table& table);
 
+/// The keys of [forest] (parameter_table_forest.cpp).
+void add_forest(Table& table);
+
 /// The keys of [water] (parameter_table_water.cpp).
 void add_water(Table& table);
 

@@ -158,6 +158,16 @@ The paper's table is in dyn/cm2 and poise; it is divided by 10 here. **Taking th
 A quick check: a deposit on a slope S stops at h = tau_y / (rho g S). With 400 Pa, 1800 kg/m3 and S of 0.05 that is 0.45 m.
 )";
 
+constexpr const char* forest =
+    R"(
+## Forest
+
+`forest.detrainment` is the K of Feistl et al. 2014 (J. Glaciol. 60, 124): the flow loses K/u in each second on each square metre.
+10 to 150 Pa circulate, by stand; look the classes up there. com1DFA takes 5 Pa by default. Forest that brakes has friction of its
+own (`[[material.zone]]`): mu + 0.02 to 0.03 and xi = 400 m/s2 are a habit of practice. Of these figures only com1DFA's was read at
+its source.
+)";
+
 }  // namespace
 
 std::string ranges_in_words(const std::string& key) {
@@ -176,7 +186,7 @@ std::string ranges_in_markdown() {
     std::string text = introduction + kinds_table();
     for (const MassKind& kind : mass_kinds()) text += ranges_of(kind.name, kind.name);
     text += ranges_of("", "Grains in the laboratory");
-    return text + snow + salm_tables() + snow_notes + mud_table() + mud_notes;
+    return text + snow + salm_tables() + snow_notes + mud_table() + mud_notes + forest;
 }
 
 }  // namespace frana

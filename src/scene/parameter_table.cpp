@@ -217,6 +217,7 @@ void add_material(Table& table) {
     add_structure(table);
     add_erodible(table);
     add_deposition(table);
+    add_forest(table);
     add_water(table);
 }
 

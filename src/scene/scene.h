@@ -11,6 +11,7 @@
 
 #include "convert/profile.h"
 #include "law/bed/law_map.h"
+#include "law/detrainment.h"
 #include "law/erosion/laws.h"
 #include "law/free_water.h"
 #include "law/rheology/laws.h"
@@ -207,6 +208,12 @@ struct Deposition {
     std::optional<double> rest;  ///< after so long at rest tiles of it become bed [s]; nothing: never
 };
 
+/// Trees that take mass out of the flow (shallow/erosion.h).
+struct Forest {
+    Raster pressure;  ///< K of Detrainment on the nodes of the terrain, 0 without trees [Pa]
+    Detrainment law;
+};
+
 /// Where one part of a friction holds that differs in space, and what it has there.
 struct FrictionPart {
     struct Extent {
@@ -286,12 +293,15 @@ struct Scene {
     std::optional<WaterPhase> water;       ///< beside a structure
     std::optional<ErodibleBed> erodible;   ///< nothing: the bed is rock
     std::optional<Deposition> deposition;  ///< nothing: none
+    std::optional<Forest> forest;          ///< nothing: no trees take mass out
     std::optional<SolidStage> solid;       ///< where and when the run goes into space
 
     std::vector<std::string> log;  ///< remarks made while building (resampling, nodata, ...)
 
+    /// Flow takes up bed, or becomes bed.
+    bool bed_changes() const { return erodible || deposition || forest; }
     /// The ground follows what is taken or left behind.
-    bool bed_evolves() const { return deposition || (erodible && erodible->evolves); }
+    bool bed_evolves() const { return deposition || forest || (erodible && erodible->evolves); }
     /// Material at the start, and that of each late release.
     std::vector<const Seeds*> all_particles() const {
         std::vector<const Seeds*> all = {&particles};

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "scene/combinations.h"
 #include "scene/ground_classes.h"
+#include "scene/nodes_of_place.h"
 #include "scene/salm_table.h"
 #include "scene/scene_parts.h"
 
@@ -18,65 +19,6 @@ using laws::Key;
 constexpr const char* kLaw = "material.bed.";
 
 bool is_raster(const CaseFile& file, const std::string& key) { return file.given(key) && file.is_text(key); }
-
-std::string where(const GridGeometry& g, std::size_t k) {
-    const auto n = static_cast<Index>(k);
-    return fmt::format("x {:.10g}, y {:.10g}", g.x(n % g.nx), g.y(n / g.nx));
-}
-
-/// Of the pixel that holds a point; nodata beyond the raster.
-double pixel_at(const Raster& raster, double x, double y) {
-    const GridGeometry& g = raster.geometry;
-    const double i = std::floor((x - g.x0) / g.cell + 0.5), j = std::floor((y - g.y0) / g.cell + 0.5);
-    if (!(i >= 0.0 && j >= 0.0 && i < static_cast<double>(g.nx) && j < static_cast<double>(g.ny)))
-        return Raster::nodata;
-    return raster.at(static_cast<Index>(i), static_cast<Index>(j));
-}
-
-/// All pixels with data lie in a key's range.
-void require_range(const Raster& pixels, const Range& range, const std::string& file) {
-    std::size_t bad = 0, first = 0;
-    for (std::size_t k = pixels.values.size(); k-- > 0;)
-        if (!std::isnan(pixels.values[k]) && !range.holds(pixels.values[k])) ++bad, first = k;
-    if (bad == 0) return;
-    throw UserError(
-        fmt::format("{}: found {} pixel(s) out of range, such as {:.6g} at {}; expected numbers {}; correct them", file,
-                    bad, pixels.values[first], where(pixels.geometry, first), range.text()));
-}
-
-/// Where the edges of a polygon cross each row of nodes [m].
-std::vector<std::vector<double>> crossings_of(const Polygon& polygon, const GridGeometry& grid) {
-    std::vector<std::vector<double>> rows(static_cast<std::size_t>(grid.ny));
-    const auto first_row = [&](double y) {  // that lies at y or above it
-        return static_cast<Index>(std::clamp(std::ceil((y - grid.y0) / grid.cell) - 1.0, 0.0, double(grid.ny)));
-    };
-    for (const auto& ring : polygon.rings)
-        for (std::size_t k = 0; k < ring.size(); ++k) {
-            const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-            const double low = std::min(a.y(), b.y()), high = std::max(a.y(), b.y());
-            for (Index j = first_row(low); j < grid.ny && grid.y(j) < high; ++j)
-                if ((a.y() <= grid.y(j)) != (b.y() <= grid.y(j)))
-                    rows[static_cast<std::size_t>(j)].push_back(a.x() + (grid.y(j) - a.y()) / (b.y() - a.y()) *
-                                                                            (b.x() - a.x()));
-        }
-    return rows;
-}
-
-/// The nodes inside a polygon, row by row: between its first and second crossing of the row, its third and fourth, ...
-void mark_inside(const Polygon& polygon, const GridGeometry& grid, NodeMarks& marks) {
-    Index row = 0;
-    for (std::vector<double>& crossings : crossings_of(polygon, grid)) {
-        std::sort(crossings.begin(), crossings.end());
-        for (std::size_t n = 0; n + 1 < crossings.size(); n += 2) {
-            const auto node = [&](double x) {
-                const double i = std::ceil((x - grid.x0) / grid.cell);
-                return static_cast<Index>(std::clamp(i, 0.0, static_cast<double>(grid.nx)));
-            };
-            std::fill(marks.begin() + row + node(crossings[n]), marks.begin() + row + node(crossings[n + 1]), char{1});
-        }
-        row += grid.nx;
-    }
-}
 
 std::string name_of(const CaseFile& file, const std::string& zone) {
     return file.given(zone + ".outline") ? fmt::format("{} ({})", zone, file.word(zone + ".outline")) : zone;
@@ -290,7 +232,7 @@ private:
         throw UserError(fmt::format(
             "found no value at {} of {} nodes, such as {}; expected one at each, since {}{} has no default; fill the "
             "gaps of the raster, or give {} there by a [[material.zone]]",
-            count, ground_count(), where(grid_, first), kLaw, key, key));
+            count, ground_count(), place_text(grid_, first), kLaw, key, key));
     }
 
     void require_more(const Key<Law>& key) const {
@@ -300,7 +242,7 @@ private:
             const double value = laws_[k].*key.parameter, other = laws_[k].*(smaller->parameter);
             if (!is_ground(k) || value > other) continue;
             throw UserError(fmt::format("found {} = {:.6g} at {}; expected more than {} = {:.6g} there; {}", key.name,
-                                        value, where(grid_, k), key.more_than, other, key.way_out));
+                                        value, place_text(grid_, k), key.more_than, other, key.way_out));
         }
     }
 

@@ -79,6 +79,10 @@ std::optional<Deposition> read_deposition(const CaseFile& file, Scene& scene);
 std::optional<ErodibleBed> read_erodible(const CaseFile& file, const GisReader& reader, Scene& scene,
                                          Problems& problems);
 
+/// [forest] of a scene that has its terrain; nothing where it takes nothing. What is wrong with its files goes to `problems`,
+/// remarks to the scene's log.
+std::optional<Forest> read_forest(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);
+
 /// [water] of a scene that has its structure. What does not fit together, or is wrong with its rasters, goes to `problems`,
 /// remarks to the scene's log.
 std::optional<WaterPhase> read_water(const CaseFile& file, const GisReader& reader, Scene& scene, Problems& problems);

@@ -23,7 +23,8 @@ bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
         if (file.count(table) > 0) return false;
     for (const char* law : {"erodible.law", "deposition.law"})
         if (file.word(law) != "none") return false;  // the ledger is of all of it
-    if (friction_differs(file)) return false;        // so is friction
+    if (file.given("forest.detrainment")) return false;
+    if (friction_differs(file)) return false;  // so is friction
     if (file.word("material.structure.law") != "none" || file.word("water.model") != "none") return false;
     for (Index i = 0; i < file.count("release"); ++i)
         if (!file.given(fmt::format("release.{}.outline", i))) return false;

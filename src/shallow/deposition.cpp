@@ -28,11 +28,11 @@ bool is_still(const Carried<Real>& held, Index p) {
 }  // namespace
 
 void Erosion::prepare_deposition(const Scene& scene, const Flow& flow) {
-    if (!scene.deposition) return;
+    if (!scene.deposition && !scene.forest) return;
     deposits_ = true;
     fresh_ = LazyArray<double>(flow.grid.size());
     ledger_tiles_.reserve(static_cast<std::size_t>(flow.grid.tiles()));  // steps allocate nothing
-    rest_time_ = scene.deposition->rest;
+    if (scene.deposition) rest_time_ = scene.deposition->rest;
     if (rest_time_) clocks_ = RestClocks(flow.grid);
 }
 

@@ -27,11 +27,7 @@ constexpr double kFarther = 2.0;
 double drift_before_carry(const Scheme& scheme) { return scheme.shape == Shape::cubic ? 1.0 : 2.0; }
 
 double least_split_mass(const Scene& scene) {
-    double largest = 0.0;
-    for (const Seeds* seeds : scene.all_particles())
-        for (const double volume : seeds->volume) largest = std::max(largest, volume);
-    if (!scene.inflows.empty()) largest = std::max(largest, Feed(scene.inflows).largest_column());
-    return scene.scheme.split_min_mass * largest * scene.density;
+    return scene.scheme.split_min_mass * largest_column(scene) * scene.density;
 }
 
 }  // namespace
@@ -51,7 +47,7 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     expect(!scene.wider, "on a part of a terrain columns grow it (coupling/growing_columns.h)");
     expect(flow_.grid.nx() >= 4 && flow_.grid.ny() >= 4, "the grid needs four nodes in each direction");
     flush_denormals_on_all_threads();
-    if (scene.erodible || scene.deposition) {
+    if (scene.bed_changes()) {
         erosion_.emplace(scene, flow_);
         status_.bed = erosion_->status();
     }
@@ -169,7 +165,7 @@ void DepthAveraged::advance(double until) {
     if (points.left_count > 0) timed_("sort", [&] { sorter_.drop(flow_.columns, transfer_->gone(), flow_.active); });
     if (erosion_) timed_("erosion", [&] { settle(); });
     if (adapts) adapt_points(due, fed);
-    if (erosion_) timed_("erosion", [&] { erode(dt); });
+    if (erosion_) timed_("erosion", [&] { erode(dt), detrain(dt); });
     if (apart) points = timed_("deposit", [&] { return transfer_->deposit(flow_, next_velocity_dt); });
     arrive(points);
     if (late_) enter_late();

@@ -111,6 +111,7 @@ private:
     void serialize_peaks(Archive& archive);
     void adapt_points(bool due, bool fed);
     void erode(double dt);
+    void detrain(double dt);
     void settle();
     void take_rows();
     std::vector<Index> tiles_of_a_step() const;

@@ -11,6 +11,7 @@
 #include "mpm/tile_points.h"
 #include "scene/bed_smoothing.h"
 #include "shallow/bed_tiles.h"
+#include "shallow/ground_of_four.h"
 #include "shallow/sub_points_of_four.h"
 
 namespace frana {
@@ -20,7 +21,6 @@ namespace {
 constexpr double kCrumb = 1e-12;
 /// Change of the bed, in cells, from which on its curvature follows.
 constexpr double kFollows = 0.01;
-constexpr double kSlowest = 1e-30;  ///< below any speed [m/s]
 
 /// One half, middle first, of the weights of so many passes of (1, 2, 1)/4, without tails below 1e-10.
 std::vector<double> half_filter(Index passes) {
@@ -36,54 +36,6 @@ std::vector<double> half_filter(Index passes) {
     while (w.size() > 1 && w.back() < 1e-10) w.pop_back();
     return w;
 }
-
-/// Means of node values at four points.
-class MeansOfFour {
-public:
-    MeansOfFour(const TileGrid& grid, Double4 x, Double4 y) : stride_(grid.stride()) {
-        const Stencils sx(x), sy(y);
-        for (int lane = 0; lane < 4; ++lane) {
-            node_[lane] = sy.first[lane] * stride_ + sx.first[lane];
-            along_[lane] = Double4{sx.w[0][lane], sx.w[1][lane], sx.w[2][lane], 0.0};
-            for (int j = 0; j < 3; ++j) across_[lane][j] = sy.w[j][lane];
-        }
-    }
-    Double4 of(const LazyArray<double>& nodes, int lanes) const {
-        Double4 rows[4] = {}, parts[4];
-        for (int lane = 0; lane < lanes; ++lane) {
-            const double* row = nodes.data() + node_[lane];
-            for (int j = 0; j < 3; ++j, row += stride_) rows[lane] += across_[lane][j] * load(row);
-            rows[lane] *= along_[lane];
-        }
-        transpose(rows[0], rows[1], rows[2], rows[3], parts);
-        return parts[0] + parts[1] + parts[2];
-    }
-
-private:
-    Index stride_, node_[4];
-    Double4 along_[4];
-    double across_[4][3];
-};
-
-/// What the bed law sees below four points, and their speed along it; on gentle ground that of the map.
-struct GroundOfFour {
-    BedStateOf<Double4> below;
-    Double4 speed;
-    GroundOfFour(const Flow& flow, bool curved, const MeansOfFour& means, int lanes, Double4 vx, Double4 vy,
-                 Double4 depth) {
-        const Double4 one = all(1.0), none = {};
-        Double4 bx = none, by = none, gravity = all(flow.gravity);
-        if (flow.steep) bx = means.of(flow.bed.slope_x, lanes), by = means.of(flow.bed.slope_y, lanes);
-        if (curved)
-            gravity =
-                max(none, gravity + vx * vx * means.of(flow.bed.hxx, lanes) +
-                              2.0 * vx * vy * means.of(flow.bed.hxy, lanes) + vy * vy * means.of(flow.bed.hyy, lanes));
-        const Double4 on_map2 = vx * vx + vy * vy, rise = vx * bx + vy * by;
-        const Double4 kappa = sqrt(one + rise * rise / on_map2), cosine = one / sqrt(one + bx * bx + by * by);
-        speed = kappa * sqrt(on_map2);
-        below = {gravity * cosine / kappa, max(depth * cosine, all(1e-9)), kappa, cosine, flow.gravity, flow.density};
-    }
-};
 
 /// The bed law under four points: that of the run, or those of the nodes nearest to them.
 template <class Friction>
@@ -157,6 +109,7 @@ Erosion::Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow)
                 initial_[grid.at(i, j)] = initial_[grid.at(mirror(i, grid.nx()), mirror(j, grid.ny()))];
             }
     prepare_deposition(scene, flow);
+    prepare_forest(scene, flow);
     for (Index tile = 0; tile < grid.tiles(); ++tile) {
         bool any = false;
         for_each_node_of(grid, tile, [&](Index k, Index, Index) {

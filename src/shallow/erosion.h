@@ -37,6 +37,10 @@ public:
     /// nothing but mass goes with them.
     bool settle(Flow& flow, const Clock& now);
     const std::vector<std::uint8_t>& gone() const { return gone_; }
+    /// What trees take of the flow in a step of `dt` [s]; after the exchange, before the deposit. Sums are those of the flow:
+    /// below zero. Where any_gone(), the caller drops the points marked in gone().
+    ExchangeSums detrain(Flow& flow, double dt);
+    bool any_gone() const { return any_gone_; }
     /// The bed's numbers of a status.
     Status::Bed status() const;
 
@@ -72,6 +76,10 @@ private:
     bool choose_settled(const Flow& flow, Index n);
     template <class Real>
     bool lies_on_rest(const Flow& flow, Index p) const;
+    void prepare_forest(const Scene& scene, const Flow& flow);
+    bool choose_wooded(const Flow& flow);
+    template <class Real>
+    void lose(Flow& flow, Index n, double dt);
     void give(Flow& flow);
     void list_given(const Flow& flow);
     void raise_tile(Flow& flow, Index tile);
@@ -120,6 +128,12 @@ private:
     LazyArray<double> fresh_;          ///< deposit, of the flow's density [kg]
     RestClocks clocks_;                ///< when there is such a time
     std::vector<std::uint8_t> gone_;   ///< points that have become bed
+
+    Detrainment forest_;
+    LazyArray<double> trees_;           ///< K of the nodes; no array without a forest [Pa]
+    std::vector<std::uint8_t> wooded_;  ///< per tile of the domain: 1, its points may be among trees
+    double least_mass_ = 0.0;           ///< of a point that goes on after it lost some [kg]
+    bool any_gone_ = false;
 
     std::vector<std::uint8_t> eroding_;  ///< by position in ActiveTiles
     std::vector<std::uint8_t> marked_;   ///< scratch, per tile of the domain

@@ -225,4 +225,11 @@ void Feed::serialize(Archive& archive) {
     archive.array("next", next_);
 }
 
+double largest_column(const Scene& scene) {
+    double largest = 0.0;
+    for (const Seeds* seeds : scene.all_particles())
+        for (const double volume : seeds->volume) largest = std::max(largest, volume);
+    return scene.inflows.empty() ? largest : std::max(largest, Feed(scene.inflows).largest_column());
+}
+
 }  // namespace frana

@@ -81,4 +81,7 @@ private:
     Columns columns_, behind_;  ///< scratch
 };
 
+/// The largest volume of a column that a scene has at its start, or that comes in later [m3].
+double largest_column(const Scene& scene);
+
 }  // namespace frana

@@ -126,7 +126,7 @@ std::uint64_t salted(std::uint64_t seed, std::uint64_t salt) {
 }
 
 constexpr std::uint64_t kModel = 1, kBits = 2, kLoose = 3, kInflow = 4, kLate = 5, kFriction = 6, kDeposition = 7,
-                        kSpring = 8, kScene = 16;  // salts
+                        kSpring = 8, kForest = 9, kScene = 16;  // salts
 
 }  // namespace
 
@@ -158,6 +158,8 @@ Draft draw(std::uint64_t seed, std::uint64_t n) {
             if (friction.chance(0.1)) draw_friction(friction, draft);
             Dice deposition(salted(seed, kDeposition), n);
             if (deposition.chance(0.2)) draw_deposition(deposition, draft);
+            Dice forest(salted(seed, kForest), n);
+            if (forest.chance(0.15)) draw_forest(forest, draft);
         }
     }
     draft.keys["time.end"] = "1.0e6";

@@ -36,6 +36,8 @@ void draw_lake(Dice& dice, Draft& draft);
 void draw_erodible(Dice& dice, Draft& draft);
 /// A bed that the flow of what is drawn so far becomes, soon after it has come to rest.
 void draw_deposition(Dice& dice, Draft& draft);
+/// Trees that take mass out of what is drawn so far.
+void draw_forest(Dice& dice, Draft& draft);
 /// A line through which more comes in, where the terrain has room for one.
 void draw_inflow(Dice& dice, Draft& draft);
 /// An area over which more comes in, at rest, where the terrain has room for one.

@@ -193,7 +193,7 @@ void learn_columns(const Scene& scene, const Flow& flow, Facts& facts) {
     if (scene.erodible) learn_erodible(*scene.erodible, flow, facts);
     learn_inflows(scene, facts);
     learn_late(scene, facts);
-    if (scene.deposition) learn_deposition(flow, facts);
+    if (scene.deposition || scene.forest) learn_deposition(flow, facts);
     if (scene.still_surface) {
         facts.lake = true;
         facts.level_error = off_level(flow, *scene.still_surface);

@@ -37,6 +37,7 @@ std::vector<Problem> mud_problems();              // problems_mud.cpp
 std::vector<Problem> erosion_problems();          // problems_erosion.cpp
 std::vector<Problem> bed_wave_problems();         // problems_bed_waves.cpp
 std::vector<Problem> collapse_problems();         // problems_erodible_collapse.cpp
+std::vector<Problem> detrainment_problems();      // problems_detrainment.cpp
 std::vector<Problem> inflow_problems();           // problems_inflow.cpp
 std::vector<Problem> water_problems();            // problems_water.cpp
 std::vector<Problem> water_slope_problems();      // problems_water_slopes.cpp

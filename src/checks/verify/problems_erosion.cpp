@@ -5,6 +5,7 @@
 #include "checks/verify/exact_erosion.h"
 #include "checks/verify/lakes.h"
 #include "checks/verify/library.h"
+#include "checks/verify/slab_middle.h"
 #include "checks/verify/trial.h"
 #include "observe/budget.h"
 
@@ -27,25 +28,6 @@ void add_bed(Scene& scene, ErosionLaw law, double kappa, double depth) {
 
 /// What is missing of the flow, of what left and of the bed, over what there was of them.
 double balance_error(const Status& first, const Status& now) { return std::abs(budget(first, now).mass_error); }
-
-/// What the points within two cells of the middle have: speed along the bed, thickness, and how far along the bed their
-/// mean has come.
-SlabState middle_of(Trial& trial, double middle, double cosine) {
-    const Seeds& seeds = trial.scene().particles;
-    const double reach = 2.0 * trial.scene().bed.geometry.cell;
-    const Frame frame = trial.simulation().frame();
-    const double *place = frame.particle("position")->data, *speed = frame.particle("speed")->data;
-    const double *thickness = frame.particle("thickness")->data, *id = frame.particle("id")->data;
-    SlabState sum{};
-    double count = 0.0;
-    for (Index p = 0; p < frame.particle("id")->count; ++p) {
-        const Index first = static_cast<Index>(id[p]);
-        if (first >= seeds.count() || std::abs(seeds.x[first] - middle) > reach) continue;
-        sum.speed += speed[p], sum.thickness += thickness[p], sum.way += (place[3 * p] - seeds.x[first]) / cosine;
-        count += 1.0;
-    }
-    return {sum.speed / count, sum.way / count, sum.thickness / count};
-}
 
 /// A layer 300 m long on a strip that falls along x, its middle free of what comes in from its ends.
 struct SlabRun {

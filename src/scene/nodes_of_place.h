@@ -1,0 +1,22 @@
+#pragma once
+// Properties of a place, from rasters and outlines to nodes: a node has what the pixel, or the polygon, that it lies in has.
+#include <string>
+
+#include "base/range.h"
+#include "scene/scene_parts.h"
+
+namespace frana {
+
+/// "x 1037.5, y 2027.5" of the node or pixel number k.
+std::string place_text(const GridGeometry& g, std::size_t k);
+
+/// Of the pixel that holds a point; nodata beyond the raster.
+double pixel_at(const Raster& raster, double x, double y);
+
+/// Throws UserError, naming a pixel, unless all that have data lie in a key's range.
+void require_range(const Raster& pixels, const Range& range, const std::string& file);
+
+/// Marks the nodes inside a polygon, row by row: between its first and second crossing of the row, its third and fourth, ...
+void mark_inside(const Polygon& polygon, const GridGeometry& grid, NodeMarks& marks);
+
+}  // namespace frana
