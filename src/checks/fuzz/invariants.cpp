@@ -78,7 +78,8 @@ void Watch::note_extremes(const Snapshot& state) {
         if (facts_.affine) change_ = std::max(change_, change);
     for (const double speed : state.points.speed) fastest_ = std::max(fastest_, speed);
     most_mass_ = std::max(most_mass_, state.now.mass);
-    fastest_ = std::max({fastest_, state.max_speed, state.between.max_speed});
+    // What trees took within its first step has been fast on the map alone.
+    fastest_ = std::max({fastest_, state.max_speed, state.between.max_speed, state.between.max_speed_on_map});
     turned_over_ = std::max({turned_over_, state.now.kinetic, state.now.dissipated - start_.now.dissipated,
                              std::abs(state.now.potential - start_.now.potential)});
     points_ = std::max(points_, state.points.count());
