@@ -76,6 +76,26 @@ void add_converge(CLI::App& app, ConvergeOptions& options, Action& action) {
     command->callback([&] { action = [&] { return converge_command(options); }; });
 }
 
+void add_ensemble(CLI::App& app, EnsembleOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("ensemble", "many runs of a case whose keys vary, and maps of probability");
+    command->add_option("FILE", options.file, "what varies, and how (TOML)");
+    command->add_option("--out", options.out, "folder of the runs and the maps");
+    command->add_option("--threads", options.threads, "runs at a time; default OMP_NUM_THREADS")
+        ->check(CLI::Range(1, 4096));
+    command->add_option("--shard", options.shard, "run one of N parts only, counted from 0: I/N");
+    command->add_flag("--resume", options.resume, "go on with what has been run in the folder");
+    command->add_flag("--check", options.check, "show the first samples and foretell time and space, from two runs");
+    command->add_option("--join", options.join, "make the maps of all runs in this folder");
+    command->add_option("--exceed", options.exceed, "one more map of probability: FIELD=VALUE")
+        ->type_name("FIELD=VALUE")
+        ->allow_extra_args(false);
+    command->add_option("--again", options.again, "write a sample as a case of its own");
+    command->add_option("--slurm", options.slurm, "print the script of a Slurm job array with so many parts")
+        ->check(CLI::Range(1, 100000));
+    command->add_flag("--quiet", options.quiet, "no progress");
+    command->callback([&] { action = [&] { return ensemble_command(options); }; });
+}
+
 void add_check(CLI::App& app, CheckOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("check", "read and build the whole scene without running it");
     add_case(*command, options.case_file, options.sets);
@@ -282,6 +302,7 @@ int run_program(int argc, char** argv) {
     app.set_version_flag("--version", version_text);
     RunOptions run;
     ConvergeOptions converge;
+    EnsembleOptions ensemble;
     CheckOptions check;
     DescribeOptions describe;
     ParticlesOptions particles;
@@ -296,6 +317,7 @@ int run_program(int argc, char** argv) {
     Action action;
     add_run(app, run, action);
     add_converge(app, converge, action);
+    add_ensemble(app, ensemble, action);
     add_check(app, check, action);
     add_describe(app, describe, action);
     add_particles(app, particles, action);

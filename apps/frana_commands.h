@@ -36,6 +36,20 @@ struct ConvergeOptions {
     bool quiet = false;
 };
 
+/// `frana ensemble FILE --out DIR [--threads N] [--shard I/N] [--resume] [--check] [--exceed FIELD=VALUE]... [--quiet]`, or with
+/// `--join DIR`, `--again SAMPLE`, `--slurm N`
+struct EnsembleOptions {
+    std::filesystem::path file;       ///< empty with `join`: the one that the runs were made with
+    std::filesystem::path out;        ///< folder of the runs and the maps
+    std::filesystem::path join;       ///< a folder whose runs are made into maps, or empty
+    std::string shard;                ///< as given: "3/40"; empty: all samples, then the maps
+    std::vector<std::string> exceed;  ///< "FIELD=VALUE", beside those of the file
+    std::optional<long long> again;   ///< a sample to write as a case of its own
+    long long slurm = 0;              ///< shards of a job script to print; 0: none
+    int threads = 0;
+    bool resume = false, check = false, quiet = false;
+};
+
 /// `frana figures RUN_DIR [--time T] [--size WxH] [--film mp4|gif]`
 struct FiguresOptions {
     std::filesystem::path run_dir;
@@ -142,6 +156,7 @@ int bench_command(const BenchOptions& options);          // frana_bench.cpp
 int verify_command(const VerifyOptions& options);        // frana_verify.cpp
 int run_command(const RunOptions& options);              // frana_run.cpp
 int converge_command(const ConvergeOptions& options);    // frana_converge.cpp
+int ensemble_command(const EnsembleOptions& options);    // frana_ensemble.cpp
 int figures_command(const FiguresOptions& options);      // frana_figures.cpp
 int compare_command(const CompareOptions& options);      // frana_compare.cpp
 int states_command(const StatesOptions& options);        // frana_states_command.cpp

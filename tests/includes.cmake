@@ -89,6 +89,7 @@ room(src/water base law observe mpm)
 room(src/structured base law law/bed observe mpm shallow water)
 room(src/coupling base terrain observe particles convert run mpm scene shallow solid3d water structured)
 # What is asked of them.
+room(src/ensemble base terrain compare observe run scene)
 room(src/checks/verify base law/bed observe convert mpm scene shallow solid3d water structured coupling)
 room(src/checks/bench base observe mpm scene shallow solid3d structured coupling)
 room(src/checks/fuzz base observe run scene shallow coupling)
@@ -97,7 +98,7 @@ room(src/io base terrain observe particles convert scene PACKAGES "gdal|ogr|cpl_
 room(vtk_io base terrain observe particles compare scene PACKAGES "vtk")
 room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
 room(src/run/folder base terrain observe convert compare run scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
-room(apps base terrain particles convert compare run scene shallow checks/verify checks/bench checks/fuzz io vtk_io
+room(apps base terrain particles convert compare run scene ensemble shallow checks/verify checks/bench checks/fuzz io vtk_io
      vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|benchmark/")
 
 # The time loop and the faces of solvers and observers; not what writes tables.

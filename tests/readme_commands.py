@@ -2,8 +2,8 @@
 """Runs the frana commands that stand in the ```sh blocks of all READMEs: readme_commands.py FRANA SOURCE FOLDER.
 
 Each is run as it stands, in a scratch folder that sees the project's cases, with three exceptions, so that it takes seconds:
-runs stop early (--until; the cases are run in full by tests of their own), `converge` has a short time.end, and commands that
-take minutes by their nature are shortened as SHORTENED says. `case.toml` is a copy of the volcano's. Commands without --out
+runs stop early (--until; the cases are run in full by tests of their own), `converge` has a short time.end, `ensemble` a few
+samples, and commands that take minutes by their nature are shortened as SHORTENED says. `case.toml` is a copy of the volcano's. Commands without --out
 get one. A command whose options or keys do not exist any more fails.
 """
 import os
@@ -69,6 +69,8 @@ def quick(command, number):
         command += f" --until {0.3 if 'conversion' in command else 0.01}"
         if "output.formats" not in command:
             command += """ --set 'output.formats=["vtk","geotiff"]'"""
+    if words[1] == "ensemble":
+        command = command.replace("cases/ensemble/", "few/").replace("--again 317", "--again 3") + " --quiet"
     if words[1] == "converge":
         command += " --set time.end=0.5 --set output.formats=[]"
     return command
@@ -81,6 +83,11 @@ def main():
     os.symlink(os.path.join(source, "cases"), os.path.join(folder, "cases"))
     for name in ("case.toml", "dem.asc", "release.geojson"):
         shutil.copy(os.path.join(source, "cases", "maungawhau", name), folder)
+    os.makedirs(os.path.join(folder, "few"))
+    with open(os.path.join(source, "cases", "ensemble", "ensemble.toml"), encoding="utf-8") as whole:
+        few = re.sub(r"samples = \d+", "samples = 4", whole.read()).replace('"case.toml"', '"../cases/ensemble/case.toml"')
+    with open(os.path.join(folder, "few", "ensemble.toml"), "w", encoding="utf-8") as file:
+        file.write(few)
     environment = dict(os.environ, OMP_NUM_THREADS="1")
     tried, failed = 0, 0
     for page in pages(source):

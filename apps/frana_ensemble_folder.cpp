@@ -1,0 +1,215 @@
+#include "frana_ensemble_folder.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include "base/atomic_file.h"
+#include "base/checksum.h"
+#include "base/error.h"
+#include "base/version.h"
+#include "io/hdf5_peaks.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kAtOnce = 64;            ///< runs in a file, when they are quick
+constexpr std::chrono::seconds kPatience{10};  ///< and when they are slow
+constexpr const char* kColumns =
+    "sample,reason,time_s,steps,seconds,volume_m3,runout_m,reach_m,footprint_area_m2,max_depth_m,max_speed_m_s,mass_"
+    "error,"
+    "peaks,"
+    "message";
+
+std::uint64_t sum_of(const std::string& text) {
+    Checksum sum;
+    sum.add_all(text);
+    return sum.sum();
+}
+
+std::string text_in(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Without what would end a field or a line.
+std::string plain(std::string text) {
+    for (char& letter : text)
+        if (letter == ',' || letter == '\n' || letter == '\r') letter = letter == ',' ? ';' : ' ';
+    return text;
+}
+
+std::string row_of(const SampleResult& r, const std::string& peaks) {
+    return fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.sample, r.reason, r.time, r.steps,
+                       r.seconds, r.volume, r.runout, r.reach, r.footprint_area, r.max_depth, r.max_speed, r.left_share,
+                       r.mass_error, text_of_known(r.iou), text_of_known(r.boundary), peaks, plain(r.message));
+}
+
+std::vector<std::string> fields_of(const std::string& line) {
+    std::vector<std::string> fields;
+    std::istringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+    if (!line.empty() && line.back() == ',') fields.emplace_back();
+    return fields;
+}
+
+UserError broken(const fs::path& file, const std::string& line) {
+    return UserError(
+        fmt::format("{}: found the row \"{}\"; expected the rows that an ensemble writes; remove the folder of "
+                    "this shard and run it again",
+                    file.string(), line));
+}
+
+/// A row, and the file of its peaks.
+std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::string& line) {
+    const std::vector<std::string> f = fields_of(line);
+    if (f.size() != 17) throw broken(file, line);
+    SampleResult r;
+    try {
+        r.sample = std::stoll(f[0]), r.reason = f[1], r.time = std::stod(f[2]), r.steps = std::stoll(f[3]);
+        double* const numbers[] = {&r.seconds,   &r.volume,    &r.runout,     &r.reach,     &r.footprint_area,
+                                   &r.max_depth, &r.max_speed, &r.left_share, &r.mass_error};
+        for (std::size_t k = 0; k < std::size(numbers); ++k) *numbers[k] = std::stod(f[4 + k]);
+        if (!f[13].empty()) r.iou = std::stod(f[13]);
+        if (!f[14].empty()) r.boundary = std::stod(f[14]);
+        r.message = f[16];
+    } catch (const std::logic_error&) {  // what the conversions say of text that is no number
+        throw broken(file, line);
+    }
+    return {r, f[15]};
+}
+
+void require_same(const fs::path& file, const std::string& found, const std::string& expected) {
+    if (found == expected) return;
+    const std::vector<std::string> a = fields_of(found), b = fields_of(expected);
+    std::string what = "its first line";
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+        if (a[k] != b[k]) {
+            what = fmt::format("\"{}\" where now it is \"{}\"", a[k], b[k]);
+            break;
+        }
+    throw UserError(
+        fmt::format("{}: found {}; expected runs of the same ensemble; choose another folder with --out, or "
+                    "give the files back that these runs were made with",
+                    file.string(), what));
+}
+
+std::vector<fs::path> row_files(const fs::path& dir) {
+    std::vector<fs::path> files;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(dir / "shards", none))
+        if (fs::is_regular_file(entry.path() / "runs.csv")) files.push_back(entry.path() / "runs.csv");
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+/// Gives the results with an answer their peaks.
+void take_peaks(const fs::path& file, const EnsemblePlan& plan, std::map<Index, SampleResult>& results) {
+    PeakBlock block = read_peaks(file);
+    if (block.fields != plan.fields)
+        throw UserError(
+            fmt::format("{}: found other fields than ensemble.fields names; expected the same; run the "
+                        "ensemble into another folder",
+                        file.string()));
+    for (std::size_t k = 0; k < block.samples.size(); ++k) {
+        const auto found = results.find(block.samples[k]);
+        if (found != results.end()) found->second.peaks = std::move(block.peaks[k]);
+    }
+}
+
+}  // namespace
+
+void remove_leftovers(const fs::path& folder) {
+    static const std::regex half_written(
+        "\\.(peaks|runs|probability|quantile|mean|reached|report|ensemble).*\\.tmp\\d+(\\..*)?");
+    std::vector<fs::path> found;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored))
+        if (std::regex_match(entry.path().filename().string(), half_written)) found.push_back(entry.path());
+    for (const fs::path& file : found) fs::remove(file, ignored);
+}
+
+std::string text_of_known(const std::optional<double>& number) { return number ? fmt::format("{}", *number) : ""; }
+
+Shard read_shard(const std::string& text) {
+    Shard shard;
+    int past = 0;
+    long long number = 0, of = 0;
+    const bool read =
+        std::sscanf(text.c_str(), "%lld/%lld%n", &number, &of, &past) == 2 && past == static_cast<int>(text.size());
+    if (!read || number < 0 || of < 1 || number >= of)
+        throw UserError(
+            fmt::format("--shard: found \"{}\"; expected I/N with I from 0 to N - 1; write it like 0/4", text));
+    shard.number = number, shard.of = of;
+    return shard;
+}
+
+fs::path shard_folder(const fs::path& dir, const Shard& shard) {
+    return dir / "shards" / fmt::format("{}_of_{}", shard.number, shard.of);
+}
+
+std::string mark_of(const EnsemblePlan& plan) {
+    return fmt::format("# frana {},seed {},samples {},ensemble {:016x},case {:016x}", FRANA_VERSION, plan.seed,
+                       plan.samples, sum_of(plan.text), sum_of(text_in(plan.case_file)));
+}
+
+ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const EnsembleBase& base)
+    : folder_(std::move(folder)), plan_(plan), base_(base), rows_(text_in(folder_ / "runs.csv")) {
+    if (rows_.empty()) rows_ = mark_of(plan) + "\n" + kColumns + "\n";
+}
+
+void ShardStore::add(SampleResult result) {
+    const std::lock_guard<std::mutex> alone(mutex_);
+    waiting_.push_back(std::move(result));
+    if (waiting_.size() >= kAtOnce || std::chrono::steady_clock::now() - written_ > kPatience) write();
+}
+
+void ShardStore::flush() {
+    const std::lock_guard<std::mutex> alone(mutex_);
+    if (!waiting_.empty()) write();
+}
+
+void ShardStore::write() {
+    std::sort(waiting_.begin(), waiting_.end(), [](const auto& a, const auto& b) { return a.sample < b.sample; });
+    PeakBlock block;
+    block.grid = base_.whole, block.fields = plan_.fields;
+    for (SampleResult& result : waiting_)
+        if (result.ended()) block.samples.push_back(result.sample), block.peaks.push_back(std::move(result.peaks));
+    const std::string peaks = fmt::format("peaks_{:07}.h5", waiting_.front().sample);
+    if (!block.samples.empty()) write_peaks(folder_ / peaks, block);
+    for (const SampleResult& result : waiting_) rows_ += row_of(result, result.ended() ? peaks : "");
+    write_text(folder_ / "runs.csv", rows_);
+    waiting_.clear();
+    written_ = std::chrono::steady_clock::now();
+}
+
+std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& plan, bool with_peaks) {
+    std::map<Index, SampleResult> results;
+    std::set<fs::path> peaks;
+    for (const fs::path& file : row_files(dir)) {
+        std::ifstream stream(file);
+        std::string line;
+        std::getline(stream, line);
+        require_same(file, line, mark_of(plan));
+        std::getline(stream, line);
+        while (std::getline(stream, line)) {
+            auto [result, name] = result_of(file, line);
+            if (result.sample < 0 || result.sample >= plan.samples) throw broken(file, line);
+            if (!name.empty()) peaks.insert(file.parent_path() / name);
+            results.emplace(result.sample, std::move(result));
+        }
+    }
+    if (with_peaks)
+        for (const fs::path& file : peaks) take_peaks(file, plan, results);
+    std::vector<SampleResult> all;
+    for (auto& [sample, result] : results) all.push_back(std::move(result));
+    return all;
+}
+
+}  // namespace frana

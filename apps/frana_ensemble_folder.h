@@ -1,0 +1,63 @@
+#pragma once
+// The folder of an ensemble: what its runs left, shard by shard.
+#include <chrono>
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ensemble/sample_run.h"
+
+namespace frana {
+
+/// The part of an ensemble's samples that one process runs: a block of neighbours.
+struct Shard {
+    Index number = 0, of = 1;
+
+    Index begin(Index samples) const { return samples * number / of; }
+    Index end(Index samples) const { return samples * (number + 1) / of; }
+};
+
+/// "3/40". Throws UserError.
+Shard read_shard(const std::string& text);
+
+/// DIR/shards/NUMBER_of_COUNT.
+std::filesystem::path shard_folder(const std::filesystem::path& dir, const Shard& shard);
+
+/// What an ensemble's rows belong to: version, seed, and sums of its two files.
+std::string mark_of(const EnsemblePlan& plan);
+
+/// Keeps results as they come, from any thread, many at a time: their peaks in an HDF5 file, then their rows in runs.csv. A row
+/// is what counts: whatever kills the program, a run is kept whole or not at all.
+class ShardStore {
+public:
+    ShardStore(std::filesystem::path folder, const EnsemblePlan& plan, const EnsembleBase& base);
+
+    void add(SampleResult result);
+    /// Writes what is not written yet.
+    void flush();
+
+private:
+    void write();
+
+    std::filesystem::path folder_;
+    const EnsemblePlan& plan_;
+    const EnsembleBase& base_;
+    std::string rows_;
+    std::vector<SampleResult> waiting_;
+    std::chrono::steady_clock::time_point written_ = std::chrono::steady_clock::now();
+    std::mutex mutex_;
+};
+
+/// Removes what processes that were killed were writing in a folder that no other process now writes to.
+void remove_leftovers(const std::filesystem::path& folder);
+
+/// A number as a field of a table; empty where it is not known.
+std::string text_of_known(const std::optional<double>& number);
+
+/// Rows of all shards in a folder, by sample, with the peaks of those that ended where `with_peaks`. Throws UserError when a file
+/// cannot be read, or belongs to another ensemble (what differs is said).
+std::vector<SampleResult> read_results(const std::filesystem::path& dir, const EnsemblePlan& plan, bool with_peaks);
+
+}  // namespace frana

@@ -1,0 +1,34 @@
+#pragma once
+// What an ensemble says: maps, table, page and pictures.
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "ensemble/sample_run.h"
+
+namespace frana {
+
+/// How its runs went.
+struct EnsembleSummary {
+    Index samples = 0, run = 0, failed = 0, not_at_rest = 0, left_terrain = 0;
+    double core_seconds = 0.0;           ///< of all runs [s]
+    std::optional<double> wall_seconds;  ///< of this process, where it ran them [s]
+    double effective = 0.0;              ///< number of equal weights that tell as much
+    std::vector<std::string> files;      ///< that were made
+
+    /// So many fail that the maps should not be trusted.
+    bool too_many_failed() const { return static_cast<double>(failed) > 0.05 * static_cast<double>(run); }
+};
+
+/// Writes runs.csv, rasters, outlines, pictures, report.md and ensemble.json. `results` are those of all runs so far, by sample, with
+/// their peaks. Throws UserError when none has an answer, or a file cannot be written.
+EnsembleSummary write_maps(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
+                           const std::vector<SampleResult>& results, std::optional<double> wall_seconds);
+
+/// samples.csv: number, weight and the values of the keys that vary.
+void write_samples(const std::filesystem::path& dir, const EnsemblePlan& plan);
+
+/// For people: how many runs, how many of them failed.
+std::string runs_sentence(const EnsembleSummary& summary);
+
+}  // namespace frana

@@ -1,0 +1,55 @@
+#pragma once
+// What an ensemble is to do, from its file: which keys of a case vary and how, and what is asked of the runs.
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ensemble/design.h"
+#include "ensemble/distribution.h"
+
+namespace frana {
+
+/// A key of the case that varies.
+struct Vary {
+    std::string key;
+    Distribution distribution;
+    Index levels = 0;  ///< of method "grid"; of a discrete distribution the number of its values
+};
+
+/// One run of an ensemble.
+struct SamplePoint {
+    double weight = 1.0;              ///< sum over all samples: their number [1]
+    std::vector<std::string> values;  ///< of the keys that vary, as a case file has them
+};
+
+struct EnsemblePlan {
+    std::filesystem::path file, case_file;
+    std::string text;  ///< of the file
+    Method method = Method::lhs;
+    std::string method_name = "lhs";
+    Index samples = 0;  ///< of the file, then the number of runs that they become
+    std::uint64_t seed = 1;
+    std::vector<std::string> fields;                    ///< kept of each run; the first is peak_depth
+    std::map<std::string, std::vector<double>> exceed;  ///< by field: thresholds, in the field's unit
+    std::vector<double> quantiles;
+    std::vector<Vary> vary;
+    Design design;
+    std::vector<SamplePoint> points;
+
+    std::vector<std::string> sets_of(Index sample) const;  ///< "key=value" as for `frana run --set`
+};
+
+/// Node fields that an ensemble can keep, with unit and meaning.
+struct PeakField {
+    const char *name, *unit, *meaning;
+};
+const std::vector<PeakField>& peak_fields();
+
+/// Reads and checks `file`. Throws one UserError with every problem found.
+EnsemblePlan read_ensemble(const std::filesystem::path& file);
+
+/// Adds what "FIELD=VALUE" on the command line asks for. Throws UserError.
+void add_exceedance(EnsemblePlan& plan, const std::string& argument);
+
+}  // namespace frana

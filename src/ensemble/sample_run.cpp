@@ -1,0 +1,162 @@
+#include "ensemble/sample_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ostream>
+
+#include "base/error.h"
+#include "compare/overlap.h"
+#include "compare/runout.h"
+#include "observe/budget.h"
+#include "run/run_loop.h"
+#include "run/simulation.h"
+#include "scene/build_scene.h"
+
+namespace frana {
+namespace {
+
+/// The plan's fields of the last frame, and where it lies.
+class LastPeaks : public Observer {
+public:
+    explicit LastPeaks(const std::vector<std::string>& fields) : fields_(fields) {}
+    std::string name() const override { return "peaks"; }
+    void end(const Frame& last) override {
+        grid = last.grid;
+        const auto count = static_cast<std::size_t>(last.grid.size());
+        for (const std::string& name : fields_) {
+            const Field* field = last.node(name);
+            values.emplace_back(count, 0.0);
+            if (field) std::copy(field->data, field->data + count, values.back().begin());
+        }
+    }
+    GridGeometry grid;
+    std::vector<std::vector<double>> values;  ///< by field; zero where a model does not have it
+
+private:
+    const std::vector<std::string>& fields_;
+};
+
+/// The start of the path: the particle nearest to the middle of all, or the middle of the first inflow.
+std::optional<Vec2> start_of(const Scene& scene) {
+    Seeds all;
+    for (const Seeds* seeds : scene.all_particles()) all.append(*seeds, 0, seeds->count());
+    if (all.count() == 0) {
+        const bool by_line = !scene.inflows.empty() && !scene.inflows.front().line.empty();
+        return by_line ? std::optional<Vec2>(scene.inflows.front().middle()) : std::nullopt;
+    }
+    const auto place = [&](std::size_t k) { return Vec2(all.x[k], all.y[k]); };
+    Vec2 middle(0, 0);
+    for (std::size_t k = 0; k < all.x.size(); ++k) middle += place(k) / static_cast<double>(all.count());
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < all.x.size(); ++k)
+        if ((place(k) - middle).squaredNorm() < (place(nearest) - middle).squaredNorm()) nearest = k;
+    return place(nearest);
+}
+
+/// Nothing is written of a run of an ensemble, and nothing is asked of it on the way.
+std::vector<std::string> quiet(std::vector<std::string> sets) {
+    sets.emplace_back("output.formats=[]");
+    return sets;
+}
+
+Scene scene_of(const EnsemblePlan& plan, const std::vector<std::string>& sets, const GisReader& reader,
+               const MeshReader& meshes) {
+    return build_scene(CaseFile::read(plan.case_file, quiet(sets)), reader, meshes);
+}
+
+/// Distances, and how far the extent is the surveyed one.
+void measure_extent(const EnsembleBase& base, const Raster& depth, SampleResult& result) {
+    const Rings outline = pixel_outline(depth, base.footprint_depth);
+    const double cell = base.whole.cell;
+    if (base.survey) {
+        result.iou = overlap(depth, base.footprint_depth, *base.survey).iou();
+        if (!outline.empty()) result.boundary = distance_between(outline, *base.survey, cell).mean;
+    }
+    if (!base.start || outline.empty()) return;
+    result.reach = farthest_from(*base.start, outline);
+    result.runout = base.path.empty() ? result.reach : reach_along(base.path, outline, cell);
+}
+
+void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
+             SampleResult& result) {
+    if (peaks.values.empty()) return;
+    std::vector<const double*> fields;
+    for (const auto& field : peaks.values) fields.push_back(field.data());
+    result.peaks = sparse_of(fields, peaks.grid, base.whole, base.footprint_depth);
+    const double cell = base.whole.cell;
+    result.footprint_area = static_cast<double>(result.peaks.pixels()) * cell * cell;
+    result.max_depth = run.extremes.max_depth, result.max_speed = run.extremes.max_speed;
+    const Status& last = run.last;
+    result.volume = (run.first.mass + (last.mass_in - run.first.mass_in) + last.bed.eroded) / scene.density;
+    const double all = last.mass + last.mass_left;
+    result.left_share = all > 0.0 ? last.mass_left / all : 0.0;
+    result.mass_error = budget(run.first, last).mass_error;
+    Raster depth;
+    depth.geometry = peaks.grid, depth.values = peaks.values.front();
+    measure_extent(base, depth, result);
+}
+
+void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& scene, const Interrupt& interrupt,
+               SampleResult& result) {
+    const std::unique_ptr<Simulation> simulation = make_simulation(scene);
+    Observers observers;
+    auto owned = std::make_unique<LastPeaks>(plan.fields);
+    const LastPeaks& peaks = *owned;
+    observers.push_back(std::move(owned));
+    std::ostream nowhere(nullptr);
+    Progress progress(nowhere, Progress::Style::silent, scene.density);
+    RunPlan steps;
+    steps.end = steps.every = scene.end;
+    steps.stop_at_rest = scene.stop_at_rest;
+    steps.cell = scene.bed.geometry.cell;
+    steps.rest_fraction = scene.rest_fraction;
+    const RunSummary run = frana::run(*simulation, steps, observers, interrupt, progress);
+    result.reason = run.reason, result.message = run.failure_text;
+    result.time = run.last.time, result.steps = run.steps;
+    measure(scene, base, run, peaks, result);
+}
+
+}  // namespace
+
+EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes) {
+    const Scene scene = scene_of(plan, {}, reader, meshes);
+    EnsembleBase base;
+    base.bed = scene.bed;
+    base.whole = scene.wider ? scene.wider->grid : scene.bed.geometry;
+    base.title = scene.title;
+    base.footprint_depth = scene.output.footprint_depth;
+    base.start = start_of(scene);
+    if (base.start) base.path = steepest_path(scene.bed, *base.start);
+    if (!(length_of(base.path) > 0.0)) base.path.clear();
+    base.footprint = scene.survey;
+    if (scene.survey) base.survey = rings_of(*scene.survey);
+    if (plan.exceed.count("peak_depth"))
+        for (const double threshold : plan.exceed.at("peak_depth"))
+            if (threshold < base.footprint_depth)
+                throw UserError(fmt::format(
+                    "{}: ensemble.exceed.peak_depth: found {:g} m; expected at least the case's "
+                    "output.footprint_depth = {:g} m, below which nothing is kept; raise it or lower that key",
+                    plan.file.string(), threshold, base.footprint_depth));
+    return base;
+}
+
+std::optional<SampleResult> run_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
+                                       const GisReader& reader, const MeshReader& meshes, const Interrupt& interrupt) {
+    SampleResult result;
+    result.sample = sample;
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        run_scene(plan, base, scene_of(plan, plan.sets_of(sample), reader, meshes), interrupt, result);
+    } catch (const UserError& error) {  // one run that cannot be is a result of the ensemble, and stops no other
+        result.reason = "refused", result.message = error.what();
+    } catch (const NumericsError& error) {
+        result.reason = "numerics", result.message = error.what();
+    }
+    if (result.reason == "interrupted") return std::nullopt;
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+}  // namespace frana

@@ -1,0 +1,57 @@
+#pragma once
+// One run of an ensemble: from the case and its overrides to a row of numbers and the places that the flow reached.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/outline.h"
+#include "ensemble/plan.h"
+#include "run/interrupt.h"
+#include "scene/toolbox.h"
+#include "terrain/sparse_rasters.h"
+
+namespace frana {
+
+/// What all runs share: the case without overrides.
+struct EnsembleBase {
+    Raster bed;          ///< what of the terrain the case holds at its start
+    GridGeometry whole;  ///< nodes of all of the terrain; the maps' pixels
+    std::string title;
+    double footprint_depth = 0.1;       ///< [m]
+    std::optional<Vec2> start;          ///< the middle of the releases
+    std::optional<Polygons> footprint;  ///< surveyed, where the case has one
+    std::optional<Rings> survey;        ///< its rings
+    Polyline path;                      ///< that all runouts are measured along; empty: none is known
+};
+
+/// Builds the case of the plan once. Throws UserError when it cannot run.
+EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes);
+
+/// What is kept of a run.
+struct SampleResult {
+    Index sample = 0;
+    std::string reason;   ///< as of a run (RunSummary), or "refused": its case cannot run
+    std::string message;  ///< of what failed; else empty
+    double time = 0.0;    ///< simulated [s]
+    Index steps = 0;
+    double seconds = 0.0;                     ///< wall time [s]
+    double volume = 0.0;                      ///< of all that flowed [m3]
+    double runout = 0.0;                      ///< along the path; the straight reach where no path is known [m]
+    double reach = 0.0;                       ///< straight from the start [m]
+    double footprint_area = 0.0;              ///< [m2]
+    double max_depth = 0.0, max_speed = 0.0;  ///< [m], [m/s]
+    double left_share = 0.0;                  ///< of the mass, that left the terrain [1]
+    double mass_error = 0.0;                  ///< of the budget, relative [1]
+    std::optional<double> iou;                ///< of the footprint with the surveyed one, where there is one [1]
+    std::optional<double> boundary;           ///< mean distance of their outlines; nothing where nothing flowed [m]
+    SparseRasters peaks;                      ///< the plan's fields where peak_depth exceeds the footprint depth
+
+    /// The run has an answer: it came to an end of its own or to time.end.
+    bool ended() const { return reason == "end" || reason == "rest" || reason == "left"; }
+};
+
+/// Runs a sample on this thread. Nothing when the interrupt asked for an end meanwhile.
+std::optional<SampleResult> run_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
+                                       const GisReader& reader, const MeshReader& meshes, const Interrupt& interrupt);
+
+}  // namespace frana

@@ -1,0 +1,91 @@
+#include "ensemble/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace frana {
+
+void PixelValues::gather(const std::vector<const SparseRasters*>& runs, const std::vector<double>& weights,
+                         std::size_t field) {
+    expect(runs.size() == weights.size(), "a weight for each run");
+    const auto pixels = static_cast<std::size_t>(grid_.size());
+    first_.assign(pixels + 1, 0);
+    weight_ = 0.0;
+    for (const double weight : weights) weight_ += weight;
+    for (const SparseRasters* run : runs)
+        run->for_each([&](Index pixel, std::size_t) { ++first_[static_cast<std::size_t>(pixel) + 1]; });
+    for (std::size_t k = 0; k < pixels; ++k) first_[k + 1] += first_[k];
+    values_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        const std::vector<float>& of = runs[r]->values.at(field);
+        const auto weight = static_cast<float>(weights[r]);
+        runs[r]->for_each([&](Index pixel, std::size_t n) {
+            values_[next[static_cast<std::size_t>(pixel)]++] = {of[n], weight};
+        });
+    }
+}
+
+/// body(first, past) of the values of each pixel that has some; the others get 0.
+template <class Body>
+Raster PixelValues::of_each(Body&& body) const {
+    Raster raster = Raster::filled(grid_, 0.0);
+    for (std::size_t k = 0; k + 1 < first_.size(); ++k)
+        if (first_[k] < first_[k + 1]) raster.values[k] = body(&values_[first_[k]], values_.data() + first_[k + 1]);
+    return raster;
+}
+
+Raster PixelValues::exceeds(double threshold) const {
+    const auto limit = static_cast<float>(threshold);
+    return of_each([&](const Value* first, const Value* past) {
+        double sum = 0.0;
+        for (const Value* v = first; v != past; ++v)
+            if (v->value > limit) sum += static_cast<double>(v->weight);
+        return sum / weight_;
+    });
+}
+
+Raster PixelValues::reached() const {
+    return of_each([&](const Value* first, const Value* past) {
+        double sum = 0.0;
+        for (const Value* v = first; v != past; ++v) sum += static_cast<double>(v->weight);
+        return sum / weight_;
+    });
+}
+
+Raster PixelValues::mean() const {
+    return of_each([&](const Value* first, const Value* past) {
+        double sum = 0.0;
+        for (const Value* v = first; v != past; ++v)
+            sum += static_cast<double>(v->weight) * static_cast<double>(v->value);
+        return sum / weight_;
+    });
+}
+
+Raster PixelValues::quantile(double q) const {
+    std::vector<Value> sorted;
+    constexpr double round_off = 1e-9;
+    return of_each([&](const Value* first, const Value* past) {
+        sorted.assign(first, past);
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](const Value& a, const Value& b) { return a.value > b.value; });
+        double above = 0.0;  // from the largest down: what exceeds a value may be at most 1 - q
+        for (const Value& v : sorted) {
+            above += static_cast<double>(v.weight);
+            if (above > (1.0 - q) * weight_ * (1.0 + round_off)) return static_cast<double>(v.value);
+        }
+        return 0.0;
+    });
+}
+
+double effective_number(const std::vector<double>& weights) {
+    double sum = 0.0, squares = 0.0;
+    for (const double w : weights) sum += w, squares += w * w;
+    return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
+double standard_error(double p, double number) { return number > 0.0 ? std::sqrt(p * (1.0 - p) / number) : 0.0; }
+
+}  // namespace frana

@@ -1,0 +1,26 @@
+#pragma once
+// What an ensemble keeps of its runs, many runs in a file.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "terrain/sparse_rasters.h"
+
+namespace frana {
+
+/// Peaks of some samples. All have the fields, in this order.
+struct PeakBlock {
+    GridGeometry grid;
+    std::vector<std::string> fields;
+    std::vector<Index> samples;        ///< their numbers
+    std::vector<SparseRasters> peaks;  ///< as many
+};
+
+/// HDF5, compressed: datasets sample, rows and pixels (of each sample), first and count (of each row), and one of each field
+/// (of each pixel). Appears whole or not at all. Throws UserError.
+void write_peaks(const std::filesystem::path& file, const PeakBlock& block);
+
+/// Throws UserError for a file that is none of those.
+PeakBlock read_peaks(const std::filesystem::path& file);
+
+}  // namespace frana

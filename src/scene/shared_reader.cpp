@@ -1,0 +1,117 @@
+#include "scene/shared_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace frana {
+namespace {
+
+std::string text_of(const GridGeometry& g) { return fmt::format("{} {} {} {} {}", g.nx, g.ny, g.x0, g.y0, g.cell); }
+
+std::string text_of(const DemRequest& request) {
+    std::string text;
+    if (request.window) text += fmt::format("window {} ", *request.window);
+    if (request.cell) text += fmt::format("cell {} ", *request.cell);
+    return text;
+}
+
+std::string text_of(const NodeBox& box) { return fmt::format("part {} {} {} {}", box.i0, box.j0, box.nx, box.ny); }
+
+}  // namespace
+
+template <class Answer, class Read>
+Answer SharedReader::recalled(Memory<Answer>& memory, const std::string& question, std::vector<std::string>& log,
+                              const Read& read) const {
+    const std::lock_guard<std::recursive_mutex> alone(mutex_);
+    auto found = memory.find(question);
+    if (found == memory.end()) {
+        Known<Answer> known;
+        known.answer = read(known.remarks);
+        found = memory.emplace(question, std::move(known)).first;
+    }
+    log.insert(log.end(), found->second.remarks.begin(), found->second.remarks.end());
+    return found->second.answer;
+}
+
+/// Which part is wanted is asked of each scene anew, since its releases may lie elsewhere; asking reads files as well.
+Raster SharedReader::read_dem(const std::filesystem::path& file, const DemRequest& request,
+                              std::vector<std::string>& log) const {
+    const std::lock_guard<std::recursive_mutex> alone(mutex_);
+    const std::string question = fmt::format("{} {}", file.string(), text_of(request));
+    const auto whole = whole_.find(question);
+    DemRequest told = request;
+    if (request.choose && whole == whole_.end()) {
+        NodeBox chosen;
+        told.choose = [&](const Raster& grid) {
+            chosen = request.choose(grid);
+            whole_.emplace(question, grid);
+            return chosen;
+        };
+        Known<Raster> known;
+        known.answer = inner_.read_dem(file, told, known.remarks);
+        log.insert(log.end(), known.remarks.begin(), known.remarks.end());
+        return terrain_.emplace(question + text_of(chosen), std::move(known)).first->second.answer;
+    }
+    std::string part;
+    if (request.choose) {
+        const NodeBox box = request.choose(whole->second);
+        part = text_of(box);
+        told.choose = [box](const Raster&) { return box; };
+    }
+    return recalled(terrain_, question + part, log,
+                    [&](auto& remarks) { return inner_.read_dem(file, told, remarks); });
+}
+
+std::function<Raster(const NodeBox&)> SharedReader::read_dem_later(const std::filesystem::path& file,
+                                                                   const DemRequest& request) const {
+    return inner_.read_dem_later(file, request);
+}
+
+Raster SharedReader::read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                                 const std::string& crs_wkt, std::vector<std::string>& log) const {
+    return recalled(rasters_, fmt::format("raster {} {}", file.string(), extent), log,
+                    [&](auto& remarks) { return inner_.read_raster(file, extent, crs_wkt, remarks); });
+}
+
+Raster SharedReader::read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
+                               std::vector<std::string>& log) const {
+    return recalled(rasters_, fmt::format("onto {} {}", file.string(), text_of(grid)), log,
+                    [&](auto& remarks) { return inner_.read_onto(file, grid, crs_wkt, remarks); });
+}
+
+Raster SharedReader::read_deposit(const std::filesystem::path& file, const GridGeometry& grid,
+                                  const std::string& crs_wkt, std::vector<std::string>& log) const {
+    return recalled(rasters_, fmt::format("deposit {} {}", file.string(), text_of(grid)), log,
+                    [&](auto& remarks) { return inner_.read_deposit(file, grid, crs_wkt, remarks); });
+}
+
+Polygons SharedReader::read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
+                                     std::vector<std::string>& log) const {
+    return recalled(polygons_, file.string(), log,
+                    [&](auto& remarks) { return inner_.read_polygons(file, crs_wkt, remarks); });
+}
+
+ValuedPolygons SharedReader::read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
+                                                  const std::string& crs_wkt, std::vector<std::string>& log) const {
+    return recalled(valued_, file.string() + " " + attribute, log,
+                    [&](auto& remarks) { return inner_.read_valued_polygons(file, attribute, crs_wkt, remarks); });
+}
+
+Polygons SharedReader::read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                                   const std::string& crs_wkt, std::vector<std::string>& log) const {
+    return recalled(polygons_, fmt::format("survey {} {}", file.string(), extent), log,
+                    [&](auto& remarks) { return inner_.read_survey(file, extent, crs_wkt, remarks); });
+}
+
+std::vector<Polyline> SharedReader::read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
+                                               std::vector<std::string>& log) const {
+    return recalled(lines_, file.string(), log,
+                    [&](auto& remarks) { return inner_.read_lines(file, crs_wkt, remarks); });
+}
+
+Polyline SharedReader::read_line(const std::filesystem::path& file, const std::string& crs_wkt,
+                                 std::vector<std::string>& log) const {
+    return recalled(line_, file.string(), log, [&](auto& remarks) { return inner_.read_line(file, crs_wkt, remarks); });
+}
+
+}  // namespace frana

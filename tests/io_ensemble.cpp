@@ -1,0 +1,251 @@
+// `frana ensemble` as a person calls it, on problems whose probabilities are known.
+#include <fmt/format.h>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "catch.h"
+#include "io/gdal_reader.h"
+#include "plane_case.h"
+
+namespace fs = std::filesystem;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A level pond between walls: whatever depth is released stays as it is, everywhere. So the maps are those of the depth.
+class Pond {
+public:
+    Pond() {
+        std::string dem = "ncols 12\nnrows 12\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n";
+        for (int row = 0; row < 12; ++row) dem += "0 0 0 0 0 0 0 0 0 0 0 0\n";
+        write("dem.asc", dem);
+        outline("all.geojson", 57.5);
+        outline("west.geojson", 27.5);
+        write("case.toml",
+              "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"all.geojson\"\ndepth = 1.5\n[time]\nend = 0.5\n"
+              "[boundary]\nsides = \"wall\"\n[output]\nfootprint_depth = 0.1\n");
+    }
+    void write(const std::string& name, const std::string& text) const { frana::write_text(path(name), text); }
+    fs::path path(const std::string& name) const { return folder_.path() / name; }
+    Outcome frana(const std::string& arguments) const { return call_frana(folder_.path(), arguments); }
+    frana::Raster map(const std::string& folder, const std::string& name) const {
+        std::vector<std::string> log;
+        return frana::GdalReader().read_raster(path(folder) / "rasters" / (name + ".tif"), {0.0, 0.0, 60.0, 60.0}, "",
+                                               log);
+    }
+
+private:
+    void outline(const std::string& name, double east) const {
+        write(name,
+              fmt::format(R"({{"type": "Polygon", "coordinates": [[[2.5, 2.5], [{0}, 2.5], [{0}, 57.5], [2.5, 57.5],
+                               [2.5, 2.5]]]}})",
+                          east));
+    }
+    FreshFolder folder_;
+};
+
+const std::string depths =
+    "[ensemble]\ncase = \"case.toml\"\nmethod = \"lhs\"\nsamples = 20\nfields = [\"peak_depth\", \"peak_speed\"]\n"
+    "exceed = { peak_depth = [1.25] }\nquantiles = [0.05, 0.5, 0.95]\n"
+    "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n";
+
+/// All files of the maps, but the pictures and what tells of the clock.
+std::vector<std::string> whole(const fs::path& folder) {
+    std::vector<std::string> all = {text_of(folder / "runs.csv"), text_of(folder / "samples.csv")};
+    std::vector<fs::path> rasters;
+    for (const auto& entry : fs::directory_iterator(folder / "rasters")) rasters.push_back(entry.path());
+    std::sort(rasters.begin(), rasters.end());
+    for (const fs::path& file : rasters) all.push_back(file.filename().string() + text_of(file));
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("an ensemble of ponds has the probabilities and quantiles of their depths", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml", depths);
+    const Outcome done = pond.frana("ensemble many.toml --out many --threads 2");
+    CHECK(done.err.empty());
+    REQUIRE(done.code == 0);
+    CHECK_THAT(done.out, Contains("20 of 20 runs"));
+    // A slice of 20 in one key: shares are right to 1/20, quantiles to a slice's width.
+    const frana::Raster p = pond.map("many", "probability_peak_depth_1.25"),
+                        middle = pond.map("many", "quantile_peak_depth_0.5"),
+                        low = pond.map("many", "quantile_peak_depth_0.05");
+    for (std::size_t k = 0; k < p.values.size(); ++k) {
+        CHECK(p.values[k] == Approx(0.75).margin(0.0500001));
+        CHECK(middle.values[k] == Approx(1.5).margin(0.0500001));
+        CHECK(low.values[k] == Approx(1.05).margin(0.0500001));
+    }
+    const Json json = Json::parse(text_of(pond.path("many/ensemble.json")));
+    CHECK(json["run"] == 20);
+    CHECK(json["failed"] == 0);
+    CHECK(json["results"]["max_depth_m"]["mean"].get<double>() == Approx(1.5).margin(0.025));  // of stratified means
+    for (const Json& file : json["files"]) CHECK(fs::exists(pond.path("many") / file.get<std::string>()));
+    CHECK_THAT(text_of(pond.path("many/report.md")), Contains("largest depth [m]"));
+
+    SECTION("another threshold needs no run") {
+        const Outcome more = pond.frana("ensemble --join many --exceed peak_depth=1.75 --quiet");
+        CHECK(more.err.empty());
+        REQUIRE(more.code == 0);
+        CHECK(pond.map("many", "probability_peak_depth_1.75").values[40] == Approx(0.25).margin(0.0500001));
+    }
+    SECTION("a sample is a case of its own") {
+        const Outcome again = pond.frana("ensemble many.toml --out many --again 7");
+        REQUIRE(again.code == 0);
+        CHECK_THAT(again.out, Contains("frana run many/sample_7/case.toml"));
+        CHECK(pond.frana("run many/sample_7/case.toml --out again --quiet --set 'output.formats=[\"geotiff\"]'").code ==
+              0);
+        std::string row = text_of(pond.path("many/samples.csv"));
+        const double depth = std::stod(row.substr(row.find("\n7,1,") + 5));
+        CHECK(pond.map("again", "peak_depth").values[40] == Approx(depth).epsilon(1e-6));
+    }
+    SECTION("the folder is not run into again without a word") {
+        const Outcome second = pond.frana("ensemble many.toml --out many");
+        CHECK(second.code == 2);
+        CHECK_THAT(second.err, Contains("found the runs of an earlier ensemble") && Contains("--resume"));
+        pond.write("many.toml", depths + "levels = 3\n");
+        CHECK(pond.frana("ensemble many.toml --out many --resume").code == 2);
+        std::string other = depths;
+        other.replace(other.find("samples = 20"), 12, "samples = 30");
+        pond.write("many.toml", other);
+        const Outcome differs = pond.frana("ensemble many.toml --out many --resume");
+        CHECK(differs.code == 2);
+        CHECK_THAT(differs.err, Contains("found \"samples 20\" where now it is \"samples 30\""));
+    }
+}
+
+TEST_CASE("an ensemble has the same bytes on any number of threads, in shards, and after being killed", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml", depths);
+    REQUIRE(pond.frana("ensemble many.toml --out one --threads 1 --quiet").code == 0);
+    const std::vector<std::string> expected = whole(pond.path("one"));
+    CHECK(expected.size() > 8);
+    REQUIRE(pond.frana("ensemble many.toml --out four --threads 4 --quiet").code == 0);
+    CHECK(whole(pond.path("four")) == expected);
+    for (const char* shard : {"2/3", "0/3", "1/3"})  // in any order
+        REQUIRE(pond.frana(std::string("ensemble many.toml --out parts --quiet --shard ") + shard).code == 0);
+    REQUIRE(pond.frana("ensemble --join parts --quiet").code == 0);
+    CHECK(whole(pond.path("parts")) == expected);
+    // Killed at once, and again and again a little later: whatever was kept is whole.
+    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
+    for (const char* seconds : {"0.05", "0.1", "0.15", "0.2", "0.3"})
+        static_cast<void>(std::system(
+            fmt::format("cd {} && timeout --foreground -s KILL {} {} ensemble many.toml --out killed --resume "
+                        "--quiet > /dev/null 2>&1",
+                        pond.path("").string(), seconds, program.string())
+                .c_str()));
+    const Outcome last = pond.frana("ensemble many.toml --out killed --resume --quiet");
+    CHECK(last.err.empty());
+    REQUIRE(last.code == 0);
+    CHECK(whole(pond.path("killed")) == expected);
+}
+
+TEST_CASE("scenarios count by their weights", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\nexceed = { peak_depth = [1.0] }\n"
+               "[[ensemble.vary]]\nkey = \"release.0.depth\"\ndistribution = \"discrete\"\nvalues = [0.5, 1.5]\n"
+               "weights = [0.3, 0.7]\n");
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    for (const double p : pond.map("many", "probability_peak_depth_1").values) CHECK(p == Approx(0.7).epsilon(1e-6));
+    for (const double p : pond.map("many", "probability_reached").values) CHECK(p == Approx(1.0));
+}
+
+TEST_CASE("runs that fail are counted and bound the maps, and stop no other", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\nexceed = { peak_depth = [1.0] }\n"
+               "[[ensemble.vary]]\nkey = \"release.0.outline\"\ndistribution = \"discrete\"\n"
+               "values = [\"all.geojson\", \"gone.geojson\"]\n"
+               "[[ensemble.vary]]\nkey = \"release.0.depth\"\ndistribution = \"discrete\"\nvalues = [0.5, 1.5]\n");
+    const Outcome done = pond.frana("ensemble many.toml --out many");
+    CHECK(done.code == 3);
+    CHECK_THAT(done.err, Contains("2 of 4 runs failed, more than 5 %"));
+    CHECK_THAT(done.out, Contains("between k and k + 2"));
+    CHECK_THAT(text_of(pond.path("many/runs.csv")), Contains("refused") && Contains("gone.geojson"));
+    for (const double p : pond.map("many", "probability_peak_depth_1").values) CHECK(p == Approx(0.5));
+    for (const double p : pond.map("many", "probability_peak_depth_1_low").values) CHECK(p == Approx(0.25));
+    for (const double p : pond.map("many", "probability_peak_depth_1_high").values) CHECK(p == Approx(0.75));
+    CHECK(Json::parse(text_of(pond.path("many/ensemble.json")))["failed"] == 2);
+}
+
+TEST_CASE("an ensemble's forecast, job script and mistakes", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml", depths);
+    const Outcome check = pond.frana("ensemble many.toml --out many --check");
+    CHECK(check.code == 0);
+    CHECK_THAT(check.out,
+               Contains("20 samples by \"lhs\"") && Contains("core seconds") && Contains("release.0.depth=1."));
+    CHECK_FALSE(fs::exists(pond.path("many")));
+    const Outcome script = pond.frana("ensemble many.toml --out many --slurm 40");
+    CHECK(script.code == 0);
+    CHECK_THAT(script.out, Contains("--array=0-39") && Contains("$SLURM_ARRAY_TASK_ID/40") && Contains("--join"));
+    for (const char* shard : {"4/4", "5/4", "-1/4", "1", "a/b"}) {
+        CAPTURE(shard);
+        const Outcome wrong = pond.frana(std::string("ensemble many.toml --out many --shard=") + shard);
+        CHECK(wrong.code == 2);
+        CHECK_THAT(wrong.err, Contains("expected I/N with I from 0 to N - 1"));
+    }
+    CHECK_THAT(pond.frana("ensemble --out many").err, Contains("FILE: found none"));
+    CHECK_THAT(pond.frana("ensemble many.toml").err, Contains("--out: found none"));
+    CHECK_THAT(pond.frana("ensemble --join none").err, Contains("expected the folder of an ensemble"));
+    CHECK_THAT(pond.frana("ensemble many.toml --out many --again 20").err, Contains("expected a sample from 0 to 19"));
+    std::string low = depths;
+    low.replace(low.find("[1.25]"), 6, "[0.05]");
+    pond.write("many.toml", low);
+    CHECK_THAT(pond.frana("ensemble many.toml --out many").err, Contains("output.footprint_depth = 0.1 m"));
+}
+
+TEST_CASE("the shipped ensemble has the means that its README promises, as far as fewer runs can tell", "[ensemble]") {
+    const FreshFolder folder;
+    const fs::path shipped = fs::path(FRANA_SOURCE_DIR) / "cases" / "ensemble";
+    std::string text = text_of(shipped / "ensemble.toml");
+    text.replace(text.find("samples = 1024"), 14, "samples = 64");
+    text.replace(text.find("\"case.toml\""), 11, "\"" + (shipped / "case.toml").string() + "\"");
+    frana::write_text(folder.path() / "few.toml", text);
+    const Outcome done = call_frana(folder.path(), "ensemble few.toml --out few --threads 2 --quiet");
+    CHECK(done.err.empty());
+    REQUIRE(done.code == 0);
+    const Json json = Json::parse(text_of(folder.path() / "few/ensemble.json"));
+    CHECK(json["failed"] == 0);
+    std::istringstream expected(text_of(shipped / "expected.csv"));
+    std::string line;
+    int compared = 0;
+    for (std::getline(expected, line); std::getline(expected, line); ++compared) {
+        const std::string key = line.substr(0, line.find(','));
+        double mean = 0.0, tolerance = 0.0;
+        REQUIRE(std::sscanf(line.c_str() + key.size(), ",%lf,%lf", &mean, &tolerance) == 2);
+        CAPTURE(key);
+        CHECK(json["results"][key]["mean"].get<double>() == Approx(mean).margin(tolerance));
+    }
+    CHECK(compared == 5);
+    // Sample 5 is the same run here and there, alone or among others.
+    CHECK(call_frana(folder.path(), "ensemble few.toml --out few --again 5").code == 0);
+    REQUIRE(
+        call_frana(folder.path(), "run few/sample_5/case.toml --out alone --quiet --set 'output.formats=[]'").code ==
+        0);
+    const Json alone = Json::parse(text_of(folder.path() / "alone/run.json"));
+    std::istringstream rows(text_of(folder.path() / "few/runs.csv"));
+    while (std::getline(rows, line) && line.rfind("5,", 0) != 0) continue;
+    const std::string depth = fmt::format(",{},", alone["results"]["max_depth"].get<double>());
+    CHECK_THAT(line, Contains(depth));
+}
+
+TEST_CASE("runs of a case with a survey say how near they come to it", "[ensemble]") {
+    const Pond pond;
+    const std::string text = text_of(pond.path("case.toml"));
+    pond.write("case.toml", text + "[survey]\nfootprint = \"west.geojson\"\n");
+    pond.write("many.toml", depths);
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    const std::string runs = text_of(pond.path("many/runs.csv"));
+    CHECK_THAT(runs, Contains(",iou,boundary_m,"));
+    // All of the pond is wet; surveyed are 25 x 55 m of its 60 x 60.
+    CHECK_THAT(runs, Contains(fmt::format(",{:.9g}", 1375.0 / 3600.0).substr(0, 10)));
+    CHECK_THAT(text_of(pond.path("many/report.md")), Contains("Nearest to the surveyed footprint"));
+}

@@ -1,0 +1,272 @@
+// Samples of an ensemble, its file, and the maps that are made of its runs.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "catch.h"
+#include "ensemble/plan.h"
+#include "ensemble/sensitivity.h"
+#include "ensemble/statistics.h"
+#include "fresh_folder.h"
+
+using namespace frana;
+using Catch::Contains;
+
+namespace {
+
+std::vector<double> column(const Design& design, std::size_t key) {
+    std::vector<double> all;
+    for (const auto& point : design.points) all.push_back(point.at(key));
+    return all;
+}
+
+/// How many of the numbers lie in each of so many slices of (0, 1).
+std::vector<int> in_slices(const std::vector<double>& numbers, std::size_t slices) {
+    std::vector<int> counts(slices, 0);
+    for (const double u : numbers) {
+        REQUIRE(u > 0.0);
+        REQUIRE(u < 1.0);
+        ++counts[static_cast<std::size_t>(u * static_cast<double>(slices))];
+    }
+    return counts;
+}
+
+/// Largest distance of the share of numbers below from the uniform one (Kolmogorov and Smirnov).
+double from_uniform(std::vector<double> numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    double most = 0.0;
+    const double n = static_cast<double>(numbers.size());
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+        most = std::max({most, std::abs(numbers[k] - static_cast<double>(k) / n),
+                         std::abs(numbers[k] - static_cast<double>(k + 1) / n)});
+    return most;
+}
+
+Distribution numbers_of(Distribution::Kind kind, double low, double high, double middle = 0.0, double spread = 1.0) {
+    Distribution of;
+    of.kind = kind, of.low = low, of.high = high, of.middle = middle, of.spread = spread;
+    return of;
+}
+
+/// An ensemble file beside a case, and what is said of it.
+class EnsembleFile {
+public:
+    EnsembleFile() { write_text(folder_.path() / "case.toml", "[terrain]\ndem = \"dem.asc\"\n"); }
+    EnsemblePlan read(const std::string& text) const {
+        write_text(folder_.path() / "many.toml", text);
+        return read_ensemble(folder_.path() / "many.toml");
+    }
+    std::string complaint(const std::string& text) const {
+        try {
+            read(text);
+        } catch (const UserError& error) {
+            return error.what();
+        }
+        return "";
+    }
+
+private:
+    FreshFolder folder_;
+};
+
+const std::string head = "[ensemble]\ncase = \"case.toml\"\nsamples = 8\n";
+const std::string mu = "[[ensemble.vary]]\nkey = \"material.bed.mu\"\nrange = [0.1, 0.3]\n";
+
+SparseRasters row_of(std::int64_t first, const std::vector<float>& values) {
+    return {{{first, static_cast<std::int64_t>(values.size())}}, {values}};
+}
+
+}  // namespace
+
+TEST_CASE("Latin hypercube samples hit each slice of each key once", "[ensemble]") {
+    const Design design = make_design(Method::lhs, 50, 3, 7);
+    for (std::size_t key = 0; key < 3; ++key) CHECK(in_slices(column(design, key), 50) == std::vector<int>(50, 1));
+    CHECK(column(design, 0) != column(design, 1));
+    CHECK(column(make_design(Method::lhs, 50, 3, 8), 0) != column(design, 0));
+}
+
+TEST_CASE("Sobol samples fill slices evenly and stay when more are asked for", "[ensemble]") {
+    const Design design = make_design(Method::sobol, 128, 4, 3), half = make_design(Method::sobol, 64, 4, 3);
+    for (std::size_t key = 0; key < 4; ++key) {
+        CHECK(in_slices(column(design, key), 128) == std::vector<int>(128, 1));
+        CHECK(in_slices(column(half, key), 64) == std::vector<int>(64, 1));
+    }
+    CHECK(std::equal(half.points.begin(), half.points.end(), design.points.begin()));
+    CHECK(make_design(Method::sobol, 64, 4, 4).points != half.points);
+    CHECK_THROWS_WITH(make_design(Method::sobol, 2, 4000, 1), Contains("expected at most 3667"));
+}
+
+TEST_CASE("Random samples are uniform, and each hangs on the seed and its number alone", "[ensemble]") {
+    const Design design = make_design(Method::random, 2000, 2, 11);
+    // 1.95 / sqrt(n): what one of a thousand uniform samples exceeds (Smirnov 1948).
+    for (std::size_t key = 0; key < 2; ++key) CHECK(from_uniform(column(design, key)) < 1.95 / std::sqrt(2000.0));
+    const Design few = make_design(Method::random, 10, 2, 11);
+    CHECK(std::equal(few.points.begin(), few.points.end(), design.points.begin()));
+    CHECK(design.points[5][1] == unit_at(11, 5, 1));
+}
+
+TEST_CASE("Distributions have the quantiles that tables have", "[ensemble]") {
+    using Kind = Distribution::Kind;
+    CHECK(numbers_of(Kind::uniform, 2.0, 6.0).number(0.25) == Approx(3.0));
+    CHECK(numbers_of(Kind::loguniform, 1.0, 100.0).number(0.5) == Approx(10.0));
+    const double infinite = std::numeric_limits<double>::infinity();
+    CHECK(numbers_of(Kind::normal, -infinite, infinite, 1.0, 2.0).number(0.975) == Approx(1.0 + 2.0 * 1.959963984540));
+    CHECK(numbers_of(Kind::lognormal, 0.0, infinite, 500.0, 1.5).number(0.8413447460685429) == Approx(750.0));
+    CHECK(numbers_of(Kind::triangular, 0.0, 4.0, 1.0).number(0.25) == Approx(1.0));  // the mode
+    CHECK(numbers_of(Kind::triangular, 0.0, 4.0, 1.0).number(0.75) == Approx(4.0 - std::sqrt(3.0)));
+    Distribution beta = numbers_of(Kind::beta, 10.0, 20.0);
+    beta.alpha = 2.0, beta.beta = 1.0;  // its distribution function is x^2
+    CHECK(beta.number(0.49) == Approx(17.0));
+    const Distribution cut = numbers_of(Kind::normal, 0.0, 1.0, 0.0, 1.0);
+    // Half of what lies between 0 and 1 lies below.
+    CHECK(std::erf(cut.number(0.5) / std::sqrt(2.0)) == Approx(0.5 * std::erf(1.0 / std::sqrt(2.0))));
+    CHECK(cut.number(1e-9) >= 0.0);
+    CHECK(cut.number(1.0 - 1e-9) <= 1.0);
+    Distribution choice;
+    choice.kind = Kind::discrete, choice.values = {"1", "2", "3"}, choice.weights = {0.2, 0.5, 0.3};
+    CHECK(choice.text(0.19) == "1");
+    CHECK(choice.text(0.21) == "2");
+    CHECK(choice.text(0.999) == "3");
+}
+
+TEST_CASE("An ensemble's file becomes overrides of a case, the same ones each time", "[ensemble]") {
+    const EnsembleFile file;
+    const std::string text = head + "seed = 5\nmethod = \"sobol\"\nexceed = { peak_depth = [0.5] }\n" + mu +
+                             "[[ensemble.vary]]\nkey = \"release.0.outline\"\ndistribution = \"discrete\"\n"
+                             "values = [\"a.geojson\", \"b.geojson\"]\nweights = [0.7, 0.3]\n";
+    const EnsemblePlan plan = file.read(text);
+    REQUIRE(plan.points.size() == 8);
+    CHECK(plan.exceed.at("peak_depth") == std::vector<double>{0.5});
+    const std::vector<std::string> sets = plan.sets_of(3);
+    REQUIRE(sets.size() == 2);
+    CHECK_THAT(sets[0], Catch::StartsWith("material.bed.mu=0."));
+    CHECK((sets[1] == "release.0.outline='a.geojson'" || sets[1] == "release.0.outline='b.geojson'" ||
+           sets[1] == "release.0.outline=\"a.geojson\"" || sets[1] == "release.0.outline=\"b.geojson\""));
+    CHECK(file.read(text).sets_of(3) == sets);
+}
+
+TEST_CASE("A grid takes all combinations, with the weights of what is chosen of", "[ensemble]") {
+    const EnsembleFile file;
+    const EnsemblePlan plan = file.read("[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\n" + mu +
+                                        "levels = 2\n[[ensemble.vary]]\nkey = \"material.bed.xi\"\n"
+                                        "distribution = \"discrete\"\nvalues = [300, 500.5]\nweights = [0.7, 0.3]\n");
+    REQUIRE(plan.samples == 4);
+    CHECK(plan.sets_of(0) == std::vector<std::string>{"material.bed.mu=0.15", "material.bed.xi=300"});
+    CHECK(plan.sets_of(3) == std::vector<std::string>{"material.bed.mu=0.25", "material.bed.xi=500.5"});
+    CHECK(plan.points[0].weight == Approx(1.4));
+    CHECK(plan.points[1].weight == Approx(0.6));
+}
+
+TEST_CASE("What an ensemble's file cannot ask for is said in one sentence each", "[ensemble]") {
+    const EnsembleFile file;
+    CHECK_THAT(file.complaint(head), Contains("ensemble.vary: found no [[ensemble.vary]]"));
+    CHECK_THAT(file.complaint(head + "sample = 3\n" + mu),
+               Contains("ensemble.sample") && Contains("is samples meant?"));
+    CHECK_THAT(file.complaint(head + "method = \"dice\"\n" + mu),
+               Contains("found \"dice\"") && Contains("lhs, sobol, random, grid, saltelli or morris"));
+    CHECK_THAT(file.complaint(head + mu + mu), Contains("found \"material.bed.mu\" a second time"));
+    CHECK_THAT(file.complaint(head + "[[ensemble.vary]]\nkey = \"material.bed.nu\"\nrange = [1, 2]\n"),
+               Contains("found \"material.bed.nu\"; expected a key of a case file"));
+    CHECK_THAT(file.complaint(head + "[[ensemble.vary]]\nkey = \"grid.cell\"\nrange = [1, 2]\n"),
+               Contains("maps need one terrain"));
+    CHECK_THAT(file.complaint(head + "[[ensemble.vary]]\nkey = \"material.bed.mu\"\nrange = [-0.1, 0.2]\n"),
+               Contains("found values from -0.1 to 0.2") && Contains("material.bed.mu"));
+    CHECK_THAT(file.complaint(head + "[[ensemble.vary]]\nkey = \"material.bed.xi\"\ndistribution = \"normal\"\n"
+                                     "mean = 500\nsd = 100\n"),
+               Contains("found values from -inf to inf") && Contains("cuts normal"));
+    CHECK_THAT(file.complaint(head + "[[ensemble.vary]]\nkey = \"release.0.depth\"\ndistribution = \"discrete\"\n"
+                                     "values = [1, 2]\nweights = [0.5, 0.6]\n"),
+               Contains("2 weights with the sum 1.1"));
+    CHECK_THAT(file.complaint(head + "exceed = { peak_speed = [-1] }\n" + mu), Contains("found -1"));
+    CHECK_THAT(file.complaint(head + "exceed = { depth = [1] }\n" + mu), Contains("ensemble.exceed.depth"));
+    CHECK_THAT(file.complaint("[ensemble]\ncase = \"none.toml\"\nsamples = 3\n" + mu), Contains("none.toml"));
+    CHECK_THAT(file.complaint("[ensemble\n"), Contains("TOML"));
+    CHECK_THAT(file.complaint("[grid]\ncell = 3\n" + head + mu), Contains("expected [ensemble] alone"));
+    EnsemblePlan plan = file.read(head + mu);
+    add_exceedance(plan, "peak_depth=1.3");
+    CHECK(plan.exceed.at("peak_depth").back() == 1.3);
+    CHECK_THROWS_WITH(add_exceedance(plan, "depth=1"), Contains("--exceed: found \"depth=1\""));
+    CHECK_THROWS_WITH(add_exceedance(plan, "peak_depth=much"), Contains("expected FIELD=VALUE"));
+}
+
+TEST_CASE("Sparse rasters hold what exceeds a limit, on the pixels of the whole terrain", "[ensemble]") {
+    const GridGeometry whole{6, 4, 0.0, 0.0, 2.0}, part{3, 2, 4.0, 2.0, 2.0};  // from node (2, 1) on
+    const std::vector<double> depth = {0.5, 0.05, 0.6, NAN, 0.7, 0.8}, speed = {1.0, 2.0, 3.0, 4.0, NAN, 6.0};
+    const SparseRasters sparse = sparse_of({depth.data(), speed.data()}, part, whole, 0.1);
+    CHECK(sparse.pixels() == 4);
+    std::vector<Index> pixels;
+    sparse.for_each([&](Index pixel, std::size_t) { pixels.push_back(pixel); });
+    CHECK(pixels == std::vector<Index>{8, 10, 15, 16});
+    CHECK(sparse.values[0] == std::vector<float>{0.5F, 0.6F, 0.7F, 0.8F});
+    CHECK(sparse.values[1] == std::vector<float>{1.0F, 3.0F, 0.0F, 6.0F});
+    CHECK_THROWS_AS(sparse_of({depth.data()}, {3, 2, 10.0, 2.0, 2.0}, whole, 0.1), InternalError);
+}
+
+TEST_CASE("Maps of many runs count weights: above a threshold, below a quantile, on the mean", "[ensemble]") {
+    const GridGeometry grid{4, 1, 0.0, 0.0, 1.0};
+    const SparseRasters a = row_of(0, {1.0F, 2.0F, 3.0F}), b = row_of(1, {4.0F, 5.0F}), none;
+    SparseRasters empty = none;
+    empty.values.resize(1);
+    PixelValues pixels(grid);
+    pixels.gather({&a, &b, &empty}, {0.5, 0.3, 0.2}, 0);
+    const auto near = [](const Raster& found, const std::vector<double>& expected) {
+        for (std::size_t k = 0; k < expected.size(); ++k) CHECK(found.values[k] == Approx(expected[k]).margin(1e-7));
+    };
+    near(pixels.exceeds(2.0), {0.0, 0.3, 0.8, 0.0});  // 2 does not exceed 2
+    near(pixels.reached(), {0.5, 0.8, 0.8, 0.0});
+    near(pixels.mean(), {0.5, 2.2, 3.0, 0.0});
+    near(pixels.quantile(0.1), {0.0, 0.0, 0.0, 0.0});  // a fifth did not come
+    near(pixels.quantile(0.5), {0.0, 2.0, 3.0, 0.0});
+    near(pixels.quantile(0.95), {1.0, 4.0, 5.0, 0.0});
+    CHECK(effective_number({1.0, 1.0, 1.0}) == Approx(3.0));
+    CHECK(effective_number({2.0, 1.0}) == Approx(1.8));
+    CHECK(standard_error(0.5, 100.0) == Approx(0.05));
+}
+
+TEST_CASE("Indices of Ishigami's function are those that are known", "[ensemble]") {
+    // Ishigami and Homma (1990): sin x + 7 sin^2 y + 0.1 z^4 sin x, each key uniform in (-pi, pi).
+    const double pi = std::acos(-1.0);
+    const Design design = make_sensitivity_design(Method::saltelli, 4096, 3, 1);
+    REQUIRE(design.points.size() == 5 * 4096);
+    std::vector<std::optional<double>> outcomes;
+    for (const auto& u : design.points) {
+        const double x = pi * (2.0 * u[0] - 1.0), y = pi * (2.0 * u[1] - 1.0), z = pi * (2.0 * u[2] - 1.0);
+        outcomes.emplace_back(std::sin(x) + 7.0 * std::sin(y) * std::sin(y) + 0.1 * std::pow(z, 4) * std::sin(x));
+    }
+    const double first[] = {0.3139, 0.4424, 0.0}, total[] = {0.5576, 0.4424, 0.2437};
+    const auto found = sensitivities(Method::saltelli, design, outcomes);
+    REQUIRE(found.size() == 3);
+    // Independent samples would err by about 1 / sqrt(n) = 0.016; Sobol's do better.
+    for (std::size_t k = 0; k < 3; ++k) {
+        CHECK(found[k].first == Approx(first[k]).margin(0.016));
+        CHECK(found[k].total == Approx(total[k]).margin(0.016));
+    }
+    outcomes[7].reset();  // its whole group goes
+    CHECK(sensitivities(Method::saltelli, design, outcomes)[1].first == Approx(0.4424).margin(0.016));
+    CHECK(
+        sensitivities(Method::saltelli, design, std::vector<std::optional<double>>(design.points.size(), 1.0)).empty());
+}
+
+TEST_CASE("Morris' ways change one key at a time, and find the slopes of what is linear", "[ensemble]") {
+    const Design design = make_sensitivity_design(Method::morris, 10, 3, 1);
+    REQUIRE(design.points.size() == 40);
+    std::vector<std::optional<double>> outcomes;
+    for (const auto& u : design.points) outcomes.emplace_back(3.0 * u[0] - 2.0 * u[1] + u[1] * u[2]);
+    for (std::size_t start = 0; start < 40; start += 4)
+        for (std::size_t m = 0; m < 3; ++m) {
+            int changed = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double step = std::abs(design.points[start + m + 1][k] - design.points[start + m][k]);
+                changed += step > 0.0;
+                CHECK((step == 0.0 || step == 0.5));
+            }
+            CHECK(changed == 1);
+        }
+    const auto found = sensitivities(Method::morris, design, outcomes);
+    CHECK(found[0].first == Approx(3.0));
+    CHECK(found[0].total == Approx(0.0).margin(1e-7));  // a difference of squares
+    CHECK(found[1].total > 0.05);                       // its slope is -2 + z
+    CHECK(found[2].total > 0.05);
+}
