@@ -96,6 +96,17 @@ void add_ensemble(CLI::App& app, EnsembleOptions& options, Action& action) {
     command->callback([&] { action = [&] { return ensemble_command(options); }; });
 }
 
+void add_calibrate(CLI::App& app, CalibrateOptions& options, Action& action) {
+    CLI::App* command = app.add_subcommand("calibrate", "what surveyed events tell of the keys of their cases");
+    command->add_option("FILE", options.file, "what varies, and the events (TOML)")->required();
+    command->add_option("--out", options.out, "folder of the result")->required();
+    command->add_option("--threads", options.threads, "runs at a time; default OMP_NUM_THREADS")
+        ->check(CLI::Range(1, 4096));
+    command->add_flag("--overwrite", options.overwrite, "replace an earlier calibration in the folder");
+    command->add_flag("--quiet", options.quiet, "no progress");
+    command->callback([&] { action = [&] { return calibrate_command(options); }; });
+}
+
 void add_check(CLI::App& app, CheckOptions& options, Action& action) {
     CLI::App* command = app.add_subcommand("check", "read and build the whole scene without running it");
     add_case(*command, options.case_file, options.sets);
@@ -303,6 +314,7 @@ int run_program(int argc, char** argv) {
     RunOptions run;
     ConvergeOptions converge;
     EnsembleOptions ensemble;
+    CalibrateOptions calibrate;
     CheckOptions check;
     DescribeOptions describe;
     ParticlesOptions particles;
@@ -318,6 +330,7 @@ int run_program(int argc, char** argv) {
     add_run(app, run, action);
     add_converge(app, converge, action);
     add_ensemble(app, ensemble, action);
+    add_calibrate(app, calibrate, action);
     add_check(app, check, action);
     add_describe(app, describe, action);
     add_particles(app, particles, action);

@@ -50,6 +50,13 @@ struct EnsembleOptions {
     bool resume = false, check = false, quiet = false;
 };
 
+/// `frana calibrate FILE --out DIR [--threads N] [--overwrite] [--quiet]`
+struct CalibrateOptions {
+    std::filesystem::path file, out;
+    int threads = 0;
+    bool overwrite = false, quiet = false;
+};
+
 /// `frana figures RUN_DIR [--time T] [--size WxH] [--film mp4|gif]`
 struct FiguresOptions {
     std::filesystem::path run_dir;
@@ -157,6 +164,7 @@ int verify_command(const VerifyOptions& options);        // frana_verify.cpp
 int run_command(const RunOptions& options);              // frana_run.cpp
 int converge_command(const ConvergeOptions& options);    // frana_converge.cpp
 int ensemble_command(const EnsembleOptions& options);    // frana_ensemble.cpp
+int calibrate_command(const CalibrateOptions& options);  // frana_calibrate.cpp
 int figures_command(const FiguresOptions& options);      // frana_figures.cpp
 int compare_command(const CompareOptions& options);      // frana_compare.cpp
 int states_command(const StatesOptions& options);        // frana_states_command.cpp

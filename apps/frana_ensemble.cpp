@@ -1,14 +1,10 @@
 // `frana ensemble FILE`: many runs of one case, on all threads, and what they say together.
 #include <fmt/core.h>
-#include <omp.h>
 
 #include <algorithm>
-#include <atomic>
 #include <fstream>
 #include <iostream>
-#include <mutex>
 #include <optional>
-#include <thread>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -18,9 +14,9 @@
 #include "io/gdal_reader.h"
 #include "run/folder/run_lock.h"
 #include "run/interrupt.h"
+#include "run_pool.h"
 #include "scene/case_file.h"
 #include "scene/shared_reader.h"
-#include "vtk_io/barrier_mesh.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -29,74 +25,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// One run on each thread, until there are none left.
-class Pool {
-public:
-    Pool(const EnsemblePlan& plan, const EnsembleBase& base, const GisReader& reader, const MeshReader& meshes,
-         const Interrupt& interrupt, bool quiet)
-        : plan_(plan), base_(base), reader_(reader), meshes_(meshes), interrupt_(interrupt), quiet_(quiet) {}
-
-    void run(const std::vector<Index>& samples, int threads, ShardStore& store) {
-        std::vector<std::thread> pool;
-        for (int t = 0; t < threads; ++t) pool.emplace_back([&] { work(samples, store); });
-        for (std::thread& thread : pool) thread.join();
-        store.flush();
-        if (failure_) std::rethrow_exception(failure_);
-    }
-
-private:
-    void work(const std::vector<Index>& samples, ShardStore& store) {
-        omp_set_num_threads(1);  // of this thread alone
-        try {
-            for (std::size_t k = next_++; k < samples.size() && !stop_ && !interrupt_.requested(); k = next_++) {
-                auto result = run_sample(plan_, base_, samples[k], reader_, meshes_, interrupt_);
-                if (!result) return;
-                const bool failed = !result->ended();
-                store.add(std::move(*result));
-                tell(failed, samples.size());
-            }
-        } catch (...) {  // goes on in the thread that waits for this one
-            const std::lock_guard<std::mutex> alone(mutex_);
-            if (!failure_) failure_ = std::current_exception();
-            stop_ = true;
-        }
-    }
-
-    void tell(bool failed, std::size_t of) {
-        const std::lock_guard<std::mutex> alone(mutex_);
-        ++done_, failed_ += failed;
-        constexpr double every = 5.0;  // [s]
-        const double now = seconds_since(start_);
-        if (quiet_ || (now - told_ < every && done_ < of)) return;
-        told_ = now;
-        const double left = now * static_cast<double>(of - done_) / static_cast<double>(done_);
-        std::cout << fmt::format("{} of {} runs, {} failed, {:.0f} s, {:.0f} s left\n", done_, of, failed_, now, left)
-                  << std::flush;
-    }
-
-    const EnsemblePlan& plan_;
-    const EnsembleBase& base_;
-    const GisReader& reader_;
-    const MeshReader& meshes_;
-    const Interrupt& interrupt_;
-    const bool quiet_;
-    std::atomic<std::size_t> next_{0};
-    std::atomic<bool> stop_{false};
-    std::mutex mutex_;
-    std::exception_ptr failure_;
-    std::size_t done_ = 0, failed_ = 0;
-    Clock::time_point start_ = Clock::now();
-    double told_ = 0.0;
-};
-
-/// Barrier meshes are read by VTK, one at a time.
-MeshReader meshes_in_turn() {
-    return [mutex = std::make_shared<std::mutex>()](const fs::path& file, const MeshSampling& sampling) {
-        const std::lock_guard<std::mutex> alone(*mutex);
-        return barrier_mesh_of(file, sampling);
-    };
-}
 
 /// Those of the shard that no shard in the folder has run.
 std::vector<Index> left_to_run(const EnsembleOptions& options, const EnsemblePlan& plan, const Shard& shard) {
@@ -115,8 +43,6 @@ std::vector<Index> left_to_run(const EnsembleOptions& options, const EnsemblePla
         if (!has[static_cast<std::size_t>(i)]) samples.push_back(i);
     return samples;
 }
-
-int threads_of(const EnsembleOptions& options) { return options.threads > 0 ? options.threads : omp_get_max_threads(); }
 
 void say_result(const fs::path& dir, const EnsembleSummary& summary) {
     std::cout << runs_sentence(summary) << '\n';
@@ -162,8 +88,8 @@ int foretell(const EnsemblePlan& plan, const EnsembleBase& base, const GisReader
     }
     const double count = static_cast<double>(plan.samples);
     std::cout << fmt::format("about {:.3g} core seconds, {:.3g} s on {} threads; at most {:.3g} MB on disk\n",
-                             seconds * count, seconds * count / threads_of(options), threads_of(options),
-                             0.5e-6 * bytes * count);
+                             seconds * count, seconds * count / threads_for_runs(options.threads),
+                             threads_for_runs(options.threads), 0.5e-6 * bytes * count);
     return 0;
 }
 
@@ -225,7 +151,15 @@ int run_shard(const EnsembleOptions& options, const EnsemblePlan& plan, const En
     write_text(options.out / kOrigin, fs::absolute(plan.file).string() + "\n");
     const Interrupt interrupt(Interrupt::Listen::signals);
     ShardStore store(folder, plan, base);
-    Pool(plan, base, reader, meshes, interrupt, options.quiet).run(samples, threads_of(options), store);
+    RunTeller teller(samples.size(), options.quiet);
+    for_each_run(samples.size(), threads_for_runs(options.threads), interrupt, [&](std::size_t k) {
+        auto result = run_sample(plan, base, samples[k], reader, meshes, interrupt);
+        if (!result) return;
+        const bool failed = !result->ended();
+        store.add(std::move(*result));
+        teller.done(failed);
+    });
+    store.flush();
     if (interrupt.requested())
         throw Interrupted(fmt::format("interrupted; what has run is in {}; --resume goes on", folder.string()));
     return options.shard.empty() ? join(options, plan, base, seconds_since(start)) : 0;

@@ -234,6 +234,7 @@ private:
 
     /// Each run as a mark, over where it stands in the distribution of each key.
     void draw_scatter() {
+        if (plan_.design.points.empty()) return;  // of a table nothing is known but its values
         ChartFigure figure;
         figure.title = base_.title;
         figure.x_label = "share of the key's distribution below the run's value [1]";

@@ -40,10 +40,10 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     const Outcome unknown = scene.frana("chekc CASE");
     CHECK(unknown.code == 2);
     CHECK(unknown.out.empty());
-    CHECK(
-        unknown.err ==
-        "command line: found the unknown command \"chekc\"; expected one of run, converge, ensemble, check, describe, "
-        "particles, convert, figures, compare, states, verify, bench, stress; did you mean check?\n");
+    CHECK(unknown.err ==
+          "command line: found the unknown command \"chekc\"; expected one of run, converge, ensemble, calibrate, "
+          "check, describe, "
+          "particles, convert, figures, compare, states, verify, bench, stress; did you mean check?\n");
     const Outcome threads = scene.frana("run CASE --threads 0");
     CHECK(threads.code == 2);
     CHECK_THAT(threads.err, Contains("--threads"));

@@ -53,9 +53,10 @@ Distribution numbers_of(Distribution::Kind kind, double low, double high, double
 /// An ensemble file beside a case, and what is said of it.
 class EnsembleFile {
 public:
-    EnsembleFile() { write_text(folder_.path() / "case.toml", "[terrain]\ndem = \"dem.asc\"\n"); }
+    EnsembleFile() { write("case.toml", "[terrain]\ndem = \"dem.asc\"\n"); }
+    void write(const std::string& name, const std::string& text) const { write_text(folder_.path() / name, text); }
     EnsemblePlan read(const std::string& text) const {
-        write_text(folder_.path() / "many.toml", text);
+        write("many.toml", text);
         return read_ensemble(folder_.path() / "many.toml");
     }
     std::string complaint(const std::string& text) const {
@@ -165,7 +166,7 @@ TEST_CASE("What an ensemble's file cannot ask for is said in one sentence each",
     CHECK_THAT(file.complaint(head + "sample = 3\n" + mu),
                Contains("ensemble.sample") && Contains("is samples meant?"));
     CHECK_THAT(file.complaint(head + "method = \"dice\"\n" + mu),
-               Contains("found \"dice\"") && Contains("lhs, sobol, random, grid, saltelli or morris"));
+               Contains("found \"dice\"") && Contains("lhs, sobol, random, grid, saltelli, morris or table"));
     CHECK_THAT(file.complaint(head + mu + mu), Contains("found \"material.bed.mu\" a second time"));
     CHECK_THAT(file.complaint(head + "[[ensemble.vary]]\nkey = \"material.bed.nu\"\nrange = [1, 2]\n"),
                Contains("found \"material.bed.nu\"; expected a key of a case file"));
@@ -189,6 +190,22 @@ TEST_CASE("What an ensemble's file cannot ask for is said in one sentence each",
     CHECK(plan.exceed.at("peak_depth").back() == 1.3);
     CHECK_THROWS_WITH(add_exceedance(plan, "depth=1"), Contains("--exceed: found \"depth=1\""));
     CHECK_THROWS_WITH(add_exceedance(plan, "peak_depth=much"), Contains("expected FIELD=VALUE"));
+}
+
+TEST_CASE("Samples can come from a table, with weights", "[ensemble]") {
+    const EnsembleFile file;
+    const std::string text = "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\n";
+    file.write("rows.csv", "material.bed.mu, weight,material.bed.xi\n0.1,1,300\n0.2,3,400\r\n");
+    const EnsemblePlan plan = file.read(text);
+    REQUIRE(plan.samples == 2);
+    CHECK(plan.sets_of(1) == std::vector<std::string>{"material.bed.mu=0.2", "material.bed.xi=400"});
+    CHECK(plan.points[1].weight == 1.5);
+    file.write("rows.csv", "material.bed.nu\n0.1,3\n");
+    CHECK_THAT(file.complaint(text),
+               Contains("the column \"material.bed.nu\"") && Contains("found 2 values; expected 1"));
+    file.write("rows.csv", "material.bed.mu,weight\n0.1,much\n");
+    CHECK_THAT(file.complaint(text), Contains("found the weight \"much\""));
+    CHECK_THAT(file.complaint(text + mu), Contains("ensemble.vary"));
 }
 
 TEST_CASE("Sparse rasters hold what exceeds a limit, on the pixels of the whole terrain", "[ensemble]") {

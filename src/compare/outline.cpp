@@ -118,18 +118,19 @@ double area_of(const Rings& rings) {
 Rings pixel_outline(const Raster& field, double limit) { return EdgeWalk(field, limit).rings(); }
 
 OutlineDistance distance_between(const Rings& a, const Rings& b, double step) {
-    if (a.empty() || b.empty()) return {Raster::nodata, Raster::nodata, Raster::nodata};
+    if (a.empty() || b.empty()) return {Raster::nodata, Raster::nodata, Raster::nodata, Raster::nodata};
     std::vector<Stretch> stretches;
     walk(a, NearestOnRings(b), step, stretches);
     walk(b, NearestOnRings(a), step, stretches);
     std::sort(stretches.begin(), stretches.end(),
               [](const Stretch& l, const Stretch& r) { return l.distance < r.distance; });
-    double total = 0.0, sum = 0.0;
+    double total = 0.0, sum = 0.0, squares = 0.0;
     for (const Stretch& s : stretches) {
         total += s.length;
         sum += s.length * s.distance;
+        squares += s.length * s.distance * s.distance;
     }
-    OutlineDistance result{sum / total, 0.0, stretches.back().distance};
+    OutlineDistance result{sum / total, 0.0, std::sqrt(squares / total), stretches.back().distance};
     double below = 0.0;
     for (const Stretch& s : stretches) {
         result.p95 = s.distance;

@@ -19,6 +19,7 @@ Rings pixel_outline(const Raster& field, double limit);
 struct OutlineDistance {
     double mean = 0.0;  ///< over the length of both outlines, from each point to the nearest of the other [m]
     double p95 = 0.0;   ///< 95 % of both lengths lie nearer than this to the other [m]
+    double rms = 0.0;   ///< root of the mean square over the same length [m]
     double max = 0.0;   ///< Hausdorff distance of the outlines [m]
 };
 

@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// saltelli and morris: ensemble/sensitivity.h.
-enum class Method { lhs, sobol, random, grid, saltelli, morris };
+/// saltelli and morris: ensemble/sensitivity.h; table: ensemble/sample_table.h.
+enum class Method { lhs, sobol, random, grid, saltelli, morris, table };
 
 struct Design {
     std::vector<std::vector<double>> points;  ///< by sample, then by key; within (0, 1)

@@ -10,6 +10,8 @@
 
 namespace frana {
 
+constexpr Index kMostSamples = 10'000'000;
+
 /// A key of the case that varies.
 struct Vary {
     std::string key;

@@ -72,7 +72,10 @@ void measure_extent(const EnsembleBase& base, const Raster& depth, SampleResult&
     const double cell = base.whole.cell;
     if (base.survey) {
         result.iou = overlap(depth, base.footprint_depth, *base.survey).iou();
-        if (!outline.empty()) result.boundary = distance_between(outline, *base.survey, cell).mean;
+        if (!outline.empty()) {
+            const OutlineDistance apart = distance_between(outline, *base.survey, cell);
+            result.boundary = apart.mean, result.boundary_rms = apart.rms;
+        }
     }
     if (!base.start || outline.empty()) return;
     result.reach = farthest_from(*base.start, outline);

@@ -44,6 +44,7 @@ struct SampleResult {
     double mass_error = 0.0;                  ///< of the budget, relative [1]
     std::optional<double> iou;                ///< of the footprint with the surveyed one, where there is one [1]
     std::optional<double> boundary;           ///< mean distance of their outlines; nothing where nothing flowed [m]
+    std::optional<double> boundary_rms;       ///< root of its mean square; not kept in files [m]
     SparseRasters peaks;                      ///< the plan's fields where peak_depth exceeds the footprint depth
 
     /// The run has an answer: it came to an end of its own or to time.end.

@@ -1,0 +1,35 @@
+#pragma once
+// What `frana calibrate` found, and the files that it leaves.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ensemble/calibration_plan.h"
+#include "ensemble/posterior.h"
+
+namespace frana {
+
+/// How near the runs of one event came to its survey, by point of the posterior; nothing where a run has no answer.
+struct EventFit {
+    std::vector<std::optional<double>> rms, mean,
+        iou;                             ///< of the outlines' distance [m], the same, of the footprints [1]
+    std::vector<double> log_likelihood;  ///< without the event's weight
+    double perimeter = 0.0;              ///< of the surveyed outline [m]
+};
+
+struct Calibration {
+    CalibrationPlan plan;
+    Posterior posterior;
+    std::vector<EventFit> fits;  ///< by event
+    Index failed = 0;            ///< runs
+    double seconds = 0.0;        ///< of all runs, on one thread each [s]
+};
+
+/// Writes calibrate.json, report.md, runs.csv, posterior.csv and the pictures. Returns their names. Throws UserError.
+std::vector<std::string> write_calibration(const std::filesystem::path& dir, const Calibration& calibration);
+
+/// For people: the best values, what is known of them, and how near the events are met.
+std::string calibration_section(const Calibration& calibration);
+
+}  // namespace frana

@@ -1,0 +1,59 @@
+#include "run_pool.h"
+
+#include <fmt/core.h>
+#include <omp.h>
+
+#include <atomic>
+#include <iostream>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "vtk_io/barrier_mesh.h"
+
+namespace frana {
+
+void for_each_run(std::size_t count, int threads, const Interrupt& interrupt,
+                  const std::function<void(std::size_t)>& body) {
+    std::atomic<std::size_t> next{0};
+    std::atomic<bool> stop{false};
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto work = [&] {
+        omp_set_num_threads(1);  // of this thread alone
+        try {
+            for (std::size_t k = next++; k < count && !stop && !interrupt.requested(); k = next++) body(k);
+        } catch (...) {  // goes on in the thread that waits for this one
+            const std::lock_guard<std::mutex> alone(mutex);
+            if (!failure) failure = std::current_exception();
+            stop = true;
+        }
+    };
+    std::vector<std::thread> pool;
+    for (int t = 0; t < threads; ++t) pool.emplace_back(work);
+    for (std::thread& thread : pool) thread.join();
+    if (failure) std::rethrow_exception(failure);
+}
+
+int threads_for_runs(int given) { return given > 0 ? given : omp_get_max_threads(); }
+
+MeshReader meshes_in_turn() {
+    return [mutex = std::make_shared<std::mutex>()](const std::filesystem::path& file, const MeshSampling& sampling) {
+        const std::lock_guard<std::mutex> alone(*mutex);
+        return barrier_mesh_of(file, sampling);
+    };
+}
+
+void RunTeller::done(bool failed) {
+    const std::lock_guard<std::mutex> alone(mutex_);
+    ++done_, failed_ += failed;
+    constexpr double every = 5.0;  // [s]
+    const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    if (quiet_ || (now - told_ < every && done_ < runs_)) return;
+    told_ = now;
+    const double left = now * static_cast<double>(runs_ - done_) / static_cast<double>(done_);
+    std::cout << fmt::format("{} of {} runs, {} failed, {:.0f} s, {:.0f} s left\n", done_, runs_, failed_, now, left)
+              << std::flush;
+}
+
+}  // namespace frana

@@ -1,0 +1,76 @@
+#include "ensemble/sample_table.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "base/error.h"
+#include "ensemble/toml_file.h"
+#include "scene/parameters.h"
+
+namespace frana {
+namespace {
+
+std::vector<std::string> fields_of(const std::string& line) {
+    std::vector<std::string> fields;
+    std::istringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) {
+        const auto first = field.find_first_not_of(" \t\r"), last = field.find_last_not_of(" \t\r");
+        fields.push_back(first == std::string::npos ? "" : field.substr(first, last - first + 1));
+    }
+    return fields;
+}
+
+/// Names the column's key; false for weights.
+bool note_key(const std::string& name, const std::string& place, EnsemblePlan& plan, Problems& problems) {
+    if (name == "weight") return false;
+    if (!find_parameter(name))
+        problems.add(place, fmt::format("found the column \"{}\"", name), "expected keys of a case, or weight",
+                     "see `frana describe`");
+    plan.vary.emplace_back().key = name;
+    return true;
+}
+
+}  // namespace
+
+void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Problems& problems) {
+    std::istringstream stream(text_of_file(file));
+    std::string line;
+    std::getline(stream, line);
+    std::vector<bool> is_key;
+    for (const std::string& name : fields_of(line))
+        is_key.push_back(note_key(name, file.string() + ":1", plan, problems));
+    double sum = 0.0;
+    for (int number = 2; std::getline(stream, line); ++number) {
+        const std::vector<std::string> fields = fields_of(line);
+        if (fields.empty()) continue;
+        const std::string place = fmt::format("{}:{}", file.string(), number);
+        if (fields.size() != is_key.size()) {
+            problems.add(place, fmt::format("found {} values", fields.size()),
+                         fmt::format("expected {}, as the first line has", is_key.size()), "correct this line");
+            continue;
+        }
+        SamplePoint& point = plan.points.emplace_back();
+        for (std::size_t k = 0; k < fields.size(); ++k) {
+            if (is_key[k]) {
+                point.values.push_back(fields[k]);
+                continue;
+            }
+            char* end = nullptr;
+            point.weight = std::strtod(fields[k].c_str(), &end);
+            if (fields[k].empty() || *end != '\0' || !(point.weight >= 0.0) || !std::isfinite(point.weight))
+                problems.add(place, fmt::format("found the weight \"{}\"", fields[k]), "expected a number from 0 on",
+                             "correct it");
+        }
+        sum += point.weight;
+    }
+    plan.samples = static_cast<Index>(plan.points.size());
+    if (plan.vary.empty() || plan.points.empty() || !(sum > 0.0))
+        problems.add(file.string(), "found no samples of any weight", "expected a line of keys, then lines of values",
+                     "give such a table");
+    for (SamplePoint& point : plan.points) point.weight *= static_cast<double>(plan.samples) / sum;
+}
+
+}  // namespace frana

@@ -1,0 +1,12 @@
+#pragma once
+// Samples that a table lists: a column for each key, and a weight where there is one.
+#include "ensemble/plan.h"
+#include "scene/problems.h"
+
+namespace frana {
+
+/// Reads a table with commas into the plan's keys and points: its first line names keys of a case and perhaps "weight". Weights
+/// are scaled so that their sum is the number of samples.
+void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Problems& problems);
+
+}  // namespace frana

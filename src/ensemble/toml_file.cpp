@@ -1,0 +1,30 @@
+#include "ensemble/toml_file.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "base/error.h"
+
+namespace frana {
+
+std::string text_of_file(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || std::filesystem::is_directory(file))
+        throw UserError(
+            fmt::format("{}: found no file that can be read; expected one; correct the name", file.string()));
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void read_toml(const std::string& text, const std::filesystem::path& file, Problems& problems,
+               const std::function<void(const toml::table&)>& read) {
+    try {
+        read(toml::parse(text));
+    } catch (const toml::parse_error& error) {  // the parser's way of saying it
+        problems.add(fmt::format("{}:{}: TOML", file.string(), error.source().begin.line),
+                     "found " + std::string(error.description()), "expected key = value", "correct this line");
+    }
+}
+
+}  // namespace frana

@@ -1,0 +1,19 @@
+#pragma once
+// Reads what varies: [[ensemble.vary]], [[calibrate.vary]].
+#include "ensemble/checked_table.h"
+#include "ensemble/plan.h"
+
+namespace frana {
+
+/// How the file of the tables is used; what is wrong goes to `problems`.
+struct VaryContext {
+    const std::filesystem::path& file;
+    Method method = Method::sobol;
+    std::string method_name = "sobol";
+};
+
+/// Reads all tables of `array`, named "ensemble.vary.0" and so on.
+std::vector<Vary> read_varied_keys(const toml::array& array, const std::string& name, const VaryContext& context,
+                                   Problems& problems);
+
+}  // namespace frana
