@@ -86,8 +86,9 @@ std::vector<std::vector<double>> Posterior::next(Index count) const {
     const Round round = proposal();
     if (round.kernel.empty()) {  // goes on with the sequence where the rounds before have left it
         const auto before = static_cast<Index>(points_.size());
-        const Design design = make_design(Method::sobol, before + count, keys_, seed_);
-        return {design.points.begin() + before, design.points.end()};
+        Design design = make_design(Method::sobol, before + count, keys_, seed_);
+        design.points.erase(design.points.begin(), design.points.begin() + before);
+        return design.points;
     }
     std::vector<double> sums(round.kernel.size());
     std::partial_sum(round.kernel.begin(), round.kernel.end(), sums.begin());
@@ -96,19 +97,17 @@ std::vector<std::vector<double>> Posterior::next(Index count) const {
     for (Index i = 0; i < count; ++i) {
         const auto number = static_cast<std::uint64_t>(points_.size()) + static_cast<std::uint64_t>(i);
         const auto unit = [&](Index n) { return unit_at(seed_, number, static_cast<std::uint64_t>(n)); };
-        std::vector<double>& point = points.emplace_back();
-        if (unit(keys_) < kFromPrior) {
-            for (Index k = 0; k < keys_; ++k) point.push_back(unit(k));
-            continue;
-        }
+        const bool from_prior = unit(keys_) < kFromPrior;
         const double at = unit(keys_ + 1) * sums.back();
         const auto chosen = std::min<std::size_t>(
             sums.size() - 1, static_cast<std::size_t>(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin()));
+        std::vector<double> point(static_cast<std::size_t>(keys_));
         for (Index k = 0; k < keys_; ++k) {
             const auto key = static_cast<std::size_t>(k);
             const double u = mirrored(points_[chosen][key] + round.width[key] * boost::math::quantile(normal, unit(k)));
-            point.push_back(std::clamp(u, 1e-12, 1.0 - 1e-12));
+            point[key] = from_prior ? unit(k) : std::clamp(u, 1e-12, 1.0 - 1e-12);
         }
+        points.push_back(std::move(point));
     }
     return points;
 }
