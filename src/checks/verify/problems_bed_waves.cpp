@@ -13,11 +13,11 @@ namespace {
 constexpr double kWavelength = 8.0;  ///< on the map, eight times the depth [m]
 constexpr double kEnd = 3.0;         ///< [s]
 constexpr double kBehind = 14.0;     ///< room for the rear end, which spreads [m]
-constexpr double kFrom = 26.0;       ///< begin of the window, ahead of what comes in from the rear end of the slab [m]
+constexpr double kFrom = 32.0;       ///< begin of the window, ahead of what comes in from the rear end of the slab [m]
 constexpr int kWaves = 3;            ///< in the window
-constexpr double kLength = kFrom + kWaves * kWavelength + 6.0;  ///< of the slab on the map [m]
-constexpr double kSmall = 3e-5;                                 ///< height of the wave over the depth [1]
-constexpr double kRough = 3e-6;                                 ///< of the nodes' bed beside it, over the depth [1]
+constexpr double kLength = kFrom + kWaves * kWavelength + 14.0;  ///< of the slab on the map [m]
+constexpr double kSmall = 3e-5;                                  ///< height of the wave over the depth [1]
+constexpr double kRough = 3e-6;                                  ///< of the nodes' bed beside it, over the depth [1]
 constexpr double kSpare = 2e-3;  ///< share of the stress above the threshold: small waves never bring it to zero
 
 /// A slab at its normal speed on a strip that falls along x, with the fastest wave of theory, and a bed that is rough from
