@@ -31,7 +31,7 @@ std::vector<double> values_of(const Calibration& c, std::size_t key) {
     return all;
 }
 
-/// Mean of what is known, by weight; not a number where nothing is.
+/// Mean of what is known, by weight; not a number where nothing is. Runs in which nothing flowed have no outline.
 double mean_of(const std::vector<std::optional<double>>& numbers, const std::vector<double>& weights) {
     double sum = 0.0, all = 0.0;
     for (std::size_t k = 0; k < numbers.size(); ++k)
@@ -114,7 +114,8 @@ void write_tables(const fs::path& dir, const Calibration& c) {
     TextFile runs(dir / "runs.csv");
     runs.put("sample,weight");
     for (const Vary& vary : c.plan.vary) runs.put(",{}", vary.key);
-    for (const SurveyedEvent& event : c.plan.events) runs.put(",{0}: iou,{0}: boundary_m", event.name);
+    for (const SurveyedEvent& event : c.plan.events)
+        runs.put(",{},{}", csv_field(event.name + ": iou"), csv_field(event.name + ": boundary_m"));
     runs.put("\n");
     const std::vector<double> w = c.posterior.weights();
     for (std::size_t i = 0; i < w.size(); ++i) {
@@ -179,8 +180,8 @@ std::string calibration_section(const Calibration& c) {
         page += fmt::format("| `{}` | {:.4g} | {:.4g} | {:.2g} | {:.4g} | {:.4g} | {:.4g} |\n", c.plan.vary[k].key,
                             values[best], of.mean, of.sd, of.q05, of.q50, of.q95);
     }
-    page += fmt::format("\n{} runs, {} failed; they tell as much as {:.0f} of equal weight.", w.size() * c.fits.size(),
-                        c.failed, effective);
+    page += fmt::format("\n{} points, {} runs, {} failed; the points tell as much as {:.0f} of equal weight.", w.size(),
+                        w.size() * c.fits.size(), c.failed, effective);
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
     page += "\n\n| Event | IoU of the best | outlines apart [m]: best | by the prior | by its own survey |";
     page += c.fits.size() > 1 ? " by the other events | by all |\n|---|---:|---:|---:|---:|---:|---:|\n"

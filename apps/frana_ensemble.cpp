@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Those of the shard that no shard in the folder has run.
+/// Those of the shard that no shard in the folder has run; what was refused is tried again.
 std::vector<Index> left_to_run(const EnsembleOptions& options, const EnsemblePlan& plan, const Shard& shard) {
     const fs::path rows = shard_folder(options.out, shard) / "runs.csv";
     if (fs::exists(rows) && !options.resume)
@@ -35,13 +35,18 @@ std::vector<Index> left_to_run(const EnsembleOptions& options, const EnsemblePla
                         "one with --out, or give --resume to go on with it",
                         rows.string()));
     std::vector<bool> has(static_cast<std::size_t>(plan.samples), false);
-    if (options.resume)
-        for (const SampleResult& result : read_results(options.out, plan, false))
-            has[static_cast<std::size_t>(result.sample)] = true;
+    for (const SampleResult& result : read_results(options.out, plan, nullptr))
+        has[static_cast<std::size_t>(result.sample)] = options.resume && result.reason != "refused";
     std::vector<Index> samples;
     for (Index i = shard.begin(plan.samples); i < shard.end(plan.samples); ++i)
         if (!has[static_cast<std::size_t>(i)]) samples.push_back(i);
     return samples;
+}
+
+/// Shards of one ensemble would all write the same.
+void write_once(const fs::path& file, const std::string& text) {
+    std::ifstream stream(file, std::ios::binary);
+    if (std::string{std::istreambuf_iterator<char>(stream), {}} != text) write_text(file, text);
 }
 
 void say_result(const fs::path& dir, const EnsembleSummary& summary) {
@@ -54,9 +59,9 @@ int join(const EnsembleOptions& options, const EnsemblePlan& plan, const Ensembl
          std::optional<double> wall_seconds) {
     const RunLock lock(options.out);
     for (const char* folder : {"", "rasters", "figures"}) remove_leftovers(options.out / folder);
-    write_samples(options.out, plan);
+    write_once(options.out / "samples.csv", samples_table(plan));
     const EnsembleSummary summary =
-        write_maps(options.out, plan, base, read_results(options.out, plan, true), wall_seconds);
+        write_maps(options.out, plan, base, read_results(options.out, plan, &base.whole), wall_seconds);
     if (!options.quiet) say_result(options.out, summary);
     if (!summary.too_many_failed()) return 0;
     std::cerr << fmt::format(
@@ -79,10 +84,13 @@ int foretell(const EnsemblePlan& plan, const EnsembleBase& base, const GisReader
     double seconds = 0.0, bytes = 0.0;
     const std::vector<Index> pilots = {0, plan.samples / 2};
     const Interrupt never;
-    for (const Index sample : pilots) {
-        const auto result = run_sample(plan, base, sample, reader, meshes, never);
-        std::cout << fmt::format("  sample {} ran: {} after {:g} s simulated, {:.3g} s{}{}\n", sample, result->reason,
-                                 result->time, result->seconds, result->message.empty() ? "" : ": ", result->message);
+    std::vector<std::optional<SampleResult>> results(pilots.size());
+    for_each_run(pilots.size(), 1, never,
+                 [&](std::size_t k) { results[k] = run_sample(plan, base, pilots[k], reader, meshes, never); });
+    for (const auto& result : results) {
+        std::cout << fmt::format("  sample {} ran: {} after {:g} s simulated, {:.3g} s{}{}\n", result->sample,
+                                 result->reason, result->time, result->seconds, result->message.empty() ? "" : ": ",
+                                 result->message);
         seconds += result->seconds / static_cast<double>(pilots.size());
         bytes += 4.0 * static_cast<double>(result->peaks.pixels()) * static_cast<double>(plan.fields.size());
     }
@@ -135,6 +143,8 @@ fs::path origin_of(const fs::path& dir) {
 void require_names(const EnsembleOptions& options) {
     if (options.join.empty() && options.file.empty())
         throw UserError("FILE: found none; expected the ensemble's file; see apps/README.md for an example");
+    if (!options.join.empty() && !options.shard.empty())
+        throw UserError("--shard: found it beside --join; expected one of both; all shards in the folder are joined");
     if (options.join.empty() && options.out.empty())
         throw UserError("--out: found none; expected a folder for the runs and maps; name one");
 }
@@ -147,8 +157,8 @@ int run_shard(const EnsembleOptions& options, const EnsemblePlan& plan, const En
     const std::vector<Index> samples = left_to_run(options, plan, shard);
     const RunLock lock(folder);
     remove_leftovers(folder);
-    write_samples(options.out, plan);
-    write_text(options.out / kOrigin, fs::absolute(plan.file).string() + "\n");
+    write_once(options.out / "samples.csv", samples_table(plan));
+    write_once(options.out / kOrigin, fs::absolute(plan.file).string() + "\n");
     const Interrupt interrupt(Interrupt::Listen::signals);
     ShardStore store(folder, plan, base);
     RunTeller teller(samples.size(), options.quiet);

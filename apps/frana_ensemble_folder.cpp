@@ -22,10 +22,9 @@ namespace {
 constexpr std::size_t kAtOnce = 64;            ///< runs in a file, when they are quick
 constexpr std::chrono::seconds kPatience{10};  ///< and when they are slow
 constexpr const char* kColumns =
-    "sample,reason,time_s,steps,seconds,volume_m3,runout_m,reach_m,footprint_area_m2,max_depth_m,max_speed_m_s,mass_"
-    "error,"
-    "peaks,"
-    "message";
+    "sample,reason,time_s,steps,seconds,volume_m3,runout_m,reach_m,footprint_area_m2,max_depth_m,max_speed_m_s,left_"
+    "share,"
+    "mass_error,iou,boundary_m,peaks,message";
 
 std::uint64_t sum_of(const std::string& text) {
     Checksum sum;
@@ -110,8 +109,14 @@ std::vector<fs::path> row_files(const fs::path& dir) {
 }
 
 /// Gives the results with an answer their peaks.
-void take_peaks(const fs::path& file, const EnsemblePlan& plan, std::map<Index, SampleResult>& results) {
+void take_peaks(const fs::path& file, const EnsemblePlan& plan, const GridGeometry& grid,
+                std::map<Index, SampleResult>& results) {
     PeakBlock block = read_peaks(file);
+    if (!(block.grid == grid))
+        throw UserError(
+            fmt::format("{}: found runs on {} x {} nodes of {:g} m; expected the case's {} x {} nodes of {:g} m; give "
+                        "the elevation model back that these runs were made with",
+                        file.string(), block.grid.nx, block.grid.ny, block.grid.cell, grid.nx, grid.ny, grid.cell));
     if (block.fields != plan.fields)
         throw UserError(
             fmt::format("{}: found other fields than ensemble.fields names; expected the same; run the "
@@ -135,6 +140,13 @@ void remove_leftovers(const fs::path& folder) {
     for (const fs::path& file : found) fs::remove(file, ignored);
 }
 
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+    return quoted + "\"";
+}
+
 std::string text_of_known(const std::optional<double>& number) { return number ? fmt::format("{}", *number) : ""; }
 
 Shard read_shard(const std::string& text) {
@@ -154,9 +166,21 @@ fs::path shard_folder(const fs::path& dir, const Shard& shard) {
     return dir / "shards" / fmt::format("{}_of_{}", shard.number, shard.of);
 }
 
+/// Sobol's and random samples stay when there are more of them.
 std::string mark_of(const EnsemblePlan& plan) {
-    return fmt::format("# frana {},seed {},samples {},ensemble {:016x},case {:016x}", FRANA_VERSION, plan.seed,
-                       plan.samples, sum_of(plan.text), sum_of(text_in(plan.case_file)));
+    std::string decides = plan.method_name + plan.table_text;
+    for (const std::string& field : plan.fields) decides += " " + field;
+    for (const Vary& vary : plan.vary) {
+        const Distribution& of = vary.distribution;
+        decides += fmt::format(" {} {} {} {} {} {} {} {} {}", vary.key, static_cast<int>(of.kind), of.low, of.high,
+                               of.middle, of.spread, of.alpha, of.beta, vary.levels);
+        for (std::size_t k = 0; k < of.values.size(); ++k)
+            decides += fmt::format(" {} {}", of.values[k], of.weights[k]);
+    }
+    const bool prolongs = plan.method == Method::sobol || plan.method == Method::random;
+    return fmt::format("# frana {},seed {},samples {},keys {:016x},case {:016x}", FRANA_VERSION, plan.seed,
+                       prolongs ? "any" : std::to_string(plan.samples), sum_of(decides),
+                       sum_of(text_in(plan.case_file)));
 }
 
 ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const EnsembleBase& base)
@@ -166,16 +190,18 @@ ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const Ensemble
 
 void ShardStore::add(SampleResult result) {
     const std::lock_guard<std::mutex> alone(mutex_);
+    if (broken_) return;
     waiting_.push_back(std::move(result));
     if (waiting_.size() >= kAtOnce || std::chrono::steady_clock::now() - written_ > kPatience) write();
 }
 
 void ShardStore::flush() {
     const std::lock_guard<std::mutex> alone(mutex_);
-    if (!waiting_.empty()) write();
+    if (!waiting_.empty() && !broken_) write();
 }
 
 void ShardStore::write() {
+    broken_ = true;  // until all is written: what one thread could not write, another must not try
     std::sort(waiting_.begin(), waiting_.end(), [](const auto& a, const auto& b) { return a.sample < b.sample; });
     PeakBlock block;
     block.grid = base_.whole, block.fields = plan_.fields;
@@ -186,10 +212,11 @@ void ShardStore::write() {
     for (const SampleResult& result : waiting_) rows_ += row_of(result, result.ended() ? peaks : "");
     write_text(folder_ / "runs.csv", rows_);
     waiting_.clear();
+    broken_ = false;
     written_ = std::chrono::steady_clock::now();
 }
 
-std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& plan, bool with_peaks) {
+std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& plan, const GridGeometry* grid) {
     std::map<Index, SampleResult> results;
     std::set<fs::path> peaks;
     for (const fs::path& file : row_files(dir)) {
@@ -198,15 +225,20 @@ std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& 
         std::getline(stream, line);
         require_same(file, line, mark_of(plan));
         std::getline(stream, line);
+        if (line != kColumns) throw broken(file, line);
         while (std::getline(stream, line)) {
             auto [result, name] = result_of(file, line);
             if (result.sample < 0 || result.sample >= plan.samples) throw broken(file, line);
             if (!name.empty()) peaks.insert(file.parent_path() / name);
-            results.emplace(result.sample, std::move(result));
+            const auto before = results.find(result.sample);
+            if (before == results.end())
+                results.emplace(result.sample, std::move(result));
+            else if (before->second.reason == "refused")  // and tried again
+                before->second = std::move(result);
         }
     }
-    if (with_peaks)
-        for (const fs::path& file : peaks) take_peaks(file, plan, results);
+    if (grid)
+        for (const fs::path& file : peaks) take_peaks(file, plan, *grid, results);
     std::vector<SampleResult> all;
     for (auto& [sample, result] : results) all.push_back(std::move(result));
     return all;

@@ -25,7 +25,7 @@ Shard read_shard(const std::string& text);
 /// DIR/shards/NUMBER_of_COUNT.
 std::filesystem::path shard_folder(const std::filesystem::path& dir, const Shard& shard);
 
-/// What an ensemble's rows belong to: version, seed, and sums of its two files.
+/// What an ensemble's rows belong to: version, seed, and sums of what decides its runs.
 std::string mark_of(const EnsemblePlan& plan);
 
 /// Keeps results as they come, from any thread, many at a time: their peaks in an HDF5 file, then their rows in runs.csv. A row
@@ -45,6 +45,7 @@ private:
     const EnsemblePlan& plan_;
     const EnsembleBase& base_;
     std::string rows_;
+    bool broken_ = false;
     std::vector<SampleResult> waiting_;
     std::chrono::steady_clock::time_point written_ = std::chrono::steady_clock::now();
     std::mutex mutex_;
@@ -53,11 +54,15 @@ private:
 /// Removes what processes that were killed were writing in a folder that no other process now writes to.
 void remove_leftovers(const std::filesystem::path& folder);
 
+/// A text as a field of a table with commas.
+std::string csv_field(const std::string& text);
+
 /// A number as a field of a table; empty where it is not known.
 std::string text_of_known(const std::optional<double>& number);
 
-/// Rows of all shards in a folder, by sample, with the peaks of those that ended where `with_peaks`. Throws UserError when a file
-/// cannot be read, or belongs to another ensemble (what differs is said).
-std::vector<SampleResult> read_results(const std::filesystem::path& dir, const EnsemblePlan& plan, bool with_peaks);
+/// Rows of all shards in a folder, by sample; with a grid also the peaks of those that ended, which lie on it. Throws UserError
+/// when a file cannot be read, or belongs to another ensemble (what differs is said).
+std::vector<SampleResult> read_results(const std::filesystem::path& dir, const EnsemblePlan& plan,
+                                       const GridGeometry* grid);
 
 }  // namespace frana

@@ -24,14 +24,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A text as a field of a table.
-std::string field_of(const std::string& text) {
-    if (text.find_first_of(",\"") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-    return quoted + "\"";
-}
-
 const PeakField& described(const std::string& name) {
     for (const PeakField& field : peak_fields())
         if (name == field.name) return field;
@@ -70,7 +62,7 @@ public:
             }
         }
         weight_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
-        summary_.effective = effective_number(weights_);
+        summary_.effective = std::min(effective_number(weights_), independent());
     }
 
     void write() {
@@ -110,6 +102,13 @@ private:
         return all;
     }
 
+    /// Runs of a group of "saltelli" or "morris" share all keys but one.
+    double independent() const {
+        const auto keys = static_cast<Index>(plan_.vary.size());
+        const double groups = static_cast<double>(ended_.size()) / static_cast<double>(runs_each(plan_.method, keys));
+        return plan_.method == Method::saltelli ? 2.0 * groups : groups;
+    }
+
     double weight_of(const SampleResult& r) const { return plan_.points[static_cast<std::size_t>(r.sample)].weight; }
 
     /// Where no run came there is nothing to show.
@@ -118,6 +117,12 @@ private:
             if (reached_.values[k] == 0.0) values.values[k] = Raster::nodata;
         values.crs_wkt = base_.bed.crs_wkt;
         write_geotiff(dir_ / "rasters" / (name + ".tif"), values, unit, meaning);
+        summary_.files.push_back("rasters/" + name + ".tif");
+    }
+
+    void everywhere(const std::string& name, Raster values, const std::string& meaning) {
+        values.crs_wkt = base_.bed.crs_wkt;
+        write_geotiff(dir_ / "rasters" / (name + ".tif"), values, "1", meaning);
         summary_.files.push_back("rasters/" + name + ".tif");
     }
 
@@ -164,13 +169,14 @@ private:
         raster(name + "_error", error, "1", "standard error of the " + meaning);
         if (failed_weight_ > 0.0) {
             raster(name + "_low", low, "1", meaning + ", if no run that failed did");
-            raster(name + "_high", high, "1", meaning + ", if every run that failed did");
+            everywhere(name + "_high", high, meaning + ", if every run that failed did");
         }
         draw_map(p, name, fmt::format("probability of {} above {}", field.meaning, amount(threshold, field)));
     }
 
     void draw_map(const Raster& p, const std::string& name, const std::string& label) {
-        if (!(p.geometry == base_.bed.geometry)) return;  // the terrain is not held
+        summary_.maps_drawn = p.geometry == base_.bed.geometry;  // otherwise a part of the terrain is held
+        if (!summary_.maps_drawn) return;
         MapFigure figure;
         figure.bed = base_.bed;
         figure.field = p.values;
@@ -284,11 +290,11 @@ void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
     for (const SampleResult& r : results) {
         const SamplePoint& point = plan.points[static_cast<std::size_t>(r.sample)];
         file.put("{},{}", r.sample, point.weight);
-        for (const std::string& value : point.values) file.put(",{}", field_of(value));
+        for (const std::string& value : point.values) file.put(",{}", csv_field(value));
         file.put(",{},{},{}", r.reason, r.time, r.steps);
         for (const Outcome& outcome : kOutcomes) file.put(",{}", r.*outcome.value);
         if (base.survey) file.put(",{},{}", text_of_known(r.iou), text_of_known(r.boundary));
-        file.put(",{},{},{}\n", r.left_share, r.mass_error, field_of(r.message));
+        file.put(",{},{},{}\n", r.left_share, r.mass_error, csv_field(r.message));
     }
     file.commit();
 }
@@ -388,6 +394,10 @@ std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const En
     }
     page += nearest_section(plan, results);
     page += sensitivity_section(plan, results);
+    if (!summary.maps_drawn)
+        page +=
+            "\n\nNo maps are drawn, since the runs hold a part of the terrain only (`output.extent = \"terrain\"` "
+            "holds all).";
     page += fmt::format("\n\nMethod \"{}\", seed {}. What varies:\n\n", plan.method_name, plan.seed);
     for (const Vary& vary : plan.vary) page += fmt::format("- `{}`\n", vary.key);
     page += "\nFiles:\n\n";
@@ -409,18 +419,17 @@ std::string runs_sentence(const EnsembleSummary& s) {
     return text + ".";
 }
 
-void write_samples(const fs::path& dir, const EnsemblePlan& plan) {
-    TextFile file(dir / "samples.csv");
-    file.put("sample,weight");
-    for (const Vary& vary : plan.vary) file.put(",{}", vary.key);
-    file.put("\n");
+std::string samples_table(const EnsemblePlan& plan) {
+    std::string text = "sample,weight";
+    for (const Vary& vary : plan.vary) text += "," + vary.key;
+    text += "\n";
     for (Index i = 0; i < plan.samples; ++i) {
         const SamplePoint& point = plan.points[static_cast<std::size_t>(i)];
-        file.put("{},{}", i, point.weight);
-        for (const std::string& value : point.values) file.put(",{}", field_of(value));
-        file.put("\n");
+        text += fmt::format("{},{}", i, point.weight);
+        for (const std::string& value : point.values) text += "," + csv_field(value);
+        text += "\n";
     }
-    file.commit();
+    return text;
 }
 
 EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
@@ -430,7 +439,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     summary.wall_seconds = wall_seconds;
     for (const SampleResult& result : results) {
         summary.failed += !result.ended();
-        summary.not_at_rest += result.reason == "end";
+        summary.not_at_rest += base.stops_at_rest && result.reason == "end";
         constexpr double noticeable = 1e-3;  // of the mass
         summary.left_terrain += result.ended() && result.left_share > noticeable;
         summary.core_seconds += result.seconds;

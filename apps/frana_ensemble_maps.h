@@ -14,7 +14,8 @@ struct EnsembleSummary {
     double core_seconds = 0.0;           ///< of all runs [s]
     std::optional<double> wall_seconds;  ///< of this process, where it ran them [s]
     double effective = 0.0;              ///< number of equal weights that tell as much
-    std::vector<std::string> files;      ///< that were made
+    bool maps_drawn = true;
+    std::vector<std::string> files;  ///< that were made
 
     /// So many fail that the maps should not be trusted.
     bool too_many_failed() const { return static_cast<double>(failed) > 0.05 * static_cast<double>(run); }
@@ -26,7 +27,7 @@ EnsembleSummary write_maps(const std::filesystem::path& dir, const EnsemblePlan&
                            const std::vector<SampleResult>& results, std::optional<double> wall_seconds);
 
 /// samples.csv: number, weight and the values of the keys that vary.
-void write_samples(const std::filesystem::path& dir, const EnsemblePlan& plan);
+std::string samples_table(const EnsemblePlan& plan);
 
 /// For people: how many runs, how many of them failed.
 std::string runs_sentence(const EnsembleSummary& summary);

@@ -3,9 +3,11 @@
 #include <fmt/core.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <atomic>
 #include <iostream>
 #include <memory>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -30,7 +32,12 @@ void for_each_run(std::size_t count, int threads, const Interrupt& interrupt,
         }
     };
     std::vector<std::thread> pool;
-    for (int t = 0; t < threads; ++t) pool.emplace_back(work);
+    const std::size_t wanted = std::min(count, static_cast<std::size_t>(threads));
+    try {
+        while (pool.size() < wanted) pool.emplace_back(work);
+    } catch (const std::system_error&) {  // the system gives no more threads: those that started do all of the work
+        if (pool.empty()) throw;
+    }
     for (std::thread& thread : pool) thread.join();
     if (failure) std::rethrow_exception(failure);
 }

@@ -88,6 +88,32 @@ TEST_CASE("What comes in over an area is its table's at each step, up to a layer
     CHECK(run.flow().columns.count() < 41 * 120);  // 120 patches: layers at the same places were merged
 }
 
+TEST_CASE("What comes in goes on coming in when all that was there has become bed",
+          "[inflow][area][deposition][forest]") {
+    const bool by_trees = GENERATE(false, true);
+    Scene scene = scene_on(60, 31, 1.0, [](double x, double) { return 0.3 * (60.0 - x); });
+    scene.bed_law = bed::Voellmy{by_trees ? 0.1 : 0.4, 1500.0};
+    scene.inflows = {pool(10, 12, 16, 17)};
+    if (by_trees) {
+        scene.forest.emplace();
+        scene.forest->pressure = Raster::filled(scene.bed.geometry, 10'000.0);
+    } else {
+        scene.deposition = Deposition{0.2};
+    }
+    DepthAveraged run(scene);
+    const Status first = run.status();
+    Index empty = 0;
+    while (run.status().time < 12.0) {
+        const double before = run.status().time;
+        run.advance(12.0);
+        REQUIRE(run.status().time > before);
+        CHECK(std::abs(budget(first, run.status()).mass_error) < 1e-13);
+        empty += run.flow().columns.count() == 0 && run.more_comes();
+    }
+    CHECK(empty > 0);
+    CHECK(run.status().mass_in / scene.density == Approx(kPool).epsilon(1e-14));
+}
+
 TEST_CASE("Rain on all of a box with walls lifts its water level and moves nothing", "[inflow][area]") {
     Scene scene = box([](double, double) { return 2.0; });
     scene.inflows = {pool(0, 0, 24, 20)};

@@ -398,7 +398,7 @@ TEST_CASE("What sleeps becomes bed in the same step as what does not", "[deposit
     }
 }
 
-TEST_CASE("A state put aside before tiles become bed is taken up with the bed that it had", "[deposition]") {
+TEST_CASE("A state put aside before material becomes bed is taken up with the bed that it had", "[deposition]") {
     DepthAveraged simulation(slope());
     run_to(simulation, 5.0);
     MemoryState aside;
@@ -433,4 +433,28 @@ TEST_CASE("Where nothing can rest, a run that is taken up again has the same bit
     resumed.serialize(kept.rewind());
     for (const double at : {3.0, 6.0}) run_to(straight, at), run_to(resumed, at);  // onto ground that was dry at 3 s
     check_same(resumed, straight);
+}
+
+TEST_CASE("What enters next to a wall rests as long as what enters elsewhere before it is bed", "[deposition][late]") {
+    // Nodes at walls are always taken to be touched: they do not rest before something lies on them.
+    Scene scene = scene_on(40, 30, 1.0, [](double, double) { return 0.0; });
+    scene.sides = Sides::wall;
+    scene.bed_law = bed::Coulomb{0.6};
+    scene.deposition = Deposition{5.0};
+    const auto heap = [&](double x, double y) {
+        fill(scene, [=](double i, double j) { return std::max(0.0, 0.4 - 0.1 * std::hypot(i - x, j - y)); });
+        return scene.particles;
+    };
+    const Seeds late = heap(4.0, 12.0), first = heap(4.0, 4.0);
+    scene.late.push_back({"late", 8.0, late, static_cast<Index>(first.x.size())});
+    DepthAveraged run(scene);
+    double entered = 0.0, gone = 0.0;
+    while (run.status().time < 20.0 && gone == 0.0) {
+        run.advance(20.0);
+        if (entered == 0.0 && run.status().mass_in > 0.0) entered = run.status().time;
+        if (entered > 0.0 && run.flow().columns.count() == 0) gone = run.status().time;
+    }
+    REQUIRE(entered >= 8.0);
+    REQUIRE(gone > 0.0);
+    CHECK(gone - entered >= 5.0);
 }

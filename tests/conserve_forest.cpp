@@ -292,7 +292,7 @@ TEST_CASE("Trees where no flow comes change no bit of it, and sleep changes none
     }
 }
 
-TEST_CASE("The denser the forest, the more of a slide stays in it, and the less far it goes", "[forest]") {
+TEST_CASE("The denser the forest, the more of a slide stays in it", "[forest]") {
     std::vector<double> taken;
     for (const double pressure : {0.0, 20.0, 60.0, 200.0}) {
         DepthAveraged simulation(slope(

@@ -122,7 +122,9 @@ TEST_CASE("an ensemble of ponds has the probabilities and quantiles of their dep
 
 TEST_CASE("an ensemble has the same bytes on any number of threads, in shards, and after being killed", "[ensemble]") {
     const Pond pond;
-    pond.write("many.toml", depths);
+    std::string many = depths;
+    many.replace(many.find("samples = 20"), 12, "samples = 300");  // more than are written at once
+    pond.write("many.toml", many);
     REQUIRE(pond.frana("ensemble many.toml --out one --threads 1 --quiet").code == 0);
     const std::vector<std::string> expected = whole(pond.path("one"));
     CHECK(expected.size() > 8);
@@ -132,9 +134,9 @@ TEST_CASE("an ensemble has the same bytes on any number of threads, in shards, a
         REQUIRE(pond.frana(std::string("ensemble many.toml --out parts --quiet --shard ") + shard).code == 0);
     REQUIRE(pond.frana("ensemble --join parts --quiet").code == 0);
     CHECK(whole(pond.path("parts")) == expected);
-    // Killed at once, and again and again a little later: whatever was kept is whole.
+    // Killed early and late, in the middle of what it writes: whatever was kept is whole.
     const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
-    for (const char* seconds : {"0.05", "0.1", "0.15", "0.2", "0.3"})
+    for (const char* seconds : {"0.1", "0.15", "0.2", "0.25", "0.3", "0.35", "0.4", "0.5"})
         static_cast<void>(std::system(
             fmt::format("cd {} && timeout --foreground -s KILL {} {} ensemble many.toml --out killed --resume "
                         "--quiet > /dev/null 2>&1",
@@ -144,6 +146,64 @@ TEST_CASE("an ensemble has the same bytes on any number of threads, in shards, a
     CHECK(last.err.empty());
     REQUIRE(last.code == 0);
     CHECK(whole(pond.path("killed")) == expected);
+}
+
+TEST_CASE("a disk that fills up ends an ensemble with one sentence, and what it kept goes on", "[ensemble]") {
+    const Pond pond;
+    std::string many = depths;
+    many.replace(many.find("samples = 20"), 12, "samples = 300");
+    pond.write("many.toml", many);
+    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
+    // No file may be larger than 8 blocks of 512 or 1024 bytes.
+    const int status =
+        std::system(fmt::format("cd {} && sh -c \"trap '' XFSZ; ulimit -f 8; {} ensemble many.toml --out full "
+                                "--threads 4 --quiet\" > out.txt 2> err.txt",
+                                pond.path("").string(), program.string())
+                        .c_str());
+    CHECK(WEXITSTATUS(status) == 2);
+    CHECK_THAT(text_of(pond.path("err.txt")), Contains("cannot be written"));
+    REQUIRE(pond.frana("ensemble many.toml --out full --resume --quiet").code == 0);
+    for (const double p : pond.map("full", "probability_reached").values) CHECK(p == Approx(1.0));
+}
+
+TEST_CASE("runs join only with what they were made of; what was refused is tried again", "[ensemble]") {
+    const Pond pond;
+    const std::string by_table =
+        "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nfields = [\"peak_depth\"]\n";
+    pond.write("many.toml", by_table);
+    pond.write("rows.csv", "release.0.depth,release.0.outline\n0.5,\"all.geojson\"\n0.6,\"later.geojson\"\n");
+    CHECK(pond.frana("ensemble many.toml --out many --quiet").code == 3);
+    fs::copy_file(pond.path("all.geojson"), pond.path("later.geojson"));
+    REQUIRE(pond.frana("ensemble many.toml --out many --resume --quiet").code == 0);
+    CHECK(Json::parse(text_of(pond.path("many/ensemble.json")))["failed"] == 0);
+    pond.write("rows.csv", "release.0.depth,release.0.outline\n5.0,\"all.geojson\"\n6.0,\"later.geojson\"\n");
+    CHECK_THAT(pond.frana("ensemble --join many").err, Contains("expected runs of the same ensemble"));
+
+    pond.write("many.toml", depths);
+    REQUIRE(pond.frana("ensemble many.toml --out other --quiet").code == 0);
+    const std::string dem = text_of(pond.path("dem.asc"));
+    pond.write("dem.asc",
+               "ncols 6\nnrows 6\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n" +
+                   std::string("0 0 0 0 0 0\n0 0 0 0 0 0\n0 0 0 0 0 0\n0 0 0 0 0 0\n0 0 0 0 0 0\n0 0 0 0 0 0\n"));
+    const Outcome moved = pond.frana("ensemble --join other");
+    CHECK(moved.code == 2);
+    CHECK_THAT(moved.err, Contains("found runs on 12 x 12 nodes"));
+}
+
+TEST_CASE("Sobol's samples can be prolonged: those that have run stay", "[ensemble]") {
+    const Pond pond;
+    std::string few = depths;
+    few.replace(few.find("\"lhs\""), 5, "\"sobol\"").replace(few.find("samples = 20"), 12, "samples = 16");
+    pond.write("many.toml", few);
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    few.replace(few.find("samples = 16"), 12, "samples = 32");
+    pond.write("many.toml", few);
+    const Outcome more = pond.frana("ensemble many.toml --out many --resume");
+    REQUIRE(more.code == 0);
+    CHECK_THAT(more.out, Contains("16 of 16 runs, 0 failed"));  // the new ones
+    CHECK(Json::parse(text_of(pond.path("many/ensemble.json")))["run"] == 32);
+    const Outcome other = pond.frana("ensemble many.toml --out many --shard 1/2 --quiet");
+    CHECK(other.code == 0);  // runs again what it could have taken; the maps are the same
 }
 
 TEST_CASE("scenarios count by their weights", "[ensemble]") {

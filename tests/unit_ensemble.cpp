@@ -185,6 +185,13 @@ TEST_CASE("What an ensemble's file cannot ask for is said in one sentence each",
     CHECK_THAT(file.complaint("[ensemble]\ncase = \"none.toml\"\nsamples = 3\n" + mu), Contains("none.toml"));
     CHECK_THAT(file.complaint("[ensemble\n"), Contains("TOML"));
     CHECK_THAT(file.complaint("[grid]\ncell = 3\n" + head + mu), Contains("expected [ensemble] alone"));
+    CHECK_THAT(file.complaint(head + "[[ensemble.vary]]\nkey = \"release.0.depth\"\ndistribution = \"normal\"\n"
+                                     "mean = 0.1\nsd = 0.01\nrange = [5, 6]\n"),
+               Contains("far out in the distribution"));
+    CHECK_THAT(file.complaint(head + "vary = [1]\n"), Contains("that is no table"));
+    file.write("rows.csv", "grid.cell\n3\n");
+    CHECK_THAT(file.complaint("[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\n"),
+               Contains("maps need one terrain"));
     EnsemblePlan plan = file.read(head + mu);
     add_exceedance(plan, "peak_depth=1.3");
     CHECK(plan.exceed.at("peak_depth").back() == 1.3);
@@ -201,8 +208,8 @@ TEST_CASE("Samples can come from a table, with weights", "[ensemble]") {
     CHECK(plan.sets_of(1) == std::vector<std::string>{"material.bed.mu=0.2", "material.bed.xi=400"});
     CHECK(plan.points[1].weight == 1.5);
     file.write("rows.csv", "material.bed.nu\n0.1,3\n");
-    CHECK_THAT(file.complaint(text),
-               Contains("the column \"material.bed.nu\"") && Contains("found 2 values; expected 1"));
+    CHECK_THAT(file.complaint(text), Contains("found \"material.bed.nu\"; expected a key of a case file, or weight") &&
+                                         Contains("found 2 values; expected 1"));
     file.write("rows.csv", "material.bed.mu,weight\n0.1,much\n");
     CHECK_THAT(file.complaint(text), Contains("found the weight \"much\""));
     CHECK_THAT(file.complaint(text + mu), Contains("ensemble.vary"));
@@ -237,6 +244,9 @@ TEST_CASE("Maps of many runs count weights: above a threshold, below a quantile,
     near(pixels.quantile(0.1), {0.0, 0.0, 0.0, 0.0});  // a fifth did not come
     near(pixels.quantile(0.5), {0.0, 2.0, 3.0, 0.0});
     near(pixels.quantile(0.95), {1.0, 4.0, 5.0, 0.0});
+    const SparseRasters all = row_of(0, {1.0F});
+    pixels.gather({&all, &all, &all}, {1.2, 1.2, 0.6}, 0);  // weights with no exact sum
+    CHECK(standard_error(pixels.exceeds(0.3).values[0], 3.0) == 0.0);
     CHECK(effective_number({1.0, 1.0, 1.0}) == Approx(3.0));
     CHECK(effective_number({2.0, 1.0}) == Approx(1.8));
     CHECK(standard_error(0.5, 100.0) == Approx(0.05));
@@ -247,10 +257,12 @@ TEST_CASE("Indices of Ishigami's function are those that are known", "[ensemble]
     const double pi = std::acos(-1.0);
     const Design design = make_sensitivity_design(Method::saltelli, 4096, 3, 1);
     REQUIRE(design.points.size() == 5 * 4096);
+    const double level = GENERATE(0.0, 100.0);  // adds nothing to what is shared out
     std::vector<std::optional<double>> outcomes;
     for (const auto& u : design.points) {
         const double x = pi * (2.0 * u[0] - 1.0), y = pi * (2.0 * u[1] - 1.0), z = pi * (2.0 * u[2] - 1.0);
-        outcomes.emplace_back(std::sin(x) + 7.0 * std::sin(y) * std::sin(y) + 0.1 * std::pow(z, 4) * std::sin(x));
+        outcomes.emplace_back(level + std::sin(x) + 7.0 * std::sin(y) * std::sin(y) +
+                              0.1 * std::pow(z, 4) * std::sin(x));
     }
     const double first[] = {0.3139, 0.4424, 0.0}, total[] = {0.5576, 0.4424, 0.2437};
     const auto found = sensitivities(Method::saltelli, design, outcomes);

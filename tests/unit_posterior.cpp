@@ -98,3 +98,14 @@ TEST_CASE("Without any likelihood the next round is of the prior, and no weight 
     CHECK(std::equal(second.begin(), second.end(), both.begin() + 16));
     for (const double w : posterior.weights()) CHECK(w == 0.0);
 }
+
+TEST_CASE("Where few points have any likelihood the next round gathers around them", "[ensemble]") {
+    Posterior posterior(1, 5);
+    const auto first = posterior.next(32);
+    std::vector<double> log_likelihood;
+    for (const auto& u : first) log_likelihood.push_back(u[0] > 0.9 ? 0.0 : -std::numeric_limits<double>::infinity());
+    posterior.add(first, log_likelihood);
+    Index near = 0;
+    for (const auto& u : posterior.next(100)) near += u[0] > 0.8;
+    CHECK(near > 60);  // of the prior a fifth would be
+}

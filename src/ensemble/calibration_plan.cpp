@@ -11,7 +11,7 @@
 namespace frana {
 namespace {
 
-constexpr Index kMostPoints = 20'000;  ///< each point's weight asks all others
+constexpr Index kMostPoints = 5000;  ///< each point's weight asks all others, in each round
 
 class CalibrationReader {
 public:
@@ -25,9 +25,14 @@ public:
             problems_.add(plan_.file.string(), "found no [calibrate], or no [[event]]", "expected both",
                           "see apps/README.md for an example");
         if (table) read_calibrate(*table);
-        if (events)
+        if (events) {
             for (std::size_t k = 0; k < events->size(); ++k)
-                if (const toml::table* one = (*events)[k].as_table()) read_event(*one, fmt::format("event.{}", k));
+                if (const toml::table* one = (*events)[k].as_table())
+                    read_event(*one, fmt::format("event.{}", k));
+                else
+                    problems_.add(plan_.file.string(), fmt::format("found event.{} that is no table", k),
+                                  "expected [[event]] tables", "see apps/README.md for an example");
+        }
         file.refuse_others("here");
     }
 

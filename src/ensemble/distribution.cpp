@@ -47,6 +47,16 @@ double Distribution::number(double u) const {
     throw InternalError("internal error: a discrete distribution has no numbers");
 }
 
+double Distribution::share_between() const {
+    const bool log = kind == Kind::lognormal;
+    const boost::math::normal normal(log ? std::log(middle) : middle, log ? std::log(spread) : spread);
+    const auto below = [&](double x) {
+        const double z = log ? std::log(x) : x;
+        return std::isfinite(z) ? boost::math::cdf(normal, z) : z > 0.0 ? 1.0 : 0.0;
+    };
+    return below(high) - below(low);
+}
+
 std::size_t Distribution::choice(double u) const {
     double below = 0.0;
     for (std::size_t k = 0; k + 1 < values.size(); ++k)

@@ -18,6 +18,8 @@ struct Distribution {
 
     /// The number below which the share u of all lies, 0 < u < 1. Not of a discrete one.
     double number(double u) const;
+    /// Of a normal or lognormal one without its cuts: how much of it lies between them [1].
+    double share_between() const;
     /// Which value of a discrete one stands there.
     std::size_t choice(double u) const;
     /// As a case file has it: numbers with as many digits as give the same number back.

@@ -178,8 +178,7 @@ const std::vector<PeakField>& peak_fields() {
     static const std::vector<PeakField> fields = {{"peak_depth", "m", "peak depth"},
                                                   {"peak_speed", "m/s", "peak speed"},
                                                   {"peak_pressure", "Pa", "peak pressure on the bed"},
-                                                  {"peak_dynamic_pressure", "Pa", "peak dynamic pressure"},
-                                                  {"arrival_time", "s", "time of arrival"}};
+                                                  {"peak_dynamic_pressure", "Pa", "peak dynamic pressure"}};
     return fields;
 }
 

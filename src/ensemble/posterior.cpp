@@ -42,15 +42,19 @@ std::vector<double> weighted(const std::vector<double>& log_likelihood, const st
     if (w.empty()) return w;
     const double most = *std::max_element(log_likelihood.begin(), log_likelihood.end());
     if (!std::isfinite(most)) return w;
-    for (std::size_t i = 0; i < w.size(); ++i) w[i] = std::exp(flat * (log_likelihood[i] - most)) / mixture[i];
+    for (std::size_t i = 0; i < w.size(); ++i)
+        if (std::isfinite(log_likelihood[i])) w[i] = std::exp(flat * (log_likelihood[i] - most)) / mixture[i];
     const double sum = std::accumulate(w.begin(), w.end(), 0.0);
     for (double& one : w) one /= sum;
     return w;
 }
 
-/// The largest power up to 1 that leaves a tenth of the points, and eight at least, with a say.
+/// The largest power up to 1 that leaves a tenth of the points, and eight at least, with a say; where fewer have a likelihood
+/// at all, one that leaves most of those.
 double flattening(const std::vector<double>& log_likelihood, const std::vector<double>& mixture) {
-    const double wanted = std::max(8.0, 0.1 * static_cast<double>(mixture.size()));
+    constexpr double most_of = 0.9;
+    const double possible = effective_number(weighted(log_likelihood, mixture, 0.0));
+    const double wanted = std::min(most_of * possible, std::max(8.0, 0.1 * static_cast<double>(mixture.size())));
     const auto enough = [&](double flat) {
         return effective_number(weighted(log_likelihood, mixture, flat)) >= wanted;
     };
@@ -66,8 +70,7 @@ double flattening(const std::vector<double>& log_likelihood, const std::vector<d
 Posterior::Round Posterior::proposal() const {
     Round round;
     round.begin = points_.size();
-    const std::vector<double> from = mixture();
-    const std::vector<double> w = weighted(log_likelihood_, from, flattening(log_likelihood_, from));
+    const std::vector<double> w = weighted(log_likelihood_, mixture_, flattening(log_likelihood_, mixture_));
     const double sum = std::accumulate(w.begin(), w.end(), 0.0);
     if (!(sum > 0.0)) return round;
     round.kernel = w;
@@ -128,23 +131,25 @@ void Posterior::add(const std::vector<std::vector<double>>& points, const std::v
     expect(points.size() == log_likelihood.size(), "a likelihood for each point");
     Round round = proposal();
     round.end = round.begin + points.size();
+    for (std::size_t i = 0; i < points_.size(); ++i) mixture_[i] += share_of(round, points_[i]);
     rounds_.push_back(std::move(round));
     points_.insert(points_.end(), points.begin(), points.end());
     log_likelihood_.insert(log_likelihood_.end(), log_likelihood.begin(), log_likelihood.end());
+    for (const auto& point : points) {
+        double sum = 0.0;
+        for (const Round& before : rounds_) sum += share_of(before, point);
+        mixture_.push_back(sum);
+    }
 }
 
-/// The mean density of all rounds at each point, times their number of points.
-std::vector<double> Posterior::mixture() const {
-    std::vector<double> all(points_.size(), 0.0);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        for (const Round& round : rounds_)
-            all[i] += static_cast<double>(round.end - round.begin) * density(round, points_[i]);
-    return all;
+/// A round's density at a point, times its number of points.
+double Posterior::share_of(const Round& round, const std::vector<double>& point) const {
+    return static_cast<double>(round.end - round.begin) * density(round, point);
 }
 
 std::vector<double> Posterior::weights(const std::vector<double>& log_likelihood) const {
     expect(log_likelihood.size() == points_.size(), "a likelihood for each point");
-    return weighted(log_likelihood, mixture(), 1.0);
+    return weighted(log_likelihood, mixture_, 1.0);
 }
 
 std::size_t Posterior::best() const {

@@ -39,13 +39,14 @@ private:
         std::vector<double> width;       ///< of the kernels, by key
     };
     Round proposal() const;
-    std::vector<double> mixture() const;
+    double share_of(const Round& round, const std::vector<double>& point) const;
     double density(const Round& round, const std::vector<double>& point) const;
 
     Index keys_;
     std::uint64_t seed_;
     std::vector<std::vector<double>> points_;
     std::vector<double> log_likelihood_;
+    std::vector<double> mixture_;  ///< density of all rounds at each point, times their points
     std::vector<Round> rounds_;
 };
 

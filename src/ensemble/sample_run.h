@@ -17,6 +17,7 @@ struct EnsembleBase {
     Raster bed;          ///< what of the terrain the case holds at its start
     GridGeometry whole;  ///< nodes of all of the terrain; the maps' pixels
     std::string title;
+    bool stops_at_rest = false;         ///< a run that goes on to time.end still moves
     double footprint_depth = 0.1;       ///< [m]
     std::optional<Vec2> start;          ///< the middle of the releases
     std::optional<Polygons> footprint;  ///< surveyed, where the case has one

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "ensemble/toml_file.h"
-#include "scene/parameters.h"
+#include "ensemble/vary_reader.h"
 
 namespace frana {
 namespace {
@@ -26,9 +26,8 @@ std::vector<std::string> fields_of(const std::string& line) {
 /// Names the column's key; false for weights.
 bool note_key(const std::string& name, const std::string& place, EnsemblePlan& plan, Problems& problems) {
     if (name == "weight") return false;
-    if (!find_parameter(name))
-        problems.add(place, fmt::format("found the column \"{}\"", name), "expected keys of a case, or weight",
-                     "see `frana describe`");
+    const KeyProblem problem = problem_of_key(name, plan.vary);
+    if (!problem.found.empty()) problems.add(place, problem.found, problem.expected + ", or weight", problem.way_out);
     plan.vary.emplace_back().key = name;
     return true;
 }
@@ -36,7 +35,9 @@ bool note_key(const std::string& name, const std::string& place, EnsemblePlan& p
 }  // namespace
 
 void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Problems& problems) {
-    std::istringstream stream(text_of_file(file));
+    const std::string text = text_of_file(file);
+    plan.table_text = text;
+    std::istringstream stream(text);
     std::string line;
     std::getline(stream, line);
     std::vector<bool> is_key;

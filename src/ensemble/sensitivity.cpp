@@ -43,7 +43,7 @@ std::vector<Sensitivity> by_sobol(const std::vector<Group>& groups, std::size_t 
     for (std::size_t k = 0; k < keys; ++k) {
         for (const Group& g : groups) {
             const double a = g[0], b = g[1], mixed = g[2 + k];
-            all[k].first += b * (mixed - a) / (count * variance);
+            all[k].first += 1.0 / count - (b - mixed) * (b - mixed) / (2.0 * count * variance);
             all[k].total += (a - mixed) * (a - mixed) / (2.0 * count * variance);
         }
     }

@@ -21,7 +21,7 @@ void PixelValues::gather(const std::vector<const SparseRasters*>& runs, const st
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t r = 0; r < runs.size(); ++r) {
         const std::vector<float>& of = runs[r]->values.at(field);
-        const auto weight = static_cast<float>(weights[r]);
+        const double weight = weights[r];
         runs[r]->for_each([&](Index pixel, std::size_t n) {
             values_[next[static_cast<std::size_t>(pixel)]++] = {of[n], weight};
         });
@@ -42,7 +42,7 @@ Raster PixelValues::exceeds(double threshold) const {
     return of_each([&](const Value* first, const Value* past) {
         double sum = 0.0;
         for (const Value* v = first; v != past; ++v)
-            if (v->value > limit) sum += static_cast<double>(v->weight);
+            if (v->value > limit) sum += v->weight;
         return sum / weight_;
     });
 }
@@ -50,7 +50,7 @@ Raster PixelValues::exceeds(double threshold) const {
 Raster PixelValues::reached() const {
     return of_each([&](const Value* first, const Value* past) {
         double sum = 0.0;
-        for (const Value* v = first; v != past; ++v) sum += static_cast<double>(v->weight);
+        for (const Value* v = first; v != past; ++v) sum += v->weight;
         return sum / weight_;
     });
 }
@@ -58,8 +58,7 @@ Raster PixelValues::reached() const {
 Raster PixelValues::mean() const {
     return of_each([&](const Value* first, const Value* past) {
         double sum = 0.0;
-        for (const Value* v = first; v != past; ++v)
-            sum += static_cast<double>(v->weight) * static_cast<double>(v->value);
+        for (const Value* v = first; v != past; ++v) sum += v->weight * static_cast<double>(v->value);
         return sum / weight_;
     });
 }
@@ -73,7 +72,7 @@ Raster PixelValues::quantile(double q) const {
                          [](const Value& a, const Value& b) { return a.value > b.value; });
         double above = 0.0;  // from the largest down: what exceeds a value may be at most 1 - q
         for (const Value& v : sorted) {
-            above += static_cast<double>(v.weight);
+            above += v.weight;
             if (above > (1.0 - q) * weight_ * (1.0 + round_off)) return static_cast<double>(v.value);
         }
         return 0.0;
@@ -86,6 +85,8 @@ double effective_number(const std::vector<double>& weights) {
     return squares > 0.0 ? sum * sum / squares : 0.0;
 }
 
-double standard_error(double p, double number) { return number > 0.0 ? std::sqrt(p * (1.0 - p) / number) : 0.0; }
+double standard_error(double p, double number) {
+    return number > 0.0 ? std::sqrt(std::max(0.0, p * (1.0 - p)) / number) : 0.0;
+}
 
 }  // namespace frana

@@ -26,7 +26,7 @@ public:
 private:
     struct Value {
         float value;
-        float weight;
+        double weight;
     };
     template <class Body>
     Raster of_each(Body&& body) const;

@@ -63,22 +63,8 @@ public:
 
 private:
     void check_key(CheckedTable& table, const std::string& key) {
-        const Parameter* parameter = find_parameter(key);
-        if (!parameter) {
-            std::vector<std::string> known;
-            for (const Parameter& one : parameters()) known.push_back(one.key);
-            const std::string near = closest(without_numbers(key), known);
-            return table.wrong("key", fmt::format("found \"{}\"", key), "expected a key of a case file",
-                               near.empty() ? "see `frana describe`" : fmt::format("is {} meant?", near));
-        }
-        for (const Vary& other : vary_)
-            if (other.key == key)
-                table.wrong("key", fmt::format("found \"{}\" a second time", key), "expected each key once",
-                            "remove one");
-        for (const char* fixed : {"grid.", "terrain.", "output.", "survey.", "case."})
-            if (key.rfind(fixed, 0) == 0)
-                table.wrong("key", fmt::format("found \"{}\"", key), "expected a key of what flows",
-                            "maps need one terrain and one grid for all runs");
+        const KeyProblem problem = problem_of_key(key, vary_);
+        if (!problem.found.empty()) table.wrong("key", problem.found, problem.expected, problem.way_out);
     }
 
     void read_discrete(CheckedTable& table, Vary& vary) {
@@ -130,6 +116,10 @@ private:
         if (of.kind == Kind::lognormal && !(of.spread > 1.0 && of.middle > 0.0))
             table.wrong("factor", fmt::format("found median {:g} and factor {:g}", of.middle, of.spread),
                         "expected a median above 0 and a factor above 1", "give such");
+        constexpr double nothing = 1e-9;  // of the distribution
+        if (free && of.spread > 0.0 && of.low < of.high && !(of.share_between() > nothing))
+            table.wrong("range", fmt::format("found {:g} to {:g}, far out in the distribution", of.low, of.high),
+                        "expected a range that it is likely to lie in", "give another range, or another middle");
         if (!(of.alpha > 0.0 && of.beta > 0.0))
             table.wrong("alpha", fmt::format("found alpha {:g} and beta {:g}", of.alpha, of.beta),
                         "expected numbers above 0", "give such");
@@ -157,12 +147,35 @@ private:
 
 }  // namespace
 
+KeyProblem problem_of_key(const std::string& key, const std::vector<Vary>& before) {
+    if (!find_parameter(key)) {
+        std::vector<std::string> known;
+        for (const Parameter& one : parameters()) known.push_back(one.key);
+        const std::string near = closest(without_numbers(key), known);
+        return {fmt::format("found \"{}\"", key), "expected a key of a case file",
+                near.empty() ? "see `frana describe`" : fmt::format("is {} meant?", near)};
+    }
+    for (const Vary& other : before)
+        if (other.key == key)
+            return {fmt::format("found \"{}\" a second time", key), "expected each key once", "remove one"};
+    for (const char* fixed : {"grid.", "terrain.", "output.", "survey.", "case."})
+        if (key.rfind(fixed, 0) == 0)
+            return {fmt::format("found \"{}\"", key), "expected a key of what flows",
+                    "maps need one terrain and one grid for all runs"};
+    return {};
+}
+
 std::vector<Vary> read_varied_keys(const toml::array& array, const std::string& name, const VaryContext& context,
                                    Problems& problems) {
     std::vector<Vary> all;
-    for (std::size_t k = 0; k < array.size(); ++k)
+    for (std::size_t k = 0; k < array.size(); ++k) {
+        const std::string place = fmt::format("{}.{}", name, k);
         if (const toml::table* one = array[k].as_table())
-            VaryReader(context, all, problems).read_vary(*one, fmt::format("{}.{}", name, k));
+            VaryReader(context, all, problems).read_vary(*one, place);
+        else
+            problems.add(context.file.string(), fmt::format("found {} that is no table", place),
+                         fmt::format("expected [[{}]] tables", name), "see apps/README.md for an example");
+    }
     return all;
 }
 

@@ -12,6 +12,12 @@ struct VaryContext {
     std::string method_name = "sobol";
 };
 
+/// What is wrong with a key that is to vary; nothing: empty.
+struct KeyProblem {
+    std::string found, expected, way_out;
+};
+KeyProblem problem_of_key(const std::string& key, const std::vector<Vary>& before);
+
 /// Reads all tables of `array`, named "ensemble.vary.0" and so on.
 std::vector<Vary> read_varied_keys(const toml::array& array, const std::string& name, const VaryContext& context,
                                    Problems& problems);

@@ -1,6 +1,9 @@
 #include "io/hdf5_peaks.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <fstream>
 #include <numeric>
 
 #include "base/atomic_file.h"
@@ -69,8 +72,11 @@ std::vector<std::string> words_of(const Access& access, hid_t file) {
     return words;
 }
 
-void write_all(const Access& access, const PeakBlock& block) {
-    const Handle file(access, H5Fcreate(access.file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+/// The bytes of the file, made in memory: HDF5 cannot close a compressed file that the disk has no room for.
+std::vector<char> bytes_of(const Access& access, const PeakBlock& block) {
+    const Handle memory(access, H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    access.check(H5Pset_fapl_core(memory, std::size_t{1} << 20, false));
+    const Handle file(access, H5Fcreate(access.file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, memory), H5Fclose);
     const GridGeometry& g = block.grid;
     hdf5::put_numbers(access, file, "grid", {double(g.nx), double(g.ny), g.x0, g.y0, g.cell});
     hdf5::put_text(access, file, "fields", joined(block.fields));
@@ -92,14 +98,26 @@ void write_all(const Access& access, const PeakBlock& block) {
         put(access, file, block.fields[f], H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, values);
     }
     access.check(H5Fflush(file, H5F_SCOPE_GLOBAL));
+    std::vector<char> bytes(static_cast<std::size_t>(access.check(H5Fget_file_image(file, nullptr, 0))));
+    access.check(H5Fget_file_image(file, bytes.data(), bytes.size()));
+    return bytes;
 }
 
 }  // namespace
 
 void write_peaks(const std::filesystem::path& target, const PeakBlock& block) {
+    std::vector<char> bytes;
+    {
+        const hdf5::QuietErrors quiet;
+        bytes = bytes_of(Access(target), block);
+    }
     AtomicFile made(target);
-    const hdf5::QuietErrors quiet;
-    write_all(Access(made.path()), block);
+    std::ofstream stream(made.path(), std::ios::binary);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    if (!stream)
+        throw UserError(
+            fmt::format("{}: cannot be written; check the folder's permissions and free space", target.string()));
     made.commit_to_disk();
 }
 

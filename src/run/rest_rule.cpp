@@ -18,9 +18,19 @@ double RestRule::slow_at(double time) const {
     return time > 0.0 ? 2.0 * cell_ / time : std::numeric_limits<double>::infinity();
 }
 
+namespace {
+
+/// Over all that has been released: what has become bed is slow as well.
+double mean_speed(const Status& now) {
+    const double became_bed = now.bed.deposited - now.bed.eroded;
+    return became_bed > 0.0 ? now.mean_speed * now.mass / (now.mass + became_bed) : now.mean_speed;
+}
+
+}  // namespace
+
 void RestRule::note(const Simulation& simulation) {
     const Status& now = simulation.status();
-    peak_mean_speed_ = std::max(peak_mean_speed_, now.mean_speed);
+    peak_mean_speed_ = std::max(peak_mean_speed_, mean_speed(now));
     const bool may_rest = simulation.may_rest();
     nothing_moves_ = may_rest && now.max_speed_on_map == 0.0;
     if (now.time < next_check_) return;
@@ -31,7 +41,7 @@ void RestRule::note(const Simulation& simulation) {
 
 bool RestRule::is_at_rest(const Simulation& simulation) const {
     const Status& now = simulation.status();
-    if (!(now.mean_speed < fraction_ * peak_mean_speed_)) return false;
+    if (!(mean_speed(now) < fraction_ * peak_mean_speed_)) return false;
     const MovingMass motion = simulation.motion({slow_at(now.time), (1.0 - kHold) * now.time});
     return motion.share() <= kMovingShare && motion.fronts == 0;
 }

@@ -46,7 +46,7 @@ std::vector<std::string> keys_of(const CaseFile& file, const std::string& key) {
 
 bool holds(const CaseFile& file, const Values& values, const std::string& key) {
     if (values.are == Are::tables) return file.count(key) > 0;
-    if (values.are == Are::given) return file.given(key);
+    if (values.are == Are::given) return file.given(key) && (file.is_text(key) || file.number(key) > 0.0);
     if (!file.has(key)) return false;
     switch (values.are) {
         case Are::words:

@@ -205,7 +205,7 @@ struct ErodibleBed {
 
 /// What the flow leaves behind as bed (shallow/erosion.h).
 struct Deposition {
-    std::optional<double> rest;  ///< after so long at rest tiles of it become bed [s]; nothing: never
+    std::optional<double> rest;  ///< after so long at rest it becomes bed [s]; nothing: never
 };
 
 /// Trees that take mass out of the flow (shallow/erosion.h).

@@ -22,7 +22,7 @@ std::string text_of(const NodeBox& box) { return fmt::format("part {} {} {} {}",
 template <class Answer, class Read>
 Answer SharedReader::recalled(Memory<Answer>& memory, const std::string& question, std::vector<std::string>& log,
                               const Read& read) const {
-    const std::lock_guard<std::recursive_mutex> alone(mutex_);
+    const std::lock_guard<std::recursive_mutex> alone(*mutex_);
     auto found = memory.find(question);
     if (found == memory.end()) {
         Known<Answer> known;
@@ -36,7 +36,7 @@ Answer SharedReader::recalled(Memory<Answer>& memory, const std::string& questio
 /// Which part is wanted is asked of each scene anew, since its releases may lie elsewhere; asking reads files as well.
 Raster SharedReader::read_dem(const std::filesystem::path& file, const DemRequest& request,
                               std::vector<std::string>& log) const {
-    const std::lock_guard<std::recursive_mutex> alone(mutex_);
+    const std::lock_guard<std::recursive_mutex> alone(*mutex_);
     const std::string question = fmt::format("{} {}", file.string(), text_of(request));
     const auto whole = whole_.find(question);
     DemRequest told = request;
@@ -49,6 +49,7 @@ Raster SharedReader::read_dem(const std::filesystem::path& file, const DemReques
         };
         Known<Raster> known;
         known.answer = inner_.read_dem(file, told, known.remarks);
+        forget_terrain();
         log.insert(log.end(), known.remarks.begin(), known.remarks.end());
         return terrain_.emplace(question + text_of(chosen), std::move(known)).first->second.answer;
     }
@@ -57,61 +58,74 @@ Raster SharedReader::read_dem(const std::filesystem::path& file, const DemReques
         const NodeBox box = request.choose(whole->second);
         part = text_of(box);
         told.choose = [box](const Raster&) { return box; };
+        if (terrain_.count(question + part) == 0) forget_terrain();
     }
     return recalled(terrain_, question + part, log,
                     [&](auto& remarks) { return inner_.read_dem(file, told, remarks); });
 }
 
+/// Scenes that begin elsewhere ask for other parts: only some of them are held.
+void SharedReader::forget_terrain() const {
+    constexpr std::size_t at_most = 16;
+    if (terrain_.size() >= at_most) terrain_.clear();
+}
+
 std::function<Raster(const NodeBox&)> SharedReader::read_dem_later(const std::filesystem::path& file,
                                                                    const DemRequest& request) const {
-    return inner_.read_dem_later(file, request);
+    auto later = inner_.read_dem_later(file, request);
+    if (!later) return {};
+    return [later, mutex = mutex_](const NodeBox& box) {
+        const std::lock_guard<std::recursive_mutex> alone(*mutex);
+        return later(box);
+    };
 }
 
 Raster SharedReader::read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                  const std::string& crs_wkt, std::vector<std::string>& log) const {
-    return recalled(rasters_, fmt::format("raster {} {}", file.string(), extent), log,
+    return recalled(rasters_, fmt::format("raster {} {} {}", file.string(), extent, crs_wkt), log,
                     [&](auto& remarks) { return inner_.read_raster(file, extent, crs_wkt, remarks); });
 }
 
 Raster SharedReader::read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,
                                std::vector<std::string>& log) const {
-    return recalled(rasters_, fmt::format("onto {} {}", file.string(), text_of(grid)), log,
+    return recalled(rasters_, fmt::format("onto {} {} {}", file.string(), text_of(grid), crs_wkt), log,
                     [&](auto& remarks) { return inner_.read_onto(file, grid, crs_wkt, remarks); });
 }
 
 Raster SharedReader::read_deposit(const std::filesystem::path& file, const GridGeometry& grid,
                                   const std::string& crs_wkt, std::vector<std::string>& log) const {
-    return recalled(rasters_, fmt::format("deposit {} {}", file.string(), text_of(grid)), log,
+    return recalled(rasters_, fmt::format("deposit {} {} {}", file.string(), text_of(grid), crs_wkt), log,
                     [&](auto& remarks) { return inner_.read_deposit(file, grid, crs_wkt, remarks); });
 }
 
 Polygons SharedReader::read_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                      std::vector<std::string>& log) const {
-    return recalled(polygons_, file.string(), log,
+    return recalled(polygons_, file.string() + " " + crs_wkt, log,
                     [&](auto& remarks) { return inner_.read_polygons(file, crs_wkt, remarks); });
 }
 
 ValuedPolygons SharedReader::read_valued_polygons(const std::filesystem::path& file, const std::string& attribute,
                                                   const std::string& crs_wkt, std::vector<std::string>& log) const {
-    return recalled(valued_, file.string() + " " + attribute, log,
+    return recalled(valued_, file.string() + " " + attribute + " " + crs_wkt, log,
                     [&](auto& remarks) { return inner_.read_valued_polygons(file, attribute, crs_wkt, remarks); });
 }
 
 Polygons SharedReader::read_survey(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                    const std::string& crs_wkt, std::vector<std::string>& log) const {
-    return recalled(polygons_, fmt::format("survey {} {}", file.string(), extent), log,
+    return recalled(polygons_, fmt::format("survey {} {} {}", file.string(), extent, crs_wkt), log,
                     [&](auto& remarks) { return inner_.read_survey(file, extent, crs_wkt, remarks); });
 }
 
 std::vector<Polyline> SharedReader::read_lines(const std::filesystem::path& file, const std::string& crs_wkt,
                                                std::vector<std::string>& log) const {
-    return recalled(lines_, file.string(), log,
+    return recalled(lines_, file.string() + " " + crs_wkt, log,
                     [&](auto& remarks) { return inner_.read_lines(file, crs_wkt, remarks); });
 }
 
 Polyline SharedReader::read_line(const std::filesystem::path& file, const std::string& crs_wkt,
                                  std::vector<std::string>& log) const {
-    return recalled(line_, file.string(), log, [&](auto& remarks) { return inner_.read_line(file, crs_wkt, remarks); });
+    return recalled(line_, file.string() + " " + crs_wkt, log,
+                    [&](auto& remarks) { return inner_.read_line(file, crs_wkt, remarks); });
 }
 
 }  // namespace frana

@@ -1,6 +1,7 @@
 #pragma once
 // One reader for many scenes: each file is read once.
 #include <map>
+#include <memory>
 #include <mutex>
 
 #include "scene/toolbox.h"
@@ -47,8 +48,11 @@ private:
     Answer recalled(Memory<Answer>& memory, const std::string& question, std::vector<std::string>& log,
                     const Read& read) const;
 
+    void forget_terrain() const;
+
     const GisReader& inner_;
-    mutable std::recursive_mutex mutex_;  ///< what part is wanted may hang on other files
+    /// What part is wanted may hang on other files, so one question may ask another.
+    std::shared_ptr<std::recursive_mutex> mutex_ = std::make_shared<std::recursive_mutex>();
     mutable Memory<Raster> rasters_, terrain_;
     mutable std::map<std::string, Raster> whole_;  ///< grids without values, as DemRequest::choose is told
     mutable Memory<Polygons> polygons_;

@@ -91,8 +91,8 @@ bool Erosion::lies_on_rest(const Flow& flow, Index p) const {
     return rest;
 }
 
-/// What the points of the tiles chosen give, `wanted_` of their mass, lies on the bed from now on, as they would have deposited it: z rises by what the
-/// flow's depth falls.
+/// What the points of the tiles chosen give, `wanted_`, lies on the bed from now on, as they would have deposited it: z rises
+/// by what the flow's depth falls.
 void Erosion::give(Flow& flow) {
     list_given(flow);
     CompensatedSum given;

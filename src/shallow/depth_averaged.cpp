@@ -302,8 +302,10 @@ double DepthAveraged::share_of_ordinary_step() const {
 
 /// The longest stable step, shortened so that `until` is hit exactly and without a crumb before it.
 double DepthAveraged::step_length(double until) const {
-    // Where nothing is yet, the clock goes on to what comes first.
-    if (feed_ && flow_.columns.count() == 0 && !feed_->over()) until = std::min(until, feed_->next());
+    // Where nothing is yet, the clock goes on to what comes first. What is due already comes in with this step: all that there
+    // was has just become bed.
+    const bool empty = feed_ && flow_.columns.count() == 0;
+    if (empty && !feed_->over() && !feed_->due(status_.time)) until = std::min(until, feed_->next());
     return status_.step_towards(until, longest_step());
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // The flow takes up loose material of its bed, and leaves some behind: a ledger of mass per node, and the exchange of a step
-// (THEORY.md, section 18).
+// (THEORY.md, sections 18, 20, 21).
 //
 // Points know what they want, nodes what there is. So a point gets the share of its demand that the poorest of its nodes can
 // give to all that want; what nodes have left over goes to those that want it. Where the supply lasts, each node loses what

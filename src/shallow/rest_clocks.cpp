@@ -24,7 +24,7 @@ void RestClocks::tick_tile(const Flow& flow, Index tile, double dt) {
     double longest = 0.0;
     for_each_node_of(flow.grid, tile, in_reach, [&](Index k, Index, Index) {
         const Motion& after = flow.nodes.motions()[k];
-        const bool rests = after.vx == 0.0 && after.vy == 0.0;
+        const bool rests = flow.nodes.column_mass[k] > 0.0 && after.vx == 0.0 && after.vy == 0.0;
         rested_[k] = rests ? rested_[k] + dt : 0.0;
         longest = std::max(longest, rested_[k]);
     });

@@ -45,9 +45,9 @@ double near_open_sides(const Facts& facts, const PointStates& points) {
 }  // namespace
 
 const std::vector<std::string>& invariant_names() {
-    static const std::vector<std::string> names = {"finite", "positive", "mass",   "momentum", "energy",
-                                                   "speed",  "head",     "rest",   "symmetry", "threads",
-                                                   "resume", "numerics", "program"};
+    static const std::vector<std::string> names = {"finite", "positive", "mass",     "momentum", "energy",
+                                                   "speed",  "head",     "rest",     "symmetry", "threads",
+                                                   "resume", "clock",    "numerics", "program"};
     return names;
 }
 

@@ -122,9 +122,13 @@ void run(const Scene& scene, const Claims& claims, Index steps, const Falsify& f
     };
     observe();
     while (!verdict.broken && status.step < steps && status.mass > 0.0 && status.particles < kMostPoints) {
+        const double before = status.time;
         simulation->advance(kNever);
         state = snapshot_of(*simulation, facts.steep);
         observe();
+        if (!verdict.broken && !(status.time > before))
+            verdict.broken = Violation{"clock", std::numeric_limits<double>::infinity(), status.step, status.time,
+                                       "a step that takes no time"};
     }
 }
 
