@@ -1,0 +1,104 @@
+// Charts of an ensemble: how far the flow comes, how that settles with the number of runs, and what it hangs on.
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "frana_ensemble_outcomes.h"
+#include "vtk_io/figures/chart_figure.h"
+
+namespace frana {
+namespace {
+
+struct Charts {
+    const std::filesystem::path& dir;
+    const EnsemblePlan& plan;
+    const EnsembleBase& base;
+    const WeightedRuns& runs;
+    EnsembleSummary& summary;
+};
+
+void draw(const Charts& of, const ChartFigure& figure, const std::string& name) {
+    std::string why_not;
+    if (render_chart(figure, of.dir / "figures" / name, why_not)) of.summary.files.push_back("figures/" + name);
+}
+
+/// How likely the flow comes farther than a distance.
+Curve farther(const WeightedRuns& runs, const char* name, double SampleResult::*value) {
+    Curve curve;
+    curve.name = name;
+    double left = runs.total;
+    for (const auto& [distance, weight] : runs.by_size(value)) {
+        curve.x.push_back(distance), curve.y.push_back(left / runs.total);
+        left -= weight;
+        curve.x.push_back(distance), curve.y.push_back(std::max(0.0, left / runs.total));
+    }
+    return curve;
+}
+
+void draw_outcomes(const Charts& of) {
+    ChartFigure figure;
+    figure.title = of.base.title;
+    figure.x_label = "distance [m]";
+    std::vector<Curve> curves = {farther(of.runs, "straight from the release", &SampleResult::reach)};
+    if (!of.base.path.empty()) curves.push_back(farther(of.runs, "along the path of water", &SampleResult::runout));
+    figure.panels.push_back({"share of the runs that come farther [1]", curves, false, std::pair{0.0, 1.0}, 1.0});
+    figure.footer = runs_sentence(of.summary);
+    draw(of, figure, "runout.png");
+}
+
+/// How the middle of the runs settles with their number.
+void draw_convergence(const Charts& of) {
+    const bool alike = of.summary.effective > 0.999 * static_cast<double>(of.runs.ended.size());
+    if (!alike || of.plan.quantiles.empty() || of.runs.ended.size() < 2) return;
+    ChartFigure figure;
+    figure.title = of.base.title;
+    figure.x_label = "number of runs";
+    std::vector<Curve> curves;
+    for (const double q : of.plan.quantiles) curves.push_back({fmt::format("{:g} of the runs at most", q), {}, {}});
+    std::vector<double> sorted;
+    for (std::size_t k = 0; k < of.runs.ended.size(); ++k) {
+        sorted.insert(std::upper_bound(sorted.begin(), sorted.end(), of.runs.ended[k]->reach), of.runs.ended[k]->reach);
+        for (std::size_t n = 0; n < curves.size(); ++n) {
+            const auto below = static_cast<std::size_t>(of.plan.quantiles[n] * static_cast<double>(k));
+            curves[n].x.push_back(static_cast<double>(k + 1)), curves[n].y.push_back(sorted[below]);
+        }
+    }
+    figure.panels.push_back({"straight reach [m]", curves, false, {}, 1.0});
+    figure.footer = runs_sentence(of.summary);
+    draw(of, figure, "convergence.png");
+}
+
+/// Each run as a mark, over where it stands in the distribution of each key.
+void draw_scatter(const Charts& of) {
+    if (of.plan.design.points.empty()) return;  // of a table nothing is known but its values
+    ChartFigure figure;
+    figure.title = of.base.title;
+    figure.x_label = "share of the key's distribution below the run's value [1]";
+    figure.x_range = {0.0, 1.0};
+    constexpr std::size_t at_most = 4;  // panels that can still be read
+    for (std::size_t k = 0; k < std::min(at_most, of.plan.vary.size()); ++k) {
+        Curve curve;
+        curve.name = of.plan.vary[k].key;
+        curve.marks = true;
+        for (const SampleResult* run : of.runs.ended) {
+            curve.x.push_back(of.plan.design.points[static_cast<std::size_t>(run->sample)][k]);
+            curve.y.push_back(run->reach);
+            curve.x.push_back(Raster::nodata), curve.y.push_back(Raster::nodata);  // no line to the next
+        }
+        figure.panels.push_back({"straight reach [m]", {curve}, false, {}, 1.0});
+    }
+    figure.footer = runs_sentence(of.summary);
+    draw(of, figure, "scatter.png");
+}
+
+}  // namespace
+
+void draw_charts(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
+                 const WeightedRuns& runs, EnsembleSummary& summary) {
+    const Charts of{dir, plan, base, runs, summary};
+    draw_outcomes(of);
+    draw_convergence(of);
+    draw_scatter(of);
+}
+
+}  // namespace frana

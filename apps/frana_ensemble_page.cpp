@@ -1,0 +1,180 @@
+// Tables and page of an ensemble: runs.csv, samples.csv, report.md, ensemble.json.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "base/text_file.h"
+#include "base/version.h"
+#include "frana_ensemble_folder.h"
+#include "frana_ensemble_outcomes.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What each outcome hangs on, where the samples were made for that.
+std::vector<Sensitivity> sensitivity_of(const Outcome& outcome, const EnsemblePlan& plan,
+                                        const std::vector<SampleResult>& results) {
+    if (plan.method != Method::saltelli && plan.method != Method::morris) return {};
+    std::vector<std::optional<double>> outcomes(static_cast<std::size_t>(plan.samples));
+    for (const SampleResult& result : results)
+        if (result.ended()) outcomes[static_cast<std::size_t>(result.sample)] = result.*outcome.value;
+    return sensitivities(plan.method, plan.design, outcomes);
+}
+
+Json sensitivity_json(const EnsemblePlan& plan, const std::vector<SampleResult>& results) {
+    Json all = Json::object();
+    const bool shares = plan.method == Method::saltelli;
+    for (const Outcome& outcome : kOutcomes) {
+        const auto found = sensitivity_of(outcome, plan, results);
+        for (std::size_t k = 0; k < found.size(); ++k)
+            all[outcome.key][plan.vary[k].key] = {{shares ? "first_order" : "mu_star", found[k].first},
+                                                  {shares ? "total" : "sigma", found[k].total}};
+    }
+    return all;
+}
+
+/// Rows of the page: what hangs on which key.
+std::string sensitivity_section(const EnsemblePlan& plan, const std::vector<SampleResult>& results) {
+    if (plan.method != Method::saltelli && plan.method != Method::morris) return "";
+    const bool shares = plan.method == Method::saltelli;
+    std::string page = fmt::format("\n\n## What the outcomes hang on\n\n| | key | {} | {} |\n|---|---|---:|---:|\n",
+                                   shares ? "first order" : "mean effect", shares ? "total" : "its spread");
+    for (const Outcome& outcome : kOutcomes) {
+        const auto found = sensitivity_of(outcome, plan, results);
+        for (std::size_t k = 0; k < found.size(); ++k)
+            page += fmt::format("| {} | `{}` | {:.3g} | {:.3g} |\n", outcome.name, plan.vary[k].key, found[k].first,
+                                found[k].total);
+    }
+    return page;
+}
+
+/// The runs nearest to the survey by the distance of the outlines, for people.
+std::string nearest_section(const EnsemblePlan& plan, const std::vector<SampleResult>& results) {
+    std::vector<const SampleResult*> runs;
+    for (const SampleResult& result : results)
+        if (result.ended() && result.boundary) runs.push_back(&result);
+    if (runs.empty()) return "";
+    std::stable_sort(runs.begin(), runs.end(),
+                     [](const auto* a, const auto* b) { return *a->boundary < *b->boundary; });
+    std::string page = "\n\n## Nearest to the surveyed footprint\n\n| sample | outlines apart [m] | IoU |";
+    std::string line = "\n|---:|---:|---:|";
+    for (const Vary& vary : plan.vary) page += fmt::format(" `{}` |", vary.key), line += "---:|";
+    page += line;
+    constexpr std::size_t shown = 5;
+    for (std::size_t k = 0; k < std::min(shown, runs.size()); ++k) {
+        page += fmt::format("\n| {} | {:.1f} | {:.3f} |", runs[k]->sample, *runs[k]->boundary, *runs[k]->iou);
+        for (const std::string& value : plan.points[static_cast<std::size_t>(runs[k]->sample)].values)
+            page += fmt::format(" {} |", value);
+    }
+    return page;
+}
+
+Json record_of(const EnsemblePlan& plan, const EnsembleSummary& summary, const WeightedRuns& runs,
+               const std::vector<SampleResult>& results) {
+    Json json = {{"frana", FRANA_VERSION},
+                 {"ensemble", plan.file.filename().string()},
+                 {"case", plan.case_file.filename().string()},
+                 {"method", plan.method_name},
+                 {"seed", plan.seed},
+                 {"samples", summary.samples},
+                 {"run", summary.run},
+                 {"failed", summary.failed},
+                 {"not_at_rest", summary.not_at_rest},
+                 {"left_terrain", summary.left_terrain},
+                 {"effective_number", summary.effective},
+                 {"core_seconds", summary.core_seconds},
+                 {"seconds", summary.wall_seconds ? Json(*summary.wall_seconds) : Json(nullptr)}};
+    for (const Outcome& outcome : kOutcomes) {
+        Json& numbers = json["results"][outcome.key] = {{"mean", runs.mean(outcome.value)}};
+        for (const double q : plan.quantiles) numbers[fmt::format("q{:g}", q)] = runs.quantile(outcome.value, q);
+    }
+    const Json sensitivity = sensitivity_json(plan, results);
+    if (!sensitivity.empty()) json["sensitivity"] = sensitivity;
+    json["files"] = summary.files;
+    return json;
+}
+
+std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const EnsembleSummary& summary,
+                    const WeightedRuns& runs, const std::vector<SampleResult>& results) {
+    std::string page = fmt::format("# {}: many runs\n\n{}\n\n| | mean |", base.title, runs_sentence(summary));
+    for (const double q : plan.quantiles) page += fmt::format(" {:g} of the runs at most |", q);
+    page += "\n|---|---:|";
+    for (std::size_t k = 0; k < plan.quantiles.size(); ++k) page += "---:|";
+    for (const Outcome& outcome : kOutcomes) {
+        page += fmt::format("\n| {} | {:.5g} |", outcome.name, runs.mean(outcome.value));
+        for (const double q : plan.quantiles) page += fmt::format(" {:.5g} |", runs.quantile(outcome.value, q));
+    }
+    page += nearest_section(plan, results);
+    page += sensitivity_section(plan, results);
+    if (!summary.maps_drawn)
+        page +=
+            "\n\nNo maps are drawn, since the runs hold a part of the terrain only (`output.extent = \"terrain\"` "
+            "holds all).";
+    page += fmt::format("\n\nMethod \"{}\", seed {}. What varies:\n\n", plan.method_name, plan.seed);
+    for (const Vary& vary : plan.vary) page += fmt::format("- `{}`\n", vary.key);
+    page += "\nFiles:\n\n";
+    for (const std::string& file : summary.files) page += fmt::format("- {}\n", file);
+    return page + "\nA share of runs is the probability of an event only as far as what varies, and how, is known.\n";
+}
+
+}  // namespace
+
+void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
+                const std::vector<SampleResult>& results) {
+    TextFile file(dir / "runs.csv");
+    file.put("sample,weight");
+    for (const Vary& vary : plan.vary) file.put(",{}", vary.key);
+    file.put(",reason,time_s,steps");
+    for (const Outcome& outcome : kOutcomes) file.put(",{}", outcome.key);
+    if (base.survey) file.put(",iou,boundary_m");
+    file.put(",left_share,mass_error,message\n");
+    for (const SampleResult& r : results) {
+        const SamplePoint& point = plan.points[static_cast<std::size_t>(r.sample)];
+        file.put("{},{}", r.sample, point.weight);
+        for (const std::string& value : point.values) file.put(",{}", csv_field(value));
+        file.put(",{},{},{}", r.reason, r.time, r.steps);
+        for (const Outcome& outcome : kOutcomes) file.put(",{}", r.*outcome.value);
+        if (base.survey) file.put(",{},{}", text_of_known(r.iou), text_of_known(r.boundary));
+        file.put(",{},{},{}\n", r.left_share, r.mass_error, csv_field(r.message));
+    }
+    file.commit();
+}
+
+std::string runs_sentence(const EnsembleSummary& s) {
+    std::string text = fmt::format("{} of {} runs", s.run, s.samples);
+    if (s.failed > 0)
+        text += fmt::format("; {} failed: where k of n runs exceed a threshold, between k and k + {} may", s.failed,
+                            s.failed);
+    if (s.not_at_rest > 0) text += fmt::format("; {} still moved at time.end", s.not_at_rest);
+    if (s.left_terrain > 0)
+        text += fmt::format("; of {} more than a thousandth left the terrain, so that their reach is larger",
+                            s.left_terrain);
+    return text + ".";
+}
+
+std::string samples_table(const EnsemblePlan& plan) {
+    std::string text = "sample,weight";
+    for (const Vary& vary : plan.vary) text += "," + vary.key;
+    text += "\n";
+    for (Index i = 0; i < plan.samples; ++i) {
+        const SamplePoint& point = plan.points[static_cast<std::size_t>(i)];
+        text += fmt::format("{},{}", i, point.weight);
+        for (const std::string& value : point.values) text += "," + csv_field(value);
+        text += "\n";
+    }
+    return text;
+}
+
+void write_page(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base, const WeightedRuns& runs,
+                const std::vector<SampleResult>& results, EnsembleSummary& summary) {
+    summary.files.emplace_back("report.md");
+    write_text(dir / "report.md", page_of(plan, base, summary, runs, results));
+    write_text(dir / "ensemble.json", record_of(plan, summary, runs, results).dump(2) + "\n");
+}
+
+}  // namespace frana
