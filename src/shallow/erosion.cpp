@@ -625,12 +625,21 @@ void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& 
         if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);
     }
     status_changed();
-    if (!evolves_) return;
+    if (evolves_) refresh_around(flow, tiles);
+}
+
+/// Slopes and curvature of tiles whose bed has been taken up again, and of those next to them: each once.
+void Erosion::refresh_around(Flow& flow, const std::vector<Index>& tiles) {
+    next_.clear();
     for (const Index tile : tiles)
-        for_each_around(flow.grid, tile, [&](Index to) { refresh_slopes(flow.grid, flow.bed, to); });
-    if (bent_path_)
-        for (const Index tile : tiles)
-            for_each_around(flow.grid, tile, [&](Index to) { refresh_path(flow.grid, flow.bed, to); });
+        for_each_around(flow.grid, tile, [&](Index to) {
+            if (!std::exchange(marked_[static_cast<std::size_t>(to)], std::uint8_t{1})) next_.push_back(to);
+        });
+    for_each_in_parallel(next_, [&](Index tile) {
+        refresh_slopes(flow.grid, flow.bed, tile);
+        if (bent_path_) refresh_path(flow.grid, flow.bed, tile);
+    });
+    for (const Index tile : next_) marked_[static_cast<std::size_t>(tile)] = 0;
 }
 
 }  // namespace frana

@@ -94,6 +94,7 @@ private:
     void lower_tile(Flow& flow, Index tile);
     void fold(const Flow& flow, LazyArray<double>& field) const;
     void follow_bed(Flow& flow);
+    void refresh_around(Flow& flow, const std::vector<Index>& tiles);
     void smooth_into_path(Flow& flow);
     void list_reached(const TileGrid& grid, Index far);
     double most_pending(const Flow& flow, Index tile) const;
