@@ -7,12 +7,12 @@
 #include <fstream>
 #include <map>
 #include <regex>
-#include <sstream>
 
 #include "base/atomic_file.h"
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/version.h"
+#include "ensemble/sample_table.h"
 #include "io/hdf5_peaks.h"
 
 namespace frana {
@@ -50,14 +50,6 @@ std::string row_of(const SampleResult& r, const std::string& peaks) {
                        r.mass_error, text_of_known(r.iou), text_of_known(r.boundary), peaks, plain(r.message));
 }
 
-std::vector<std::string> fields_of(const std::string& line) {
-    std::vector<std::string> fields;
-    std::istringstream stream(line);
-    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-    if (!line.empty() && line.back() == ',') fields.emplace_back();
-    return fields;
-}
-
 UserError broken(const fs::path& file, const std::string& line) {
     return UserError(
         fmt::format("{}: found the row \"{}\"; expected the rows that an ensemble writes; remove the folder of "
@@ -67,7 +59,7 @@ UserError broken(const fs::path& file, const std::string& line) {
 
 /// A row, and the file of its peaks.
 std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::string& line) {
-    const std::vector<std::string> f = fields_of(line);
+    const std::vector<std::string> f = comma_fields(line);
     if (f.size() != 17) throw broken(file, line);
     SampleResult r;
     try {
@@ -86,7 +78,7 @@ std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::
 
 void require_same(const fs::path& file, const std::string& found, const std::string& expected) {
     if (found == expected) return;
-    const std::vector<std::string> a = fields_of(found), b = fields_of(expected);
+    const std::vector<std::string> a = comma_fields(found), b = comma_fields(expected);
     std::string what = "its first line";
     for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
         if (a[k] != b[k]) {

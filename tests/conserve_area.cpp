@@ -7,6 +7,7 @@
 #include "observe/memory_archive.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/feed.h"
+#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -33,15 +34,6 @@ Scene box(const verify::Function& ground) {
     scene.sides = Sides::wall;
     scene.bed_law = bed::Manning{0.1, 0.0};
     return scene;
-}
-
-std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
-    MemoryArchive archive;
-    simulation.serialize(archive);
-    auto entries = archive.entries();
-    for (auto entry = entries.begin(); entry != entries.end();)
-        entry = entry->first.rfind("clock/", 0) == 0 ? entries.erase(entry) : std::next(entry);
-    return entries;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "shallow/depth_averaged.h"
+#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -43,15 +44,6 @@ Scene slope(const std::function<void(Scene&)>& edit = {}, Index width = 140) {
 /// Loose ground that is nothing but what came to lie on the rock.
 void make_hungry(Scene& scene) {
     scene.erodible = ErodibleBed{Raster::filled(scene.bed.geometry, 0.0), scene.density, erosion::Growth{0.05}};
-}
-
-std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
-    MemoryArchive archive;
-    simulation.serialize(archive);
-    auto entries = archive.entries();
-    for (auto one = entries.begin(); one != entries.end();)
-        one = one->first.rfind("clock/", 0) == 0 ? entries.erase(one) : std::next(one);
-    return entries;
 }
 
 void check_same(DepthAveraged& a, DepthAveraged& b) {

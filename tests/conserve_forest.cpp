@@ -10,6 +10,7 @@
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "shallow/depth_averaged.h"
+#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -58,15 +59,6 @@ Scene sheet(double gravity, const Function& pressure) {
     std::fill(scene.particles.vy.begin(), scene.particles.vy.end(), 0.5);
     scene.forest = forest(scene, pressure);
     return scene;
-}
-
-std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
-    MemoryArchive archive;
-    simulation.serialize(archive);
-    auto entries = archive.entries();
-    for (auto one = entries.begin(); one != entries.end();)
-        one = one->first.rfind("clock/", 0) == 0 ? entries.erase(one) : std::next(one);
-    return entries;
 }
 
 void check_same(DepthAveraged& a, DepthAveraged& b) {

@@ -9,6 +9,7 @@
 #include "coupling/walled_columns.h"
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
+#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -38,15 +39,6 @@ Scene slope(bool slab) {
 double residual(const Status& first, const Status& now) {
     const Budget b = budget(first, now);
     return std::hypot(b.momentum_residual[0], b.momentum_residual[1]);
-}
-
-std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
-    MemoryArchive archive;
-    simulation.serialize(archive);
-    auto entries = archive.entries();
-    for (auto entry = entries.begin(); entry != entries.end();)
-        entry = entry->first.rfind("clock/", 0) == 0 ? entries.erase(entry) : std::next(entry);
-    return entries;
 }
 
 class Threads {

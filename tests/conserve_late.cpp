@@ -10,6 +10,7 @@
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "run/run_loop.h"
+#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -54,15 +55,6 @@ Scene chain() {
 }
 
 const LateEntry& entry(const Extras& extras, std::size_t n) { return extras.late.at(n); }
-
-std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
-    MemoryArchive archive;
-    simulation.serialize(archive);
-    auto entries = archive.entries();
-    for (auto one = entries.begin(); one != entries.end();)
-        one = one->first.rfind("clock/", 0) == 0 ? entries.erase(one) : std::next(one);
-    return entries;
-}
 
 /// Places, motion and depth of all columns.
 void require_same_columns(const DepthAveraged& a, const DepthAveraged& b) {

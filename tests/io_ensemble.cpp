@@ -54,6 +54,12 @@ const std::string depths =
     "exceed = { peak_depth = [1.25] }\nquantiles = [0.05, 0.5, 0.95]\n"
     "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n";
 
+/// The same with another number of samples.
+std::string of_samples(int count) {
+    std::string text = depths;
+    return text.replace(text.find("samples = 20"), 12, fmt::format("samples = {}", count));
+}
+
 /// All files of the maps, but the pictures and what tells of the clock.
 std::vector<std::string> whole(const fs::path& folder) {
     std::vector<std::string> all = {text_of(folder / "runs.csv"), text_of(folder / "samples.csv")};
@@ -111,9 +117,7 @@ TEST_CASE("an ensemble of ponds has the probabilities and quantiles of their dep
         CHECK_THAT(second.err, Contains("found the runs of an earlier ensemble") && Contains("--resume"));
         pond.write("many.toml", depths + "levels = 3\n");
         CHECK(pond.frana("ensemble many.toml --out many --resume").code == 2);
-        std::string other = depths;
-        other.replace(other.find("samples = 20"), 12, "samples = 30");
-        pond.write("many.toml", other);
+        pond.write("many.toml", of_samples(30));
         const Outcome differs = pond.frana("ensemble many.toml --out many --resume");
         CHECK(differs.code == 2);
         CHECK_THAT(differs.err, Contains("found \"samples 20\" where now it is \"samples 30\""));
@@ -122,9 +126,7 @@ TEST_CASE("an ensemble of ponds has the probabilities and quantiles of their dep
 
 TEST_CASE("an ensemble has the same bytes on any number of threads, in shards, and after being killed", "[ensemble]") {
     const Pond pond;
-    std::string many = depths;
-    many.replace(many.find("samples = 20"), 12, "samples = 300");  // more than are written at once
-    pond.write("many.toml", many);
+    pond.write("many.toml", of_samples(300));  // more than are written at once
     REQUIRE(pond.frana("ensemble many.toml --out one --threads 1 --quiet").code == 0);
     const std::vector<std::string> expected = whole(pond.path("one"));
     CHECK(expected.size() > 8);
@@ -150,9 +152,7 @@ TEST_CASE("an ensemble has the same bytes on any number of threads, in shards, a
 
 TEST_CASE("a disk that fills up ends an ensemble with one sentence, and what it kept goes on", "[ensemble]") {
     const Pond pond;
-    std::string many = depths;
-    many.replace(many.find("samples = 20"), 12, "samples = 300");
-    pond.write("many.toml", many);
+    pond.write("many.toml", of_samples(300));
     const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
     // No file may be larger than 8 blocks of 512 or 1024 bytes.
     const int status =

@@ -11,6 +11,7 @@
 #include "observe/budget.h"
 #include "observe/memory_archive.h"
 #include "shallow/depth_averaged.h"
+#include "state_bits.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -46,15 +47,6 @@ Scene slide(const std::function<void(Scene&)>& edit = {}) {
 
 void run(DepthAveraged& simulation, double end) {
     while (simulation.status().time < end) simulation.advance(end);
-}
-
-std::map<std::string, MemoryArchive::Entry> bits(DepthAveraged& simulation) {
-    MemoryArchive archive;
-    simulation.serialize(archive);
-    auto entries = archive.entries();
-    for (auto entry = entries.begin(); entry != entries.end();)
-        entry = entry->first.rfind("clock/", 0) == 0 ? entries.erase(entry) : std::next(entry);
-    return entries;
 }
 
 void check_same(DepthAveraged& a, DepthAveraged& b) {

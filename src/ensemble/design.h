@@ -1,6 +1,6 @@
 #pragma once
-// Where in the unit cube the samples of an ensemble lie. Sample i hangs on the seed and on i alone (with "lhs" also on how
-// many there are), so any part of an ensemble can be run anywhere.
+// Where in the unit cube the samples of an ensemble lie. Sample i hangs on the seed and on i alone; with "lhs" also on
+// how many there are. So any part of an ensemble can be run anywhere.
 #include <cstdint>
 #include <vector>
 

@@ -192,9 +192,8 @@ std::vector<std::string> EnsemblePlan::sets_of(Index sample) const {
 EnsemblePlan read_ensemble(const std::filesystem::path& file) {
     EnsemblePlan plan;
     plan.file = file;
-    plan.text = text_of_file(file);
     Problems problems;
-    read_toml(plan.text, file, problems, [&](const toml::table& root) { Reader(plan, problems).read(root); });
+    read_toml(text_of_file(file), file, problems, [&](const toml::table& root) { Reader(plan, problems).read(root); });
     problems.throw_if_any();
     if (plan.method != Method::table) place_samples(plan);
     return plan;

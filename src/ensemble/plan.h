@@ -27,7 +27,6 @@ struct SamplePoint {
 
 struct EnsemblePlan {
     std::filesystem::path file, case_file;
-    std::string text;        ///< of the file
     std::string table_text;  ///< of the table of samples, where they come from one
     Method method = Method::lhs;
     std::string method_name = "lhs";

@@ -13,16 +13,6 @@
 namespace frana {
 namespace {
 
-std::vector<std::string> fields_of(const std::string& line) {
-    std::vector<std::string> fields;
-    std::istringstream stream(line);
-    for (std::string field; std::getline(stream, field, ',');) {
-        const auto first = field.find_first_not_of(" \t\r"), last = field.find_last_not_of(" \t\r");
-        fields.push_back(first == std::string::npos ? "" : field.substr(first, last - first + 1));
-    }
-    return fields;
-}
-
 /// Names the column's key; false for weights.
 bool note_key(const std::string& name, const std::string& place, EnsemblePlan& plan, Problems& problems) {
     if (name == "weight") return false;
@@ -34,6 +24,18 @@ bool note_key(const std::string& name, const std::string& place, EnsemblePlan& p
 
 }  // namespace
 
+std::vector<std::string> comma_fields(const std::string& line) {
+    std::vector<std::string> fields;
+    std::istringstream stream(line);
+    const auto trimmed = [](const std::string& field) {
+        const auto first = field.find_first_not_of(" \t\r"), last = field.find_last_not_of(" \t\r");
+        return first == std::string::npos ? std::string() : field.substr(first, last - first + 1);
+    };
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(trimmed(field));
+    if (!line.empty() && line.back() == ',') fields.emplace_back();
+    return fields;
+}
+
 void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Problems& problems) {
     const std::string text = text_of_file(file);
     plan.table_text = text;
@@ -41,11 +43,11 @@ void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Pr
     std::string line;
     std::getline(stream, line);
     std::vector<bool> is_key;
-    for (const std::string& name : fields_of(line))
+    for (const std::string& name : comma_fields(line))
         is_key.push_back(note_key(name, file.string() + ":1", plan, problems));
     double sum = 0.0;
     for (int number = 2; std::getline(stream, line); ++number) {
-        const std::vector<std::string> fields = fields_of(line);
+        const std::vector<std::string> fields = comma_fields(line);
         if (fields.empty()) continue;
         const std::string place = fmt::format("{}:{}", file.string(), number);
         if (fields.size() != is_key.size()) {

@@ -6,15 +6,10 @@
 
 #include "base/error.h"
 #include "law/catalogue.h"
-#include "scene/scene_parts.h"
+#include "scene/nodes_of_place.h"
 
 namespace frana {
 namespace {
-
-std::string at(const GridGeometry& g, std::size_t k) {
-    const auto n = static_cast<Index>(k);
-    return fmt::format("x {:.10g}, y {:.10g}", g.x(n % g.nx), g.y(n / g.nx));
-}
 
 /// Of a raster's own pixels: none below zero.
 void refuse_negative(const Raster& pixels, const std::string& file) {
@@ -25,7 +20,7 @@ void refuse_negative(const Raster& pixels, const std::string& file) {
     throw UserError(
         fmt::format("{}: found {} pixels below 0, such as {:.6g} at {}; expected depths of 0 or more; correct "
                     "them, or give rock 0 or nodata",
-                    file, bad, pixels.values[first], at(pixels.geometry, first)));
+                    file, bad, pixels.values[first], place_text(pixels.geometry, first)));
 }
 
 /// On the nodes of the terrain; rock is 0.
