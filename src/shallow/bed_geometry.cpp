@@ -153,23 +153,28 @@ Curved curvature_at(const double* c, Index up, double cell) {
             held((c[up] - 2.0 * c[0] + c[-up]) / (cell * cell))};
 }
 
-double least_around(const double* c, Index up) {
-    double least = c[0];
-    for (Index dj = -2; dj <= 2; ++dj)
-        for (Index di = -2; di <= 2; ++di) least = std::min(least, c[dj * up + di]);
-    return least;
+double least_of_five(const double* c, Index step) {
+    return std::min(std::min(std::min(c[0], c[step]), std::min(c[-step], c[2 * step])), c[-2 * step]);
 }
 
-/// Calls body(storage index) for the nodes of a tile that are so many nodes away from the storage's ends.
+/// The least of the 5 x 5 values around each of `count` ones in a row.
+void least_around(const double* c, Index up, Index count, double* least) {
+    static_assert(kSlopeReach == 2);
+    double of_columns[kTile + 2 * kSlopeReach];
+    for (Index i = 0; i < count + 2 * kSlopeReach; ++i) of_columns[i] = least_of_five(c + i - kSlopeReach, up);
+    for (Index i = 0; i < count; ++i) least[i] = least_of_five(of_columns + i + kSlopeReach, 1);
+}
+
+/// Calls body(storage index of the first, count) for the rows of a tile's nodes, of those so many nodes away from the
+/// storage's ends.
 template <class Body>
-void for_each_of_tile(const TileGrid& grid, Index tile, Index margin, Body&& body) {
+void for_each_row(const TileGrid& grid, Index tile, const TileBox& nodes, Index margin, Body&& body) {
     const Window window{grid};
-    const Index i0 = std::max(grid.tile_i(tile), window.i0() + margin),
-                j0 = std::max(grid.tile_j(tile), window.j0() + margin);
-    const Index i1 = std::min(grid.tile_i(tile) + kTile, window.i1() - margin);
-    const Index j1 = std::min(grid.tile_j(tile) + kTile, window.j1() - margin);
-    for (Index j = j0; j < j1; ++j)
-        for (Index i = i0; i < i1; ++i) body(grid.at(i, j));
+    const Index i = grid.tile_i(tile), j = grid.tile_j(tile);
+    const Index i0 = std::max(i + nodes.i0, window.i0() + margin), i1 = std::min(i + nodes.i1, window.i1() - margin);
+    const Index j0 = std::max(j + nodes.j0, window.j0() + margin), j1 = std::min(j + nodes.j1, window.j1() - margin);
+    for (Index row = j0; row < j1; ++row)
+        if (i0 < i1) body(grid.at(i0, row), i1 - i0);
 }
 
 SmoothSlopes slopes_of(const TileGrid& grid, const LazyArray<double>& smoothed) {
@@ -241,7 +246,7 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
         const double* c = bed.z.data() + k;
         bed.slope_x[k] = slope_at(c, 1, grid.cell());
         bed.slope_y[k] = slope_at(c, up, grid.cell());
-        bed.z_min[k] = least_around(c, up);
+        least_around(c, up, 1, &bed.z_min[k]);
     });
     if (scene.terrain == TerrainModel::shallow) return bed;
     LazyArray<double> smoothed = smoothed_bed(scene, grid, z);
@@ -252,25 +257,29 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     return bed;
 }
 
-void refresh_slopes(const TileGrid& grid, BedGeometry& bed, Index tile) {
+void refresh_slopes(const TileGrid& grid, BedGeometry& bed, Index tile, const TileBox& nodes) {
     const Index up = grid.stride();
-    for_each_of_tile(grid, tile, 4, [&](Index k) {
-        const double* c = bed.z.data() + k;
-        bed.slope_x[k] = slope_at(c, 1, grid.cell());
-        bed.slope_y[k] = slope_at(c, up, grid.cell());
-        bed.z_min[k] = least_around(c, up);
+    const double cell = grid.cell();
+    for_each_row(grid, tile, nodes, 4, [&](Index first, Index count) {
+        const double* const c = bed.z.data() + first;
+        double *const x = &bed.slope_x[first], *const y = &bed.slope_y[first];
+        for (Index i = 0; i < count; ++i) x[i] = slope_at(c + i, 1, cell);
+        for (Index i = 0; i < count; ++i) y[i] = slope_at(c + i, up, cell);
+        least_around(c, up, count, &bed.z_min[first]);
     });
 }
 
 void refresh_path(const TileGrid& grid, BedGeometry& bed, Index tile) {
     const Index up = grid.stride();
-    for_each_of_tile(grid, tile, 3, [&](Index k) {
-        const double* c = bed.smoothed.data() + k;
-        bed.smooth_x[k] = slope_at(c, 1, grid.cell());
-        bed.smooth_y[k] = slope_at(c, up, grid.cell());
-        if (!bed.hxx) return;
-        const Curved h = curvature_at(c, up, grid.cell());
-        bed.hxx[k] = h.xx, bed.hxy[k] = h.xy, bed.hyy[k] = h.yy;
+    for_each_row(grid, tile, TileBox::whole(), 3, [&](Index first, Index count) {
+        for (Index k = first; k < first + count; ++k) {
+            const double* c = bed.smoothed.data() + k;
+            bed.smooth_x[k] = slope_at(c, 1, grid.cell());
+            bed.smooth_y[k] = slope_at(c, up, grid.cell());
+            if (!bed.hxx) continue;
+            const Curved h = curvature_at(c, up, grid.cell());
+            bed.hxx[k] = h.xx, bed.hxy[k] = h.xy, bed.hyy[k] = h.yy;
+        }
     });
 }
 

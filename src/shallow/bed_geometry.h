@@ -5,6 +5,7 @@
 
 #include "mpm/tile_grid.h"
 #include "scene/scene.h"
+#include "shallow/tile_box.h"
 
 namespace frana {
 
@@ -44,8 +45,10 @@ SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid);
 /// Throws UserError when scene.bed holds no data at all.
 BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid);
 
-/// Slopes and least elevations of a tile's nodes anew, from z up to two nodes around.
-void refresh_slopes(const TileGrid& grid, BedGeometry& bed, Index tile);
+constexpr Index kSlopeReach = 2;  ///< how far slopes and least elevations look [nodes]
+
+/// Slopes and least elevations of some of a tile's nodes anew, from z up to kSlopeReach nodes around.
+void refresh_slopes(const TileGrid& grid, BedGeometry& bed, Index tile, const TileBox& nodes = TileBox::whole());
 /// Slopes and curvature of the smoothed bed of a tile's nodes anew, from up to two nodes around; bed.smoothed is there.
 void refresh_path(const TileGrid& grid, BedGeometry& bed, Index tile);
 

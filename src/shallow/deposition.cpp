@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "shallow/bed_tiles.h"
 #include "shallow/erosion.h"
 #include "shallow/sub_points.h"
+#include "shallow/tiles_around.h"
 
 namespace frana {
 namespace {
@@ -104,6 +104,7 @@ void Erosion::give(Flow& flow) {
     flow.columns.with_real([&](auto real) {
         for_each_eroding_coloured(flow, [&](Index n) { spread<decltype(real)>(flow, n, wanted_, demand_); });
     });
+    collect_reach(flow);
     fold(flow, demand_);
     for_each_in_parallel(nodes_, [&](Index tile) { raise_tile(flow, tile); });
     for (const Index tile : nodes_) {
@@ -128,8 +129,8 @@ void Erosion::list_given(const Flow& flow) {
 
 void Erosion::raise_tile(Flow& flow, Index tile) {
     double energy = 0.0;
-    bool any = false;
-    for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+    TileBox any;
+    for_each_node_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index i, Index j) {
         const double given = std::exchange(demand_[k], 0.0);
         if (!(given > 0.0)) return;
         const double rises = given * per_area_of_flow_;
@@ -138,10 +139,11 @@ void Erosion::raise_tile(Flow& flow, Index tile) {
         flow.bed.z[k] += rises;
         flow.bed.ground[k] += rises;
         if (bent_path_) pending_[k] += rises;
-        any = true;
+        any.add(one_node(flow.grid, tile, i, j));
     });
     tile_energy_[tile] = energy;
-    if (!any) return;
+    if (any.empty()) return;
+    moved_[tile] = any;
     if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);
     changed_[tile] = 1;
     marked_[static_cast<std::size_t>(tile)] = 1;

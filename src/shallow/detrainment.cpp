@@ -2,10 +2,10 @@
 #include <algorithm>
 
 #include "mpm/tile_points.h"
-#include "shallow/bed_tiles.h"
 #include "shallow/erosion.h"
 #include "shallow/feed.h"
 #include "shallow/ground_of_four.h"
+#include "shallow/tiles_around.h"
 
 namespace frana {
 namespace {

@@ -7,20 +7,17 @@
 #include "base/error.h"
 #include "law/bed/node_friction.h"
 #include "mpm/domain.h"
-#include "mpm/stored_points.h"
 #include "mpm/tile_points.h"
 #include "scene/bed_smoothing.h"
-#include "shallow/bed_tiles.h"
 #include "shallow/ground_of_four.h"
 #include "shallow/sub_points_of_four.h"
+#include "shallow/tiles_around.h"
 
 namespace frana {
 namespace {
 
 /// A node never gives its last billionth of a thousandth: rounding must not take more than there is.
 constexpr double kCrumb = 1e-12;
-/// Change of the bed, in cells, from which on its curvature follows.
-constexpr double kFollows = 0.01;
 
 /// One half, middle first, of the weights of so many passes of (1, 2, 1)/4, without tails below 1e-10.
 std::vector<double> half_filter(Index passes) {
@@ -91,6 +88,8 @@ Erosion::Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow)
       tile_mass_(flow.grid.tiles()),
       tile_deepest_(flow.grid.tiles()),
       marked_(static_cast<std::size_t>(flow.grid.tiles()), 0),
+      moved_(flow.grid.tiles()),
+      in_reach_(flow.grid.tiles()),
       tile_energy_(flow.grid.tiles()) {
     const TileGrid& grid = flow.grid;
     expect(flow.scheme.shape == Shape::quadratic && !flow.scheme.paper_pressure,
@@ -213,7 +212,8 @@ bool Erosion::choose(const Flow& flow) {
 void Erosion::make_room(const Flow& flow) {
     const std::size_t count = static_cast<std::size_t>(flow.columns.count());
     for (Array* column : {&wanted_, &gained_, &speed_, &braked_}) resize_sparingly(*column, count);
-    sums_.assign(static_cast<std::size_t>(flow.active.count()), {});
+    const std::size_t tiles = static_cast<std::size_t>(flow.active.count());
+    sums_.assign(tiles, {}), spread_to_.resize(tiles);
 }
 
 /// THEORY (72): what each point wants, and their sum on the nodes.
@@ -235,6 +235,7 @@ void Erosion::find_demand(Flow& flow, double dt) {
             spread<Real>(flow, n, wanted_, demand_);
         });
     });
+    collect_reach(flow);
     fold(flow, demand_);
 }
 
@@ -322,23 +323,38 @@ double Erosion::speed_left(double gain, double braked) const {
 
 /// Adds numbers of points to nodes as their columns are: by sub-points.
 template <class Real>
-void Erosion::spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into) const {
+void Erosion::spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into) {
     const Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
+    StencilMarks marks = flow.marks_of(flow.active.tile[n]);
     const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
         const Double4 m = load(&masses[p], lanes), none = {};
         if (!any(m > none)) return;
         const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
                         load(&held.r2y[p], lanes)};
-        if (!at_side && spread_four(flow, into.data(), lanes, load(&c.x[p], lanes), load(&c.y[p], lanes), m, r)) return;
+        const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
+        marks.mark(floor_positive(x + (kTile - 0.5)), floor_positive(y + (kTile - 0.5)), lanes);
+        if (!at_side && spread_four(flow, into.data(), lanes, x, y, m, r)) return;
         for (Index q = p; q < p + lanes; ++q)
             spread_column<Quadratic>(flow, into.data(), {c.x[q], c.y[q], masses[q]}, edges_of(held, q));
     });
+    spread_to_[static_cast<std::size_t>(n)] = marks.reach(kReachBefore, kReachAfter);
 }
 
-template void Erosion::spread<double>(const Flow&, Index, const Array&, LazyArray<double>&) const;
-template void Erosion::spread<float>(const Flow&, Index, const Array&, LazyArray<double>&) const;
+template void Erosion::spread<double>(const Flow&, Index, const Array&, LazyArray<double>&);
+template void Erosion::spread<float>(const Flow&, Index, const Array&, LazyArray<double>&);
+
+/// The nodes that the chosen tiles' points gave something to. At walls all: images give too.
+void Erosion::collect_reach(const Flow& flow) {
+    for (const Index tile : nodes_) in_reach_[tile] = flow.walls ? kAllGroups : 0;
+    if (flow.walls) return;
+    for (Index n = 0; n < flow.active.count(); ++n)
+        if (eroding_[static_cast<std::size_t>(n)])
+            for_each_around(flow.grid, flow.active.tile[n], [&](Index to, std::size_t m) {
+                in_reach_[to] |= spread_to_[static_cast<std::size_t>(n)][m];
+            });
+}
 
 /// Closes the domain at walls: adds what mirror images bring, and gives the nodes beyond what their images have.
 void Erosion::fold(const Flow& flow, LazyArray<double>& field) const {
@@ -356,7 +372,8 @@ bool Erosion::find_shares(Flow& flow) {
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) {
         bool scarce = false;
-        for_each_node_of(flow.grid, nodes_[static_cast<std::size_t>(n)], [&](Index k, Index, Index) {
+        const Index tile = nodes_[static_cast<std::size_t>(n)];
+        for_each_node_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index, Index) {
             const double can = std::max(0.0, can_give(k));
             share_[k] = demand_[k] > can ? can / demand_[k] : 1.0;
             scarce = scarce || share_[k] < 1.0;
@@ -376,7 +393,7 @@ void Erosion::share_out(Flow& flow) {
         });
         fold(flow, taken_);
         for_each_in_parallel(nodes_, [&](Index tile) {
-            for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) {
+            for_each_node_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index, Index) {
                 const double can = can_give(k);
                 const double more = std::max(0.0, std::min(demand_[k], can) - taken_[k]);
                 share_[k] = demand_[k] > 0.0 ? more / demand_[k] : 0.0;
@@ -387,35 +404,77 @@ void Erosion::share_out(Flow& flow) {
     });
 }
 
+namespace {
+
+/// Calls take(p, number) for the points of a tile that want something: the number that of_window finds on the shares of the
+/// nodes of a point's window, or of_point(p, edges) where its sub-points lie too far away for one.
+template <class Real, class OfWindow, class OfPoint, class Take>
+void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share,
+                      OfWindow&& of_window, OfPoint&& of_point, Take&& take) {
+    const Columns& c = flow.columns;
+    const Carried<Real>& held = c.carried<Real>();
+    const bool at_side = !flow.walls && near_side(flow.grid, flow.active.tile[n]);
+    const Index stride = flow.grid.stride();
+    for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
+        const Double4 none = {};
+        if (!any(load(&wanted[p], lanes) > none)) return;
+        const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
+                        load(&held.r2y[p], lanes)};
+        WindowOfFour window;
+        const bool near = !at_side && find_window(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), r, window);
+        for (int lane = 0; lane < lanes; ++lane) {
+            const Index q = p + lane;
+            if (!(wanted[q] > 0.0)) continue;
+            const double* row = near ? share.data() + window.j[lane] * stride + window.i[lane] : nullptr;
+            take(q, near ? of_window(window, lane, row) : of_point(q, edges_of(held, q)));
+        }
+    });
+}
+
+}  // namespace
+
 template <class Real>
 void Erosion::take_shares(const Flow& flow, Index n) {
-    const Columns& c = flow.columns;
-    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-        gained_[p] = 0.0;
-        if (!(wanted_[p] > 0.0)) continue;
+    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) gained_[p] = 0.0;
+    const auto of_window = [&](const WindowOfFour& window, int lane, const double* row) {
+        Double4 least = all(1.0);
+        for (int b = 0; b < 4; ++b, row += flow.grid.stride())
+            least = select(window.of_lane[b][lane] > 0.0, min(least, load(row)), least);
+        return std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+    };
+    const auto of_point = [&](Index p, const Edges& edges) {
         double least = 1.0;
-        const Edges edges = edges_of(c.carried<Real>(), p);
-        for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges, [&](const auto& sx, const auto& sy) {
-            for (int j = 0; j < 3; ++j)
-                for (int i = 0; i < 3; ++i) least = std::min(least, share_[flow.grid.at(sx.base + i, sy.base + j)]);
-        });
-        gained_[p] = least * wanted_[p];
-    }
+        for_each_sub_point<Quadratic>(
+            flow, flow.columns.x[p], flow.columns.y[p], edges, [&](const auto& sx, const auto& sy) {
+                for (int j = 0; j < 3; ++j)
+                    for (int i = 0; i < 3; ++i) least = std::min(least, share_[flow.grid.at(sx.base + i, sy.base + j)]);
+            });
+        return least;
+    };
+    for_each_wanting<Real>(flow, n, wanted_, share_, of_window, of_point,
+                           [&](Index p, double least) { gained_[p] = least * wanted_[p]; });
 }
 
 template <class Real>
 void Erosion::take_left_over(const Flow& flow, Index n) {
-    const Columns& c = flow.columns;
-    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-        if (!(wanted_[p] > 0.0)) continue;
+    const auto of_window = [&](const WindowOfFour& window, int lane, const double* row) {
+        const Index up = flow.grid.stride();
+        const auto of_row = [&](int b) { return window.of_lane[b][lane] * load(row + b * up); };
+        const Double4 sum = (of_row(0) + of_row(3)) + (of_row(1) + of_row(2));
+        return kOfWindow * ((sum[0] + sum[3]) + (sum[1] + sum[2]));
+    };
+    const auto of_point = [&](Index p, const Edges& edges) {
         double more = 0.0;
-        const Edges edges = edges_of(c.carried<Real>(), p);
-        for_each_sub_point<Quadratic>(flow, c.x[p], c.y[p], edges, [&](const auto& sx, const auto& sy) {
-            for (int j = 0; j < 3; ++j)
-                for (int i = 0; i < 3; ++i) more += sx.w[i] * sy.w[j] * share_[flow.grid.at(sx.base + i, sy.base + j)];
-        });
-        gained_[p] += 0.25 * more * wanted_[p];
-    }
+        for_each_sub_point<Quadratic>(
+            flow, flow.columns.x[p], flow.columns.y[p], edges, [&](const auto& sx, const auto& sy) {
+                for (int j = 0; j < 3; ++j)
+                    for (int i = 0; i < 3; ++i)
+                        more += sx.w[i] * sy.w[j] * share_[flow.grid.at(sx.base + i, sy.base + j)];
+            });
+        return 0.25 * more;
+    };
+    for_each_wanting<Real>(flow, n, wanted_, share_, of_window, of_point,
+                           [&](Index p, double mean) { gained_[p] += mean * wanted_[p]; });
 }
 
 /// Points take what they gained into their motion.
@@ -446,8 +505,8 @@ void Erosion::lower(Flow& flow) {
 
 void Erosion::lower_tile(Flow& flow, Index tile) {
     double energy = 0.0;
-    bool any = false;
-    for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
+    TileBox any;
+    for_each_node_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index i, Index j) {
         const double taken = std::min(scarce_ ? taken_[k] : demand_[k], left_[k] + fresh(k));
         demand_[k] = taken_[k] = 0.0;
         if (!(taken > 0.0)) return;
@@ -458,17 +517,18 @@ void Erosion::lower_tile(Flow& flow, Index tile) {
         energy += flow.share(i, j) * flow.gravity *
                   (taken * (z - sinks + 0.5 * rises) + flow.density * flow.area * h * (rises - sinks));
         left_[k] = std::max(0.0, left_[k] - old);
-        any = true;
+        any.add(one_node(flow.grid, tile, i, j));
         if (!evolves_) return;
         flow.bed.z[k] -= sinks;
         flow.bed.ground[k] -= sinks;
         if (bent_path_) pending_[k] -= sinks;
     });
     tile_energy_[tile] = energy;
-    if (!any) return;
+    if (any.empty()) return;
     if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);
     changed_[tile] = 1;
     marked_[static_cast<std::size_t>(tile)] = evolves_;
+    if (evolves_) moved_[tile] = any;
     count_tile(flow, tile);
 }
 
@@ -484,162 +544,6 @@ double Erosion::take_fresh(Index k, double taken) {
     const double of_fresh = std::min(taken, fresh_[k]);
     fresh_[k] -= of_fresh;
     return of_fresh;
-}
-
-/// Slopes follow at once, curvature once the bed has moved far enough. Leaves the tiles where either did in `next_`.
-void Erosion::follow_bed(Flow& flow) {
-    const TileGrid& grid = flow.grid;
-    next_.clear();
-    for (const Index tile : nodes_) {
-        if (!marked_[static_cast<std::size_t>(tile)]) continue;
-        for_each_around(grid, tile, [&](Index to) {
-            if (marked_[static_cast<std::size_t>(to)] & 2) return;
-            marked_[static_cast<std::size_t>(to)] |= 2;
-            next_.push_back(to);
-        });
-    }
-    for_each_in_parallel(next_, [&](Index tile) { refresh_slopes(grid, flow.bed, tile); });
-    for (const Index tile : next_) marked_[static_cast<std::size_t>(tile)] = 0, changed_[tile] = 1;
-    if (!bent_path_) return;
-    double most = 0.0;  // of all tiles, or what is symmetric would part at their edges
-    for (const Index tile : ledger_tiles_) most = std::max(most, tile_pending_[tile]);
-    if (!(most > kFollows * grid.cell())) return;
-    smooth_into_path(flow);
-}
-
-/// Smoothing is linear: that of the change is added to the smoothed bed, as far as it reaches.
-void Erosion::smooth_into_path(Flow& flow) {
-    const TileGrid& grid = flow.grid;
-    const Index reach = static_cast<Index>(filter_.size()) - 1, up = grid.stride();
-    list_reached(grid, (reach + 2 + kTile - 1) / kTile);
-    const Index i_end = grid.tiles_x() * kTile - kTile, j_end = grid.tiles() / grid.tiles_x() * kTile - kTile;
-    for_each_in_parallel(next_, [&](Index tile) {
-        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
-        for (Index j = j0; j < j0 + kTile; ++j)
-            for (Index a = -reach; a <= reach; ++a) {
-                const double w = filter_[static_cast<std::size_t>(std::abs(a))];
-                const Index first = std::max<Index>(0, -kTile - i0 - a), past = std::min(kTile, i_end - i0 - a);
-                double* to = &rows_[grid.at(i0, j)];
-                const double* from = pending_.data() + grid.at(i0, j) + a;
-                for (Index i = first; i < past; ++i) to[i] += w * from[i];
-            }
-    });
-    for_each_in_parallel(next_, [&](Index tile) {
-        const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
-        for (Index j = j0; j < j0 + kTile; ++j)
-            for (Index b = std::max(-reach, -kTile - j); b <= std::min(reach, j_end - 1 - j); ++b) {
-                const double w = filter_[static_cast<std::size_t>(std::abs(b))];
-                double* to = &flow.bed.smoothed[grid.at(i0, j)];
-                const double* from = rows_.data() + grid.at(i0, j) + b * up;
-                for (Index i = 0; i < kTile; ++i) to[i] += w * from[i];
-            }
-    });
-    for_each_in_parallel(next_, [&](Index tile) {
-        for_each_node_of(grid, tile, [&](Index k, Index, Index) { pending_[k] = rows_[k] = 0.0; });
-        refresh_path(grid, flow.bed, tile);
-    });
-    for (const Index tile : next_) {
-        marked_[static_cast<std::size_t>(tile)] = 0, changed_[tile] = 1;
-        tile_pending_[tile] = 0.0;
-    }
-}
-
-/// Lists the tiles that are so many away from one whose bed has sunk.
-void Erosion::list_reached(const TileGrid& grid, Index far) {
-    next_.clear();
-    for (const Index tile : ledger_tiles_) {
-        if (!(tile_pending_[tile] > 0.0)) continue;
-        const Index width = grid.tiles_x(), column = tile % width;
-        for (Index dj = -far; dj <= far; ++dj)
-            for (Index di = -far; di <= far; ++di) {
-                const Index to = tile + dj * width + di;
-                if (column + di < 0 || column + di >= width || to < 0 || to >= grid.tiles()) continue;
-                if (marked_[static_cast<std::size_t>(to)]) continue;
-                marked_[static_cast<std::size_t>(to)] = 1;
-                next_.push_back(to);
-            }
-    }
-}
-
-/// All that have changed; aside those that a step may change.
-std::vector<Index> Erosion::tiles_to_keep(const Flow& flow, bool aside, const std::vector<Index>& reached) const {
-    const TileGrid& grid = flow.grid;
-    std::vector<std::uint8_t> kept(static_cast<std::size_t>(grid.tiles()), 0);
-    const Index reach = static_cast<Index>(filter_.size()), far = 2 + (reach + 2) / kTile, width = grid.tiles_x();
-    const auto add = [&](Index tile) {
-        for (Index dj = -far; dj <= far; ++dj)
-            for (Index di = -far; di <= far; ++di) {
-                const Index to = tile + dj * width + di, column = tile % width + di;
-                if (column >= 0 && column < width && to >= 0 && to < grid.tiles())
-                    kept[static_cast<std::size_t>(to)] = 1;
-            }
-    };
-    if (aside)
-        for (const Index tile : reached) add(tile);
-    if (aside && bent_path_)
-        for (const Index tile : ledger_tiles_)
-            if (tile_pending_[tile] > 0.0) add(tile);
-    std::vector<Index> tiles;
-    for (Index tile = 0; tile < grid.tiles(); ++tile)
-        if (aside ? kept[static_cast<std::size_t>(tile)] != 0 : changed_[tile] != 0) tiles.push_back(tile);
-    return tiles;
-}
-
-void Erosion::serialize(Archive& archive, Flow& flow, const std::vector<Index>& reached) {
-    const Archive::Part part(archive, "bed");
-    std::vector<Index> tiles;
-    if (!archive.loading()) tiles = tiles_to_keep(flow, archive.aside(), reached);
-    archive.array("tile", tiles);
-    for (const Index tile : tiles)
-        if (tile < 0 || tile >= flow.grid.tiles()) throw misfit("its erodible bed lies outside the grid");
-    const auto numbers = [&](const char* name, LazyArray<double>& field) {
-        if (!field) return;
-        std::vector<double> values;
-        if (!archive.loading())
-            for (const Index tile : tiles)
-                for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { values.push_back(field[k]); });
-        archive.array(name, values);
-        if (!archive.loading()) return;
-        const std::size_t expected = tiles.size() * static_cast<std::size_t>(kTile * kTile);
-        if (values.size() != expected) throw misfit("its erodible bed is not that of the tiles");
-        const double* from = values.data();
-        for (const Index tile : tiles)
-            for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { field[k] = *from++; });
-    };
-    numbers("left", left_);
-    numbers("fresh", fresh_);
-    if (evolves_) {
-        numbers("z", flow.bed.z);
-        numbers("ground", flow.bed.ground);
-        numbers("pending", pending_);
-        numbers("smoothed", flow.bed.smoothed);
-    }
-    const auto eroded = eroded_.parts(), energy = energy_.parts();
-    archive.numbers("sums", {eroded[0], eroded[1], energy[0], energy[1]});
-    if (deposits_) serialize_deposition(archive, flow);
-    if (!archive.loading()) return;
-    for (const Index tile : tiles) {
-        if (deposits_) list_ledger(tile);
-        changed_[tile] = 1;
-        count_tile(flow, tile);
-        if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);
-    }
-    status_changed();
-    if (evolves_) refresh_around(flow, tiles);
-}
-
-/// Slopes and curvature of tiles whose bed has been taken up again, and of those next to them: each once.
-void Erosion::refresh_around(Flow& flow, const std::vector<Index>& tiles) {
-    next_.clear();
-    for (const Index tile : tiles)
-        for_each_around(flow.grid, tile, [&](Index to) {
-            if (!std::exchange(marked_[static_cast<std::size_t>(to)], std::uint8_t{1})) next_.push_back(to);
-        });
-    for_each_in_parallel(next_, [&](Index tile) {
-        refresh_slopes(flow.grid, flow.bed, tile);
-        if (bent_path_) refresh_path(flow.grid, flow.bed, tile);
-    });
-    for (const Index tile : next_) marked_[static_cast<std::size_t>(tile)] = 0;
 }
 
 }  // namespace frana

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "base/compensated_sum.h"
+#include "mpm/node_groups.h"
 #include "run/simulation.h"
 #include "shallow/rest_clocks.h"
+#include "shallow/tile_box.h"
 
 namespace frana {
 
@@ -58,7 +60,7 @@ private:
     template <class Law, class Friction, class Real, bool kFresh>
     void demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction);
     template <class Real>
-    void spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into) const;
+    void spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into);
     template <class Real>
     void take_shares(const Flow& flow, Index n);
     template <class Real>
@@ -92,9 +94,13 @@ private:
     void share_out(Flow& flow);
     void lower(Flow& flow);
     void lower_tile(Flow& flow, Index tile);
+    void collect_reach(const Flow& flow);
     void fold(const Flow& flow, LazyArray<double>& field) const;
     void follow_bed(Flow& flow);
-    void refresh_around(Flow& flow, const std::vector<Index>& tiles);
+    TileBox near_moved(const TileGrid& grid, Index tile) const;
+    void refresh_moved(Flow& flow, const std::vector<Index>& tiles);
+    void list_around(const TileGrid& grid, const std::vector<Index>& tiles);
+    void refresh_taken_up(Flow& flow, const std::vector<Index>& tiles, const std::vector<std::uint8_t>& bent);
     void smooth_into_path(Flow& flow);
     void list_reached(const TileGrid& grid, Index far);
     double most_pending(const Flow& flow, Index tile) const;
@@ -138,8 +144,11 @@ private:
 
     std::vector<std::uint8_t> eroding_;  ///< by position in ActiveTiles
     std::vector<std::uint8_t> marked_;   ///< scratch, per tile of the domain
+    LazyArray<TileBox> moved_;           ///< per tile: nodes whose bed the pass at hand moved; none between passes
     std::vector<Index> nodes_, next_;    ///< tiles whose nodes the step may change; scratch
     std::vector<ExchangeSums> sums_;     ///< by position in ActiveTiles
+    std::vector<TileReach> spread_to_;   ///< what the points of each tile gave something to, by position in ActiveTiles
+    LazyArray<NodeGroups> in_reach_;     ///< the same by tile, of `nodes_`
     LazyArray<double> tile_energy_;      ///< [J]
     LazyArray<double> rows_;             ///< scratch of smooth_into_path; zero outside of it [m]
     bool scarce_ = false;                ///< some node has less than is wanted of it

@@ -6,6 +6,7 @@
 
 #include "mpm/stored_points.h"
 #include "shallow/merge.h"
+#include "shallow/tiles_around.h"
 
 namespace frana {
 namespace {
@@ -25,15 +26,8 @@ std::vector<std::array<Index, 2>> nodes_of(const Seeds& seeds, const GridGeometr
 /// Each once.
 std::vector<Index> tiles_around(const std::vector<std::array<Index, 2>>& nodes, const TileGrid& grid) {
     std::set<Index> tiles;
-    const Index width = grid.tiles_x();
-    for (const auto& node : nodes) {
-        const Index tile = grid.tile_of(double(node[0]), double(node[1])), column = tile % width;
-        for (Index dj = -1; dj <= 1; ++dj)
-            for (Index di = -1; di <= 1; ++di) {
-                const Index to = tile + dj * width + di;
-                if (column + di >= 0 && column + di < width && to >= 0 && to < grid.tiles()) tiles.insert(to);
-            }
-    }
+    for (const auto& node : nodes)
+        for_each_around(grid, grid.tile_of(double(node[0]), double(node[1])), [&](Index to) { tiles.insert(to); });
     return {tiles.begin(), tiles.end()};
 }
 

@@ -4,6 +4,7 @@
 
 #include "shallow/flow.h"
 #include "shallow/grid_update.h"
+#include "shallow/tiles_around.h"
 
 namespace frana {
 namespace {
@@ -11,12 +12,9 @@ namespace {
 /// Calls body(tile, m) for the work-list tiles among tile (m = 4) and its eight neighbours (TileReach).
 template <class Body>
 void for_each_around(const Flow& flow, Index tile, Body&& body) {
-    const Index width = flow.grid.tiles_x(), column = tile % width;
-    for (Index m = 0; m < 9; ++m) {
-        const Index to = tile + (m / 3 - 1) * width + m % 3 - 1, across = column + m % 3 - 1;
-        if (across < 0 || across >= width || to < 0 || to >= flow.grid.tiles() || !flow.active.in_work[to]) continue;
-        body(to, static_cast<std::size_t>(m));
-    }
+    for_each_around(flow.grid, tile, [&](Index to, std::size_t m) {
+        if (flow.active.in_work[to]) body(to, m);
+    });
 }
 
 /// Whether a tile has nodes that walls mirror, or ghosts: these are always taken to be touched.

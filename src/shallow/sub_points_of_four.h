@@ -24,11 +24,16 @@ struct Domains {
     }
 }
 
-/// The sub-points of four points of masses m. All of a point's lie within four nodes each way if none is farther than half
-/// a cell; their weights are summed there first. Otherwise nothing is done, and returns false.
-/// `into`: an array on the grid's storage.
-[[gnu::always_inline]] inline bool spread_four(const Flow& flow, double* into, int lanes, Double4 x, Double4 y,
-                                               Double4 m, const Domains& r) {
+/// Where the sub-points of four points spread: weights of the four by four nodes that hold all of a point's.
+struct WindowOfFour {
+    Int4 i, j;              ///< first nodes, counted from the storage's first
+    Double4 of_lane[4][4];  ///< of a row, of a point: the weights of four nodes, 256 in all
+};
+
+/// Fills `window`, for points none of whose sub-points is farther than half a cell away. Otherwise does nothing, and returns
+/// false.
+[[gnu::always_inline]] inline bool find_window(const Flow& flow, Double4 x, Double4 y, const Domains& r,
+                                               WindowOfFour& window) {
     const double reach = flow.scheme.sub_point_reach;
     const Double4 ax = reach * (r.r1x + r.r2x), bx = reach * (r.r1x - r.r2x);
     const Double4 ay = reach * (r.r1y + r.r2y), by = reach * (r.r1y - r.r2y);
@@ -41,22 +46,32 @@ struct Domains {
     window_weights(tx - ax, wx[1]), window_weights(ty - ay, wy[1]);
     window_weights(tx + bx, wx[2]), window_weights(ty + by, wy[2]);
     window_weights(tx - bx, wx[3]), window_weights(ty - by, wy[3]);
-    Double4 of_lane[4][4];  // row, lane: the masses of four nodes
     for (int b = 0; b < 4; b += 2) {
         Double4 lower[4], upper[4];
         for (int a = 0; a < 4; ++a) {
             lower[a] = wy[0][b] * wx[0][a], upper[a] = wy[0][b + 1] * wx[0][a];
             for (int k = 1; k < 4; ++k) lower[a] += wy[k][b] * wx[k][a], upper[a] += wy[k][b + 1] * wx[k][a];
         }
-        transpose(lower[0], lower[1], lower[2], lower[3], of_lane[b]);
-        transpose(upper[0], upper[1], upper[2], upper[3], of_lane[b + 1]);
+        transpose(lower[0], lower[1], lower[2], lower[3], window.of_lane[b]);
+        transpose(upper[0], upper[1], upper[2], upper[3], window.of_lane[b + 1]);
     }
+    window.i = floor_positive(left), window.j = floor_positive(below);
+    return true;
+}
+
+constexpr double kOfWindow = 1.0 / 256.0;  ///< a sub-point has a quarter, and weights come eightfold in each direction
+
+/// Spreads the sub-points of four points of masses m, unless some is too far away: then returns false.
+/// `into`: an array on the grid's storage.
+[[gnu::always_inline]] inline bool spread_four(const Flow& flow, double* into, int lanes, Double4 x, Double4 y,
+                                               Double4 m, const Domains& r) {
+    WindowOfFour window;
+    if (!find_window(flow, x, y, r, window)) return false;
     const Index stride = flow.grid.stride();
-    const Int4 i = floor_positive(left), j = floor_positive(below);
-    const Double4 share = 1.0 / 256.0 * m;  // a quarter each, weights come eightfold
+    const Double4 share = kOfWindow * m;
     for (int lane = 0; lane < lanes; ++lane) {
-        double* row = into + j[lane] * stride + i[lane];
-        for (int b = 0; b < 4; ++b, row += stride) store(row, load(row) + share[lane] * of_lane[b][lane]);
+        double* row = into + window.j[lane] * stride + window.i[lane];
+        for (int b = 0; b < 4; ++b, row += stride) store(row, load(row) + share[lane] * window.of_lane[b][lane]);
     }
     return true;
 }
