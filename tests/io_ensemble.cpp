@@ -8,46 +8,14 @@
 #include <string>
 
 #include "catch.h"
-#include "io/gdal_reader.h"
 #include "plane_case.h"
+#include "pond.h"
 
 namespace fs = std::filesystem;
 using Catch::Contains;
 using Json = nlohmann::json;
 
 namespace {
-
-/// A level pond between walls: whatever depth is released stays as it is, everywhere. So the maps are those of the depth.
-class Pond {
-public:
-    Pond() {
-        std::string dem = "ncols 12\nnrows 12\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n";
-        for (int row = 0; row < 12; ++row) dem += "0 0 0 0 0 0 0 0 0 0 0 0\n";
-        write("dem.asc", dem);
-        outline("all.geojson", 57.5);
-        outline("west.geojson", 27.5);
-        write("case.toml",
-              "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"all.geojson\"\ndepth = 1.5\n[time]\nend = 0.5\n"
-              "[boundary]\nsides = \"wall\"\n[output]\nfootprint_depth = 0.1\n");
-    }
-    void write(const std::string& name, const std::string& text) const { frana::write_text(path(name), text); }
-    fs::path path(const std::string& name) const { return folder_.path() / name; }
-    Outcome frana(const std::string& arguments) const { return call_frana(folder_.path(), arguments); }
-    frana::Raster map(const std::string& folder, const std::string& name) const {
-        std::vector<std::string> log;
-        return frana::GdalReader().read_raster(path(folder) / "rasters" / (name + ".tif"), {0.0, 0.0, 60.0, 60.0}, "",
-                                               log);
-    }
-
-private:
-    void outline(const std::string& name, double east) const {
-        write(name,
-              fmt::format(R"({{"type": "Polygon", "coordinates": [[[2.5, 2.5], [{0}, 2.5], [{0}, 57.5], [2.5, 57.5],
-                               [2.5, 2.5]]]}})",
-                          east));
-    }
-    FreshFolder folder_;
-};
 
 const std::string depths =
     "[ensemble]\ncase = \"case.toml\"\nmethod = \"lhs\"\nsamples = 20\nfields = [\"peak_depth\", \"peak_speed\"]\n"
@@ -308,4 +276,35 @@ TEST_CASE("runs of a case with a survey say how near they come to it", "[ensembl
     // All of the pond is wet; surveyed are 25 x 55 m of its 60 x 60.
     CHECK_THAT(runs, Contains(fmt::format(",{:.9g}", 1375.0 / 3600.0).substr(0, 10)));
     CHECK_THAT(text_of(pond.path("many/report.md")), Contains("Nearest to the surveyed footprint"));
+}
+
+TEST_CASE("What flowed is what was released and taken of the bed, once however often it became bed",
+          "[ensemble][deposition]") {
+    // A slide comes to rest. Another one follows, takes of what lies there, and leaves in part by the lower side.
+    const double density = 1600.0, released = 2.0 * 1.5 * 30.0 * 40.0;
+    const bool deposits = GENERATE(true, false);
+    CAPTURE(deposits);
+    const PlaneCase plane;
+    const std::string release = "[[release]]\noutline = \"release.geojson\"\ndepth = 1.5\n",
+                      loose = "[erodible]\nlaw = \"growth\"\ngrowth = 0.05\ndepth = ";
+    frana::write_text(plane.file(), "[terrain]\ndem = \"dem.asc\"\n" + release + release +
+                                        "at = 8\nvelocity = [18.0, 0.0]\n[time]\nend = 30\n[material]\ndensity = 1600\n"
+                                        "[material.bed]\nlaw = \"coulomb\"\nmu = 0.2\n" +
+                                        loose + (deposits ? "0.0\n[deposition]\nlaw = \"rest\"\ntime = 1\n" : "0.4\n"));
+    frana::write_text(plane.folder() / "many.toml",
+                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\n");
+    frana::write_text(plane.folder() / "rows.csv", "release.0.depth\n1.5\n");
+    REQUIRE(plane.frana("ensemble many.toml --out many --quiet").code == 0);
+    REQUIRE(plane.frana("run CASE --quiet --set 'output.formats=[]' --out alone").code == 0);
+    const Json budgets = Json::parse(text_of(plane.folder() / "alone/run.json"))["budgets"];
+    const double out = budgets["mass"]["left_domain"], eroded = budgets["bed"]["eroded"];
+    REQUIRE((!deposits || out > 0.01 * density * released));
+    REQUIRE(eroded > 0.01 * density * released);
+    // Where the bed is rock, what was eroded had flowed before.
+    const double flowed = released + (deposits ? 0.0 : eroded / density);
+    const std::string runs = text_of(plane.folder() / "many/runs.csv");
+    const auto number = [&](const std::string& name) { return std::stod(column_of(runs, name).at(0)); };
+    // Round-off of sums of some thousand terms, over some thousand steps.
+    CHECK(number("volume_m3") == Approx(flowed).epsilon(1e-10));
+    CHECK(number("left_share") == Approx(out / (density * flowed)).epsilon(1e-10));
 }

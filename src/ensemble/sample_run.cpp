@@ -6,6 +6,7 @@
 #include <chrono>
 #include <ostream>
 
+#include "base/compensated_sum.h"
 #include "base/error.h"
 #include "compare/overlap.h"
 #include "compare/runout.h"
@@ -13,6 +14,7 @@
 #include "run/run_loop.h"
 #include "run/simulation.h"
 #include "scene/build_scene.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -30,9 +32,11 @@ public:
             values.emplace_back(count, 0.0);
             if (field) std::copy(field->data, field->data + count, values.back().begin());
         }
+        if (const Field* taken = last.node("eroded_depth")) eroded.assign(taken->data, taken->data + count);
     }
     GridGeometry grid;
     std::vector<std::vector<double>> values;  ///< by field; zero where a model does not have it
+    std::vector<double> eroded;               ///< of the bed that was there at the start; empty without one [m]
 
 private:
     const std::vector<std::string>& fields_;
@@ -82,6 +86,22 @@ void measure_extent(const EnsembleBase& base, const Raster& depth, SampleResult&
     result.runout = base.path.empty() ? result.reach : reach_along(base.path, outline, cell);
 }
 
+/// What the flow took of the bed that was there at the start, not of what it had left behind itself [kg]. Of nodes on walls only
+/// a half lies inside.
+double taken_of_bed(const Scene& scene, const GridGeometry& whole, const LastPeaks& last) {
+    if (!scene.erodible || last.eroded.empty()) return 0.0;
+    const NodeBox at = box_of(last.grid, whole).value_or(NodeBox::all(last.grid));
+    const auto inside = [&](Index k, Index n) {
+        return scene.sides == Sides::wall && (k == 0 || k == n - 1) ? 0.5 : 1.0;
+    };
+    CompensatedSum sum;
+    for (Index j = 0; j < last.grid.ny; ++j)
+        for (Index i = 0; i < last.grid.nx; ++i)
+            sum.add(inside(at.i0 + i, whole.nx) * inside(at.j0 + j, whole.ny) *
+                    last.eroded[static_cast<std::size_t>(j * last.grid.nx + i)]);
+    return sum.value() * last.grid.cell * last.grid.cell * scene.erodible->density;
+}
+
 void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run, const LastPeaks& peaks,
              SampleResult& result) {
     if (peaks.values.empty()) return;
@@ -92,9 +112,9 @@ void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run
     result.footprint_area = static_cast<double>(result.peaks.pixels()) * cell * cell;
     result.max_depth = run.extremes.max_depth, result.max_speed = run.extremes.max_speed;
     const Status& last = run.last;
-    result.volume = (run.first.mass + (last.mass_in - run.first.mass_in) + last.bed.eroded) / scene.density;
-    const double all = last.mass + last.mass_left;
-    result.left_share = all > 0.0 ? last.mass_left / all : 0.0;
+    const double flowed = run.first.mass + (last.mass_in - run.first.mass_in) + taken_of_bed(scene, base.whole, peaks);
+    result.volume = flowed / scene.density;
+    result.left_share = flowed > 0.0 ? last.mass_left / flowed : 0.0;
     result.mass_error = budget(run.first, last).mass_error;
     Raster depth;
     depth.geometry = peaks.grid, depth.values = peaks.values.front();
