@@ -27,7 +27,8 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Those of the shard that no shard in the folder has run; what was refused is tried again.
-std::vector<Index> left_to_run(const EnsembleOptions& options, const EnsemblePlan& plan, const Shard& shard) {
+std::vector<Index> left_to_run(const EnsembleOptions& options, const EnsemblePlan& plan, const EnsembleBase& base,
+                               const Shard& shard) {
     const fs::path rows = shard_folder(options.out, shard) / "runs.csv";
     if (fs::exists(rows) && !options.resume)
         throw UserError(
@@ -35,7 +36,7 @@ std::vector<Index> left_to_run(const EnsembleOptions& options, const EnsemblePla
                         "one with --out, or give --resume to go on with it",
                         rows.string()));
     std::vector<bool> has(static_cast<std::size_t>(plan.samples), false);
-    for (const SampleResult& result : read_results(options.out, plan, nullptr))
+    for (const SampleResult& result : read_results(options.out, plan, base, false))
         has[static_cast<std::size_t>(result.sample)] = options.resume && result.reason != "refused";
     std::vector<Index> samples;
     for (Index i = shard.begin(plan.samples); i < shard.end(plan.samples); ++i)
@@ -61,7 +62,7 @@ int join(const EnsembleOptions& options, const EnsemblePlan& plan, const Ensembl
     for (const char* folder : {"", "rasters", "figures"}) remove_leftovers(options.out / folder);
     write_once(options.out / "samples.csv", samples_table(plan));
     const EnsembleSummary summary =
-        write_maps(options.out, plan, base, read_results(options.out, plan, &base.whole), wall_seconds);
+        write_maps(options.out, plan, base, read_results(options.out, plan, base, true), wall_seconds);
     if (!options.quiet) say_result(options.out, summary);
     if (!summary.too_many_failed()) return 0;
     std::cerr << fmt::format(
@@ -154,7 +155,7 @@ int run_shard(const EnsembleOptions& options, const EnsemblePlan& plan, const En
     const auto start = Clock::now();
     const Shard shard = options.shard.empty() ? Shard{} : read_shard(options.shard);
     const fs::path folder = shard_folder(options.out, shard);
-    const std::vector<Index> samples = left_to_run(options, plan, shard);
+    const std::vector<Index> samples = left_to_run(options, plan, base, shard);
     const RunLock lock(folder);
     remove_leftovers(folder);
     write_once(options.out / "samples.csv", samples_table(plan));

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "frana_ensemble_outcomes.h"
 #include "vtk_io/figures/chart_figure.h"
@@ -22,15 +23,29 @@ void draw(const Charts& of, const ChartFigure& figure, const std::string& name) 
     if (render_chart(figure, of.dir / "figures" / name, why_not)) of.summary.files.push_back("figures/" + name);
 }
 
-/// How likely the flow comes farther than a distance.
-Curve farther(const WeightedRuns& runs, const char* name, double SampleResult::*value) {
+/// How likely an outcome is larger than a number.
+Curve larger(const WeightedRuns& runs, const std::string& name, const Outcome& outcome) {
     Curve curve;
     curve.name = name;
     double left = runs.total;
-    for (const auto& [distance, weight] : runs.by_size(value)) {
-        curve.x.push_back(distance), curve.y.push_back(left / runs.total);
+    for (const auto& [number, weight] : runs.by_size(outcome)) {
+        curve.x.push_back(number), curve.y.push_back(left / runs.total);
         left -= weight;
-        curve.x.push_back(distance), curve.y.push_back(std::max(0.0, left / runs.total));
+        curve.x.push_back(number), curve.y.push_back(std::max(0.0, left / runs.total));
+    }
+    return curve;
+}
+
+/// How likely the flow has come by a time.
+Curve come_by(const WeightedRuns& runs, const std::string& name, const Outcome& arrival) {
+    Curve curve;
+    curve.name = name;
+    double come = 0.0;
+    for (const auto& [time, weight] : runs.by_size(arrival)) {
+        if (!std::isfinite(time)) break;
+        curve.x.push_back(time), curve.y.push_back(come / runs.total);
+        come += weight;
+        curve.x.push_back(time), curve.y.push_back(std::min(1.0, come / runs.total));
     }
     return curve;
 }
@@ -39,11 +54,38 @@ void draw_outcomes(const Charts& of) {
     ChartFigure figure;
     figure.title = of.base.title;
     figure.x_label = "distance [m]";
-    std::vector<Curve> curves = {farther(of.runs, "straight from the release", &SampleResult::reach)};
-    if (!of.base.path.empty()) curves.push_back(farther(of.runs, "along the path of water", &SampleResult::runout));
+    std::vector<Curve> curves = {larger(of.runs, "straight from the release", straight_reach())};
+    if (!of.base.path.empty()) curves.push_back(larger(of.runs, "along the path of water", runout()));
     figure.panels.push_back({"share of the runs that come farther [1]", curves, false, std::pair{0.0, 1.0}, 1.0});
     figure.footer = runs_sentence(of.summary);
     draw(of, figure, "runout.png");
+}
+
+/// What the runs bring to each gauge: a picture for each of the three, since their axes differ.
+void draw_gauges(const Charts& of) {
+    const std::pair<const char*, const char*> axes[] = {
+        {"depth", "largest depth [m]"}, {"speed", "largest speed [m/s]"}, {"arrival", "time [s]"}};
+    for (std::size_t which = 0; which < std::size(axes) && !of.base.gauges.empty(); ++which) {
+        const bool arrival = which == 2;
+        ChartFigure figure;
+        figure.title = of.base.title;
+        figure.x_label = axes[which].second;
+        ChartPanel panel{arrival ? "share of the runs that have come [1]" : "share of the runs with more [1]",
+                         {},
+                         false,
+                         std::pair{0.0, 1.0},
+                         1.0};
+        for (std::size_t gauge = 0; gauge < of.base.gauges.size(); ++gauge) {
+            const Outcome outcome = outcomes_of_gauge(of.base, gauge)[which];
+            const std::string& name = of.base.gauges[gauge].name;
+            panel.curves.push_back(arrival ? come_by(of.runs, name, outcome) : larger(of.runs, name, outcome));
+        }
+        const auto empty = [](const Curve& curve) { return curve.x.empty(); };
+        if (std::all_of(panel.curves.begin(), panel.curves.end(), empty)) continue;  // no run came to any of them
+        figure.panels.push_back(panel);
+        figure.footer = runs_sentence(of.summary);
+        draw(of, figure, fmt::format("gauges_{}.png", axes[which].first));
+    }
 }
 
 /// How the middle of the runs settles with their number.
@@ -99,6 +141,7 @@ void draw_charts(const std::filesystem::path& dir, const EnsemblePlan& plan, con
     draw_outcomes(of);
     draw_convergence(of);
     draw_scatter(of);
+    draw_gauges(of);
 }
 
 }  // namespace frana

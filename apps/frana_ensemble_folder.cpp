@@ -25,6 +25,14 @@ constexpr const char* kColumns =
     "sample,reason,time_s,steps,seconds,volume_m3,runout_m,reach_m,footprint_area_m2,max_depth_m,max_speed_m_s,left_"
     "share,"
     "mass_error,iou,boundary_m,peaks,message";
+constexpr std::size_t kColumnCount = 17;
+constexpr std::size_t kGaugeColumns = 3;  ///< of each gauge, behind those
+
+std::string columns_of(const std::vector<Gauge>& gauges) {
+    std::string columns = kColumns;
+    for (const Gauge& gauge : gauges) columns += fmt::format(",{0}_depth_m,{0}_speed_m_s,{0}_arrival_s", gauge.name);
+    return columns;
+}
 
 std::uint64_t sum_of(const std::string& text) {
     Checksum sum;
@@ -44,10 +52,18 @@ std::string plain(std::string text) {
     return text;
 }
 
-std::string row_of(const SampleResult& r, const std::string& peaks) {
-    return fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.sample, r.reason, r.time, r.steps,
-                       r.seconds, r.volume, r.runout, r.reach, r.footprint_area, r.max_depth, r.max_speed, r.left_share,
-                       r.mass_error, text_of_known(r.iou), text_of_known(r.boundary), peaks, plain(r.message));
+/// Of what was refused before its first step there are no gauges: their fields are empty too.
+std::string row_of(const SampleResult& r, const std::string& peaks, std::size_t gauges) {
+    std::string row =
+        fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{}", r.sample, r.reason, r.time, r.steps,
+                    r.seconds, r.volume, r.runout, r.reach, r.footprint_area, r.max_depth, r.max_speed, r.left_share,
+                    r.mass_error, text_of_known(r.iou), text_of_known(r.boundary), peaks, plain(r.message));
+    for (std::size_t k = 0; k < gauges; ++k) {
+        const GaugePeak peak = k < r.gauges.size() ? r.gauges[k] : GaugePeak();
+        row +=
+            fmt::format(",{},{},{}", text_of_known(peak.depth), text_of_known(peak.speed), text_of_known(peak.arrival));
+    }
+    return row + "\n";
 }
 
 UserError broken(const fs::path& file, const std::string& line) {
@@ -58,18 +74,22 @@ UserError broken(const fs::path& file, const std::string& line) {
 }
 
 /// A row, and the file of its peaks.
-std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::string& line) {
+std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::string& line, std::size_t gauges) {
     const std::vector<std::string> f = comma_fields(line);
-    if (f.size() != 17) throw broken(file, line);
+    if (f.size() != kColumnCount + kGaugeColumns * gauges) throw broken(file, line);
     SampleResult r;
     try {
         r.sample = std::stoll(f[0]), r.reason = f[1], r.time = std::stod(f[2]), r.steps = std::stoll(f[3]);
         double* const numbers[] = {&r.seconds,   &r.volume,    &r.runout,     &r.reach,     &r.footprint_area,
                                    &r.max_depth, &r.max_speed, &r.left_share, &r.mass_error};
         for (std::size_t k = 0; k < std::size(numbers); ++k) *numbers[k] = std::stod(f[4 + k]);
-        if (!f[13].empty()) r.iou = std::stod(f[13]);
-        if (!f[14].empty()) r.boundary = std::stod(f[14]);
+        const auto known = [&](std::size_t k) {
+            return f[k].empty() ? std::nullopt : std::optional<double>(std::stod(f[k]));
+        };
+        r.iou = known(13), r.boundary = known(14);
         r.message = f[16];
+        for (std::size_t k = kColumnCount; k < f.size(); k += kGaugeColumns)
+            r.gauges.push_back({known(k), known(k + 1), known(k + 2)});
     } catch (const std::logic_error&) {  // what the conversions say of text that is no number
         throw broken(file, line);
     }
@@ -124,7 +144,9 @@ void take_peaks(const fs::path& file, const EnsemblePlan& plan, const GridGeomet
 
 void remove_leftovers(const fs::path& folder) {
     static const std::regex half_written(
-        "\\.(peaks|runs|probability|quantile|mean|reached|report|ensemble).*\\.tmp\\d+(\\..*)?");
+        "\\.(peaks|runs|probability|quantile|mean|first_order|total|hazard|terrain|maps|reached|report|ensemble).*\\."
+        "tmp\\d+(\\..*)"
+        "?");
     std::vector<fs::path> found;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored))
@@ -177,7 +199,7 @@ std::string mark_of(const EnsemblePlan& plan) {
 
 ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const EnsembleBase& base)
     : folder_(std::move(folder)), plan_(plan), base_(base), rows_(text_in(folder_ / "runs.csv")) {
-    if (rows_.empty()) rows_ = mark_of(plan) + "\n" + kColumns + "\n";
+    if (rows_.empty()) rows_ = mark_of(plan) + "\n" + columns_of(base.gauges) + "\n";
 }
 
 void ShardStore::add(SampleResult result) {
@@ -201,14 +223,16 @@ void ShardStore::write() {
         if (result.ended()) block.samples.push_back(result.sample), block.peaks.push_back(std::move(result.peaks));
     const std::string peaks = fmt::format("peaks_{:07}.h5", waiting_.front().sample);
     if (!block.samples.empty()) write_peaks(folder_ / peaks, block);
-    for (const SampleResult& result : waiting_) rows_ += row_of(result, result.ended() ? peaks : "");
+    for (const SampleResult& result : waiting_)
+        rows_ += row_of(result, result.ended() ? peaks : "", base_.gauges.size());
     write_text(folder_ / "runs.csv", rows_);
     waiting_.clear();
     broken_ = false;
     written_ = std::chrono::steady_clock::now();
 }
 
-std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& plan, const GridGeometry* grid) {
+std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
+                                       bool with_peaks) {
     std::map<Index, SampleResult> results;
     std::set<fs::path> peaks;
     for (const fs::path& file : row_files(dir)) {
@@ -217,9 +241,9 @@ std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& 
         std::getline(stream, line);
         require_same(file, line, mark_of(plan));
         std::getline(stream, line);
-        if (line != kColumns) throw broken(file, line);
+        if (line != columns_of(base.gauges)) throw broken(file, line);
         while (std::getline(stream, line)) {
-            auto [result, name] = result_of(file, line);
+            auto [result, name] = result_of(file, line, base.gauges.size());
             if (result.sample < 0 || result.sample >= plan.samples) throw broken(file, line);
             if (!name.empty()) peaks.insert(file.parent_path() / name);
             const auto before = results.find(result.sample);
@@ -229,8 +253,8 @@ std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& 
                 before->second = std::move(result);
         }
     }
-    if (grid)
-        for (const fs::path& file : peaks) take_peaks(file, plan, *grid, results);
+    if (with_peaks)
+        for (const fs::path& file : peaks) take_peaks(file, plan, base.whole, results);
     std::vector<SampleResult> all;
     for (auto& [sample, result] : results) all.push_back(std::move(result));
     return all;

@@ -60,9 +60,9 @@ std::string csv_field(const std::string& text);
 /// A number as a field of a table; empty where it is not known.
 std::string text_of_known(const std::optional<double>& number);
 
-/// Rows of all shards in a folder, by sample; with a grid also the peaks of those that ended, which lie on it. Throws UserError
-/// when a file cannot be read, or belongs to another ensemble (what differs is said).
+/// Rows of all shards in a folder, by sample; of those that ended also their peaks, where asked for. Throws UserError when a
+/// file cannot be read, or belongs to another ensemble (what differs is said).
 std::vector<SampleResult> read_results(const std::filesystem::path& dir, const EnsemblePlan& plan,
-                                       const GridGeometry* grid);
+                                       const EnsembleBase& base, bool with_peaks);
 
 }  // namespace frana

@@ -1,7 +1,9 @@
 #pragma once
 // The runs of an ensemble that have an answer, with their weights, and the numbers that are told of them. Private to the files
 // that write what an ensemble says.
-#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,15 +16,23 @@ namespace frana {
 
 /// A number of a run and its name.
 struct Outcome {
-    const char *key, *name;
-    double SampleResult::*value;
+    /// What counts for a run that has no such number, since the flow never came there.
+    enum class Never { cannot_be, zero, infinite } never = Never::cannot_be;
+    std::string key, name;
+    std::function<std::optional<double>(const SampleResult&)> value;
+
+    /// In statistics over runs.
+    double counted(const SampleResult& result) const;
 };
-constexpr Outcome kOutcomes[] = {{"runout_m", "runout [m]", &SampleResult::runout},
-                                 {"reach_m", "straight reach [m]", &SampleResult::reach},
-                                 {"footprint_area_m2", "footprint [m2]", &SampleResult::footprint_area},
-                                 {"volume_m3", "volume [m3]", &SampleResult::volume},
-                                 {"max_depth_m", "largest depth [m]", &SampleResult::max_depth},
-                                 {"max_speed_m_s", "largest speed [m/s]", &SampleResult::max_speed}};
+
+/// Those of all ensembles, then those of the gauges.
+std::vector<Outcome> outcomes_of(const EnsembleBase& base);
+/// The three of a gauge: largest depth, largest speed, time of arrival.
+std::vector<Outcome> outcomes_of_gauge(const EnsembleBase& base, std::size_t gauge);
+/// How far the flow comes, straight from the start.
+Outcome straight_reach();
+/// Along the path.
+Outcome runout();
 
 /// Those with an answer.
 class WeightedRuns {
@@ -39,29 +49,14 @@ public:
         }
     }
 
-    /// The least of an outcome that a share `q` of the weights does not exceed.
-    double quantile(double SampleResult::*value, double q) const {
-        const auto all = by_size(value);
-        double below = 0.0;
-        constexpr double round_off = 1e-9;
-        for (const auto& [number, weight] : all)
-            if ((below += weight) >= q * total * (1.0 - round_off)) return number;
-        return all.back().first;
-    }
-
-    double mean(double SampleResult::*value) const {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < ended.size(); ++k) sum += weights[k] * (ended[k]->*value);
-        return sum / total;
-    }
-
+    /// The least of an outcome that a share `q` of the weights does not exceed; infinite where fewer have one.
+    double quantile(const Outcome& outcome, double q) const;
+    /// Of the runs that have one, or count as zero; nothing without such a run.
+    std::optional<double> mean(const Outcome& outcome) const;
+    /// Weight of the runs that have a number of their own, over all [1].
+    double share_with(const Outcome& outcome) const;
     /// An outcome of the runs with an answer, and their weights, ascending.
-    std::vector<std::pair<double, double>> by_size(double SampleResult::*value) const {
-        std::vector<std::pair<double, double>> all;
-        for (std::size_t k = 0; k < ended.size(); ++k) all.emplace_back(ended[k]->*value, weights[k]);
-        std::sort(all.begin(), all.end());
-        return all;
-    }
+    std::vector<std::pair<double, double>> by_size(const Outcome& outcome) const;
 
     /// Runs of a group of "saltelli" or "morris" share all keys but one.
     double independent(const EnsemblePlan& plan) const {
@@ -70,13 +65,20 @@ public:
         return plan.method == Method::saltelli ? 2.0 * groups : groups;
     }
 
+    /// Numbers of those with an answer.
+    std::vector<Index> samples() const {
+        std::vector<Index> all;
+        for (const SampleResult* run : ended) all.push_back(run->sample);
+        return all;
+    }
+
     std::vector<const SampleResult*> ended;
     std::vector<const SparseRasters*> peaks;
     std::vector<double> weights;
     double total = 0.0, failed_weight = 0.0;  ///< sums of weights
 };
 
-/// Draws runout.png, convergence.png and scatter.png; names those that were drawn.
+/// Draws runout.png, convergence.png, scatter.png and, of a case with gauges, gauges_*.png; names those that were drawn.
 void draw_charts(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                  const WeightedRuns& runs, EnsembleSummary& summary);
 

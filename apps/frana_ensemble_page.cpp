@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
@@ -21,15 +22,18 @@ std::vector<Sensitivity> sensitivity_of(const Outcome& outcome, const EnsemblePl
                                         const std::vector<SampleResult>& results) {
     if (plan.method != Method::saltelli && plan.method != Method::morris) return {};
     std::vector<std::optional<double>> outcomes(static_cast<std::size_t>(plan.samples));
-    for (const SampleResult& result : results)
-        if (result.ended()) outcomes[static_cast<std::size_t>(result.sample)] = result.*outcome.value;
+    for (const SampleResult& result : results) {
+        if (!result.ended()) continue;
+        std::optional<double>& number = outcomes[static_cast<std::size_t>(result.sample)];
+        number = outcome.never == Outcome::Never::zero ? outcome.counted(result) : outcome.value(result);
+    }
     return sensitivities(plan.method, plan.design, outcomes);
 }
 
-Json sensitivity_json(const EnsemblePlan& plan, const std::vector<SampleResult>& results) {
+Json sensitivity_json(const EnsemblePlan& plan, const EnsembleBase& base, const std::vector<SampleResult>& results) {
     Json all = Json::object();
     const bool shares = plan.method == Method::saltelli;
-    for (const Outcome& outcome : kOutcomes) {
+    for (const Outcome& outcome : outcomes_of(base)) {
         const auto found = sensitivity_of(outcome, plan, results);
         for (std::size_t k = 0; k < found.size(); ++k)
             all[outcome.key][plan.vary[k].key] = {{shares ? "first_order" : "mu_star", found[k].first},
@@ -39,12 +43,13 @@ Json sensitivity_json(const EnsemblePlan& plan, const std::vector<SampleResult>&
 }
 
 /// Rows of the page: what hangs on which key.
-std::string sensitivity_section(const EnsemblePlan& plan, const std::vector<SampleResult>& results) {
+std::string sensitivity_section(const EnsemblePlan& plan, const EnsembleBase& base,
+                                const std::vector<SampleResult>& results) {
     if (plan.method != Method::saltelli && plan.method != Method::morris) return "";
     const bool shares = plan.method == Method::saltelli;
     std::string page = fmt::format("\n\n## What the outcomes hang on\n\n| | key | {} | {} |\n|---|---|---:|---:|\n",
                                    shares ? "first order" : "mean effect", shares ? "total" : "its spread");
-    for (const Outcome& outcome : kOutcomes) {
+    for (const Outcome& outcome : outcomes_of(base)) {
         const auto found = sensitivity_of(outcome, plan, results);
         for (std::size_t k = 0; k < found.size(); ++k)
             page += fmt::format("| {} | `{}` | {:.3g} | {:.3g} |\n", outcome.name, plan.vary[k].key, found[k].first,
@@ -74,8 +79,19 @@ std::string nearest_section(const EnsemblePlan& plan, const std::vector<SampleRe
     return page;
 }
 
-Json record_of(const EnsemblePlan& plan, const EnsembleSummary& summary, const WeightedRuns& runs,
-               const std::vector<SampleResult>& results) {
+/// A number, or null: what a share of the runs, or all of them, do not have.
+Json known(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+Json statistics_json(const EnsemblePlan& plan, const WeightedRuns& runs, const Outcome& outcome) {
+    const std::optional<double> mean = runs.mean(outcome);
+    Json numbers = {{"mean", mean ? Json(*mean) : Json(nullptr)}};
+    for (const double q : plan.quantiles) numbers[fmt::format("q{:g}", q)] = known(runs.quantile(outcome, q));
+    if (outcome.never != Outcome::Never::cannot_be) numbers["share_that_came"] = runs.share_with(outcome);
+    return numbers;
+}
+
+Json record_of(const EnsemblePlan& plan, const EnsembleBase& base, const EnsembleSummary& summary,
+               const WeightedRuns& runs, const std::vector<SampleResult>& results) {
     Json json = {{"frana", FRANA_VERSION},
                  {"ensemble", plan.file.filename().string()},
                  {"case", plan.case_file.filename().string()},
@@ -89,14 +105,25 @@ Json record_of(const EnsemblePlan& plan, const EnsembleSummary& summary, const W
                  {"effective_number", summary.effective},
                  {"core_seconds", summary.core_seconds},
                  {"seconds", summary.wall_seconds ? Json(*summary.wall_seconds) : Json(nullptr)}};
-    for (const Outcome& outcome : kOutcomes) {
-        Json& numbers = json["results"][outcome.key] = {{"mean", runs.mean(outcome.value)}};
-        for (const double q : plan.quantiles) numbers[fmt::format("q{:g}", q)] = runs.quantile(outcome.value, q);
-    }
-    const Json sensitivity = sensitivity_json(plan, results);
+    for (const Outcome& outcome : outcomes_of(base))
+        json["results"][outcome.key] = statistics_json(plan, runs, outcome);
+    const Json sensitivity = sensitivity_json(plan, base, results);
     if (!sensitivity.empty()) json["sensitivity"] = sensitivity;
     json["files"] = summary.files;
     return json;
+}
+
+/// How statistics count runs that never come to a gauge.
+std::string gauges_note(const EnsembleBase& base, const WeightedRuns& runs) {
+    if (base.gauges.empty()) return "";
+    std::string note = "\n\nShare of the runs that come to a gauge:";
+    for (std::size_t k = 0; k < base.gauges.size(); ++k)
+        note += fmt::format("{} {} {:.3g}", k > 0 ? "," : "", base.gauges[k].name,
+                            runs.share_with(outcomes_of_gauge(base, k).front()));
+    return note +
+           ". Where a run never comes, depth and speed count as 0 and the time as later than any; the mean time is "
+           "that of "
+           "the runs that come.";
 }
 
 std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const EnsembleSummary& summary,
@@ -105,12 +132,15 @@ std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const En
     for (const double q : plan.quantiles) page += fmt::format(" {:g} of the runs at most |", q);
     page += "\n|---|---:|";
     for (std::size_t k = 0; k < plan.quantiles.size(); ++k) page += "---:|";
-    for (const Outcome& outcome : kOutcomes) {
-        page += fmt::format("\n| {} | {:.5g} |", outcome.name, runs.mean(outcome.value));
-        for (const double q : plan.quantiles) page += fmt::format(" {:.5g} |", runs.quantile(outcome.value, q));
+    const auto shown = [](double number) { return std::isfinite(number) ? fmt::format("{:.5g}", number) : "never"; };
+    for (const Outcome& outcome : outcomes_of(base)) {
+        const std::optional<double> mean = runs.mean(outcome);
+        page += fmt::format("\n| {} | {} |", outcome.name, mean ? shown(*mean) : "never");
+        for (const double q : plan.quantiles) page += fmt::format(" {} |", shown(runs.quantile(outcome, q)));
     }
+    page += gauges_note(base, runs);
     page += nearest_section(plan, results);
-    page += sensitivity_section(plan, results);
+    page += sensitivity_section(plan, base, results);
     if (!summary.maps_drawn)
         page +=
             "\n\nNo maps are drawn, since the runs hold a part of the terrain only (`output.extent = \"terrain\"` "
@@ -130,7 +160,8 @@ void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
     file.put("sample,weight");
     for (const Vary& vary : plan.vary) file.put(",{}", vary.key);
     file.put(",reason,time_s,steps");
-    for (const Outcome& outcome : kOutcomes) file.put(",{}", outcome.key);
+    const std::vector<Outcome> outcomes = outcomes_of(base);
+    for (const Outcome& outcome : outcomes) file.put(",{}", outcome.key);
     if (base.survey) file.put(",iou,boundary_m");
     file.put(",left_share,mass_error,message\n");
     for (const SampleResult& r : results) {
@@ -138,7 +169,7 @@ void write_runs(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
         file.put("{},{}", r.sample, point.weight);
         for (const std::string& value : point.values) file.put(",{}", csv_field(value));
         file.put(",{},{},{}", r.reason, r.time, r.steps);
-        for (const Outcome& outcome : kOutcomes) file.put(",{}", r.*outcome.value);
+        for (const Outcome& outcome : outcomes) file.put(",{}", text_of_known(outcome.value(r)));
         if (base.survey) file.put(",{},{}", text_of_known(r.iou), text_of_known(r.boundary));
         file.put(",{},{},{}\n", r.left_share, r.mass_error, csv_field(r.message));
     }
@@ -174,7 +205,7 @@ void write_page(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBas
                 const std::vector<SampleResult>& results, EnsembleSummary& summary) {
     summary.files.emplace_back("report.md");
     write_text(dir / "report.md", page_of(plan, base, summary, runs, results));
-    write_text(dir / "ensemble.json", record_of(plan, summary, runs, results).dump(2) + "\n");
+    write_text(dir / "ensemble.json", record_of(plan, base, summary, runs, results).dump(2) + "\n");
 }
 
 }  // namespace frana

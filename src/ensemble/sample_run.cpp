@@ -128,6 +128,9 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
     auto owned = std::make_unique<LastPeaks>(plan.fields);
     const LastPeaks& peaks = *owned;
     observers.push_back(std::move(owned));
+    auto owned_gauges = std::make_unique<GaugePeaks>(scene.gauges, base.footprint_depth);
+    const GaugePeaks& gauges = *owned_gauges;
+    if (!scene.gauges.empty()) observers.push_back(std::move(owned_gauges));
     std::ostream nowhere(nullptr);
     Progress progress(nowhere, Progress::Style::silent, scene.density);
     RunPlan steps;
@@ -138,6 +141,7 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
     const RunSummary run = frana::run(*simulation, steps, observers, interrupt, progress);
     result.reason = run.reason, result.message = run.failure_text;
     result.time = run.last.time, result.steps = run.steps;
+    result.gauges = gauges.peaks();
     measure(scene, base, run, peaks, result);
 }
 
@@ -151,6 +155,7 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.title = scene.title;
     base.footprint_depth = scene.output.footprint_depth;
     base.stops_at_rest = scene.stop_at_rest;
+    base.gauges = scene.gauges;
     base.start = start_of(scene);
     if (base.start) base.path = steepest_path(scene.bed, *base.start);
     if (!(length_of(base.path) > 0.0)) base.path.clear();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compare/outline.h"
+#include "ensemble/gauge_peaks.h"
 #include "ensemble/plan.h"
 #include "run/interrupt.h"
 #include "scene/toolbox.h"
@@ -22,6 +23,7 @@ struct EnsembleBase {
     std::optional<Vec2> start;          ///< the middle of the releases
     std::optional<Polygons> footprint;  ///< surveyed, where the case has one
     std::optional<Rings> survey;        ///< its rings
+    std::vector<Gauge> gauges;          ///< of the case
     Polyline path;                      ///< that all runouts are measured along; empty: none is known
 };
 
@@ -46,6 +48,7 @@ struct SampleResult {
     std::optional<double> iou;                ///< of the footprint with the surveyed one, where there is one [1]
     std::optional<double> boundary;           ///< mean distance of their outlines; nothing where nothing flowed [m]
     std::optional<double> boundary_rms;       ///< root of its mean square; not kept in files [m]
+    std::vector<GaugePeak> gauges;            ///< of the base's
     SparseRasters peaks;                      ///< the plan's fields where peak_depth exceeds the footprint depth
 
     /// The run has an answer: it came to an end of its own or to time.end.
