@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "base/error.h"
 #include "ensemble/statistics.h"
@@ -60,6 +61,7 @@ private:
         PixelValues pixels(base_.whole);
         pixels.gather(runs_.peaks, runs_.weights, f);
         if (f == 0) reached_ = pixels.reached();
+        if (field.is_time) return write_arrival(field, pixels);
         const auto asked = plan_.exceed.find(field.name);
         if (asked != plan_.exceed.end())
             for (const double threshold : asked->second) write_exceedance(field, threshold, pixels);
@@ -67,11 +69,38 @@ private:
             raster(fmt::format("quantile_{}_{:g}", field.name, q), pixels.quantile(q), field.unit,
                    fmt::format("{}: {:g} of the runs do not exceed it", field.meaning, q));
         raster(fmt::format("mean_{}", field.name), pixels.mean(), field.unit, fmt::format("mean {}", field.meaning));
+        write_sensitivity(field, pixels);
         if (f > 0) return;
         raster("probability_reached", reached_, "1", "share of the runs that come there");
         draw_map(reached_, "probability_reached",
                  fmt::format("probability of a depth above {:g} m", base_.footprint_depth));
         for (const double p : {0.05, 0.5, 0.95}) write_contour(reached_, p);
+    }
+
+    void write_arrival(const PeakField& field, const PixelValues& pixels) {
+        for (const double q : plan_.quantiles)
+            everywhere(fmt::format("quantile_{}_{:g}", field.name, q), pixels.arrival_quantile(q), field.unit,
+                       fmt::format("time by which {:g} of the runs have come; none where fewer come", q));
+    }
+
+    /// What the field hangs on at each pixel, where the samples were made for that.
+    void write_sensitivity(const PeakField& field, const PixelValues& pixels) {
+        const bool shares = plan_.method == Method::saltelli;
+        if (!shares && plan_.method != Method::morris) return;
+        const SensitivityMaps maps = sensitivity_maps(plan_.method, plan_.design, runs_.samples(), pixels);
+        for (std::size_t k = 0; k < plan_.vary.size(); ++k) {
+            const std::string& key = plan_.vary[k].key;
+            if (!shares) {
+                everywhere(fmt::format("mean_effect_{}_{}", field.name, key), maps.first[k], field.unit,
+                           fmt::format("mean effect of {} on the {}", key, field.meaning));
+                continue;
+            }
+            everywhere(fmt::format("first_order_{}_{}", field.name, key), maps.first[k], "1",
+                       fmt::format("share of the variance of the {} by {} alone", field.meaning, key));
+            everywhere(
+                fmt::format("total_{}_{}", field.name, key), maps.total[k], "1",
+                fmt::format("share of the variance of the {} by {} and all that goes with it", field.meaning, key));
+        }
     }
 
     void write_contour(Raster reached, double p) {
@@ -96,11 +125,21 @@ private:
             high.values[k] = (p.values[k] * runs_.total + runs_.failed_weight) / all;
         }
         raster(name + "_error", error, "1", "standard error of the " + meaning);
+        if (plan_.method == Method::random) write_wilson(name, p, meaning);
         if (runs_.failed_weight > 0.0) {
             raster(name + "_low", low, "1", meaning + ", if no run that failed did");
             everywhere(name + "_high", high, "1", meaning + ", if every run that failed did");
         }
         draw_map(p, name, fmt::format("probability of {} above {}", field.meaning, amount(threshold, field)));
+    }
+
+    /// The upper bound stands also where no run came: few runs do not tell that none will.
+    void write_wilson(const std::string& name, const Raster& p, const std::string& meaning) {
+        Raster low = p, high = p;
+        for (std::size_t k = 0; k < p.values.size(); ++k)
+            std::tie(low.values[k], high.values[k]) = wilson_bounds(p.values[k], summary_.effective);
+        raster(name + "_wilson_low", low, "1", "lower 95 % bound of the " + meaning);
+        everywhere(name + "_wilson_high", high, "1", "upper 95 % bound of the " + meaning);
     }
 
     void draw_map(const Raster& p, const std::string& name, const std::string& label) {

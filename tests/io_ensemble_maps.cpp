@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
+#include "ensemble/statistics.h"
 #include "pond.h"
 
 namespace fs = std::filesystem;
@@ -14,11 +15,17 @@ namespace {
 /// All of the pond is released with the weight 0.7, else its west, which does not come to its east in half a second.
 const std::string two_outlines =
     "[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\nquantiles = [0.5, 0.95]\n"
+    "fields = [\"peak_depth\", \"arrival_time\"]\n"
     "[[ensemble.vary]]\nkey = \"release.0.outline\"\ndistribution = \"discrete\"\n"
     "values = [\"all.geojson\", \"west.geojson\"]\nweights = [0.7, 0.3]\n";
 
 const std::string gauges =
     "[[gauge]]\nname = \"west\"\npoint = [10, 30]\n[[gauge]]\nname = \"east\"\npoint = [50, 30]\n";
+
+std::size_t pixel_at(const frana::Raster& map, double x, double y) {
+    const frana::GridGeometry& g = map.geometry;
+    return static_cast<std::size_t>(std::lround((y - g.y0) / g.cell) * g.nx + std::lround((x - g.x0) / g.cell));
+}
 
 }  // namespace
 
@@ -45,4 +52,66 @@ TEST_CASE("Gauges of the case are columns of the runs and outcomes of the ensemb
     const std::string runs = text_of(pond.path("many/runs.csv"));
     REQUIRE(pond.frana("ensemble --join many --quiet").code == 0);  // from what the shards hold
     CHECK(text_of(pond.path("many/runs.csv")) == runs);
+}
+
+TEST_CASE("Maps of arrival tell when a share of the runs has come, and nothing where fewer come", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml", two_outlines);
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    const frana::Raster half = pond.map("many", "quantile_arrival_time_0.5"),
+                        most = pond.map("many", "quantile_arrival_time_0.95");
+    CHECK(half.values[pixel_at(half, 50, 30)] == 0.0);
+    CHECK(most.values[pixel_at(most, 10, 30)] == 0.0);
+    CHECK(std::isnan(most.values[pixel_at(most, 50, 30)]));
+    CHECK_FALSE(fs::exists(pond.path("many/rasters/mean_arrival_time.tif")));
+    pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nexceed = { arrival_time = [3] }\n" +
+                                two_outlines.substr(two_outlines.find("method")));
+    CHECK_THAT(pond.frana("ensemble many.toml --out other").err, Contains("found a threshold of a time"));
+}
+
+TEST_CASE("Indices stand on every pixel, of the numbers at gauges too", "[ensemble]") {
+    const Pond pond;
+    pond.write("case.toml", text_of(pond.path("case.toml")) + gauges);
+    const std::string keys =
+        "fields = [\"peak_depth\", \"peak_pressure\"]\n"
+        "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n"
+        "[[ensemble.vary]]\nkey = \"material.density\"\nrange = [1000.0, 2000.0]\n";
+    pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nmethod = \"saltelli\"\nsamples = 16\n" + keys);
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    const auto everywhere = [&](const std::string& name, double value, double margin) {
+        CAPTURE(name);
+        for (const double found : pond.map("many", name).values) CHECK(found == Approx(value).margin(margin));
+    };
+    // The depth of a pond hangs on nothing but the depth released; float32 keeps the fields.
+    everywhere("first_order_peak_depth_release.0.depth", 1.0, 1e-6);
+    everywhere("total_peak_depth_material.density", 0.0, 1e-6);
+    const Json json = Json::parse(text_of(pond.path("many/ensemble.json")));
+    CHECK(json["sensitivity"]["gauge_east_depth_m"]["release.0.depth"]["first_order"].get<double>() ==
+          Approx(1.0).margin(1e-6));
+    // The pressure rho g h: its two factors have the same relative spread, and hardly act together.
+    const frana::Raster depth = pond.map("many", "total_peak_pressure_release.0.depth"),
+                        density = pond.map("many", "total_peak_pressure_material.density");
+    CHECK(depth.values[40] > 0.3);
+    CHECK(density.values[40] > 0.3);
+
+    SECTION("by Morris' ways") {
+        pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nmethod = \"morris\"\nsamples = 4\n" + keys);
+        REQUIRE(pond.frana("ensemble many.toml --out ways --quiet").code == 0);
+        for (const double effect : pond.map("ways", "mean_effect_peak_depth_release.0.depth").values)
+            CHECK(effect == Approx(1.0).margin(1e-6));  // of going through 1 to 2 m
+    }
+}
+
+TEST_CASE("Random samples come with Wilson's bounds of their probabilities", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"random\"\nsamples = 10\nfields = [\"peak_depth\"]\n"
+               "exceed = { peak_depth = [1.25] }\n"
+               "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n");
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    const double p = pond.map("many", "probability_peak_depth_1.25").values[40];
+    const auto [low, high] = frana::wilson_bounds(p, 10.0);
+    REQUIRE((p > 0.0 && p < 1.0));
+    CHECK(pond.map("many", "probability_peak_depth_1.25_wilson_low").values[40] == Approx(low).epsilon(1e-6));
+    CHECK(pond.map("many", "probability_peak_depth_1.25_wilson_high").values[40] == Approx(high).epsilon(1e-6));
 }

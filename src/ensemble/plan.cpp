@@ -122,7 +122,10 @@ private:
         CheckedTable fields(*all, "ensemble.exceed", plan_.file, problems_);
         for (const std::string& field : plan_.fields)
             for (const double threshold : fields.numbers(field)) {
-                if (threshold >= 0.0)
+                if (field == "arrival_time")
+                    fields.wrong(field, "found a threshold of a time", "expected fields that have peaks",
+                                 "ensemble.quantiles are times by which a share of the runs has come");
+                else if (threshold >= 0.0)
                     plan_.exceed[field].push_back(threshold);
                 else
                     fields.wrong(field, fmt::format("found {:g}", threshold), "expected thresholds from 0 on",
@@ -178,7 +181,8 @@ const std::vector<PeakField>& peak_fields() {
     static const std::vector<PeakField> fields = {{"peak_depth", "m", "peak depth"},
                                                   {"peak_speed", "m/s", "peak speed"},
                                                   {"peak_pressure", "Pa", "peak pressure on the bed"},
-                                                  {"peak_dynamic_pressure", "Pa", "peak dynamic pressure"}};
+                                                  {"peak_dynamic_pressure", "Pa", "peak dynamic pressure"},
+                                                  {"arrival_time", "s", "time of arrival", true}};
     return fields;
 }
 
@@ -205,7 +209,8 @@ void add_exceedance(EnsemblePlan& plan, const std::string& argument) {
     char* end = nullptr;
     const std::string number = equals == std::string::npos ? "" : argument.substr(equals + 1);
     const double value = std::strtod(number.c_str(), &end);
-    const bool known = std::find(plan.fields.begin(), plan.fields.end(), field) != plan.fields.end();
+    const bool known =
+        field != "arrival_time" && std::find(plan.fields.begin(), plan.fields.end(), field) != plan.fields.end();
     if (!known || number.empty() || *end != '\0' || !(value >= 0.0 && std::isfinite(value)))
         throw UserError(
             fmt::format("--exceed: found \"{}\"; expected FIELD=VALUE with a number from 0 on and {}; "

@@ -45,6 +45,7 @@ struct EnsemblePlan {
 /// Node fields that an ensemble can keep, with unit and meaning.
 struct PeakField {
     const char *name, *unit, *meaning;
+    bool is_time = false;  ///< of arrival: there is none where a run never came
 };
 const std::vector<PeakField>& peak_fields();
 

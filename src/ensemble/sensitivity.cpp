@@ -1,5 +1,6 @@
 #include "ensemble/sensitivity.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -9,65 +10,6 @@ namespace frana {
 namespace {
 
 constexpr Index kLevels = 4;  ///< of Morris' grid; a step is half of them
-
-using Group = std::vector<double>;  ///< outcomes of the runs that belong together
-
-/// Groups whose runs all have an answer.
-std::vector<Group> whole_groups(std::size_t each, const std::vector<std::optional<double>>& outcomes,
-                                std::vector<std::size_t>& starts) {
-    std::vector<Group> groups;
-    for (std::size_t start = 0; start + each <= outcomes.size(); start += each) {
-        Group group;
-        for (std::size_t k = 0; k < each; ++k)
-            if (outcomes[start + k]) group.push_back(*outcomes[start + k]);
-        if (group.size() < each) continue;
-        groups.push_back(group);
-        starts.push_back(start);
-    }
-    return groups;
-}
-
-double variance_of_a_and_b(const std::vector<Group>& groups) {
-    double sum = 0.0, squares = 0.0;
-    const double count = 2.0 * static_cast<double>(groups.size());
-    for (const Group& g : groups) sum += g[0] + g[1];
-    for (const Group& g : groups)
-        squares += (g[0] - sum / count) * (g[0] - sum / count) + (g[1] - sum / count) * (g[1] - sum / count);
-    return squares / count;
-}
-
-std::vector<Sensitivity> by_sobol(const std::vector<Group>& groups, std::size_t keys) {
-    const double variance = variance_of_a_and_b(groups), count = static_cast<double>(groups.size());
-    if (!(variance > 0.0)) return {};
-    std::vector<Sensitivity> all(keys);
-    for (std::size_t k = 0; k < keys; ++k) {
-        for (const Group& g : groups) {
-            const double a = g[0], b = g[1], mixed = g[2 + k];
-            all[k].first += 1.0 / count - (b - mixed) * (b - mixed) / (2.0 * count * variance);
-            all[k].total += (a - mixed) * (a - mixed) / (2.0 * count * variance);
-        }
-    }
-    return all;
-}
-
-std::vector<Sensitivity> by_morris(const std::vector<Group>& groups, const std::vector<std::size_t>& starts,
-                                   const Design& design, std::size_t keys) {
-    std::vector<Sensitivity> all(keys);
-    std::vector<double> sum(keys, 0.0), squares(keys, 0.0);
-    const double count = static_cast<double>(groups.size());
-    for (std::size_t n = 0; n < groups.size(); ++n)
-        for (std::size_t m = 0; m < keys; ++m) {
-            const auto &from = design.points[starts[n] + m], &to = design.points[starts[n] + m + 1];
-            for (std::size_t k = 0; k < keys; ++k) {
-                if (from[k] == to[k]) continue;
-                const double effect = (groups[n][m + 1] - groups[n][m]) / (to[k] - from[k]);
-                all[k].first += std::abs(effect) / count;
-                sum[k] += effect / count, squares[k] += effect * effect / count;
-            }
-        }
-    for (std::size_t k = 0; k < keys; ++k) all[k].total = std::sqrt(std::max(0.0, squares[k] - sum[k] * sum[k]));
-    return all;
-}
 
 void fill_saltelli(Design& design, Index count, Index keys, std::uint64_t seed) {
     const Design both = make_design(Method::sobol, count, 2 * keys, seed);
@@ -120,16 +62,94 @@ Design make_sensitivity_design(Method method, Index count, Index keys, std::uint
     return design;
 }
 
+SensitivityOfRuns::SensitivityOfRuns(Method method, const Design& design, const std::vector<bool>& has)
+    : method_(method), design_(design) {
+    expect(has.size() == design.points.size(), "an outcome for each sample");
+    if (design.points.empty()) return;
+    keys_ = design.points.front().size();
+    const auto each = static_cast<std::size_t>(runs_each(method, static_cast<Index>(keys_)));
+    for (std::size_t start = 0; start + each <= has.size(); start += each) {
+        const auto first = has.begin() + static_cast<std::ptrdiff_t>(start);
+        if (std::all_of(first, first + static_cast<std::ptrdiff_t>(each), [](bool one) { return one; }))
+            starts_.push_back(start);
+    }
+}
+
+std::vector<Sensitivity> SensitivityOfRuns::of(const std::vector<double>& outcomes, double noise) const {
+    if (starts_.size() < 2) return {};
+    return method_ == Method::saltelli ? by_sobol(outcomes, noise) : by_morris(outcomes, noise);
+}
+
+std::vector<Sensitivity> SensitivityOfRuns::by_sobol(const std::vector<double>& y, double noise) const {
+    const double count = static_cast<double>(starts_.size());
+    double sum = 0.0, variance = 0.0;
+    for (const std::size_t s : starts_) sum += y[s] + y[s + 1];
+    const double mean = sum / (2.0 * count);
+    for (const std::size_t s : starts_)
+        variance += ((y[s] - mean) * (y[s] - mean) + (y[s + 1] - mean) * (y[s + 1] - mean)) / (2.0 * count);
+    if (!(variance > noise * noise * mean * mean)) return {};
+    std::vector<Sensitivity> all(keys_);
+    for (std::size_t k = 0; k < keys_; ++k)
+        for (const std::size_t s : starts_) {
+            const double a = y[s], b = y[s + 1], mixed = y[s + 2 + k];
+            all[k].first += 1.0 / count - (b - mixed) * (b - mixed) / (2.0 * count * variance);
+            all[k].total += (a - mixed) * (a - mixed) / (2.0 * count * variance);
+        }
+    return all;
+}
+
+std::vector<Sensitivity> SensitivityOfRuns::by_morris(const std::vector<double>& y, double noise) const {
+    std::vector<Sensitivity> all(keys_);
+    std::vector<double> sum(keys_, 0.0), squares(keys_, 0.0);
+    const double count = static_cast<double>(starts_.size());
+    double largest = 0.0;
+    for (const std::size_t s : starts_)
+        for (std::size_t m = 0; m < keys_; ++m) {
+            const auto &from = design_.points[s + m], &to = design_.points[s + m + 1];
+            largest = std::max({largest, std::abs(y[s + m]), std::abs(y[s + m + 1])});
+            for (std::size_t k = 0; k < keys_; ++k) {
+                if (from[k] == to[k]) continue;
+                const double effect = (y[s + m + 1] - y[s + m]) / (to[k] - from[k]);
+                all[k].first += std::abs(effect) / count;
+                sum[k] += effect / count, squares[k] += effect * effect / count;
+            }
+        }
+    for (std::size_t k = 0; k < keys_; ++k) all[k].total = std::sqrt(std::max(0.0, squares[k] - sum[k] * sum[k]));
+    const bool none =
+        std::all_of(all.begin(), all.end(), [&](const Sensitivity& one) { return !(one.first > noise * largest); });
+    return none ? std::vector<Sensitivity>{} : all;
+}
+
 std::vector<Sensitivity> sensitivities(Method method, const Design& design,
                                        const std::vector<std::optional<double>>& outcomes) {
-    expect(outcomes.size() == design.points.size(), "an outcome for each sample");
-    if (design.points.empty()) return {};
-    const std::size_t keys = design.points.front().size();
-    std::vector<std::size_t> starts;
-    const auto groups =
-        whole_groups(static_cast<std::size_t>(runs_each(method, static_cast<Index>(keys))), outcomes, starts);
-    if (groups.size() < 2) return {};
-    return method == Method::saltelli ? by_sobol(groups, keys) : by_morris(groups, starts, design, keys);
+    std::vector<bool> has;
+    std::vector<double> numbers;
+    for (const auto& outcome : outcomes) has.push_back(outcome.has_value()), numbers.push_back(outcome.value_or(0.0));
+    constexpr double noise = 1e-12;  // round-off of the mean
+    return SensitivityOfRuns(method, design, has).of(numbers, noise);
+}
+
+SensitivityMaps sensitivity_maps(Method method, const Design& design, const std::vector<Index>& samples,
+                                 const PixelValues& pixels) {
+    const std::size_t keys = design.points.empty() ? 0 : design.points.front().size();
+    std::vector<bool> has(design.points.size(), false);
+    for (const Index sample : samples) has[static_cast<std::size_t>(sample)] = true;
+    const SensitivityOfRuns runs(method, design, has);
+    SensitivityMaps maps;
+    maps.first.assign(keys, Raster::filled(pixels.grid(), Raster::nodata));
+    maps.total = maps.first;
+    constexpr double noise = 1e-6;  // the runs' fields are kept with seven digits
+    std::vector<double> outcomes(design.points.size(), 0.0);
+    pixels.for_each_by_run([&](Index pixel, const std::vector<double>& values) {
+        for (std::size_t run = 0; run < values.size(); ++run)
+            outcomes[static_cast<std::size_t>(samples[run])] = values[run];
+        const std::vector<Sensitivity> found = runs.of(outcomes, noise);
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            maps.first[k].values[static_cast<std::size_t>(pixel)] = found[k].first;
+            maps.total[k].values[static_cast<std::size_t>(pixel)] = found[k].total;
+        }
+    });
+    return maps;
 }
 
 }  // namespace frana

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ensemble/design.h"
+#include "ensemble/statistics.h"
 
 namespace frana {
 
@@ -25,9 +26,36 @@ Index runs_each(Method method, Index keys);
 /// 1991).
 Design make_sensitivity_design(Method method, Index count, Index keys, std::uint64_t seed);
 
-/// By key. `outcomes`: of each sample, nothing where its run has no answer; its group then does not count. S and T by Jansen
-/// (1999). Empty where fewer than two groups count, or nothing varies.
+/// Indices of outcomes of the same runs. S and T by Jansen (1999).
+class SensitivityOfRuns {
+public:
+    /// `has`: of each sample, whether its run has an answer; otherwise its group does not count.
+    SensitivityOfRuns(Method method, const Design& design, const std::vector<bool>& has);
+
+    /// By key, of the outcomes of all samples; those of groups that do not count are not looked at. Empty where fewer than two
+    /// groups count, or nothing varies by more than `noise`, the relative round-off of the outcomes.
+    std::vector<Sensitivity> of(const std::vector<double>& outcomes, double noise) const;
+
+private:
+    std::vector<Sensitivity> by_sobol(const std::vector<double>& outcomes, double noise) const;
+    std::vector<Sensitivity> by_morris(const std::vector<double>& outcomes, double noise) const;
+
+    Method method_;
+    const Design& design_;
+    std::size_t keys_ = 0;
+    std::vector<std::size_t> starts_;  ///< first samples of the groups that count
+};
+
+/// The same of one outcome: nothing where a run has none.
 std::vector<Sensitivity> sensitivities(Method method, const Design& design,
                                        const std::vector<std::optional<double>>& outcomes);
+
+/// Maps of indices: by key, the first and the total of a field of all runs on each pixel, NaN where it does not vary.
+struct SensitivityMaps {
+    std::vector<Raster> first, total;
+};
+/// `samples`: of the runs that `pixels` holds, in its order.
+SensitivityMaps sensitivity_maps(Method method, const Design& design, const std::vector<Index>& samples,
+                                 const PixelValues& pixels);
 
 }  // namespace frana

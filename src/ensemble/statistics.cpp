@@ -6,13 +6,18 @@
 #include "base/error.h"
 
 namespace frana {
+namespace {
+
+constexpr double kRoundOff = 1e-9;  ///< of sums of weights
+
+}  // namespace
 
 void PixelValues::gather(const std::vector<const SparseRasters*>& runs, const std::vector<double>& weights,
                          std::size_t field) {
     expect(runs.size() == weights.size(), "a weight for each run");
     const auto pixels = static_cast<std::size_t>(grid_.size());
     first_.assign(pixels + 1, 0);
-    weight_ = 0.0;
+    weights_ = weights, weight_ = 0.0;
     for (const double weight : weights) weight_ += weight;
     for (const SparseRasters* run : runs)
         run->for_each([&](Index pixel, std::size_t) { ++first_[static_cast<std::size_t>(pixel) + 1]; });
@@ -21,9 +26,8 @@ void PixelValues::gather(const std::vector<const SparseRasters*>& runs, const st
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t r = 0; r < runs.size(); ++r) {
         const std::vector<float>& of = runs[r]->values.at(field);
-        const double weight = weights[r];
         runs[r]->for_each([&](Index pixel, std::size_t n) {
-            values_[next[static_cast<std::size_t>(pixel)]++] = {of[n], weight};
+            values_[next[static_cast<std::size_t>(pixel)]++] = {of[n], static_cast<std::uint32_t>(r)};
         });
     }
 }
@@ -42,7 +46,7 @@ Raster PixelValues::exceeds(double threshold) const {
     return of_each([&](const Value* first, const Value* past) {
         double sum = 0.0;
         for (const Value* v = first; v != past; ++v)
-            if (v->value > limit) sum += v->weight;
+            if (v->value > limit) sum += weight_of(*v);
         return sum / weight_;
     });
 }
@@ -50,7 +54,7 @@ Raster PixelValues::exceeds(double threshold) const {
 Raster PixelValues::reached() const {
     return of_each([&](const Value* first, const Value* past) {
         double sum = 0.0;
-        for (const Value* v = first; v != past; ++v) sum += v->weight;
+        for (const Value* v = first; v != past; ++v) sum += weight_of(*v);
         return sum / weight_;
     });
 }
@@ -58,25 +62,43 @@ Raster PixelValues::reached() const {
 Raster PixelValues::mean() const {
     return of_each([&](const Value* first, const Value* past) {
         double sum = 0.0;
-        for (const Value* v = first; v != past; ++v) sum += v->weight * static_cast<double>(v->value);
+        for (const Value* v = first; v != past; ++v) sum += weight_of(*v) * static_cast<double>(v->value);
         return sum / weight_;
     });
 }
 
 Raster PixelValues::quantile(double q) const {
     std::vector<Value> sorted;
-    constexpr double round_off = 1e-9;
     return of_each([&](const Value* first, const Value* past) {
         sorted.assign(first, past);
         std::stable_sort(sorted.begin(), sorted.end(),
                          [](const Value& a, const Value& b) { return a.value > b.value; });
         double above = 0.0;  // from the largest down: what exceeds a value may be at most 1 - q
         for (const Value& v : sorted) {
-            above += v.weight;
-            if (above > (1.0 - q) * weight_ * (1.0 + round_off)) return static_cast<double>(v.value);
+            above += weight_of(v);
+            if (above > (1.0 - q) * weight_ * (1.0 + kRoundOff)) return static_cast<double>(v.value);
         }
         return 0.0;
     });
+}
+
+Raster PixelValues::arrival_quantile(double q) const {
+    std::vector<Value> sorted;
+    Raster raster = of_each([&](const Value* first, const Value* past) {
+        sorted.assign(first, past);
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](const Value& a, const Value& b) { return a.value < b.value; });
+        double come = 0.0;
+        for (const Value& v : sorted) {
+            if (v.value < 0.0F) continue;
+            come += weight_of(v);
+            if (come >= q * weight_ * (1.0 - kRoundOff)) return static_cast<double>(v.value);
+        }
+        return Raster::nodata;
+    });
+    for (std::size_t k = 0; k + 1 < first_.size(); ++k)
+        if (first_[k] == first_[k + 1]) raster.values[k] = Raster::nodata;
+    return raster;
 }
 
 double effective_number(const std::vector<double>& weights) {
@@ -87,6 +109,14 @@ double effective_number(const std::vector<double>& weights) {
 
 double standard_error(double p, double number) {
     return number > 0.0 ? std::sqrt(std::max(0.0, p * (1.0 - p)) / number) : 0.0;
+}
+
+std::pair<double, double> wilson_bounds(double p, double number) {
+    if (!(number > 0.0)) return {0.0, 1.0};
+    constexpr double z = 1.959963984540054;  // 0.975 of a normal distribution lies below
+    const double z2 = z * z / number, middle = (p + 0.5 * z2) / (1.0 + z2);
+    const double half = z / (1.0 + z2) * std::sqrt((p * (1.0 - p) + 0.25 * z2) / number);
+    return {std::clamp(middle - half, 0.0, p), std::clamp(middle + half, p, 1.0)};  // round-off aside
 }
 
 }  // namespace frana

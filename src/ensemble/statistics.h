@@ -1,5 +1,7 @@
 #pragma once
 // Maps of an ensemble: in how many of its runs a pixel saw more than a threshold, and what a share of them stayed below.
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "terrain/sparse_rasters.h"
@@ -15,24 +17,44 @@ public:
     /// Takes the `field`-th field of all runs; `weights` are theirs, of the same number.
     void gather(const std::vector<const SparseRasters*>& runs, const std::vector<double>& weights, std::size_t field);
 
+    const GridGeometry& grid() const { return grid_; }
+
     /// Share of the weights with more than `threshold` [1].
     Raster exceeds(double threshold) const;
     /// The least value that at least a share `q` of the weights does not exceed; 0 where a run did not come.
     Raster quantile(double q) const;
+    /// The least time by which at least a share `q` of the weights has come. A run that never came, or has a time below zero,
+    /// comes later than any. NaN where fewer come.
+    Raster arrival_quantile(double q) const;
     Raster mean() const;
     /// Weight of the runs that came there, over all [1].
     Raster reached() const;
 
+    /// Calls body(pixel, values) for each pixel that a run came to: the value of each run, 0 where it did not come.
+    template <class Body>
+    void for_each_by_run(Body&& body) const {
+        std::vector<double> values(weights_.size(), 0.0);
+        for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
+            if (first_[k] == first_[k + 1]) continue;
+            for (std::size_t n = first_[k]; n < first_[k + 1]; ++n)
+                values[values_[n].run] = static_cast<double>(values_[n].value);
+            body(static_cast<Index>(k), values);
+            for (std::size_t n = first_[k]; n < first_[k + 1]; ++n) values[values_[n].run] = 0.0;
+        }
+    }
+
 private:
     struct Value {
         float value;
-        double weight;
+        std::uint32_t run;
     };
     template <class Body>
     Raster of_each(Body&& body) const;
+    double weight_of(const Value& value) const { return weights_[value.run]; }
 
     GridGeometry grid_;
     double weight_ = 0.0;             ///< of all runs
+    std::vector<double> weights_;     ///< by run
     std::vector<std::size_t> first_;  ///< by pixel, and one past the last
     std::vector<Value> values_;
 };
@@ -42,5 +64,9 @@ double effective_number(const std::vector<double>& weights);
 
 /// What is not known of a probability `p` of so many independent runs: sqrt(p (1 - p) / n).
 double standard_error(double p, double number);
+
+/// Between which a probability lies that was found as `p` in so many independent runs: 95 of 100 such intervals hold it
+/// (Wilson, J. Am. Stat. Assoc. 22 (1927) 209-212). [0, 1] without a run.
+std::pair<double, double> wilson_bounds(double p, double number);
 
 }  // namespace frana
