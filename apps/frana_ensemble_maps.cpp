@@ -191,6 +191,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     const WeightedRuns runs(plan, results);
     summary.effective = std::min(effective_number(runs.weights), runs.independent(plan));
     MapWriter(dir, plan, base, runs, summary).write();
+    write_hazard(dir, plan, base, runs, summary);
     draw_charts(dir, plan, base, runs, summary);
     write_page(dir, plan, base, runs, results, summary);
     return summary;

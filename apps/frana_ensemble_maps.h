@@ -8,6 +8,13 @@
 
 namespace frana {
 
+/// How much of the terrain is in a class of hazard.
+struct HazardArea {
+    std::string name;
+    Index number = 0;   ///< in the raster
+    double area = 0.0;  ///< [m2]
+};
+
 /// How its runs went.
 struct EnsembleSummary {
     Index samples = 0, run = 0, failed = 0, not_at_rest = 0, left_terrain = 0;
@@ -15,6 +22,7 @@ struct EnsembleSummary {
     std::optional<double> wall_seconds;  ///< of this process, where it ran them [s]
     double effective = 0.0;              ///< number of equal weights that tell as much
     bool maps_drawn = true;
+    std::vector<HazardArea> hazard;  ///< from the least to the greatest; empty where no classes were asked for
     std::vector<std::string> files;  ///< that were made
 
     /// So many fail that the maps should not be trusted.

@@ -78,6 +78,10 @@ public:
     double total = 0.0, failed_weight = 0.0;  ///< sums of weights
 };
 
+/// Writes the classes of hazard, where the plan asks for them: raster and picture; notes their areas.
+void write_hazard(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
+                  const WeightedRuns& runs, EnsembleSummary& summary);
+
 /// Draws runout.png, convergence.png, scatter.png and, of a case with gauges, gauges_*.png; names those that were drawn.
 void draw_charts(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                  const WeightedRuns& runs, EnsembleSummary& summary);

@@ -90,6 +90,35 @@ Json statistics_json(const EnsemblePlan& plan, const WeightedRuns& runs, const O
     return numbers;
 }
 
+Json hazard_json(const HazardTable& table, const EnsembleSummary& summary) {
+    Json json = {{"preset", table.preset.empty() ? Json(nullptr) : Json(table.preset)},
+                 {"return_period", table.event_years ? Json(*table.event_years) : Json(nullptr)},
+                 {"share", table.share},
+                 {"classes", Json::array()}};
+    for (const HazardArea& one : summary.hazard)
+        json["classes"].push_back({{"name", one.name}, {"number", one.number}, {"area_m2", one.area}});
+    return json;
+}
+
+/// The table of hazard, and how much is in each class.
+std::string hazard_section(const EnsemblePlan& plan, const EnsembleSummary& summary) {
+    if (!plan.hazard) return "";
+    const HazardTable& table = *plan.hazard;
+    std::string page =
+        fmt::format("\n\n## Classes of hazard{}\n\n| Strength |", table.preset.empty() ? "" : ": " + table.preset);
+    std::string line = "\n|---|";
+    for (const double years : table.years) page += fmt::format(" up to {:g} years |", years), line += "---|";
+    page += " later |" + line + "---|";
+    for (const HazardLevel& level : table.levels) {
+        page += fmt::format("\n| {} |", level.name);
+        for (const std::size_t number : level.classes)
+            page += fmt::format(" {} |", number > 0 ? table.classes[number - 1].name : "none");
+    }
+    page += "\n\n| Class | Area [m2] |\n|---|---:|";
+    for (const HazardArea& one : summary.hazard) page += fmt::format("\n| {} | {:.6g} |", one.name, one.area);
+    return page;
+}
+
 Json record_of(const EnsemblePlan& plan, const EnsembleBase& base, const EnsembleSummary& summary,
                const WeightedRuns& runs, const std::vector<SampleResult>& results) {
     Json json = {{"frana", FRANA_VERSION},
@@ -107,6 +136,7 @@ Json record_of(const EnsemblePlan& plan, const EnsembleBase& base, const Ensembl
                  {"seconds", summary.wall_seconds ? Json(*summary.wall_seconds) : Json(nullptr)}};
     for (const Outcome& outcome : outcomes_of(base))
         json["results"][outcome.key] = statistics_json(plan, runs, outcome);
+    if (plan.hazard) json["hazard"] = hazard_json(*plan.hazard, summary);
     const Json sensitivity = sensitivity_json(plan, base, results);
     if (!sensitivity.empty()) json["sensitivity"] = sensitivity;
     json["files"] = summary.files;
@@ -139,6 +169,7 @@ std::string page_of(const EnsemblePlan& plan, const EnsembleBase& base, const En
         for (const double q : plan.quantiles) page += fmt::format(" {} |", shown(runs.quantile(outcome, q)));
     }
     page += gauges_note(base, runs);
+    page += hazard_section(plan, summary);
     page += nearest_section(plan, results);
     page += sensitivity_section(plan, base, results);
     if (!summary.maps_drawn)

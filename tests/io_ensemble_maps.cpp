@@ -1,4 +1,6 @@
 // What `frana ensemble` tells of gauges, arrival, indices and hazard, on ponds whose answers are known.
+#include <gdal_priv.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -114,4 +116,42 @@ TEST_CASE("Random samples come with Wilson's bounds of their probabilities", "[e
     REQUIRE((p > 0.0 && p < 1.0));
     CHECK(pond.map("many", "probability_peak_depth_1.25_wilson_low").values[40] == Approx(low).epsilon(1e-6));
     CHECK(pond.map("many", "probability_peak_depth_1.25_wilson_high").values[40] == Approx(high).epsilon(1e-6));
+}
+
+TEST_CASE("Classes of hazard are a raster with colours and names, and areas in report and record",
+          "[ensemble][hazard]") {
+    const Pond pond;
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nfields = [\"peak_depth\"]\n"
+               "[ensemble.hazard]\nyears = [30, 300]\n"
+               "[[ensemble.hazard.class]]\nname = \"low & seldom\"\ncolour = \"#ffdd00\"\n"
+               "[[ensemble.hazard.class]]\nname = \"high\"\ncolour = \"#d81e28\"\n"
+               "[[ensemble.hazard.level]]\npeak_depth = 0.8\nclasses = [\"high\", \"low & seldom\", \"none\"]\n");
+    // Once in 30 years the west, once in 300 all of the pond; shallower once in 10, which is no strength at all.
+    pond.write("rows.csv",
+               "release.0.outline,release.0.depth,return_period\n\"west.geojson\",1.5,30\n\"all.geojson\",1.5,300\n"
+               "\"all.geojson\",0.5,10\n");
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    const Json hazard = Json::parse(text_of(pond.path("many/ensemble.json")))["hazard"];
+    const double low = hazard["classes"][0]["area_m2"], high = hazard["classes"][1]["area_m2"];
+    CHECK(low + high == 3600.0);  // 12 x 12 pixels of 25 m2
+    // Six columns of nodes are released; in half a second the edge stays within a cell of where it was.
+    CHECK(high == Approx(6 * 12 * 25.0).margin(12 * 25.0));
+    CHECK_THAT(text_of(pond.path("many/report.md")), Contains("| low & seldom |"));
+    const std::unique_ptr<GDALDataset, decltype(&GDALClose)> file(
+        static_cast<GDALDataset*>(GDALOpen(pond.path("many/rasters/hazard_class.tif").c_str(), GA_ReadOnly)),
+        GDALClose);
+    REQUIRE(file);
+    GDALRasterBand& band = *file->GetRasterBand(1);
+    std::vector<std::uint8_t> row(12);
+    REQUIRE(band.RasterIO(GF_Read, 0, 6, 12, 1, row.data(), 12, 1, GDT_Byte, 0, 0, nullptr) == CE_None);
+    CHECK(row.front() == 2);
+    CHECK(row.back() == 1);
+    REQUIRE(band.GetColorTable() != nullptr);
+    const GDALColorEntry& red = *band.GetColorTable()->GetColorEntry(2);
+    CHECK((red.c1 == 0xd8 && red.c2 == 0x1e && red.c3 == 0x28));
+    char** names = band.GetCategoryNames();
+    REQUIRE(CSLCount(names) == 3);
+    CHECK(std::string(names[1]) == "low & seldom");
+    CHECK(band.GetNoDataValue() == 0.0);
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "ensemble/hazard_reader.h"
 #include "ensemble/sample_table.h"
 #include "ensemble/sensitivity.h"
 #include "ensemble/toml_file.h"
@@ -47,6 +48,7 @@ private:
         read_wishes(table);
         const toml::array* all = of["vary"].as_array();
         if (plan_.method == Method::table) {
+            read_hazard_table(table);
             table.refuse_others("with method \"table\"");
             return;
         }
@@ -56,7 +58,25 @@ private:
             plan_.vary =
                 read_varied_keys(*all, "ensemble.vary", {plan_.file, plan_.method, plan_.method_name}, problems_);
         }
+        read_hazard_table(table);
         table.refuse_others("here");
+    }
+
+    void read_hazard_table(CheckedTable& table) {
+        const auto scenarios = std::count_if(plan_.vary.begin(), plan_.vary.end(),
+                                             [](const Vary& vary) { return !vary.return_periods.empty(); });
+        const bool of_table = std::any_of(plan_.points.begin(), plan_.points.end(),
+                                          [](const SamplePoint& point) { return point.return_period > 0.0; });
+        if (scenarios > 1)
+            table.wrong("vary", fmt::format("found return periods of {} keys", scenarios),
+                        "expected those of one at most",
+                        "give each scenario all that belongs to it by method \"table\"");
+        const toml::node* node = table.node("hazard");
+        if (!node) return;
+        if (const toml::table* hazard = node->as_table())
+            plan_.hazard = read_hazard(*hazard, plan_.file, plan_.fields, scenarios > 0 || of_table, problems_);
+        else
+            table.wrong("hazard", "found no table", "expected [ensemble.hazard]", "see apps/README.md for an example");
     }
 
     void read_case(CheckedTable& table) {
@@ -164,12 +184,15 @@ void place_samples(EnsemblePlan& plan) {
         SamplePoint& point = plan.points.emplace_back();
         for (std::size_t k = 0; k < plan.vary.size(); ++k) {
             const Distribution& of = plan.vary[k].distribution;
+            const std::vector<double>& years = plan.vary[k].return_periods;
             if (!grid || of.kind != Kind::discrete) {
                 point.values.push_back(of.text(u[k]));
+                if (!years.empty()) point.return_period = years[of.choice(u[k])];
                 continue;
             }
             const auto place = static_cast<std::size_t>(u[k] * static_cast<double>(of.values.size()));
             point.values.push_back(of.values[place]);
+            if (!years.empty()) point.return_period = years[place];
             point.weight *= of.weights[place] * static_cast<double>(of.values.size());
         }
     }

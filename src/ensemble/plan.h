@@ -2,11 +2,13 @@
 // What an ensemble is to do, from its file: which keys of a case vary and how, and what is asked of the runs.
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ensemble/design.h"
 #include "ensemble/distribution.h"
+#include "ensemble/hazard.h"
 
 namespace frana {
 
@@ -16,13 +18,15 @@ constexpr Index kMostSamples = 10'000'000;
 struct Vary {
     std::string key;
     Distribution distribution;
-    Index levels = 0;  ///< of method "grid"; of a discrete distribution the number of its values
+    Index levels = 0;                    ///< of method "grid"; of a discrete distribution the number of its values
+    std::vector<double> return_periods;  ///< of a discrete one whose values are scenarios [years]; else empty
 };
 
 /// One run of an ensemble.
 struct SamplePoint {
     double weight = 1.0;              ///< sum over all samples: their number [1]
     std::vector<std::string> values;  ///< of the keys that vary, as a case file has them
+    double return_period = 0.0;       ///< of its scenario [years]; 0 without one
 };
 
 struct EnsemblePlan {
@@ -35,6 +39,7 @@ struct EnsemblePlan {
     std::vector<std::string> fields;                    ///< kept of each run; the first is peak_depth
     std::map<std::string, std::vector<double>> exceed;  ///< by field: thresholds, in the field's unit
     std::vector<double> quantiles;
+    std::optional<HazardTable> hazard;
     std::vector<Vary> vary;
     Design design;
     std::vector<SamplePoint> points;

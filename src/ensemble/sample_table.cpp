@@ -13,13 +13,26 @@
 namespace frana {
 namespace {
 
-/// Names the column's key; false for weights.
+constexpr const char* kReturnPeriod = "return_period";
+
+/// Names the column's key; false for weights and return periods.
 bool note_key(const std::string& name, const std::string& place, EnsemblePlan& plan, Problems& problems) {
-    if (name == "weight") return false;
+    if (name == "weight" || name == kReturnPeriod) return false;
     const KeyProblem problem = problem_of_key(name, plan.vary);
     if (!problem.found.empty()) problems.add(place, problem.found, problem.expected + ", or weight", problem.way_out);
     plan.vary.emplace_back().key = name;
     return true;
+}
+
+/// A number that belongs to a sample, or a problem.
+double number_of(const std::string& name, const std::string& field, const std::string& place, Problems& problems) {
+    char* end = nullptr;
+    const double number = std::strtod(field.c_str(), &end);
+    const bool years = name == kReturnPeriod;
+    if (field.empty() || *end != '\0' || !(number >= 0.0) || !std::isfinite(number) || (years && number == 0.0))
+        problems.add(place, fmt::format("found the {} \"{}\"", name, field),
+                     years ? "expected years above 0" : "expected a number from 0 on", "correct it");
+    return number;
 }
 
 }  // namespace
@@ -42,9 +55,9 @@ void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Pr
     std::istringstream stream(text);
     std::string line;
     std::getline(stream, line);
+    const std::vector<std::string> names = comma_fields(line);
     std::vector<bool> is_key;
-    for (const std::string& name : comma_fields(line))
-        is_key.push_back(note_key(name, file.string() + ":1", plan, problems));
+    for (const std::string& name : names) is_key.push_back(note_key(name, file.string() + ":1", plan, problems));
     double sum = 0.0;
     for (int number = 2; std::getline(stream, line); ++number) {
         const std::vector<std::string> fields = comma_fields(line);
@@ -61,11 +74,8 @@ void read_sample_table(const std::filesystem::path& file, EnsemblePlan& plan, Pr
                 point.values.push_back(fields[k]);
                 continue;
             }
-            char* end = nullptr;
-            point.weight = std::strtod(fields[k].c_str(), &end);
-            if (fields[k].empty() || *end != '\0' || !(point.weight >= 0.0) || !std::isfinite(point.weight))
-                problems.add(place, fmt::format("found the weight \"{}\"", fields[k]), "expected a number from 0 on",
-                             "correct it");
+            (names[k] == kReturnPeriod ? point.return_period : point.weight) =
+                number_of(names[k], fields[k], place, problems);
         }
         sum += point.weight;
     }

@@ -80,6 +80,12 @@ private:
         if (of.weights.size() != of.values.size() || !good || !(std::abs(sum - 1.0) <= round_off))
             table.wrong("weights", fmt::format("found {} weights with the sum {:g}", of.weights.size(), sum),
                         fmt::format("expected {} of them from 0 on with the sum 1", of.values.size()), "give such");
+        vary.return_periods = table.numbers("return_periods");
+        const bool positive = std::all_of(vary.return_periods.begin(), vary.return_periods.end(),
+                                          [](double years) { return years > 0.0; });
+        if (table.given("return_periods") && (vary.return_periods.size() != of.values.size() || !positive))
+            table.wrong("return_periods", fmt::format("found {} of them", vary.return_periods.size()),
+                        fmt::format("expected {} numbers of years above 0", of.values.size()), "give such");
     }
 
     void read_numbers(CheckedTable& table, Vary& vary) {

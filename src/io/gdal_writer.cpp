@@ -112,6 +112,18 @@ void write_features(GDALDataset& dataset, const std::vector<std::unique_ptr<OGRP
     }
 }
 
+/// What GDAL keeps beside a raster that cannot hold the names of its classes itself.
+std::string class_names_xml(const std::vector<RasterClass>& classes) {
+    std::string xml =
+        "<PAMDataset>\n  <PAMRasterBand band=\"1\">\n    <CategoryNames>\n      <Category>none</Category>\n";
+    for (const RasterClass& one : classes) {
+        char* escaped = CPLEscapeString(one.name.c_str(), -1, CPLES_XML);
+        xml += fmt::format("      <Category>{}</Category>\n", escaped);
+        CPLFree(escaped);
+    }
+    return xml + "    </CategoryNames>\n  </PAMRasterBand>\n</PAMDataset>\n";
+}
+
 }  // namespace
 
 void write_geotiff(const std::filesystem::path& target, const Raster& raster, const std::string& unit,
@@ -133,6 +145,40 @@ void write_geotiff(const std::filesystem::path& target, const Raster& raster, co
     dataset.reset();  // flushes; a full disk shows here
     if (written != CE_None || messages.failed()) refuse_write(target, messages);
     file.commit();
+}
+
+void write_class_geotiff(const std::filesystem::path& target, const GridGeometry& grid, const std::string& crs_wkt,
+                         const std::vector<std::uint8_t>& numbers, const std::vector<RasterClass>& classes,
+                         const std::string& description) {
+    expect(Index(numbers.size()) == grid.size(), "a class of each node");
+    const int nx = int(grid.nx), ny = int(grid.ny);
+    std::vector<std::uint8_t> rows(numbers.size());  // north first
+    for (Index j = 0; j < grid.ny; ++j)
+        std::copy_n(numbers.begin() + (grid.ny - 1 - j) * grid.nx, grid.nx, rows.begin() + j * grid.nx);
+    const char* const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", nullptr};
+    AtomicFile file(target);
+    const gdal::Messages messages;
+    gdal::Dataset dataset(
+        driver("GTiff").Create(file.path().c_str(), nx, ny, 1, GDT_Byte, const_cast<char**>(options)));
+    if (!dataset) refuse_write(target, messages);
+    place(*dataset, {grid, {}, crs_wkt, ""});
+    GDALRasterBand* band = dataset->GetRasterBand(1);
+    GDALColorTable colours;
+    const GDALColorEntry none{255, 255, 255, 0};
+    colours.SetColorEntry(0, &none);
+    for (std::size_t k = 0; k < classes.size(); ++k) {
+        const auto& c = classes[k].colour;
+        const GDALColorEntry entry{short(c[0]), short(c[1]), short(c[2]), 255};
+        colours.SetColorEntry(int(k) + 1, &entry);
+    }
+    band->SetColorTable(&colours);
+    band->SetNoDataValue(0.0);
+    band->SetDescription(description.c_str());
+    const CPLErr written = band->RasterIO(GF_Write, 0, 0, nx, ny, rows.data(), nx, ny, GDT_Byte, 0, 0, nullptr);
+    dataset.reset();
+    if (written != CE_None || messages.failed()) refuse_write(target, messages);
+    file.commit();
+    write_text(target.string() + ".aux.xml", class_names_xml(classes));
 }
 
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,

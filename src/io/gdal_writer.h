@@ -1,8 +1,11 @@
 #pragma once
 // Rasters and outlines for a GIS. Files appear whole or not at all; nothing that is not finite is written.
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "terrain/raster.h"
 
@@ -13,6 +16,18 @@ namespace frana {
 /// NumericsError for a value that is infinite or too large for float32, UserError when the disk refuses.
 void write_geotiff(const std::filesystem::path& target, const Raster& raster, const std::string& unit,
                    const std::string& description);
+
+/// A class of a raster of classes.
+struct RasterClass {
+    std::string name;
+    std::array<std::uint8_t, 3> colour{};  ///< red, green, blue
+};
+
+/// GeoTIFF of one byte band with the numbers of classes, 0 for none, which is nodata; its colour table has the colours, and the
+/// names stand beside it in `target`.aux.xml, where GDAL and QGIS look for them. Throws as write_geotiff.
+void write_class_geotiff(const std::filesystem::path& target, const GridGeometry& grid, const std::string& crs_wkt,
+                         const std::vector<std::uint8_t>& numbers, const std::vector<RasterClass>& classes,
+                         const std::string& description);
 
 /// GeoJSON with the outlines, holes kept, of the nodes' pixels deeper than `threshold` [m], largest first.
 /// Pixels that touch only at a corner belong to different outlines. Attributes: area_m2, threshold_m and the

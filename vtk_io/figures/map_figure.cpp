@@ -55,9 +55,10 @@ private:
             shown_above = kAll;
         }
         const Raster bed = resampled(figure_.bed, pixels, Between::smooth);
-        const Pixels picture = figure_.shows_overlay()
-                                   ? painted_overlay(bed, *figure_.simulated, all_rings(*figure_.survey))
-                                   : painted(bed, field_, {figure_.colormap, layout_.colours, shown_above, 0.0});
+        const Pixels picture =
+            figure_.shows_overlay()    ? painted_overlay(bed, *figure_.simulated, all_rings(*figure_.survey))
+            : !figure_.classes.empty() ? painted_classes(bed, field, figure_.classes)
+                                       : painted(bed, field_, {figure_.colormap, layout_.colours, shown_above, 0.0});
         canvas_.image(picture, static_cast<int>(layout_.frame.x0), static_cast<int>(layout_.frame.y0));
     }
 
@@ -130,6 +131,7 @@ private:
                 closed_line(ring, {colours::black, 0.1 * layout_.unit, {}}, false);
             return;
         }
+        if (!figure_.classes.empty()) return;  // whose colours end where their pixels do
         Raster field{figure_.bed.geometry, figure_.outlined(), "", ""};
         for (double& value : field.values) value = std::isnan(value) ? 0.0 : std::abs(value);
         const Raster seen = resampled(field, coarser(layout_.pixel_grid(), 1), Between::linear);
@@ -206,7 +208,7 @@ private:
     void explanations() {
         const double u = layout_.unit;
         const Rectangle& f = layout_.frame;
-        if (!figure_.shows_overlay())
+        if (figure_.has_colour_bar())
             draw_colour_bar(canvas_, {std::round(f.x1 + u), f.y0, std::round(f.x1 + 2.1 * u), f.y1}, layout_.colours,
                             figure_.colormap, figure_.field_label, u);
         for (std::size_t i = 0; i < layout_.strip.places.size(); ++i) {

@@ -21,6 +21,12 @@ struct NamedPoint {
     Vec2 point{0, 0};
 };
 
+/// A class of places, and its colour.
+struct MapClass {
+    std::string name;
+    Colour colour;
+};
+
 struct MapFigure {
     Raster bed;                 ///< terrain [m]; NaN is plain light grey
     std::vector<double> field;  ///< on bed.geometry, row 0 south; NaN is not shown
@@ -37,6 +43,9 @@ struct MapFigure {
     /// Rings of the simulated extent: with a survey, areas of both, of this one and of the survey only are coloured
     /// instead of the field, which then only says what has to be in view.
     std::optional<std::vector<Polyline>> simulated;
+    /// With classes here, `field` holds their numbers, from 1 on, each node's for all of its pixel; 0 is none. The legend names
+    /// them instead of a colour bar.
+    std::vector<MapClass> classes;
     std::vector<NamedLine> profiles;
     std::vector<NamedPoint> gauges;
     std::string footer;                          ///< model, parameters; wrapped
@@ -46,6 +55,7 @@ struct MapFigure {
 
     const std::vector<double>& outlined() const { return outline_field.empty() ? field : outline_field; }
     bool shows_overlay() const { return simulated && survey; }
+    bool has_colour_bar() const { return !shows_overlay() && classes.empty(); }
     /// Thickness of the surveyed outline, in sizes of ordinary text: thinner where areas beside it are looked at.
     double survey_pen() const { return shows_overlay() ? 0.1 : 0.16; }
 };

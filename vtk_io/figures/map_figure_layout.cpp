@@ -205,9 +205,11 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
         legend.push_back(entry(Kind::area, colours::beyond, 0.0, "simulated only"));
         legend.push_back(entry(Kind::area, colours::missed, 0.0, "surveyed only"));
     }
+    for (const MapClass& one : figure.classes) legend.push_back(entry(Kind::area, one.colour, 0.0, one.name));
     const auto [name, unit] = name_and_unit(figure.outline_field.empty() ? figure.field_label : figure.outline_label);
-    legend.push_back(entry(Kind::line, colours::black, 0.1 * u,
-                           fmt::format("{} {:g}{}{}", name, figure.shown_above, unit.empty() ? "" : " ", unit)));
+    if (figure.classes.empty())
+        legend.push_back(entry(Kind::line, colours::black, 0.1 * u,
+                               fmt::format("{} {:g}{}{}", name, figure.shown_above, unit.empty() ? "" : " ", unit)));
     if (figure.survey)
         legend.push_back(entry(Kind::cased_line, colours::survey, figure.survey_pen() * u, "surveyed outline"));
     if (!figure.profiles.empty()) {
@@ -269,7 +271,7 @@ void place(MapLayout& layout, const MapFigure& figure, const std::array<double, 
     const auto all = figure.bed.geometry.pixel_extent();
     const double u = layout.unit;
     layout.captions = make_captions(figure.title, figure.footer, u, layout.width);
-    const Margins m = margins_of(layout, !figure.shows_overlay());
+    const Margins m = margins_of(layout, figure.has_colour_bar());
     const double room_w = std::max(figure.width - m.left - m.right, 8.0 * u);
     const double room_h = std::max(figure.height - m.bottom - m.top, 8.0 * u);
     const auto view = shaped(wanted, all, room_w / room_h);

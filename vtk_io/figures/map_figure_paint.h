@@ -17,6 +17,9 @@ struct FieldStyle {
 /// 0.12 r: relief shows through, and the colour stays that of the colour bar within a few per cent.
 Pixels painted(const Raster& bed, const Raster& field, const FieldStyle& style);
 
+/// One pixel per node of the bed, in the colour of the class that the nearest node of `numbers` has (MapFigure::classes).
+Pixels painted_classes(const Raster& bed, const Raster& numbers, const std::vector<MapClass>& classes);
+
 /// Colour of something opaque on ground of the given grey (`painted` has the formula).
 Colour colour_on_ground(const Colour& colour, double grey);
 

@@ -1,0 +1,132 @@
+#include "ensemble/hazard.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace frana {
+namespace {
+
+constexpr double kRoundOff = 1e-9;  ///< of sums of weights, and of their quotients
+
+/// What a level asks of the fields of a run, in the order that these have there.
+struct Demand {
+    std::size_t field;
+    float at_least;
+};
+
+std::vector<std::vector<Demand>> demands_of(const HazardTable& table, const std::vector<std::string>& fields) {
+    std::vector<std::vector<Demand>> all;
+    for (const HazardLevel& level : table.levels) {
+        std::vector<Demand>& demands = all.emplace_back();
+        for (const auto& [name, least] : level.at_least) {
+            const auto found = std::find(fields.begin(), fields.end(), name);
+            expect(found != fields.end(), "the fields of a table of hazard are kept");
+            demands.push_back({static_cast<std::size_t>(found - fields.begin()), static_cast<float>(least)});
+        }
+    }
+    return all;
+}
+
+/// By pixel and level, the weight of the runs that reach that level or a stronger one.
+class Reached {
+public:
+    Reached(Index pixels, const std::vector<std::vector<Demand>>& demands)
+        : demands_(demands), weights_(static_cast<std::size_t>(pixels) * demands.size(), 0.0) {}
+
+    void add(const HazardRun& run) {
+        all_ += run.weight;
+        run.peaks->for_each([&](Index pixel, std::size_t n) {
+            for (std::size_t level = strongest(*run.peaks, n); level > 0; --level)
+                weights_[static_cast<std::size_t>(pixel) * demands_.size() + level - 1] += run.weight;
+        });
+    }
+    double share(Index pixel, std::size_t level) const {
+        return weights_[static_cast<std::size_t>(pixel) * demands_.size() + level] / all_;
+    }
+
+private:
+    /// One more than the number of the strongest level reached; 0: none.
+    std::size_t strongest(const SparseRasters& peaks, std::size_t n) const {
+        for (std::size_t level = demands_.size(); level > 0; --level) {
+            const auto& demands = demands_[level - 1];
+            if (std::all_of(demands.begin(), demands.end(),
+                            [&](const Demand& d) { return peaks.values[d.field][n] >= d.at_least; }))
+                return level;
+        }
+        return 0;
+    }
+
+    const std::vector<std::vector<Demand>>& demands_;
+    std::vector<double> weights_;
+    double all_ = 0.0;
+};
+
+/// The class of a scenario's strength, the strongest that enough of its runs reach.
+std::size_t class_of_scenario(const HazardTable& table, const Reached& reached, Index pixel, double return_period) {
+    std::size_t levels = 0;
+    while (levels < table.levels.size() && reached.share(pixel, levels) >= table.share * (1.0 - kRoundOff)) ++levels;
+    return levels > 0 ? table.levels[levels - 1].classes[table.column_of(return_period)] : 0;
+}
+
+/// The greatest class of all strengths, each as seldom as it is.
+std::size_t class_by_frequency(const HazardTable& table, const Reached& reached, Index pixel) {
+    std::size_t most = 0;
+    for (std::size_t level = 0; level < table.levels.size() && reached.share(pixel, level) > 0.0; ++level) {
+        const double years = *table.event_years / reached.share(pixel, level);
+        most = std::max(most, table.levels[level].classes[table.column_of(years)]);
+    }
+    return most;
+}
+
+}  // namespace
+
+std::size_t HazardTable::column_of(double return_period) const {
+    const auto column = std::find_if(years.begin(), years.end(),
+                                     [&](double up_to) { return return_period <= up_to * (1.0 + kRoundOff); });
+    return static_cast<std::size_t>(column - years.begin());
+}
+
+std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<std::string>& fields,
+                                         const std::vector<HazardRun>& runs, Index pixels) {
+    const auto demands = demands_of(table, fields);
+    std::map<double, std::vector<const HazardRun*>> scenarios;
+    for (const HazardRun& run : runs) scenarios[table.event_years ? 0.0 : run.return_period].push_back(&run);
+    std::vector<std::uint8_t> classes(static_cast<std::size_t>(pixels), 0);
+    for (const auto& [return_period, members] : scenarios) {
+        Reached reached(pixels, demands);
+        for (const HazardRun* run : members) reached.add(*run);
+        for (Index pixel = 0; pixel < pixels; ++pixel) {
+            const std::size_t found = table.event_years ? class_by_frequency(table, reached, pixel)
+                                                        : class_of_scenario(table, reached, pixel, return_period);
+            std::uint8_t& most = classes[static_cast<std::size_t>(pixel)];
+            most = std::max(most, static_cast<std::uint8_t>(found));
+        }
+    }
+    return classes;
+}
+
+const std::vector<HazardTable>& hazard_presets() {
+    static const std::vector<HazardClass> classes = {
+        {"residual", {255, 255, 170}}, {"low", {255, 221, 0}}, {"medium", {60, 120, 220}}, {"high", {216, 30, 40}}};
+    constexpr std::size_t residual = 1, low = 2, medium = 3, high = 4;
+    static const std::vector<double> years = {30.0, 100.0, 300.0};
+    static const std::vector<HazardTable> presets = {
+        {"swiss_avalanche",
+         classes,
+         {{"below 30 kPa", {}, {high, medium, medium, residual}},
+          {"30 kPa or more", {{"peak_dynamic_pressure", 30e3}}, {high, high, high, residual}}},
+         years,
+         0.5,
+         std::nullopt},
+        {"swiss_debris_flow",
+         classes,
+         {{"medium", {}, {medium, medium, low, residual}},
+          {"strong", {{"peak_depth", 1.0}, {"peak_speed", 1.0}}, {high, high, high, residual}}},
+         years,
+         0.5,
+         std::nullopt}};
+    return presets;
+}
+
+}  // namespace frana

@@ -1,0 +1,56 @@
+#pragma once
+// Classes of hazard: how strong a flow comes to a place, and how seldom.
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "terrain/sparse_rasters.h"
+
+namespace frana {
+
+/// A class of hazard, and the colour it is drawn in.
+struct HazardClass {
+    std::string name;
+    std::array<std::uint8_t, 3> colour{};  ///< red, green, blue
+};
+
+/// How strong a flow is: it has come, and each of these peaks is reached.
+struct HazardLevel {
+    std::string name;
+    std::map<std::string, double> at_least;  ///< by field, in its unit
+    std::vector<std::size_t> classes;        ///< by column of years; 0: none
+};
+
+/// Which strength, how often, is which class.
+struct HazardTable {
+    std::string preset;                 ///< its name; empty: the user's own
+    std::vector<HazardClass> classes;   ///< from the least to the greatest hazard; class n has the number n + 1
+    std::vector<HazardLevel> levels;    ///< from the weakest to the strongest
+    std::vector<double> years;          ///< ascending; column k is up to years[k], one more column is beyond
+    double share = 0.5;                 ///< of a scenario's runs, that makes a strength the scenario's
+    std::optional<double> event_years;  ///< return period of what all runs are of, where they are no scenarios
+
+    std::size_t column_of(double return_period) const;
+};
+
+/// Published tables, by name. Sources stand in apps/README.md.
+const std::vector<HazardTable>& hazard_presets();
+
+/// What the classes need to know of a run.
+struct HazardRun {
+    const SparseRasters* peaks = nullptr;
+    double weight = 1.0;
+    double return_period = 0.0;  ///< of its scenario [years]; not looked at with `event_years`
+};
+
+/// The number of the class on each pixel, 0 for none. `fields` are those of the runs' peaks; the table's are among them.
+/// Scenarios: each has the strength that at least `share` of its runs reach; the class is the greatest of all scenarios'.
+/// Otherwise each strength comes back after event_years over the share of the runs that reach it; the class is the greatest of
+/// all strengths'.
+std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<std::string>& fields,
+                                         const std::vector<HazardRun>& runs, Index pixels);
+
+}  // namespace frana
