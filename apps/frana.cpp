@@ -207,10 +207,12 @@ void add_compare(CLI::App& app, CompareOptions& options, Action& action) {
 }
 
 void add_states(CLI::App& app, StatesOptions& options, Action& action) {
-    CLI::App* command = app.add_subcommand("states", "write the ParaView states of a run again, after it was moved");
+    CLI::App* command =
+        app.add_subcommand("states", "write the ParaView states of a run, or an ensemble, again, after it was moved");
     command->add_option("RUN_DIR", options.run_dir, "folder of the run")->required();
     command->add_option("NAME", options.names,
-                        "states that must be there: overview, stress, profiles, survey, impact, structure, budgets");
+                        "states that must be there: overview, stress, profiles, survey, impact, structure, budgets, "
+                        "probability");
     command->callback(
         [&] { action = [&] { return adding_to(options.run_dir, [&] { return states_command(options); }); }; });
 }

@@ -9,7 +9,9 @@
 #include "ensemble/statistics.h"
 #include "frana_ensemble_outcomes.h"
 #include "io/gdal_writer.h"
+#include "run/folder/states.h"
 #include "vtk_io/figures/map_figure.h"
+#include "vtk_io/writers.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -40,6 +42,7 @@ public:
         fs::create_directories(dir_ / "rasters");
         fs::create_directories(dir_ / "figures");
         for (std::size_t f = 0; f < plan_.fields.size(); ++f) write_field(f);
+        write_for_paraview();
     }
 
 private:
@@ -72,6 +75,7 @@ private:
         write_sensitivity(field, pixels);
         if (f > 0) return;
         raster("probability_reached", reached_, "1", "share of the runs that come there");
+        probabilities_.push_back({"probability_reached", "1", reached_.values});
         draw_map(reached_, "probability_reached",
                  fmt::format("probability of a depth above {:g} m", base_.footprint_depth));
         for (const double p : {0.05, 0.5, 0.95}) write_contour(reached_, p);
@@ -117,6 +121,7 @@ private:
             fmt::format("share of the runs with {} above {:g} {}", field.meaning, threshold, field.unit);
         const Raster p = pixels.exceeds(threshold);
         raster(name, p, "1", meaning);
+        probabilities_.push_back({name, "1", p.values});
         Raster error = p, low = p, high = p;
         const double all = runs_.total + runs_.failed_weight;
         for (std::size_t k = 0; k < p.values.size(); ++k) {
@@ -159,6 +164,16 @@ private:
         note(render_map(figure, dir_ / "figures" / (name + ".png"), why_not_), "figures/" + name + ".png");
     }
 
+    /// The probabilities on the terrain, and a state of ParaView that shows them.
+    void write_for_paraview() {
+        if (!(base_.whole == base_.bed.geometry)) return;
+        write_terrain(dir_, base_.bed);
+        write_terrain_maps(dir_, base_.bed, probabilities_);
+        const auto look = write_states(dir_, base_.title);
+        summary_.files.insert(summary_.files.end(), {"terrain.vti", "maps.vti"});
+        if (look["states"]["probability"] == "") summary_.files.emplace_back("states/probability.pvsm");
+    }
+
     void note(bool drawn, const std::string& file) {
         if (drawn) summary_.files.push_back(file);
     }
@@ -168,7 +183,8 @@ private:
     const EnsembleBase& base_;
     const WeightedRuns& runs_;
     EnsembleSummary& summary_;
-    Raster reached_;  ///< share of the runs that come to a pixel
+    Raster reached_;                       ///< share of the runs that come to a pixel
+    std::vector<NamedMap> probabilities_;  ///< for ParaView
     std::string why_not_;
 };
 

@@ -18,7 +18,7 @@ void refuse_unknown(const std::vector<std::string>& names) {
         if (std::find(state_names().begin(), state_names().end(), name) == state_names().end())
             throw UserError(
                 fmt::format("states: found \"{}\"; expected overview, stress, profiles, survey, impact, "
-                            "structure, phases or budgets; leave the name away for all that the run has",
+                            "structure, phases, budgets or probability; leave the name away for all that the run has",
                             name));
 }
 
@@ -26,7 +26,8 @@ void refuse_unknown(const std::vector<std::string>& names) {
 
 int states_command(const StatesOptions& options) {
     refuse_unknown(options.names);
-    const auto look = write_states(options.run_dir, title_of_run(options.run_dir));
+    const bool ensemble = std::filesystem::exists(options.run_dir / "ensemble.json");
+    const auto look = write_states(options.run_dir, ensemble ? "ensemble" : title_of_run(options.run_dir));
     for (const std::string& name : options.names) {
         const std::string why_not = look["states"][name].get<std::string>();
         if (!why_not.empty())

@@ -3,7 +3,8 @@
     pvbatch make_states.py RUN_DIR [STATE...] [--out FOLDER]
 
 RUN_DIR is a run that has everything (stress, a profile, a survey; for the state impact, points in space and a
-barrier; for structure, a case with [material.structure]; for phases, one with [water]); which one does not matter, for all that belongs to the run becomes a slot: `frana run` and `frana states` put
+barrier; for structure, a case with [material.structure]; for phases, one with [water]; for probability, the folder of
+an ensemble); which one does not matter, for all that belongs to the run becomes a slot: `frana run` and `frana states` put
 there what src/run/folder/states.h says. To know what belongs to the run, each number and text of its look is replaced by
 one of a kind before the state is built, and searched for in what ParaView saved. Domains, informative properties, property ids and values that equal their defaults are left out:
 a state then is a tenth of its size, loads the same, and changes line by line.
@@ -23,7 +24,7 @@ from paraview import servermanager, simple  # noqa: E402
 
 from frana_scene import NoState  # noqa: E402
 
-STATES = ["overview", "stress", "profiles", "survey", "impact", "structure", "phases", "budgets"]
+STATES = ["overview", "stress", "profiles", "survey", "impact", "structure", "phases", "budgets", "probability"]
 FILES = ["FileName", "FileNames"]
 WHOLE = {"VOI": "/cross/extent/%d", "SampleRateI": "/cross/stride", "SampleRateJ": "/cross/stride",
          "LegendLocation": "/legend", "EndTime": "/last_time"}  # what cannot be marked: whole numbers, the data's times

@@ -2,7 +2,8 @@
 
 Without a window:   pvbatch open_run.py RUN_DIR [--time T] [--png FILE] [--colour depth|speed] [--max VALUE]
                     pvbatch open_run.py RUN_DIR --state NAME [--time T] [--png FILE]
-                    with overview, stress, profiles, survey, impact, structure or budgets
+                    with overview, stress, profiles, survey, impact, structure, phases, budgets or, of an
+                    ensemble's folder, probability
                     (on a machine without a screen: xvfb-run -a pvbatch ...)
 In ParaView:        Tools > Python Shell, then
                     import sys; sys.path.append("/path/to/pvstates")
@@ -29,7 +30,7 @@ from paraview.simple import (
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from frana_scene import NoState, at_time  # noqa: E402
 
-STATES = ("overview", "stress", "profiles", "survey", "impact", "structure", "phases", "budgets")
+STATES = ("overview", "stress", "profiles", "survey", "impact", "structure", "phases", "budgets", "probability")
 LIFT = 0.5  # [m] keeps the flow's surface clear of the terrain where it is thin
 THIN = 0.05  # [m] flow thinner than this is not drawn
 

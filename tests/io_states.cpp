@@ -81,12 +81,28 @@ const fs::path& phases_run() {
     return run;
 }
 
+/// The folder of a few short runs.
+const fs::path& ensemble_folder() {
+    static const FreshFolder folder;
+    static const fs::path runs = folder.path() / "runs";
+    static const bool done = [] {
+        EnsembleOptions options;
+        options.file = fs::path(FRANA_SOURCE_DIR) / "tests" / "states_case" / "ensemble.toml";
+        options.out = runs;
+        options.quiet = true;
+        return ensemble_command(options) == 0;
+    }();
+    REQUIRE(done);
+    return runs;
+}
+
 /// A run that has the files of a state.
 const fs::path& run_for(const std::string& state) {
-    return state == "impact"      ? impact_run()
-           : state == "structure" ? structure_run()
-           : state == "phases"    ? phases_run()
-                                  : full_run();
+    return state == "impact"        ? impact_run()
+           : state == "structure"   ? structure_run()
+           : state == "phases"      ? phases_run()
+           : state == "probability" ? ensemble_folder()
+                                    : full_run();
 }
 
 std::set<std::string> all_matches(const std::string& text, const std::regex& pattern) {
@@ -143,6 +159,7 @@ std::set<std::string> arrays_written(const fs::path& run) {
     for (const auto& column : read_particles(impact_run(), -1).columns) names.insert(column.first);
     for (const auto& column : read_frame(structure_run(), -1).nodes) names.insert(column.first);
     for (const auto& column : read_frame(phases_run(), -1).nodes) names.insert(column.first);
+    for (const auto& column : read_maps(ensemble_folder()).nodes) names.insert(column.first);
     add_arrays(polydata(impact_run() / "barriers/barriers_000020.vtp")->GetCellData(), names);
     for (const auto& column : read_terrain(run).nodes) names.insert(column.first);
     for (const char* file : {"survey_areas.vtp", "survey_outlines.vtp", "profiles/profiles_000000.vtp"}) {
@@ -243,7 +260,8 @@ TEST_CASE("states written again after a move name the files where they lie now")
     REQUIRE(states_command({moved, {}}) == 0);
     CHECK(!fs::exists(moved / "states" / "impact.pvsm"));  // it has no 3D points
     for (const std::string& name : state_names()) {
-        if (name == "impact" || name == "structure" || name == "phases") continue;  // not of this run
+        if (name == "impact" || name == "structure" || name == "phases" || name == "probability")
+            continue;  // not of this run
         const std::string text = text_of(moved / "states" / (name + ".pvsm"));
         CHECK(text.find(folder.path().string() + "/a run &amp; more/") != std::string::npos);
         CHECK(text.find(full_run().string()) == std::string::npos);

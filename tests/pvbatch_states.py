@@ -2,7 +2,7 @@
 
 Usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [STATE]
 
-Checks for every state of RUN_DIR/states but those of special runs (impact, structure, phases), or for one alone, that every reader reads a file of this run,
+Checks for every state of RUN_DIR/states but those of special runs (impact, structure, phases) and of ensembles, or for one alone, that every reader reads a file of this run,
 and every array of the state is there: loaded as it is (plain), or with RUN_DIR as data directory (searched); so are the
 files of the templates in PVSTATES_DIR.
 full: both, and the picture equals that of the Python state, and is not blank (flow and areas are in colour, on grey
@@ -16,10 +16,10 @@ from paraview import servermanager, simple
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 SIZE = [900, 600]
-ALONE = {"impact", "structure", "phases"}  # states of runs of their own
+ALONE = {"impact", "structure", "phases", "probability"}  # states of runs of their own
 COLOURED = {  # least share of coloured pixels, of those in the middle; a tenth of what the test's run shows
     "overview": 0.02, "stress": 0.02, "profiles": 0.01, "survey": 0.02, "impact": 0.02, "structure": 0.01, "phases": 0.01,
-    "budgets": 0.0005}
+    "budgets": 0.0005, "probability": 0.005}
 ARRAYS = {  # what the state's own sources must have made, besides what its readers read
     "overview": ["depth", "surface", "speed"],
     "stress": ["sigma_xx", "sigma_yy", "sigma_xy", "effective_xx", "effective_yy", "principal_1", "principal_2"],
@@ -27,6 +27,7 @@ ARRAYS = {  # what the state's own sources must have made, besides what its read
     "impact": ["model", "speed", "pressure", "barrier", "hillshade"],
     "structure": ["damage", "cohesion", "tension", "hillshade"],
     "phases": ["bound_depth", "bound_surface", "water_depth", "hillshade"],
+    "probability": ["probability_reached", "elevation", "hillshade"],
     "survey": ["agreement", "extent", "hillshade"],
     "budgets": ["t", "kinetic", "dissipated", "potential_from_start", "max_speed", "front", "mass_error"]}
 

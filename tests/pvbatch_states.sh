@@ -37,7 +37,7 @@ look_once() {
     status=$?
 }
 
-rm -rf "$work/run" "$work/impact" "$work/structure" "$work/phases" "$work/elsewhere"
+rm -rf "$work/run" "$work/impact" "$work/structure" "$work/phases" "$work/ensemble" "$work/elsewhere"
 "$frana" run "$source/tests/states_case/case.toml" --out "$work/run" --threads 1 --overwrite --quiet || exit 1
 look "$work/run" full "as the run left them"
 
@@ -53,6 +53,10 @@ look "$work/structure" full "the structure" structure
 # Solids and free water: another one.
 "$frana" run "$source/tests/states_case/phases.toml" --out "$work/phases" --threads 1 --overwrite --quiet || exit 1
 look "$work/phases" full "the phases" phases
+
+# Many runs: the folder of an ensemble.
+"$frana" ensemble "$source/tests/states_case/ensemble.toml" --out "$work/ensemble" --threads 1 --quiet || exit 1
+look "$work/ensemble" full "the probability" probability
 
 moved="$work/elsewhere/a run & more"
 mkdir -p "$work/elsewhere" && mv "$work/run" "$moved" || exit 1

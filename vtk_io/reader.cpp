@@ -222,4 +222,6 @@ std::optional<std::array<double, 4>> bounds_of(const std::filesystem::path& vtp)
 
 LoadedFrame read_terrain(const std::filesystem::path& run_dir) { return read_image(run_dir / "terrain.vti"); }
 
+LoadedFrame read_maps(const std::filesystem::path& dir) { return read_image(dir / "maps.vti"); }
+
 }  // namespace frana

@@ -58,6 +58,9 @@ LoadedParticles read_particles(const std::filesystem::path& run_dir, Index numbe
 /// RUN_DIR/terrain.vti as a frame at time 0: "elevation" (NaN: no terrain), "slope", "hillshade".
 LoadedFrame read_terrain(const std::filesystem::path& run_dir);
 
+/// maps.vti of an ensemble's folder, likewise.
+LoadedFrame read_maps(const std::filesystem::path& dir);
+
 /// Elevation [m] at the first and the last station of the first profile of RUN_DIR/profiles.pvd; 0 and 0 when that
 /// has none.
 std::pair<double, double> profile_ends(const std::filesystem::path& run_dir);

@@ -10,6 +10,8 @@
 // terrain.
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "observe/observer.h"
 #include "observe/profiles.h"
@@ -45,5 +47,13 @@ void write_barrier_meshes(const std::filesystem::path& run_dir, const BarrierMes
 /// terrain.vti: "elevation" [m], "slope" [degree], "hillshade" [1, 0 dark to 1 bright] at the nodes of the
 /// bed.
 void write_terrain(const std::filesystem::path& run_dir, const Raster& bed);
+
+/// Values at the nodes of a bed, without NaN.
+struct NamedMap {
+    std::string name, unit;
+    std::vector<double> values;
+};
+/// maps.vti: "elevation" [m] and the maps at the nodes of the bed. UserError as above.
+void write_terrain_maps(const std::filesystem::path& dir, const Raster& bed, const std::vector<NamedMap>& maps);
 
 }  // namespace frana

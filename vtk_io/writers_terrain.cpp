@@ -32,6 +32,19 @@ Vec2 gradient(const Raster& bed, Index i, Index j) {
     return {difference(z(i - 1, j), here, z(i + 1, j), cell), difference(z(i, j - 1), here, z(i, j + 1), cell)};
 }
 
+/// The node fields of a frame, whose first is the elevation.
+void write_image(const std::filesystem::path& file, const Frame& frame) {
+    const auto outside = outside_nodes(frame);
+    const auto image = image_of(frame.grid);
+    for (const Field& field : frame.nodes) {
+        add_unit(image->GetFieldData(), field.name, field.unit);
+        image->GetPointData()->AddArray(to_vtk(field, outside));
+    }
+    hide_nodes(image, outside);
+    vtkNew<vtkXMLImageDataWriter> writer;
+    write_xml(writer, image, file);
+}
+
 }  // namespace
 
 void write_terrain(const std::filesystem::path& run_dir, const Raster& bed) {
@@ -50,15 +63,16 @@ void write_terrain(const std::filesystem::path& run_dir, const Raster& bed) {
     frame.nodes = {{"elevation", "m", 1, bed.values.data(), grid.size()},
                    {"slope", "degree", 1, slope_deg.data(), grid.size()},
                    {"hillshade", "1", 1, shade.data(), grid.size()}};
-    const auto outside = outside_nodes(frame);
-    const auto image = image_of(grid);
-    for (const Field& field : frame.nodes) {
-        add_unit(image->GetFieldData(), field.name, field.unit);
-        image->GetPointData()->AddArray(to_vtk(field, outside));
-    }
-    hide_nodes(image, outside);
-    vtkNew<vtkXMLImageDataWriter> writer;
-    write_xml(writer, image, run_dir / "terrain.vti");
+    write_image(run_dir / "terrain.vti", frame);
+}
+
+void write_terrain_maps(const std::filesystem::path& dir, const Raster& bed, const std::vector<NamedMap>& maps) {
+    Frame frame;
+    frame.grid = bed.geometry;
+    frame.nodes = {{"elevation", "m", 1, bed.values.data(), bed.geometry.size()}};
+    for (const NamedMap& map : maps)
+        frame.nodes.push_back({map.name, map.unit, 1, map.values.data(), bed.geometry.size()});
+    write_image(dir / "maps.vti", frame);
 }
 
 }  // namespace frana

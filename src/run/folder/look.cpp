@@ -203,6 +203,7 @@ std::string lacks_arrays(const Seen& seen, const std::vector<std::string>& names
 std::string missing_for(const std::string& state, const fs::path& run_dir, const Seen& seen) {
     const bool history = fs::exists(run_dir / "history.csv");
     if (state == "budgets") return history ? "" : "there is no history.csv; run the case again";
+    if (state == "probability") return "it shows the maps of many runs; make them with frana ensemble";
     if (seen.extent.empty())
         return "there are no frames with flow in grid.pvd; add \"vtk\" to output.formats and run again";
     for (const char* file : {"terrain.vti", "particles.pvd"})
@@ -305,9 +306,37 @@ int free_corner(const fs::path& run_dir) {
 }  // namespace
 
 const std::vector<std::string>& state_names() {
-    static const std::vector<std::string> names = {"overview", "stress",    "profiles", "survey",
-                                                   "impact",   "structure", "phases",   "budgets"};
+    static const std::vector<std::string> names = {"overview",  "stress", "profiles", "survey",     "impact",
+                                                   "structure", "phases", "budgets",  "probability"};
     return names;
+}
+
+Json look_at_maps(const fs::path& dir, const std::string& title) {
+    const LoadedFrame maps = read_maps(dir);
+    const auto &elevation = maps.nodes.at("elevation"), &reached = maps.nodes.at("probability_reached");
+    Extent extent;
+    Place highest{}, lowest{};
+    for (Index j = 0, k = 0; j < maps.grid.ny; ++j)
+        for (Index i = 0; i < maps.grid.nx; ++i, ++k) {
+            const auto node = static_cast<std::size_t>(k);
+            if (!(reached[node] > 0.0) || !std::isfinite(elevation[node])) continue;
+            const Place at{maps.grid.x(i), maps.grid.y(j), elevation[node]};
+            if (extent.empty() || at[2] > highest[2]) highest = at;
+            if (extent.empty() || at[2] < lowest[2]) lowest = at;
+            extent.add(at[0], at[1], at[2]);
+        }
+    Json look = {{"title", title}};
+    for (const std::string& name : state_names())
+        look["states"][name] = name != "probability" ? "it shows one run; this is an ensemble"
+                               : extent.empty()      ? "no run came anywhere; look into runs.csv"
+                                                     : "";
+    if (extent.empty()) return look;
+    extent.first = highest, extent.last = lowest;
+    look["lift"] = 0.1 * maps.grid.cell;
+    look["lift_outlines"] = 0.3 * maps.grid.cell;
+    look["range"]["probability"] = {0.0, 1.0};
+    look["camera"] = {{"view", view_camera(extent)}, {"map", map_camera(extent)}};
+    return look;
 }
 
 Json look_at_run(const fs::path& run_dir, const std::string& title) {

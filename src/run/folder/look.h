@@ -24,6 +24,9 @@ namespace frana {
 /// Throws UserError when a file that is there cannot be read.
 nlohmann::ordered_json look_at_run(const std::filesystem::path& run_dir, const std::string& title);
 
+/// The same of the maps of an ensemble, maps.vti: title, lift [m], range.probability, cameras, states.
+nlohmann::ordered_json look_at_maps(const std::filesystem::path& dir, const std::string& title);
+
 /// The names of all states, in the order of their use.
 const std::vector<std::string>& state_names();
 

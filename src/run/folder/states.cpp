@@ -67,7 +67,7 @@ std::string filled_state(const std::string& text, const Json& look, const fs::pa
 }
 
 Json write_states(const fs::path& run_dir, const std::string& title) {
-    Json look = look_at_run(run_dir, title);
+    Json look = fs::exists(run_dir / "maps.vti") ? look_at_maps(run_dir, title) : look_at_run(run_dir, title);
     const fs::path folder = run_dir / "states";
     std::error_code failure;
     fs::create_directories(folder, failure);

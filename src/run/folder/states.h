@@ -24,7 +24,7 @@ const std::vector<StateTemplate>& state_templates();
 std::string filled_state(const std::string& text, const nlohmann::ordered_json& look,
                          const std::filesystem::path& run_dir);
 
-/// Writes states/look.json and the states that the run has the files for, and removes those that it has not. Paths in
+/// Writes states/look.json and the states that the run, or the ensemble, has the files for, and removes those that it has not. Paths in
 /// them are absolute: after moving the folder, write them again (frana states). Returns the look. Throws UserError.
 nlohmann::ordered_json write_states(const std::filesystem::path& run_dir, const std::string& title);
 
