@@ -70,3 +70,34 @@ TEST_CASE("The three areas differ in grey by a tenth of the scale at least", "[f
     CHECK(hit - missed > 0.1);
     CHECK(beyond - hit > 0.1);
 }
+
+TEST_CASE("Classes of places have the colours that the legend names, for whole pixels", "[figures]") {
+    if (figures::cannot_draw()) return;
+    MapFigure figure = figures::valley();
+    figure.classes = {{"low", {255, 221, 0, 255}}, {"high", {216, 30, 40, 255}}};
+    const GridGeometry& g = figure.bed.geometry;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i)
+            figure.field[static_cast<std::size_t>(j * g.nx + i)] = g.x(i) > 900 ? 2.0 : g.x(i) > 300 ? 1.0 : 0.0;
+    const figures::Folder folder;
+    std::string why_not;
+    REQUIRE(render_map(figure, folder / "classes.png", why_not));
+    const Pixels picture = read_png(folder / "classes.png");
+    const MapLayout layout = lay_out(figure);
+    const auto share = [&](double x, const Colour& area) {  // along a line up the map; contours cross it
+        int of_area = 0, all = 0;
+        for (double y = 300; y <= 900; y += 10, ++all) {
+            const Vec2 p = layout.pixel({x, y});
+            of_area += off_area(picture.at(static_cast<int>(p.x()), static_cast<int>(p.y())), area) <= 6;
+        }
+        return static_cast<double>(of_area) / all;
+    };
+    CHECK(share(600, figure.classes[0].colour) > 0.8);
+    CHECK(share(1200, figure.classes[1].colour) > 0.8);
+    CHECK(share(600, figure.classes[1].colour) < 0.1);
+    // Between two nodes one colour gives way to the other, without those between.
+    const double edge = 900.0 + 0.5 * g.cell;
+    CHECK(share(edge - 0.4 * g.cell, figure.classes[0].colour) + share(edge - 0.4 * g.cell, figure.classes[1].colour) >
+          0.8);
+    for (const MapClass& one : figure.classes) CHECK(figures::count(picture, one.colour, 2) > 100);  // in the legend
+}
