@@ -292,7 +292,7 @@ TEST_CASE("What flowed is what was released and taken of the bed, once however o
                                         "[material.bed]\nlaw = \"coulomb\"\nmu = 0.2\n" +
                                         loose + (deposits ? "0.0\n[deposition]\nlaw = \"rest\"\ntime = 1\n" : "0.4\n"));
     frana::write_text(plane.folder() / "many.toml",
-                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\n");
+                      "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nquantiles = []\n");
     frana::write_text(plane.folder() / "rows.csv", "release.0.depth\n1.5\n");
     REQUIRE(plane.frana("ensemble many.toml --out many --quiet").code == 0);
     REQUIRE(plane.frana("run CASE --quiet --set 'output.formats=[]' --out alone").code == 0);

@@ -31,7 +31,8 @@ std::size_t pixel_at(const frana::Raster& map, double x, double y) {
 
 }  // namespace
 
-TEST_CASE("Gauges of the case are columns of the runs and outcomes of the ensemble", "[ensemble]") {
+TEST_CASE("Gauges are outcomes of the ensemble, and maps of arrival tell when a share of the runs has come",
+          "[ensemble]") {
     const Pond pond;
     pond.write("case.toml", text_of(pond.path("case.toml")) + gauges);
     pond.write("many.toml", two_outlines);
@@ -51,15 +52,7 @@ TEST_CASE("Gauges of the case are columns of the runs and outcomes of the ensemb
     CHECK(results["gauge_east_arrival_s"]["share_that_came"].get<double>() == Approx(0.7));
     CHECK(results["gauge_west_arrival_s"]["q0.95"] == 0.0);
     CHECK_THAT(text_of(pond.path("many/report.md")), Contains("largest depth [m] at east") && Contains("| never |"));
-    const std::string runs = text_of(pond.path("many/runs.csv"));
-    REQUIRE(pond.frana("ensemble --join many --quiet").code == 0);  // from what the shards hold
-    CHECK(text_of(pond.path("many/runs.csv")) == runs);
-}
-
-TEST_CASE("Maps of arrival tell when a share of the runs has come, and nothing where fewer come", "[ensemble]") {
-    const Pond pond;
-    pond.write("many.toml", two_outlines);
-    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    // The maps of arrival say the same everywhere: nothing where fewer runs come.
     const frana::Raster half = pond.map("many", "quantile_arrival_time_0.5"),
                         most = pond.map("many", "quantile_arrival_time_0.95");
     CHECK(half.values[pixel_at(half, 50, 30)] == 0.0);
@@ -78,7 +71,8 @@ TEST_CASE("Indices stand on every pixel, of the numbers at gauges too", "[ensemb
         "fields = [\"peak_depth\", \"peak_pressure\"]\n"
         "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n"
         "[[ensemble.vary]]\nkey = \"material.density\"\nrange = [1000.0, 2000.0]\n";
-    pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nmethod = \"saltelli\"\nsamples = 16\n" + keys);
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"saltelli\"\nsamples = 8\nquantiles = []\n" + keys);
     REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
     const auto everywhere = [&](const std::string& name, double value, double margin) {
         CAPTURE(name);
@@ -95,19 +89,24 @@ TEST_CASE("Indices stand on every pixel, of the numbers at gauges too", "[ensemb
                         density = pond.map("many", "total_peak_pressure_material.density");
     CHECK(depth.values[40] > 0.3);
     CHECK(density.values[40] > 0.3);
+}
 
-    SECTION("by Morris' ways") {
-        pond.write("many.toml", "[ensemble]\ncase = \"case.toml\"\nmethod = \"morris\"\nsamples = 4\n" + keys);
-        REQUIRE(pond.frana("ensemble many.toml --out ways --quiet").code == 0);
-        for (const double effect : pond.map("ways", "mean_effect_peak_depth_release.0.depth").values)
-            CHECK(effect == Approx(1.0).margin(1e-6));  // of going through 1 to 2 m
-    }
+TEST_CASE("Morris' mean effects stand on every pixel", "[ensemble]") {
+    const Pond pond;
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"morris\"\nsamples = 4\nquantiles = []\nfields = "
+               "[\"peak_depth\"]\n"
+               "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n");
+    REQUIRE(pond.frana("ensemble many.toml --out ways --quiet").code == 0);
+    for (const double effect : pond.map("ways", "mean_effect_peak_depth_release.0.depth").values)
+        CHECK(effect == Approx(1.0).margin(1e-6));  // of going through 1 to 2 m
 }
 
 TEST_CASE("Random samples come with Wilson's bounds of their probabilities", "[ensemble]") {
     const Pond pond;
     pond.write("many.toml",
-               "[ensemble]\ncase = \"case.toml\"\nmethod = \"random\"\nsamples = 10\nfields = [\"peak_depth\"]\n"
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"random\"\nsamples = 10\nquantiles = []\nfields = "
+               "[\"peak_depth\"]\n"
                "exceed = { peak_depth = [1.25] }\n"
                "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n");
     REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
@@ -123,7 +122,7 @@ TEST_CASE("Classes of hazard are a raster with colours and names, and areas in r
     const Pond pond;
     pond.write("many.toml",
                "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nfields = [\"peak_depth\"]\n"
-               "[ensemble.hazard]\nyears = [30, 300]\n"
+               "quantiles = []\n[ensemble.hazard]\nyears = [30, 300]\n"
                "[[ensemble.hazard.class]]\nname = \"low & seldom\"\ncolour = \"#ffdd00\"\n"
                "[[ensemble.hazard.class]]\nname = \"high\"\ncolour = \"#d81e28\"\n"
                "[[ensemble.hazard.level]]\npeak_depth = 0.8\nclasses = [\"high\", \"low & seldom\", \"none\"]\n");
