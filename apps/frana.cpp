@@ -102,7 +102,9 @@ void add_calibrate(CLI::App& app, CalibrateOptions& options, Action& action) {
     command->add_option("--out", options.out, "folder of the result")->required();
     command->add_option("--threads", options.threads, "runs at a time; default OMP_NUM_THREADS")
         ->check(CLI::Range(1, 4096));
-    command->add_flag("--overwrite", options.overwrite, "replace an earlier calibration in the folder");
+    CLI::Option* resume = command->add_flag("--resume", options.resume, "go on with what has been run in the folder");
+    command->add_flag("--overwrite", options.overwrite, "replace an earlier calibration in the folder")
+        ->excludes(resume);
     command->add_flag("--quiet", options.quiet, "no progress");
     command->callback([&] { action = [&] { return calibrate_command(options); }; });
 }

@@ -1,7 +1,6 @@
 #pragma once
 // What `frana calibrate` found, and the files that it leaves.
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,20 +9,19 @@
 
 namespace frana {
 
-/// How near the runs of one event came to its survey, by point of the posterior; nothing where a run has no answer.
+/// How near the runs of one event came to its survey, by point of the posterior.
 struct EventFit {
-    std::vector<std::optional<double>> rms, mean,
-        iou;                             ///< of the outlines' distance [m], the same, of the footprints [1]
+    std::vector<EventScores> scores;
     std::vector<double> log_likelihood;  ///< without the event's weight
-    double perimeter = 0.0;              ///< of the surveyed outline [m]
 };
 
 struct Calibration {
     CalibrationPlan plan;
     Posterior posterior;
-    std::vector<EventFit> fits;  ///< by event
-    Index failed = 0;            ///< runs
-    double seconds = 0.0;        ///< of all runs, on one thread each [s]
+    std::vector<EventFit> fits;           ///< by event
+    Index failed = 0;                     ///< runs
+    double seconds = 0.0;                 ///< of all runs, on one thread each [s]
+    std::vector<std::string> files = {};  ///< written
 };
 
 /// Writes calibrate.json, report.md, runs.csv, posterior.csv and the pictures. Returns their names. Throws UserError.

@@ -12,6 +12,8 @@
 #include "base/version.h"
 #include "ensemble/statistics.h"
 #include "frana_calibrate.h"
+#include "frana_calibrate_kept.h"
+#include "frana_calibrate_predictions.h"
 #include "frana_ensemble_folder.h"
 #include "vtk_io/figures/chart_figure.h"
 
@@ -31,53 +33,40 @@ std::vector<double> values_of(const Calibration& c, std::size_t key) {
     return all;
 }
 
-/// Mean of what is known, by weight; not a number where nothing is. Runs in which nothing flowed have no outline.
-double mean_of(const std::vector<std::optional<double>>& numbers, const std::vector<double>& weights) {
-    double sum = 0.0, all = 0.0;
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-        if (numbers[k]) sum += weights[k] * *numbers[k], all += weights[k];
-    return all > 0.0 ? sum / all : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// How near an event is met, on the mean of the runs: by what is known before any survey, by the event's own, by those of the
-/// other events, and by all.
-struct Prediction {
-    double prior = 0.0, own = 0.0, others = 0.0, all = 0.0;  ///< mean distance of the outlines [m]
-};
-
-std::vector<Prediction> predictions(const Calibration& c) {
-    std::vector<Prediction> rows;
-    const std::vector<double> all = c.posterior.weights();
-    std::vector<double> first(all.size(), 0.0);
-    std::fill(first.begin(), first.begin() + c.plan.samples, 1.0);  // the first round is the prior
-    for (std::size_t e = 0; e < c.fits.size(); ++e) {
-        std::vector<double> others(all.size(), 0.0), own(all.size(), 0.0);
-        for (std::size_t f = 0; f < c.fits.size(); ++f)
-            for (std::size_t k = 0; k < all.size(); ++k)
-                (f == e ? own : others)[k] += c.plan.events[f].weight * c.fits[f].log_likelihood[k];
-        const auto& fit = c.fits[e].mean;
-        rows.push_back({mean_of(fit, first), mean_of(fit, c.posterior.weights(own)),
-                        mean_of(fit, c.posterior.weights(others)), mean_of(fit, all)});
-    }
-    return rows;
-}
-
 /// A number of a record, null where there is none.
 Json known(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+
+Json known(const std::optional<double>& number) { return number ? known(*number) : Json(nullptr); }
+
+/// How far the run is off in all that counts of an event.
+Json misfits_json(const SurveyedEvent& event, const EventScores& scores) {
+    Json all = Json::object();
+    for (const Evidence evidence : event.objective) {
+        const auto& misfit = scores.misfits[static_cast<std::size_t>(evidence)];
+        all[kind_of(evidence).word] = {{"rms", misfit ? Json(misfit->rms) : Json(nullptr)},
+                                       {"sigma", event.errors.of(evidence)},
+                                       {"number", misfit ? Json(misfit->number) : Json(nullptr)}};
+    }
+    return all;
+}
 
 Json events_json(const Calibration& c) {
     Json all = Json::array();
     const std::size_t best = c.posterior.best();
     const auto rows = predictions(c);
     for (std::size_t e = 0; e < c.fits.size(); ++e) {
-        const EventFit& fit = c.fits[e];
+        const EventScores& scores = c.fits[e].scores[best];
         Json event = {{"name", c.plan.events[e].name},
-                      {"iou", fit.iou[best] ? Json(*fit.iou[best]) : Json(nullptr)},
-                      {"boundary", fit.mean[best] ? Json(*fit.mean[best]) : Json(nullptr)},
+                      {"iou", known(scores.iou)},
+                      {"boundary", known(scores.boundary)},
                       {"boundary_by_prior", known(rows[e].prior)},
+                      {"boundary_median_of_prior", known(rows[e].prior_median)},
                       {"boundary_by_own", known(rows[e].own)},
                       {"boundary_by_all", known(rows[e].all)}};
         if (c.fits.size() > 1) event["boundary_by_others"] = known(rows[e].others);
+        for (std::size_t f = 0; c.fits.size() > 1 && f < c.fits.size(); ++f)
+            event["boundary_by_one"].push_back(known(rows[e].by_one[f]));
+        event["misfits"] = misfits_json(c.plan.events[e], scores);
         all.push_back(event);
     }
     return all;
@@ -88,7 +77,7 @@ Json record_of(const Calibration& c, const std::vector<std::string>& files) {
     const std::size_t best = c.posterior.best();
     double score = 0.0;
     for (std::size_t e = 0; e < c.fits.size(); ++e) score += c.plan.events[e].weight * c.fits[e].log_likelihood[best];
-    Json json = {{"frana", FRANA_VERSION}, {"file", c.plan.file.filename().string()}};
+    Json json = {{"frana", FRANA_VERSION}, {"file", c.plan.file.filename().string()}, {"mark", mark_of(c.plan)}};
     Json posterior = Json::object();
     for (std::size_t k = 0; k < c.plan.vary.size(); ++k) {
         const std::vector<double> values = values_of(c, k);
@@ -103,8 +92,6 @@ Json record_of(const Calibration& c, const std::vector<std::string>& files) {
     json["posterior"] = posterior;
     json["effective_number"] = effective_number(w);
     json["core_seconds"] = c.seconds;
-    json["sigma"] = c.plan.sigma;
-    json["correlation"] = c.plan.correlation;
     json["events"] = events_json(c);
     json["files"] = files;
     return json;
@@ -114,15 +101,25 @@ void write_tables(const fs::path& dir, const Calibration& c) {
     TextFile runs(dir / "runs.csv");
     runs.put("sample,weight");
     for (const Vary& vary : c.plan.vary) runs.put(",{}", vary.key);
-    for (const SurveyedEvent& event : c.plan.events)
+    for (const SurveyedEvent& event : c.plan.events) {
         runs.put(",{},{}", csv_field(event.name + ": iou"), csv_field(event.name + ": boundary_m"));
+        for (const Evidence evidence : event.objective)
+            runs.put(",{}", csv_field(fmt::format("{}: {}_rms", event.name, kind_of(evidence).word)));
+    }
     runs.put("\n");
     const std::vector<double> w = c.posterior.weights();
     for (std::size_t i = 0; i < w.size(); ++i) {
         runs.put("{},{}", i, w[i]);
         for (std::size_t k = 0; k < c.plan.vary.size(); ++k)
             runs.put(",{}", c.plan.vary[k].distribution.number(c.posterior.points()[i][k]));
-        for (const EventFit& fit : c.fits) runs.put(",{},{}", text_of_known(fit.iou[i]), text_of_known(fit.mean[i]));
+        for (std::size_t e = 0; e < c.fits.size(); ++e) {
+            const EventScores& scores = c.fits[e].scores[i];
+            runs.put(",{},{}", text_of_known(scores.iou), text_of_known(scores.boundary));
+            for (const Evidence evidence : c.plan.events[e].objective) {
+                const auto& misfit = scores.misfits[static_cast<std::size_t>(evidence)];
+                runs.put(",{}", misfit ? fmt::format("{}", misfit->rms) : "");
+            }
+        }
         runs.put("\n");
     }
     runs.commit();
@@ -167,6 +164,22 @@ bool draw(const fs::path& dir, const Calibration& c) {
     return render_chart(figure, dir / "posterior.png", why_not);
 }
 
+/// How far the best point's runs are off in all that counts, beside what was expected of them.
+std::string misfits_section(const Calibration& c, std::size_t best) {
+    std::string text = "| Event | what counts | best point | sigma | independent errors |\n|---|---|---:|---:|---:|\n";
+    for (std::size_t e = 0; e < c.fits.size(); ++e) {
+        const SurveyedEvent& event = c.plan.events[e];
+        for (const Evidence evidence : event.objective) {
+            const EvidenceKind& kind = kind_of(evidence);
+            const auto& misfit = c.fits[e].scores[best].misfits[static_cast<std::size_t>(evidence)];
+            if (!misfit) continue;  // the best point has an answer to all of them
+            text += fmt::format("| {} | {} [{}] | {:.3g} | {:.3g} | {:.3g} |\n", event.name, kind.meaning, kind.unit,
+                                misfit->rms, event.errors.of(evidence), misfit->number);
+        }
+    }
+    return text + "\n";
+}
+
 }  // namespace
 
 std::string calibration_section(const Calibration& c) {
@@ -183,21 +196,7 @@ std::string calibration_section(const Calibration& c) {
     page += fmt::format("\n{} points, {} runs, {} failed; the points tell as much as {:.0f} of equal weight.", w.size(),
                         w.size() * c.fits.size(), c.failed, effective);
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";
-    page += "\n\n| Event | IoU of the best | outlines apart [m]: best | by the prior | by its own survey |";
-    page += c.fits.size() > 1 ? " by the other events | by all |\n|---|---:|---:|---:|---:|---:|---:|\n"
-                              : "\n|---|---:|---:|---:|---:|\n";
-    const auto rows = predictions(c);
-    for (std::size_t e = 0; e < c.fits.size(); ++e) {
-        const EventFit& fit = c.fits[e];
-        page += fmt::format("| {} | {:.3f} | {:.1f} | {:.1f} | {:.1f} |", c.plan.events[e].name,
-                            fit.iou[best].value_or(0.0), fit.mean[best].value_or(0.0), rows[e].prior, rows[e].own);
-        page += c.fits.size() > 1 ? fmt::format(" {:.1f} | {:.1f} |\n", rows[e].others, rows[e].all) : "\n";
-    }
-    for (std::size_t e = 0; c.fits.size() > 1 && e < c.fits.size(); ++e)
-        if (rows[e].others > rows[e].prior)
-            page += fmt::format("\nWhat the other events tell predicts {} worse than what was known before.\n",
-                                c.plan.events[e].name);
-    return page;
+    return page + "\n\n" + misfits_section(c, best) + predictions_section(c);
 }
 
 std::vector<std::string> write_calibration(const fs::path& dir, const Calibration& c) {
@@ -212,9 +211,9 @@ std::vector<std::string> write_calibration(const fs::path& dir, const Calibratio
     if (draw(dir, c)) files.emplace_back("posterior.png");
     write_text(
         dir / "report.md",
-        fmt::format("# Calibration by {}\n\n{}\nOutlines err by {:g} m, independently every {:g} m of the surveyed "
-                    "outline. `posterior.csv` is a table of samples for `frana ensemble` (method \"table\").\n",
-                    c.plan.file.filename().string(), calibration_section(c), c.plan.sigma, c.plan.correlation));
+        fmt::format("# Calibration by {}\n\n{}\n`posterior.csv` is a table of samples for `frana ensemble` (method "
+                    "\"table\").\n",
+                    c.plan.file.filename().string(), calibration_section(c)));
     write_text(dir / "calibrate.json", record_of(c, files).dump(2) + "\n");
     return files;
 }

@@ -50,11 +50,11 @@ struct EnsembleOptions {
     bool resume = false, check = false, quiet = false;
 };
 
-/// `frana calibrate FILE --out DIR [--threads N] [--overwrite] [--quiet]`
+/// `frana calibrate FILE --out DIR [--threads N] [--resume] [--overwrite] [--quiet]`
 struct CalibrateOptions {
     std::filesystem::path file, out;
     int threads = 0;
-    bool overwrite = false, quiet = false;
+    bool resume = false, overwrite = false, quiet = false;
 };
 
 /// `frana figures RUN_DIR [--time T] [--size WxH] [--film mp4|gif]`

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <regex>
 
 #include "base/atomic_file.h"
-#include "base/checksum.h"
 #include "base/error.h"
 #include "base/version.h"
 #include "ensemble/sample_table.h"
+#include "frana_kept_rows.h"
 #include "io/hdf5_peaks.h"
 
 namespace frana {
@@ -34,30 +33,12 @@ std::string columns_of(const std::vector<Gauge>& gauges) {
     return columns;
 }
 
-std::uint64_t sum_of(const std::string& text) {
-    Checksum sum;
-    sum.add_all(text);
-    return sum.sum();
-}
-
-std::string text_in(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// Without what would end a field or a line.
-std::string plain(std::string text) {
-    for (char& letter : text)
-        if (letter == ',' || letter == '\n' || letter == '\r') letter = letter == ',' ? ';' : ' ';
-    return text;
-}
-
 /// Of what was refused before its first step there are no gauges: their fields are empty too.
 std::string row_of(const SampleResult& r, const std::string& peaks, std::size_t gauges) {
     std::string row =
         fmt::format("{},{},{},{},{:.3f},{},{},{},{},{},{},{},{},{},{},{},{}", r.sample, r.reason, r.time, r.steps,
                     r.seconds, r.volume, r.runout, r.reach, r.footprint_area, r.max_depth, r.max_speed, r.left_share,
-                    r.mass_error, text_of_known(r.iou), text_of_known(r.boundary), peaks, plain(r.message));
+                    r.mass_error, text_of_known(r.iou), text_of_known(r.boundary), peaks, plain_field(r.message));
     for (std::size_t k = 0; k < gauges; ++k) {
         const GaugePeak peak = k < r.gauges.size() ? r.gauges[k] : GaugePeak();
         row +=
@@ -66,17 +47,10 @@ std::string row_of(const SampleResult& r, const std::string& peaks, std::size_t 
     return row + "\n";
 }
 
-UserError broken(const fs::path& file, const std::string& line) {
-    return UserError(
-        fmt::format("{}: found the row \"{}\"; expected the rows that an ensemble writes; remove the folder of "
-                    "this shard and run it again",
-                    file.string(), line));
-}
-
 /// A row, and the file of its peaks.
 std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::string& line, std::size_t gauges) {
     const std::vector<std::string> f = comma_fields(line);
-    if (f.size() != kColumnCount + kGaugeColumns * gauges) throw broken(file, line);
+    if (f.size() != kColumnCount + kGaugeColumns * gauges) throw broken_row(file, line);
     SampleResult r;
     try {
         r.sample = std::stoll(f[0]), r.reason = f[1], r.time = std::stod(f[2]), r.steps = std::stoll(f[3]);
@@ -91,24 +65,13 @@ std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::
         for (std::size_t k = kColumnCount; k < f.size(); k += kGaugeColumns)
             r.gauges.push_back({known(k), known(k + 1), known(k + 2)});
     } catch (const std::logic_error&) {  // what the conversions say of text that is no number
-        throw broken(file, line);
+        throw broken_row(file, line);
     }
     return {r, f[15]};
 }
 
-void require_same(const fs::path& file, const std::string& found, const std::string& expected) {
-    if (found == expected) return;
-    const std::vector<std::string> a = comma_fields(found), b = comma_fields(expected);
-    std::string what = "its first line";
-    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
-        if (a[k] != b[k]) {
-            what = fmt::format("\"{}\" where now it is \"{}\"", a[k], b[k]);
-            break;
-        }
-    throw UserError(
-        fmt::format("{}: found {}; expected runs of the same ensemble; choose another folder with --out, or "
-                    "give the files back that these runs were made with",
-                    file.string(), what));
+RowsOf rows_of(const EnsemblePlan& plan, const EnsembleBase& base) {
+    return {"ensemble", mark_of(plan), columns_of(base.gauges)};
 }
 
 std::vector<fs::path> row_files(const fs::path& dir) {
@@ -144,9 +107,8 @@ void take_peaks(const fs::path& file, const EnsemblePlan& plan, const GridGeomet
 
 void remove_leftovers(const fs::path& folder) {
     static const std::regex half_written(
-        "\\.(peaks|runs|probability|quantile|mean|first_order|total|hazard|terrain|maps|reached|report|ensemble).*\\."
-        "tmp\\d+(\\..*)"
-        "?");
+        "\\.(peaks|runs|probability|quantile|mean|first_order|total|hazard|terrain|maps|reached|report|ensemble|"
+        "calibrate|posterior).*\\.tmp\\d+(\\..*)?");
     std::vector<fs::path> found;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored))
@@ -199,7 +161,7 @@ std::string mark_of(const EnsemblePlan& plan) {
 
 ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const EnsembleBase& base)
     : folder_(std::move(folder)), plan_(plan), base_(base), rows_(text_in(folder_ / "runs.csv")) {
-    if (rows_.empty()) rows_ = mark_of(plan) + "\n" + columns_of(base.gauges) + "\n";
+    if (rows_.empty()) rows_ = rows_of(plan, base).head();
 }
 
 void ShardStore::add(SampleResult result) {
@@ -236,22 +198,16 @@ std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& 
     std::map<Index, SampleResult> results;
     std::set<fs::path> peaks;
     for (const fs::path& file : row_files(dir)) {
-        std::ifstream stream(file);
-        std::string line;
-        std::getline(stream, line);
-        require_same(file, line, mark_of(plan));
-        std::getline(stream, line);
-        if (line != columns_of(base.gauges)) throw broken(file, line);
-        while (std::getline(stream, line)) {
+        for_each_row(file, rows_of(plan, base), [&](const std::string& line) {
             auto [result, name] = result_of(file, line, base.gauges.size());
-            if (result.sample < 0 || result.sample >= plan.samples) throw broken(file, line);
+            if (result.sample < 0 || result.sample >= plan.samples) throw broken_row(file, line);
             if (!name.empty()) peaks.insert(file.parent_path() / name);
             const auto before = results.find(result.sample);
             if (before == results.end())
                 results.emplace(result.sample, std::move(result));
             else if (before->second.reason == "refused")  // and tried again
                 before->second = std::move(result);
-        }
+        });
     }
     if (with_peaks)
         for (const fs::path& file : peaks) take_peaks(file, plan, base.whole, results);

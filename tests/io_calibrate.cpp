@@ -1,11 +1,25 @@
 // `frana calibrate` on a survey that a run with known friction has made.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "catch.h"
+#include "ensemble/sample_table.h"
+#include "frana_calibrate_predictions.h"
+#include "io/gdal_reader.h"
+#include "io/gdal_writer.h"
 #include "plane_case.h"
 #include "program.h"
 #include "shared_data.h"
@@ -104,6 +118,246 @@ TEST_CASE("two events are weighed together, with the same bytes on any number of
     // The same event twice: what one tells predicts the other as well as its own survey does, but for the weight.
     CHECK(json["events"][0]["boundary"] == json["events"][1]["boundary"]);
     CHECK(json["events"][0]["boundary_by_others"].get<double>() < json["events"][0]["boundary_by_prior"].get<double>());
+}
+
+namespace {
+
+/// A slide down a plane whose bed is taken up, and all that a survey can have of one of its runs.
+class SurveyedSlide {
+public:
+    SurveyedSlide() {
+        const std::string scene =
+            "[terrain]\ndem = \"dem.asc\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 1.5\n"
+            "[material.bed]\nlaw = \"coulomb\"\nmu = 0.05\n"
+            "[erodible]\ndepth = 0.5\nlaw = \"growth\"\ngrowth = 0.01\n[time]\nend = 6\n"
+            "[[gauge]]\nname = \"low\"\npoint = [75, 50]\n";
+        write("event.toml", scene +
+                                "[survey]\nfootprint = \"truth/footprint.geojson\"\n"
+                                "deposit = \"truth/rasters/final_depth.tif\"\n"
+                                "bed_change = \"dod.tif\"\npath = \"path.geojson\"\n");
+        write("truth.toml", scene);
+        write("path.geojson", R"({"type": "LineString", "coordinates": [[35, 50], [140, 50]]})");
+        REQUIRE(run("truth.toml", "truth", kTruth).code == 0);
+        // A second survey sees the ground with what lies on it.
+        frana::Raster change = raster("truth/rasters/bed_change.tif");
+        const frana::Raster lying = raster("truth/rasters/final_depth.tif");
+        for (std::size_t k = 0; k < change.values.size(); ++k) change.values[k] += lying.values[k];
+        frana::write_geotiff(path("dod.tif"), change, "m", "after minus before");
+    }
+    frana::Raster raster(const std::string& name) const {
+        std::vector<std::string> log;
+        return frana::GdalReader().read_raster(path(name), {0.0, 0.0, 150.0, 100.0}, "", log);
+    }
+    Outcome run(const std::string& file, const std::string& out, double mu) const {
+        return frana("run " + file + " --out " + out + " --quiet --set material.bed.mu=" + std::to_string(mu) +
+                     " --set 'output.formats=[\"geotiff\"]'");
+    }
+    void write(const std::string& name, const std::string& text) const { frana::write_text(path(name), text); }
+    fs::path path(const std::string& name) const { return scene_.folder() / name; }
+    Outcome frana(const std::string& arguments) const { return scene_.frana(arguments); }
+    /// A column of a table with commas.
+    std::vector<double> column(const std::string& file, const std::string& name) const {
+        std::istringstream lines(text_of(path(file)));
+        std::string line;
+        std::getline(lines, line);
+        const std::vector<std::string> names = frana::comma_fields(line);
+        const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+        REQUIRE(at < static_cast<std::ptrdiff_t>(names.size()));
+        std::vector<double> all;
+        while (std::getline(lines, line))
+            all.push_back(std::stod(frana::comma_fields(line)[static_cast<std::size_t>(at)]));
+        return all;
+    }
+    static constexpr double kTruth = 0.05;
+
+private:
+    PlaneCase scene_;
+};
+
+const std::string only_mu = "[[calibrate.vary]]\nkey = \"material.bed.mu\"\nrange = [0.0, 0.1]\n";
+
+}  // namespace
+
+TEST_CASE("each kind of survey finds the friction that it was made with, and all of them together", "[ensemble]") {
+    const SurveyedSlide slide;
+    // What the true run had at its gauge, from its own table.
+    const std::vector<double> depth = slide.column("truth/gauges/low.csv", "depth [m]"),
+                              speed = slide.column("truth/gauges/low.csv", "speed [m/s]");
+    const double deepest = *std::max_element(depth.begin(), depth.end()),
+                 fastest = *std::max_element(speed.begin(), speed.end());
+    const std::string gauge = "[[event.gauge]]\nname = \"low\"\ndepth = " + std::to_string(deepest) +
+                              "\nspeed = " + std::to_string(fastest) + "\n";
+    slide.write("find.toml", "[calibrate]\nsamples = 16\nrounds = 1\ncorrelation = 15\n" + only_mu +
+                                 "[[event]]\ncase = \"event.toml\"\nname = \"slide\"\n"
+                                 "objective = [\"outline\", \"runout\", \"deposit\", \"bed_change\", \"gauges\"]\n" +
+                                 gauge);
+    const Outcome done = slide.frana("calibrate find.toml --out found --threads 2 --quiet");
+    CHECK(done.err.empty());
+    REQUIRE(done.code == 0);
+    const Json json = Json::parse(text_of(slide.path("found/calibrate.json")));
+    const Json& misfits = json["events"][0]["misfits"];
+    CHECK(misfits.size() == 5);
+    // Sobol's first 16 points are a sixteenth of the range apart; pixels of 5 m hide some of a runout.
+    const double near = 0.1 * 3 / 16;
+    CHECK(json["best"]["material.bed.mu"].get<double>() == Approx(SurveyedSlide::kTruth).margin(near));
+    const std::vector<double> tried = slide.column("found/runs.csv", "material.bed.mu");
+    for (const auto& [kind, misfit] : misfits.items()) {
+        CAPTURE(kind);
+        const std::vector<double> all = slide.column("found/runs.csv", "slide: " + kind + "_rms");
+        const auto [least, most] = std::minmax_element(all.begin(), all.end());
+        CHECK(tried[static_cast<std::size_t>(least - all.begin())] == Approx(SurveyedSlide::kTruth).margin(near));
+        CHECK(*least < 0.5 * *most);
+        CHECK(misfit["number"].get<double>() > 0.0);
+    }
+    // The scores are those of `frana compare`.
+    const double mu = slide.column("found/runs.csv", "material.bed.mu")[3];
+    REQUIRE(slide.run("event.toml", "fourth", mu).code == 0);
+    const Json compared = Json::parse(text_of(slide.path("fourth/compare.json")));
+    CHECK(slide.column("found/runs.csv", "slide: iou")[3] == Approx(compared["iou"].get<double>()).epsilon(1e-6));
+    CHECK(slide.column("found/runs.csv", "slide: boundary_m")[3] ==
+          Approx(compared["boundary_distance_mean"].get<double>()).epsilon(1e-6));
+    CHECK(slide.column("found/runs.csv", "slide: runout_rms")[3] ==
+          Approx(std::abs(compared["runout_difference"].get<double>())).margin(1e-6));
+}
+
+namespace {
+
+/// Starts the program, and kills it once it has kept more runs than there were.
+void kill_once_more_is_kept(const fs::path& folder, const fs::path& kept) {
+    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
+    const auto size = [&] {
+        std::error_code none;
+        const auto bytes = fs::file_size(kept, none);
+        return none ? 0 : bytes;
+    };
+    const auto before = size();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        if (::chdir(folder.c_str()) == 0)
+            ::execl(program.c_str(), "frana", "calibrate", "find.toml", "--out", "killed", "--resume", "--quiet",
+                    nullptr);
+        ::_exit(127);
+    }
+    while (::waitpid(child, nullptr, WNOHANG) == 0) {
+        if (size() != before) ::kill(child, SIGKILL);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+}
+
+/// All that a calibration leaves but what tells of the clock.
+std::vector<std::string> whole(const fs::path& folder) {
+    auto json = Json::parse(text_of(folder / "calibrate.json"));
+    REQUIRE(json.erase("core_seconds") == 1);
+    return {json.dump(), text_of(folder / "runs.csv"), text_of(folder / "posterior.csv"),
+            text_of(folder / "report.md")};
+}
+
+std::ptrdiff_t lines_in(const fs::path& file) {
+    const std::string text = text_of(file);
+    return std::count(text.begin(), text.end(), '\n');
+}
+
+}  // namespace
+
+TEST_CASE("a survey that misleads about another event is named", "[ensemble]") {
+    // Four values, likely by one survey each or by none, and how far the outlines of each event are apart with them.
+    frana::Calibration found{{}, frana::Posterior(1, 1), std::vector<frana::EventFit>(3), 0, 0.0};
+    found.plan.samples = 4;
+    const double apart[3][4] = {{1, 9, 5, 4}, {5, 1, 6, 7}, {8, 9, 1, 6}};
+    for (std::size_t e = 0; e < 3; ++e) {
+        found.plan.events.emplace_back().name = std::string(1, static_cast<char>('a' + e));
+        for (std::size_t k = 0; k < 4; ++k) {
+            found.fits[e].scores.emplace_back().boundary = apart[e][k];
+            found.fits[e].log_likelihood.push_back(e == k ? 0.0 : -std::numeric_limits<double>::infinity());
+        }
+    }
+    const auto points = found.posterior.next(4);
+    found.posterior.add(points, {0.0, -1.0, -2.0, -3.0});
+    const auto rows = frana::predictions(found);
+    REQUIRE(rows.size() == 3);
+    for (std::size_t e = 0; e < 3; ++e) {
+        CHECK(rows[e].own == 1.0);
+        for (std::size_t f = 0; f < 3; ++f) CHECK(rows[e].by_one[f] == apart[e][f]);
+    }
+    CHECK(rows[0].prior == Approx(19.0 / 4.0));
+    CHECK(rows[0].prior_median == 5.0);
+    CHECK(rows[1].prior_median == 6.0);
+    CHECK(rows[2].prior_median == 8.0);
+    const std::string text = frana::predictions_section(found);
+    CHECK_THAT(text,
+               Contains("What b alone tells predicts a worse than the median of what was known before: outlines 9.0 m "
+                        "apart instead of 5.0 m.") &&
+                   Contains("What b alone tells predicts c worse"));
+    for (const char* fair : {"What c alone tells predicts", "What a alone tells predicts"})
+        CHECK_THAT(text, !Contains(fair));
+}
+
+TEST_CASE("a calibration that is killed goes on, and leaves the same bytes", "[ensemble]") {
+    const SurveyedSlide slide;
+    const std::string head = "[calibrate]\nsamples = 16\nrounds = ",
+                      tail = "\n" + only_mu + "[[event]]\ncase = \"event.toml\"\nname = \"slide\"\n";
+    slide.write("find.toml", head + "2" + tail);
+    REQUIRE(slide.frana("calibrate find.toml --out whole --threads 2 --quiet").code == 0);
+    const fs::path kept = slide.path("killed/kept/runs.csv");
+    for (int kills = 0; kills < 3; ++kills) kill_once_more_is_kept(slide.path(""), kept);
+    CHECK(lines_in(kept) > 2);  // a run at least
+    CHECK_FALSE(fs::exists(slide.path("killed/calibrate.json")));
+    const Outcome without = slide.frana("calibrate find.toml --out killed --quiet");
+    CHECK(without.code == 2);
+    CHECK_THAT(without.err, Contains("found an earlier calibration") && Contains("--resume"));
+    REQUIRE(slide.frana("calibrate find.toml --out killed --resume --quiet").code == 0);
+    CHECK(whole(slide.path("killed")) == whole(slide.path("whole")));
+    const std::ptrdiff_t rows = lines_in(kept);
+    CHECK(rows == lines_in(slide.path("whole/kept/runs.csv")));  // nothing was run twice
+
+    // A finished one is left as it is.
+    const auto written = fs::last_write_time(slide.path("killed/calibrate.json"));
+    const Outcome again = slide.frana("calibrate find.toml --out killed --resume");
+    CHECK(again.code == 0);
+    CHECK_THAT(again.out, Contains("killed: all is there"));
+    CHECK(fs::last_write_time(slide.path("killed/calibrate.json")) == written);
+
+    // Another round adds its own runs to those.
+    slide.write("find.toml", head + "3" + tail);
+    REQUIRE(slide.frana("calibrate find.toml --out killed --resume --quiet").code == 0);
+    CHECK(Json::parse(text_of(slide.path("killed/calibrate.json")))["evaluations"] == 48);
+    CHECK(lines_in(kept) >= rows + 16);
+
+    // Another survey is another calibration.
+    fs::copy_file(slide.path("release.geojson"), slide.path("truth/footprint.geojson"),
+                  fs::copy_options::overwrite_existing);
+    const Outcome other = slide.frana("calibrate find.toml --out killed --resume");
+    CHECK(other.code == 2);
+    CHECK_THAT(other.err, Contains("found \"event slide ") && Contains("expected runs of the same calibration"));
+}
+
+TEST_CASE("what an event's survey lacks is said in one sentence", "[ensemble]") {
+    const SurveyedSlide slide;
+    slide.write("bare.toml", text_of(slide.path("truth.toml")) + "[survey]\nfootprint = \"truth/footprint.geojson\"\n");
+    const auto complaint = [&](const std::string& event) {
+        slide.write("find.toml", "[calibrate]\n" + only_mu + "[[event]]\ncase = \"bare.toml\"\n" + event);
+        const Outcome outcome = slide.frana("calibrate find.toml --out found --quiet");
+        CHECK(outcome.code == 2);
+        CHECK_FALSE(fs::exists(slide.path("found")));
+        return outcome.err;
+    };
+    CHECK_THAT(complaint("objective = [\"deposit\"]\n"), Contains("bare.toml: survey.deposit: found none"));
+    CHECK_THAT(complaint("objective = [\"outline\", \"bed_change\"]\n"), Contains("survey.bed_change: found none"));
+    CHECK_THAT(
+        complaint("objective = [\"area\"]\n"),
+        Contains(
+            "event.0.objective: found \"area\"; expected a list of outline, runout, deposit, bed_change or gauges"));
+    CHECK_THAT(complaint("objective = [\"runout\", \"runout\"]\n"), Contains("found \"runout\" twice"));
+    CHECK_THAT(complaint("objective = []\n"), Contains("found no words"));
+    CHECK_THAT(complaint("objective = [\"gauges\"]\n"), Contains("found \"gauges\", and no [[event.gauge]]"));
+    const std::string gauge = "[[event.gauge]]\nname = \"low\"\n", counts = "objective = [\"gauges\"]\n";
+    CHECK_THAT(complaint(gauge + "depth = 1\n"), Contains("found [[event.gauge]], and no \"gauges\""));
+    CHECK_THAT(complaint(counts + gauge), Contains("found no name, or neither depth nor speed"));
+    CHECK_THAT(complaint(counts + gauge + "depth = 0\n"), Contains("found 0; expected a number above 0"));
+    CHECK_THAT(complaint(counts + "[[event.gauge]]\nname = \"hihg\"\ndepth = 1\n"),
+               Contains("gauge: found none of the name \"hihg\"") && Contains("is one of low meant?"));
+    CHECK_THAT(complaint("sigma_height = 0\n"), Contains("event.0.sigma_height: found 0 m; expected a height above 0"));
+    CHECK_THAT(complaint("sigma_log = -1\n"), Contains("found -1; expected a number above 0"));
 }
 
 TEST_CASE("what cannot be calibrated is said in one sentence", "[ensemble]") {

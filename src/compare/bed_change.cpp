@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "compare/pixel_pairs.h"
 #include "compare/runout.h"
 
 namespace frana {
@@ -11,21 +11,6 @@ namespace {
 
 void add(BedVolumes& volumes, double volume) {
     (volume < 0.0 ? volumes.eroded : volumes.deposited) += std::abs(volume);
-}
-
-/// Calls body(point, simulated, surveyed) for every pixel of the survey; either may be NaN.
-template <class Body>
-void for_each_pair(const Raster& simulated, const Raster& surveyed, const Body& body) {
-    const GridGeometry &inner = simulated.geometry, &outer = surveyed.geometry;
-    expect(inner.cell == outer.cell, "two changes on the same pixels");
-    const auto left = static_cast<Index>(std::lround((inner.x0 - outer.x0) / outer.cell));
-    const auto low = static_cast<Index>(std::lround((inner.y0 - outer.y0) / outer.cell));
-    for (Index j = 0; j < outer.ny; ++j)
-        for (Index i = 0; i < outer.nx; ++i) {
-            const Index si = i - left, sj = j - low;
-            const bool there = si >= 0 && sj >= 0 && si < inner.nx && sj < inner.ny;
-            body(Vec2(outer.x(i), outer.y(j)), there ? simulated.at(si, sj) : 0.0, surveyed.at(i, j));
-        }
 }
 
 double beyond(double change, double noise) { return std::abs(change) > noise ? change : 0.0; }
@@ -58,7 +43,7 @@ BedChangeErrors bed_change_errors(const Raster& simulated, const Raster& surveye
     const double pixel = surveyed.geometry.cell * surveyed.geometry.cell;
     double absolute = 0.0, square = 0.0;
     Index compared = 0;
-    for_each_pair(simulated, surveyed, [&](const Vec2&, double ours, double theirs) {
+    for_each_pair(simulated, surveyed, [&](Index, Index, double ours, double theirs) {
         if (std::isnan(ours)) return add(errors.release, std::isnan(theirs) ? 0.0 : pixel * beyond(theirs, noise));
         if (std::isnan(theirs)) return add(errors.unsurveyed, pixel * beyond(ours, noise));
         if (std::abs(ours) <= noise) add(errors.within_noise, pixel * ours);
@@ -90,11 +75,12 @@ std::vector<BedChangeStep> bed_change_along(const Polyline& path, const Raster& 
         steps[k].distance = (static_cast<double>(k) + 0.5) * step;
         steps[k].point = point_at(path, steps[k].distance);
     }
-    for_each_pair(simulated, surveyed, [&](const Vec2& point, double ours, double theirs) {
+    for_each_pair(simulated, surveyed, [&](Index i, Index j, double ours, double theirs) {
         if (std::isnan(ours) || std::isnan(theirs)) return;
         const double a = beyond(ours, noise), b = beyond(theirs, noise);
         if (a == 0.0 && b == 0.0) return;
-        const double place = std::clamp(place_along(path, point) / step, 0.0, count - 1.0);
+        const double place =
+            std::clamp(place_along(path, {surveyed.geometry.x(i), surveyed.geometry.y(j)}) / step, 0.0, count - 1.0);
         BedChangeStep& here = steps[static_cast<std::size_t>(place)];
         add(here.simulated, pixel * a);
         add(here.surveyed, pixel * b);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "compare/pixel_pairs.h"
 
 namespace frana {
 
@@ -17,32 +18,24 @@ Raster with_deposit(const Raster& final_depth, const Raster* deposited) {
 }
 
 DepositErrors deposit_errors(const Raster& simulated, const Raster& surveyed, double limit) {
-    const GridGeometry &inner = simulated.geometry, &outer = surveyed.geometry;
-    expect(inner.cell == outer.cell, "two deposits on the same pixels");
-    const auto left = static_cast<Index>(std::lround((inner.x0 - outer.x0) / outer.cell));
-    const auto low = static_cast<Index>(std::lround((inner.y0 - outer.y0) / outer.cell));
     DepositErrors errors;
     double absolute = 0.0, square = 0.0;
     Index compared = 0;
-    for (Index j = 0; j < outer.ny; ++j)
-        for (Index i = 0; i < outer.nx; ++i) {
-            const Index si = i - left, sj = j - low;
-            const bool there = si >= 0 && sj >= 0 && si < inner.nx && sj < inner.ny;
-            const double value = there ? simulated.at(si, sj) : 0.0;
-            const double ours = std::isnan(value) ? 0.0 : value, theirs = surveyed.at(i, j);
-            if (std::isnan(theirs)) {
-                errors.unsurveyed_volume += ours;
-                continue;
-            }
-            errors.simulated_volume += ours;
-            errors.surveyed_volume += theirs;
-            if (theirs < 0.0) ++errors.negative;
-            if (!(ours > limit || theirs > limit)) continue;
-            ++compared;
-            absolute += std::abs(ours - theirs);
-            square += (ours - theirs) * (ours - theirs);
+    for_each_pair(simulated, surveyed, [&](Index, Index, double value, double theirs) {
+        const double ours = std::isnan(value) ? 0.0 : value;
+        if (std::isnan(theirs)) {
+            errors.unsurveyed_volume += ours;
+            return;
         }
-    const double pixel = outer.cell * outer.cell;
+        errors.simulated_volume += ours;
+        errors.surveyed_volume += theirs;
+        if (theirs < 0.0) ++errors.negative;
+        if (!(ours > limit || theirs > limit)) return;
+        ++compared;
+        absolute += std::abs(ours - theirs);
+        square += (ours - theirs) * (ours - theirs);
+    });
+    const double pixel = surveyed.geometry.cell * surveyed.geometry.cell;
     errors.simulated_volume *= pixel;
     errors.surveyed_volume *= pixel;
     errors.unsurveyed_volume *= pixel;

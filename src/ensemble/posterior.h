@@ -22,6 +22,7 @@ public:
     void add(const std::vector<std::vector<double>>& points, const std::vector<double>& log_likelihood);
 
     const std::vector<std::vector<double>>& points() const { return points_; }
+    const std::vector<double>& log_likelihood() const { return log_likelihood_; }
     /// Of all points so far, sum 1; all zero where no point has a likelihood.
     std::vector<double> weights() const { return weights(log_likelihood_); }
     /// The same points under other likelihoods, such as those of a part of the surveys.

@@ -76,10 +76,7 @@ void measure_extent(const EnsembleBase& base, const Raster& depth, SampleResult&
     const double cell = base.whole.cell;
     if (base.survey) {
         result.iou = overlap(depth, base.footprint_depth, *base.survey).iou();
-        if (!outline.empty()) {
-            const OutlineDistance apart = distance_between(outline, *base.survey, cell);
-            result.boundary = apart.mean, result.boundary_rms = apart.rms;
-        }
+        if (!outline.empty()) result.boundary = distance_between(outline, *base.survey, cell).mean;
     }
     if (!base.start || outline.empty()) return;
     result.reach = farthest_from(*base.start, outline);
@@ -122,7 +119,7 @@ void measure(const Scene& scene, const EnsembleBase& base, const RunSummary& run
 }
 
 void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& scene, const Interrupt& interrupt,
-               SampleResult& result) {
+               std::unique_ptr<Observer> also, SampleResult& result) {
     const std::unique_ptr<Simulation> simulation = make_simulation(scene);
     Observers observers;
     auto owned = std::make_unique<LastPeaks>(plan.fields);
@@ -131,6 +128,7 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
     auto owned_gauges = std::make_unique<GaugePeaks>(scene.gauges, base.footprint_depth);
     const GaugePeaks& gauges = *owned_gauges;
     if (!scene.gauges.empty()) observers.push_back(std::move(owned_gauges));
+    if (also) observers.push_back(std::move(also));
     std::ostream nowhere(nullptr);
     Progress progress(nowhere, Progress::Style::silent, scene.density);
     RunPlan steps;
@@ -172,12 +170,13 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
 }
 
 std::optional<SampleResult> run_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
-                                       const GisReader& reader, const MeshReader& meshes, const Interrupt& interrupt) {
+                                       const GisReader& reader, const MeshReader& meshes, const Interrupt& interrupt,
+                                       std::unique_ptr<Observer> also) {
     SampleResult result;
     result.sample = sample;
     const auto start = std::chrono::steady_clock::now();
     try {
-        run_scene(plan, base, scene_of(plan, plan.sets_of(sample), reader, meshes), interrupt, result);
+        run_scene(plan, base, scene_of(plan, plan.sets_of(sample), reader, meshes), interrupt, std::move(also), result);
     } catch (const UserError& error) {  // one run that cannot be is a result of the ensemble, and stops no other
         result.reason = "refused", result.message = error.what();
     } catch (const NumericsError& error) {

@@ -1,5 +1,6 @@
 #pragma once
 // One run of an ensemble: from the case and its overrides to a row of numbers and the places that the flow reached.
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "compare/outline.h"
 #include "ensemble/gauge_peaks.h"
 #include "ensemble/plan.h"
+#include "observe/observer.h"
 #include "run/interrupt.h"
 #include "scene/toolbox.h"
 #include "terrain/sparse_rasters.h"
@@ -47,7 +49,6 @@ struct SampleResult {
     double mass_error = 0.0;                  ///< of the budget, relative [1]
     std::optional<double> iou;                ///< of the footprint with the surveyed one, where there is one [1]
     std::optional<double> boundary;           ///< mean distance of their outlines; nothing where nothing flowed [m]
-    std::optional<double> boundary_rms;       ///< root of its mean square; not kept in files [m]
     std::vector<GaugePeak> gauges;            ///< of the base's
     SparseRasters peaks;                      ///< the plan's fields where peak_depth exceeds the footprint depth
 
@@ -55,8 +56,9 @@ struct SampleResult {
     bool ended() const { return reason == "end" || reason == "rest" || reason == "left"; }
 };
 
-/// Runs a sample on this thread. Nothing when the interrupt asked for an end meanwhile.
+/// Runs a sample on this thread; who `also` looks on may be given. Nothing when the interrupt asked for an end meanwhile.
 std::optional<SampleResult> run_sample(const EnsemblePlan& plan, const EnsembleBase& base, Index sample,
-                                       const GisReader& reader, const MeshReader& meshes, const Interrupt& interrupt);
+                                       const GisReader& reader, const MeshReader& meshes, const Interrupt& interrupt,
+                                       std::unique_ptr<Observer> also = nullptr);
 
 }  // namespace frana

@@ -1,0 +1,178 @@
+#include "frana_calibrate_event.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "base/error.h"
+#include "compare/blocks.h"
+#include "run/folder/comparison.h"
+#include "run/folder/products.h"
+#include "scene/case_file.h"
+#include "terrain/part_of.h"
+
+namespace frana {
+namespace {
+
+constexpr double kSlow = 0.1;  ///< a speed that nobody tells from none [m/s]
+
+double perimeter_of(const Rings& rings) {
+    double sum = 0.0;
+    for (const auto& ring : rings)
+        for (std::size_t k = 0; k < ring.size(); ++k) sum += (ring[(k + 1) % ring.size()] - ring[k]).norm();
+    return sum;
+}
+
+/// A raster without values where the run begins and where the survey is: both are needed of what else was surveyed.
+Raster around(const EnsembleBase& base) {
+    std::vector<Vec2> points;
+    for (const auto& ring : *base.survey) points.insert(points.end(), ring.begin(), ring.end());
+    const NodeBox part = box_of(base.bed.geometry, base.whole).value();
+    Raster like;
+    like.geometry = common(united(part, cells_of(points, base.whole)), NodeBox::all(base.whole)).of(base.whole);
+    like.crs_wkt = base.bed.crs_wkt;
+    return like;
+}
+
+/// Nothing lies where the flow never came.
+void zero_where_unknown(Raster& raster) {
+    for (double& value : raster.values)
+        if (std::isnan(value)) value = 0.0;
+}
+
+UserError lacks(const SurveyedEvent& event, const std::string& key, const std::string& what,
+                const std::string& way_out) {
+    return UserError(fmt::format("{}: {}: found none; expected {} of the event \"{}\"; {}",
+                                 event.runs.case_file.string(), key, what, event.name, way_out));
+}
+
+}  // namespace
+
+EventSurvey::EventSurvey(const SurveyedEvent& event, const EnsembleBase& base)
+    : objective_(event.objective),
+      crs_wkt_(base.bed.crs_wkt),
+      bed_(base.bed),
+      limit_(base.footprint_depth),
+      correlation_(event.errors.correlation) {
+    if (!base.survey) throw lacks(event, "survey.footprint", "the surveyed footprint", "name it there");
+    SurveyFiles files = survey_files(CaseFile::read(event.runs.case_file));
+    files.footprint.clear();  // was read with the case
+    for (const auto& [kind, key, file] : {std::tuple{Evidence::deposit, "survey.deposit", files.deposit},
+                                          std::tuple{Evidence::bed_change, "survey.bed_change", files.bed_change}})
+        if (counts(kind) && file.empty())
+            throw lacks(event, key, "the surveyed raster", "name it there, or take it out of the objective");
+    std::vector<std::string> remarks;  // the case made them
+    survey_ = read_survey_files(files, around(base), remarks);
+    survey_.footprint = *base.footprint;
+    perimeter_ = perimeter_of(*base.survey);
+    if (!survey_.path && !base.path.empty()) survey_.path = base.path;
+    if (counts(Evidence::runout) && !survey_.path)
+        throw lacks(event, "survey.path", "the path", "draw it, since no steepest path from the release is known");
+    read_gauges(event);
+}
+
+bool EventSurvey::counts(Evidence evidence) const {
+    return std::count(objective_.begin(), objective_.end(), evidence) > 0;
+}
+
+void EventSurvey::read_gauges(const SurveyedEvent& event) {
+    const CaseFile file = CaseFile::read(event.runs.case_file);
+    for (const SeenAtGauge& seen : event.gauges) {
+        std::string names;
+        const std::size_t before = gauges_.size();
+        for (Index k = 0; k < file.count("gauge"); ++k) {
+            const std::string& name = file.word(fmt::format("gauge.{}.name", k));
+            names += (names.empty() ? "" : ", ") + name;
+            const std::vector<double>& point = file.numbers(fmt::format("gauge.{}.point", k));
+            if (name == seen.name) gauges_.push_back({{point[0], point[1]}, seen});
+        }
+        if (gauges_.size() == before)
+            throw UserError(
+                fmt::format("{}: gauge: found none of the name \"{}\"; expected one of the event \"{}\"; {}",
+                            event.runs.case_file.string(), seen.name, event.name,
+                            names.empty() ? "add it" : "is one of " + names + " meant?"));
+    }
+}
+
+/// Keeps the largest depths and speeds at the gauges, and compares the last frame.
+class EventSurvey::Watch : public Observer {
+public:
+    Watch(const EventSurvey& event, EventScores& scores)
+        : event_(event), scores_(scores), depths_(event.gauges_.size(), 0.0), speeds_(event.gauges_.size(), 0.0) {}
+    std::string name() const override { return "survey"; }
+
+    void step(const Status&, const Probe& probe) override {
+        for (std::size_t k = 0; k < depths_.size(); ++k) {
+            const Sample flow = probe.at(event_.gauges_[k].point);
+            depths_[k] = std::max(depths_[k], flow.depth);
+            if (flow.depth > event_.limit_) speeds_[k] = std::max(speeds_[k], flow.velocity.norm());
+        }
+    }
+
+    void end(const Frame& last) override {
+        const std::vector<ProductRaster> rasters = product_rasters(last, event_.crs_wkt_);
+        if (!find_product(rasters, "peak_depth")) return;
+        const Comparison found = compare_rasters(rasters, &event_.bed_, event_.limit_, event_.survey_);
+        scores_.iou = found.trace.areas.iou();
+        if (std::isnan(found.trace.boundary.rms)) return;  // nothing flowed
+        scores_.boundary = found.trace.boundary.mean;
+        note(Evidence::outline, {found.trace.boundary.rms, event_.perimeter_ / event_.correlation_});
+        note(Evidence::runout, {std::abs(found.trace.runout - found.surveyed_runout), 1.0});
+        compare_heights(rasters);
+        note(Evidence::gauges, at_gauges());
+    }
+
+private:
+    void note(Evidence evidence, const Misfit& misfit) {
+        if (event_.counts(evidence)) scores_.misfits[static_cast<std::size_t>(evidence)] = misfit;
+    }
+
+    static const Raster* of(const std::vector<ProductRaster>& rasters, const char* name) {
+        const ProductRaster* product = find_product(rasters, name);
+        return product ? &product->raster : nullptr;
+    }
+
+    void compare_heights(const std::vector<ProductRaster>& rasters) {
+        const Raster* lying = of(rasters, "final_depth");
+        const auto note_blocks = [&](Evidence evidence, const Raster& ours, const Raster& theirs) {
+            const BlockErrors errors = block_errors(ours, theirs, event_.correlation_);
+            note(evidence, {errors.rms, errors.number});
+        };
+        if (event_.counts(Evidence::deposit) && lying) {
+            Raster all = with_deposit(*lying, of(rasters, "deposited_depth"));
+            zero_where_unknown(all);
+            note_blocks(Evidence::deposit, all, *event_.survey_.deposit);
+        }
+        const Raster* change = of(rasters, "bed_change");
+        if (event_.counts(Evidence::bed_change) && change)
+            note_blocks(Evidence::bed_change, surface_change(*change, lying, of(rasters, "arrival_time")),
+                        *event_.survey_.bed_change);
+    }
+
+    /// Where the flow did not come, it counts as just too shallow and too slow to be seen.
+    Misfit at_gauges() const {
+        double square = 0.0, number = 0.0;
+        const auto add = [&](double ours, const std::optional<double>& theirs, double least) {
+            if (!theirs) return;
+            const double apart = std::log(std::max(ours, least) / *theirs);
+            square += apart * apart, number += 1.0;
+        };
+        for (std::size_t k = 0; k < depths_.size(); ++k) {
+            add(depths_[k], event_.gauges_[k].seen.depth, event_.limit_);
+            add(speeds_[k], event_.gauges_[k].seen.speed, kSlow);
+        }
+        return {number > 0.0 ? std::sqrt(square / number) : 0.0, number};
+    }
+
+    const EventSurvey& event_;
+    EventScores& scores_;
+    std::vector<double> depths_, speeds_;  ///< by gauge, the largest
+};
+
+std::unique_ptr<Observer> EventSurvey::watch(EventScores& scores) const {
+    return std::make_unique<Watch>(*this, scores);
+}
+
+}  // namespace frana

@@ -1,0 +1,43 @@
+#pragma once
+// Runs of a surveyed event held against its survey, as `frana compare` does.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compare/comparison.h"
+#include "ensemble/calibration_plan.h"
+#include "ensemble/sample_run.h"
+#include "observe/observer.h"
+
+namespace frana {
+
+/// What was surveyed of an event, read once.
+class EventSurvey {
+public:
+    /// `base` is the event's case. Throws UserError for what is not there, or has no place on the terrain.
+    EventSurvey(const SurveyedEvent& event, const EnsembleBase& base);
+
+    /// Looks on while the event's case runs; at the end `scores` has how near it came. Must not outlive this.
+    std::unique_ptr<Observer> watch(EventScores& scores) const;
+
+private:
+    class Watch;
+    /// A gauge of the case, and what was seen there.
+    struct Seen {
+        Vec2 point{0, 0};  ///< [m]
+        SeenAtGauge seen;
+    };
+    bool counts(Evidence evidence) const;
+    void read_gauges(const SurveyedEvent& event);
+
+    std::vector<Evidence> objective_;
+    std::string crs_wkt_;
+    Raster bed_;
+    Survey survey_;
+    double limit_ = 0.1;        ///< deeper counts as covered [m]
+    double correlation_ = 1.0;  ///< [m]
+    double perimeter_ = 0.0;    ///< of the surveyed outline [m]
+    std::vector<Seen> gauges_;
+};
+
+}  // namespace frana
