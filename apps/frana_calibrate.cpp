@@ -66,6 +66,10 @@ bool something_to_do(const CalibrateOptions& options, const CalibrationPlan& pla
     return true;
 }
 
+Interrupted cut_off(const fs::path& dir) {
+    return Interrupted(fmt::format("interrupted; what has run is in {}; --resume goes on", dir.string()));
+}
+
 /// Runs what is left, and writes what is found.
 Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& plan) {
     Calibration found{plan, Posterior(static_cast<Index>(plan.vary.size()), plan.seed),
@@ -76,8 +80,11 @@ Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& pl
     remove_leftovers(options.out);
     if (options.overwrite) KeptRuns::remove(options.out);
     KeptRuns kept(options.out, plan);
-    if (!run_rounds(runs, kept, options.quiet, found))
-        throw Interrupted(fmt::format("interrupted; what has run is in {}; --resume goes on", options.out.string()));
+    if (!run_rounds(runs, kept, options.quiet, found)) throw cut_off(options.out);
+    if (plan.search && found.posterior.any()) {
+        found.optimum = search_optimum(runs, kept, found);
+        if (!found.optimum) throw cut_off(options.out);
+    }
     found.files = write_calibration(options.out, found);
     return found;
 }

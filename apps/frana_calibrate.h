@@ -1,11 +1,13 @@
 #pragma once
 // What `frana calibrate` found, and the files that it leaves.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ensemble/calibration_plan.h"
 #include "ensemble/posterior.h"
+#include "frana_calibrate_search.h"
 
 namespace frana {
 
@@ -21,6 +23,7 @@ struct Calibration {
     std::vector<EventFit> fits;           ///< by event
     Index failed = 0;                     ///< runs
     double seconds = 0.0;                 ///< of all runs, on one thread each [s]
+    std::optional<Optimum> optimum = {};  ///< where one was searched
     std::vector<std::string> files = {};  ///< written
 };
 

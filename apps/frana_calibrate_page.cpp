@@ -72,6 +72,20 @@ Json events_json(const Calibration& c) {
     return all;
 }
 
+Json optimum_json(const Calibration& c) {
+    const Optimum& optimum = *c.optimum;
+    Json json = {{"values", Json::object()},           {"score", -optimum.misfit}, {"noise", optimum.noise},
+                 {"evaluations", optimum.evaluations}, {"ended", optimum.ended},   {"events", Json::array()}};
+    for (std::size_t k = 0; k < c.plan.vary.size(); ++k)
+        json["values"][c.plan.vary[k].key] = c.plan.vary[k].distribution.number(optimum.point[k]);
+    for (std::size_t e = 0; e < c.plan.events.size(); ++e)
+        json["events"].push_back({{"name", c.plan.events[e].name},
+                                  {"iou", known(optimum.scores[e].iou)},
+                                  {"boundary", known(optimum.scores[e].boundary)},
+                                  {"misfits", misfits_json(c.plan.events[e], optimum.scores[e])}});
+    return json;
+}
+
 Json record_of(const Calibration& c, const std::vector<std::string>& files) {
     const std::vector<double> w = c.posterior.weights();
     const std::size_t best = c.posterior.best();
@@ -90,6 +104,7 @@ Json record_of(const Calibration& c, const std::vector<std::string>& files) {
     json["evaluations"] = c.posterior.points().size() * c.fits.size();
     json["failed"] = c.failed;
     json["posterior"] = posterior;
+    if (c.optimum) json["optimum"] = optimum_json(c);
     json["effective_number"] = effective_number(w);
     json["core_seconds"] = c.seconds;
     json["events"] = events_json(c);
@@ -164,6 +179,20 @@ bool draw(const fs::path& dir, const Calibration& c) {
     return render_chart(figure, dir / "posterior.png", why_not);
 }
 
+std::string optimum_cell(const Calibration& c, std::size_t key) {
+    return c.optimum ? fmt::format(" {:.4g} |", c.plan.vary[key].distribution.number(c.optimum->point[key])) : "";
+}
+
+/// What the search found, and what that is worth.
+std::string optimum_section(const Calibration& c, double best) {
+    if (!c.optimum) return "";
+    const Optimum& optimum = *c.optimum;
+    return fmt::format(
+        "\nThe optimum was searched from the best point, {} points of all events: the misfit fell from "
+        "{:.4g} to {:.4g}, where its noise is {:.2g}. The end: {}.\n",
+        optimum.evaluations, -best, optimum.misfit, optimum.noise, optimum.ended);
+}
+
 /// How far the best point's runs are off in all that counts, beside what was expected of them.
 std::string misfits_section(const Calibration& c, std::size_t best) {
     std::string text = "| Event | what counts | best point | sigma | independent errors |\n|---|---|---:|---:|---:|\n";
@@ -186,13 +215,16 @@ std::string calibration_section(const Calibration& c) {
     const std::vector<double> w = c.posterior.weights();
     const std::size_t best = c.posterior.best();
     const double effective = effective_number(w);
-    std::string page = "| Key | best | mean | sd | 5 % | 50 % | 95 % |\n|---|---:|---:|---:|---:|---:|---:|\n";
+    std::string page =
+        fmt::format("| Key | best |{} mean | sd | 5 % | 50 % | 95 % |\n|---|---:|{}---:|---:|---:|---:|---:|\n",
+                    c.optimum ? " optimum |" : "", c.optimum ? "---:|" : "");
     for (std::size_t k = 0; k < c.plan.vary.size(); ++k) {
         const std::vector<double> values = values_of(c, k);
         const Marginal of = marginal_of(values, w);
-        page += fmt::format("| `{}` | {:.4g} | {:.4g} | {:.2g} | {:.4g} | {:.4g} | {:.4g} |\n", c.plan.vary[k].key,
-                            values[best], of.mean, of.sd, of.q05, of.q50, of.q95);
+        page += fmt::format("| `{}` | {:.4g} |{} {:.4g} | {:.2g} | {:.4g} | {:.4g} | {:.4g} |\n", c.plan.vary[k].key,
+                            values[best], optimum_cell(c, k), of.mean, of.sd, of.q05, of.q50, of.q95);
     }
+    page += optimum_section(c, c.posterior.log_likelihood()[best]);
     page += fmt::format("\n{} points, {} runs, {} failed; the points tell as much as {:.0f} of equal weight.", w.size(),
                         w.size() * c.fits.size(), c.failed, effective);
     if (effective < kFewSamples) page += " Fewer than 50 are few: give more samples or rounds, or a larger sigma.";

@@ -99,7 +99,7 @@ room(vtk_io base terrain observe particles compare scene PACKAGES "vtk")
 room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
 room(src/run/folder base terrain observe convert compare run scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
 room(apps base terrain observe particles convert compare run scene ensemble shallow checks/verify checks/bench checks/fuzz io vtk_io
-     vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|benchmark/")
+     vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|nlopt|benchmark/")
 
 # The time loop and the faces of solvers and observers; not what writes tables.
 foreach(model mpm shallow solid3d water structured)

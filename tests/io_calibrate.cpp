@@ -74,6 +74,13 @@ TEST_CASE("calibration finds the friction that a footprint was made with, on rea
     // mu within 3 %: what the noise of single runs allows (a change of 3 % in mu is lost in it). Outlines within a pixel.
     CHECK(json["best"]["material.bed.mu"].get<double>() == Approx(kMu).epsilon(0.03));
     CHECK(json["events"][0]["boundary"].get<double>() < 5.0);
+    // The search goes no way up, and its steps are too short to leave the valley.
+    const Json& optimum = json["optimum"];
+    CHECK(optimum["score"].get<double>() >= json["score"].get<double>());
+    CHECK(optimum["values"]["material.bed.mu"].get<double>() == Approx(kMu).epsilon(0.03));
+    CHECK(optimum["events"][0]["boundary"].get<double>() < 5.0);
+    CHECK(optimum["noise"].get<double>() > 0.0);
+    CHECK(optimum["evaluations"].get<int>() > 5);  // those that tell the noise
     CHECK(json["events"][0]["iou"].get<double>() > 0.95);
     CHECK(json["events"][0]["boundary_by_own"].get<double>() < json["events"][0]["boundary_by_prior"].get<double>());
     // The truth is among what the survey leaves open.
@@ -105,7 +112,7 @@ TEST_CASE("calibration finds the friction that a footprint was made with, on rea
 
 TEST_CASE("two events are weighed together, with the same bytes on any number of threads", "[ensemble]") {
     const Mudflow mudflow;
-    mudflow.write("two.toml", "[calibrate]\nsamples = 6\nrounds = 2\n" + vary +
+    mudflow.write("two.toml", "[calibrate]\nsamples = 6\nrounds = 2\nsearch = \"none\"\n" + vary +
                                   "[[event]]\ncase = \"case.toml\"\nname = \"a\"\n"
                                   "[[event]]\ncase = \"case.toml\"\nname = \"b\"\nweight = 0.5\n");
     REQUIRE(mudflow.frana("calibrate two.toml --out one --threads 1 --quiet").code == 0);
@@ -114,6 +121,7 @@ TEST_CASE("two events are weighed together, with the same bytes on any number of
         CHECK(text_of(mudflow.path("one") / file) == text_of(mudflow.path("three") / file));
     const Json json = Json::parse(text_of(mudflow.path("one/calibrate.json")));
     CHECK(json["evaluations"] == 24);
+    CHECK_FALSE(json.contains("optimum"));
     REQUIRE(json["events"].size() == 2);
     // The same event twice: what one tells predicts the other as well as its own survey does, but for the weight.
     CHECK(json["events"][0]["boundary"] == json["events"][1]["boundary"]);
@@ -375,6 +383,8 @@ TEST_CASE("what cannot be calibrated is said in one sentence", "[ensemble]") {
     CHECK_THAT(complaint("[calibrate]\n" + event), Contains("found no [[calibrate.vary]]"));
     CHECK_THAT(complaint("[calibrate]\nsigma = -1\n" + vary + event),
                Contains("found -1 m; expected a length above 0"));
+    CHECK_THAT(complaint("[calibrate]\nsearch = \"genetic\"\n" + vary + event),
+               Contains("calibrate.search: found \"genetic\"; expected bobyqa or none"));
     CHECK_THAT(complaint("[calibrate]\nsample = 4\n" + vary + event), Contains("is samples meant?"));
     CHECK_THAT(complaint("[calibrate]\n" + vary + "[[event]]\ncase = \"none.toml\"\n"), Contains("none.toml"));
     CHECK_THAT(complaint("[calibrate]\n" + vary + event + "weight = 0\n"),

@@ -45,6 +45,10 @@ private:
             table.wrong("rounds", fmt::format("found {} runs of each event", plan_.samples * plan_.rounds),
                         fmt::format("expected at most {}", kMostPoints), "give fewer samples or rounds");
         plan_.seed = static_cast<std::uint64_t>(table.whole("seed", 1, 0, Index{1} << 53));
+        const std::string search = table.text("search", "bobyqa");
+        plan_.search = search != "none";
+        if (search != "bobyqa" && search != "none")
+            table.wrong("search", fmt::format("found \"{}\"", search), "expected bobyqa or none", "choose one");
         read_errors(table, plan_.errors);
         read_objective(table, plan_.objective);
         const toml::array* vary = table.given("vary") ? of["vary"].as_array() : nullptr;

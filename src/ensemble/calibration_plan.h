@@ -26,6 +26,7 @@ struct CalibrationPlan {
     Index samples = 128;  ///< of a round
     Index rounds = 3;
     std::uint64_t seed = 1;
+    bool search = true;                                     ///< for the point of the least misfit, after the rounds
     std::vector<Evidence> objective = {Evidence::outline};  ///< where an event says nothing else
     SurveyErrors errors;                                    ///< likewise
     std::vector<Vary> vary;

@@ -152,6 +152,10 @@ std::vector<double> Posterior::weights(const std::vector<double>& log_likelihood
     return weighted(log_likelihood, mixture_, 1.0);
 }
 
+bool Posterior::any() const {
+    return std::any_of(log_likelihood_.begin(), log_likelihood_.end(), [](double log) { return std::isfinite(log); });
+}
+
 std::size_t Posterior::best() const {
     return static_cast<std::size_t>(std::max_element(log_likelihood_.begin(), log_likelihood_.end()) -
                                     log_likelihood_.begin());

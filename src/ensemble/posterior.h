@@ -27,6 +27,8 @@ public:
     std::vector<double> weights() const { return weights(log_likelihood_); }
     /// The same points under other likelihoods, such as those of a part of the surveys.
     std::vector<double> weights(const std::vector<double>& log_likelihood) const;
+    /// Some point has a likelihood.
+    bool any() const;
     /// The point with the largest likelihood.
     std::size_t best() const;
     /// So many points, drawn evenly by weight (systematic resampling, Kitagawa 1996).

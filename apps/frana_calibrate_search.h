@@ -1,0 +1,29 @@
+#pragma once
+// The point of the least misfit, by a local search from the best of the rounds.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ensemble/evidence.h"
+
+namespace frana {
+
+class EventRuns;
+class KeptRuns;
+struct Calibration;
+
+struct Optimum {
+    std::vector<double> point;        ///< in the unit cube
+    double misfit = 0.0;              ///< minus the logarithm of the likelihood there
+    double noise = 0.0;               ///< standard deviation of that between points that are next to one another
+    Index evaluations = 0;            ///< points that were run
+    std::string ended;                ///< why
+    std::vector<EventScores> scores;  ///< by event
+};
+
+/// Goes down from the best point of all rounds by BOBYQA (Powell 2009), with steps of at least 3 % of a key's distribution: below
+/// that runs differ by trifles. What the misfit changes by within 0.3 % is its noise; the search ends when it gains no more.
+/// Nothing when an end was asked for.
+std::optional<Optimum> search_optimum(const EventRuns& runs, KeptRuns& kept, const Calibration& calibration);
+
+}  // namespace frana
