@@ -6,12 +6,16 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
+#include "ensemble/wanted_maps.h"
 #include "frana_calibrate_runs.h"
 #include "frana_commands.h"
 #include "frana_ensemble_folder.h"
 #include "frana_kept_rows.h"
 #include "run/folder/run_lock.h"
+#include "scene/build_scene.h"
+#include "scene/case_file.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -70,6 +74,12 @@ Interrupted cut_off(const fs::path& dir) {
     return Interrupted(fmt::format("interrupted; what has run is in {}; --resume goes on", dir.string()));
 }
 
+/// What another posterior predicted.
+void forget_prediction(const fs::path& dir) {
+    fs::remove(dir / "predict" / "ensemble.json");
+    fs::remove_all(dir / "predict" / "shards");
+}
+
 /// Runs what is left, and writes what is found.
 Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& plan) {
     Calibration found{plan, Posterior(static_cast<Index>(plan.vary.size()), plan.seed),
@@ -85,24 +95,53 @@ Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& pl
         found.optimum = search_optimum(runs, kept, found);
         if (!found.optimum) throw cut_off(options.out);
     }
+    forget_prediction(options.out);
     found.files = write_calibration(options.out, found);
     return found;
 }
+
+void say(const CalibrateOptions& options, const Calibration& found) {
+    if (options.quiet) return;
+    std::cout << calibration_section(found);
+    for (const std::string& file : found.files) std::cout << (options.out / file).string() << '\n';
+}
+
+/// Another event's case must take the keys that vary, which is better known before all the runs than after.
+void try_prediction(const CalibrationPlan& plan) {
+    if (!plan.predict) return;
+    std::vector<std::string> middle;
+    for (const Vary& vary : plan.vary) middle.push_back(vary.key + "=" + vary.distribution.text(0.5));
+    const GdalReader reader;
+    build_scene(CaseFile::read(plan.predict->case_file, middle), reader, meshes_in_turn());
+}
+
+/// Maps of another event, by what the surveys tell: an ensemble of posterior.csv in a folder of its own.
+int predict(const CalibrateOptions& options, const EnsemblePlan& maps) {
+    const fs::path file = options.out / "predict.toml";
+    const std::string text = ensemble_of_table(maps, "posterior.csv");
+    if (text_in(file) != text) write_text(file, text);
+    EnsembleOptions ensemble;
+    ensemble.file = file, ensemble.out = options.out / "predict";
+    ensemble.threads = options.threads, ensemble.quiet = options.quiet;
+    ensemble.resume = true;
+    return ensemble_command(ensemble);
+}
+
+/// The maps are there, and no calibration was run since.
+bool predicted(const fs::path& dir) { return fs::exists(dir / "predict" / "ensemble.json"); }
 
 }  // namespace
 
 int calibrate_command(const CalibrateOptions& options) {
     const CalibrationPlan plan = read_calibration(options.file);
-    if (!something_to_do(options, plan)) {
+    const bool calibrated = !something_to_do(options, plan);
+    if (calibrated && (!plan.predict || predicted(options.out))) {
         if (!options.quiet) std::cout << fmt::format("{}: all is there\n", options.out.string());
         return 0;
     }
-    const Calibration found = calibrate(options, plan);
-    if (!options.quiet) {
-        std::cout << calibration_section(found);
-        for (const std::string& file : found.files) std::cout << (options.out / file).string() << '\n';
-    }
-    return 0;
+    try_prediction(plan);
+    if (!calibrated) say(options, calibrate(options, plan));
+    return plan.predict ? predict(options, *plan.predict) : 0;
 }
 
 }  // namespace frana

@@ -24,7 +24,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kFewSamples = 50.0;  ///< below, quantiles are guesses
-constexpr Index kDrawn = 256;         ///< rows of posterior.csv
 
 /// Values of a key at all points.
 std::vector<double> values_of(const Calibration& c, std::size_t key) {
@@ -141,7 +140,7 @@ void write_tables(const fs::path& dir, const Calibration& c) {
     TextFile drawn(dir / "posterior.csv");
     for (std::size_t k = 0; k < c.plan.vary.size(); ++k) drawn.put("{}{}", k == 0 ? "" : ",", c.plan.vary[k].key);
     drawn.put("\n");
-    for (const std::size_t i : c.posterior.drawn(kDrawn)) {
+    for (const std::size_t i : c.posterior.drawn(c.plan.draws)) {
         for (std::size_t k = 0; k < c.plan.vary.size(); ++k)
             drawn.put("{}{}", k == 0 ? "" : ",", c.plan.vary[k].distribution.number(c.posterior.points()[i][k]));
         drawn.put("\n");

@@ -339,6 +339,49 @@ TEST_CASE("a calibration that is killed goes on, and leaves the same bytes", "[e
     CHECK_THAT(other.err, Contains("found \"event slide ") && Contains("expected runs of the same calibration"));
 }
 
+TEST_CASE("what a survey tells becomes maps of another event in the same command", "[ensemble]") {
+    const SurveyedSlide slide;
+    const std::string text = "[calibrate]\nsamples = 8\nrounds = 1\nsearch = \"none\"\ndraws = 6\n" + only_mu +
+                             "[[event]]\ncase = \"event.toml\"\n[predict]\ncase = \"truth.toml\"\n";
+    const std::string wishes = "fields = [\"peak_depth\"]\nexceed = { peak_depth = [0.5] }\n";
+    slide.write("find.toml", text + wishes);
+    const Outcome done = slide.frana("calibrate find.toml --out found --quiet");
+    CHECK(done.err.empty());
+    REQUIRE(done.code == 0);
+    CHECK(lines_in(slide.path("found/posterior.csv")) == 7);
+    CHECK(Json::parse(text_of(slide.path("found/predict/ensemble.json")))["run"] == 6);
+
+    // The same maps by hand.
+    slide.write("maps.toml",
+                "[ensemble]\ncase = \"truth.toml\"\nmethod = \"table\"\ntable = \"found/posterior.csv\"\n" + wishes);
+    REQUIRE(slide.frana("ensemble maps.toml --out maps --quiet").code == 0);
+    const std::string map = "rasters/probability_peak_depth_0.5.tif";
+    CHECK(text_of(slide.path("found/predict") / map) == text_of(slide.path("maps") / map));
+    CHECK(fs::file_size(slide.path("maps") / map) > 0);
+
+    // Killed on the way to the maps, it goes on with them alone; then all is there.
+    const auto written = fs::last_write_time(slide.path("found/calibrate.json"));
+    fs::remove(slide.path("found/predict/ensemble.json"));
+    REQUIRE(slide.frana("calibrate find.toml --out found --resume --quiet").code == 0);
+    CHECK(fs::exists(slide.path("found/predict/ensemble.json")));
+    CHECK(fs::last_write_time(slide.path("found/calibrate.json")) == written);
+    CHECK_THAT(slide.frana("calibrate find.toml --out found --resume").out, Contains("all is there"));
+
+    const auto complaint = [&](const std::string& predict) {
+        slide.write("find.toml", text.substr(0, text.find("[predict]")) + predict);
+        const Outcome outcome = slide.frana("calibrate find.toml --out wrong --quiet");
+        CHECK(outcome.code == 2);
+        CHECK_FALSE(fs::exists(slide.path("wrong")));
+        return outcome.err;
+    };
+    CHECK_THAT(complaint("[predict]\n"), Contains("predict.case: found none"));
+    CHECK_THAT(complaint("[predict]\ncase = \"none.toml\"\n"), Contains("predict.case: found no file"));
+    CHECK_THAT(complaint("[predict]\ncase = \"truth.toml\"\nexceed = { depth = [1] }\n"),
+               Contains("predict.exceed.depth: found a key that is not used unless predict.fields names it"));
+    CHECK_THAT(complaint("[predict]\ncase = \"truth.toml\"\nsamples = 4\n"), Contains("predict.samples"));
+    CHECK_THAT(complaint("predict = 1\n"), Contains("predict"));
+}
+
 TEST_CASE("what an event's survey lacks is said in one sentence", "[ensemble]") {
     const SurveyedSlide slide;
     slide.write("bare.toml", text_of(slide.path("truth.toml")) + "[survey]\nfootprint = \"truth/footprint.geojson\"\n");

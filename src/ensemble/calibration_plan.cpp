@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "ensemble/toml_file.h"
 #include "ensemble/vary_reader.h"
+#include "ensemble/wanted_maps.h"
 
 namespace frana {
 namespace {
@@ -33,6 +34,7 @@ public:
                     problems_.add(plan_.file.string(), fmt::format("found event.{} that is no table", k),
                                   "expected [[event]] tables", "see apps/README.md for an example");
         }
+        if (file.given("predict")) read_predict(*root.get("predict"));
         file.refuse_others("here");
     }
 
@@ -45,6 +47,7 @@ private:
             table.wrong("rounds", fmt::format("found {} runs of each event", plan_.samples * plan_.rounds),
                         fmt::format("expected at most {}", kMostPoints), "give fewer samples or rounds");
         plan_.seed = static_cast<std::uint64_t>(table.whole("seed", 1, 0, Index{1} << 53));
+        plan_.draws = table.whole("draws", plan_.draws, 1, kMostPoints);
         const std::string search = table.text("search", "bobyqa");
         plan_.search = search != "none";
         if (search != "bobyqa" && search != "none")
@@ -61,6 +64,15 @@ private:
                 table.wrong("vary", fmt::format("found scenarios for {}", one.key), "expected a number that varies",
                             "calibrate each scenario in a file of its own");
         table.refuse_others("here");
+    }
+
+    void read_predict(const toml::node& node) {
+        EnsemblePlan& maps = plan_.predict.emplace();
+        maps.file = plan_.file;
+        if (const toml::table* table = node.as_table())
+            read_wanted_maps(*table, "predict", maps, problems_);
+        else
+            problems_.add(plan_.file.string() + ": predict", "found no table", "expected [predict]", "write it so");
     }
 
     /// Standard deviations; those that are not given stay as they are.

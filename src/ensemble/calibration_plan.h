@@ -26,11 +26,13 @@ struct CalibrationPlan {
     Index samples = 128;  ///< of a round
     Index rounds = 3;
     std::uint64_t seed = 1;
+    Index draws = 256;                                      ///< points of the posterior for the maps of another event
     bool search = true;                                     ///< for the point of the least misfit, after the rounds
     std::vector<Evidence> objective = {Evidence::outline};  ///< where an event says nothing else
     SurveyErrors errors;                                    ///< likewise
     std::vector<Vary> vary;
     std::vector<SurveyedEvent> events;
+    std::optional<EnsemblePlan> predict;  ///< another event, whose maps are wanted: its case and which maps
 };
 
 /// Reads and checks `file`. Throws one UserError with every problem found.

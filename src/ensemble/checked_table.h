@@ -21,6 +21,7 @@ public:
     CheckedTable(const toml::table& table, std::string name, const std::filesystem::path& file, Problems& problems)
         : table_(table), name_(std::move(name)), file_(file), problems_(problems) {}
 
+    const std::string& name() const { return name_; }
     void wrong(const std::string& key, const std::string& found, const std::string& expected,
                const std::string& way_out) const;
     bool given(const std::string& key);

@@ -7,11 +7,13 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/text_file.h"
 #include "ensemble/hazard_reader.h"
 #include "ensemble/sample_table.h"
 #include "ensemble/sensitivity.h"
 #include "ensemble/toml_file.h"
 #include "ensemble/vary_reader.h"
+#include "ensemble/wanted_maps.h"
 #include "scene/problems.h"
 
 namespace frana {
@@ -38,6 +40,13 @@ public:
             return;
         }
         read_ensemble_table(*table);
+    }
+
+    void read_maps(const toml::table& of, const std::string& name) {
+        CheckedTable table(of, name, plan_.file, problems_);
+        read_case(table);
+        read_wishes(table);
+        table.refuse_others("here");
     }
 
 private:
@@ -139,7 +148,7 @@ private:
         if (!node) return;
         const toml::table* all = node->as_table();
         if (!all) return table.wrong("exceed", "found no table", "expected { peak_depth = [0.5, 2.0] }", "write it so");
-        CheckedTable fields(*all, "ensemble.exceed", plan_.file, problems_);
+        CheckedTable fields(*all, table.name() + ".exceed", plan_.file, problems_);
         for (const std::string& field : plan_.fields)
             for (const double threshold : fields.numbers(field)) {
                 if (field == "arrival_time")
@@ -151,7 +160,7 @@ private:
                     fields.wrong(field, fmt::format("found {:g}", threshold), "expected thresholds from 0 on",
                                  "give such");
             }
-        fields.refuse_others("unless ensemble.fields names it");
+        fields.refuse_others("unless " + table.name() + ".fields names it");
     }
 
     EnsemblePlan& plan_;
@@ -224,6 +233,22 @@ EnsemblePlan read_ensemble(const std::filesystem::path& file) {
     problems.throw_if_any();
     if (plan.method != Method::table) place_samples(plan);
     return plan;
+}
+
+void read_wanted_maps(const toml::table& of, const std::string& name, EnsemblePlan& plan, Problems& problems) {
+    Reader(plan, problems).read_maps(of, name);
+}
+
+std::string ensemble_of_table(const EnsemblePlan& plan, const std::filesystem::path& table) {
+    std::string text =
+        fmt::format("[ensemble]\ncase = {}\nmethod = \"table\"\ntable = {}\n",
+                    json_text(std::filesystem::absolute(plan.case_file).string()), json_text(table.string()));
+    std::string fields, exceed;
+    for (const std::string& field : plan.fields) fields += (fields.empty() ? "" : ", ") + json_text(field);
+    for (const auto& [field, thresholds] : plan.exceed)
+        exceed += fmt::format("{}{} = [{}]", exceed.empty() ? "" : ", ", field, fmt::join(thresholds, ", "));
+    return text + fmt::format("fields = [{}]\nexceed = {{ {} }}\nquantiles = [{}]\n", fields, exceed,
+                              fmt::join(plan.quantiles, ", "));
 }
 
 void add_exceedance(EnsemblePlan& plan, const std::string& argument) {
