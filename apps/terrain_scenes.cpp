@@ -183,7 +183,8 @@ const std::vector<NamedScene>& made_scenes() {
         {"tiff_particles", "picture of 100 x 100 pixels (Fois et al. 2025, 4.1)", tiff_particles},
         {"avalanche_track", "parabolic slope with a channel and a flat run-out", avalanche_track},
         {"loose_gully", "gully with loose ground in its bed, and a fan", loose_gully},
-        {"fan", "fan with houses below a gully", fan}};
+        {"fan", "fan with houses below a gully", fan},
+        {"two_gullies", "two gullies side by side on a rough slope, with three scars", two_gullies}};
     return scenes;
 }
 

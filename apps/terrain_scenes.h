@@ -69,6 +69,9 @@ MadeScene avalanche_track();
 MadeScene loose_gully();
 /// A fan of 8 degrees at its apex and 4 at its foot below a gully, with its outline and nine houses; 2.5 m cells.
 MadeScene fan();
+/// Two gullies 230 m apart on a slope of 32 degrees at its head and 3 at its foot, rough by a metre or two, with the scars of
+/// two slides and of one that is feared; 10 m cells.
+MadeScene two_gullies();
 
 /// A scene by name.
 struct NamedScene {

@@ -1,4 +1,4 @@
-// Made-up torrents: a gully whose bed can be taken up, and a fan with houses.
+// Made-up torrents: a gully whose bed can be taken up, a fan with houses, two gullies side by side.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -96,6 +96,34 @@ MadeScene fan() {
                                      {590.0, 330.0, 0.1}})
         houses.others.push_back(house({x, y}, 9.0, 6.0, turn));
     return {{{"dem.tif", on_nodes(length, width, kCell, z)}}, {{"cone.geojson", cone, {}}, houses}};
+}
+
+MadeScene two_gullies() {
+    const double length = 1400.0, width = 620.0, cell = 10.0, mouth = 800.0, bend = 350.0;
+    const double head_slope = std::tan(32.0 * kDegree), foot_slope = std::tan(3.0 * kDegree);
+    const auto first = [](double x) { return 200.0 + 20.0 * std::sin(x / 90.0); };
+    const auto second = [](double x) { return 430.0 - 15.0 * std::sin(x / 120.0); };
+    const auto z = [&](double x, double y) {
+        const double fall = foot_slope * x + (head_slope - foot_slope) * bend * (1.0 - std::exp(-x / bend));
+        const auto gully = [&](double axis) {
+            return 7.0 * smooth_step((mouth - x) / 300.0) * std::exp(-squared((y - axis) / 45.0));
+        };
+        const double rough = 0.8 * std::sin(x / 17.0 + 0.7) * std::sin(y / 23.0) + 0.5 * std::sin(x / 11.0 + y / 19.0) +
+                             0.4 * std::cos(x / 29.0 - y / 13.0);
+        return 420.0 - fall - gully(first(x)) - gully(second(x)) + rough;
+    };
+    const auto scar = [](const Vec2& middle, double along, double across) {
+        std::vector<Vec2> ring;
+        for (int k = 0; k < 32; ++k) {
+            const double angle = 2.0 * 180.0 * kDegree * k / 32;
+            ring.emplace_back(middle.x() + along * std::cos(angle), middle.y() + across * std::sin(angle));
+        }
+        return ring;
+    };
+    return {{{"dem.tif", on_nodes(length, width, cell, z)}},
+            {{"first.geojson", scar({120.0, first(120.0)}, 45.0, 30.0)},
+             {"second.geojson", scar({130.0, second(130.0)}, 40.0, 28.0)},
+             {"next.geojson", scar({140.0, first(140.0)}, 60.0, 40.0)}}};
 }
 
 }  // namespace frana

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -266,6 +267,42 @@ std::ptrdiff_t lines_in(const fs::path& file) {
 }
 
 }  // namespace
+
+TEST_CASE("the shipped calibration finds what its README promises, as far as fewer runs can tell", "[ensemble]") {
+    const FreshFolder folder;
+    const fs::path shipped = fs::path(FRANA_SOURCE_DIR) / "cases" / "calibrate";
+    std::string text = text_of(shipped / "calibrate.toml");
+    const auto exchange = [&](const std::string& old, const std::string& by) {
+        const std::size_t at = text.find(old);
+        REQUIRE(at != std::string::npos);
+        text.replace(at, old.size(), by);
+    };
+    exchange("samples = 64", "samples = 16");
+    exchange("rounds = 3", "rounds = 2\nsearch = \"none\"");
+    exchange("draws = 64", "draws = 4");
+    for (const char* file : {"case.toml", "second.toml", "next.toml"})
+        exchange(std::string("\"") + file + "\"", "\"" + (shipped / file).string() + "\"");
+    frana::write_text(folder.path() / "few.toml", text);
+    const Outcome done = call_frana(folder.path(), "calibrate few.toml --out few --threads 2 --quiet");
+    CHECK(done.err.empty());
+    REQUIRE(done.code == 0);
+    const Json json = Json::parse(text_of(folder.path() / "few/calibrate.json")),
+               next = Json::parse(text_of(folder.path() / "few/predict/ensemble.json"));
+    CHECK(json["failed"] == 0);
+    CHECK(next["failed"] == 0);
+    std::istringstream expected(text_of(shipped / "expected.csv"));
+    std::string line;
+    int compared = 0;
+    for (std::getline(expected, line); std::getline(expected, line); ++compared) {
+        const std::string key = line.substr(0, line.find(','));
+        double mean = 0.0, tolerance = 0.0;
+        REQUIRE(std::sscanf(line.c_str() + key.size(), ",%lf,%lf", &mean, &tolerance) == 2);
+        CAPTURE(key);
+        const Json& of = json["posterior"].contains(key) ? json["posterior"][key] : next["results"][key];
+        CHECK(of["mean"].get<double>() == Approx(mean).margin(tolerance));
+    }
+    CHECK(compared == 3);
+}
 
 TEST_CASE("a survey that misleads about another event is named", "[ensemble]") {
     // Four values, likely by one survey each or by none, and how far the outlines of each event are apart with them.

@@ -2,9 +2,9 @@
 """Runs the frana commands that stand in the ```sh blocks of all READMEs: readme_commands.py FRANA SOURCE FOLDER.
 
 Each is run as it stands, in a scratch folder that sees the project's cases, with three exceptions, so that it takes seconds:
-runs stop early (--until; the cases are run in full by tests of their own), `converge` has a short time.end, `ensemble` a few
-samples, and commands that take minutes by their nature are shortened as SHORTENED says. `case.toml` is a copy of the volcano's. Commands without --out
-get one. A command whose options or keys do not exist any more fails.
+runs stop early (--until; the cases are run in full by tests of their own), `converge` has a short time.end, `ensemble` and
+`calibrate` a few samples, and commands that take minutes by their nature are shortened as SHORTENED says. `case.toml` is a copy
+of the volcano's. Commands without --out get one. A command whose options or keys do not exist any more fails.
 """
 import os
 import re
@@ -73,6 +73,10 @@ def quick(command, number):
         command = command.replace("cases/ensemble/", "few/").replace("--again 317", "--again 3") + " --quiet"
         if not re.search("--(join|again|check)", command):
             command += " --resume"  # the same ensemble stands on two pages
+    if words[1] == "calibrate":
+        command = command.replace("cases/calibrate/", "few/") + " --quiet"
+        if "--resume" not in words:
+            command += " --overwrite"
     if words[1] == "converge":
         command += " --set time.end=0.5 --set output.formats=[]"
     return command
@@ -89,6 +93,11 @@ def main():
     with open(os.path.join(source, "cases", "ensemble", "ensemble.toml"), encoding="utf-8") as whole:
         few = re.sub(r"samples = \d+", "samples = 4", whole.read()).replace('"case.toml"', '"../cases/ensemble/case.toml"')
     with open(os.path.join(folder, "few", "ensemble.toml"), "w", encoding="utf-8") as file:
+        file.write(few)
+    with open(os.path.join(source, "cases", "calibrate", "calibrate.toml"), encoding="utf-8") as whole:
+        few = re.sub(r"(samples|draws) = \d+", r"\1 = 4", whole.read()).replace("rounds = 3", "rounds = 1\nsearch = \"none\"")
+        few = re.sub(r'case = "', 'case = "../cases/calibrate/', few)
+    with open(os.path.join(folder, "few", "calibrate.toml"), "w", encoding="utf-8") as file:
         file.write(few)
     environment = dict(os.environ, OMP_NUM_THREADS="1")
     tried, failed = 0, 0
