@@ -304,6 +304,21 @@ TEST_CASE("two events are weighed together, with the same bytes on any number of
     CHECK(json["events"][0]["boundary_by_others"].get<double>() < json["events"][0]["boundary_by_prior"].get<double>());
 }
 
+TEST_CASE("the search goes down from a poor point, and says where it ended", "[ensemble]") {
+    const SurveyedSlide slide;
+    slide.write(
+        "find.toml",
+        "[calibrate]\nsamples = 2\nrounds = 1\nsigma = 1\n"
+        "[[calibrate.vary]]\nkey = \"material.bed.mu\"\nrange = [0.0, 0.3]\n[[event]]\ncase = \"event.toml\"\n");
+    REQUIRE(slide.frana("calibrate find.toml --out found --quiet").code == 0);
+    const Json json = Json::parse(text_of(slide.path("found/calibrate.json")));
+    const Json& optimum = json["optimum"];
+    CHECK(optimum["score"].get<double>() > json["score"].get<double>() + optimum["noise"].get<double>());
+    // The least step is 3 % of the range, 0.009.
+    CHECK(optimum["values"]["material.bed.mu"].get<double>() == Approx(SurveyedSlide::kTruth).margin(2 * 0.009));
+    CHECK_FALSE(optimum["ended"].get<std::string>().empty());
+}
+
 TEST_CASE("a survey that misleads about another event is named", "[ensemble]") {
     // Four values, likely by one survey each or by none, and how far the outlines of each event are apart with them.
     frana::Calibration found{{}, frana::Posterior(1, 1), std::vector<frana::EventFit>(3), 0, 0.0};
