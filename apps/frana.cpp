@@ -1,7 +1,5 @@
 // The program: command line in, exit code out. 0 done, 1 our bug, 2 case, data or command line, 3 numerics,
 // 130 interrupted.
-#include <unistd.h>
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -12,7 +10,6 @@
 #include <functional>
 #include <iostream>
 #include <new>
-#include <set>
 
 #include "base/error.h"
 #include "base/version.h"
@@ -359,17 +356,11 @@ int run_program(int argc, char** argv) {
 }
 
 /// Threads of OpenMP spin for milliseconds before they sleep; beside other work on the machine that is time the others
-/// would compute in (measured: 25 times slower with two threads on two busy cores). For the commands that compute they
-/// are told to sleep soon, unless the environment has a wish of its own. The runtime reads it before main(), hence the
-/// program starts itself anew; not under tools that have loaded it by ways of their own.
-void wait_briefly(int argc, char** argv) {
-    static const std::set<std::string> kComputing{"run", "converge", "verify", "bench", "stress"};
-    if (argc < 2 || !kComputing.count(argv[1])) return;
-    if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY") || std::getenv("LD_PRELOAD")) return;
-    std::error_code none;
-    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", none);
-    if (none || self.filename() != std::filesystem::path(argv[0]).filename()) return;
-    if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0) execv(self.c_str(), argv);
+/// would compute in (measured: 25 times slower with two threads on two busy cores). They are told to sleep soon, unless
+/// the environment has a wish of its own. The runtime reads the environment once: this comes before, where it is a part of
+/// the program (CMakeLists.txt), and elsewhere is in vain.
+[[gnu::constructor(101)]] void wait_briefly() {
+    if (!std::getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "1000", 0);
 }
 
 /// Threads, memory or file handles that the system will not give.
@@ -406,7 +397,6 @@ int mistake(const std::exception& error) {
 
 int main(int argc, char** argv) {
     using namespace frana;
-    wait_briefly(argc, argv);
     try {
         return run_program(argc, argv);
     } catch (const UserError& error) {

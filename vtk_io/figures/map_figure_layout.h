@@ -2,6 +2,7 @@
 // Where things stand in a map picture. Pixels count from the lower left corner.
 #include "vtk_io/figures/chart_figure_ticks.h"
 #include "vtk_io/figures/map_figure.h"
+#include "vtk_io/figures/map_range.h"
 #include "vtk_io/figures/offscreen_canvas.h"
 
 namespace frana {
@@ -31,23 +32,6 @@ struct Rows {
 };
 Rows in_rows(const std::vector<double>& widths, double gap, double width);
 
-/// Limits of the colours: given, or zero (the smallest value, when negative) to a round number at or above
-/// the 99.5th percentile of the values shown; symmetric about zero for the diverging map.
-struct ColourRange {
-    double low = 0.0, high = 1.0;
-    bool more_below = false, more_above = false;
-};
-ColourRange colour_range(const std::vector<double>& field, double shown_above, Colormap map,
-                         const std::optional<std::pair<double, double>>& given);
-
-/// [xmin, ymin, xmax, ymax] of all nodes where |field| exceeds the limit, half a cell wider; nothing when
-/// none.
-std::optional<std::array<double, 4>> covered_extent(const GridGeometry& grid, const std::vector<double>& field,
-                                                    double shown_above);
-/// The smallest rectangle round both.
-std::array<double, 4> united(const std::array<double, 4>& a, const std::array<double, 4>& b);
-std::array<double, 4> extent_of(const Polygons& polygons);
-
 struct MapLayout {
     int width = 0, height = 0;  ///< of the picture [px]
     double unit = 20.0;         ///< size of ordinary text [px]
@@ -71,13 +55,6 @@ struct MapLayout {
     TextStyle text(Across across, Upward upward) const { return {unit, across, upward, 0.0, false, false, {}}; }
     double row_height() const { return 2.3 * unit; }
 };
-
-/// The field where |outlined| exceeds the limit, elsewhere NaN; every number of it is then shown.
-std::vector<double> inside_outline(std::vector<double> field, const std::vector<double>& outlined, double shown_above);
-constexpr double kAll = -1.0;  ///< "shown above" that hides NaN only
-/// The limits of the colours of a field that is shown where `outlined` exceeds the limit; empty: where the field does.
-ColourRange colours_within(const std::vector<double>& field, const std::vector<double>& outlined, double shown_above,
-                           Colormap map, const std::optional<std::pair<double, double>>& given);
 
 MapLayout lay_out(const MapFigure& figure);
 

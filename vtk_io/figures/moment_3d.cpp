@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "vtk_io/figures/map_figure_layout.h"
+#include "vtk_io/figures/chart_figure_ticks.h"
+#include "vtk_io/figures/map_range.h"
 
 namespace frana {
 namespace {

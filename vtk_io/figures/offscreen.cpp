@@ -31,7 +31,8 @@
 
 // VTK before 9.4 loads OpenGL through GLEW, and Debian builds GLEW for GLX: glewInit() finds all entry
 // points, then answers 4, "no GLX display". The entry points serve EGL as well, so this definition, which the
-// dynamic linker finds before GLEW's, turns that one answer into success. The executable must export it.
+// dynamic linker finds before GLEW's, turns that one answer into success. It must be in the module that is opened for
+// pictures, ahead of the libraries that it needs, or in an executable that exports it.
 extern "C" __attribute__((visibility("default"))) unsigned int glewInit() {  // NOLINT(readability-identifier-naming)
     using Init = unsigned int (*)();
     constexpr unsigned int no_glx_display = 4;

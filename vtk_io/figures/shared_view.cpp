@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "vtk_io/figures/map_figure_layout.h"
+#include "vtk_io/figures/map_range.h"
 
 namespace frana {
 

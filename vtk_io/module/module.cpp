@@ -1,0 +1,12 @@
+// The face of the module.
+#include "base/version.h"
+#include "vtk_io/module/functions.h"
+
+extern "C" __attribute__((visibility("default"))) const frana::VtkFunctions* frana_vtk_functions() {
+    static const frana::VtkFunctions functions{FRANA_VERSION,
+#define FRANA_VTK_ROW(name) &frana::name,
+                                               FRANA_VTK_FUNCTIONS(FRANA_VTK_ROW)
+#undef FRANA_VTK_ROW
+    };
+    return &functions;
+}
