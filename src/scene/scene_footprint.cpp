@@ -58,6 +58,10 @@ void mark_inside(NodeMarks& marks, const GridGeometry& grid, const Polygon& poly
 /// Marks the nodes of every pixel with material: those in the pixel, and the nearest one where it is small.
 NodeMarks marks_of_field(const Raster& field, const GridGeometry& grid) {
     NodeMarks marks(static_cast<std::size_t>(grid.size()), 0);
+    if (field.geometry == grid) {
+        for (std::size_t k = 0; k < marks.size(); ++k) marks[k] = field.values[k] > 0.0;
+        return marks;
+    }
     const double half = 0.5 * field.geometry.cell;
     for (Index r = 0; r < field.geometry.ny; ++r) {
         for (Index c = 0; c < field.geometry.nx; ++c) {
@@ -188,6 +192,13 @@ double bilinear(const Raster& raster, const Vec2& point) {
 
 Vec2 node_gradient(const Raster& raster, Index i, Index j) {
     const GridGeometry& grid = raster.geometry;
+    if (i > 0 && j > 0 && i + 1 < grid.nx &&
+        j + 1 < grid.ny) {  // most nodes, at once: terrain is asked for all of them
+        const double west = raster.at(i - 1, j), east = raster.at(i + 1, j), south = raster.at(i, j - 1),
+                     north = raster.at(i, j + 1), across = 2.0 * grid.cell;
+        if (std::isfinite(west) && std::isfinite(east) && std::isfinite(south) && std::isfinite(north))
+            return {(east - west) / across, (north - south) / across};
+    }
     const auto along = [&](Index di, Index dj) {
         const auto there = [&](Index s) {
             const Index ii = i + s * di;

@@ -31,17 +31,12 @@ void for_each_node(const TileGrid& grid, Index margin, Body&& body) {
 std::vector<double> filled(const Raster& bed) {
     const Index nx = bed.geometry.nx, ny = bed.geometry.ny;
     std::vector<double> z = bed.values;
+    if (std::none_of(z.begin(), z.end(), [](double here) { return std::isnan(here); })) return z;
     std::deque<Index> front;
-    bool any_missing = false;
-    for (Index k = 0; k < nx * ny; ++k) {
-        if (std::isnan(z[k]))
-            any_missing = true;
-        else
-            front.push_back(k);
-    }
+    for (Index k = 0; k < nx * ny; ++k)
+        if (!std::isnan(z[k])) front.push_back(k);
     if (front.empty())
         throw UserError(bed.source + ": the elevation model holds no data in the window; choose another window");
-    if (!any_missing) return z;
     while (!front.empty()) {
         const Index k = front.front(), i = k % nx, j = k / nx;
         front.pop_front();
@@ -61,6 +56,7 @@ std::vector<double> filled(const Raster& bed) {
 /// Index into 0..n-1 and the sign and offset of the extension beyond: mirrored at walls, odd about the end
 /// value (linear for a plane) at open sides.
 double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index j, bool wall) {
+    if (i >= 0 && i < nx && j >= 0 && j < ny) return z[j * nx + i];
     const auto inside = [](Index k, Index n) { return std::clamp<Index>(k, 0, n - 1); };
     const auto mirror = [](Index k, Index n) {
         if (n == 1) return Index{0};
@@ -71,7 +67,6 @@ double extended(const std::vector<double>& z, Index nx, Index ny, Index i, Index
     const Index im = mirror(i, nx), jm = mirror(j, ny);
     if (wall) return z[jm * nx + im];
     const Index ic = inside(i, nx), jc = inside(j, ny);
-    if (ic == i && jc == j) return z[j * nx + i];
     return 2.0 * z[jc * nx + ic] - z[inside(2 * jc - j, ny) * nx + inside(2 * ic - i, nx)];
 }
 

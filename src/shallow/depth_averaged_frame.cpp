@@ -138,23 +138,26 @@ void DepthAveraged::node_fields(Frame& frame) {
     const auto column = [&](const char* name, const char* unit, int components) {
         return store_.zeros(frame.nodes, name, unit, components, count);
     };
-    double* elevation = column("elevation", "m", 1);
+    const auto everywhere = [&](const char* name, const char* unit) {  // filled below, on all nodes
+        return store_.raw(frame.nodes, name, unit, 1, count);
+    };
+    double* elevation = everywhere("elevation", "m");
     double* depth = column("depth", "m", 1);
     double* thickness = column("thickness", "m", 1);
-    double* surface = column("surface", "m", 1);
+    double* surface = everywhere("surface", "m");
     double* velocity = column("velocity", "m/s", 3);
     double* speed = column("speed", "m/s", 1);
     double* pressure = column("pressure", "Pa", 1);
-    double* peak_depth = column("peak_depth", "m", 1);
-    double* peak_speed = column("peak_speed", "m/s", 1);
-    double* peak_pressure = column("peak_pressure", "Pa", 1);
-    double* peak_dynamic = column("peak_dynamic_pressure", "Pa", 1);
-    double* arrival = column("arrival_time", "s", 1);
+    double* peak_depth = everywhere("peak_depth", "m");
+    double* peak_speed = everywhere("peak_speed", "m/s");
+    double* peak_pressure = everywhere("peak_pressure", "Pa");
+    double* peak_dynamic = everywhere("peak_dynamic_pressure", "Pa");
+    double* arrival = everywhere("arrival_time", "s");
     double *change = nullptr, *eroded = nullptr, *deposited = nullptr;
     if (erosion_) {
-        change = column("bed_change", "m", 1);
-        eroded = column("eroded_depth", "m", 1);
-        deposited = column("deposited_depth", "m", 1);
+        change = everywhere("bed_change", "m");
+        eroded = everywhere("eroded_depth", "m");
+        deposited = everywhere("deposited_depth", "m");
     }
     for_all_output_nodes(flow_, shown_, [&](Index k, Index n) {
         if (erosion_) {
