@@ -1,6 +1,7 @@
 #include "shallow/surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
 
@@ -91,21 +92,41 @@ double film_bend(const Flow& flow, Index k, Index p, Index q) {
     return std::min(1.0, std::abs(bend) / depth - 1.0) * film_share(rise / flow.cell, ground / flow.cell) * bend;
 }
 
-/// One extrapolated surface value from up to eight directions, made of nodes known before this sweep, or nothing.
-bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
-    const Nodes& nodes = flow.nodes;
-    const auto known = [&](Index n) {
-        const std::uint8_t f = flags_now(nodes, n);
+/// Of all flags, whether a node that has them is known before a sweep.
+using Known = std::array<bool, 256>;
+constexpr Known known_before(int sweep) {
+    Known known{};
+    for (int f = 0; f < 256; ++f) {
         const int found = f / kSweep;
-        return (f & kWet) && (!(f & kMargin) || (found > 0 && found < sweep));
-    };
+        known[static_cast<std::size_t>(f)] = (f & kWet) && (!(f & kMargin) || (found > 0 && found < sweep));
+    }
+    return known;
+}
+constexpr std::array<Known, kSweeps + 1> kKnown{known_before(0), known_before(1), known_before(2), known_before(3)};
+static_assert(kSweeps == 3, "a list for each sweep");
+
+/// 1 where a node rests, 0 where it moves at `creeps` or faster.
+double resting(const Pair& velocity, double creeps) {
+    if (std::abs(velocity.x) >= creeps || std::abs(velocity.y) >= creeps) return 0.0;  // as below, without the root
+    return std::max(0.0, 1.0 - std::hypot(velocity.x, velocity.y) / creeps);
+}
+
+/// What a sweep goes by.
+struct Sweep {
+    int number;
+    const Known& known;
+    double creeps;  ///< a slower node rests [m/s]
+};
+
+/// One extrapolated surface value from up to eight directions, made of nodes known before this sweep, or nothing.
+bool extrapolate(const Flow& flow, Index k, const Sweep& sweep, double& value) {
+    const Nodes& nodes = flow.nodes;
+    const auto known = [&](Index n) { return sweep.known[flags_now(nodes, n)]; };
     const Index up = flow.grid.stride();
     // The flank of what rests bends down to the level at most: bent on under the ground, it would be steeper than it is
     // anywhere and pull the pile apart. (Not to the bed itself, or a dry neighbour as high would be a shore by round-off.)
     // A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
-    constexpr double kCreeps = 1e-6;  // of the speed of a wave one cell deep, where it is a front
-    const double creeps = kCreeps * std::sqrt(flow.gravity * flow.cell);
-    const double rests = std::max(0.0, 1.0 - std::hypot(nodes.before[k].x, nodes.before[k].y) / creeps);
+    const double rests = resting(nodes.before[k], sweep.creeps);
     double sum = 0.0, weights = 0.0;
     for (int dj = -1; dj <= 1; ++dj)
         for (int di = -1; di <= 1; ++di) {
@@ -135,8 +156,10 @@ bool extrapolate(const Flow& flow, Index k, int sweep, double& value) {
 }
 
 /// Extrapolates to the margin nodes inside the walls that no earlier sweep reached.
-void shoreline_sweep(Flow& flow, int sweep) {
+void shoreline_sweep(Flow& flow, int number) {
     Nodes& nodes = flow.nodes;
+    constexpr double kCreeps = 1e-6;  // of the speed of a wave one cell deep, where it is a front
+    const Sweep sweep{number, kKnown[static_cast<std::size_t>(number)], kCreeps * std::sqrt(flow.gravity * flow.cell)};
     const auto inside = [&](Index i, Index j) {
         return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
     };
@@ -144,11 +167,15 @@ void shoreline_sweep(Flow& flow, int sweep) {
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) {
         const Index tile = flow.shore[static_cast<std::size_t>(n)];
-        for_each_node_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
+        const auto find = [&](Index k, Index i, Index j) {
             const std::uint8_t f = nodes.flags[k];
             if (!(f & kMargin) || f >= kSweep || !inside(i, j) || !extrapolate(flow, k, sweep, nodes.surface[k]))
                 return;
-            __atomic_store_n(&nodes.flags[k], static_cast<std::uint8_t>(f | sweep * kSweep), __ATOMIC_RELAXED);
+            __atomic_store_n(&nodes.flags[k], static_cast<std::uint8_t>(f | number * kSweep), __ATOMIC_RELAXED);
+        };
+        for_each_four_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
+            if (four_have(nodes.flags.data() + k, 0, kMargin)) return;
+            for (Index n = 0; n < 4; ++n) find(k + n, i + n, j);
         });
     }
 }
