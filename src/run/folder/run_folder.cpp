@@ -89,12 +89,18 @@ std::vector<fs::path> folders_of(const fs::path& run_dir, const ProductKind& kin
     return found;
 }
 
+/// To make one of a text takes longer than to match a folder's names with it; they are few, and asked for again and again.
+const std::regex& pattern_of(const ProductKind& kind) {
+    static thread_local std::map<std::string, std::regex> known;
+    const auto found = known.find(kind.pattern);
+    return found != known.end() ? found->second : known.emplace(kind.pattern, std::regex(kind.pattern)).first->second;
+}
+
 std::vector<fs::path> files_in(const fs::path& folder, const ProductKind& kind) {
-    const std::regex pattern(kind.pattern);
     std::vector<fs::path> found;
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(folder, none))
-        if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), pattern))
+        if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), pattern_of(kind)))
             found.push_back(entry.path());
     std::sort(found.begin(), found.end());
     return found;
@@ -242,14 +248,13 @@ void remove_half_written(const fs::path& run_dir) {
     static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*)?");
     std::error_code ignored;
     for (const ProductKind& kind : product_kinds()) {
-        const std::regex product(kind.pattern);
         std::vector<fs::path> found;
         for (const fs::path& folder : folders_of(run_dir, kind))
             for (const auto& entry : fs::directory_iterator(run_dir / folder, ignored)) {
                 const std::string name = entry.path().filename().string();
                 std::smatch parts;
                 if (std::regex_match(name, parts, half_written) &&
-                    std::regex_match(parts[1].str() + parts[2].str(), product))
+                    std::regex_match(parts[1].str() + parts[2].str(), pattern_of(kind)))
                     found.push_back(entry.path());
             }
         for (const fs::path& file : found) fs::remove(file, ignored);
