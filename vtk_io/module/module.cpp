@@ -2,11 +2,16 @@
 #include "base/version.h"
 #include "vtk_io/module/functions.h"
 
-extern "C" __attribute__((visibility("default"))) const frana::VtkFunctions* frana_vtk_functions() {
-    static const frana::VtkFunctions functions{FRANA_VERSION,
+namespace {
+
+const frana::VtkFunctions kFunctions = {FRANA_VERSION,
 #define FRANA_VTK_ROW(name) &frana::name,
-                                               FRANA_VTK_FUNCTIONS(FRANA_VTK_ROW)
+                                        FRANA_VTK_FUNCTIONS(FRANA_VTK_ROW)
 #undef FRANA_VTK_ROW
-    };
-    return &functions;
+};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const frana::VtkFunctions* frana_vtk_functions() {
+    return &kFunctions;
 }
