@@ -26,6 +26,7 @@
     ROW(make_barrier_writer)     \
     ROW(write_barrier_meshes)    \
     ROW(write_terrain)           \
+    ROW(write_terrain_maps)      \
     ROW(write_survey)            \
     ROW(write_seeds_vtp)         \
     ROW(write_points_vtp)        \
@@ -36,6 +37,7 @@
     ROW(read_frame)              \
     ROW(read_particles)          \
     ROW(read_terrain)            \
+    ROW(read_maps)               \
     ROW(profile_ends)            \
     ROW(barrier_times)           \
     ROW(read_barriers)           \

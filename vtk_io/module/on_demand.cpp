@@ -57,6 +57,9 @@ void write_barrier_meshes(const fs::path& run_dir, const BarrierMeshes& meshes) 
     vtk().write_barrier_meshes(run_dir, meshes);
 }
 void write_terrain(const fs::path& run_dir, const Raster& bed) { vtk().write_terrain(run_dir, bed); }
+void write_terrain_maps(const fs::path& dir, const Raster& bed, const std::vector<NamedMap>& maps) {
+    vtk().write_terrain_maps(dir, bed, maps);
+}
 void write_survey(const fs::path& run_dir, const Raster& bed, const Raster& depth, double limit, const Rings& survey) {
     vtk().write_survey(run_dir, bed, depth, limit, survey);
 }
@@ -72,6 +75,7 @@ Index nearest_frame(const fs::path& run_dir, double time) { return vtk().nearest
 LoadedFrame read_frame(const fs::path& run_dir, Index number) { return vtk().read_frame(run_dir, number); }
 LoadedParticles read_particles(const fs::path& run_dir, Index number) { return vtk().read_particles(run_dir, number); }
 LoadedFrame read_terrain(const fs::path& run_dir) { return vtk().read_terrain(run_dir); }
+LoadedFrame read_maps(const fs::path& dir) { return vtk().read_maps(dir); }
 std::pair<double, double> profile_ends(const fs::path& run_dir) { return vtk().profile_ends(run_dir); }
 std::vector<double> barrier_times(const fs::path& run_dir) { return vtk().barrier_times(run_dir); }
 std::vector<LoadedPatch> read_barriers(const fs::path& run_dir, Index number) {
