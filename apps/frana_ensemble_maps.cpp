@@ -3,11 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "base/error.h"
 #include "ensemble/statistics.h"
 #include "frana_ensemble_outcomes.h"
+#include "frana_kept_rows.h"
 #include "io/gdal_writer.h"
 #include "run/folder/states.h"
 #include "vtk_io/figures/map_figure.h"
@@ -54,6 +57,9 @@ private:
     }
 
     void everywhere(const std::string& name, Raster values, const char* unit, const std::string& meaning) {
+        if (base_.whole == base_.bed.geometry)
+            for (std::size_t k = 0; k < values.values.size(); ++k)
+                if (std::isnan(base_.bed.values[k])) values.values[k] = Raster::nodata;
         values.crs_wkt = base_.bed.crs_wkt;
         write_geotiff(dir_ / "rasters" / (name + ".tif"), values, unit, meaning);
         summary_.files.push_back("rasters/" + name + ".tif");
@@ -188,6 +194,27 @@ private:
     std::string why_not_;
 };
 
+/// What the last page in this folder says that it made.
+std::vector<std::string> files_of_last_time(const fs::path& dir) {
+    const auto json = nlohmann::json::parse(text_in(dir / "ensemble.json"), nullptr, false);
+    std::vector<std::string> files;
+    if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) return files;
+    for (const auto& file : json["files"])
+        if (file.is_string()) files.push_back(file.get<std::string>());
+    return files;
+}
+
+/// Maps that nobody asks for any more would be taken for those of these runs.
+void remove_others(const fs::path& dir, const std::vector<std::string>& before, const std::vector<std::string>& now) {
+    for (const std::string& file : before) {
+        const fs::path name = fs::path(file).lexically_normal();
+        if (std::find(now.begin(), now.end(), file) != now.end()) continue;
+        if (name.is_absolute() || name.empty() || *name.begin() == "..") continue;
+        std::error_code ignored;
+        fs::remove(dir / name, ignored);
+    }
+}
+
 }  // namespace
 
 EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
@@ -202,6 +229,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
         summary.left_terrain += result.ended() && result.left_share > noticeable;
         summary.core_seconds += result.seconds;
     }
+    const std::vector<std::string> before = files_of_last_time(dir);
     write_runs(dir, plan, base, results);
     summary.files = {"samples.csv", "runs.csv"};
     const WeightedRuns runs(plan, results);
@@ -210,6 +238,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     write_hazard(dir, plan, base, runs, summary);
     draw_charts(dir, plan, base, runs, summary);
     write_page(dir, plan, base, runs, results, summary);
+    remove_others(dir, before, summary.files);
     return summary;
 }
 

@@ -23,6 +23,7 @@ struct EnsembleSummary {
     double effective = 0.0;              ///< number of equal weights that tell as much
     bool maps_drawn = true;
     std::vector<HazardArea> hazard;  ///< from the least to the greatest; empty where no classes were asked for
+    std::string hazard_remark;       ///< what to mind about the classes, in sentences; empty where nothing
     std::vector<std::string> files;  ///< that were made
 
     /// So many fail that the maps should not be trusted.

@@ -26,6 +26,8 @@ std::vector<Sensitivity> sensitivity_of(const Outcome& outcome, const EnsemblePl
         if (!result.ended()) continue;
         std::optional<double>& number = outcomes[static_cast<std::size_t>(result.sample)];
         number = outcome.never == Outcome::Never::zero ? outcome.counted(result) : outcome.value(result);
+        // Of the runs that come alone, indices would be those of other samples than were drawn.
+        if (outcome.never == Outcome::Never::infinite && !number) return {};
     }
     return sensitivities(plan.method, plan.design, outcomes);
 }
@@ -94,6 +96,7 @@ Json hazard_json(const HazardTable& table, const EnsembleSummary& summary) {
     Json json = {{"preset", table.preset.empty() ? Json(nullptr) : Json(table.preset)},
                  {"return_period", table.event_years ? Json(*table.event_years) : Json(nullptr)},
                  {"share", table.share},
+                 {"remark", summary.hazard_remark},
                  {"classes", Json::array()}};
     for (const HazardArea& one : summary.hazard)
         json["classes"].push_back({{"name", one.name}, {"number", one.number}, {"area_m2", one.area}});
@@ -114,6 +117,7 @@ std::string hazard_section(const EnsemblePlan& plan, const EnsembleSummary& summ
         for (const std::size_t number : level.classes)
             page += fmt::format(" {} |", number > 0 ? table.classes[number - 1].name : "none");
     }
+    if (!summary.hazard_remark.empty()) page += "\n\n" + summary.hazard_remark;
     page += "\n\n| Class | Area [m2] |\n|---|---:|";
     for (const HazardArea& one : summary.hazard) page += fmt::format("\n| {} | {:.6g} |", one.name, one.area);
     return page;

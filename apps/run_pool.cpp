@@ -1,7 +1,9 @@
 #include "run_pool.h"
 
 #include <fmt/core.h>
+#ifdef __GLIBC__
 #include <malloc.h>
+#endif
 #include <omp.h>
 
 #include <algorithm>
@@ -20,9 +22,20 @@ namespace {
 /// One run asks for what the last one gave back: kept, it is not asked of the system page by page again, which took a
 /// third of a short run. Arrays so large that most of their pages are never touched still come from the system.
 void keep_memory() {
+#ifdef __GLIBC__
     constexpr int large = 4 << 20, kept = 1 << 30;  // [bytes]
     mallopt(M_MMAP_THRESHOLD, large);
     mallopt(M_TRIM_THRESHOLD, kept);
+#endif
+}
+
+/// Maps and pictures come after the runs.
+void give_memory_back() {
+#ifdef __GLIBC__
+    constexpr int usual = 128 << 10;  // [bytes]
+    mallopt(M_TRIM_THRESHOLD, usual);
+    malloc_trim(0);
+#endif
 }
 
 }  // namespace
@@ -52,6 +65,7 @@ void for_each_run(std::size_t count, int threads, const Interrupt& interrupt,
         if (pool.empty()) throw;
     }
     for (std::thread& thread : pool) thread.join();
+    give_memory_back();
     if (failure) std::rethrow_exception(failure);
 }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
+#include <functional>
 
 namespace frana {
 namespace {
@@ -43,7 +45,8 @@ private:
 
     void read_own(CheckedTable& table, const toml::table& of) {
         table_.years = table.numbers("years");
-        const bool ascending = std::is_sorted(table_.years.begin(), table_.years.end());
+        const bool ascending =
+            std::adjacent_find(table_.years.begin(), table_.years.end(), std::greater_equal<>()) == table_.years.end();
         if (table_.years.empty() || !ascending || !(table_.years.front() > 0.0))
             table.wrong("years", "found no return periods that grow", "expected a list like [30, 100, 300]",
                         "give it, or a preset");
@@ -73,9 +76,11 @@ private:
             table.wrong("name", fmt::format("found \"{}\"", one.name),
                         "expected a name of its own, other than \"none\"", "give one");
         const std::string colour = table.text("colour");
-        char* end = nullptr;
-        const auto bits = std::strtoul(colour.c_str() + (colour.empty() ? 0 : 1), &end, 16);
-        if (colour.size() != 7 || colour[0] != '#' || *end != '\0')
+        const bool written_so =
+            colour.size() == 7 && colour[0] == '#' &&
+            std::all_of(colour.begin() + 1, colour.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
+        const auto bits = written_so ? std::strtoul(colour.c_str() + 1, nullptr, 16) : 0;
+        if (!written_so)
             table.wrong("colour", fmt::format("found \"{}\"", colour), "expected red, green and blue like \"#d81e28\"",
                         "write it so");
         for (std::size_t k = 0; k < 3; ++k) one.colour[k] = static_cast<std::uint8_t>((bits >> (8 * (2 - k))) & 0xffu);
@@ -110,6 +115,13 @@ private:
                                     table_.years.size() + 1),
                         "give so many");
         table.refuse_others("unless ensemble.fields names it");
+        for (const auto& [field, least] : level.at_least)
+            for (const HazardLevel& weaker : table_.levels)
+                if (const auto found = weaker.at_least.find(field);
+                    found != weaker.at_least.end() && found->second > least)
+                    table.wrong(field,
+                                fmt::format("found {:g}, less than {:g} of \"{}\"", least, found->second, weaker.name),
+                                "expected levels from the weakest to the strongest", "order them so");
         table_.levels.push_back(level);
     }
 

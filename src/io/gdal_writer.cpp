@@ -177,8 +177,11 @@ void write_class_geotiff(const std::filesystem::path& target, const GridGeometry
     const CPLErr written = band->RasterIO(GF_Write, 0, 0, nx, ny, rows.data(), nx, ny, GDT_Byte, 0, 0, nullptr);
     dataset.reset();
     if (written != CE_None || messages.failed()) refuse_write(target, messages);
+    const std::filesystem::path names = target.string() + ".aux.xml";
+    std::error_code ignored;
+    std::filesystem::remove(names, ignored);  // rather none than those of other classes
     file.commit();
-    write_text(target.string() + ".aux.xml", class_names_xml(classes));
+    write_text(names, class_names_xml(classes));
 }
 
 void write_footprint(const std::filesystem::path& target, const Raster& covered_depth, double threshold,

@@ -447,7 +447,9 @@ void Erosion::take_shares(const Flow& flow, Index n) {
         for_each_sub_point<Quadratic>(
             flow, flow.columns.x[p], flow.columns.y[p], edges, [&](const auto& sx, const auto& sy) {
                 for (int j = 0; j < 3; ++j)
-                    for (int i = 0; i < 3; ++i) least = std::min(least, share_[flow.grid.at(sx.base + i, sy.base + j)]);
+                    for (int i = 0; i < 3; ++i)
+                        if (sx.w[i] * sy.w[j] > 0.0)
+                            least = std::min(least, share_[flow.grid.at(sx.base + i, sy.base + j)]);
             });
         return least;
     };

@@ -67,7 +67,8 @@ namespace frana {
 
 /// A pointer to each of them.
 struct VtkFunctions {
-    const char* version;  ///< of frana; first in the struct, so that it is read of any module
+    const char* version;  ///< of frana; this and the size come first, so that they are read of any module
+    std::size_t size;     ///< of this struct: one with other functions is of another build
 #define FRANA_VTK_ROW(name) decltype(&frana::name) name;
     FRANA_VTK_FUNCTIONS(FRANA_VTK_ROW)
 #undef FRANA_VTK_ROW

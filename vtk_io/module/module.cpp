@@ -4,7 +4,7 @@
 
 namespace {
 
-const frana::VtkFunctions kFunctions = {FRANA_VERSION,
+const frana::VtkFunctions kFunctions = {FRANA_VERSION, sizeof(frana::VtkFunctions),
 #define FRANA_VTK_ROW(name) &frana::name,
                                         FRANA_VTK_FUNCTIONS(FRANA_VTK_ROW)
 #undef FRANA_VTK_ROW

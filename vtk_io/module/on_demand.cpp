@@ -21,8 +21,9 @@ const VtkFunctions& open_module() {
     const auto face = module ? reinterpret_cast<Face>(dlsym(module, "frana_vtk_functions")) : nullptr;
     if (!face) throw UserError(fmt::format("{}; {}", dlerror(), way_out));
     const VtkFunctions& functions = *face();
-    if (std::string(functions.version) != FRANA_VERSION)
-        throw UserError(fmt::format("{}: found version {}; {}", FRANA_VTK_MODULE, functions.version, way_out));
+    if (std::string(functions.version) != FRANA_VERSION || functions.size != sizeof(VtkFunctions))
+        throw UserError(
+            fmt::format("{}: found version {} of another build; {}", FRANA_VTK_MODULE, functions.version, way_out));
     return functions;
 }
 
