@@ -154,3 +154,27 @@ TEST_CASE("Classes of hazard are a raster with colours and names, and areas in r
     CHECK(std::string(names[1]) == "low & seldom");
     CHECK(band.GetNoDataValue() == 0.0);
 }
+
+TEST_CASE("A scenario without an answer is told with the classes of hazard, and classes nobody asks for any more go",
+          "[ensemble][hazard]") {
+    const Pond pond;
+    const std::string many =
+        "[ensemble]\ncase = \"case.toml\"\nmethod = \"table\"\ntable = \"rows.csv\"\nfields = [\"peak_depth\"]\n"
+        "quantiles = []\n";
+    pond.write("many.toml", many +
+                                "[ensemble.hazard]\nyears = [30]\n"
+                                "[[ensemble.hazard.class]]\nname = \"high\"\ncolour = \"#d81e28\"\n"
+                                "[[ensemble.hazard.level]]\nclasses = [\"high\", \"none\"]\n");
+    pond.write("rows.csv",
+               "release.0.outline,release.0.depth,return_period\n\"west.geojson\",1.5,30\n\"lost.geojson\",1.5,300\n");
+    CHECK(pond.frana("ensemble many.toml --out many --quiet").code == 3);  // more than a twentieth failed
+    const std::string told = "No run of the scenario of 300 years has an answer";
+    CHECK_THAT(text_of(pond.path("many/report.md")), Contains(told));
+    CHECK_THAT(text_of(pond.path("many/ensemble.json")), Contains(told));
+    CHECK(fs::exists(pond.path("many/rasters/hazard_class.tif")));
+    pond.write("many.toml", many);
+    CHECK(pond.frana("ensemble --join many --quiet").code == 3);
+    CHECK_FALSE(fs::exists(pond.path("many/rasters/hazard_class.tif")));
+    CHECK_FALSE(fs::exists(pond.path("many/rasters/hazard_class.tif.aux.xml")));
+    CHECK(fs::exists(pond.path("many/rasters/probability_reached.tif")));
+}

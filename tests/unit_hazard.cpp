@@ -162,6 +162,11 @@ TEST_CASE("A file asks for a table of hazard, by a preset or its own, and what i
     CHECK_THAT(with("[\"blue\", \"none\"]", "[\"blue\", \"red\"]"), Contains("found \"red\"; expected none or blue"));
     CHECK_THAT(with("peak_depth = 1.0", "peak_pressure = 1.0"), Contains("unless ensemble.fields names it"));
     CHECK_THAT(with("years = [30]", "years = [300, 30]"), Contains("found no return periods that grow"));
+    CHECK_THAT(with("years = [30]", "years = [30, 30]"), Contains("found no return periods that grow"));
+    CHECK_THAT(with("#0000ff", "#0x12ab"), Contains("expected red, green and blue"));
+    const std::string shallower =
+        "[[ensemble.hazard.level]]\npeak_depth = 0.5\nclasses = [\"blue\", \"none\"]\n[ensemble.hazard.x]\n";
+    CHECK_THAT(complaint(text + periods + own + shallower), Contains("found 0.5, less than 1 of \"deep\""));
     CHECK_THAT(
         complaint("[ensemble]\ncase = \"case.toml\"\nmethod = \"grid\"\nfields = [\"peak_depth\"]\n" +
                   text.substr(text.find("[[")) + periods + "[ensemble.hazard]\npreset = \"swiss_debris_flow\"\n"),
