@@ -13,6 +13,8 @@
 #include "ensemble/sample_table.h"
 #include "frana_kept_rows.h"
 #include "io/hdf5_peaks.h"
+#include "run/folder/input_sums.h"
+#include "scene/case_file.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -108,7 +110,7 @@ void take_peaks(const fs::path& file, const EnsemblePlan& plan, const GridGeomet
 void remove_leftovers(const fs::path& folder) {
     static const std::regex half_written(
         "\\.(peaks|runs|probability|quantile|mean|first_order|total|hazard|terrain|maps|reached|report|ensemble|"
-        "calibrate|posterior).*\\.tmp\\d+(\\..*)?");
+        "calibrate|posterior|predict).*\\.tmp\\d+(\\..*)?");
     std::vector<fs::path> found;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored))
@@ -156,7 +158,7 @@ std::string mark_of(const EnsemblePlan& plan) {
     const bool prolongs = plan.method == Method::sobol || plan.method == Method::random;
     return fmt::format("# frana {},seed {},samples {},keys {:016x},case {:016x}", FRANA_VERSION, plan.seed,
                        prolongs ? "any" : std::to_string(plan.samples), sum_of(decides),
-                       sum_of(text_in(plan.case_file)));
+                       sum_of(mark_of_inputs(CaseFile::read(plan.case_file))));
 }
 
 ShardStore::ShardStore(fs::path folder, const EnsemblePlan& plan, const EnsembleBase& base)
@@ -197,8 +199,9 @@ std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& 
                                        bool with_peaks) {
     std::map<Index, SampleResult> results;
     std::set<fs::path> peaks;
+    const RowsOf of = rows_of(plan, base);
     for (const fs::path& file : row_files(dir)) {
-        for_each_row(file, rows_of(plan, base), [&](const std::string& line) {
+        for_each_row(file, of, [&](const std::string& line) {
             auto [result, name] = result_of(file, line, base.gauges.size());
             if (result.sample < 0 || result.sample >= plan.samples) throw broken_row(file, line);
             if (!name.empty()) peaks.insert(file.parent_path() / name);

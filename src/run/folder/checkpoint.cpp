@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/layer_name.h"
 #include "base/version.h"
-#include "io/gdal_sum.h"
+#include "run/folder/input_sums.h"
 #include "run/folder/run_folder.h"
 
 namespace frana {
@@ -87,9 +87,8 @@ std::string sum_of_particles(const Scene& scene) {
 /// of that key, sum, name.
 std::string sums_of_inputs(const CaseFile& file) {
     std::string text;
-    std::map<std::string, int> counts;
-    for (const auto& [key, path] : file.named_files())
-        text += fmt::format("{}.{} = {} {}\n", key, counts[key]++, sum_of_input(path), path.string());
+    for (const InputSum& input : input_sums(file))
+        text += fmt::format("{} = {} {}\n", input.key, input.sum, input.file.string());
     return text;
 }
 
