@@ -13,6 +13,7 @@
 #include "frana_commands.h"
 #include "frana_ensemble_folder.h"
 #include "frana_kept_rows.h"
+#include "run/folder/input_sums.h"
 #include "run/folder/run_lock.h"
 #include "scene/build_scene.h"
 #include "scene/case_file.h"
@@ -74,10 +75,25 @@ Interrupted cut_off(const fs::path& dir) {
     return Interrupted(fmt::format("interrupted; what has run is in {}; --resume goes on", dir.string()));
 }
 
-/// What another posterior predicted.
+/// Removes what was predicted by another posterior, or of another case: first the record, which says that all is there.
 void forget_prediction(const fs::path& dir) {
-    fs::remove(dir / "predict" / "ensemble.json");
-    fs::remove_all(dir / "predict" / "shards");
+    const fs::path predict = dir / "predict";
+    fs::remove(predict / "ensemble.json");
+    for (const char* made : {"shards", "rasters", "figures", "states", "samples.csv", "runs.csv", "report.md",
+                             "ensemble.path", "maps.vti", "terrain.vti"})
+        fs::remove_all(predict / made);
+    std::vector<fs::path> outlines;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(predict, none))
+        if (entry.path().filename().string().rfind("reached_by_", 0) == 0) outlines.push_back(entry.path());
+    for (const fs::path& file : outlines) fs::remove(file);
+}
+
+/// Removes an earlier calibration. Its record goes first: whoever finds it takes all the rest for whole.
+void forget_calibration(const fs::path& dir) {
+    fs::remove(dir / "calibrate.json");
+    KeptRuns::remove(dir);
+    forget_prediction(dir);
 }
 
 /// Runs what is left, and writes what is found.
@@ -88,7 +104,7 @@ Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& pl
     const EventRuns runs(plan, options.threads, interrupt);
     const RunLock lock(options.out);
     remove_leftovers(options.out);
-    if (options.overwrite) KeptRuns::remove(options.out);
+    if (options.overwrite) forget_calibration(options.out);
     KeptRuns kept(options.out, plan);
     if (!run_rounds(runs, kept, options.quiet, found)) throw cut_off(options.out);
     if (plan.search && found.posterior.any()) {
@@ -112,14 +128,25 @@ void try_prediction(const CalibrationPlan& plan) {
     std::vector<std::string> middle;
     for (const Vary& vary : plan.vary) middle.push_back(vary.key + "=" + vary.distribution.text(0.5));
     const GdalReader reader;
-    build_scene(CaseFile::read(plan.predict->case_file, middle), reader, meshes_in_turn());
+    const Scene scene = build_scene(CaseFile::read(plan.predict->case_file, middle), reader, meshes_in_turn());
+    require_kept_thresholds(*plan.predict, scene.output.footprint_depth, "predict");
+}
+
+/// predict.toml: the ensemble, and a mark of its case and the files that this names, for who asks whether they have changed.
+std::string text_of_prediction(const EnsemblePlan& maps) {
+    return fmt::format("# case and files {:016x}\n", sum_of(mark_of_inputs(CaseFile::read(maps.case_file)))) +
+           ensemble_of_table(maps, "posterior.csv");
 }
 
 /// Maps of another event, by what the surveys tell: an ensemble of posterior.csv in a folder of its own.
 int predict(const CalibrateOptions& options, const EnsemblePlan& maps) {
     const fs::path file = options.out / "predict.toml";
-    const std::string text = ensemble_of_table(maps, "posterior.csv");
-    if (text_in(file) != text) write_text(file, text);
+    const std::string text = text_of_prediction(maps);
+    const RunLock lock(options.out);
+    if (text_in(file) != text) {
+        forget_prediction(options.out);
+        write_text(file, text);
+    }
     EnsembleOptions ensemble;
     ensemble.file = file, ensemble.out = options.out / "predict";
     ensemble.threads = options.threads, ensemble.quiet = options.quiet;
@@ -127,15 +154,17 @@ int predict(const CalibrateOptions& options, const EnsemblePlan& maps) {
     return ensemble_command(ensemble);
 }
 
-/// The maps are there, and no calibration was run since.
-bool predicted(const fs::path& dir) { return fs::exists(dir / "predict" / "ensemble.json"); }
+/// The maps are there, of the same case, and no calibration was run since.
+bool predicted(const fs::path& dir, const EnsemblePlan& maps) {
+    return fs::exists(dir / "predict" / "ensemble.json") && text_in(dir / "predict.toml") == text_of_prediction(maps);
+}
 
 }  // namespace
 
 int calibrate_command(const CalibrateOptions& options) {
     const CalibrationPlan plan = read_calibration(options.file);
     const bool calibrated = !something_to_do(options, plan);
-    if (calibrated && (!plan.predict || predicted(options.out))) {
+    if (calibrated && (!plan.predict || predicted(options.out, *plan.predict))) {
         if (!options.quiet) std::cout << fmt::format("{}: all is there\n", options.out.string());
         return 0;
     }

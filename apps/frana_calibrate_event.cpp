@@ -77,6 +77,21 @@ bool EventSurvey::counts(Evidence evidence) const {
     return std::count(objective_.begin(), objective_.end(), evidence) > 0;
 }
 
+/// What lies below these bounds is like nothing at all, and every run meets it as well as every other.
+void EventSurvey::require_visible(const SurveyedEvent& event, const SeenAtGauge& seen) const {
+    const auto refuse = [&](const char* what, const std::optional<double>& number, double least, const char* unit,
+                            const char* bound) {
+        if (number && !(*number > least))
+            throw UserError(
+                fmt::format("{}: event.gauge.{}: found {:g} {} at \"{}\" of the event \"{}\"; expected more than {:g} "
+                            "{}, {}, below "
+                            "which runs cannot be told apart; leave it out",
+                            event.runs.file.string(), what, *number, unit, seen.name, event.name, least, unit, bound));
+    };
+    refuse("depth", seen.depth, limit_, "m", "output.footprint_depth of its case");
+    refuse("speed", seen.speed, kSlow, "m/s", "a speed that nobody sees");
+}
+
 void EventSurvey::read_gauges(const SurveyedEvent& event) {
     const CaseFile file = CaseFile::read(event.runs.case_file);
     for (const SeenAtGauge& seen : event.gauges) {
@@ -88,6 +103,7 @@ void EventSurvey::read_gauges(const SurveyedEvent& event) {
             const std::vector<double>& point = file.numbers(fmt::format("gauge.{}.point", k));
             if (name == seen.name) gauges_.push_back({{point[0], point[1]}, seen});
         }
+        require_visible(event, seen);
         if (gauges_.size() == before)
             throw UserError(
                 fmt::format("{}: gauge: found none of the name \"{}\"; expected one of the event \"{}\"; {}",
@@ -120,7 +136,7 @@ public:
         scores_.boundary = found.trace.boundary.mean;
         note(Evidence::outline, {found.trace.boundary.rms, event_.perimeter_ / event_.correlation_});
         note(Evidence::runout, {std::abs(found.trace.runout - found.surveyed_runout), 1.0});
-        compare_heights(rasters);
+        compare_heights(found, rasters);
         note(Evidence::gauges, at_gauges());
     }
 
@@ -134,21 +150,23 @@ private:
         return product ? &product->raster : nullptr;
     }
 
-    void compare_heights(const std::vector<ProductRaster>& rasters) {
+    void compare_heights(const Comparison& found, const std::vector<ProductRaster>& rasters) {
         const Raster* lying = of(rasters, "final_depth");
-        const auto note_blocks = [&](Evidence evidence, const Raster& ours, const Raster& theirs) {
+        const auto note_blocks = [&](Evidence evidence, const Raster& ours, const Raster& theirs, double unsurveyed) {
             const BlockErrors errors = block_errors(ours, theirs, event_.correlation_);
-            note(evidence, {errors.rms, errors.number});
+            if (errors.number > 0.0)
+                note(evidence, {errors.rms, errors.number, unsurveyed});  // nothing else is an answer
         };
         if (event_.counts(Evidence::deposit) && lying) {
             Raster all = with_deposit(*lying, of(rasters, "deposited_depth"));
             zero_where_unknown(all);
-            note_blocks(Evidence::deposit, all, *event_.survey_.deposit);
+            note_blocks(Evidence::deposit, all, *event_.survey_.deposit,
+                        found.deposit ? found.deposit->unsurveyed_volume : 0.0);
         }
         const Raster* change = of(rasters, "bed_change");
         if (event_.counts(Evidence::bed_change) && change)
             note_blocks(Evidence::bed_change, surface_change(*change, lying, of(rasters, "arrival_time")),
-                        *event_.survey_.bed_change);
+                        *event_.survey_.bed_change, found.bed_change ? found.bed_change->unsurveyed.all() : 0.0);
     }
 
     /// Where the flow did not come, it counts as just too shallow and too slow to be seen.

@@ -28,6 +28,7 @@ private:
         SeenAtGauge seen;
     };
     bool counts(Evidence evidence) const;
+    void require_visible(const SurveyedEvent& event, const SeenAtGauge& seen) const;
     void read_gauges(const SurveyedEvent& event);
 
     std::vector<Evidence> objective_;

@@ -8,8 +8,8 @@
 #include "ensemble/sample_table.h"
 #include "frana_ensemble_folder.h"
 #include "frana_kept_rows.h"
+#include "run/folder/input_sums.h"
 #include "scene/case_file.h"
-#include "scene/survey_files.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -17,15 +17,14 @@ namespace {
 
 /// Runs are written so often at most; a kill loses what came since.
 constexpr std::chrono::milliseconds kPatience{250};
+constexpr std::size_t kFieldsOfMisfit = 3;
 
 fs::path file_of(const fs::path& dir) { return dir / "kept" / "runs.csv"; }
 
 /// All that a run of an event and its scores hang on, but the values of the keys that vary.
 std::string decides(const SurveyedEvent& event) {
-    std::string all = text_in(event.runs.case_file);
-    const SurveyFiles files = survey_files(CaseFile::read(event.runs.case_file));
-    for (const fs::path& file : {files.footprint, files.path, files.deposit, files.bed_change}) all += text_in(file);
-    all += fmt::format(" {} {}", event.errors.correlation, files.bed_change_noise);
+    std::string all = mark_of_inputs(CaseFile::read(event.runs.case_file));
+    all += fmt::format(" {}", event.errors.correlation);
     for (const Evidence evidence : event.objective) all += fmt::format(" {}", kind_of(evidence).word);
     for (const SeenAtGauge& seen : event.gauges)
         all += fmt::format(" {} {} {}", seen.name, text_of_known(seen.depth), text_of_known(seen.speed));
@@ -43,7 +42,7 @@ RowsOf rows_of(const CalibrationPlan& plan) {
     rows.columns += ",reason,seconds,iou,boundary_m";
     for (const Evidence evidence : all_evidence()) {
         const char* word = kind_of(evidence).word;
-        rows.columns += fmt::format(",{0}_rms,{0}_number", word);
+        rows.columns += fmt::format(",{0}_rms,{0}_number,{0}_unsurveyed_m3", word);
     }
     rows.columns += ",message";
     return rows;
@@ -57,7 +56,7 @@ std::string row_of(const EventRun& run) {
     std::string row = fmt::format("{},{:.3f},{},{}", run.reason, run.seconds, text_of_known(run.scores.iou),
                                   text_of_known(run.scores.boundary));
     for (const auto& misfit : run.scores.misfits)
-        row += misfit ? fmt::format(",{},{}", misfit->rms, misfit->number) : ",,";
+        row += misfit ? fmt::format(",{},{},{}", misfit->rms, misfit->number, misfit->unsurveyed) : ",,,";
     return row + "," + plain_field(run.message) + "\n";
 }
 
@@ -70,8 +69,8 @@ EventRun run_of(const std::vector<std::string>& fields, std::size_t at) {
     run.reason = fields[at], run.seconds = std::stod(fields[at + 1]);
     run.scores.iou = known(at + 2), run.scores.boundary = known(at + 3);
     for (std::size_t k = 0; k < kEvidence; ++k)
-        if (const auto rms = known(at + 4 + 2 * k))
-            run.scores.misfits[k] = Misfit{*rms, known(at + 5 + 2 * k).value_or(0.0)};
+        if (const std::size_t from = at + 4 + kFieldsOfMisfit * k; const auto rms = known(from))
+            run.scores.misfits[k] = Misfit{*rms, known(from + 1).value_or(0.0), known(from + 2).value_or(0.0)};
     run.message = fields.back();
     return run;
 }
@@ -84,7 +83,7 @@ KeptRuns::KeptRuns(const fs::path& dir, const CalibrationPlan& plan) : file_(fil
     remove_leftovers(file_.parent_path());
     rows_ = of.head();
     if (!fs::exists(file_)) return;
-    const std::size_t keys = plan.vary.size(), fields_of_a_row = 1 + keys + 4 + 2 * kEvidence + 1;
+    const std::size_t keys = plan.vary.size(), fields_of_a_row = 1 + keys + 4 + kFieldsOfMisfit * kEvidence + 1;
     for_each_row(file_, of, [&](const std::string& line) {
         const std::vector<std::string> fields = comma_fields(line);
         if (fields.size() != fields_of_a_row) throw broken_row(file_, line);

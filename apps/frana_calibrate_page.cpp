@@ -37,6 +37,8 @@ Json known(double number) { return std::isfinite(number) ? Json(number) : Json(n
 
 Json known(const std::optional<double>& number) { return number ? known(*number) : Json(nullptr); }
 
+bool is_raster(Evidence evidence) { return evidence == Evidence::deposit || evidence == Evidence::bed_change; }
+
 /// How far the run is off in all that counts of an event.
 Json misfits_json(const SurveyedEvent& event, const EventScores& scores) {
     Json all = Json::object();
@@ -45,6 +47,8 @@ Json misfits_json(const SurveyedEvent& event, const EventScores& scores) {
         all[kind_of(evidence).word] = {{"rms", misfit ? Json(misfit->rms) : Json(nullptr)},
                                        {"sigma", event.errors.of(evidence)},
                                        {"number", misfit ? Json(misfit->number) : Json(nullptr)}};
+        if (is_raster(evidence))
+            all[kind_of(evidence).word]["unsurveyed_m3"] = misfit ? Json(misfit->unsurveyed) : Json(nullptr);
     }
     return all;
 }
@@ -58,13 +62,13 @@ Json events_json(const Calibration& c) {
         Json event = {{"name", c.plan.events[e].name},
                       {"iou", known(scores.iou)},
                       {"boundary", known(scores.boundary)},
-                      {"boundary_by_prior", known(rows[e].prior)},
-                      {"boundary_median_of_prior", known(rows[e].prior_median)},
-                      {"boundary_by_own", known(rows[e].own)},
-                      {"boundary_by_all", known(rows[e].all)}};
-        if (c.fits.size() > 1) event["boundary_by_others"] = known(rows[e].others);
+                      {"boundary_by_prior", known(rows[e].prior.mean)},
+                      {"boundary_median_of_prior", known(rows[e].prior.median)},
+                      {"boundary_by_own", known(rows[e].own.mean)},
+                      {"boundary_by_all", known(rows[e].all.mean)}};
+        if (c.fits.size() > 1) event["boundary_by_others"] = known(rows[e].others.mean);
         for (std::size_t f = 0; c.fits.size() > 1 && f < c.fits.size(); ++f)
-            event["boundary_by_one"].push_back(known(rows[e].by_one[f]));
+            event["boundary_by_one"].push_back(known(rows[e].by_one[f].mean));
         event["misfits"] = misfits_json(c.plan.events[e], scores);
         all.push_back(event);
     }
@@ -73,7 +77,7 @@ Json events_json(const Calibration& c) {
 
 Json optimum_json(const Calibration& c) {
     const Optimum& optimum = *c.optimum;
-    Json json = {{"values", Json::object()},           {"score", -optimum.misfit}, {"noise", optimum.noise},
+    Json json = {{"values", Json::object()},           {"score", -optimum.misfit}, {"noise", known(optimum.noise)},
                  {"evaluations", optimum.evaluations}, {"ended", optimum.ended},   {"events", Json::array()}};
     for (std::size_t k = 0; k < c.plan.vary.size(); ++k)
         json["values"][c.plan.vary[k].key] = c.plan.vary[k].distribution.number(optimum.point[k]);
@@ -186,10 +190,29 @@ std::string optimum_cell(const Calibration& c, std::size_t key) {
 std::string optimum_section(const Calibration& c, double best) {
     if (!c.optimum) return "";
     const Optimum& optimum = *c.optimum;
+    const std::string noise =
+        optimum.noise ? fmt::format("is {:.2g}", *optimum.noise) : "is not known, since its neighbours have no answers";
     return fmt::format(
-        "\nThe optimum was searched from the best point, {} points of all events: the misfit fell from "
-        "{:.4g} to {:.4g}, where its noise is {:.2g}. The end: {}.\n",
-        optimum.evaluations, -best, optimum.misfit, optimum.noise, optimum.ended);
+        "\nThe optimum was searched from the best point, {} more points of all events: the misfit fell from "
+        "{:.4g} to {:.4g}, where its noise {}. The end: {}.\n",
+        optimum.evaluations, -best, optimum.misfit, noise, optimum.ended);
+}
+
+/// What of the best point's runs no survey can judge.
+std::string unsurveyed_section(const Calibration& c, std::size_t best) {
+    std::string text;
+    for (std::size_t e = 0; e < c.fits.size(); ++e)
+        for (const Evidence evidence : c.plan.events[e].objective) {
+            const auto& misfit = c.fits[e].scores[best].misfits[static_cast<std::size_t>(evidence)];
+            if (is_raster(evidence) && misfit && misfit->unsurveyed > 0.0)
+                text += fmt::format(
+                    "{}: {:.6g} m3 of the simulated {} of the best point lie where the survey has no data and are in "
+                    "none of "
+                    "its errors; if no data means that nothing changed there, write zeros.\n\n",
+                    c.plan.events[e].name, misfit->unsurveyed,
+                    evidence == Evidence::deposit ? "deposit" : "changes of the bed");
+        }
+    return text;
 }
 
 /// How far the best point's runs are off in all that counts, beside what was expected of them.
@@ -205,7 +228,7 @@ std::string misfits_section(const Calibration& c, std::size_t best) {
                                 misfit->rms, event.errors.of(evidence), misfit->number);
         }
     }
-    return text + "\n";
+    return text + "\n" + unsurveyed_section(c, best);
 }
 
 }  // namespace

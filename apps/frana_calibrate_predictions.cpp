@@ -3,30 +3,46 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace frana {
 namespace {
 
-/// The mean distance of the outlines by weight, of the runs in which something flowed.
-double mean_of(const EventFit& fit, const std::vector<double>& weights) {
-    double sum = 0.0, all = 0.0;
-    for (std::size_t k = 0; k < weights.size(); ++k)
-        if (const auto& boundary = fit.scores[k].boundary) sum += weights[k] * *boundary, all += weights[k];
-    return all > 0.0 ? sum / all : std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = 1e-6;  ///< a share of the weight that is as good as none, and the rounding of a sum of shares
+
+/// Of numbers with weights, sorted: where half of the weight lies below a number and half above the one before, their mean.
+double median_of(const std::vector<std::pair<double, double>>& sorted, double all) {
+    double below = 0.0;
+    for (std::size_t k = 0; k < sorted.size(); ++k) {
+        below += sorted[k].second;
+        if (below > (0.5 + kNone) * all) return sorted[k].first;
+        if (below >= (0.5 - kNone) * all)
+            return 0.5 * (sorted[k].first + sorted[std::min(k + 1, sorted.size() - 1)].first);
+    }
+    return sorted.back().first;
 }
 
-/// The same of the first so many runs, and the median.
-double median_of(const EventFit& fit, Index count) {
-    std::vector<double> known;
-    for (Index k = 0; k < count; ++k)
-        if (const auto& boundary = fit.scores[static_cast<std::size_t>(k)].boundary) known.push_back(*boundary);
-    if (known.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-    std::nth_element(known.begin(), middle, known.end());
-    return *middle;
+Nearness nearness_of(const EventFit& fit, const std::vector<double>& weights) {
+    std::vector<std::pair<double, double>> known;
+    double sum = 0.0, flowing = 0.0, all = 0.0;
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        all += weights[k];
+        const auto& boundary = fit.scores[k].boundary;
+        if (!boundary || !(weights[k] > 0.0)) continue;
+        known.emplace_back(*boundary, weights[k]);
+        sum += weights[k] * *boundary, flowing += weights[k];
+    }
+    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+    if (!(flowing > kNone * all)) return {nothing, nothing};
+    std::sort(known.begin(), known.end());
+    return {sum / flowing, median_of(known, flowing)};
 }
+
+/// A distance in a table; a dash where there is none.
+std::string cell(double distance) { return std::isnan(distance) ? " - |" : fmt::format(" {:.1f} |", distance); }
 
 /// Weights by the surveys of those events that `takes` says.
 template <class Takes>
@@ -38,13 +54,18 @@ std::vector<double> weights_of(const Calibration& c, const Takes& takes) {
     return c.posterior.weights(sum);
 }
 
-/// A sentence for each event that `told` predicts worse than the median of the prior's runs.
-std::string warning(const Calibration& c, const std::string& teller, std::size_t event, double told, double median) {
-    if (!(told > median)) return "";
+/// A sentence where `told` predicts the event worse than what was known before. Medians are compared: a few runs far off move
+/// the mean of a wide prior, and hardly that of a survey.
+std::string warning(const Calibration& c, const std::string& teller, std::size_t event, const Nearness& told,
+                    const Nearness& prior) {
+    const std::string& name = c.plan.events[event].name;
+    if (std::isnan(prior.median)) return "";
+    if (std::isnan(told.median)) return fmt::format("\n{} predicts no flow for {}, and so misleads.\n", teller, name);
+    if (!(told.median > prior.median)) return "";
     return fmt::format(
-        "\n{} predicts {} worse than the median of what was known before: outlines {:.1f} m apart "
+        "\n{} predicts {} worse than what was known before: by the medians, outlines {:.1f} m apart "
         "instead of {:.1f} m.\n",
-        teller, c.plan.events[event].name, told, median);
+        teller, name, told.median, prior.median);
 }
 
 std::string pairs_section(const Calibration& c, const std::vector<Prediction>& rows) {
@@ -55,14 +76,14 @@ std::string pairs_section(const Calibration& c, const std::vector<Prediction>& r
     text += "\n";
     for (std::size_t e = 0; e < rows.size(); ++e) {
         text += fmt::format("| {} |", c.plan.events[e].name);
-        for (const double told : rows[e].by_one) text += fmt::format(" {:.1f} |", told);
+        for (const Nearness& told : rows[e].by_one) text += cell(told.mean);
         text += "\n";
     }
     for (std::size_t e = 0; e < rows.size(); ++e)
         for (std::size_t f = 0; f < rows.size(); ++f)
             if (f != e)
                 text += warning(c, fmt::format("What {} alone tells", c.plan.events[f].name), e, rows[e].by_one[f],
-                                rows[e].prior_median);
+                                rows[e].prior);
     return text;
 }
 
@@ -79,10 +100,9 @@ std::vector<Prediction> predictions(const Calibration& c) {
     for (std::size_t e = 0; e < c.fits.size(); ++e) {
         const EventFit& fit = c.fits[e];
         Prediction& row = rows.emplace_back();
-        row.prior = mean_of(fit, first), row.prior_median = median_of(fit, c.plan.samples);
-        row.own = mean_of(fit, alone[e]), row.all = mean_of(fit, all);
-        row.others = mean_of(fit, weights_of(c, [&](std::size_t g) { return g != e; }));
-        for (const auto& weights : alone) row.by_one.push_back(mean_of(fit, weights));
+        row.prior = nearness_of(fit, first), row.own = nearness_of(fit, alone[e]), row.all = nearness_of(fit, all);
+        row.others = nearness_of(fit, weights_of(c, [&](std::size_t g) { return g != e; }));
+        for (const auto& weights : alone) row.by_one.push_back(nearness_of(fit, weights));
     }
     return rows;
 }
@@ -97,13 +117,13 @@ std::string predictions_section(const Calibration& c) {
     const auto rows = predictions(c);
     for (std::size_t e = 0; e < c.fits.size(); ++e) {
         const EventScores& scores = c.fits[e].scores[best];
-        text += fmt::format("| {} | {:.3f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |", c.plan.events[e].name,
-                            scores.iou.value_or(0.0), scores.boundary.value_or(0.0), rows[e].prior,
-                            rows[e].prior_median, rows[e].own);
-        text += several ? fmt::format(" {:.1f} | {:.1f} |\n", rows[e].others, rows[e].all) : "\n";
+        text += fmt::format("| {} | {:.3f} |", c.plan.events[e].name, scores.iou.value_or(0.0));
+        text += cell(scores.boundary.value_or(std::numeric_limits<double>::quiet_NaN())) + cell(rows[e].prior.mean) +
+                cell(rows[e].prior.median) + cell(rows[e].own.mean);
+        text += (several ? cell(rows[e].others.mean) + cell(rows[e].all.mean) : "") + "\n";
     }
     for (std::size_t e = 0; several && e < rows.size(); ++e)
-        text += warning(c, "What the other events tell", e, rows[e].others, rows[e].prior_median);
+        text += warning(c, "What the other events tell", e, rows[e].others, rows[e].prior);
     constexpr std::size_t pair = 2;  // of which each is all the others of the other one
     return text + (c.fits.size() > pair ? pairs_section(c, rows) : "");
 }

@@ -7,13 +7,17 @@
 
 namespace frana {
 
-/// How near the runs come to an event, as the mean distance of the outlines [m], over all runs in which something flowed. Not a
-/// number where it did in none.
+/// How near runs come to an event by some knowledge: the distance of the outlines [m], by weight, of the runs in which something
+/// flowed. Not numbers where it did in none that has weight.
+struct Nearness {
+    double mean = 0.0, median = 0.0;
+};
+
 struct Prediction {
-    double prior = 0.0, prior_median = 0.0;  ///< by what is known before any survey: mean, median
-    double own = 0.0, others = 0.0;          ///< by the event's own survey alone; by those of all other events
-    double all = 0.0;                        ///< by all
-    std::vector<double> by_one;              ///< by that of each event alone
+    Nearness prior;                ///< by what is known before any survey
+    Nearness own, others;          ///< by the event's own survey alone; by those of all other events
+    Nearness all;                  ///< by all
+    std::vector<Nearness> by_one;  ///< by that of each event alone
 };
 
 /// By event.

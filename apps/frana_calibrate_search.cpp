@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <nlopt.hpp>
+#include <set>
 
 #include "frana_calibrate.h"
 #include "frana_calibrate_runs.h"
@@ -23,12 +24,15 @@ constexpr Index kMostPerKey = 20;    ///< evaluations
 class Misfits {
 public:
     Misfits(const EventRuns& runs, KeptRuns& kept, const Calibration& calibration)
-        : runs_(runs), kept_(kept), plan_(calibration.plan) {
+        : runs_(runs),
+          kept_(kept),
+          plan_(calibration.plan),
+          asked_(calibration.posterior.points().begin(), calibration.posterior.points().end()) {
         for (const double log : calibration.posterior.log_likelihood())
             if (std::isfinite(log)) worst_ = std::max(worst_, -log);
     }
 
-    /// Nothing when an end was asked for.
+    /// Not finite where a run has no answer. Nothing when an end was asked for.
     std::optional<std::vector<double>> at(const std::vector<std::vector<double>>& points) {
         const auto runs = runs_.at(points, kept_, [](const EventRun&) {});
         if (!runs) return std::nullopt;
@@ -41,20 +45,22 @@ public:
                 all[k] -= event.weight * log_likelihood(scores, event.objective, event.errors);
                 scores_[k].push_back(scores);
             }
-        for (double& misfit : all)
-            if (!std::isfinite(misfit)) misfit = worst_;  // as far off as any run that has an answer
-        evaluations_ += static_cast<Index>(points.size());
+        for (const auto& point : points) evaluations_ += asked_.insert(point).second;
         return all;
     }
 
     /// Of the events, at the k-th point asked for last.
     const std::vector<EventScores>& scores(std::size_t k) const { return scores_[k]; }
+    /// As far off as any run that has an answer.
+    double worst() const { return worst_; }
+    /// Points that neither the rounds nor the search had asked for before: so many, whatever was kept of a search that was cut off.
     Index evaluations() const { return evaluations_; }
 
 private:
     const EventRuns& runs_;
     KeptRuns& kept_;
     const CalibrationPlan& plan_;
+    std::set<std::vector<double>> asked_;
     double worst_ = 0.0;
     Index evaluations_ = 0;
     std::vector<std::vector<EventScores>> scores_;
@@ -72,14 +78,16 @@ std::vector<std::vector<double>> neighbours(const std::vector<double>& middle) {
     return points;
 }
 
-/// Standard deviation of the noise on numbers along a line, by their second differences: a slope is no noise.
-double noise_of(const std::vector<double>& numbers) {
-    double square = 0.0;
+/// Standard deviation of the noise on numbers along a line, by their second differences: a slope is no noise. Unknown where no
+/// three neighbours are finite.
+std::optional<double> noise_of(const std::vector<double>& numbers) {
+    double square = 0.0, count = 0.0;
     for (std::size_t k = 1; k + 1 < numbers.size(); ++k) {
         const double bend = numbers[k - 1] - 2.0 * numbers[k] + numbers[k + 1];
-        square += bend * bend / 6.0;  // 1 + 4 + 1 variances
+        if (!std::isfinite(bend)) continue;
+        square += bend * bend / 6.0, count += 1.0;  // 1 + 4 + 1 variances
     }
-    return std::sqrt(square / static_cast<double>(numbers.size() - 2));
+    return count > 0.0 ? std::optional<double>(std::sqrt(square / count)) : std::nullopt;
 }
 
 const char* reason_of(nlopt::result result) {
@@ -109,6 +117,7 @@ struct Search {
                 interrupted = true;
                 throw nlopt::forced_stop();
             }
+            if (!std::isfinite(misfit->front())) return misfits.worst();
             if (misfit->front() < best.misfit)
                 best.misfit = misfit->front(), best.point = point, best.scores = misfits.scores(0);
             return misfit->front();
@@ -134,7 +143,8 @@ std::optional<Optimum> search_optimum(const EventRuns& runs, KeptRuns& kept, con
     const auto around = misfits.at(neighbours(start));
     if (!around) return std::nullopt;
     Optimum best;
-    best.point = start, best.misfit = around->front(), best.scores = misfits.scores(0);
+    best.point = start, best.misfit = std::isfinite(around->front()) ? around->front() : misfits.worst(),
+    best.scores = misfits.scores(0);
     best.noise = noise_of(*around);
 
     Search search{misfits, best, {}, false};
@@ -144,7 +154,7 @@ std::optional<Optimum> search_optimum(const EventRuns& runs, KeptRuns& kept, con
     way_down.set_upper_bounds(1.0 - kEdge);
     way_down.set_initial_step(kFirstStep);
     way_down.set_xtol_abs(kLeastStep);
-    way_down.set_ftol_abs(best.noise);
+    way_down.set_ftol_abs(best.noise.value_or(0.0));
     way_down.set_maxeval(static_cast<int>(kMostPerKey * (static_cast<Index>(keys) + 1)));
     way_down.set_min_objective(call, &search);
     double least = 0.0;

@@ -13,11 +13,12 @@ class KeptRuns;
 struct Calibration;
 
 struct Optimum {
-    std::vector<double> point;        ///< in the unit cube
-    double misfit = 0.0;              ///< minus the logarithm of the likelihood there
-    double noise = 0.0;               ///< standard deviation of that between points that are next to one another
-    Index evaluations = 0;            ///< points that were run
-    std::string ended;                ///< why
+    std::vector<double> point;    ///< in the unit cube
+    double misfit = 0.0;          ///< minus the logarithm of the likelihood there
+    std::optional<double> noise;  ///< standard deviation of that between points that are next to one another; unknown
+                                  ///< where too few of them have an answer
+    Index evaluations = 0;        ///< points beyond those of the rounds
+    std::string ended;            ///< why
     std::vector<EventScores> scores;  ///< by event
 };
 

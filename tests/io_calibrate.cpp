@@ -171,6 +171,10 @@ const std::string only_mu = "[[calibrate.vary]]\nkey = \"material.bed.mu\"\nrang
 
 TEST_CASE("each kind of survey finds the friction that it was made with, and all of them together", "[ensemble]") {
     const SurveyedSlide slide;
+    // Only the northern half of the deposit was surveyed; the slide is the same in both.
+    frana::Raster deposit = slide.raster("truth/rasters/final_depth.tif");
+    for (std::size_t k = 0; k < deposit.values.size() / 2; ++k) deposit.values[k] = frana::Raster::nodata;
+    frana::write_geotiff(slide.path("truth/rasters/final_depth.tif"), deposit, "m", "depth at the end");
     // What the true run had at its gauge, from its own table.
     const std::vector<double> depth = slide.column("truth/gauges/low.csv", "depth [m]"),
                               speed = slide.column("truth/gauges/low.csv", "speed [m/s]");
@@ -209,12 +213,20 @@ TEST_CASE("each kind of survey finds the friction that it was made with, and all
           Approx(compared["boundary_distance_mean"].get<double>()).epsilon(1e-6));
     CHECK(slide.column("found/runs.csv", "slide: runout_rms")[3] ==
           Approx(std::abs(compared["runout_difference"].get<double>())).margin(1e-6));
+    // So is the volume of the best run that lies where the survey has no data.
+    REQUIRE(slide.run("event.toml", "best", json["best"]["material.bed.mu"].get<double>()).code == 0);
+    const double unsurveyed =
+        Json::parse(text_of(slide.path("best/compare.json")))["deposit_volume_unsurveyed"].get<double>();
+    CHECK(unsurveyed > 0.0);
+    CHECK(misfits["deposit"]["unsurveyed_m3"].get<double>() == Approx(unsurveyed).epsilon(1e-6));
+    CHECK_THAT(text_of(slide.path("found/report.md")),
+               Contains("m3 of the simulated deposit of the best point lie where the survey has no data"));
 }
 
 namespace {
 
-/// Starts the program, and kills it once it has kept more runs than there were.
-void kill_once_more_is_kept(const fs::path& folder, const fs::path& kept) {
+/// Starts the program, and kills it once it has kept more runs than there were, or has thrown them away.
+void kill_once_more_is_kept(const fs::path& folder, const fs::path& kept, const char* mode = "--resume") {
     const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "frana";
     const auto size = [&] {
         std::error_code none;
@@ -225,8 +237,7 @@ void kill_once_more_is_kept(const fs::path& folder, const fs::path& kept) {
     const pid_t child = ::fork();
     if (child == 0) {
         if (::chdir(folder.c_str()) == 0)
-            ::execl(program.c_str(), "frana", "calibrate", "find.toml", "--out", "killed", "--resume", "--quiet",
-                    nullptr);
+            ::execl(program.c_str(), "frana", "calibrate", "find.toml", "--out", "killed", mode, "--quiet", nullptr);
         ::_exit(127);
     }
     while (::waitpid(child, nullptr, WNOHANG) == 0) {
@@ -284,6 +295,9 @@ TEST_CASE("the shipped calibration finds what its README promises, as far as few
         CHECK(of["mean"].get<double>() == Approx(mean).margin(tolerance));
     }
     CHECK(compared == 3);
+    // The surveys tell mu: its prior is even over 0.2. Of xi they tell little, and nothing is asked of it but that tolerance.
+    const double before = 0.2 / std::sqrt(12.0);
+    CHECK(json["posterior"]["material.bed.mu"]["sd"].get<double>() < 0.3 * before);
 }
 
 TEST_CASE("two events are weighed together, with the same bytes on any number of threads", "[ensemble]") {
@@ -317,13 +331,16 @@ TEST_CASE("the search goes down from a poor point, and says where it ended", "[e
     // The least step is 3 % of the range, 0.009.
     CHECK(optimum["values"]["material.bed.mu"].get<double>() == Approx(SurveyedSlide::kTruth).margin(2 * 0.009));
     CHECK_FALSE(optimum["ended"].get<std::string>().empty());
+    // Each of its points was run once, and the one where it begins by the rounds; two lines stand above the rows.
+    CHECK(optimum["evaluations"].get<std::ptrdiff_t>() + 2 == lines_in(slide.path("found/kept/runs.csv")) - 2);
 }
 
 TEST_CASE("a survey that misleads about another event is named", "[ensemble]") {
-    // Four values, likely by one survey each or by none, and how far the outlines of each event are apart with them.
+    // Four values, likely by one survey each or by none, and how far the outlines of each event are apart with them. Medians by hand:
+    // (5 + 6) / 2, (5 + 5) / 2, (8 + 8) / 2.
     frana::Calibration found{{}, frana::Posterior(1, 1), std::vector<frana::EventFit>(3), 0, 0.0};
     found.plan.samples = 4;
-    const double apart[3][4] = {{1, 9, 5, 4}, {5, 1, 6, 7}, {8, 9, 1, 6}};
+    const double apart[3][4] = {{1, 9, 5, 6}, {5, 1, 5, 7}, {8, 9, 1, 8}};
     for (std::size_t e = 0; e < 3; ++e) {
         found.plan.events.emplace_back().name = std::string(1, static_cast<char>('a' + e));
         for (std::size_t k = 0; k < 4; ++k) {
@@ -336,20 +353,31 @@ TEST_CASE("a survey that misleads about another event is named", "[ensemble]") {
     const auto rows = frana::predictions(found);
     REQUIRE(rows.size() == 3);
     for (std::size_t e = 0; e < 3; ++e) {
-        CHECK(rows[e].own == 1.0);
-        for (std::size_t f = 0; f < 3; ++f) CHECK(rows[e].by_one[f] == apart[e][f]);
+        CHECK(rows[e].own.mean == 1.0);
+        for (std::size_t f = 0; f < 3; ++f) {
+            CHECK(rows[e].by_one[f].mean == apart[e][f]);
+            CHECK(rows[e].by_one[f].median == apart[e][f]);
+        }
     }
-    CHECK(rows[0].prior == Approx(19.0 / 4.0));
-    CHECK(rows[0].prior_median == 5.0);
-    CHECK(rows[1].prior_median == 6.0);
-    CHECK(rows[2].prior_median == 8.0);
+    CHECK(rows[0].prior.mean == Approx(21.0 / 4.0));
+    CHECK(rows[0].prior.median == 5.5);
+    CHECK(rows[1].prior.median == 5.0);
+    CHECK(rows[2].prior.median == 8.0);
     const std::string text = frana::predictions_section(found);
-    CHECK_THAT(text,
-               Contains("What b alone tells predicts a worse than the median of what was known before: outlines 9.0 m "
-                        "apart instead of 5.0 m.") &&
-                   Contains("What b alone tells predicts c worse"));
+    CHECK_THAT(
+        text, Contains("What b alone tells predicts a worse than what was known before: by the medians, outlines 9.0 m "
+                       "apart instead of 5.5 m.") &&
+                  Contains("What b alone tells predicts c worse"));
     for (const char* fair : {"What c alone tells predicts", "What a alone tells predicts"})
         CHECK_THAT(text, !Contains(fair));
+
+    // Nothing flows of the first event where the second one's survey has all of its weight.
+    found.fits[0].scores[1].boundary.reset();
+    CHECK(std::isnan(frana::predictions(found)[0].by_one[1].mean));
+    const std::string without = frana::predictions_section(found);
+    CHECK_THAT(without, Contains("| a | 1.0 | - | 5.0 |") &&
+                            Contains("What b alone tells predicts no flow for a, and so misleads.") &&
+                            !Contains("nan"));
 }
 
 TEST_CASE("a calibration that is killed goes on, and leaves the same bytes", "[ensemble]") {
@@ -383,7 +411,19 @@ TEST_CASE("a calibration that is killed goes on, and leaves the same bytes", "[e
     CHECK(Json::parse(text_of(slide.path("killed/calibrate.json")))["evaluations"] == 48);
     CHECK(lines_in(kept) >= rows + 16);
 
-    // Another survey is another calibration.
+    // Begun anew and killed, it is not taken for finished.
+    kill_once_more_is_kept(slide.path(""), kept, "--overwrite");
+    CHECK_FALSE(fs::exists(slide.path("killed/calibrate.json")));
+    REQUIRE(slide.frana("calibrate find.toml --out killed --resume --quiet").code == 0);
+
+    // Another terrain or survey is another calibration.
+    const std::string terrain = text_of(slide.path("dem.asc"));
+    std::string higher = terrain;
+    slide.write("dem.asc", higher.replace(higher.find("100"), 3, "101"));
+    CHECK_THAT(slide.frana("calibrate find.toml --out killed --resume").err,
+               Contains("expected runs of the same calibration"));
+    slide.write("dem.asc", terrain);
+    CHECK_THAT(slide.frana("calibrate find.toml --out killed --resume").out, Contains("killed: all is there"));
     fs::copy_file(slide.path("release.geojson"), slide.path("truth/footprint.geojson"),
                   fs::copy_options::overwrite_existing);
     const Outcome other = slide.frana("calibrate find.toml --out killed --resume");
@@ -412,6 +452,16 @@ TEST_CASE("what a survey tells becomes maps of another event in the same command
     CHECK(fs::last_write_time(slide.path("found/calibrate.json")) == written);
     CHECK_THAT(slide.frana("calibrate find.toml --out found --resume").out, Contains("all is there"));
 
+    // Maps of a case that has changed are made again, and nothing of the old ones stays.
+    slide.write("truth.toml", text_of(slide.path("truth.toml")) + "[output]\nfootprint_depth = 0.2\n");
+    for (const char* old : {"found/predict/rasters/old.tif", "found/predict/reached_by_0.1.geojson"})
+        slide.write(old, "");
+    REQUIRE(slide.frana("calibrate find.toml --out found --resume --quiet").code == 0);
+    CHECK(fs::last_write_time(slide.path("found/calibrate.json")) == written);
+    CHECK(Json::parse(text_of(slide.path("found/predict/ensemble.json")))["run"] == 6);
+    CHECK_FALSE(fs::exists(slide.path("found/predict/rasters/old.tif")));
+    CHECK_FALSE(fs::exists(slide.path("found/predict/reached_by_0.1.geojson")));
+
     const auto complaint = [&](const std::string& predict) {
         slide.write("find.toml", text.substr(0, text.find("[predict]")) + predict);
         const Outcome outcome = slide.frana("calibrate find.toml --out wrong --quiet");
@@ -425,6 +475,9 @@ TEST_CASE("what a survey tells becomes maps of another event in the same command
                Contains("predict.exceed.depth: found a key that is not used unless predict.fields names it"));
     CHECK_THAT(complaint("[predict]\ncase = \"truth.toml\"\nsamples = 4\n"), Contains("predict.samples"));
     CHECK_THAT(complaint("predict = 1\n"), Contains("predict"));
+    CHECK_THAT(complaint("[predict]\ncase = \"truth.toml\"\nexceed = { peak_depth = [0.1] }\n"),
+               Contains("predict.exceed.peak_depth: found 0.1 m; expected at least the case's "
+                        "output.footprint_depth = 0.2 m"));
 }
 
 TEST_CASE("what an event's survey lacks is said in one sentence", "[ensemble]") {
@@ -450,8 +503,19 @@ TEST_CASE("what an event's survey lacks is said in one sentence", "[ensemble]") 
     CHECK_THAT(complaint(gauge + "depth = 1\n"), Contains("found [[event.gauge]], and no \"gauges\""));
     CHECK_THAT(complaint(counts + gauge), Contains("found no name, or neither depth nor speed"));
     CHECK_THAT(complaint(counts + gauge + "depth = 0\n"), Contains("found 0; expected a number above 0"));
+    CHECK_THAT(complaint(counts + gauge + "depth = 0.1\n"),
+               Contains("event.gauge.depth: found 0.1 m at \"low\"") && Contains("expected more than 0.1 m"));
+    CHECK_THAT(complaint(counts + gauge + "speed = 0.1\n"),
+               Contains("event.gauge.speed: found 0.1 m/s") && Contains("leave it out"));
     CHECK_THAT(complaint(counts + "[[event.gauge]]\nname = \"hihg\"\ndepth = 1\n"),
                Contains("gauge: found none of the name \"hihg\"") && Contains("is one of low meant?"));
+    std::string rock = text_of(slide.path("event.toml"));
+    rock.erase(rock.find("[erodible]"), rock.find("[time]") - rock.find("[erodible]"));
+    slide.write("rock.toml", rock);
+    slide.write("find.toml",
+                "[calibrate]\n" + only_mu + "[[event]]\ncase = \"rock.toml\"\nobjective = [\"bed_change\"]\n");
+    CHECK_THAT(slide.frana("calibrate find.toml --out found --quiet").err,
+               Contains("survey.bed_change: found beside a bed that does not change"));
     CHECK_THAT(complaint("sigma_height = 0\n"), Contains("event.0.sigma_height: found 0 m; expected a height above 0"));
     CHECK_THAT(complaint("sigma_log = -1\n"), Contains("found -1; expected a number above 0"));
 }

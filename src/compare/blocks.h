@@ -7,7 +7,7 @@ namespace frana {
 
 /// Differences of the means over blocks in which one of the two has something.
 struct BlockErrors {
-    double rms = 0.0;     ///< root of their mean square [m]; 0 where there is no such block
+    double rms = 0.0;     ///< root of their mean square [m]; 0 where there is no such block, which is no likeness
     double number = 0.0;  ///< of blocks; one that was surveyed in part counts for that part
 };
 

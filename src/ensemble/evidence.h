@@ -32,8 +32,9 @@ struct SurveyErrors {
 
 /// How far a run is from what was surveyed of a kind: by so much, in so many places that err independently.
 struct Misfit {
-    double rms = 0.0;     ///< root of the mean square [unit of the kind]
-    double number = 0.0;  ///< of independent errors [1]
+    double rms = 0.0;         ///< root of the mean square [unit of the kind]
+    double number = 0.0;      ///< of independent errors [1]
+    double unsurveyed = 0.0;  ///< simulated where a surveyed raster has no data; in neither of them [m3]
 };
 
 /// How near a run came to the survey of its event; nothing where there is no answer.

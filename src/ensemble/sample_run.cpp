@@ -145,6 +145,17 @@ void run_scene(const EnsemblePlan& plan, const EnsembleBase& base, const Scene& 
 
 }  // namespace
 
+void require_kept_thresholds(const EnsemblePlan& plan, double footprint_depth, const std::string& table) {
+    const auto asked = plan.exceed.find("peak_depth");
+    if (asked == plan.exceed.end()) return;
+    for (const double threshold : asked->second)
+        if (threshold < footprint_depth)
+            throw UserError(
+                fmt::format("{}: {}.exceed.peak_depth: found {:g} m; expected at least the case's "
+                            "output.footprint_depth = {:g} m, below which nothing is kept; raise it or lower that key",
+                            plan.file.string(), table, threshold, footprint_depth));
+}
+
 EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes) {
     const Scene scene = scene_of(plan, {}, reader, meshes);
     EnsembleBase base;
@@ -159,13 +170,7 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     if (!(length_of(base.path) > 0.0)) base.path.clear();
     base.footprint = scene.survey;
     if (scene.survey) base.survey = rings_of(*scene.survey);
-    if (plan.exceed.count("peak_depth"))
-        for (const double threshold : plan.exceed.at("peak_depth"))
-            if (threshold < base.footprint_depth)
-                throw UserError(fmt::format(
-                    "{}: ensemble.exceed.peak_depth: found {:g} m; expected at least the case's "
-                    "output.footprint_depth = {:g} m, below which nothing is kept; raise it or lower that key",
-                    plan.file.string(), threshold, base.footprint_depth));
+    require_kept_thresholds(plan, base.footprint_depth, "ensemble");
     return base;
 }
 

@@ -29,6 +29,9 @@ struct EnsembleBase {
     Polyline path;                      ///< that all runouts are measured along; empty: none is known
 };
 
+/// Nothing is kept below the footprint depth [m], so no threshold may lie there. Throws UserError, which names `table`.
+void require_kept_thresholds(const EnsemblePlan& plan, double footprint_depth, const std::string& table);
+
 /// Builds the case of the plan once. Throws UserError when it cannot run.
 EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, const MeshReader& meshes);
 
