@@ -18,12 +18,13 @@ struct Demand {
 std::vector<std::vector<Demand>> demands_of(const HazardTable& table, const std::vector<std::string>& fields) {
     std::vector<std::vector<Demand>> all;
     for (const HazardLevel& level : table.levels) {
-        std::vector<Demand>& demands = all.emplace_back();
+        std::vector<Demand> demands;
         for (const auto& [name, least] : level.at_least) {
             const auto found = std::find(fields.begin(), fields.end(), name);
             expect(found != fields.end(), "the fields of a table of hazard are kept");
             demands.push_back({static_cast<std::size_t>(found - fields.begin()), static_cast<float>(least)});
         }
+        all.push_back(demands);
     }
     return all;
 }
