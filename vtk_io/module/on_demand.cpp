@@ -2,6 +2,9 @@
 #include <dlfcn.h>
 #include <fmt/core.h>
 
+#include <new>
+#include <string>
+
 #include "base/error.h"
 #include "base/version.h"
 #include "vtk_io/module/functions.h"
@@ -9,6 +12,13 @@
 namespace frana {
 namespace fs = std::filesystem;
 namespace {
+
+/// Whether the loader found a library, and no room for it.
+bool tells_of_memory(const std::string& why) {
+    for (const char* const part : {"failed to map segment", "llocate memory", "memory protection", "out of memory"})
+        if (why.find(part) != std::string::npos) return true;
+    return false;
+}
 
 /// Looked for where the program's run path points. It stays open, and global, for Python's own modules look up names in
 /// it when a Catalyst script imports them.
@@ -19,7 +29,11 @@ const VtkFunctions& open_module() {
     void* const module = dlopen(FRANA_VTK_MODULE, RTLD_LAZY | RTLD_GLOBAL);
     using Face = decltype(&frana_vtk_functions);
     const auto face = module ? reinterpret_cast<Face>(dlsym(module, "frana_vtk_functions")) : nullptr;
-    if (!face) throw UserError(fmt::format("{}; {}", dlerror(), way_out));
+    if (!face) {
+        const char* const why = dlerror();
+        if (tells_of_memory(why)) throw std::bad_alloc();
+        throw UserError(fmt::format("{}; {}", why, way_out));
+    }
     const VtkFunctions& functions = *face();
     if (std::string(functions.version) != FRANA_VERSION || functions.size != sizeof(VtkFunctions))
         throw UserError(
