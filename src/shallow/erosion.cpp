@@ -406,8 +406,8 @@ void Erosion::share_out(Flow& flow) {
 
 namespace {
 
-/// Calls take(p, number) for the points of a tile that want something: the number that of_window finds on the shares of the
-/// nodes of a point's window, or of_point(p, edges) where its sub-points lie too far away for one.
+/// Calls take(p, number) for the points of a tile that want something. The number is what of_window finds on the shares of
+/// the window's nodes. Where sub-points lie too far away for a window, it is that of of_point(p, edges).
 template <class Real, class OfWindow, class OfPoint, class Take>
 void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share,
                       OfWindow&& of_window, OfPoint&& of_point, Take&& take) {
