@@ -15,6 +15,7 @@
 #include "catch.h"
 #include "plane_case.h"
 #include "vtk_io/figures/offscreen.h"
+#include "vtk_io/figures/png_file.h"
 
 namespace fs = std::filesystem;
 using Catch::Contains;

@@ -1,8 +1,8 @@
 // The parts figures are made of: round numbers, relief, level lines, clipping.
 #include "catch.h"
+#include "vtk_io/figures/canvas.h"
 #include "vtk_io/figures/chart_figure_ticks.h"
 #include "vtk_io/figures/map_figure_layout.h"
-#include "vtk_io/figures/offscreen_canvas.h"
 #include "vtk_io/hillshade.h"
 #include "vtk_io/level_lines.h"
 

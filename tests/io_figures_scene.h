@@ -11,6 +11,7 @@
 #include "catch.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/figures/offscreen.h"
+#include "vtk_io/figures/png_file.h"
 
 namespace figures {
 

@@ -1,7 +1,4 @@
 // Films: made by ffmpeg without a shell, read back by ffmpeg, and missing without harm.
-#include <vtkNew.h>
-#include <vtkRenderer.h>
-
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -14,8 +11,8 @@
 #include "run/folder/run_folder.h"
 #include "run/folder/run_job.h"
 #include "scene/case_file.h"
+#include "vtk_io/figures/canvas.h"
 #include "vtk_io/figures/film.h"
-#include "vtk_io/figures/offscreen_canvas.h"
 
 using namespace frana;
 namespace fs = std::filesystem;
@@ -40,15 +37,11 @@ bool cannot_film() {
 
 /// A picture of one colour with odd sides, which MP4 does not like.
 void paint(const fs::path& png, const Colour& colour) {
-    std::string why_not;
-    const auto window = Offscreen::open(401, 301, why_not);
-    REQUIRE(window);
     Canvas canvas;
     canvas.fill(Rectangle{0, 0, 401, 301}, colour);
-    vtkNew<vtkRenderer> renderer;
-    canvas.show(renderer);
-    window->add(renderer);
-    REQUIRE(window->save(png, why_not));
+    Pixels picture(401, 301);
+    canvas.paint(picture);
+    write_png(picture, png);
 }
 
 /// A picture of a film by its number, taken out by ffmpeg's own reader.

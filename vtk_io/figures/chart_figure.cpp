@@ -1,8 +1,6 @@
 #include "vtk_io/figures/chart_figure.h"
 
 #include <fmt/core.h>
-#include <vtkNew.h>
-#include <vtkRenderer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +8,7 @@
 #include "base/error.h"
 #include "vtk_io/figures/chart_figure_ticks.h"
 #include "vtk_io/figures/map_figure_furniture.h"
-#include "vtk_io/figures/offscreen.h"
+#include "vtk_io/figures/png_file.h"
 
 namespace frana {
 namespace {
@@ -333,16 +331,14 @@ void ChartDrawing::draw_panel(const ChartPanel& panel, const Axis& y_axis, const
 
 bool render_chart(const ChartFigure& figure, const std::filesystem::path& png, std::string& why_not) {
     expect(!figure.panels.empty(), "a chart has at least one panel");
-    why_not = no_renderer_reason();
+    why_not = no_picture_reason();
     if (!why_not.empty()) return false;
     ChartDrawing drawing(figure);
     drawing.draw();
-    const auto window = Offscreen::open(figure.width, figure.height, why_not);
-    if (!window) return false;
-    vtkNew<vtkRenderer> renderer;
-    drawing.canvas().show(renderer);
-    window->add(renderer);
-    return window->save(png, why_not);
+    Pixels picture(figure.width, figure.height);
+    drawing.canvas().paint(picture);
+    write_png(picture, png);
+    return true;
 }
 
 }  // namespace frana

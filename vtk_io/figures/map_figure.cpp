@@ -1,8 +1,5 @@
 #include "vtk_io/figures/map_figure.h"
 
-#include <vtkNew.h>
-#include <vtkRenderer.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +7,8 @@
 #include "vtk_io/figures/map_figure_furniture.h"
 #include "vtk_io/figures/map_figure_overlay.h"
 #include "vtk_io/figures/map_figure_paint.h"
-#include "vtk_io/figures/offscreen.h"
+#include "vtk_io/figures/map_figure_picture.h"
+#include "vtk_io/figures/png_file.h"
 #include "vtk_io/hillshade.h"
 #include "vtk_io/level_lines.h"
 
@@ -232,19 +230,21 @@ private:
 
 }  // namespace
 
-bool render_map(const MapFigure& figure, const std::filesystem::path& png, std::string& why_not) {
+Pixels map_picture(const MapFigure& figure) {
     expect(figure.field.size() == figure.bed.values.size(), "the field of a map has one value per node of the bed");
-    why_not = no_renderer_reason();
-    if (!why_not.empty()) return false;
     const MapLayout layout = lay_out(figure);
     MapDrawing drawing(figure, layout);
     drawing.draw();
-    const auto window = Offscreen::open(layout.width, layout.height, why_not);
-    if (!window) return false;
-    vtkNew<vtkRenderer> renderer;
-    drawing.canvas().show(renderer);
-    window->add(renderer);
-    return window->save(png, why_not);
+    Pixels picture(layout.width, layout.height);
+    drawing.canvas().paint(picture);
+    return picture;
+}
+
+bool render_map(const MapFigure& figure, const std::filesystem::path& png, std::string& why_not) {
+    why_not = no_picture_reason();
+    if (!why_not.empty()) return false;
+    write_png(map_picture(figure), png);
+    return true;
 }
 
 }  // namespace frana

@@ -1,9 +1,9 @@
 #pragma once
 // Where things stand in a map picture. Pixels count from the lower left corner.
+#include "vtk_io/figures/canvas.h"
 #include "vtk_io/figures/chart_figure_ticks.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/figures/map_range.h"
-#include "vtk_io/figures/offscreen_canvas.h"
 
 namespace frana {
 

@@ -18,6 +18,7 @@
 #include "vtk_io/figures/map_figure_paint.h"
 #include "vtk_io/figures/map_figure_piece.h"
 #include "vtk_io/figures/offscreen.h"
+#include "vtk_io/figures/png_file.h"
 #include "vtk_io/hillshade.h"
 #include "vtk_io/level_lines.h"
 
@@ -315,17 +316,20 @@ bool render_perspective(const PerspectiveFigure& figure, const std::filesystem::
     why_not = no_renderer_reason();
     if (!why_not.empty()) return false;
     BlockDrawing drawing(figure);
-    const auto window = Offscreen::open(figure.width, figure.height, why_not);
+    auto window = Offscreen::open(figure.width, figure.height, why_not);
     if (!window) return false;
-    vtkNew<vtkRenderer> paper, block, sheet;
+    vtkNew<vtkRenderer> paper, block;
     drawing.scene(block);
-    Canvas canvas;
-    drawing.explanations(canvas);
-    canvas.show(sheet);
     window->add(paper, 0);  // a viewport leaves what is outside it black
     window->add(block, 1);
-    window->add(sheet, 2);
-    return window->save(png, why_not);
+    Pixels picture;
+    if (!window->grab(picture, why_not)) return false;
+    window.reset();  // others may draw
+    Canvas canvas;
+    drawing.explanations(canvas);
+    canvas.paint(picture);
+    write_png(picture, png);
+    return true;
 }
 
 }  // namespace frana

@@ -6,28 +6,22 @@
 #include <fmt/core.h>
 #include <vtkCallbackCommand.h>
 #include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkImageData.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkOutputWindow.h>
-#include <vtkPNGReader.h>
-#include <vtkPNGWriter.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringOutputWindow.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkVersionMacros.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <mutex>
 #include <utility>
 #include <vector>
 
-#include "base/atomic_file.h"
-#include "base/error.h"
+#include "vtk_io/figures/canvas.h"
 
 // VTK before 9.4 loads OpenGL through GLEW, and Debian builds GLEW for GLX: glewInit() finds all entry
 // points, then answers 4, "no GLX display". The entry points serve EGL as well, so this definition, which the
@@ -197,9 +191,8 @@ struct Offscreen::Window {
 };
 
 std::string no_renderer_reason() {
-    const char* off = std::getenv("FRANA_NO_RENDER");
-    if (off && *off && std::string(off) != "0") return "FRANA_NO_RENDER is set";
-    return EglContext::instance().problem();
+    const std::string off = no_picture_reason();
+    return off.empty() ? EglContext::instance().problem() : off;
 }
 
 std::unique_ptr<Offscreen> Offscreen::open(int width, int height, std::string& why_not) {
@@ -227,46 +220,18 @@ void Offscreen::add(vtkRenderer* renderer, int layer) {
     window_->vtk->AddRenderer(renderer);
 }
 
-bool Offscreen::save(const std::filesystem::path& png, std::string& why_not) {
+bool Offscreen::grab(Pixels& picture, std::string& why_not) {
     window_->vtk->Render();
-    vtkNew<vtkWindowToImageFilter> grab;
-    grab->SetInput(window_->vtk);
-    grab->ReadFrontBufferOff();
-    grab->ShouldRerenderOff();
-    grab->Update();
     why_not = window_->errors();
     if (!why_not.empty()) return false;
-    vtkNew<vtkPNGWriter> writer;
-    writer->WriteToMemoryOn();  // on a full disk libpng would talk to the console
-    writer->SetInputConnection(grab->GetOutputPort());
-    writer->Write();
-    vtkUnsignedCharArray* bytes = writer->GetResult();
-    if (writer->GetErrorCode() != 0 || !window_->errors().empty() || !bytes) {
-        why_not = "VTK could not make a PNG of the picture: " + window_->errors();
-        return false;
-    }
-    write_text(png, std::string(reinterpret_cast<const char*>(bytes->GetPointer(0)),
-                                static_cast<std::size_t>(bytes->GetNumberOfValues())));
+    const int* size = window_->vtk->GetSize();
+    picture = Pixels(size[0], size[1]);
+    vtkNew<vtkUnsignedCharArray> bytes;
+    window_->vtk->GetPixelData(0, 0, size[0] - 1, size[1] - 1, 0, bytes, 0);
+    why_not = window_->errors();
+    if (!why_not.empty() || bytes->GetNumberOfValues() != static_cast<vtkIdType>(picture.rgb.size())) return false;
+    std::copy_n(bytes->GetPointer(0), picture.rgb.size(), picture.rgb.begin());
     return true;
-}
-
-Pixels read_png(const std::filesystem::path& png) {
-    vtkNew<vtkPNGReader> reader;
-    if (!std::filesystem::exists(png) || !reader->CanReadFile(png.c_str()))
-        throw UserError(fmt::format("{}: is no PNG file that can be read", png.string()));
-    reader->SetFileName(png.c_str());
-    reader->Update();
-    vtkImageData* image = reader->GetOutput();
-    const int channels = image->GetNumberOfScalarComponents();
-    expect(image->GetScalarType() == VTK_UNSIGNED_CHAR && channels >= 3, "a PNG of three or four bytes a pixel");
-    Pixels pixels(image->GetDimensions()[0], image->GetDimensions()[1]);
-    const auto* data = static_cast<const unsigned char*>(image->GetScalarPointer());
-    for (int y = 0; y < pixels.height; ++y)
-        for (int x = 0; x < pixels.width; ++x) {
-            const unsigned char* p = data + (static_cast<std::ptrdiff_t>(y) * pixels.width + x) * channels;
-            pixels.set(x, y, {p[0], p[1], p[2]});
-        }
-    return pixels;
 }
 
 }  // namespace frana

@@ -1,7 +1,6 @@
 #pragma once
-// Pictures without a screen: a surfaceless EGL context under a VTK window. Never tries X, since VTK ends the
+// Pictures in space without a screen: a surfaceless EGL context under a VTK window. Never tries X, since VTK ends the
 // process when it finds no display; where no renderer can be had, a reason is returned instead.
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -11,8 +10,8 @@ class vtkRenderer;
 
 namespace frana {
 
-/// Why no picture can be drawn in this process; empty when one can. FRANA_NO_RENDER=1 in the environment
-/// switches drawing off. The first call makes the one EGL context of the process (about 50 ms).
+/// Why no picture in space can be drawn in this process; empty when one can. FRANA_NO_RENDER=1 in the environment
+/// switches all drawing off. The first call makes the one EGL context of the process (about 50 ms).
 std::string no_renderer_reason();
 
 /// A window of the given size [px] with a white background, kept in memory. One at a time: a second `open`
@@ -27,17 +26,13 @@ public:
 
     /// Renderers are drawn in the order of their layers; the caller sets viewport and layer.
     void add(vtkRenderer* renderer, int layer = 0);
-    /// Draws and writes the PNG whole or not at all. False with a reason when VTK failed to draw; throws
-    /// UserError when the file cannot be written.
-    bool save(const std::filesystem::path& png, std::string& why_not);
+    /// Draws, and takes what was drawn. False with a reason when VTK failed.
+    bool grab(Pixels& picture, std::string& why_not);
 
 private:
     struct Window;
     explicit Offscreen(std::unique_ptr<Window> window);
     std::unique_ptr<Window> window_;
 };
-
-/// The pixels of a PNG file with 8 bits a channel, alpha dropped. UserError when it cannot be read.
-Pixels read_png(const std::filesystem::path& png);
 
 }  // namespace frana

@@ -1,7 +1,4 @@
 // The vertical section of a moment in space.
-#include <vtkNew.h>
-#include <vtkRenderer.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +6,7 @@
 #include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/figures/map_figure_furniture.h"
 #include "vtk_io/figures/mesh_3d.h"
-#include "vtk_io/figures/offscreen.h"
+#include "vtk_io/figures/png_file.h"
 
 namespace frana {
 namespace {
@@ -299,18 +296,16 @@ private:
 }  // namespace
 
 bool render_section(const Figure3d& figure, const std::filesystem::path& png, std::string& why_not) {
-    why_not = no_renderer_reason();
+    why_not = no_picture_reason();
     if (!why_not.empty()) return false;
     const SectionDrawing drawing(figure);
     if (drawing.nothing_to_show()) return why_not = "no point is near the section", false;
-    const auto window = Offscreen::open(figure.width, drawing.height(), why_not);
-    if (!window) return false;
     Canvas canvas;
     drawing.draw(canvas);
-    vtkNew<vtkRenderer> sheet;
-    canvas.show(sheet);
-    window->add(sheet);
-    return window->save(png, why_not);
+    Pixels picture(figure.width, drawing.height());
+    canvas.paint(picture);
+    write_png(picture, png);
+    return true;
 }
 
 }  // namespace frana

@@ -1,14 +1,12 @@
 #pragma once
 // A sheet in pixels, origin at the lower left, on which figures are drawn: images, filled shapes and strokes
 // in the order of the calls, all texts on top.
-#include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "base/types.h"
 #include "vtk_io/figures/colour.h"
-
-class vtkRenderer;
 
 namespace frana {
 
@@ -51,25 +49,53 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
 /// The parts of a polyline inside a rectangle.
 std::vector<std::vector<Vec2>> clipped(const std::vector<Vec2>& line, const Rectangle& window);
 
+/// Keeps what is drawn until it is painted. Painting is cairo's, without a renderer; canvases of several threads paint at
+/// the same time.
 class Canvas {
 public:
-    Canvas();
-    ~Canvas();
     /// The image with its lower left corner at (x, y).
-    void image(const Pixels& pixels, int x, int y);
+    void image(Pixels pixels, int x, int y);
+    /// Neighbours of one colour leave no seam between them, if they are filled one after the other.
     void fill(const std::vector<Vec2>& convex, const Colour& colour);
+    /// Fills the pixels whose centres it holds.
     void fill(const Rectangle& rectangle, const Colour& colour);
     /// A single horizontal or vertical piece is moved by at most half a pixel to fill whole pixels; so is
     /// `frame`.
     void stroke(const std::vector<Vec2>& line, const Pen& pen);
     void frame(const Rectangle& rectangle, const Pen& pen);
     void text(const std::string& text, const Vec2& at, const TextStyle& style);
-    /// Hands everything drawn so far to the renderer.
-    void show(vtkRenderer* renderer) const;
+
+    /// Everything drawn so far onto the picture.
+    void paint(Pixels& picture) const;
 
 private:
-    struct Sheet;
-    std::unique_ptr<Sheet> sheet_;
+    struct Image {
+        Pixels pixels;
+        int x, y;
+    };
+    struct Fill {
+        std::vector<std::vector<Vec2>> polygons;
+        Colour colour;
+    };
+    struct Box {
+        Rectangle rectangle;
+        Colour colour;
+    };
+    struct Stroke {
+        std::vector<Vec2> line;
+        Pen pen;
+    };
+    struct Text {
+        std::string text;
+        Vec2 at;
+        TextStyle style;
+    };
+    class Painter;
+    std::vector<std::variant<Image, Fill, Box, Stroke>> shapes_;
+    std::vector<Text> texts_;
 };
+
+/// Why no picture is drawn in this process; empty when they are: FRANA_NO_RENDER=1 in the environment switches them off.
+std::string no_picture_reason();
 
 }  // namespace frana
