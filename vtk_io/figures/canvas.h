@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
-#include "vtk_io/figures/colour.h"
+#include "vtk_io/figures/pixels.h"
 
 namespace frana {
 

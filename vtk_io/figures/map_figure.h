@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/colour.h"
 #include "terrain/raster.h"
-#include "vtk_io/figures/colour.h"
 
 namespace frana {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "terrain/raster.h"
-#include "vtk_io/figures/colour.h"
+#include "vtk_io/figures/pixels.h"
 
 class vtkActor;
 class vtkPolyData;

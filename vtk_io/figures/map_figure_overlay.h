@@ -1,7 +1,7 @@
 #pragma once
 // Two extents on the terrain: where they agree, and where only one of them is.
 #include "terrain/raster.h"
-#include "vtk_io/figures/colour.h"
+#include "vtk_io/figures/pixels.h"
 
 namespace frana {
 

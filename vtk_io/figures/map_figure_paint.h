@@ -1,8 +1,8 @@
 #pragma once
 // Terrain and field as one picture: relief in grey, the field's colours laid over it.
 #include "terrain/raster.h"
-#include "vtk_io/figures/colour.h"
 #include "vtk_io/figures/map_figure_layout.h"
+#include "vtk_io/figures/pixels.h"
 
 namespace frana {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "vtk_io/figures/colour.h"
+#include "vtk_io/figures/pixels.h"
 
 class vtkRenderer;
 

@@ -1,26 +1,13 @@
 #pragma once
-// Colours of figures: perceptual maps for fields, colour-blind safe colours for curves.
+// Colours of pictures and styles: perceptual maps for fields, colour-blind safe colours for curves.
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace frana {
 
 /// One sRGB colour; a = 255 is opaque.
 struct Colour {
     std::uint8_t r = 0, g = 0, b = 0, a = 255;
-};
-
-/// An RGB image; row 0 is the lowest one, three bytes a pixel.
-struct Pixels {
-    int width = 0;
-    int height = 0;
-    std::vector<std::uint8_t> rgb;
-
-    Pixels() = default;
-    Pixels(int w, int h) : width(w), height(h), rgb(static_cast<std::size_t>(w) * h * 3, 255) {}
-    void set(int x, int y, const Colour& c);
-    Colour at(int x, int y) const;
 };
 
 /// How a value becomes a colour.

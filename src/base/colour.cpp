@@ -1,4 +1,4 @@
-#include "vtk_io/figures/colour.h"
+#include "base/colour.h"
 
 #include <algorithm>
 #include <array>
@@ -57,18 +57,6 @@ constexpr std::array<Colour, 6> curves{
 std::uint8_t channel(double value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))); }
 
 }  // namespace
-
-void Pixels::set(int x, int y, const Colour& c) {
-    const std::size_t at = (static_cast<std::size_t>(y) * width + x) * 3;
-    rgb[at] = c.r;
-    rgb[at + 1] = c.g;
-    rgb[at + 2] = c.b;
-}
-
-Colour Pixels::at(int x, int y) const {
-    const std::size_t place = (static_cast<std::size_t>(y) * width + x) * 3;
-    return {rgb[place], rgb[place + 1], rgb[place + 2]};
-}
 
 Colour mixed(const Colour& a, const Colour& b, double share) {
     const double rest = 1.0 - share;
