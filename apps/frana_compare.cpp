@@ -65,11 +65,12 @@ int compare_command(const CompareOptions& options) {
 
     const fs::path json = options.json.empty() ? options.run_dir / "compare.json" : options.json;
     write_scores(options.run_dir, json, comparison);  // before the picture: scores are worth more
-    std::vector<DrawnFigure> figures;
+    Gallery gallery(options.run_dir);
     source.survey = survey.footprint;
     source.runout_path = comparison.path;
-    if (bed_known) draw_overlay(source, figures, warnings);
-    if (!comparison.bed_change_steps.empty()) draw_bed_change(source, figures, warnings);
+    if (bed_known) add_overlay(source, gallery);
+    if (!comparison.bed_change_steps.empty()) add_bed_change(source, gallery);
+    const std::vector<DrawnFigure> figures = gallery.draw(threads_for_figures(), warnings);
     write_text(options.run_dir / "compare.md", page(source, comparison, figures));
 
     if (bed_known && fs::exists(options.run_dir / "grid.pvd")) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <list>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -164,32 +165,30 @@ void read_bed(FigureSource& source, std::vector<std::string>& warnings) {
 
 /// Maps of the frame nearest to a time: figures/map_depth_t12.5s.png, map_speed_t12.5s.png, damage, and with stresses
 /// map_effective_stress_xx_t12.5s.png and so on.
-void draw_moment(const FigureSource& source, double time, std::vector<DrawnFigure>& figures,
-                 std::vector<std::string>& warnings) {
+/// `shown` keeps what they show.
+void add_moment(const FigureSource& source, double time, std::list<ProductRaster>& shown, Gallery& gallery) {
     const LoadedFrame frame = read_frame(source.run_dir, nearest_frame(source.run_dir, time));
     const std::string moment = fmt::format("{:.6g}", frame.time);
-    std::optional<ProductRaster> depth;
-    if (frame.has("depth")) depth = from_frame(frame, "depth", "depth");
-    const ProductRaster* extent = depth ? &*depth : nullptr;
+    const auto keep = [&](ProductRaster product) { return &shown.emplace_back(std::move(product)); };
+    const ProductRaster* extent = frame.has("depth") ? keep(from_frame(frame, "depth", "depth")) : nullptr;
     for (const char* field : {"depth", "speed", "damage", "water_depth"}) {
         if (!frame.has(field)) {
             if (field == std::string("damage") || field == std::string("water_depth")) continue;  // of few runs only
-            warnings.push_back(fmt::format("no {} in the frames of this run, so no map of it", field));
+            gallery.warn(fmt::format("no {} in the frames of this run, so no map of it", field));
             continue;
         }
-        const ProductRaster product = from_frame(frame, field, fmt::format("{}_t{}s", field, moment));
+        const ProductRaster* product = keep(from_frame(frame, field, fmt::format("{}_t{}s", field, moment)));
         const std::string words = field == std::string("water_depth") ? "depth of free water" : field;
-        draw_map(source, product, fmt::format("{} at t = {} s", words, moment), figures, warnings, extent);
+        add_map(source, *product, fmt::format("{} at t = {} s", words, moment), extent, gallery);
     }
     constexpr const char* kComponents[] = {"xx", "yy", "xy"};
     for (const char* field : {"effective_stress", "stress"}) {
         if (!frame.has(field) || frame.components.at(field) != 3) continue;
         for (std::size_t n = 0; n < 3; ++n) {
-            const ProductRaster product =
-                from_frame(frame, field, fmt::format("{}_{}_t{}s", field, kComponents[n], moment), n);
+            const ProductRaster* product =
+                keep(from_frame(frame, field, fmt::format("{}_{}_t{}s", field, kComponents[n], moment), n));
             const std::string what = std::string(field) == "stress" ? "stress" : "effective stress";
-            draw_map(source, product, fmt::format("{} {} at t = {} s", what, kComponents[n], moment), figures, warnings,
-                     extent);
+            add_map(source, *product, fmt::format("{} {} at t = {} s", what, kComponents[n], moment), extent, gallery);
         }
     }
 }
@@ -236,12 +235,15 @@ int figures_command(const FiguresOptions& options) {
     source.time = options.time;
     if (source.bed.values.empty()) source.rasters.clear();
     read_case(options.run_dir, source, warnings);
-    std::vector<DrawnFigure> figures = draw_figures(source, warnings);
-    if (options.time) draw_moment(source, *options.time, figures, warnings);
+    Gallery gallery(options.run_dir);
+    std::list<ProductRaster> of_the_moment;
+    add_figures(source, gallery);
+    if (options.time) add_moment(source, *options.time, of_the_moment, gallery);
     if (!options.film.empty()) {
-        draw_film(source, options.film, figures, warnings);
-        draw_film_3d(source, options.film, figures, warnings);
+        add_film(source, options.film, gallery);
+        add_film_3d(source, options.film, gallery);
     }
+    const std::vector<DrawnFigure> figures = gallery.draw(threads_for_figures(), warnings);
     for (const DrawnFigure& figure : figures) std::cout << (options.run_dir / figure.path).string() << '\n';
     for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
     if (!Cutoff::asked()) return 0;

@@ -189,7 +189,15 @@ ReliefGrey::ReliefGrey(const std::vector<float>& shade) {
     std::vector<float> some;
     for (std::size_t i = 0; i < shade.size(); i += 7)
         if (!std::isnan(shade[i])) some.push_back(shade[i]);
-    if (some.empty()) return;
+    double gamma = 1.0;
+    const auto fill = [&] {
+        for (std::size_t k = 0; k < levels_.size(); ++k)
+            levels_[k] = 0.42 + 0.56 * std::pow(static_cast<double>(k) / (kLevels - 1), gamma);
+    };
+    if (some.empty()) {
+        fill();
+        return;
+    }
     const auto percentile = [&](double share) {
         const auto place = some.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(some.size() - 1));
         std::nth_element(some.begin(), place, some.end());
@@ -199,11 +207,8 @@ ReliefGrey::ReliefGrey(const std::vector<float>& shade) {
     span_ = std::max(high - low, 0.35);
     low_ = low - 0.7 * (span_ - (high - low));  // an even slope comes out light
     const double middle = std::clamp((percentile(0.5) - low_) / span_, 0.05, 0.95);
-    gamma_ = std::clamp(std::log(0.68) / std::log(middle), 0.6, 1.7);
-}
-
-double ReliefGrey::operator()(double shade) const {
-    return 0.42 + 0.56 * std::pow(std::clamp((shade - low_) / span_, 0.0, 1.0), gamma_);
+    gamma = std::clamp(std::log(0.68) / std::log(middle), 0.6, 1.7);
+    fill();
 }
 
 }  // namespace frana

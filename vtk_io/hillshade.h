@@ -1,5 +1,8 @@
 #pragma once
 // Relief shading, and rasters brought to the resolution of a picture.
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "terrain/raster.h"
@@ -29,10 +32,15 @@ double shading_exaggeration(const Raster& bed);
 class ReliefGrey {
 public:
     explicit ReliefGrey(const std::vector<float>& shade);
-    double operator()(double shade) const;
+    double operator()(double shade) const {
+        const double place = (shade - low_) / span_;  // NaN gives the darkest
+        return levels_[place > 0.0 ? static_cast<std::size_t>(std::min(place, 1.0) * (kLevels - 1) + 0.5) : 0];
+    }
 
 private:
-    double low_ = 0.0, span_ = 1.0, gamma_ = 1.0;
+    static constexpr int kLevels = 2048;  // eight for each that a picture can show
+    double low_ = 0.0, span_ = 1.0;
+    std::array<double, kLevels> levels_{};
 };
 
 }  // namespace frana

@@ -161,7 +161,7 @@ struct Offscreen::Window {
         for (const unsigned long event : {vtkCommand::WindowMakeCurrentEvent, vtkCommand::WindowIsCurrentEvent,
                                           vtkCommand::WindowSupportsOpenGLEvent, vtkCommand::WindowIsDirectEvent})
             vtk->AddObserver(event, callback);
-        vtk->SetMultiSamples(4);
+        vtk->SetMultiSamples(0);
         vtk->SetSize(width, height);
         vtk->SetReadyForRendering(true);
         vtk->SetOwnContext(1);

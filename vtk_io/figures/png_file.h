@@ -2,7 +2,7 @@
 // Pictures as PNG files.
 #include <filesystem>
 
-#include "vtk_io/figures/colour.h"
+#include "vtk_io/figures/pixels.h"
 
 namespace frana {
 

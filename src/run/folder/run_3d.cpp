@@ -139,7 +139,7 @@ void add_some(const Moment3d& moment, std::vector<Vec3>& places) {
 
 }  // namespace
 
-void draw_3d(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+void add_3d(const FigureSource& source, Gallery& gallery) {
     if (!has_points(source)) return;
     try {
         const Run3d run(source);
@@ -152,51 +152,51 @@ void draw_3d(const FigureSource& source, std::vector<DrawnFigure>& figures, std:
             Figure3d figure = run.figure(one.number, shared.view(), run.digits());
             if (figure.moment.typical_size <= 0.0) {
                 if (one.name != "points")
-                    warnings.push_back(fmt::format("figures/view_{}.png was not drawn: there are no points in space {}",
-                                                   one.name, one.caption));
+                    gallery.warn(fmt::format("figures/view_{}.png was not drawn: there are no points in space {}",
+                                             one.name, one.caption));
                 continue;
             }
-            attempt(source, {"figures/view_" + one.name + ".png", "points in space " + one.caption}, figures, warnings,
-                    [&](const fs::path& png, std::string& why_not) { return render_3d(figure, png, why_not); });
+            gallery.add(
+                {"figures/view_" + one.name + ".png", "points in space " + one.caption},
+                [figure](const fs::path& png, std::string& why_not) { return render_3d(figure, png, why_not); });
             figure.title += ", section along the flow";
-            attempt(source, {"figures/section_" + one.name + ".png", "section along the flow " + one.caption}, figures,
-                    warnings,
-                    [&](const fs::path& png, std::string& why_not) { return render_section(figure, png, why_not); });
+            gallery.add(
+                {"figures/section_" + one.name + ".png", "section along the flow " + one.caption},
+                [figure](const fs::path& png, std::string& why_not) { return render_section(figure, png, why_not); });
         }
     } catch (const UserError& error) {
-        warnings.push_back(fmt::format("figures/view_points.png was not drawn: {}", error.what()));
+        gallery.warn(fmt::format("figures/view_points.png was not drawn: {}", error.what()));
     }
 }
 
-void draw_film_3d(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
-                  std::vector<std::string>& warnings) {
+void add_film_3d(const FigureSource& source, const std::string& kind, Gallery& gallery) {
     if (!has_points(source)) return;
-    attempt(source, {"figures/film_points." + kind, "points in space through time"}, figures, warnings,
-            [&](const fs::path& film, std::string& why_not) {
-                why_not = no_film_reason();
-                if (!why_not.empty()) return false;
-                const Run3d run(source);
-                Shared3d shared;  // every output is read twice, so that they need not fit the memory together
-                std::vector<Index> shown;
-                std::vector<Vec3> room;
-                for (Index number = 0; number < run.count(); ++number) {
-                    const Moment3d moment = run.moment(number);
-                    if (moment.typical_size <= 0.0) continue;
-                    shared.add(moment);
-                    shown.push_back(number);
-                    add_some(moment, room);
-                }
-                if (shown.empty()) return why_not = "no output has points in space", false;
-                const ViewAngles3d look =
-                    best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
-                return make_film(film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
-                    const Index number = shown[static_cast<std::size_t>(k)];
-                    Figure3d figure = run.figure(number, shared.view(), run.digits());
-                    figure.look = look;  // one for all, and one scale
-                    figure.room = room;
-                    return render_3d(figure, png, why_not);
-                });
-            });
+    gallery.add({"figures/film_points." + kind, "points in space through time"}, [&source](const fs::path& film,
+                                                                                           std::string& why_not) {
+        why_not = no_film_reason();
+        if (!why_not.empty()) return false;
+        const Run3d run(source);
+        Shared3d shared;  // every output is read twice, so that they need not fit the memory together
+        std::vector<Index> shown;
+        std::vector<Vec3> room;
+        for (Index number = 0; number < run.count(); ++number) {
+            const Moment3d moment = run.moment(number);
+            if (moment.typical_size <= 0.0) continue;
+            shared.add(moment);
+            shown.push_back(number);
+            add_some(moment, room);
+        }
+        if (shown.empty()) return why_not = "no output has points in space", false;
+        const ViewAngles3d look =
+            best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
+        return make_film(film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
+            const Index number = shown[static_cast<std::size_t>(k)];
+            Figure3d figure = run.figure(number, shared.view(), run.digits());
+            figure.look = look;  // one for all, and one scale
+            figure.room = room;
+            return render_3d(figure, png, why_not);
+        });
+    });
 }
 
 }  // namespace frana

@@ -11,11 +11,10 @@ namespace frana {
 /// where a barrier has a load, figures/view_impact.png and section_impact.png at the output with the largest.
 /// With `source.time` view_points_tTs.png and section_points_tTs.png at the output nearest to it as well.
 /// Nothing for a run without.
-void draw_3d(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+void add_3d(const FigureSource& source, Gallery& gallery);
 
 /// figures/film_points.mp4 or .gif: that view at every output time that has points. Nothing for a run
 /// without.
-void draw_film_3d(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
-                  std::vector<std::string>& warnings);
+void add_film_3d(const FigureSource& source, const std::string& kind, Gallery& gallery);
 
 }  // namespace frana

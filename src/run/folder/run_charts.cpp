@@ -203,48 +203,47 @@ ChartFigure barrier_chart(const FigureSource& source, const std::string& name, c
 
 }  // namespace
 
-void draw_profile(const FigureSource& source, const std::string& name, std::vector<DrawnFigure>& figures,
-                  std::vector<std::string>& warnings) {
-    attempt(source, {fmt::format("figures/profile_{}.png", name), fmt::format("profile {}", name)}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) {
-                const Table table = read_table(source.run_dir / "profiles" / (name + ".csv"));
-                if (table.rows() == 0) {
-                    why_not = "its table has no rows";
-                    return false;
-                }
-                return render_chart(profile_chart(source, name, table), png, why_not);
-            });
+void add_profile(const FigureSource& source, const std::string& name, Gallery& gallery) {
+    gallery.add({fmt::format("figures/profile_{}.png", name), fmt::format("profile {}", name)},
+                [&source, name](const fs::path& png, std::string& why_not) {
+                    const Table table = read_table(source.run_dir / "profiles" / (name + ".csv"));
+                    if (table.rows() == 0) {
+                        why_not = "its table has no rows";
+                        return false;
+                    }
+                    return render_chart(profile_chart(source, name, table), png, why_not);
+                });
 }
 
-void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+void add_gauges(const FigureSource& source, Gallery& gallery) {
     if (source.gauges.empty()) return;
-    attempt(source, {"figures/gauges_flow.png", "depth and speed at the gauges"}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) { return render_chart(gauge_chart(source), png, why_not); });
+    gallery.add({"figures/gauges_flow.png", "depth and speed at the gauges"},
+                [&source](const fs::path& png, std::string& why_not) {
+                    return render_chart(gauge_chart(source), png, why_not);
+                });
 }
 
-void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+void add_sections(const FigureSource& source, Gallery& gallery) {
     if (source.sections.empty()) return;
-    attempt(source, {"figures/sections_discharge.png", "discharge through the sections, and the volume that passed"},
-            figures, warnings, [&](const fs::path& png, std::string& why_not) {
-                return render_chart(section_chart(source), png, why_not);
-            });
+    gallery.add({"figures/sections_discharge.png", "discharge through the sections, and the volume that passed"},
+                [&source](const fs::path& png, std::string& why_not) {
+                    return render_chart(section_chart(source), png, why_not);
+                });
 }
 
-void draw_bed_change(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                     std::vector<std::string>& warnings) {
+void add_bed_change(const FigureSource& source, Gallery& gallery) {
     const fs::path file = source.run_dir / "compare_bed_change.csv";
     std::error_code none;
     if (!fs::exists(file, none)) return;
-    attempt(source,
-            {"figures/compare_bed_change.png",
-             "change of the ground along the path, simulated and surveyed: volumes in "
-             "steps of equal length"},
-            figures, warnings, [&](const fs::path& png, std::string& why_not) {
-                return render_chart(bed_change_chart(source, read_table(file)), png, why_not);
-            });
+    gallery.add({"figures/compare_bed_change.png",
+                 "change of the ground along the path, simulated and surveyed: volumes in "
+                 "steps of equal length"},
+                [&source, file](const fs::path& png, std::string& why_not) {
+                    return render_chart(bed_change_chart(source, read_table(file)), png, why_not);
+                });
 }
 
-void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+void add_barriers(const FigureSource& source, Gallery& gallery) {
     std::vector<fs::path> tables;
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(source.run_dir / "barriers", none))
@@ -252,21 +251,21 @@ void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures
     std::sort(tables.begin(), tables.end());
     for (const fs::path& file : tables) {
         const std::string name = file.stem().string();
-        attempt(source, {fmt::format("figures/barrier_{}.png", name), fmt::format("barrier {}", name)}, figures,
-                warnings, [&](const fs::path& png, std::string& why_not) {
-                    const Table table = read_table(file);
-                    if (table.rows() == 0) {
-                        why_not = "its table has no rows";
-                        return false;
-                    }
-                    return render_chart(barrier_chart(source, name, table), png, why_not);
-                });
+        gallery.add({fmt::format("figures/barrier_{}.png", name), fmt::format("barrier {}", name)},
+                    [&source, name, file](const fs::path& png, std::string& why_not) {
+                        const Table table = read_table(file);
+                        if (table.rows() == 0) {
+                            why_not = "its table has no rows";
+                            return false;
+                        }
+                        return render_chart(barrier_chart(source, name, table), png, why_not);
+                    });
     }
 }
 
-void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+void add_budgets(const FigureSource& source, Gallery& gallery) {
     const auto draw = [&](const DrawnFigure& figure, ChartFigure (*chart_of)(const FigureSource&, const Table&)) {
-        attempt(source, figure, figures, warnings, [&](const fs::path& png, std::string& why_not) {
+        gallery.add(figure, [&source, chart_of](const fs::path& png, std::string& why_not) {
             const Table history = read_table(source.run_dir / "history.csv");
             if (history.rows() == 0) {
                 why_not = "history.csv has no rows";

@@ -9,22 +9,21 @@ namespace frana {
 
 /// figures/profile_<name>.png: surface, depth and velocity along a line at the start, at the end, and between
 /// (at source.time when it is given).
-void draw_profile(const FigureSource& source, const std::string& name, std::vector<DrawnFigure>& figures,
-                  std::vector<std::string>& warnings);
+void add_profile(const FigureSource& source, const std::string& name, Gallery& gallery);
 
 /// figures/gauges_flow.png: depth and speed of all gauges over time; nothing without gauges.
-void draw_gauges(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+void add_gauges(const FigureSource& source, Gallery& gallery);
 
 /// figures/sections_discharge.png: discharge through all sections over time, and the volume that passed; nothing without.
-void draw_sections(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+void add_sections(const FigureSource& source, Gallery& gallery);
 
 /// figures/barrier_<name>.png: force, run-up and what went over each barrier with a table in barriers/.
-void draw_barriers(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+void add_barriers(const FigureSource& source, Gallery& gallery);
 
 /// figures/compare_bed_change.png: changes of the ground along the path, from compare_bed_change.csv; nothing without it.
-void draw_bed_change(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+void add_bed_change(const FigureSource& source, Gallery& gallery);
 
 /// figures/budget_energy.png and budget_motion.png, from history.csv.
-void draw_budgets(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
+void add_budgets(const FigureSource& source, Gallery& gallery);
 
 }  // namespace frana

@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "compare/overlap.h"
-#include "run/folder/cutoff.h"
 #include "run/folder/run_3d.h"
 #include "run/folder/run_charts.h"
 #include "run/folder/run_film.h"
@@ -55,28 +55,26 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
 }
 
 /// What the flow took of its bed and left there, loss blue and gain red, over the flow's extent.
-void draw_change_map(const FigureSource& source, std::vector<DrawnFigure>& figures,
-                     std::vector<std::string>& warnings) {
+void add_change_map(const FigureSource& source, Gallery& gallery) {
     const ProductRaster *change = find_product(source.rasters, "bed_change"),
                         *peak = find_product(source.rasters, "peak_depth");
     if (change == nullptr || peak == nullptr) return;
     double most = 0.0;
     for (const double value : change->raster.values) most = std::fmax(most, std::abs(value));
     if (most == 0.0) return;
-    attempt(source, {"figures/map_bed_change.png", "change of the bed"}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) {
-                MapFigure map = map_of(source, *change, "change of the bed", nullptr);
-                map.outline_field = depth_without_gaps(*peak);
-                map.outline_label = "peak depth [m]";
-                map.colormap = Colormap::diverging;
-                map.range = {-most, most};
-                return render_map(map, png, why_not);
-            });
+    gallery.add({"figures/map_bed_change.png", "change of the bed"},
+                [&source, change, peak, most](const fs::path& png, std::string& why_not) {
+                    MapFigure map = map_of(source, *change, "change of the bed", nullptr);
+                    map.outline_field = depth_without_gaps(*peak);
+                    map.outline_label = "peak depth [m]";
+                    map.colormap = Colormap::diverging;
+                    map.range = {-most, most};
+                    return render_map(map, png, why_not);
+                });
 }
 
 /// The peak depth on the terrain, seen up the slope.
-void draw_view(const FigureSource& source, const ProductRaster& peak_depth, std::vector<DrawnFigure>& figures,
-               std::vector<std::string>& warnings) {
+void add_view(const FigureSource& source, const ProductRaster& peak_depth, Gallery& gallery) {
     PerspectiveFigure view;
     view.bed = source.bed;
     view.field = peak_depth.raster.values;
@@ -87,90 +85,70 @@ void draw_view(const FigureSource& source, const ProductRaster& peak_depth, std:
     view.footer = source.footer;
     view.width = source.width;
     view.height = source.height;
-    attempt(source, {"figures/view_peak_depth.png", "peak depth, seen up the slope"}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) { return render_perspective(view, png, why_not); });
+    gallery.add({"figures/view_peak_depth.png", "peak depth, seen up the slope"},
+                [view = std::move(view)](const fs::path& png, std::string& why_not) {
+                    return render_perspective(view, png, why_not);
+                });
 }
 
 }  // namespace
 
-void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
-              std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings, const ProductRaster* extent) {
+void add_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
+             const ProductRaster* extent, Gallery& gallery) {
     const std::string caption = source.survey ? what + ", with the surveyed outline" : what;
-    attempt(source, {fmt::format("figures/map_{}.png", product.name), caption}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) {
-                return render_map(map_of(source, product, what, extent), png, why_not);
-            });
+    gallery.add({fmt::format("figures/map_{}.png", product.name), caption},
+                [&source, &product, what, extent](const fs::path& png, std::string& why_not) {
+                    return render_map(map_of(source, product, what, extent), png, why_not);
+                });
 }
 
-std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<std::string>& warnings) {
+void add_figures(const FigureSource& source, Gallery& gallery) {
     struct MapRule {
         const char* name;
         const char* what;
     };
-    std::vector<DrawnFigure> figures;
     for (const MapRule& rule : {MapRule{"peak_depth", "peak depth"}, MapRule{"peak_speed", "peak speed"},
                                 MapRule{"peak_dynamic_pressure", "peak dynamic pressure"},
                                 MapRule{"arrival_time", "arrival time"}, MapRule{"final_depth", "depth at the end"}})
         if (const ProductRaster* product = find_product(source.rasters, rule.name))
-            draw_map(source, *product, rule.what, figures, warnings, find_product(source.rasters, "peak_depth"));
+            add_map(source, *product, rule.what, find_product(source.rasters, "peak_depth"), gallery);
     if (const ProductRaster* damage = find_product(source.rasters, "final_damage"))
-        draw_map(source, *damage, "damage at the end", figures, warnings, find_product(source.rasters, "final_depth"));
+        add_map(source, *damage, "damage at the end", find_product(source.rasters, "final_depth"), gallery);
     if (const ProductRaster* water = find_product(source.rasters, "final_water_depth"))
-        draw_map(source, *water, "free water at the end", figures, warnings,
-                 find_product(source.rasters, "peak_depth"));
-    draw_change_map(source, figures, warnings);
+        add_map(source, *water, "free water at the end", find_product(source.rasters, "peak_depth"), gallery);
+    add_change_map(source, gallery);
     for (const ProductRaster& product : source.rasters)
         if (is_friction(product.name))
-            draw_map(source, product, product.name + " under the flow", figures, warnings,
-                     find_product(source.rasters, "peak_depth"));
-    if (const ProductRaster* peak = find_product(source.rasters, "peak_depth"))
-        draw_view(source, *peak, figures, warnings);
-    draw_overlay(source, figures, warnings);
-    draw_bed_change(source, figures, warnings);
-    draw_filmstrip(source, figures, warnings);
-    for (const Profile& profile : source.profiles) draw_profile(source, profile.name, figures, warnings);
-    draw_gauges(source, figures, warnings);
-    draw_sections(source, figures, warnings);
-    draw_3d(source, figures, warnings);
-    draw_barriers(source, figures, warnings);
-    draw_budgets(source, figures, warnings);
-    return figures;
+            add_map(source, product, product.name + " under the flow", find_product(source.rasters, "peak_depth"),
+                    gallery);
+    if (const ProductRaster* peak = find_product(source.rasters, "peak_depth")) add_view(source, *peak, gallery);
+    add_overlay(source, gallery);
+    add_bed_change(source, gallery);
+    add_filmstrip(source, gallery);
+    for (const Profile& profile : source.profiles) add_profile(source, profile.name, gallery);
+    add_gauges(source, gallery);
+    add_sections(source, gallery);
+    add_3d(source, gallery);
+    add_barriers(source, gallery);
+    add_budgets(source, gallery);
 }
 
-void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+void add_overlay(const FigureSource& source, Gallery& gallery) {
     const ProductRaster* peak = find_product(source.rasters, "peak_depth");
     if (!source.survey || peak == nullptr || source.bed.values.empty()) return;
-    attempt(source, {"figures/compare.png", "simulated and surveyed extent"}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) {
-                MapFigure map = map_of(source, *peak, "simulated and surveyed extent", nullptr);
-                map.field_label = "peak depth [m]";
-                map.profiles.clear();
-                if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
-                map.simulated = pixel_outline(peak->raster, source.footprint_depth);
-                const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
-                map.footer =
-                    fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
-                                areas.hit, areas.beyond, areas.missed, areas.iou()) +
-                    source.footer;
-                return render_map(map, png, why_not);
-            });
-}
-
-void attempt(const FigureSource& source, const DrawnFigure& figure, std::vector<DrawnFigure>& figures,
-             std::vector<std::string>& warnings, const Draw& draw) {
-    if (Cutoff::asked()) return;
-    const fs::path png = source.run_dir / figure.path;
-    std::string why_not;
-    try {
-        fs::create_directories(png.parent_path());
-        if (draw(png, why_not)) {
-            figures.push_back(figure);
-            return;
-        }
-    } catch (const std::exception& error) {
-        why_not = error.what();
-    }
-    warnings.push_back(fmt::format("{} was not drawn: {}", figure.path, why_not));
+    gallery.add({"figures/compare.png", "simulated and surveyed extent"}, [&source, peak](const fs::path& png,
+                                                                                          std::string& why_not) {
+        MapFigure map = map_of(source, *peak, "simulated and surveyed extent", nullptr);
+        map.field_label = "peak depth [m]";
+        map.profiles.clear();
+        if (!source.runout_path.empty()) map.profiles.push_back({"runout path", source.runout_path});
+        map.simulated = pixel_outline(peak->raster, source.footprint_depth);
+        const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
+        map.footer = fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
+                                 areas.hit, areas.beyond, areas.missed, areas.iou()) +
+                     source.footer;
+        return render_map(map, png, why_not);
+    });
 }
 
 }  // namespace frana

@@ -1,11 +1,12 @@
 #pragma once
-// The pictures of a run: drawn at its end, and again by `frana figures`.
+// The pictures of a run: drawn at its end, and again by `frana figures`. Functions named add_... put one into a gallery; the
+// source has to stay until it is drawn.
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "run/folder/gallery.h"
 #include "run/folder/products.h"
 #include "run/folder/run_record.h"
 #include "scene/scene.h"
@@ -32,25 +33,16 @@ struct FigureSource {
     int width = 1400, height = 1200;       ///< of the maps; charts are as wide and 0.6 as high [pixels]
 };
 
-/// Draws all figures into figures/ and returns those that were made. A picture that cannot be drawn is one
-/// line in `warnings` and never more: the run is worth more than its pictures.
-std::vector<DrawnFigure> draw_figures(const FigureSource& source, std::vector<std::string>& warnings);
+/// All figures but films.
+void add_figures(const FigureSource& source, Gallery& gallery);
 
 /// A map of one raster on the terrain: figures/map_<name>.png. `what` is its name for people, `extent` the depth
 /// that says where the flow is, for a raster that is no depth (nullptr: where the raster is above zero).
-void draw_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
-              std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings, const ProductRaster* extent);
+void add_map(const FigureSource& source, const ProductRaster& product, const std::string& what,
+             const ProductRaster* extent, Gallery& gallery);
 
 /// figures/compare.png: the simulated extent (all pixels of peak_depth above footprint_depth) and the surveyed one;
 /// nothing without a survey, the terrain or the peak depth.
-void draw_overlay(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings);
-
-/// Draws into a PNG; false with a reason when that is not possible.
-using Draw = std::function<bool(const std::filesystem::path& png, std::string& why_not)>;
-
-/// Makes one figure and notes it down, or a warning with the reason why there is none. Once an end was asked for
-/// (run/folder/cutoff.h): nothing.
-void attempt(const FigureSource& source, const DrawnFigure& figure, std::vector<DrawnFigure>& figures,
-             std::vector<std::string>& warnings, const Draw& draw);
+void add_overlay(const FigureSource& source, Gallery& gallery);
 
 }  // namespace frana

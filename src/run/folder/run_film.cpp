@@ -84,36 +84,35 @@ bool make_film(const fs::path& film, Index count, std::string& why_not,
     return reel.join(std::clamp(static_cast<double>(count) / seconds, slowest, fastest), why_not);
 }
 
-void draw_filmstrip(const FigureSource& source, std::vector<DrawnFigure>& figures, std::vector<std::string>& warnings) {
+void add_filmstrip(const FigureSource& source, Gallery& gallery) {
     if (source.bed.values.empty() || !fs::exists(source.run_dir / "grid.pvd")) return;
     const Index count = static_cast<Index>(frame_times(source.run_dir).size());
     if (count < 2) return;
-    attempt(source, {"figures/filmstrip_depth.png", "depth at several times"}, figures, warnings,
-            [&](const fs::path& png, std::string& why_not) {
-                const std::vector<double> times = frame_times(source.run_dir);
-                Filmstrip strip;
-                for (const Index number : spread_frames(count, 6)) {
-                    strip.maps.push_back(depth_map(source, number));
-                    strip.maps.back().title = fmt::format("t = {:.6g} s", times[static_cast<std::size_t>(number)]);
-                }
-                return render_filmstrip(strip, png, why_not);
-            });
+    gallery.add({"figures/filmstrip_depth.png", "depth at several times"},
+                [&source, count](const fs::path& png, std::string& why_not) {
+                    const std::vector<double> times = frame_times(source.run_dir);
+                    Filmstrip strip;
+                    for (const Index number : spread_frames(count, 6)) {
+                        strip.maps.push_back(depth_map(source, number));
+                        strip.maps.back().title = fmt::format("t = {:.6g} s", times[static_cast<std::size_t>(number)]);
+                    }
+                    return render_filmstrip(strip, png, why_not);
+                });
 }
 
-void draw_film(const FigureSource& source, const std::string& kind, std::vector<DrawnFigure>& figures,
-               std::vector<std::string>& warnings) {
-    attempt(source, {"figures/film_depth." + kind, "depth through time"}, figures, warnings,
-            [&](const fs::path& film, std::string& why_not) {
-                why_not = no_film_reason();
-                if (!why_not.empty()) return false;
-                if (source.bed.values.empty() || !fs::exists(source.run_dir / "grid.pvd")) {
-                    why_not = "the run has no frames on the grid; add \"vtk\" to output.formats and run again";
-                    return false;
-                }
-                const std::vector<double> times = frame_times(source.run_dir);
-                if (times.empty()) return why_not = "the run has no frames yet", false;
-                return draw_frames(source, times, film, why_not);
-            });
+void add_film(const FigureSource& source, const std::string& kind, Gallery& gallery) {
+    gallery.add({"figures/film_depth." + kind, "depth through time"},
+                [&source](const fs::path& film, std::string& why_not) {
+                    why_not = no_film_reason();
+                    if (!why_not.empty()) return false;
+                    if (source.bed.values.empty() || !fs::exists(source.run_dir / "grid.pvd")) {
+                        why_not = "the run has no frames on the grid; add \"vtk\" to output.formats and run again";
+                        return false;
+                    }
+                    const std::vector<double> times = frame_times(source.run_dir);
+                    if (times.empty()) return why_not = "the run has no frames yet", false;
+                    return draw_frames(source, times, film, why_not);
+                });
 }
 
 }  // namespace frana

@@ -186,11 +186,13 @@ void draw(const FigureSource& source, const Output& output, RunRecord& record) {
         close_record(without, run_dir);
         std::cerr << cutoff_sentence(run_dir) << std::endl;
     });
-    if (output.png) record.figures = draw_figures(source, record.warnings);
+    Gallery gallery(run_dir);
+    if (output.png) add_figures(source, gallery);
     if (!output.film.empty()) {
-        draw_film(source, output.film, record.figures, record.warnings);
-        draw_film_3d(source, output.film, record.figures, record.warnings);
+        add_film(source, output.film, gallery);
+        add_film_3d(source, output.film, gallery);
     }
+    record.figures = gallery.draw(threads_for_figures(), record.warnings);
     if (Cutoff::asked()) note_cutoff(record, run_dir);
 }
 

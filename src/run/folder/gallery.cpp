@@ -1,0 +1,53 @@
+#include "run/folder/gallery.h"
+
+#include <fmt/core.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+
+#include "run/folder/cutoff.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+
+void Gallery::make(Wanted& wanted) const {
+    if (!wanted.draw || Cutoff::asked()) return;
+    const fs::path png = run_dir_ / wanted.figure.path;
+    std::string why_not;
+    try {
+        fs::create_directories(png.parent_path());
+        wanted.drawn = wanted.draw(png, why_not);
+    } catch (const std::exception& error) {
+        why_not = error.what();
+    }
+    if (!wanted.drawn) wanted.warning = fmt::format("{} was not drawn: {}", wanted.figure.path, why_not);
+}
+
+std::vector<DrawnFigure> Gallery::draw(int threads, std::vector<std::string>& warnings) {
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+        for (std::size_t k = next++; k < wanted_.size(); k = next++) make(wanted_[k]);
+    };
+    std::vector<std::thread> others;
+    for (std::size_t n = 1; n < std::min(static_cast<std::size_t>(threads), wanted_.size()); ++n) try {
+            others.emplace_back(work);
+        } catch (const std::system_error&) {
+            break;  // fewer threads draw as well
+        }
+    work();
+    for (std::thread& other : others) other.join();
+    std::vector<DrawnFigure> drawn;
+    for (Wanted& wanted : wanted_) {
+        if (wanted.drawn) drawn.push_back(std::move(wanted.figure));
+        if (!wanted.warning.empty()) warnings.push_back(std::move(wanted.warning));
+    }
+    wanted_.clear();
+    return drawn;
+}
+
+int threads_for_figures() { return std::clamp(omp_get_max_threads(), 1, 8); }
+
+}  // namespace frana

@@ -1,0 +1,47 @@
+#pragma once
+// Figures that are drawn side by side.
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/folder/run_record.h"
+
+namespace frana {
+
+/// What is to be drawn into a folder. A picture that cannot be drawn is one warning and never more: the run is worth more
+/// than its pictures.
+class Gallery {
+public:
+    /// Draws into a PNG, on any thread; false with a reason when that is not possible.
+    using Draw = std::function<bool(const std::filesystem::path& png, std::string& why_not)>;
+
+    explicit Gallery(std::filesystem::path run_dir) : run_dir_(std::move(run_dir)) {}
+
+    /// What `draw` refers to has to stay until draw() is over.
+    void add(DrawnFigure figure, Draw draw) { wanted_.push_back({std::move(figure), std::move(draw), "", false}); }
+    /// A warning in its place among those of the figures.
+    void warn(std::string warning) { wanted_.push_back({{}, nullptr, std::move(warning), false}); }
+
+    /// Draws all on so many threads. Returns what was made, in the order in which it was added. Once an end was asked for
+    /// (run/folder/cutoff.h) nothing more is begun.
+    std::vector<DrawnFigure> draw(int threads, std::vector<std::string>& warnings);
+
+private:
+    struct Wanted {
+        DrawnFigure figure;
+        Draw draw;
+        std::string warning;
+        bool drawn;
+    };
+    void make(Wanted& wanted) const;
+
+    std::filesystem::path run_dir_;
+    std::vector<Wanted> wanted_;
+};
+
+/// As many threads as the program may use, at most eight: each holds a picture's fields.
+int threads_for_figures();
+
+}  // namespace frana
