@@ -64,13 +64,12 @@ TEST_CASE("Tables differ by more than the tolerance, by another word and by anot
     CHECK(verify::differences(table, "stoker 100 1.00e-02 -\n", 0.05).size() == 1);
 }
 
-TEST_CASE("Without its finest grid a problem that takes long still has one, others have all", "[verify]") {
+TEST_CASE("Problems that take long go without their finest grid, others have all", "[verify]") {
     Index shorter = 0;
     for (const auto& problem : verify::library()) {
         const std::vector<Index> coarse = verify::grids_of(problem, true);
         CAPTURE(problem.name);
         CHECK(verify::grids_of(problem, false) == problem.grids);
-        REQUIRE(!coarse.empty());
         CHECK(coarse.size() + (problem.finest_is_long ? 1 : 0) == problem.grids.size());
         CHECK(std::equal(coarse.begin(), coarse.end(), problem.grids.begin()));
         shorter += problem.finest_is_long;

@@ -80,12 +80,13 @@ struct Problem {
     std::string order_of = "l1_depth";  ///< quantity whose order is observed
     bool needs_level = false;           ///< the paper preset is given the still level
     bool takes_minutes = false;         ///< runs when it is named only
-    bool finest_is_long = false;        ///< half a minute or more: `frana verify --coarse` leaves the last grid out
+    bool finest_is_long = false;        ///< half a minute or more: `frana verify --coarse` leaves the last grid out, if
+                                        ///< it is the only one the problem
     bool in_3d = false;                 ///< of the 3D model: knows no presets
     bool has_presets = true;            ///< false: of a model on the plane that knows none
 };
 
-/// The problem's grids; "coarse" those without a last one that takes long.
+/// The problem's grids; "coarse" those without a last one that takes long: none, where there is no other.
 std::vector<Index> grids_of(const Problem& problem, bool coarse);
 
 /// Runs the problem on each grid and fills observed_order in.

@@ -132,6 +132,7 @@ std::vector<Problem> bore_problems() {
                  bore_residuals,
                  run_reflected_bore};
     bore.order_of = "force_error_2";
+    bore.finest_is_long = true;
     const std::string slice = "what a slice of the same scheme was within, 8 cells deep";
     bore.gates = {{0, "force_error_1", 0.02, slice},
                   {0, "force_error_2", 0.04, slice},

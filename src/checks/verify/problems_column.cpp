@@ -348,8 +348,10 @@ std::vector<Problem> column_problems() {
                    {},
                    run_column_grains};
     grains.gates = {closed};
+    grains.finest_is_long = true;
     Problem slump{"slump", "a block of yield-stress material slumps and stops", {16}, {}, run_slump};
     slump.order_of = "length_error";
+    slump.finest_is_long = true;
     slump.gates = {{0, "length_error", 0.1, "thin-layer theory at an aspect of 0.3"},
                    {0, "creep", 2e-3, "a thousandth of the length in a second"},
                    {0, "speed", 1e-2, "at rest but for what decays"},

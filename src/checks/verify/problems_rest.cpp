@@ -141,6 +141,7 @@ std::vector<Problem> rest_problems() {
                  {},
                  run_conversion_at_rest};
     rest.order_of = "pressure_error";
+    rest.finest_is_long = true;
     const std::string slice = "a slice of the same scheme, points exactly hydrostatic, was within it";
     const std::string stops = "a fifteenth of what water creeps in that time";
     rest.gates = {{16, "creep", 0.1, slice},
