@@ -47,6 +47,7 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
     try {
         source.title = json.at("title").get<std::string>();
         source.footer = json.at("caption").get<std::string>();
+        source.date = json.value("started", std::string()).substr(0, 10);
         source.footprint_depth = json.at("results").at("footprint_depth").get<double>();
     } catch (const nlohmann::json::exception&) {
         throw UserError(

@@ -209,14 +209,7 @@ private:
         if (figure_.has_colour_bar())
             draw_colour_bar(canvas_, {std::round(f.x1 + u), f.y0, std::round(f.x1 + 2.1 * u), f.y1}, layout_.colours,
                             figure_.colormap, figure_.field_label, u);
-        for (std::size_t i = 0; i < layout_.strip.places.size(); ++i) {
-            const auto [x, row] = layout_.strip.places[i];
-            const Vec2 at(u + x, layout_.strip_top - (row + 0.5) * layout_.row_height());
-            if (i == 0)
-                draw_scale(canvas_, layout_.scale_length, layout_.scale_length / layout_.metres_per_pixel, at, u);
-            else
-                draw_legend_entry(canvas_, layout_.legend[i - 1], {at.x(), at.y() - 0.5 * u}, u);
-        }
+        draw_strip(canvas_, layout_);
         draw_captions(canvas_, layout_.captions, layout_.width, layout_.height);
     }
 

@@ -50,12 +50,13 @@ struct MapFigure {
     std::vector<NamedPoint> gauges;
     std::string footer;                          ///< model, parameters; wrapped
     std::optional<std::array<double, 4>> focus;  ///< xmin, ymin, xmax, ymax to be in view [m]
+    bool explained = true;                       ///< false: colour bar, scale and legend stand elsewhere
     int width = 1400;                            ///< at most [px]
     int height = 1200;                           ///< at most [px]
 
     const std::vector<double>& outlined() const { return outline_field.empty() ? field : outline_field; }
     bool shows_overlay() const { return simulated && survey; }
-    bool has_colour_bar() const { return !shows_overlay() && classes.empty(); }
+    bool has_colour_bar() const { return explained && !shows_overlay() && classes.empty(); }
     /// Thickness of the surveyed outline, in sizes of ordinary text: thinner where areas beside it are looked at.
     double survey_pen() const { return shows_overlay() ? 0.1 : 0.16; }
 };

@@ -1,5 +1,7 @@
 #include "vtk_io/figures/map_figure_furniture.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -38,6 +40,10 @@ void draw_colour_bar(Canvas& canvas, const Rectangle& bar, const ColourRange& ra
         canvas.text(ticks.labels[i], {bar.x1 + 0.6 * unit, y}, style);
         widest = std::max(widest, text_size(ticks.labels[i], style).x());
     }
+    if (range.more_above && range.most > range.high) {  // how far beyond the tip
+        style.upward = Upward::bottom;
+        canvas.text(fmt::format("to {:.3g}", range.most), {bar.x1 + 0.35 * unit, bar.y1 - 0.6 * unit}, style);
+    }
     style.across = Across::centre;
     style.upward = Upward::top;
     style.angle = 90.0;
@@ -69,6 +75,18 @@ void draw_legend_entry(Canvas& canvas, const LegendEntry& entry, const Vec2& at,
     }
     if (entry.kind == LegendEntry::Kind::point) draw_gauge(canvas, {at.x() + 0.5 * sample, at.y() - 0.25 * unit}, unit);
     canvas.text(entry.text, {at.x() + 2.6 * unit, at.y()}, {unit, Across::left, Upward::middle, 0.0, false, false, {}});
+}
+
+void draw_strip(Canvas& canvas, const MapLayout& layout) {
+    const double u = layout.unit;
+    for (std::size_t i = 0; i < layout.strip.places.size(); ++i) {
+        const auto [x, row] = layout.strip.places[i];
+        const Vec2 at(u + x, layout.strip_top - (row + 0.5) * layout.row_height());
+        if (i == 0)
+            draw_scale(canvas, layout.scale_length, layout.scale_length / layout.metres_per_pixel, at, u);
+        else
+            draw_legend_entry(canvas, layout.legend[i - 1], {at.x(), at.y() - 0.5 * u}, u);
+    }
 }
 
 void draw_scale(Canvas& canvas, double metres, double pixels, const Vec2& at, double unit) {

@@ -12,6 +12,8 @@ void draw_colour_bar(Canvas& canvas, const Rectangle& bar, const ColourRange& ra
 void draw_legend_entry(Canvas& canvas, const LegendEntry& entry, const Vec2& at, double unit);
 /// Two-tone bar of the given length with a north arrow before it.
 void draw_scale(Canvas& canvas, double metres, double pixels, const Vec2& at, double unit);
+/// The strip under a map: scale bar and legend, in the layout's rows.
+void draw_strip(Canvas& canvas, const MapLayout& layout);
 /// A line on a wider white one, to be seen on any ground.
 void stroke_cased(Canvas& canvas, const std::vector<Vec2>& line, const Pen& pen);
 /// Gauge symbol: a white triangle with a black edge.

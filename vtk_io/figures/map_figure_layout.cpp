@@ -166,15 +166,6 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
     return legend;
 }
 
-/// Widths of the strip's items: scale bar with north arrow, then the legend.
-std::vector<double> strip_widths(const MapLayout& layout) {
-    const double u = layout.unit;
-    std::vector<double> widths{layout.scale_length / layout.metres_per_pixel + 6.0 * u};
-    for (const auto& entry : layout.legend)
-        widths.push_back(2.6 * u + text_size(entry.text, layout.text(Across::left, Upward::middle)).x());
-    return widths;
-}
-
 double widest(const std::vector<std::string>& labels, const TextStyle& style) {
     double width = 0.0;
     for (const auto& label : labels) width = std::max(width, text_size(label, style).x());
@@ -233,12 +224,20 @@ void place(MapLayout& layout, const MapFigure& figure, const std::array<double, 
     layout.scale_length = round_down_125(std::max(0.25 * frame_w, 5.0 * u) * layout.metres_per_pixel);
     layout.contour_interval = contour_interval(figure, view);
     layout.legend = make_legend(figure, layout);
-    layout.strip = in_rows(strip_widths(layout), 1.4 * u, layout.width - 2.0 * u);
+    layout.strip = figure.explained ? in_rows(strip_widths(layout), 1.4 * u, layout.width - 2.0 * u) : Rows{{}, 0};
     layout.strip_top = bottom - 3.1 * u;
     set_ticks(layout);
 }
 
 }  // namespace
+
+std::vector<double> strip_widths(const MapLayout& layout) {
+    const double u = layout.unit;
+    std::vector<double> widths{layout.scale_length / layout.metres_per_pixel + 6.0 * u};
+    for (const auto& entry : layout.legend)
+        widths.push_back(2.6 * u + text_size(entry.text, layout.text(Across::left, Upward::middle)).x());
+    return widths;
+}
 
 MapLayout lay_out(const MapFigure& figure) {
     MapLayout layout;

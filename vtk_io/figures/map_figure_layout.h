@@ -58,4 +58,7 @@ struct MapLayout {
 
 MapLayout lay_out(const MapFigure& figure);
 
+/// Widths of the strip's items: scale bar with north arrow, then the legend [px].
+std::vector<double> strip_widths(const MapLayout& layout);
+
 }  // namespace frana

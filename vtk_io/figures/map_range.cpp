@@ -22,15 +22,22 @@ ColourRange colour_range(const std::vector<double>& field, double shown_above, C
         std::vector<double> sorted = shown;
         if (map == Colormap::diverging)
             for (double& value : sorted) value = std::abs(value);
-        const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(sorted.size()));
-        std::nth_element(sorted.begin(), place, sorted.end());
+        const auto quantile = [&](double share) {
+            const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size()));
+            std::nth_element(sorted.begin(), place, sorted.end());
+            return *place;
+        };
+        constexpr double above_most = 3.0;  // an even spread of values, and a steep decay, stay as they are
+        const double usual = quantile(0.75), high = quantile(0.995);
+        const double limit = usual > 0.0 ? std::min(high, above_most * usual) : high;
         const double smallest = *std::min_element(sorted.begin(), sorted.end());
-        range.high = *place > 0.0 ? round_limit(*place) : 0.0;
+        range.high = limit > 0.0 ? round_limit(limit) : 0.0;
         range.low = smallest < 0.0 ? -round_limit(-smallest) : 0.0;
         if (map == Colormap::diverging) range.low = -range.high;
     }
     if (!(range.high > range.low)) range.high = range.low + 1.0;
     for (const double value : shown) {
+        range.most = std::max(range.most, value);
         range.more_above = range.more_above || value > range.high;
         range.more_below = range.more_below || value < range.low;
     }

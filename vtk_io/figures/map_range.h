@@ -11,10 +11,12 @@
 namespace frana {
 
 /// Limits of the colours: given, or zero (the smallest value, when negative) to a round number at or above
-/// the 99.5th percentile of the values shown; symmetric about zero for the diverging map.
+/// the 99.5th percentile of the values shown; symmetric about zero for the diverging map. Where few values are much larger
+/// than the others, as a thick release is, to three times what three quarters of them are below.
 struct ColourRange {
     double low = 0.0, high = 1.0;
     bool more_below = false, more_above = false;
+    double most = 0.0;  ///< largest value that is shown
 };
 ColourRange colour_range(const std::vector<double>& field, double shown_above, Colormap map,
                          const std::optional<std::pair<double, double>>& given);

@@ -2,7 +2,7 @@
 // Maps of one terrain at several times that can be compared by eye.
 #include <array>
 #include <optional>
-#include <utility>
+#include <vector>
 
 #include "vtk_io/figures/map_figure.h"
 
@@ -16,7 +16,9 @@ public:
     void apply(MapFigure& map) const;
 
 private:
-    std::optional<std::pair<double, double>> range_;
+    std::vector<double> shown_;  ///< some of the values of all maps
+    Colormap colormap_ = Colormap::depth;
+    bool any_ = false;
     std::optional<std::array<double, 4>> covered_;  ///< [m]; nothing where no map shows anything
 };
 

@@ -141,7 +141,13 @@ ChartFigure motion_chart(const FigureSource& source, const Table& history) {
     errors.curves = {curve("mass", t, sizes(history.column("mass_error"))),
                      curve("mass, particles to grid", t, sizes(history.column("p2g_mass_error"))),
                      curve("momentum, particles to grid", t, sizes(history.column("p2g_momentum_error")))};
-    figure.panels = {speed, front, errors};
+    figure.panels = {speed, front};
+    constexpr double round_off = 1e-12;  // errors below it are no picture's worth
+    for (const Curve& curve : errors.curves)
+        if (std::any_of(curve.y.begin(), curve.y.end(), [](double value) { return value > round_off; })) {
+            figure.panels.push_back(errors);
+            break;
+        }
     return figure;
 }
 

@@ -24,6 +24,12 @@ std::vector<double> depth_without_gaps(const ProductRaster& depth) {
     return values;
 }
 
+/// "CH1903+ / LV95": the name that begins well-known text; empty without.
+std::string crs_name(const std::string& wkt) {
+    const std::size_t from = wkt.find('"'), to = wkt.find('"', from + 1);
+    return from == std::string::npos || to == std::string::npos ? "" : wkt.substr(from + 1, to - from - 1);
+}
+
 /// `extent`: the depth that says where the flow is, for a field that is no depth.
 MapFigure map_of(const FigureSource& source, const ProductRaster& product, const std::string& what,
                  const ProductRaster* extent) {
@@ -49,6 +55,8 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     for (const Section& section : source.sections) map.profiles.push_back({section.name, section.line});
     for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});
     map.footer = source.footer;
+    for (const std::string& more : {crs_name(source.bed.crs_wkt), source.date})
+        if (!more.empty()) map.footer += "; " + more;
     map.width = source.width;
     map.height = source.height;
     return map;

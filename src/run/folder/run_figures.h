@@ -19,6 +19,7 @@ struct FigureSource {
     std::filesystem::path run_dir;
     std::string title;
     std::string footer;  ///< parameters in a line
+    std::string date;    ///< of the run, such as 2026-11-25; empty: not known
     Raster bed;
     std::vector<ProductRaster> rasters;  ///< peak_depth, peak_speed, final_depth are drawn
     double footprint_depth = 0.1;        ///< [m]

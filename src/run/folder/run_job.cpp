@@ -136,6 +136,7 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.run_dir = run_dir;
     source.title = record.title;
     source.footer = record.caption;
+    source.date = record.summary.started.substr(0, 10);
     source.bed = bed;
     source.rasters = rasters;
     source.footprint_depth = scene.output.footprint_depth;
