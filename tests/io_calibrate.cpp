@@ -63,7 +63,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("calibration finds the friction that a footprint was made with, on real terrain", "[ensemble]") {
+TEST_CASE("calibration finds the friction that a footprint was made with, on real terrain", "[.][long]") {
     const Mudflow mudflow;
     // The survey is exact but for its pixels of 5 m, so outlines err by less than half of one.
     mudflow.write("find.toml", "[calibrate]\nsamples = 64\nrounds = 3\nsigma = 2.0\ncorrelation = 25.0\n" + vary +
