@@ -39,6 +39,14 @@ void add_case(CLI::App& command, std::filesystem::path& file, std::vector<std::s
         ->allow_extra_args(false);
 }
 
+/// --quiet or --progress json.
+void add_telling(CLI::App& command, bool& quiet, std::string& progress) {
+    CLI::Option* none = command.add_flag("--quiet", quiet, "no progress");
+    command.add_option("--progress", progress, "json: a line of JSON a second for other programs")
+        ->check(CLI::IsMember({"json"}))
+        ->excludes(none);
+}
+
 /// What a command on a finished run makes is listed in its run.json, as what the run made.
 int adding_to(const std::filesystem::path& run_dir, const Action& command) {
     int code = 0;
@@ -54,7 +62,7 @@ void add_run(CLI::App& app, RunOptions& options, Action& action) {
     command->add_option("--until", options.until, "stop at this simulated time [s]");
     command->add_flag("--resume", options.resume, "go on, bit for bit, from the checkpoint.h5 that a run left");
     command->add_flag("--overwrite", options.overwrite, "replace the files of an earlier run in the folder");
-    command->add_flag("--quiet", options.quiet, "no progress");
+    add_telling(*command, options.quiet, options.progress);
     command->callback([&] { action = [&] { return run_command(options); }; });
 }
 
@@ -89,7 +97,7 @@ void add_ensemble(CLI::App& app, EnsembleOptions& options, Action& action) {
     command->add_option("--again", options.again, "write a sample as a case of its own");
     command->add_option("--slurm", options.slurm, "print the script of a Slurm job array with so many parts")
         ->check(CLI::Range(1, 100000));
-    command->add_flag("--quiet", options.quiet, "no progress");
+    add_telling(*command, options.quiet, options.progress);
     command->callback([&] { action = [&] { return ensemble_command(options); }; });
 }
 
@@ -102,7 +110,7 @@ void add_calibrate(CLI::App& app, CalibrateOptions& options, Action& action) {
     CLI::Option* resume = command->add_flag("--resume", options.resume, "go on with what has been run in the folder");
     command->add_flag("--overwrite", options.overwrite, "replace an earlier calibration in the folder")
         ->excludes(resume);
-    command->add_flag("--quiet", options.quiet, "no progress");
+    add_telling(*command, options.quiet, options.progress);
     command->callback([&] { action = [&] { return calibrate_command(options); }; });
 }
 
@@ -119,15 +127,19 @@ void add_describe(CLI::App& app, DescribeOptions& options, Action& action) {
     CLI::Option* page =
         command->add_flag("--markdown", options.markdown, "the whole table as a page of Markdown (cases/KEYS.md)");
     page->excludes(wanted);
+    CLI::Option* json =
+        command->add_flag("--json", options.json, "the keys as JSON, for other programs")->excludes(page);
     command->add_flag("--combinations", options.combinations, "what is refused together, and what to do instead")
         ->excludes(wanted)
-        ->excludes(page);
+        ->excludes(page)
+        ->excludes(json);
     command
         ->add_flag(
             "--parameters", options.parameters,
             "friction and density by the kind of mass, with sources, as a page of Markdown (cases/PARAMETERS.md)")
         ->excludes(wanted)
-        ->excludes(page);
+        ->excludes(page)
+        ->excludes(json);
     command->callback([&] { action = [&] { return describe_command(options); }; });
 }
 

@@ -13,6 +13,7 @@
 #include "frana_commands.h"
 #include "frana_ensemble_folder.h"
 #include "frana_kept_rows.h"
+#include "frana_progress_lines.h"
 #include "run/folder/input_sums.h"
 #include "run/folder/run_lock.h"
 #include "scene/build_scene.h"
@@ -40,9 +41,10 @@ std::vector<double> take(const std::vector<std::vector<EventRun>>& runs, Calibra
 }
 
 /// False when an end was asked for.
-bool run_rounds(const EventRuns& runs, KeptRuns& kept, bool quiet, Calibration& found) {
+bool run_rounds(const EventRuns& runs, KeptRuns& kept, const CalibrateOptions& options, Calibration& found) {
     const CalibrationPlan& plan = found.plan;
-    RunTeller teller(static_cast<std::size_t>(plan.samples * plan.rounds) * plan.events.size(), quiet);
+    RunTeller teller(static_cast<std::size_t>(plan.samples * plan.rounds) * plan.events.size(), options.quiet,
+                     options.progress);
     for (Index round = 0; round < plan.rounds; ++round) {
         const auto points = found.posterior.next(plan.samples);
         const auto results = runs.at(points, kept, [&](const EventRun& run) { teller.done(!run.ended()); });
@@ -106,7 +108,7 @@ Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& pl
     remove_leftovers(options.out);
     if (options.overwrite) forget_calibration(options.out);
     KeptRuns kept(options.out, plan);
-    if (!run_rounds(runs, kept, options.quiet, found)) throw cut_off(options.out);
+    if (!run_rounds(runs, kept, options, found)) throw cut_off(options.out);
     if (plan.search && found.posterior.any()) {
         found.optimum = search_optimum(runs, kept, found);
         if (!found.optimum) throw cut_off(options.out);
@@ -117,7 +119,7 @@ Calibration calibrate(const CalibrateOptions& options, const CalibrationPlan& pl
 }
 
 void say(const CalibrateOptions& options, const Calibration& found) {
-    if (options.quiet) return;
+    if (options.quiet || !options.progress.empty()) return;
     std::cout << calibration_section(found);
     for (const std::string& file : found.files) std::cout << (options.out / file).string() << '\n';
 }
@@ -149,7 +151,7 @@ int predict(const CalibrateOptions& options, const EnsemblePlan& maps) {
     }
     EnsembleOptions ensemble;
     ensemble.file = file, ensemble.out = options.out / "predict";
-    ensemble.threads = options.threads, ensemble.quiet = options.quiet;
+    ensemble.threads = options.threads, ensemble.quiet = options.quiet || !options.progress.empty();
     ensemble.resume = true;
     return ensemble_command(ensemble);
 }
@@ -159,18 +161,25 @@ bool predicted(const fs::path& dir, const EnsemblePlan& maps) {
     return fs::exists(dir / "predict" / "ensemble.json") && text_in(dir / "predict.toml") == text_of_prediction(maps);
 }
 
-}  // namespace
-
-int calibrate_command(const CalibrateOptions& options) {
+int run_calibration(const CalibrateOptions& options) {
     const CalibrationPlan plan = read_calibration(options.file);
     const bool calibrated = !something_to_do(options, plan);
     if (calibrated && (!plan.predict || predicted(options.out, *plan.predict))) {
-        if (!options.quiet) std::cout << fmt::format("{}: all is there\n", options.out.string());
+        if (!options.quiet && options.progress.empty())
+            std::cout << fmt::format("{}: all is there\n", options.out.string());
         return 0;
     }
     try_prediction(plan);
     if (!calibrated) say(options, calibrate(options, plan));
     return plan.predict ? predict(options, *plan.predict) : 0;
+}
+
+}  // namespace
+
+int calibrate_command(const CalibrateOptions& options) {
+    ProgressLines lines(options.progress, "calibrate");
+    lines.into(options.out);
+    return lines.around([&] { return run_calibration(options); });
 }
 
 }  // namespace frana

@@ -10,7 +10,8 @@ namespace frana {
 
 class Interrupt;
 
-/// `frana run CASE [--out DIR] [--set key=value]... [--threads N] [--until T] [--resume] [--overwrite] [--quiet]`
+/// `frana run CASE [--out DIR] [--set key=value]... [--threads N] [--until T] [--resume] [--overwrite] [--quiet]
+/// [--progress json]`
 struct RunOptions {
     std::filesystem::path case_file;
     std::filesystem::path out;      ///< empty: out/<case name>
@@ -20,6 +21,7 @@ struct RunOptions {
     bool resume = false;            ///< go on from the folder's checkpoint.h5
     bool overwrite = false;         ///< replace the files of an earlier run in the folder
     bool quiet = false;
+    std::string progress;                  ///< "json": lines for other programs; empty: for people
     const Interrupt* interrupt = nullptr;  ///< who listens for Ctrl-C; nullptr: the run itself does
 };
 
@@ -36,8 +38,8 @@ struct ConvergeOptions {
     bool quiet = false;
 };
 
-/// `frana ensemble FILE --out DIR [--threads N] [--shard I/N] [--resume] [--check] [--exceed FIELD=VALUE]... [--quiet]`, or with
-/// `--join DIR`, `--again SAMPLE`, `--slurm N`
+/// `frana ensemble FILE --out DIR [--threads N] [--shard I/N] [--resume] [--check] [--exceed FIELD=VALUE]... [--quiet]
+/// [--progress json]`, or with `--join DIR`, `--again SAMPLE`, `--slurm N`
 struct EnsembleOptions {
     std::filesystem::path file;       ///< empty with `join`: the one that the runs were made with
     std::filesystem::path out;        ///< folder of the runs and the maps
@@ -48,13 +50,15 @@ struct EnsembleOptions {
     long long slurm = 0;              ///< shards of a job script to print; 0: none
     int threads = 0;
     bool resume = false, check = false, quiet = false;
+    std::string progress;  ///< as of a run
 };
 
-/// `frana calibrate FILE --out DIR [--threads N] [--resume] [--overwrite] [--quiet]`
+/// `frana calibrate FILE --out DIR [--threads N] [--resume] [--overwrite] [--quiet] [--progress json]`
 struct CalibrateOptions {
     std::filesystem::path file, out;
     int threads = 0;
     bool resume = false, overwrite = false, quiet = false;
+    std::string progress;  ///< as of a run
 };
 
 /// `frana figures RUN_DIR [--time T] [--size WxH] [--film mp4|gif]`
@@ -87,12 +91,13 @@ struct CheckOptions {
     std::vector<std::string> sets;
 };
 
-/// `frana particles CASE --out FILE [--count N] [--set key=value]...`
+/// `frana describe [KEY] [--json]`, or with `--markdown`, `--combinations`, `--parameters`
 struct DescribeOptions {
     std::string key;  ///< a key, a table or the beginning of either; empty: all
-    bool markdown = false, combinations = false, parameters = false;
+    bool json = false, markdown = false, combinations = false, parameters = false;
 };
 
+/// `frana particles CASE --out FILE [--count N] [--set key=value]...`
 struct ParticlesOptions {
     std::filesystem::path case_file;
     std::filesystem::path out;

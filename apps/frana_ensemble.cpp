@@ -11,6 +11,7 @@
 #include "frana_commands.h"
 #include "frana_ensemble_folder.h"
 #include "frana_ensemble_maps.h"
+#include "frana_progress_lines.h"
 #include "io/gdal_reader.h"
 #include "run/folder/run_lock.h"
 #include "run/interrupt.h"
@@ -63,7 +64,7 @@ int join(const EnsembleOptions& options, const EnsemblePlan& plan, const Ensembl
     write_once(options.out / "samples.csv", samples_table(plan));
     const EnsembleSummary summary =
         write_maps(options.out, plan, base, read_results(options.out, plan, base, true), wall_seconds);
-    if (!options.quiet) say_result(options.out, summary);
+    if (!options.quiet && options.progress.empty()) say_result(options.out, summary);
     if (!summary.too_many_failed()) return 0;
     std::cerr << fmt::format(
         "{} of {} runs failed, more than 5 %: the maps should not be trusted; the reasons are in {}\n", summary.failed,
@@ -162,7 +163,7 @@ int run_shard(const EnsembleOptions& options, const EnsemblePlan& plan, const En
     write_once(options.out / kOrigin, fs::absolute(plan.file).string() + "\n");
     const Interrupt interrupt(Interrupt::Listen::signals);
     ShardStore store(folder, plan, base);
-    RunTeller teller(samples.size(), options.quiet);
+    RunTeller teller(samples.size(), options.quiet, options.progress);
     for_each_run(samples.size(), threads_for_runs(options.threads), interrupt, [&](std::size_t k) {
         auto result = run_sample(plan, base, samples[k], reader, meshes, interrupt);
         if (!result) return;
@@ -176,13 +177,11 @@ int run_shard(const EnsembleOptions& options, const EnsemblePlan& plan, const En
     return options.shard.empty() ? join(options, plan, base, seconds_since(start)) : 0;
 }
 
-}  // namespace
-
-int ensemble_command(const EnsembleOptions& given) {
-    EnsembleOptions options = given;
+int run_ensemble(EnsembleOptions options, ProgressLines& lines) {
     require_names(options);
     if (!options.join.empty()) options.out = options.join;
     if (options.file.empty()) options.file = origin_of(options.join);
+    if (!options.out.empty()) lines.into(options.out);
     EnsemblePlan plan = read_ensemble(options.file);
     for (const std::string& wish : options.exceed) add_exceedance(plan, wish);
     if (options.slurm > 0) return print_job(options);
@@ -194,6 +193,13 @@ int ensemble_command(const EnsembleOptions& given) {
     if (options.check) return foretell(plan, base, reader, meshes, options);
     if (!options.join.empty()) return join(options, plan, base, std::nullopt);
     return run_shard(options, plan, base, reader, meshes);
+}
+
+}  // namespace
+
+int ensemble_command(const EnsembleOptions& options) {
+    ProgressLines lines(options.progress, "ensemble");
+    return lines.around([&] { return run_ensemble(options, lines); });
 }
 
 }  // namespace frana

@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "frana_commands.h"
+#include "frana_progress_lines.h"
 #include "io/gdal_reader.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_insitu.h"
@@ -70,19 +71,30 @@ void say_what_runs(const RunRecord& record, const fs::path& run_dir) {
     std::cout << std::flush;
 }
 
-}  // namespace
+/// What people are told goes to the console only without --quiet and --progress json.
+bool for_people(const RunOptions& options) { return !options.quiet && options.progress.empty(); }
 
-int run_command(const RunOptions& options) {
+void say_what_came(const RunRecord& record, const fs::path& run_dir, const RunOptions& options, ProgressLines& lines) {
+    lines.result(record);
+    if (for_people(options)) std::cout << closing_lines(record, run_dir) << std::flush;
+}
+
+Progress::Style style_of(const RunOptions& options) {
+    return options.progress == "json" ? Progress::Style::json : Progress::fitting(options.quiet);
+}
+
+int run_case(const RunOptions& options, ProgressLines& lines) {
     if (options.threads > 0) omp_set_num_threads(options.threads);
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
     const fs::path run_dir = options.out.empty() ? fs::path("out") / file.name() : options.out;
+    lines.into(run_dir);
     const std::vector<fs::path> inputs = file.inputs();
     const Overwrite overwrite = options.overwrite ? Overwrite::yes : Overwrite::no;
     std::optional<RunLock> lock;
     if (fs::is_directory(run_dir)) lock.emplace(run_dir);
     if (!options.resume) require_room_for_run(run_dir, inputs, overwrite);  // before the work of building the scene
     const MeshReader meshes = barrier_meshes_told([&](const std::string& line) {
-        if (!options.quiet) std::cout << line << std::endl;
+        if (for_people(options)) std::cout << line << std::endl;
     });
     Scene scene = build_scene(file, GdalReader(), meshes);
     shorten(scene, options.until);
@@ -106,18 +118,26 @@ int run_command(const RunOptions& options) {
     RunRecord record = begin_record(scene, file);
     record.command_line = overrides(options);
     record.threads = omp_get_max_threads();
-    if (!options.quiet) say_what_runs(record, run_dir);
+    lines.scene(record);
+    if (for_people(options)) say_what_runs(record, run_dir);
 
     std::optional<Interrupt> own;
     if (!options.interrupt) own.emplace(Interrupt::Listen::signals);
     const Interrupt& interrupt = options.interrupt ? *options.interrupt : *own;
-    Progress progress(std::cout, Progress::fitting(options.quiet), scene.density);
+    Progress progress(std::cout, style_of(options), scene.density);
     record = carry_out(scene, *simulation, run_dir, std::move(record), interrupt, progress, &keeper);
 
-    if (!options.quiet) std::cout << closing_lines(record, run_dir) << std::flush;
+    say_what_came(record, run_dir, options, lines);
     if (record.summary.failure) std::rethrow_exception(record.summary.failure);
     if (record.pictures_cut_off) throw Interrupted(cutoff_sentence(run_dir));
     return record.summary.reason == "interrupted" ? 130 : 0;
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options) {
+    ProgressLines lines(options.progress, "run");
+    return lines.around([&] { return run_case(options, lines); });
 }
 
 }  // namespace frana

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <string>
 
 #include "run/interrupt.h"
 #include "scene/toolbox.h"
@@ -23,12 +24,14 @@ MeshReader meshes_in_turn();
 /// A line now and then while runs go on, from any thread.
 class RunTeller {
 public:
-    RunTeller(std::size_t runs, bool quiet) : runs_(runs), quiet_(quiet) {}
+    /// `progress`: "json" for a line of JSON a second, empty for people.
+    RunTeller(std::size_t runs, bool quiet, const std::string& progress)
+        : runs_(runs), quiet_(quiet), json_(progress == "json") {}
     void done(bool failed);
 
 private:
     const std::size_t runs_;
-    const bool quiet_;
+    const bool quiet_, json_;
     std::mutex mutex_;
     std::size_t done_ = 0, failed_ = 0;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -12,6 +12,7 @@ namespace frana {
 namespace {
 
 constexpr double redraw_interval = 0.2;  // [s] of wall time
+constexpr double json_interval = 1.0;    // likewise
 
 std::size_t terminal_width() {
     winsize window{};
@@ -23,6 +24,9 @@ std::string state_text(const Status& now, double density) {
     return fmt::format("dt {:.2g} s  {} particles  {:.4g} m3  max {:.3g} m/s", now.dt, now.particles,
                        now.mass / density, now.max_speed);
 }
+
+/// JSON has no infinity and no NaN.
+std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
 }  // namespace
 
@@ -46,15 +50,24 @@ void Progress::begin(const Status& first, double end) {
 }
 
 void Progress::resumed(const Status& now) {
-    if (style_ == Style::silent) return;
+    if (style_ == Style::silent || style_ == Style::json) return;
     stream_ << fmt::format("goes on from t = {:.6g} s, step {}\n", now.time, now.step) << std::flush;
 }
 
 void Progress::step(const Status& now) {
-    if (style_ != Style::bar) return;
+    if (style_ != Style::bar && style_ != Style::json) return;
     const double wall = wall_seconds();
-    if (last_drawn_ >= 0.0 && wall - last_drawn_ < redraw_interval) return;
+    const double interval = style_ == Style::bar ? redraw_interval : json_interval;
+    if (last_drawn_ >= 0.0 && wall - last_drawn_ < interval) return;
     last_drawn_ = wall;
+    redraw(now, wall);
+}
+
+void Progress::redraw(const Status& now, double wall) {
+    if (style_ == Style::json) {
+        stream_ << json(now, wall) << std::endl;
+        return;
+    }
     std::string line = bar(now, wall);
     if (line.size() >= terminal_width()) line.resize(terminal_width() - 1);
     stream_ << '\r' << line << "\033[K" << std::flush;
@@ -71,11 +84,9 @@ void Progress::output(Index number, const Status& now) {
 
 void Progress::end(const Status& last, const std::string& reason) {
     if (style_ == Style::silent) return;
-    if (style_ == Style::bar) {
-        last_drawn_ = -1.0;
-        step(last);
-        stream_ << '\n';
-    }
+    if (style_ != Style::lines) redraw(last, wall_seconds());
+    if (style_ == Style::json) return;
+    if (style_ == Style::bar) stream_ << '\n';
     if (reason != "end") stream_ << fmt::format("stopped at t = {:.6g} s: {}\n", last.time, reason);
     stream_ << std::flush;
 }
@@ -88,6 +99,18 @@ std::string Progress::bar(const Status& now, double wall) const {
     return fmt::format("[{}{}] {:3.0f} %  t {:.4g}/{:.4g} s  ETA {}  {}", std::string(full, '#'),
                        std::string(cells - full, '.'), std::floor(100.0 * done), now.time, end_time_,
                        clock_text(remaining(now, wall)), state_text(now, density_));
+}
+
+/// The share is that of the whole run, also when it goes on from a kept state.
+std::string Progress::json(const Status& now, double wall) const {
+    const double share = end_time_ > 0.0 ? std::clamp(now.time / end_time_, 0.0, 1.0) : 1.0;
+    return fmt::format(
+        "{{\"event\": \"progress\", \"time\": {}, \"end\": {}, \"share\": {}, \"step\": {}, \"dt\": {}, \"particles\": "
+        "{}, "
+        "\"volume\": {}, \"max_speed\": {}, \"wall\": {}, \"eta\": {}}}",
+        json_number(now.time), json_number(end_time_), json_number(share), now.step, json_number(now.dt), now.particles,
+        json_number(now.mass / density_), json_number(now.max_speed), json_number(wall),
+        json_number(remaining(now, wall)));
 }
 
 double Progress::remaining(const Status& now, double wall) const {

@@ -1,5 +1,5 @@
 #pragma once
-// What a person sees while a case runs: a bar on a terminal, a line per frame in a log, or nothing.
+// What is seen of a case while it runs: a bar on a terminal, a line per frame in a log, lines of JSON, or nothing.
 #include <chrono>
 #include <ostream>
 #include <string>
@@ -10,14 +10,14 @@ namespace frana {
 
 class Progress {
 public:
-    enum class Style { bar, lines, silent };
+    enum class Style { bar, lines, json, silent };  ///< json: a line a second for other programs (apps/README.md)
     /// `density` [kg/m^3] turns masses into volumes.
     Progress(std::ostream& stream, Style style, double density) : stream_(stream), style_(style), density_(density) {}
 
     void begin(const Status& first, double end);
     /// After begin(), when the run goes on from a kept state.
     void resumed(const Status& now);
-    /// After every step; the bar is redrawn at most five times a second.
+    /// After every step; the bar is redrawn at most five times a second, a line of JSON comes at most once.
     void step(const Status& now);
     /// After every frame that was written.
     void output(Index number, const Status& now);
@@ -27,7 +27,9 @@ public:
     static Style fitting(bool quiet);
 
 private:
+    void redraw(const Status& now, double wall);
     std::string bar(const Status& now, double wall) const;
+    std::string json(const Status& now, double wall) const;
     double remaining(const Status& now, double wall) const;
     double wall_seconds() const;
 

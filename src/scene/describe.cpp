@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "scene/combinations.h"
+#include "scene/described.h"
 #include "scene/parameter_ranges.h"
 #include "scene/parameters.h"
 
@@ -83,28 +84,36 @@ bool selected(const Parameter& parameter, const std::string& prefix) {
 
 }  // namespace
 
-std::string describe(const std::string& prefix) {
+std::vector<const Parameter*> described(const std::string& prefix) {
     const std::string wanted = without_numbers(prefix);
-    std::string text;
-    std::string table;
-    std::vector<std::string> known;
-    for (const Parameter& parameter : parameters()) {
-        known.push_back(parameter.key);
-        if (!selected(parameter, wanted)) continue;
-        if (parameter.table() != table) {
-            table = parameter.table();
-            text += (text.empty() ? "" : "\n") + heading(table) + "\n";
-        }
-        text += entry(parameter);
-    }
-    if (!text.empty()) return text;
+    std::vector<const Parameter*> chosen;
+    for (const Parameter& parameter : parameters())
+        if (selected(parameter, wanted)) chosen.push_back(&parameter);
+    if (!chosen.empty()) return chosen;
     for (const Parameter& parameter : parameters())  // "xi" alone is as good as material.bed.xi
-        if (parameter.name() == wanted) text += entry(parameter);
-    if (!text.empty()) return text;
+        if (parameter.name() == wanted) chosen.push_back(&parameter);
+    if (!chosen.empty()) return chosen;
+    std::vector<std::string> known;
+    for (const Parameter& parameter : parameters()) known.push_back(parameter.key);
     const std::string near = closest(wanted, known);
     const std::string way_out = near.empty() ? "`frana describe` lists all keys" : "did you mean " + near + "?";
     throw UserError(
         fmt::format("frana describe: {}: unknown key; a key of the case file is expected; {}", prefix, way_out));
+}
+
+std::string describe(const std::string& prefix) {
+    const std::vector<const Parameter*> chosen = described(prefix);
+    const bool by_table = selected(*chosen.front(), without_numbers(prefix));
+    std::string text;
+    std::string table;
+    for (const Parameter* parameter : chosen) {
+        if (by_table && parameter->table() != table) {
+            table = parameter->table();
+            text += (text.empty() ? "" : "\n") + heading(table) + "\n";
+        }
+        text += entry(*parameter);
+    }
+    return text;
 }
 
 std::string describe_in_markdown() {
