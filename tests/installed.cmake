@@ -66,6 +66,18 @@ if(PROGRAM)
       endif()
     endforeach()
   endif()
+  # The plugin for QGIS lies beside the program, and finds it from there.
+  find_program(python NAMES python3)
+  if(python)
+    call("the plugin for QGIS" ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${python} -c
+         "import sys; sys.path.insert(0, sys.argv[1]); import program; print(program.find())"
+         ${away}/share/frana/qgis/frana_qgis)
+    if(NOT out STREQUAL "${away}/bin/frana\n")
+      message(FATAL_ERROR "the plugin for QGIS found: ${out}")
+    endif()
+  elseif(NOT EXISTS ${away}/share/frana/qgis/frana_qgis/metadata.txt)
+    message(FATAL_ERROR "the plugin for QGIS is not installed")
+  endif()
   # Without the module a run has all but its pictures, and one of VTK files says what is missing.
   file(REMOVE ${modules})
   set(case ${away}/share/frana/cases/maungawhau/case.toml)

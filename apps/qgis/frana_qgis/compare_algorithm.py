@@ -1,0 +1,68 @@
+import json
+import os
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessing,
+    QgsProcessingOutputFile,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
+    QgsProcessingParameterRasterLayer,
+    QgsRasterLayer,
+)
+
+from . import layers
+from .base import FranaAlgorithm, existing
+from .program import Trouble
+
+_SCORES = {"IOU": "iou", "PRECISION": "precision", "RECALL": "recall", "AREA_RATIO": "area_ratio",
+           "RUNOUT_DIFFERENCE": "runout_difference", "BOUNDARY_DISTANCE_MEAN": "boundary_distance_mean"}
+
+
+class CompareWithSurvey(FranaAlgorithm):
+    NAME = "compare"
+    TITLE = "Compare with survey"
+    HELP = ("Holds a finished run against the mapped extent of the event and, if there is one, against a raster of its "
+            "deposit. The scores go to compare.json and compare.md in the run's folder.")
+
+    def initAlgorithm(self, config=None):
+        self.addParameter(QgsProcessingParameterFile("RUN", "Folder of the run",
+                                                     behavior=QgsProcessingParameterFile.Folder))
+        self.addParameter(QgsProcessingParameterFeatureSource("SURVEY", "Surveyed extent, polygons",
+                                                              [QgsProcessing.TypeVectorPolygon]))
+        self.addParameter(QgsProcessingParameterRasterLayer("DEPOSIT", "Depth of the deposit [m]", None, True))
+        self.addParameter(QgsProcessingParameterFeatureSource("PATH", "Line along which the runout is measured",
+                                                              [QgsProcessing.TypeVectorLine], None, True))
+        for name, key in _SCORES.items():
+            self.addOutput(QgsProcessingOutputNumber(name, key.replace("_", " ")))
+        self.addOutput(QgsProcessingOutputFile("SCORES", "All scores (compare.json)"))
+        self.addOutput(QgsProcessingOutputFile("TABLE", "The scores for people (compare.md)"))
+
+    def work(self, parameters, context, feedback):
+        folder = self.parameterAsFile(parameters, "RUN", context)
+        peak = existing(folder, "rasters/peak_depth.tif")
+        if peak is None:
+            raise Trouble(f"RUN: found no rasters/peak_depth.tif in {folder}; expected the folder of a finished run")
+        crs = QgsRasterLayer(peak).crs()
+        inputs = layers.require_folder(os.path.join(folder, "input"))
+        arguments = ["compare", folder, "--survey", self._vector("SURVEY", crs, inputs, parameters, context)]
+        if self.given(parameters, "DEPOSIT"):
+            deposit = self.parameterAsRasterLayer(parameters, "DEPOSIT", context)
+            arguments += ["--deposit", layers.elevation_file("DEPOSIT", deposit, inputs)]
+        if self.given(parameters, "PATH"):
+            arguments += ["--path", self._vector("PATH", crs, inputs, parameters, context)]
+        self.call(arguments, feedback)
+        scores = os.path.join(folder, "compare.json")
+        with open(scores, encoding="utf-8") as file:
+            told = json.load(file)
+        found = {name: told[key] for name, key in _SCORES.items() if told.get(key) is not None}
+        found.update(SCORES=scores, TABLE=existing(folder, "compare.md"))
+        return found
+
+    def _vector(self, name, crs, inputs, parameters, context):
+        source = self.parameterAsSource(parameters, name, context)
+        layer = self.parameterAsVectorLayer(parameters, name, context)
+        if not crs.isValid():  # a run on local coordinates: the survey's are taken as they are
+            crs = layer.crs() if layer.crs().isValid() else QgsCoordinateReferenceSystem()
+        return layers.vector_file(name, layer, source, crs, inputs, context)
