@@ -8,10 +8,10 @@
 
 #include "compare/expected_width.h"
 #include "compare/flow_width.h"
+#include "frana_check.h"
 #include "frana_commands.h"
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
-#include "scene/build_scene.h"
 #include "scene/memory_need.h"
 #include "vtk_io/barrier_mesh.h"
 
@@ -191,23 +191,26 @@ std::string barriers_text(const Scene& scene) {
 
 }  // namespace
 
+std::string told_of(const BuiltScene& built) {
+    std::string text = fmt::format("case        {}\n", built.scene.title) + grid_text(built.scene);
+    for (const ReleaseSummary& release : built.releases) text += release_text(release);
+    text += total_text(built) + width_text(built.scene) + forecast_text(built.scene);
+    if (built.scene.friction)
+        for (const FrictionPart& part : built.scene.friction->parts)
+            text += fmt::format("friction    {}: {}\n", part.name, friction_sentence(part));
+    text += barriers_text(built.scene);
+    if (built.scene.solid) text += stage_text(built.scene);
+    check_insitu(built.scene);
+    for (const Insitu& entry : built.scene.insitu)
+        text += fmt::format("in situ     {} \"{}\"\n", kind_word(entry.kind), entry.name);
+    for (const std::string& remark : built.scene.log) text += "remark      " + remark + '\n';
+    return text + "ready to run\n";
+}
+
 int check_command(const CheckOptions& options) {
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
     const MeshReader meshes = barrier_meshes_told([](const std::string& line) { std::cerr << line << std::endl; });
-    const BuiltScene built = build_scene_in_detail(file, GdalReader(), meshes);
-    std::cout << fmt::format("case        {}\n", built.scene.title) << grid_text(built.scene);
-    for (const ReleaseSummary& release : built.releases) std::cout << release_text(release);
-    std::cout << total_text(built) << width_text(built.scene) << forecast_text(built.scene);
-    if (built.scene.friction)
-        for (const FrictionPart& part : built.scene.friction->parts)
-            std::cout << fmt::format("friction    {}: {}\n", part.name, friction_sentence(part));
-    std::cout << barriers_text(built.scene);
-    if (built.scene.solid) std::cout << stage_text(built.scene);
-    check_insitu(built.scene);
-    for (const Insitu& entry : built.scene.insitu)
-        std::cout << fmt::format("in situ     {} \"{}\"\n", kind_word(entry.kind), entry.name);
-    for (const std::string& remark : built.scene.log) std::cout << "remark      " << remark << '\n';
-    std::cout << "ready to run\n";
+    std::cout << told_of(build_scene_in_detail(file, GdalReader(), meshes));
     return 0;
 }
 

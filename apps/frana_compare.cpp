@@ -6,6 +6,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "frana_commands.h"
+#include "frana_compare.h"
 #include "frana_figures.h"
 #include "run/folder/comparison.h"
 #include "run/folder/run_charts.h"
@@ -50,31 +51,39 @@ std::string page(const FigureSource& source, const Comparison& comparison, const
 
 }  // namespace
 
-int compare_command(const CompareOptions& options) {
-    std::vector<std::string> warnings;
-    FigureSource source = read_finished_run(options.run_dir, warnings);
+RunAndSurvey read_run_and_survey(const CompareOptions& options) {
+    RunAndSurvey read;
+    FigureSource& source = read.run = read_finished_run(options.run_dir, read.warnings);
     require_rasters(options.run_dir, source.rasters);
-    const Raster& peak = find_product(source.rasters, "peak_depth")->raster;
-
     require_erodible(options, source.rasters);
-    const Survey survey = read_survey_files(
-        {options.survey, options.deposit, options.path, options.bed_change, options.bed_change_noise}, peak, warnings);
+    const Survey survey =
+        read_survey_files({options.survey, options.deposit, options.path, options.bed_change, options.bed_change_noise},
+                          find_product(source.rasters, "peak_depth")->raster, read.warnings);
+    read.comparison = compare_rasters(source.rasters, source.bed.values.empty() ? nullptr : &source.bed,
+                                      source.footprint_depth, survey);
+    source.survey = survey.footprint;
+    source.runout_path = read.comparison.path;
+    return read;
+}
+
+int compare_command(const CompareOptions& options) {
+    RunAndSurvey read = read_run_and_survey(options);
+    FigureSource& source = read.run;
+    const Comparison& comparison = read.comparison;
+    std::vector<std::string>& warnings = read.warnings;
     const bool bed_known = !source.bed.values.empty();
-    const Comparison comparison =
-        compare_rasters(source.rasters, bed_known ? &source.bed : nullptr, source.footprint_depth, survey);
 
     const fs::path json = options.json.empty() ? options.run_dir / "compare.json" : options.json;
     write_scores(options.run_dir, json, comparison);  // before the picture: scores are worth more
     Gallery gallery(options.run_dir);
-    source.survey = survey.footprint;
-    source.runout_path = comparison.path;
     if (bed_known) add_overlay(source, gallery);
     if (!comparison.bed_change_steps.empty()) add_bed_change(source, gallery);
     const std::vector<DrawnFigure> figures = gallery.draw(threads_for_figures(), warnings);
     write_text(options.run_dir / "compare.md", page(source, comparison, figures));
 
     if (bed_known && fs::exists(options.run_dir / "grid.pvd")) {
-        write_survey(options.run_dir, source.bed, peak, comparison.limit, rings_of(survey.footprint));
+        write_survey(options.run_dir, source.bed, find_product(source.rasters, "peak_depth")->raster, comparison.limit,
+                     rings_of(*source.survey));
         write_states(options.run_dir, source.title);
     }
 

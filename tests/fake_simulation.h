@@ -70,6 +70,7 @@ public:
     }
     Sample at(const Vec2& p) const override { return {bed(p), depth(p, status_.time), Vec2(u, v)}; }
 
+    std::shared_ptr<const void> give_frame_away() override { return {}; }
     Frame frame() override {
         Frame frame;
         frame.status = status_;

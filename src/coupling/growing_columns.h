@@ -15,6 +15,7 @@ public:
     MovingMass motion(const MotionQuery& query) const override { return columns_->motion(query); }
     /// Of the nodes that material has come near to, and of places that are always shown.
     Frame frame() override;
+    std::shared_ptr<const void> give_frame_away() override { return columns_->give_frame_away(); }
     Sample at(const Vec2& point) const override { return columns_->at(point); }
     bool may_rest() const override { return columns_->may_rest(); }
     bool more_comes() const override { return columns_->more_comes(); }

@@ -3,6 +3,7 @@
 // the tail that still flows into the window converted column by column, and what flows out made columns), and where the
 // case asks for it columns alone again.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -37,6 +38,10 @@ public:
     /// those of the map at its place. Between outputs columns and map may be ahead or behind by a step of the
     /// columns.
     Frame frame() override;
+    std::shared_ptr<const void> give_frame_away() override {
+        return std::make_shared<const std::array<std::shared_ptr<const void>, 2>>(
+            std::array<std::shared_ptr<const void>, 2>{columns_->give_frame_away(), store_.give_away()});
+    }
     Sample at(const Vec2& point) const override;
     const BarrierLoads* loads() const override { return watch_ ? &watch_->loads() : nullptr; }
     std::vector<std::string> remarks() const override;

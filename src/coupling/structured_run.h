@@ -31,6 +31,7 @@ public:
     /// of grains; "damage" 0 where whole, 1 where grains; "cohesion" what is left of it; with water "depth" of nodes
     /// is that of both, "water_depth" its part.
     Frame frame() override;
+    std::shared_ptr<const void> give_frame_away() override { return store_.give_away(); }
     Sample at(const Vec2& point) const override;
     std::vector<std::string> remarks() const override;
     Extras extras() const override;

@@ -14,6 +14,7 @@ public:
     double longest_step() const override { return columns_->longest_step(); }
     MovingMass motion(const MotionQuery& query) const override { return columns_->motion(query); }
     Frame frame() override { return columns_->frame(); }
+    std::shared_ptr<const void> give_frame_away() override { return columns_->give_frame_away(); }
     Sample at(const Vec2& point) const override { return columns_->at(point); }
     bool may_rest() const override { return columns_->may_rest(); }
     bool more_comes() const override { return columns_->more_comes(); }

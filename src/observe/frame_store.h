@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,14 @@ public:
         double* const numbers = raw(fields, name, unit, components, count);
         std::fill_n(numbers, count * components, 0.0);
         return numbers;
+    }
+
+    /// The memory of the last frame, which stays as it is while somebody holds it; the next frame has other memory.
+    std::shared_ptr<const void> give_away() {
+        used_ = 0;
+        auto given = std::make_shared<const std::vector<std::vector<double>>>(std::move(storage_));
+        storage_.clear();
+        return given;
     }
 
 private:

@@ -20,6 +20,8 @@ public:
     /// Ask for a stop from inside the program.
     void request() { requested_ = true; }
     bool requested() const;
+    /// Whether it owns the signals.
+    bool listens() const { return listening_; }
 
 private:
     bool listening_ = false;

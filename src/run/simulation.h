@@ -28,6 +28,9 @@ public:
     virtual bool more_comes() const { return false; }
     /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
     virtual Frame frame() = 0;
+    /// What the last frame's fields point into, for those who look at them longer than until the next step: they stay as
+    /// they are while somebody holds it. To be called before the next advance() or frame().
+    virtual std::shared_ptr<const void> give_frame_away() = 0;
     /// The ground that the run works on now, where that has grown beyond the scene's; frames lie within it.
     virtual const Raster* ground() const { return nullptr; }
     /// What the user should know of how the run was set up.

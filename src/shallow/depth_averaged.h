@@ -35,6 +35,7 @@ public:
         return (feed_ && !feed_->over()) || (late_ && late_->next() < std::numeric_limits<double>::infinity());
     }
     Frame frame() override;
+    std::shared_ptr<const void> give_frame_away() override { return store_.give_away(); }
     std::vector<PhaseTime> timings() const override { return timed_.times(); }
     Sample at(const Vec2& point) const override;
     std::vector<double> passed() const override;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -60,6 +61,12 @@ void note_width(RunRecord& record, const std::vector<ProductRaster>& rasters) {
     record.flow_width = flow_width(peak->raster, record.footprint_depth);
     const std::string remark = width_remark(record.flow_width, record.grid.cell);
     if (!remark.empty()) record.warnings.push_back(remark);
+}
+
+void note_simulation(RunRecord& record, const Scene& scene, const Simulation& simulation) {
+    record.extras = simulation.extras();
+    for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
+    if (!record.extras.water) record.release_volume = record.summary.first.mass / scene.density;
 }
 
 void note_results(RunRecord& record, const std::vector<ProductRaster>& rasters) {
@@ -178,15 +185,18 @@ void note_cutoff(RunRecord& record, const fs::path& run_dir) {
         fmt::format("interrupted while pictures were drawn; `frana figures {}` draws all of them", run_dir.string()));
 }
 
-/// The pictures that the case asks for. An end that is asked for meanwhile leaves a whole run with fewer of them.
-void draw(const FigureSource& source, const Output& output, RunRecord& record) {
+/// The pictures that the case asks for. An end that is asked for meanwhile leaves a whole run with fewer of them; where the
+/// run does not own the signals they go on to whoever does.
+void draw(const FigureSource& source, const Output& output, const Interrupt& interrupt, RunRecord& record) {
     const fs::path& run_dir = source.run_dir;
-    const Cutoff cutoff([&run_dir, without = record]() mutable {
-        remove_half_written(run_dir);
-        note_cutoff(without, run_dir);
-        close_record(without, run_dir);
-        std::cerr << cutoff_sentence(run_dir) << std::endl;
-    });
+    std::optional<Cutoff> cutoff;
+    if (interrupt.listens())
+        cutoff.emplace([&run_dir, without = record]() mutable {
+            remove_half_written(run_dir);
+            note_cutoff(without, run_dir);
+            close_record(without, run_dir);
+            std::cerr << cutoff_sentence(run_dir) << std::endl;
+        });
     Gallery gallery(run_dir);
     if (output.png) add_figures(source, gallery);
     if (!output.film.empty()) {
@@ -232,24 +242,23 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
     return observers;
 }
 
+RunPlan plan_of(const Scene& scene, bool cut_short) {
+    return {scene.end, scene.output.every, scene.stop_at_rest, cut_short, scene.bed.geometry.cell, scene.rest_fraction};
+}
+
 RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& run_dir, RunRecord record,
-                    const Interrupt& interrupt, Progress& progress, CheckpointKeeper* keeper) {
+                    const Interrupt& interrupt, Progress& progress, CheckpointKeeper* keeper, Observers more,
+                    std::vector<ProductRaster>* keep_rasters) {
     std::vector<ProductRaster> rasters;
     Observers observers = make_observers(scene, run_dir, record.barriers, rasters);
     if (auto sections = make_sections(scene, run_dir, record.sections)) observers.push_back(std::move(sections));
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
+    for (auto& observer : more) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 
-    const RunPlan plan{scene.end,
-                       scene.output.every,
-                       scene.stop_at_rest,
-                       record.end < record.whole_end,
-                       scene.bed.geometry.cell,
-                       scene.rest_fraction};
-    record.summary = run(simulation, plan, observers, interrupt, progress, keeper);
-    record.extras = simulation.extras();
-    for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
-    if (!record.extras.water) record.release_volume = record.summary.first.mass / scene.density;
+    record.summary =
+        run(simulation, plan_of(scene, record.end < record.whole_end), observers, interrupt, progress, keeper);
+    note_simulation(record, scene, simulation);
     if (keeper) {
         record.checkpoints = keeper->progress();
         for (const std::string& warning : keeper->warnings()) record.warnings.push_back(warning);
@@ -270,10 +279,24 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {
         if (!scene.output.png && scene.output.film.empty()) return;
-        draw(figure_source(scene, bed, run_dir, record, rasters), scene.output, record);
+        draw(figure_source(scene, bed, run_dir, record, rasters), scene.output, interrupt, record);
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
     close_record(record, run_dir);
+    if (keep_rasters) *keep_rasters = std::move(rasters);
+    return record;
+}
+
+RunRecord carry_out_in_memory(const Scene& scene, Simulation& simulation, RunRecord record, const Interrupt& interrupt,
+                              Progress& progress, Observers more, std::vector<ProductRaster>& rasters) {
+    Observers observers;
+    observers.push_back(std::make_unique<LastFields>(scene.bed.crs_wkt, rasters));
+    for (auto& observer : more) observers.push_back(std::move(observer));
+    record.summary =
+        run(simulation, plan_of(scene, record.end < record.whole_end), observers, interrupt, progress, nullptr);
+    note_simulation(record, scene, simulation);
+    note_results(record, rasters);
+    for (ProductRaster& friction : friction_rasters(scene)) rasters.push_back(std::move(friction));
     return record;
 }
 

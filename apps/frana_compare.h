@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "frana_commands.h"
+#include "frana_figures.h"
+#include "run/folder/comparison.h"
+
+namespace frana {
+
+/// A finished run held against a survey; writes nothing. The run has the survey's footprint and the path of the runout.
+struct RunAndSurvey {
+    FigureSource run;
+    Comparison comparison;
+    std::vector<std::string> warnings;
+};
+
+/// UserError when the folder holds no finished run with rasters, or a file of the survey cannot be used.
+RunAndSurvey read_run_and_survey(const CompareOptions& options);
+
+}  // namespace frana
