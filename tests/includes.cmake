@@ -102,6 +102,8 @@ room(src/run/folder base terrain observe convert compare run scene io vtk_io vtk
 room(apps base terrain observe particles convert compare run scene ensemble shallow checks/verify checks/bench checks/fuzz io vtk_io
      vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|nlopt|benchmark/")
 
+room(apps/python base terrain scene run/folder io vtk_io apps)
+
 # The time loop and the faces of solvers and observers; not what writes tables.
 foreach(model mpm shallow solid3d water structured)
   wall(src/${model} "observe/([^af]|fi)")

@@ -1,7 +1,7 @@
 # Installs what is built in BUILD and uses it as others would: the library by a project of its own (tests/installed), the
 # program away from its sources.
 #   cmake -DBUILD=... -DSOURCE=... -DOUT=... -DPROGRAM=ON|OFF -DVERSION=...
-#         -DCOMPILER=... -DFLAGS=... -DBUILD_TYPE=... -P installed.cmake
+#         -DCOMPILER=... -DFLAGS=... -DBUILD_TYPE=... [-DPYTHON=python3 -DPYTHON_DIR=...] -P installed.cmake
 set(prefix ${OUT}/prefix)
 string(REGEX REPLACE "([][+.*()^$?|])" "\\\\\\1" source "${SOURCE}")  # as a pattern
 set(source "${source}/(src|vtk_io|apps|cases|tests)/")  # a short name alone may stand in any text
@@ -57,6 +57,18 @@ if(PROGRAM)
     message(FATAL_ERROR "frana check read the sources: ${out}")
   endif()
   file(GLOB_RECURSE modules ${away}/frana_vtk.so)
+  if(PYTHON)
+    # The Python module finds the one of vtk_io, which finds the solver's functions in it.
+    file(MAKE_DIRECTORY ${OUT}/python)
+    call("Python" ${CMAKE_COMMAND} -E env PYTHONPATH=${away}/${PYTHON_DIR} LD_BIND_NOW=1 PYTHONDONTWRITEBYTECODE=1
+         ${PYTHON} -c "import frana
+case = frana.Case('${away}/share/frana/cases/maungawhau/case.toml', set={'output.formats': ['vtk']})
+case.run('${OUT}/python/run', until=0.1).finish()
+print(frana.open('${OUT}/python/run').frames[-1].grid['depth'].max())")
+    if(NOT out MATCHES "^[1-9][0-9.]*\n$")
+      message(FATAL_ERROR "the Python module printed: ${out}")
+    endif()
+  endif()
   # A program that does not have the sources' path in it cannot look there. Debug symbols have it.
   if(BUILD_TYPE STREQUAL "Release" AND NOT FLAGS)
     foreach(binary ${away}/bin/frana ${modules})

@@ -1,0 +1,223 @@
+"""A run that goes on from frame to frame."""
+import json
+from collections.abc import Mapping
+
+from . import _frana, raster
+
+
+class Fields(Mapping):
+    """Arrays of float64 by name; each is a view into the run, read-only, made anew when asked for.
+
+    A view costs nothing. It stays as it is when the run goes on: the run then takes other memory for its next frame.
+    """
+
+    def __init__(self, frame, of_grid):
+        self._frame, self._of_grid = frame, of_grid
+
+    def __getitem__(self, name):
+        return self._frame.view(self._of_grid, name)
+
+    def __iter__(self):
+        return iter(self._frame.names(self._of_grid))
+
+    def __len__(self):
+        return len(self._frame.names(self._of_grid))
+
+    def unit(self, name):
+        """The unit of a field, "m/s"."""
+        return self._frame.unit(self._of_grid, name)
+
+
+class Grid(Fields):
+    """Fields of nodes, of the shape (ny, nx) or (ny, nx, components); row 0 is the southernmost."""
+
+    @property
+    def x(self):
+        """Map x of the nodes, shape (nx,) [m]."""
+        import numpy
+
+        nx, _, x0, _, cell = self._frame.grid_geometry
+        return x0 + cell * numpy.arange(nx)
+
+    @property
+    def y(self):
+        """Map y of the nodes, shape (ny,), growing to the north [m]."""
+        import numpy
+
+        _, ny, _, y0, cell = self._frame.grid_geometry
+        return y0 + cell * numpy.arange(ny)
+
+    @property
+    def cell(self):
+        """Distance of the nodes [m]."""
+        return self._frame.grid_geometry[4]
+
+
+class Frame:
+    """A state of a run. ``time`` and ``status`` stay; fields can be asked for until the run goes on.
+
+    Attributes
+    ----------
+    number : int
+        0, 1, 2, ... of the outputs.
+    time : float
+        [s]
+    status : Status
+        Sums and extremes.
+    grid : Grid
+        Fields of nodes: "elevation", "depth", "surface", "velocity" (ny, nx, 3), "peak_depth", ...
+    particles : Fields
+        Fields of particles: "position" (n, 3), "depth" (n,), "velocity" (n, 3), ...
+    """
+
+    def __init__(self, frame):
+        self.number, self.time, self.status = frame.number, frame.status.time, frame.status
+        self.grid, self.particles = Grid(frame, True), Fields(frame, False)
+
+    def __repr__(self):
+        return f"<frana.Frame {self.number} at {self.time:g} s>"
+
+
+class Progress:
+    """What a progress callback gets; as text a line for people.
+
+    Attributes
+    ----------
+    time, end : float
+        Where the run is, and where it ends at the latest [s].
+    status : Status
+        Sums and extremes of the last step.
+    """
+
+    def __init__(self, status, end):
+        self.time, self.end, self.status = status.time, end, status
+
+    def __str__(self):
+        s = self.status
+        return (f"{self.time:9.3f} of {self.end:g} s   step {s.step}   {s.particles} particles   "
+                f"depth {s.max_depth:.3g} m   speed {s.max_speed:.3g} m/s")
+
+
+class Result:
+    """What a run leaves.
+
+    Attributes
+    ----------
+    rasters : Rasters
+        "peak_depth", "peak_speed", "arrival_time", "final_depth", ...: also as attributes of the result itself.
+    record : dict
+        The content of run.json: numbers in SI units.
+    warnings : list of str
+        Remarks on what may not be what was meant.
+    reason : str
+        "end", "rest", "left", "interrupted", "numerics" or "refused".
+    folder : str or None
+        Where its files are.
+    """
+
+    def __init__(self, run, folder):
+        self.folder = folder
+        self.record = json.loads(run.record())
+        self.rasters = raster.of_list(run.rasters())
+
+    @property
+    def reason(self):
+        return self.record["exit_reason"]
+
+    @property
+    def warnings(self):
+        return self.record["remarks"]
+
+    def __getattr__(self, name):
+        if name.startswith("_") or name == "rasters":
+            raise AttributeError(name)
+        return getattr(self.rasters, name)
+
+    def __repr__(self):
+        return f"<frana.Result {self.reason}, rasters {', '.join(self.rasters)}>"
+
+
+class Run:
+    """A run, from `Case.run`: a context manager, and an iterator of its frames.
+
+    The first frame is that of the start, the last that of the end. Steps are those of ``frana run``, whatever is looked at.
+    Leaving the ``with`` block early ends the run where it is, as Ctrl-C ends the program: what it leaves is whole.
+    A run belongs to one thread at a time, and to the process that started it.
+    """
+
+    def __init__(self, run, folder):
+        self._run, self._folder, self._result = run, folder, None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *what):
+        self.close()
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        frame = self._run.next()
+        if frame is None:
+            raise StopIteration
+        return Frame(frame)
+
+    def advance(self, *, until):
+        """Goes on to the first moment at or after ``until`` [s], and returns its frame; None: the run is over.
+
+        Between outputs a frame is that of the step which reaches the time: looking changes no step.
+        """
+        until = float(until)
+        if not self.over and not until > self.time:
+            raise ValueError(f"until: found {until:g} s; expected a time after the present one, {self.time:g} s")
+        frame = self._run.advance(until)
+        return None if frame is None else Frame(frame)
+
+    def finish(self):
+        """Goes on to the end, and returns the result."""
+        self._run.advance(float("inf"))
+        while not self.over:
+            self._run.advance(float("inf"))
+        return self.result
+
+    def close(self):
+        """Ends the run where it is, unless it is over."""
+        self._run.close()
+
+    @property
+    def over(self):
+        return self._run.over
+
+    @property
+    def time(self):
+        """[s]"""
+        return self._run.status.time
+
+    @property
+    def status(self):
+        """Sums and extremes of the last step that was looked at."""
+        return self._run.status
+
+    @property
+    def end(self):
+        """Where the run ends at the latest [s]."""
+        return self._run.end
+
+    @property
+    def warnings(self):
+        """Remarks so far."""
+        return self._run.remarks
+
+    @property
+    def result(self):
+        """The `Result`, once the run is over."""
+        if not self.over:
+            raise RuntimeError("the run goes on; its result is there once it is over: run.finish() goes to the end, "
+                               "run.close() ends it where it is")
+        if self._result is None:
+            self._result = Result(self._run, self._folder)
+        return self._result
+
+    def __repr__(self):
+        return f"<frana.Run {'over' if self.over else f'at {self.time:g} of {self.end:g} s'}>"

@@ -1,0 +1,62 @@
+"""Folders of runs read back."""
+import os
+import unittest
+
+import numpy
+
+import frana
+from common import COLUMNS, ROWS, InFolder
+
+
+class Folders(InFolder):
+    def setUp(self):
+        super().setUp()
+        self.frames = []
+        with self.case.run(self.path("out")) as run:
+            for frame in run:
+                self.frames.append((frame.time, frame.grid["depth"], frame.particles["position"]))
+        self.result = run.result
+        self.old = frana.open(self.path("out"))
+
+    def test_frames_are_those_that_were_seen_to_float32(self):
+        self.assertEqual(len(self.old.frames), len(self.frames))
+        for stored, (time, depth, position) in zip(self.old.frames, self.frames):
+            self.assertEqual(stored.time, time)
+            numpy.testing.assert_array_equal(stored.grid["depth"], depth.astype(numpy.float32))
+            numpy.testing.assert_allclose(stored.particles["position"], position, rtol=2**-23)
+            self.assertEqual(stored.grid.unit("depth"), "m")
+            self.assertEqual(stored.grid["velocity"].shape, (ROWS, COLUMNS, 3))
+        self.assertEqual(self.old.frames.at(1.4).time, 1.5)
+        self.assertEqual(self.old.frames[-1].number, 4)
+        with self.assertRaises(IndexError):
+            self.old.frames[5]
+
+    def test_history_is_a_structured_array(self):
+        history = self.old.history
+        self.assertEqual((history["t"][0], history["t"][-1]), (0.0, 2.0))
+        self.assertEqual(len(history), 1 + self.result.record["steps"])  # a line a step
+        self.assertAlmostEqual(history["mass"][0], 600.0 * 1800.0, places=3)
+
+    def test_record_and_rasters_are_those_of_the_result(self):
+        self.assertTrue(self.old.finished)
+        self.assertEqual(self.old.record, self.result.record)
+        self.assertEqual(set(self.old.rasters), set(self.result.rasters))
+        self.assertIn("# ", self.old.report)
+
+    def test_compare_holds_it_against_a_survey(self):
+        scores = self.old.compare(self.path("out", "footprint.geojson"))
+        self.assertAlmostEqual(scores["iou"], 1.0, places=9)  # its own outline, to round-off
+        with self.assertRaises(frana.Error):
+            self.old.compare(self.path("nothing.geojson"))
+
+    def test_a_folder_that_is_none_is_refused(self):
+        for path in (self.path("nowhere"), self.folder):
+            with self.assertRaises(frana.DataError):
+                frana.open(path)
+        os.remove(self.path("out", "history.csv"))
+        with self.assertRaisesRegex(frana.DataError, "history.csv"):
+            self.old.history
+
+
+if __name__ == "__main__":
+    unittest.main()
