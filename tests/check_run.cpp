@@ -116,6 +116,9 @@ Pixels read_raster(const std::filesystem::path& run, const std::string& name) {
         raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, p.nx, p.ny, p.value.data(), p.nx, p.ny, GDT_Float64, 0, 0) !=
             CE_None)
         throw std::runtime_error(file + ": cannot be read");
+    const double nodata = raster->GetRasterBand(1)->GetNoDataValue();
+    for (double& v : p.value)
+        if (v == nodata) v = 0.0;  // where the flow never came
     p.x0 = place[0], p.width = place[1];
     return p;
 }
@@ -138,15 +141,9 @@ double quantile_x(const Pixels& p, double share) {
 double from_raster(const std::filesystem::path& run, const Row& path) {
     const Row names = split(path.at(1), '-');
     const bool sums = path.at(2) == "quantile_x";
-    const auto read = [&](const std::string& name) {
-        Pixels p = read_raster(run, name);
-        if (sums)  // what has no value is -9999 in all of them, and has no material
-            for (double& v : p.value) v = std::max(v, 0.0);
-        return p;
-    };
-    Pixels p = read(names.at(0));
+    Pixels p = read_raster(run, names.at(0));
     if (names.size() > 1) {
-        const Pixels less = read(names[1]);
+        const Pixels less = read_raster(run, names[1]);
         for (std::size_t n = 0; n < p.value.size(); ++n) p.value[n] -= less.value.at(n);
     }
     if (sums) return quantile_x(p, std::stod(path.at(3)));

@@ -60,7 +60,7 @@ TEST_CASE("Barriers keep the attributes of their features, with what hit them", 
     const Outcome run = call_frana(village.path(), "run case.toml --out run --quiet");
     INFO(run.err);
     REQUIRE(run.code == 0);
-    const Layer layer(village.path() / "run" / "results.gpkg");
+    const Layer layer(village.path() / "run" / "results.gpkg", "barriers");
     REQUIRE(layer.get().GetFeatureCount() == 3);
     const auto type = [&](const char* name) {
         const OGRFeatureDefn& definition = *layer.get().GetLayerDefn();
@@ -113,7 +113,7 @@ TEST_CASE("A row of houses mirrored about the flow's axis is met alike, side by 
     write_text(village.path() / "houses.geojson",
                collection(square(75, 32, 8, R"("h":5)") + "," + square(75, 60, 8, R"("h":6)")));
     REQUIRE(call_frana(village.path(), "run case.toml --out run --quiet").code == 0);
-    const Layer layer(village.path() / "run" / "results.gpkg");
+    const Layer layer(village.path() / "run" / "results.gpkg", "barriers");
     std::vector<OGRFeatureUniquePtr> houses;
     for (OGRFeatureUniquePtr& feature : layer.get()) houses.push_back(std::move(feature));
     REQUIRE(houses.size() == 2);
@@ -186,7 +186,7 @@ TEST_CASE("Of many houses the report has those that are covered most, and a resu
     const std::vector<std::string> rows = rows_of(straight);
     CHECK(rows_of(parts) == rows);
     // Those that the report leaves out are covered by no more than any that it has.
-    const Layer layer(straight / "results.gpkg");
+    const Layer layer(straight / "results.gpkg", "barriers");
     REQUIRE(layer.get().GetFeatureCount() == 25);
     double least_shown = INFINITY, most_left_out = 0.0;
     std::size_t hit = 0, covered = 0;
@@ -212,10 +212,12 @@ TEST_CASE("Attributed polygons come back in the order of the polygons, types wid
     const FreshFolder folder;
     const fs::path file = folder.path() / "a.gpkg";
     const Polygon unit{{{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {{0.5, 0.5}, {0.5, 1.0}, {1.0, 1.0}, {1.0, 0.5}}}};
-    write_attributed_polygons(file, "things", "",
-                              {{unit, {{"n", 3LL}, {"x", 2LL}, {"fid", std::string("a")}, {"bad", NAN}}},
-                               {unit, {{"N", 4LL}, {"x", 0.5}, {"mixed", 1LL}}},
-                               {unit, {{"mixed", std::string("b")}}}});
+    write_layers(file, "",
+                 {{"things",
+                   {{unit, {{"n", 3LL}, {"x", 2LL}, {"fid", std::string("a")}, {"bad", NAN}}},
+                    {unit, {{"N", 4LL}, {"x", 0.5}, {"mixed", 1LL}}},
+                    {unit, {{"mixed", std::string("b")}}}}},
+                  {"nothing", {}}});
     std::vector<std::string> log;
     const auto back = read_attributed_polygons(file, "", log);
     REQUIRE(back.size() == 3);
@@ -224,6 +226,5 @@ TEST_CASE("Attributed polygons come back in the order of the polygons, types wid
     CHECK(back[1].attributes == Named{{"n", 4LL}, {"x", 0.5}, {"mixed", std::string("1")}});
     CHECK(back[2].attributes == Named{{"mixed", std::string("b")}});
     CHECK(back[0].polygon.rings.size() == 2);
-    CHECK_THROWS_WITH(write_attributed_polygons(folder.path() / "nowhere" / "a.gpkg", "things", "", {}),
-                      Contains("cannot be written"));
+    CHECK_THROWS_WITH(write_layers(folder.path() / "nowhere" / "a.gpkg", "", {}), Contains("cannot be written"));
 }

@@ -133,12 +133,16 @@ public:
         // A second survey sees the ground with what lies on it.
         frana::Raster change = raster("truth/rasters/bed_change.tif");
         const frana::Raster lying = raster("truth/rasters/final_depth.tif");
+        frana::write_geotiff(path("truth/rasters/final_depth.tif"), lying, "m", "a survey of all of the ground");
         for (std::size_t k = 0; k < change.values.size(); ++k) change.values[k] += lying.values[k];
         frana::write_geotiff(path("dod.tif"), change, "m", "after minus before");
     }
+    /// Where the flow never came its rasters are nodata, while a survey sees that nothing has changed.
     frana::Raster raster(const std::string& name) const {
         std::vector<std::string> log;
-        return frana::GdalReader().read_raster(path(name), {0.0, 0.0, 150.0, 100.0}, "", log);
+        frana::Raster read = frana::GdalReader().read_raster(path(name), {0.0, 0.0, 150.0, 100.0}, "", log);
+        for (double& value : read.values) value = std::isnan(value) ? 0.0 : value;
+        return read;
     }
     Outcome run(const std::string& file, const std::string& out, double mu) const {
         return frana("run " + file + " --out " + out + " --quiet --set material.bed.mu=" + std::to_string(mu) +

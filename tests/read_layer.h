@@ -7,18 +7,22 @@
 #include "catch.h"
 #include "read_back.h"
 
-/// The one layer of a vector file.
+/// A layer of a vector file: the one that it has, or that of the name.
 class Layer {
 public:
-    explicit Layer(const std::filesystem::path& file) {
+    explicit Layer(const std::filesystem::path& file, const char* name = nullptr) {
         GDALAllRegister();
         dataset_.reset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
         REQUIRE(dataset_);
-        REQUIRE(dataset_->GetLayerCount() == 1);
+        if (!name) REQUIRE(dataset_->GetLayerCount() == 1);
+        layer_ = name ? dataset_->GetLayerByName(name) : dataset_->GetLayer(0);
+        CAPTURE(name);
+        REQUIRE(layer_ != nullptr);
         ++read_back.files;
     }
-    OGRLayer& get() const { return *dataset_->GetLayer(0); }
+    OGRLayer& get() const { return *layer_; }
 
 private:
     GDALDatasetUniquePtr dataset_;
+    OGRLayer* layer_ = nullptr;
 };

@@ -1,5 +1,6 @@
 #pragma once
 // A raster of a run as GDAL reads it.
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,7 +13,11 @@ inline frana::Raster raster_in(const std::filesystem::path& file) {
     return frana::GdalReader().read_raster(file, {-1e9, -1e9, 1e9, 1e9}, "", log);
 }
 
-/// rasters/NAME of a run.
+/// rasters/NAME of a run, a field of the flow: zero where there is terrain and the flow never came, which is nodata in the file.
 inline frana::Raster raster_of(const std::filesystem::path& run_dir, const char* name) {
-    return raster_in(run_dir / "rasters" / name);
+    frana::Raster raster = raster_in(run_dir / "rasters" / name);
+    const frana::Raster terrain = raster_in(run_dir / "rasters" / "elevation.tif");
+    for (std::size_t k = 0; k < raster.values.size(); ++k)
+        if (std::isnan(raster.values[k]) && !std::isnan(terrain.values.at(k))) raster.values[k] = 0.0;
+    return raster;
 }

@@ -47,10 +47,10 @@ OGRFieldType type_of(const Attribute& value) {
 }
 
 /// In the order in which they first come.
-std::vector<FieldOfLayer> fields_of(const std::vector<AttributedPolygon>& polygons) {
+std::vector<FieldOfLayer> fields_of(const std::vector<AttributedShape>& shapes) {
     std::vector<FieldOfLayer> fields;
-    for (const AttributedPolygon& polygon : polygons)
-        for (const auto& attribute : polygon.attributes) {
+    for (const AttributedShape& shape : shapes)
+        for (const auto& attribute : shape.attributes) {
             const std::string& name = attribute.first;
             const auto same = [&](const FieldOfLayer& field) { return lower(field.name) == lower(name); };
             const auto field = std::find_if(fields.begin(), fields.end(), same);
@@ -80,29 +80,47 @@ void set_field(OGRFeature& feature, int index, OGRFieldType type, const Attribut
     }
 }
 
-OGRPolygon shape_of(const Polygon& polygon) {
-    OGRPolygon shape;
+std::unique_ptr<OGRGeometry> geometry_of(const Polygon& polygon) {
+    auto shape = std::make_unique<OGRPolygon>();
     for (const auto& ring : polygon.rings) {
         OGRLinearRing line;
         for (const Vec2& v : ring) line.addPoint(v.x(), v.y());
         line.closeRings();
-        shape.addRing(&line);
+        shape->addRing(&line);
     }
-    shape.flattenTo2D();
+    shape->flattenTo2D();
     return shape;
 }
 
-OGRLayer* make_layer(GDALDataset& dataset, const std::string& name, const std::string& crs_wkt,
+std::unique_ptr<OGRGeometry> geometry_of(const Polyline& line) {
+    auto shape = std::make_unique<OGRLineString>();
+    for (const Vec2& v : line) shape->addPoint(v.x(), v.y());
+    shape->flattenTo2D();
+    return shape;
+}
+
+std::unique_ptr<OGRGeometry> geometry_of(const Vec2& place) { return std::make_unique<OGRPoint>(place.x(), place.y()); }
+
+/// What shapes are called, and their type, by their place in the variant.
+struct KindOfShape {
+    const char* column;  ///< a name that no attribute has
+    OGRwkbGeometryType type;
+};
+constexpr KindOfShape kKinds[] = {
+    {"frana_polygon", wkbPolygon}, {"frana_line", wkbLineString}, {"frana_point", wkbPoint}};
+
+OGRLayer* make_layer(GDALDataset& dataset, const ShapeLayer& shapes, const std::string& crs_wkt,
                      const std::vector<FieldOfLayer>& fields) {
     OGRSpatialReference crs;
     if (crs_wkt.empty())
         crs.SetLocalCS("local metres");  // without any the file would claim degrees
     else
         crs = gdal::crs_from_wkt(crs_wkt);
-    CPLStringList options;  // names that no attribute has
+    const KindOfShape& kind = kKinds[shapes.shapes.front().shape.index()];
+    CPLStringList options;
     options.SetNameValue("FID", "frana_feature");
-    options.SetNameValue("GEOMETRY_NAME", "frana_polygon");
-    OGRLayer* layer = dataset.CreateLayer(name.c_str(), &crs, wkbPolygon, options.List());
+    options.SetNameValue("GEOMETRY_NAME", kind.column);
+    OGRLayer* layer = dataset.CreateLayer(shapes.name.c_str(), &crs, kind.type, options.List());
     for (const FieldOfLayer& field : fields) {
         OGRFieldDefn definition(field.name.c_str(), field.type);
         if (!layer || layer->CreateField(&definition) != OGRERR_NONE) return nullptr;
@@ -110,15 +128,15 @@ OGRLayer* make_layer(GDALDataset& dataset, const std::string& name, const std::s
     return layer;
 }
 
-bool fill(OGRLayer& layer, const std::vector<FieldOfLayer>& fields, const std::vector<AttributedPolygon>& polygons) {
-    for (const AttributedPolygon& polygon : polygons) {
+bool fill(OGRLayer& layer, const std::vector<FieldOfLayer>& fields, const std::vector<AttributedShape>& shapes) {
+    for (const AttributedShape& shape : shapes) {
         const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer.GetLayerDefn()));
-        for (const auto& attribute : polygon.attributes)
+        for (const auto& attribute : shape.attributes)
             for (std::size_t k = 0; k < fields.size(); ++k)
                 if (lower(fields[k].name) == lower(attribute.first))
                     set_field(*feature, static_cast<int>(k), fields[k].type, attribute.second);
-        const OGRPolygon shape = shape_of(polygon.polygon);
-        feature->SetGeometry(&shape);
+        const auto geometry = std::visit([](const auto& held) { return geometry_of(held); }, shape.shape);
+        feature->SetGeometry(geometry.get());
         if (layer.CreateFeature(feature.get()) != OGRERR_NONE) return false;
     }
     return true;
@@ -126,19 +144,37 @@ bool fill(OGRLayer& layer, const std::vector<FieldOfLayer>& fields, const std::v
 
 }  // namespace
 
-void write_attributed_polygons(const fs::path& gpkg, const std::string& layer, const std::string& crs_wkt,
-                               const std::vector<AttributedPolygon>& polygons) {
+std::vector<AttributedShape> pixel_outlines(const GridGeometry& grid, std::vector<std::uint8_t> inside) {
+    gdal::register_drivers();
+    const auto extent = grid.pixel_extent();
+    std::vector<AttributedShape> shapes;
+    const double pixel = grid.cell * grid.cell;
+    for (const auto& outline :
+         gdal::outlines_of(inside, grid.nx, grid.ny, {extent[0], grid.cell, 0.0, extent[1], 0.0, grid.cell})) {
+        std::vector<Polygon> parts;
+        gdal::append_polygon(*outline, "an outline of pixels", parts);
+        const double area = std::round(outline->get_Area() / pixel) * pixel;  // whole pixels
+        for (Polygon& part : parts) shapes.push_back({std::move(part), {{"area_m2", area}}});
+    }
+    return shapes;
+}
+
+void write_layers(const fs::path& gpkg, const std::string& crs_wkt, const std::vector<ShapeLayer>& layers) {
     gdal::register_drivers();
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
     if (!driver) throw UserError(gpkg.string() + ": this GDAL cannot write GeoPackages; install one with SQLite");
     AtomicFile file(gpkg);
     const gdal::Messages messages;
     const WithoutDate same_bytes;
-    const std::vector<FieldOfLayer> fields = fields_of(polygons);
     gdal::Dataset dataset(driver->Create(file.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    OGRLayer* made = dataset ? make_layer(*dataset, layer, crs_wkt, fields) : nullptr;
-    if (!made || dataset->StartTransaction() != OGRERR_NONE) refuse(gpkg, messages);
-    if (!fill(*made, fields, polygons) || dataset->CommitTransaction() != OGRERR_NONE) refuse(gpkg, messages);
+    if (!dataset) refuse(gpkg, messages);
+    for (const ShapeLayer& layer : layers) {
+        if (layer.shapes.empty()) continue;
+        const std::vector<FieldOfLayer> fields = fields_of(layer.shapes);
+        OGRLayer* made = make_layer(*dataset, layer, crs_wkt, fields);
+        if (!made || dataset->StartTransaction() != OGRERR_NONE) refuse(gpkg, messages);
+        if (!fill(*made, fields, layer.shapes) || dataset->CommitTransaction() != OGRERR_NONE) refuse(gpkg, messages);
+    }
     dataset.reset();
     if (messages.failed()) refuse(gpkg, messages);
     file.commit();

@@ -1,5 +1,6 @@
 #pragma once
-// Polygons with attributes, as files of a GIS have them.
+// Shapes with attributes, as files of a GIS have them.
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -23,9 +24,25 @@ struct AttributedPolygon {
 std::vector<AttributedPolygon> read_attributed_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
                                                         std::vector<std::string>& log);
 
-/// A GeoPackage of one layer, the same bytes for the same content. An attribute has the type that holds it in all features;
-/// names that differ in case only are one. A number that is not finite is left out. UserError when it cannot be written.
-void write_attributed_polygons(const std::filesystem::path& gpkg, const std::string& layer, const std::string& crs_wkt,
-                               const std::vector<AttributedPolygon>& polygons);
+/// A polygon, a line or a point of the map with what is known of it.
+struct AttributedShape {
+    std::variant<Polygon, Polyline, Vec2> shape;
+    std::vector<std::pair<std::string, Attribute>> attributes;
+};
+
+/// Shapes of one kind.
+struct ShapeLayer {
+    std::string name;
+    std::vector<AttributedShape> shapes;
+};
+
+/// Outlines, holes kept, of the nodes' pixels that `inside` marks, largest first, each with its area_m2. Pixels that touch
+/// only at a corner belong to different ones.
+std::vector<AttributedShape> pixel_outlines(const GridGeometry& grid, std::vector<std::uint8_t> inside);
+
+/// A GeoPackage, the same bytes for the same content; layers without shapes are left out. An attribute has the type that
+/// holds it in all features; names that differ in case only are one. A number that is not finite is left out. UserError when
+/// it cannot be written.
+void write_layers(const std::filesystem::path& gpkg, const std::string& crs_wkt, const std::vector<ShapeLayer>& layers);
 
 }  // namespace frana

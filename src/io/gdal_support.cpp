@@ -81,6 +81,13 @@ Dataset warp(const std::string& target, GDALDataset& source, const std::vector<s
     return Dataset(GDALDataset::FromHandle(GDALWarp(target.c_str(), nullptr, 1, sources, options.get(), &misuse)));
 }
 
+std::string taken_from_memory(const std::string& held) {
+    vsi_l_offset length = 0;
+    const std::unique_ptr<GByte, decltype(&VSIFree)> bytes(VSIGetMemFileBuffer(held.c_str(), &length, TRUE), VSIFree);
+    return bytes ? std::string(reinterpret_cast<const char*>(bytes.get()), static_cast<std::size_t>(length))
+                 : std::string();
+}
+
 std::string shell(const std::string& text) {
     const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:,=@%";
     if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;

@@ -59,6 +59,34 @@ void place(GDALDataset& dataset, const Raster& raster) {
     dataset.SetSpatialRef(&crs);
 }
 
+/// Georeference, words and values of a raster of one band.
+bool fill(GDALDataset& dataset, const Raster& raster, std::vector<float> values, const std::string& unit,
+          const std::string& description, const FileTags& tags) {
+    place(dataset, raster);
+    for (const auto& [name, text] : tags) dataset.SetMetadataItem(name.c_str(), text.c_str());
+    GDALRasterBand* band = dataset.GetRasterBand(1);
+    band->SetNoDataValue(nodata);
+    band->SetUnitType(unit.c_str());
+    band->SetDescription(description.c_str());
+    const int nx = dataset.GetRasterXSize(), ny = dataset.GetRasterYSize();
+    return band->RasterIO(GF_Write, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float32, 0, 0, nullptr) == CE_None;
+}
+
+/// The bytes of a cloud-optimised copy. It is made in memory: GDAL's passing files would stay in the folder when the
+/// process dies.
+std::string optimised(GDALDataset& dataset, const std::filesystem::path& target, const gdal::Messages& messages) {
+    const std::string held = fmt::format("/vsimem/frana_{}", target.filename().string());
+    CPLStringList options;
+    for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=YES", "OVERVIEW_COMPRESS=DEFLATE",
+                               "OVERVIEW_PREDICTOR=YES", "OVERVIEW_RESAMPLING=AVERAGE", "BIGTIFF=IF_SAFER"})
+        options.AddString(option);
+    gdal::Dataset copy(driver("COG").CreateCopy(held.c_str(), &dataset, FALSE, options.List(), nullptr, nullptr));
+    copy.reset();  // whole from here on
+    std::string bytes = gdal::taken_from_memory(held);
+    if (bytes.empty() || messages.failed()) refuse_write(target, messages);
+    return bytes;
+}
+
 /// The raster's CRS with the code of an authority, which is the only way GeoJSON can name it; empty without
 /// one.
 OGRSpatialReference coded_crs(const std::string& wkt) {
@@ -127,23 +155,24 @@ std::string class_names_xml(const std::vector<RasterClass>& classes) {
 }  // namespace
 
 void write_geotiff(const std::filesystem::path& target, const Raster& raster, const std::string& unit,
-                   const std::string& description) {
+                   const std::string& description, const FileTags& tags) {
     std::vector<float> values = file_values(target, raster);
     const int nx = int(raster.geometry.nx), ny = int(raster.geometry.ny);
-    const char* const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER", nullptr};
-    AtomicFile file(target);
     const gdal::Messages messages;
+    if (std::max(raster.geometry.nx, raster.geometry.ny) > kPlainPixels) {  // the driver only copies
+        const gdal::Dataset dataset(driver("MEM").Create("", nx, ny, 1, GDT_Float32, nullptr));
+        if (!dataset || !fill(*dataset, raster, std::move(values), unit, description, tags))
+            refuse_write(target, messages);
+        return write_text(target, optimised(*dataset, target, messages));
+    }
+    const char* const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", nullptr};
+    AtomicFile file(target);
     gdal::Dataset dataset(
         driver("GTiff").Create(file.path().c_str(), nx, ny, 1, GDT_Float32, const_cast<char**>(options)));
     if (!dataset) refuse_write(target, messages);
-    place(*dataset, raster);
-    GDALRasterBand* band = dataset->GetRasterBand(1);
-    band->SetNoDataValue(nodata);
-    band->SetUnitType(unit.c_str());
-    band->SetDescription(description.c_str());
-    const CPLErr written = band->RasterIO(GF_Write, 0, 0, nx, ny, values.data(), nx, ny, GDT_Float32, 0, 0, nullptr);
+    const bool written = fill(*dataset, raster, std::move(values), unit, description, tags);
     dataset.reset();  // flushes; a full disk shows here
-    if (written != CE_None || messages.failed()) refuse_write(target, messages);
+    if (!written || messages.failed()) refuse_write(target, messages);
     file.commit();
 }
 

@@ -11,11 +11,18 @@
 
 namespace frana {
 
+/// What a file says of where it comes from, by GDAL's names: TIFFTAG_SOFTWARE, TIFFTAG_DOCUMENTNAME, ... Those that TIFF
+/// does not know stand in GDAL's own tag.
+using FileTags = std::map<std::string, std::string>;
+
 /// GeoTIFF of one float32 band on the pixels of `raster` (north row first, tiled, DEFLATE with predictor 3),
-/// CRS, nodata -9999 for NaN. `unit` ("m", "m/s", "Pa", "s") and `description` become the band's. Throws
-/// NumericsError for a value that is infinite or too large for float32, UserError when the disk refuses.
+/// CRS, nodata -9999 for NaN. `unit` ("m", "m/s", "Pa", "s") and `description` become the band's. One with more than
+/// kPlainPixels pixels along a side is cloud-optimised (COG): it has overviews, means of the pixels below them. The same bytes for
+/// the same content: no date but that of `tags`. Throws NumericsError for a value that is infinite or too large for
+/// float32, UserError when the disk refuses.
+constexpr Index kPlainPixels = 512;
 void write_geotiff(const std::filesystem::path& target, const Raster& raster, const std::string& unit,
-                   const std::string& description);
+                   const std::string& description, const FileTags& tags = {});
 
 /// A class of a raster of classes.
 struct RasterClass {

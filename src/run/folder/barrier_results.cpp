@@ -7,7 +7,6 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "io/gdal_features.h"
 #include "run/folder/barrier_hits.h"
 #include "scene/case_file.h"
 
@@ -69,12 +68,12 @@ std::vector<BarrierSource> barrier_sources(const CaseFile& file) {
     return sources;
 }
 
-void write_barrier_results(const std::filesystem::path& gpkg, const std::vector<BarrierSource>& sources,
-                           const std::vector<BarrierSummary>& summaries, const std::vector<ProductRaster>& rasters) {
-    if (sources.empty() || rasters.empty()) return;
+ShapeLayer barrier_layer(const std::vector<BarrierSource>& sources, const std::vector<BarrierSummary>& summaries,
+                         const std::vector<ProductRaster>& rasters) {
+    ShapeLayer layer{"barriers", {}};
+    if (sources.empty() || rasters.empty()) return layer;
     const std::string& crs = rasters.front().raster.crs_wkt;
     const std::unordered_map<std::string, double> forces = forces_of(summaries);
-    std::vector<AttributedPolygon> all;
     for (const BarrierSource& source : sources) {
         std::vector<std::string> said_by_the_scene;
         std::size_t n = 0;
@@ -83,10 +82,10 @@ void write_barrier_results(const std::filesystem::path& gpkg, const std::vector<
             const auto known = forces.find(name);
             const double force = known == forces.end() ? BarrierHit::unknown : known->second;
             add_results(polygon, results_on(polygon.polygon, name, force, rasters));
-            all.push_back(std::move(polygon));
+            layer.shapes.push_back({std::move(polygon.polygon), std::move(polygon.attributes)});
         }
     }
-    write_attributed_polygons(gpkg, "barriers", crs, all);
+    return layer;
 }
 
 }  // namespace frana

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/gdal_features.h"
 #include "observe/barriers.h"
 #include "run/folder/products.h"
 
@@ -21,13 +22,12 @@ struct BarrierSource {
 /// Those of the case, in its order.
 std::vector<BarrierSource> barrier_sources(const CaseFile& file);
 
-/// A GeoPackage with layer "barriers": every polygon of every outline with the attributes of its feature, and
+/// Layer "barriers": every polygon of every outline with the attributes of its feature, and
 /// - barrier: its name; peak_force_N: the largest horizontal force on the barrier, as in the report, where forces are known;
 /// - peak_pressure_Pa (density times speed squared), peak_depth_m: the largest, and hit_s: the earliest arrival, at its faces;
 ///   pressure_north_Pa, depth_north_m, ... of each side; area_m2 of the polygon. See hit_on().
-/// An attribute of the same name gets "_input" at its end. No file without sources. UserError when one cannot be read, or
-/// the file cannot be written.
-void write_barrier_results(const std::filesystem::path& gpkg, const std::vector<BarrierSource>& sources,
-                           const std::vector<BarrierSummary>& summaries, const std::vector<ProductRaster>& rasters);
+/// An attribute of the same name gets "_input" at its end. No shapes without sources. UserError when one cannot be read.
+ShapeLayer barrier_layer(const std::vector<BarrierSource>& sources, const std::vector<BarrierSummary>& summaries,
+                         const std::vector<ProductRaster>& rasters);
 
 }  // namespace frana

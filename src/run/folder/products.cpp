@@ -1,10 +1,17 @@
 #include "run/folder/products.h"
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
+#include "base/version.h"
 #include "io/gdal_reader.h"
 #include "io/gdal_writer.h"
 #include "scene/parameters.h"
@@ -20,6 +27,7 @@ struct ProductRule {
     int component;
     const char* unit;
     const char* description;
+    bool of_flow = true;  ///< zero where the flow never came
 };
 
 constexpr ProductRule rules[] = {
@@ -27,7 +35,7 @@ constexpr ProductRule rules[] = {
     {"peak_speed", "peak_speed", 0, "m/s", "largest speed during the run"},
     {"peak_pressure", "peak_pressure", 0, "Pa", "largest pressure on the bed during the run"},
     {"peak_dynamic_pressure", "peak_dynamic_pressure", 0, "Pa", "largest density * speed^2 during the run"},
-    {"arrival_time", "arrival_time", 0, "s", "time when the flow first arrived"},
+    {"arrival_time", "arrival_time", 0, "s", "time when the flow first arrived", false},
     {"final_depth", "depth", 0, "m", "depth at the end of the run, along gravity"},
     {"final_velocity_x", "velocity", 0, "m/s", "velocity to the east at the end of the run"},
     {"final_velocity_y", "velocity", 1, "m/s", "velocity to the north at the end of the run"},
@@ -35,8 +43,8 @@ constexpr ProductRule rules[] = {
     {"deposited_depth", "deposited_depth", 0, "m",
      "depth of what the flow left on the bed and lies there at the end, along gravity"},
     {"bed_change", "bed_change", 0, "m", "deposited depth less eroded depth"},
-    {"final_elevation", "elevation", 0, "m", "elevation of the bed at the end of the run"},
-    {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies"},
+    {"final_elevation", "elevation", 0, "m", "elevation of the bed at the end of the run", false},
+    {"final_damage", "damage", 0, "1", "damage at the end of the run: 0 whole, 1 grains; where material lies", false},
     {"final_water_depth", "water_depth", 0, "m", "depth of free water at the end of the run, along gravity"},
 };
 
@@ -73,6 +81,37 @@ bool needed(const std::string& name) {
 bool is_of(const Frame& last, const ProductRule& rule) {
     if (std::string(rule.name) == "final_elevation") return last.node("bed_change") != nullptr;
     return last.node(rule.field) != nullptr || needed(rule.name);
+}
+
+constexpr const char* kElevation = "elevation";
+
+bool is_of_flow(const std::string& name) {
+    const auto* rule = std::find_if(std::begin(rules), std::end(rules), [&](const auto& r) { return name == r.name; });
+    return rule != std::end(rules) && rule->of_flow;
+}
+
+/// Nodata where the flow never came and the value says nothing.
+Raster without_untouched(const Raster& raster, const Raster& peak_depth) {
+    Raster left = raster;
+    for (std::size_t k = 0; k < left.values.size(); ++k)
+        if (left.values[k] == 0.0 && !(peak_depth.values[k] > 0.0)) left.values[k] = Raster::nodata;
+    return left;
+}
+
+/// The other way. The terrain has the same pixels.
+void with_untouched(Raster& raster, const Raster& elevation) {
+    if (!(raster.geometry == elevation.geometry)) return;
+    for (std::size_t k = 0; k < raster.values.size(); ++k)
+        if (std::isnan(raster.values[k]) && !std::isnan(elevation.values[k])) raster.values[k] = 0.0;
+}
+
+FileTags tags_of(const std::string& title) {
+    FileTags tags{{"TIFFTAG_SOFTWARE", std::string("frana ") + FRANA_VERSION}, {"TIFFTAG_DOCUMENTNAME", title}};
+    const char* const epoch = std::getenv("SOURCE_DATE_EPOCH");  // reproducible-builds.org
+    if (epoch == nullptr) return tags;
+    const std::time_t seconds = std::strtoll(epoch, nullptr, 10);
+    tags["TIFFTAG_DATETIME"] = fmt::format("{:%Y:%m:%d %H:%M:%S}", fmt::gmtime(seconds));
+    return tags;
 }
 
 fs::path raster_file(const fs::path& run_dir, const std::string& name) { return run_dir / "rasters" / (name + ".tif"); }
@@ -120,10 +159,20 @@ double area_deeper(const Raster& depth, double limit) {
     return static_cast<double>(deeper) * depth.geometry.cell * depth.geometry.cell;
 }
 
-void write_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& rasters) {
+ProductRaster elevation_raster(const Raster& bed) {
+    return {kElevation, "m", "elevation of the bed at the start of the run", bed};
+}
+
+void write_rasters(const fs::path& run_dir, const std::vector<ProductRaster>& rasters, const std::string& title) {
     fs::create_directories(run_dir / "rasters");
-    for (const ProductRaster& product : rasters)
-        write_geotiff(raster_file(run_dir, product.name), product.raster, product.unit, product.description);
+    const FileTags tags = tags_of(title);
+    const ProductRaster* peak = find_product(rasters, "peak_depth");
+    for (const ProductRaster& product : rasters) {
+        const bool cut = peak != nullptr && is_of_flow(product.name);
+        write_geotiff(raster_file(run_dir, product.name),
+                      cut ? without_untouched(product.raster, peak->raster) : product.raster, product.unit,
+                      product.description, tags);
+    }
 }
 
 std::vector<ProductRaster> read_rasters(const fs::path& run_dir) {
@@ -136,7 +185,14 @@ std::vector<ProductRaster> read_rasters(const fs::path& run_dir) {
         std::vector<std::string> log;
         rasters.push_back({name, unit, description, reader.read_raster(file, {-far, -far, far, far}, "", log)});
     };
+    read(kElevation, "", "");
+    const std::optional<Raster> elevation =
+        rasters.empty() ? std::nullopt : std::optional<Raster>(std::move(rasters.front().raster));
+    rasters.clear();
     for (const ProductRule& rule : rules) read(rule.name, rule.unit, rule.description);
+    if (elevation)
+        for (ProductRaster& product : rasters)
+            if (is_of_flow(product.name)) with_untouched(product.raster, *elevation);
     for (const Parameter& key : parameters())
         if (is_friction(key.name()) && key.table() == "material.bed") read(key.name(), key.unit, key.meaning);
     return rasters;

@@ -18,6 +18,10 @@ struct ProductRaster {
     Raster raster;            ///< NaN: no terrain, or never reached
 };
 
+/// The run's bed as `elevation`: rasters show the flow on it, and it tells where they know of no flow from where there is no
+/// terrain.
+ProductRaster elevation_raster(const Raster& bed);
+
 /// Keeps the rasters of the last frame; they are written once the run is over (write_products).
 class LastFields : public Observer {
 public:
@@ -49,10 +53,14 @@ const ProductRaster* find_product(const std::vector<ProductRaster>& rasters, con
 /// Area of a depth raster that is deeper than `limit` [m] [m2].
 double area_deeper(const Raster& depth, double limit);
 
-/// Writes rasters/<name>.tif. Throws UserError.
-void write_rasters(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters);
+/// Writes rasters/<name>.tif. Zero is nodata there where the flow never came: peaks, depths, velocities and changes of the
+/// bed outside of peak_depth above 0. Zero inside of it stays. Each has `title`, the software and, when the environment
+/// has SOURCE_DATE_EPOCH, that date: any other would change the bytes of a run that is resumed. Throws UserError.
+void write_rasters(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters,
+                   const std::string& title);
 
-/// Reads rasters/<name>.tif back, those that are there. Throws UserError when a file cannot be read.
+/// Reads rasters/<name>.tif back, those that are there but `elevation`: zero again where the flow never came and there is
+/// terrain. Throws UserError when a file cannot be read.
 std::vector<ProductRaster> read_rasters(const std::filesystem::path& run_dir);
 
 /// Writes footprint.geojson: where peak_depth exceeds `limit` [m]. Throws UserError.

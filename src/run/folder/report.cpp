@@ -189,7 +189,10 @@ std::string files(const RunRecord& r, const std::vector<Product>& products) {
             "`terrain.vti` with Warp By Scalar (elevation) is the ground.\n\n";
     if (is_there(products, "run.xdmf")) text += "Other readers of XDMF: open `run.xdmf`.\n\n";
     if (is_there(products, "footprint.geojson"))
-        text += fmt::format("QGIS: drag `rasters/*.tif` and `footprint.geojson` into the map; {}.\n\n",
+        text += fmt::format("QGIS: {}; {}.\n\n",
+                            is_there(products, "run.qgz")
+                                ? "open `run.qgz`, or drag single files of `rasters/` and `results.gpkg` into a map"
+                                : "drag `footprint.geojson` into the map",
                             r.has_crs ? "they carry the coordinate system of the elevation model"
                                       : "the elevation model named no coordinate system, so neither do they");
     text += "| File | What |\n|---|---|\n";
@@ -341,9 +344,7 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
     text += fmt::format("  report     {}\n", place("report.md"));
     text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());
     text += fmt::format("  ParaView   {}\n", place("grid.pvd"));
-    text +=
-        fmt::format("  QGIS       {}\n", is_there(products, "rasters/peak_depth.tif") ? (run_dir / "rasters").string()
-                                                                                      : place("footprint.geojson"));
+    text += fmt::format("  QGIS       {}\n", place(is_there(products, "run.qgz") ? "run.qgz" : "footprint.geojson"));
     text += fmt::format("  remarks    {}\n", r.warnings.empty()
                                                  ? std::string("none")
                                                  : fmt::format("{}, listed in the report", r.warnings.size()));

@@ -28,6 +28,9 @@ static std::string friction_names() {
 }
 
 const std::vector<ProductKind>& product_kinds() {
+    static const std::string raster_names =
+        "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]|elevation|damage|water_"
+        "depth)|(eroded|deposited)_depth|bed_change|elevation)";
     static const std::vector<ProductKind> kinds = {
         {"", "report\\.md", "this page", false},
         {"", "case\\.toml", "the case as given", false},
@@ -46,14 +49,15 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "survey_(areas|outlines)\\.vtp", "the survey on the terrain, for ParaView", false},
         {"", "terrain\\.vti", "bed elevation, slope and hillshade", false},
         {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
-        {"rasters",
-         "(peak_(depth|speed|pressure|dynamic_pressure)|arrival_time|final_(depth|velocity_[xy]|elevation|damage|water_"
-         "depth)|(eroded|deposited)_depth|bed_change)\\.tif",
-         "GeoTIFF", false},
+        {"rasters", raster_names + "\\.tif", "GeoTIFF", false},
         {"rasters", friction_names() + "\\.tif", "GeoTIFF of the friction as it was used", false},
+        {"rasters", "(" + raster_names + "|" + friction_names() + ")\\.qml",
+         "styles of the rasters, which QGIS takes up with them", true},
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
         {"", "barriers\\.csv", "what hit each barrier, when, and from which side", false},
-        {"", "results\\.gpkg", "barriers with the attributes of their features and what hit them, for a GIS", false},
+        {"", "run\\.qgz", "project of QGIS: open it to see the run on its terrain", false},
+        {"", "results\\.gpkg",
+         "footprint, outlines, release, barriers, gauges, profiles, sections with their peaks, for a GIS", false},
         {"profiles", "[^.].*\\.csv", "the flow along a line, at every output", false},
         {"gauges", "[^.].*\\.csv", "the flow at a point, after every step", false},
         {"sections", "[^.].*\\.csv", "discharge through a line and the volume that passed it, after every step", false},
@@ -163,7 +167,7 @@ bool grows(const ProductKind& kind) {
     for (const char* folder : {"particles", "grid", "profiles", "gauges", "sections", "barriers", "insitu", "insitu/*"})
         if (kind.folder == folder) return true;
     static const std::regex growing(
-        "(history|particles|grid|profiles|barrier(s\\\\\\.p|_)|run|terrain|checkpoint|case|resolved).*");
+        "(history|particles|grid|profiles|barrier(s\\\\\\.p|_)|run\\\\\\.(json|\\()|terrain|checkpoint|case|resolved).*");
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);
 }
 

@@ -20,6 +20,7 @@
 #include "observe/sections.h"
 #include "run/folder/comparison.h"
 #include "run/folder/cutoff.h"
+#include "run/folder/gis_files.h"
 #include "run/folder/run_3d.h"
 #include "run/folder/run_figures.h"
 #include "run/folder/run_film.h"
@@ -113,17 +114,6 @@ void leave_barrier_table(const Scene& scene, const fs::path& run_dir, const std:
         write_barrier_table(run_dir / "barriers.csv", record.barriers, record.barrier_hits);
     } catch (const UserError& error) {
         record.warnings.push_back(fmt::format("the table of the barriers was not written: {}", error.what()));
-    }
-}
-
-/// results.gpkg, when the case has barriers with outlines. Trouble is a warning here as well.
-void leave_barrier_results(const Scene& scene, const fs::path& run_dir, const std::vector<ProductRaster>& rasters,
-                           RunRecord& record) {
-    if (!scene.output.geotiff) return;
-    try {
-        write_barrier_results(run_dir / "results.gpkg", record.barrier_sources, record.barriers, rasters);
-    } catch (const UserError& error) {
-        record.warnings.push_back(fmt::format("the barriers were not written for a GIS: {}", error.what()));
     }
 }
 
@@ -267,14 +257,15 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     note_results(record, rasters);
     for (ProductRaster& friction : friction_rasters(scene)) rasters.push_back(std::move(friction));
     const Raster bed = shown_bed(scene, simulation, rasters);
+    if (!rasters.empty() && bed.geometry == rasters.front().raster.geometry) rasters.push_back(elevation_raster(bed));
     if (scene.output.vtk && scene.wider) write_terrain(run_dir, bed);
 
     timed(record.summary, "rasters", [&] {
-        if (scene.output.geotiff) write_rasters(run_dir, rasters);
+        if (scene.output.geotiff) write_rasters(run_dir, rasters, record.title);
         if (const ProductRaster* peak = find_product(rasters, "peak_depth"))
             write_outline(run_dir, peak->raster, scene.output.footprint_depth);
         leave_barrier_table(scene, run_dir, rasters, record);
-        leave_barrier_results(scene, run_dir, rasters, record);
+        leave_gis_files(scene, run_dir, rasters, record);
     });
     timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {

@@ -1,0 +1,27 @@
+#pragma once
+// How QGIS is to show what a run leaves: the colours of the pictures, ranges, units. QGIS 3.22's XML.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/colour.h"
+#include "run/folder/products.h"
+
+namespace frana {
+
+/// Text as XML has it.
+std::string xml(const std::string& text);
+
+/// The `<pipe>` of a raster: elevations as hillshade; other values in steps from zero to a round number that holds 99.5 % of
+/// the pixels where the flow was deeper than `limit` [m] (for friction: of all), signed ones to either side of grey. Depths below `limit`
+/// fade out. Labels have units, kPa for Pa.
+std::string raster_pipe(const ProductRaster& product, const ProductRaster* peak_depth, double limit);
+
+/// The `<renderer-v2>` of shapes: lines, outlines of polygons, or points, of one colour.
+enum class Shapes { lines, outlines, points };
+std::string shape_renderer(Shapes shapes, const Colour& colour, double millimetres, bool dashed = false);
+
+/// rasters/NAME.qml beside each raster; QGIS takes it up with the raster. Throws UserError.
+void write_styles(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters, double limit);
+
+}  // namespace frana
