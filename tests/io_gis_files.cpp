@@ -303,3 +303,92 @@ TEST_CASE("A raster of more than 512 pixels is cloud-optimised, with the same va
     CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 2);  // nothing beside them
     CHECK_THROWS_WITH(write_geotiff(folder.path() / "none" / "a.tif", raster, "m", ""), Contains("cannot be written"));
 }
+
+namespace {
+
+/// series.nc as GDAL's multidimensional reader has it.
+struct Series {
+    GDALDatasetUniquePtr dataset;
+    std::shared_ptr<GDALGroup> root;
+
+    explicit Series(const fs::path& file) {
+        GDALAllRegister();
+        dataset.reset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
+        REQUIRE(dataset);
+        root = dataset->GetRootGroup();
+        ++read_back.files;
+    }
+    template <class T>
+    std::vector<T> values(const char* name, GDALDataType type) const {
+        const auto array = root->OpenMDArray(name);
+        INFO(name);
+        REQUIRE(array);
+        std::vector<GUInt64> start;
+        std::vector<std::size_t> count;
+        std::size_t all = 1;
+        for (const auto& dimension : array->GetDimensions()) {
+            start.push_back(0);
+            count.push_back(static_cast<std::size_t>(dimension->GetSize()));
+            all *= count.back();
+        }
+        std::vector<T> read(all);
+        REQUIRE(
+            array->Read(start.data(), count.data(), nullptr, nullptr, GDALExtendedDataType::Create(type), read.data()));
+        read_back.array(static_cast<std::int64_t>(all));
+        return read;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("series.nc has depth, speed and velocity at every output, by CF's names", "[gis][netcdf]") {
+    GDALAllRegister();
+    if (GetGDALDriverManager()->GetDriverByName("netCDF") == nullptr) {
+        WARN("not tested: this GDAL has no netCDF");
+        return;
+    }
+    const Slope slope;
+    const std::string formats = R"(--set 'output.formats=["geotiff","netcdf"]')";
+    const fs::path run = slope.run("run", formats);
+    const Series series(run / "series.nc");
+    CHECK(std::string(series.root->GetAttribute("Conventions")->ReadAsString()) == "CF-1.8");
+    CHECK(std::string(series.root->GetAttribute("title")->ReadAsString()) == "Slope & <flow>");
+    CHECK(series.values<double>("time", GDT_Float64) == std::vector<double>{0, 1, 2, 3, 4});
+    const auto x = series.values<double>("x", GDT_Float64), y = series.values<double>("y", GDT_Float64);
+    CHECK((x.size() == 30 && x.front() == kEast + 2.5 && x.back() == kEast + 147.5));
+    CHECK((y.size() == 20 && y.front() == kNorth + 2.5 && y.back() == kNorth + 97.5));  // the south row first
+    const auto array = series.root->OpenMDArray("depth");
+    REQUIRE(array);
+    CHECK(array->GetUnit() == "m");
+    CHECK(series.root->OpenMDArray("speed")->GetUnit() == "m s-1");
+    CHECK_THAT(array->GetAttribute("long_name")->ReadAsString(), Contains("depth"));
+    CHECK(series.root->OpenMDArray("time")->GetAttribute("standard_name")->ReadAsString() == std::string("time"));
+    REQUIRE(array->GetSpatialRef());
+    CHECK(std::string(array->GetSpatialRef()->GetAuthorityCode(nullptr)) == "32632");
+    // The last output is the rasters' final state; the first has the release.
+    const auto depth = series.values<float>("depth", GDT_Float32),
+               east = series.values<float>("velocity_x", GDT_Float32);
+    const Band last(run / "rasters/final_depth.tif"), velocity(run / "rasters/final_velocity_x.tif");
+    int wet = 0;
+    float first = 0.0F;
+    for (std::size_t j = 0; j < 20; ++j)
+        for (std::size_t i = 0; i < 30; ++i) {
+            const std::size_t ours = (4 * 20 + j) * 30 + i, theirs = (19 - j) * 30 + i;
+            const bool lies = last.values[theirs] > 0.0F;
+            CHECK(depth[ours] == (lies ? last.values[theirs] : -9999.0F));
+            CHECK(east[ours] == (lies ? velocity.values[theirs] : -9999.0F));
+            wet += lies;
+            first = std::max(first, depth[j * 30 + i]);
+        }
+    CHECK(wet > 10);
+    CHECK(first == Approx(3.0).epsilon(0.05));  // depth of the release; nodes smear its margin
+    // Resumed, the same bytes; fields that are not asked for are left out.
+    slope.run("parts", formats + " --until 1.5");
+    slope.run("parts", formats + " --resume");
+    CHECK(text_of(slope.path() / "parts/series.nc") == text_of(run / "series.nc"));
+    const Series depths(slope.run("depth", R"(--set 'output.formats=["netcdf"]' --set 'output.fields=["depth"]')") /
+                        "series.nc");
+    CHECK(depths.root->OpenMDArray("depth"));
+    CHECK_FALSE(depths.root->OpenMDArray("speed"));
+    CHECK_FALSE(fs::exists(slope.path() / "depth/run.qgz"));
+}

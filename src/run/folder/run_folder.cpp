@@ -49,6 +49,7 @@ const std::vector<ProductKind>& product_kinds() {
         {"", "survey_(areas|outlines)\\.vtp", "the survey on the terrain, for ParaView", false},
         {"", "terrain\\.vti", "bed elevation, slope and hillshade", false},
         {"", "run\\.(xdmf|h5)", "the same series for XDMF readers", false},
+        {"", "series\\.nc", "the flow over time for readers of netCDF: QGIS, xarray, Panoply", false},
         {"rasters", raster_names + "\\.tif", "GeoTIFF", false},
         {"rasters", friction_names() + "\\.tif", "GeoTIFF of the friction as it was used", false},
         {"rasters", "(" + raster_names + "|" + friction_names() + ")\\.qml",

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "compare/deposit.h"
 #include "compare/flow_width.h"
+#include "io/netcdf_series.h"
 #include "io/xdmf_writer.h"
 #include "observe/gauges.h"
 #include "observe/history.h"
@@ -242,6 +243,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     std::vector<ProductRaster> rasters;
     Observers observers = make_observers(scene, run_dir, record.barriers, rasters);
     if (auto sections = make_sections(scene, run_dir, record.sections)) observers.push_back(std::move(sections));
+    if (record.netcdf)
+        observers.push_back(make_netcdf_writer(run_dir, record.title, scene.bed.crs_wkt, scene.output.fields));
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
     for (auto& observer : more) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);

@@ -150,6 +150,8 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.case_file = scene.case_file.string();
     record.survey_files = survey_files(file);
     record.barrier_sources = barrier_sources(file);
+    const std::vector<std::string> formats = file.words("output.formats");
+    record.netcdf = std::find(formats.begin(), formats.end(), "netcdf") != formats.end();
     record.given = given_keys(file);
     record.caption = caption_of(scene, record.given);
     record.grid = scene.wider ? scene.wider->grid : scene.bed.geometry;

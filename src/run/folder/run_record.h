@@ -44,6 +44,7 @@ struct RunRecord {
     double release_volume = 0.0;                                     ///< [m^3]
     double end = 0.0;                                                ///< planned [s]
     double whole_end = 0.0;                                          ///< of the case, without --until [s]
+    bool netcdf = false;                                             ///< the case asks for series.nc
     bool pictures_cut_off = false;                                   ///< an end was asked for while they were drawn
     double footprint_depth = 0.1;                                    ///< [m]
     double footprint_area = 0.0;                                     ///< ever deeper than footprint_depth [m2]

@@ -1,0 +1,21 @@
+#pragma once
+// The flow through time as one file that xarray, Panoply, QGIS and ParaView open.
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "observe/observer.h"
+
+namespace frana {
+
+/// Observer that writes series.nc in `run_dir` at the end of the run: netCDF-4 by the conventions CF-1.8, at every output depth
+/// [m], speed, velocity_x and velocity_y [m s-1] as float32 with shape (time, y, x), compressed; the south row first, -9999
+/// where nothing lies. Of these only the ones whose field (depth, speed, velocity) is in `fields`; empty: all. Time is in
+/// seconds since 2000-01-01, which stands for the start of the run. `elevation` (y, x) is the bed of the last frame.
+/// Until then it keeps the values of wet nodes, four bytes each, also in the checkpoint. Throws UserError where GDAL cannot
+/// write the format or the disk refuses, NumericsError for a number that is not finite.
+std::unique_ptr<Observer> make_netcdf_writer(const std::filesystem::path& run_dir, const std::string& title,
+                                             const std::string& crs_wkt, const std::vector<std::string>& fields);
+
+}  // namespace frana
