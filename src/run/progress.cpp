@@ -91,6 +91,17 @@ void Progress::end(const Status& last, const std::string& reason) {
     stream_ << std::flush;
 }
 
+void Progress::pictures(std::size_t done, std::size_t all) {
+    const char* plural = all == 1 ? "" : "s";
+    if (style_ == Style::json)
+        stream_ << fmt::format("{{\"event\": \"pictures\", \"done\": {}, \"all\": {}}}", done, all) << std::endl;
+    if (style_ == Style::lines && done == 0)
+        stream_ << fmt::format("drawing {} picture{}\n", all, plural) << std::flush;
+    if (style_ == Style::bar)
+        stream_ << fmt::format("\r{} of {} picture{} drawn\033[K{}", done, all, plural, done == all ? "\n" : "")
+                << std::flush;
+}
+
 std::string Progress::bar(const Status& now, double wall) const {
     constexpr std::size_t cells = 20;
     const double span = end_time_ - start_time_;

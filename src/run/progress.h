@@ -22,6 +22,8 @@ public:
     /// After every frame that was written.
     void output(Index number, const Status& now);
     void end(const Status& last, const std::string& reason);
+    /// After the end, while figures are drawn: so many of them are done. Once with none.
+    void pictures(std::size_t done, std::size_t all);
 
     /// Bar when standard output is a terminal, lines when it is not.
     static Style fitting(bool quiet);

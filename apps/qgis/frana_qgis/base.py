@@ -82,6 +82,8 @@ class FranaAlgorithm(QgsProcessingAlgorithm):
             elif event["event"] == "progress":
                 feedback.setProgress(100.0 * event["share"])
                 feedback.setProgressText(progress_text(event))
+            elif event["event"] == "pictures":
+                feedback.setProgressText(f"{event['done']} of {event['all']} pictures drawn")
             elif event["event"] == "scene":
                 feedback.pushInfo(scene_text(event))
 

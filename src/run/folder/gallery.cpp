@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <mutex>
 #include <thread>
 
 #include "run/folder/cutoff.h"
@@ -26,11 +27,23 @@ void Gallery::make(Wanted& wanted) const {
     if (!wanted.drawn) wanted.warning = fmt::format("{} was not drawn: {}", wanted.figure.path, why_not);
 }
 
-std::vector<DrawnFigure> Gallery::draw(int threads, std::vector<std::string>& warnings) {
+std::size_t Gallery::pictures() const {
+    return static_cast<std::size_t>(
+        std::count_if(wanted_.begin(), wanted_.end(), [](const Wanted& wanted) { return wanted.draw != nullptr; }));
+}
+
+std::vector<DrawnFigure> Gallery::draw(int threads, std::vector<std::string>& warnings, const Tell& tell) {
     std::atomic<std::size_t> next{0};
+    std::mutex telling;
+    std::size_t done = 0;
     const auto work = [&] {
-        for (std::size_t k = next++; k < wanted_.size(); k = next++) make(wanted_[k]);
+        for (std::size_t k = next++; k < wanted_.size(); k = next++) {
+            make(wanted_[k]);
+            const std::lock_guard<std::mutex> lock(telling);
+            if (tell && wanted_[k].draw) tell(++done, pictures());
+        }
     };
+    if (tell && pictures() > 0) tell(0, pictures());
     std::vector<std::thread> others;
     for (std::size_t n = 1; n < std::min(static_cast<std::size_t>(threads), wanted_.size()); ++n) try {
             others.emplace_back(work);

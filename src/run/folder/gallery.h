@@ -26,7 +26,9 @@ public:
 
     /// Draws all on so many threads. Returns what was made, in the order in which it was added. Once an end was asked for
     /// (run/folder/cutoff.h) nothing more is begun.
-    std::vector<DrawnFigure> draw(int threads, std::vector<std::string>& warnings);
+    /// `tell` hears how many are done, of how many; one thread at a time, with none done first.
+    using Tell = std::function<void(std::size_t done, std::size_t all)>;
+    std::vector<DrawnFigure> draw(int threads, std::vector<std::string>& warnings, const Tell& tell = {});
 
 private:
     struct Wanted {
@@ -36,6 +38,7 @@ private:
         bool drawn;
     };
     void make(Wanted& wanted) const;
+    std::size_t pictures() const;
 
     std::filesystem::path run_dir_;
     std::vector<Wanted> wanted_;

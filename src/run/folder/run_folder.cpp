@@ -168,7 +168,8 @@ bool grows(const ProductKind& kind) {
     for (const char* folder : {"particles", "grid", "profiles", "gauges", "sections", "barriers", "insitu", "insitu/*"})
         if (kind.folder == folder) return true;
     static const std::regex growing(
-        "(history|particles|grid|profiles|barrier(s\\\\\\.p|_)|run\\\\\\.(json|\\()|terrain|checkpoint|case|resolved).*");
+        "(history|particles|grid|profiles|barrier(s\\\\\\.p|_)|run\\\\\\.(json|\\()|terrain|checkpoint|case|resolved)."
+        "*");
     return kind.folder.empty() && std::regex_match(kind.pattern, growing);
 }
 

@@ -178,7 +178,8 @@ void note_cutoff(RunRecord& record, const fs::path& run_dir) {
 
 /// The pictures that the case asks for. An end that is asked for meanwhile leaves a whole run with fewer of them; where the
 /// run does not own the signals they go on to whoever does.
-void draw(const FigureSource& source, const Output& output, const Interrupt& interrupt, RunRecord& record) {
+void draw(const FigureSource& source, const Output& output, const Interrupt& interrupt, Progress& progress,
+          RunRecord& record) {
     const fs::path& run_dir = source.run_dir;
     std::optional<Cutoff> cutoff;
     if (interrupt.listens())
@@ -194,7 +195,8 @@ void draw(const FigureSource& source, const Output& output, const Interrupt& int
         add_film(source, output.film, gallery);
         add_film_3d(source, output.film, gallery);
     }
-    record.figures = gallery.draw(threads_for_figures(), record.warnings);
+    record.figures = gallery.draw(threads_for_figures(), record.warnings,
+                                  [&](std::size_t done, std::size_t all) { progress.pictures(done, all); });
     if (Cutoff::asked()) note_cutoff(record, run_dir);
 }
 
@@ -273,7 +275,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {
         if (!scene.output.png && scene.output.film.empty()) return;
-        draw(figure_source(scene, bed, run_dir, record, rasters), scene.output, interrupt, record);
+        draw(figure_source(scene, bed, run_dir, record, rasters), scene.output, interrupt, progress, record);
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
     close_record(record, run_dir);
