@@ -81,9 +81,8 @@ print(frana.open('${OUT}/python/run').frames[-1].grid['depth'].max())")
   # The plugin for QGIS lies beside the program, and finds it from there.
   find_program(python NAMES python3)
   if(python)
-    call("the plugin for QGIS" ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 ${python} -c
-         "import sys; sys.path.insert(0, sys.argv[1]); import program; print(program.find())"
-         ${away}/share/frana/qgis/frana_qgis)
+    call("the plugin for QGIS" ${CMAKE_COMMAND} -E env --unset=FRANA_PROGRAM PYTHONDONTWRITEBYTECODE=1
+         PYTHONPATH=${away}/share/frana/qgis/frana_qgis ${python} -c "print(__import__('program').find())")
     if(NOT out STREQUAL "${away}/bin/frana\n")
       message(FATAL_ERROR "the plugin for QGIS found: ${out}")
     endif()

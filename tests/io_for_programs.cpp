@@ -126,6 +126,26 @@ TEST_CASE("--progress json: a run that is stopped says so, and goes on from its 
     }
 }
 
+TEST_CASE("--progress json of an ensemble counts its runs", "[cli][progress]") {
+    const PlaneCase scene;
+    frana::write_text(scene.folder() / "few.toml",
+                      "[ensemble]\ncase = \"case.toml\"\nsamples = 3\n[[ensemble.vary]]\nkey = \"release.0.depth\"\n"
+                      "range = [1.0, 2.0]\n");
+    const Outcome ran = scene.frana("ensemble few.toml --out e --threads 1 --progress json");
+    REQUIRE(ran.code == 0);
+    const std::vector<json> events = events_of(ran.out);
+    CHECK(names_of(events) == "start progress end");
+    const json& progress = last_of(events, "progress");
+    CHECK(progress["done"] == 3);
+    CHECK(progress["runs"] == 3);
+    CHECK(progress["failed"] == 0);
+    CHECK(progress["share"] == 1.0);
+    CHECK(events.back()["folder"] == fs::canonical(scene.folder() / "e").string());
+    const Outcome again = scene.frana("ensemble few.toml --out e --progress json");
+    CHECK(again.code == 2);
+    CHECK(names_of(events_of(again.out)) == "start end");
+}
+
 TEST_CASE("describe --json is the table of keys", "[cli][describe]") {
     const PlaneCase scene;
     const Outcome all = scene.frana("describe --json");

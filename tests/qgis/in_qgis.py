@@ -269,6 +269,7 @@ class FromInside(unittest.TestCase):
         self.assertEqual(len(names), len(files))
         self.assertEqual(len(QgsProject.instance().layerTreeRoot().findLayers()), len(files))
         self.assertEqual([node.itemVisibilityChecked() for node in group.findLayers()][:3], [True, True, False])
+        self.assertEqual(group.findLayers()[0].layer().renderer().symbol().symbolLayer(0).brushStyle(), 0)  # a line
         speed = group.findLayers()[2].layer()
         self.assertAlmostEqual(speed.renderer().opacity(), 0.37)
 
@@ -309,6 +310,18 @@ class FromInside(unittest.TestCase):
         self.assertTrue(os.path.exists(found["REPORT"]))
         self.assertIn("2 of 2 runs, 0 failed", self.listener.said())
 
+    def test_a_calibration_tells_the_best_values(self):
+        case = os.path.join(SOURCE, "cases/calibrate/case.toml")
+        file = os.path.join(WORK, "few.toml")
+        with open(file, "w", encoding="utf-8") as stream:
+            stream.write('[calibrate]\nsamples = 4\nrounds = 1\nsearch = "none"\n[[calibrate.vary]]\n'
+                         'key = "material.bed.mu"\nrange = [0.3, 0.4]\n'
+                         f'[[event]]\nname = "first"\ncase = "{case}"\nobjective = ["outline"]\n')
+        parameters = {"FILE": file, "OUTPUT": os.path.join(WORK, "few")}
+        best = json.loads(self.call("frana:calibrate", parameters)["BEST"])
+        self.assertTrue(0.3 <= best["material.bed.mu"] <= 0.4)
+        self.assertIn("4 of 4 runs, 0 failed", self.listener.said())
+
     # One sentence each for what cannot be read right.
 
     def test_degrees_and_no_system_are_refused_with_the_way_out(self):
@@ -348,6 +361,16 @@ class FromInside(unittest.TestCase):
         open(file, "w", encoding="utf-8").close()
         with self.assertRaisesRegex(QgsProcessingException, "OUTPUT: found .*nothing can be written"):
             self.call("frana:run", self.inputs("file/below"))
+
+    def test_an_earlier_run_stays_as_it_is(self):
+        parameters = self.inputs("earlier", END=1.0)
+        release = os.path.join(self.call("frana:run", parameters)["OUTPUT"], "input/release.gpkg")
+        made = os.path.getmtime(release)
+        with self.assertRaisesRegex(QgsProcessingException, "OUTPUT: found an earlier run in .*OVERWRITE"):
+            self.call("frana:run", parameters)
+        self.assertEqual(os.path.getmtime(release), made)
+        self.call("frana:run", {**parameters, "OVERWRITE": True})
+        self.assertGreater(os.path.getmtime(release), made)
 
     def test_a_program_that_is_too_old(self):
         old = os.path.join(WORK, "old")

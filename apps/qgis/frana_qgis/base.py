@@ -14,7 +14,10 @@ from .widgets import set_advanced
 
 
 class FranaAlgorithm(QgsProcessingAlgorithm):
-    """Subclasses say their name, title and help, and implement work(), which may raise Trouble."""
+    """
+    Subclasses say their name, title and help, and implement work() and, where they have layers, prepare(). Both may raise
+    Trouble. prepare() runs in the main thread, to which layers belong; work() in the background.
+    """
 
     NAME = TITLE = HELP = ""
 
@@ -37,12 +40,25 @@ class FranaAlgorithm(QgsProcessingAlgorithm):
             return False, str(trouble)
         return True, ""
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(self, parameters, context, feedback):
+        self._trouble = None
         try:
             settings.frana()  # scripts do not ask canExecute()
+            self.prepare(parameters, context, feedback)
+        except program.Trouble as trouble:  # told by processAlgorithm(): what is raised here reaches no script
+            self._trouble = trouble
+        return True
+
+    def processAlgorithm(self, parameters, context, feedback):
+        try:
+            if self._trouble:
+                raise self._trouble
             return self.work(parameters, context, feedback)
         except program.Trouble as trouble:
             raise QgsProcessingException(str(trouble)) from trouble
+
+    def prepare(self, parameters, context, feedback):
+        pass
 
     def work(self, parameters, context, feedback):
         raise NotImplementedError

@@ -39,20 +39,23 @@ class CompareWithSurvey(FranaAlgorithm):
         self.addOutput(QgsProcessingOutputFile("SCORES", "All scores (compare.json)"))
         self.addOutput(QgsProcessingOutputFile("TABLE", "The scores for people (compare.md)"))
 
-    def work(self, parameters, context, feedback):
+    def prepare(self, parameters, context, feedback):
         folder = self.parameterAsFile(parameters, "RUN", context)
         peak = existing(folder, "rasters/peak_depth.tif")
         if peak is None:
             raise Trouble(f"RUN: found no rasters/peak_depth.tif in {folder}; expected the folder of a finished run")
         crs = QgsRasterLayer(peak).crs()
         inputs = layers.require_folder(os.path.join(folder, "input"))
-        arguments = ["compare", folder, "--survey", self._vector("SURVEY", crs, inputs, parameters, context)]
+        self._arguments = ["compare", folder, "--survey", self._vector("SURVEY", crs, inputs, parameters, context)]
         if self.given(parameters, "DEPOSIT"):
             deposit = self.parameterAsRasterLayer(parameters, "DEPOSIT", context)
-            arguments += ["--deposit", layers.elevation_file("DEPOSIT", deposit, inputs)]
+            self._arguments += ["--deposit", layers.elevation_file("DEPOSIT", deposit, inputs)]
         if self.given(parameters, "PATH"):
-            arguments += ["--path", self._vector("PATH", crs, inputs, parameters, context)]
-        self.call(arguments, feedback)
+            self._arguments += ["--path", self._vector("PATH", crs, inputs, parameters, context)]
+
+    def work(self, parameters, context, feedback):
+        self.call(self._arguments, feedback)
+        folder = self.parameterAsFile(parameters, "RUN", context)
         scores = os.path.join(folder, "compare.json")
         with open(scores, encoding="utf-8") as file:
             told = json.load(file)

@@ -1,12 +1,18 @@
 """Results as layers in a group of the project, with the styles that lie beside them."""
 import os
 
-from qgis.core import QgsProcessingContext, QgsProcessingLayerPostProcessorInterface
+from qgis.core import (
+    QgsFillSymbol,
+    QgsProcessingContext,
+    QgsProcessingLayerPostProcessorInterface,
+    QgsSingleSymbolRenderer,
+    QgsVectorLayer,
+)
 
-# The first is drawn on top. Only the first raster is ticked: the others cover the same ground.
-_RUN = ("footprint.geojson", "rasters/peak_depth.tif", "rasters/peak_speed.tif", "rasters/peak_pressure.tif",
-        "rasters/arrival_time.tif", "rasters/final_depth.tif", "rasters/bed_change.tif")
-
+# The first is drawn on top. Only the first raster is ticked, and the ground: the others cover the same place.
+_RUN = ("footprint.geojson", "rasters/peak_depth.tif", "rasters/peak_speed.tif", "rasters/peak_dynamic_pressure.tif",
+        "rasters/peak_pressure.tif", "rasters/arrival_time.tif", "rasters/final_depth.tif", "rasters/bed_change.tif",
+        "rasters/elevation.tif")
 _PLACE = "frana/place"
 
 
@@ -24,6 +30,8 @@ class _IntoGroup(QgsProcessingLayerPostProcessorInterface):
         style = os.path.splitext(layer.source().split("|")[0])[0] + ".qml"
         if os.path.exists(style):
             layer.loadNamedStyle(style)
+        elif isinstance(layer, QgsVectorLayer):  # a filled polygon would cover the rasters
+            layer.setRenderer(QgsSingleSymbolRenderer(QgsFillSymbol.createSimple({"style": "no", "outline_width": "0.4"})))
         root = self._project.layerTreeRoot()
         node = root.findLayer(layer.id())
         if node is None:
@@ -62,8 +70,9 @@ def load(files, group, context):
     for place, file in enumerate(files):
         raster = file.endswith(".tif")
         rasters += raster
+        shown = not raster or rasters == 1 or file.endswith("elevation.tif")
         name = os.path.splitext(os.path.basename(file))[0].replace("_", " ")
         details = QgsProcessingContext.LayerDetails(name, project, name)
         details.forceName = True
-        details.setPostProcessor(_IntoGroup(group, project, place, not raster or rasters == 1))
+        details.setPostProcessor(_IntoGroup(group, project, place, shown))
         context.addLayerToLoadOnCompletion(file, details)

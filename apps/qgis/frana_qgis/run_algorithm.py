@@ -9,6 +9,7 @@ from qgis.core import (
 )
 
 from . import case_text, layers, program, settings, widgets
+from .base import existing
 from .run_base import RunAlgorithm
 
 # Keys that have a widget of their own, and those behind "Advanced". The rest of the table goes by SET.
@@ -61,30 +62,26 @@ class Run(RunAlgorithm):
             if key in self._keys:
                 self.addParameter(widgets.widget(name, self._keys[key], advanced, _START.get(name)))
 
-    def checkParameterValues(self, parameters, context):
-        """Before a folder is made."""
-        source = self.parameterAsSource(parameters, "RELEASE", context)
-        terrain = self.parameterAsRasterLayer(parameters, "DEM", context)
-        if source is not None and terrain is not None and not (
-                self.given(parameters, "DEPTH") or self.given(parameters, "DEPTH_FIELD")):
-            return False, "DEPTH: found none; expected a number of metres, or a field of the release in DEPTH_FIELD"
-        return super().checkParameterValues(parameters, context)
-
-    def work(self, parameters, context, feedback):
+    def prepare(self, parameters, context, feedback):
         terrain = self.parameterAsRasterLayer(parameters, "DEM", context)
         source = self.parameterAsSource(parameters, "RELEASE", context)
         release = self.parameterAsVectorLayer(parameters, "RELEASE", context)
-        sets = case_text.sets(self.parameterAsString(parameters, "SET", context))
+        self._more = case_text.sets(self.parameterAsString(parameters, "SET", context))
         folder = self.output_folder(parameters, context)
+        if existing(folder, "case.toml") and not self.parameterAsBool(parameters, "OVERWRITE", context):
+            raise program.Trouble(f"OUTPUT: found an earlier run in {folder}; expected a folder without; choose another one, "
+                                  "or tick \"Replace an earlier run\" (OVERWRITE)")
         inputs = layers.require_folder(os.path.join(folder, "input"))
         dem = layers.elevation_file("DEM", terrain, inputs)
         outline = layers.vector_file("RELEASE", release, source, terrain.crs(), inputs, context)
         layers.require_overlap("RELEASE", source, "DEM", terrain)
-        case = os.path.join(inputs, "case.toml")
-        with open(case, "w", encoding="utf-8") as file:
+        self._file = os.path.join(inputs, "case.toml")
+        with open(self._file, "w", encoding="utf-8") as file:
             file.write(case_text.text(self._case(dem, outline, parameters, context)))
-        more = sets + self.threads(parameters, context) + self.ticked(parameters, context, "OVERWRITE")
-        return self.run_case(case, more, parameters, context, feedback)
+
+    def work(self, parameters, context, feedback):
+        more = self._more + self.threads(parameters, context) + self.ticked(parameters, context, "OVERWRITE")
+        return self.run_case(self._file, more, parameters, context, feedback)
 
     def _case(self, dem, outline, parameters, context):
         """Keys of the case in the order of a case file."""
