@@ -262,7 +262,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     note_results(record, rasters);
     for (ProductRaster& friction : friction_rasters(scene)) rasters.push_back(std::move(friction));
     const Raster bed = shown_bed(scene, simulation, rasters);
-    if (!rasters.empty() && bed.geometry == rasters.front().raster.geometry) rasters.push_back(elevation_raster(bed));
+    if (scene.output.geotiff && !rasters.empty() && bed.geometry == rasters.front().raster.geometry)
+        rasters.push_back(elevation_raster(bed));
     if (scene.output.vtk && scene.wider) write_terrain(run_dir, bed);
 
     timed(record.summary, "rasters", [&] {
