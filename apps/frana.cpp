@@ -190,6 +190,7 @@ void add_figures(CLI::App& app, FiguresOptions& options, std::string& size, Acti
     command->add_option("--size", size, "pixels; default 1600x1200")->type_name("WxH");
     command->add_option("--film", options.film, "a film of the depth besides, mp4 or gif; needs the program ffmpeg")
         ->check(CLI::IsMember({"mp4", "gif"}));
+    command->add_flag("--web", options.web, "only figures/view.html, a page for a browser");
     command->callback([&] {
         action = [&] {
             if (!size.empty()) read_size(size, options);

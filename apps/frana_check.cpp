@@ -12,6 +12,7 @@
 #include "frana_commands.h"
 #include "io/gdal_reader.h"
 #include "run/folder/run_insitu.h"
+#include "run/folder/run_page.h"
 #include "scene/memory_need.h"
 #include "vtk_io/barrier_mesh.h"
 
@@ -210,7 +211,9 @@ std::string told_of(const BuiltScene& built) {
 int check_command(const CheckOptions& options) {
     const CaseFile file = CaseFile::read(options.case_file, options.sets);
     const MeshReader meshes = barrier_meshes_told([](const std::string& line) { std::cerr << line << std::endl; });
-    std::cout << told_of(build_scene_in_detail(file, GdalReader(), meshes));
+    const BuiltScene built = build_scene_in_detail(file, GdalReader(), meshes);
+    check_page(file);
+    std::cout << told_of(built);
     return 0;
 }
 

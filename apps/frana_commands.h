@@ -61,10 +61,11 @@ struct CalibrateOptions {
     std::string progress;  ///< as of a run
 };
 
-/// `frana figures RUN_DIR [--time T] [--size WxH] [--film mp4|gif]`
+/// `frana figures RUN_DIR [--time T] [--size WxH] [--film mp4|gif] [--web]`
 struct FiguresOptions {
     std::filesystem::path run_dir;
     std::string film;            ///< "mp4", "gif"; empty: none
+    bool web = false;            ///< figures/view.html alone
     std::optional<double> time;  ///< simulated time [s]; nothing: the last frame
     int width = 1600;            ///< [pixels]
     int height = 1200;           ///< [pixels]

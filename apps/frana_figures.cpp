@@ -16,6 +16,9 @@
 #include "run/folder/run_3d.h"
 #include "run/folder/run_film.h"
 #include "run/folder/run_folder.h"
+#include "run/folder/run_page.h"
+#include "run/web/web_page.h"
+#include "scene/barriers_of_case.h"
 #include "terrain/part_of.h"
 #include "vtk_io/reader.h"
 
@@ -100,6 +103,18 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
         return;
     }
     source.survey = GdalReader().read_survey(survey, source.bed.geometry.pixel_extent(), source.bed.crs_wkt, warnings);
+}
+
+/// What the page shows besides. An outline that has gone is left out, and all barriers with it.
+void read_for_page(FigureSource& source, std::vector<std::string>& warnings) {
+    const CaseFile run_case = case_of_run(source.run_dir);
+    source.density = run_case.number("material.density");
+    try {
+        std::vector<std::string> said_by_the_run;
+        source.barriers = barriers_of_case(run_case, GdalReader(), source.bed, said_by_the_run);
+    } catch (const UserError& error) {
+        warnings.push_back(fmt::format("the page is without barriers: {}", error.what()));
+    }
 }
 
 /// A component of a node field of a frame as a raster; without terrain nodata.
@@ -238,7 +253,14 @@ int figures_command(const FiguresOptions& options) {
     read_case(options.run_dir, source, warnings);
     Gallery gallery(options.run_dir);
     std::list<ProductRaster> of_the_moment;
-    add_figures(source, gallery);
+    if (options.web) {
+        if (const std::string why_not = no_page_reason(); !why_not.empty())
+            throw UserError(fmt::format("--web: {}", why_not));
+        read_for_page(source, warnings);
+        add_page(source, frames_of_run(source), text_of(options.run_dir / "run.json"), gallery);
+    } else {
+        add_figures(source, gallery);
+    }
     if (options.time) add_moment(source, *options.time, of_the_moment, gallery);
     if (!options.film.empty()) {
         add_film(source, options.film, gallery);

@@ -98,8 +98,9 @@ room(src/io base terrain observe particles convert scene PACKAGES "gdal|ogr|cpl_
 room(vtk_io base terrain observe particles compare scene PACKAGES "vtk")
 room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
 room(vtk_io/module base vtk_io vtk_io/figures)
-room(src/run/folder base terrain observe convert compare run scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
-room(apps base terrain observe particles convert compare run scene ensemble shallow checks/verify checks/bench checks/fuzz io vtk_io
+room(src/run/web base terrain observe io PACKAGES "nlohmann/")
+room(src/run/folder base terrain observe convert compare run run/web scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
+room(apps base terrain observe particles convert compare run run/web scene ensemble shallow checks/verify checks/bench checks/fuzz io vtk_io
      vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|nlopt|benchmark/")
 
 room(apps/python base terrain scene run/folder io vtk_io apps)

@@ -296,7 +296,7 @@ void add_run(Table& table) {
                            "mean speed, as a share of its peak, above which nothing is taken for rest"));
     table.push_back(number("output.every", "s", at_least(1e-9), 1.0, "time between frames, which are hit exactly"));
     Parameter formats = make("output.formats", Kind::words, "", "what is written");
-    formats.choices = {"vtk", "xdmf", "geotiff", "png", "netcdf"};
+    formats.choices = {"vtk", "xdmf", "geotiff", "png", "web", "netcdf"};
     formats.may_be_empty = true;
     formats.fallback = std::vector<std::string>{"vtk", "geotiff", "png"};
     table.push_back(formats);

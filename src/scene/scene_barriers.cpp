@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "scene/barriers_of_case.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
@@ -234,6 +235,23 @@ void read_barriers(const CaseFile& file, const GisReader& reader, const MeshRead
                                          scene.barriers[n].name, first->second),
                              "expected names that differ", "give another name");
     }
+}
+
+std::vector<Barrier> barriers_of_case(const CaseFile& file, const GisReader& reader, const Raster& bed,
+                                      std::vector<std::string>& log) {
+    Scene scene;
+    scene.bed = bed;
+    Problems problems;
+    const MeshReader anywhere = [&](const std::filesystem::path&, const MeshSampling&) {
+        const auto extent = bed.geometry.pixel_extent();
+        MeshField mesh;
+        mesh.low = {extent[0], extent[1], -INFINITY}, mesh.high = {extent[2], extent[3], INFINITY};
+        return mesh;
+    };
+    read_barriers(file, reader, anywhere, scene, problems);
+    problems.throw_if_any();
+    log.insert(log.end(), scene.log.begin(), scene.log.end());
+    return scene.barriers;
 }
 
 }  // namespace frana

@@ -160,7 +160,8 @@ std::string figures(const RunRecord& r) {
     if (r.figures.empty()) return "";
     std::string text = "## Figures\n\n";
     for (const DrawnFigure& figure : r.figures)
-        text += figure.path.find(".mp4") != std::string::npos  // no picture to a page
+        text += figure.path.find(".mp4") != std::string::npos ||
+                        figure.path.find(".html") != std::string::npos  // no pictures
                     ? fmt::format("[{}]({})\n\n", figure.caption, figure.path)
                     : fmt::format("![{}]({})\n\n*{}*\n\n", figure.caption, figure.path, figure.caption);
     return text;
@@ -343,6 +344,7 @@ std::string closing_lines(const RunRecord& r, const std::filesystem::path& run_d
     if (r.comparison) text += fmt::format("  survey     {}\n", comparison_line(*r.comparison));
     text += fmt::format("  report     {}\n", place("report.md"));
     text += fmt::format("  pictures   {}\n", r.figures.empty() ? "-" : (run_dir / "figures").string());
+    if (is_there(products, "figures/view.html")) text += fmt::format("  browser    {}\n", place("figures/view.html"));
     text += fmt::format("  ParaView   {}\n", place("grid.pvd"));
     text += fmt::format("  QGIS       {}\n", place(is_there(products, "run.qgz") ? "run.qgz" : "footprint.geojson"));
     text += fmt::format("  remarks    {}\n", r.warnings.empty()

@@ -10,6 +10,7 @@
 #include "io/gdal_reader.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_insitu.h"
+#include "run/folder/run_page.h"
 #include "run/folder/run_job.h"
 #include "scene/build_scene.h"
 #include "vtk_io/barrier_mesh.h"
@@ -66,6 +67,7 @@ Scene scene_to_run(const CaseFile& file, const std::optional<double>& until,
     Scene scene = build_scene(file, GdalReader(), barrier_meshes_told(say));
     shorten(scene, until);
     check_insitu(scene);
+    check_page(file);
     return scene;
 }
 
@@ -87,7 +89,7 @@ CaseRun::CaseRun(const CaseFile& file, const RunWishes& wishes)
         prepare_run_folder(run_dir_, inputs, overwrite);
     }
     keep_case(file, run_dir_);
-    if (scene_.output.vtk) keep_meshes(file, scene_, run_dir_);
+    if (scene_.output.vtk || asks_for_page(file)) keep_meshes(file, scene_, run_dir_);
     keeper_.emplace(run_dir_, labels, std::chrono::duration<double>(60.0 * scene_.output.checkpoint_minutes),
                     std::move(kept));
     record_ = begin_record(scene_, file);

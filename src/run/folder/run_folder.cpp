@@ -68,6 +68,7 @@ const std::vector<ProductKind>& product_kinds() {
          "((map|view|section|filmstrip|profile|gauges|sections|barrier|budget)_[^.].*|compare(_bed_change)?)\\.png",
          "figure", false},
         {"figures", "film_[^.].*\\.(mp4|gif)", "film", false},
+        {"figures", "view\\.html", "the run in three dimensions and through time: open it in a browser", false},
         {"insitu", "[^.].*\\.csv", "looked at while the case ran", false},
         {"insitu", "[^.].*\\.pvd", "looked at while the case ran, for ParaView", false},
         {"insitu", "[^.].*\\.gpkg", "looked at while the case ran, for a GIS", false},

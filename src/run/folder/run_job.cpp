@@ -27,6 +27,7 @@
 #include "run/folder/run_film.h"
 #include "run/folder/run_folder.h"
 #include "run/folder/run_insitu.h"
+#include "run/folder/run_page.h"
 #include "run/folder/states.h"
 #include "run/simulation.h"
 #include "terrain/part_of.h"
@@ -145,6 +146,8 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.sections = scene.sections;
     source.in_3d = scene.solid.has_value();
     for (const Barrier& barrier : scene.barriers) source.barrier_tops.push_back({barrier.top, barrier.height});
+    source.barriers = scene.barriers;
+    source.density = scene.density;
     return source;
 }
 
@@ -178,8 +181,8 @@ void note_cutoff(RunRecord& record, const fs::path& run_dir) {
 
 /// The pictures that the case asks for. An end that is asked for meanwhile leaves a whole run with fewer of them; where the
 /// run does not own the signals they go on to whoever does.
-void draw(const FigureSource& source, const Output& output, const Interrupt& interrupt, Progress& progress,
-          RunRecord& record) {
+void draw(const FigureSource& source, const Output& output, const FlowFrames& frames, const Interrupt& interrupt,
+          Progress& progress, RunRecord& record) {
     const fs::path& run_dir = source.run_dir;
     std::optional<Cutoff> cutoff;
     if (interrupt.listens())
@@ -191,6 +194,7 @@ void draw(const FigureSource& source, const Output& output, const Interrupt& int
         });
     Gallery gallery(run_dir);
     if (output.png) add_figures(source, gallery);
+    if (record.page) add_page(source, frames, run_json(record), gallery);
     if (!output.film.empty()) {
         add_film(source, output.film, gallery);
         add_film_3d(source, output.film, gallery);
@@ -248,6 +252,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     if (record.netcdf)
         observers.push_back(make_netcdf_writer(run_dir, record.title, scene.bed.crs_wkt, scene.output.fields));
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
+    FlowFrames frames(scene.output.footprint_depth);
+    if (record.page) observers.push_back(make_frame_keeper(frames));
     for (auto& observer : more) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 
@@ -275,8 +281,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     });
     timed(record.summary, "survey", [&] { compare_with_survey(scene, bed, run_dir, rasters, record); });
     timed(record.summary, "figures", [&] {
-        if (!scene.output.png && scene.output.film.empty()) return;
-        draw(figure_source(scene, bed, run_dir, record, rasters), scene.output, interrupt, progress, record);
+        if (!scene.output.png && scene.output.film.empty() && !record.page) return;
+        draw(figure_source(scene, bed, run_dir, record, rasters), scene.output, frames, interrupt, progress, record);
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
     close_record(record, run_dir);

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/version.h"
+#include "run/folder/run_page.h"
 #include "scene/case_file.h"
 
 namespace frana {
@@ -163,6 +164,7 @@ RunRecord begin_record(const Scene& scene, const CaseFile& file) {
     record.end = record.whole_end = scene.end;
     if (file.given("time.end")) record.whole_end = file.number("time.end");
     record.footprint_depth = scene.output.footprint_depth;
+    record.page = asks_for_page(file);
     record.warnings = scene.log;
     return record;
 }

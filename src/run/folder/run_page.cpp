@@ -1,0 +1,216 @@
+#include "run/folder/run_page.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "observe/table.h"
+#include "run/web/web_page.h"
+#include "scene/case_file.h"
+#include "terrain/part_of.h"
+#include "vtk_io/figures/map_range.h"
+#include "vtk_io/reader.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kPage = "figures/view.html";
+
+/// "24 300", a thin space at each thousand.
+std::string grouped(double value, int decimals = 0) {
+    std::string text = fmt::format("{:.{}f}", value, decimals);
+    const std::size_t point = std::min(text.find('.'), text.size()), first = value < 0.0 ? 1 : 0;
+    for (std::size_t at = point; at > first + 3; at -= 3) text.insert(at - 3, "\u2009");
+    return text;
+}
+
+/// With three digits or more.
+std::string measured(double value, const char* unit) {
+    const double size = std::abs(value);
+    const int decimals =
+        size >= 100.0 || size == 0.0 ? 0 : std::clamp(2 - static_cast<int>(std::floor(std::log10(size))), 0, 6);
+    return grouped(value, decimals) + "\u2009" + unit;
+}
+
+std::string end_of(const Json& record) {
+    const std::string reason = record.value("exit_reason", "");
+    if (reason == "rest") return "the mass came to rest";
+    if (reason == "end") return "the simulated time was over";
+    if (reason == "left") return "no material was left";
+    return reason;
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const Json& record) {
+    const Json results = record.at("results"), mass = record.at("budgets").at("mass");
+    std::vector<std::pair<std::string, std::string>> facts = {
+        {"Released", measured(record.at("release_volume"), "m\u00b3")},
+        {"Runout", measured(results.at("max_front"), "m")},
+        {"Largest depth", measured(results.at("max_depth"), "m")},
+        {"Largest speed", measured(results.at("max_speed"), "m/s")},
+        {"Covered area", measured(results.at("footprint_area"), "m\u00b2")},
+        {"Simulated time", measured(record.at("simulated_time"), "s")},
+        {"Ended because", end_of(record)},
+        {"Cells", measured(record.at("grid").at("cell"), "m")},
+        {"Mass error", fmt::format("{:.1e}", mass.at("relative_error").get<double>())}};
+    const double left = mass.at("left_domain"),
+                 all = mass.at("initial").get<double>() + mass.at("came_in").get<double>();
+    if (left > 0.0 && all > 0.0)
+        facts.insert(facts.begin() + 1, {"Left the terrain", fmt::format("{:.3g} % of the mass", 100.0 * left / all)});
+    return facts;
+}
+
+struct DrapeRule {
+    const char *name, *label, *unit;
+    Colormap colours;
+    double factor;  ///< from SI
+};
+constexpr DrapeRule kDrapes[] = {
+    {"peak_depth", "peak depth", "m", Colormap::depth, 1.0},
+    {"peak_speed", "peak speed", "m/s", Colormap::speed, 1.0},
+    {"peak_dynamic_pressure", "peak dynamic pressure", "kPa", Colormap::pressure, 1e-3},
+    {"arrival_time", "arrival time", "s", Colormap::speed, 1.0},
+    {"final_depth", "depth at the end", "m", Colormap::depth, 1.0},
+    {"bed_change", "change of the bed", "m", Colormap::diverging, 1.0},
+};
+
+/// The part of a raster that was ever covered, in units for people; nothing when there is none.
+std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& rule) {
+    const ProductRaster *product = find_product(source.rasters, rule.name),
+                        *peak = find_product(source.rasters, "peak_depth");
+    if (product == nullptr || peak == nullptr) return {};
+    const bool bed = rule.colours == Colormap::diverging, end = std::string(rule.name) == "final_depth";
+    const Raster& extent = end ? product->raster : peak->raster;
+    PageDrape drape{rule.name, rule.label, rule.unit, rule.colours, 0.0, 1.0, product->raster};
+    bool any = false;
+    for (std::size_t n = 0; n < drape.raster.values.size(); ++n) {
+        double& value = drape.raster.values[n];
+        value = extent.values[n] > source.footprint_depth ? value * rule.factor : Raster::nodata;
+        any |= std::isfinite(value) && (!bed || value != 0.0);
+    }
+    if (!any) return {};
+    const ColourRange range = colour_range(drape.raster.values, kAll, rule.colours, {});
+    drape.low = range.low, drape.high = range.high;
+    return drape;
+}
+
+/// The first run of the curves: history.csv; none where it is gone.
+PageCurves curves_of(const FigureSource& source, const Json& record, std::vector<std::string>& warnings) {
+    PageCurves curves;
+    try {
+        const Table history = read_table(source.run_dir / "history.csv");
+        curves.time = history.column("t"), curves.runout = history.column("front"),
+        curves.volume = history.column("mass");
+        const double mass = record.at("budgets").at("mass").at("initial"), volume = record.at("release_volume");
+        const double density = source.density > 0.0 ? source.density : mass / std::max(volume, 1e-300);
+        for (double& value : curves.volume) value /= density;
+    } catch (const UserError& error) {
+        warnings.push_back(fmt::format("{} shows no curves: {}", kPage, error.what()));
+    }
+    return curves;
+}
+
+std::vector<PageBarrier> barriers_of(const FigureSource& source) {
+    std::vector<PageBarrier> barriers;
+    BarrierMeshes meshes;
+    const auto by_mesh = [](const Barrier& b) { return b.outline.parts.empty() && b.line.empty(); };
+    if (std::any_of(source.barriers.begin(), source.barriers.end(), by_mesh))
+        meshes = read_barrier_meshes(source.run_dir);
+    for (std::size_t i = 0; i < source.barriers.size(); ++i) {
+        const Barrier& b = source.barriers[i];
+        PageBarrier barrier{b.name, b.outline, b.line, b.top, b.height, i < meshes.size() ? meshes[i] : nullptr};
+        if (barrier.mesh || !by_mesh(b)) barriers.push_back(std::move(barrier));
+    }
+    return barriers;
+}
+
+/// The largest of what frames hold; of the peaks, where the run has them, so that both have the same colours.
+double high_of(const std::vector<PageDrape>& drapes, const char* name, double of_frames) {
+    for (const PageDrape& drape : drapes)
+        if (drape.name == name) return drape.high;
+    return of_frames > 0.0 ? of_frames : 1.0;
+}
+
+WebPage page_of(const FigureSource& source, const FlowFrames& frames, const Json& record,
+                std::vector<std::string>& warnings) {
+    WebPage page;
+    page.title = source.title, page.caption = source.footer;
+    page.facts = facts_of(record);
+    page.bed = source.bed;
+    page.frames = &frames;
+    for (const DrapeRule& rule : kDrapes)
+        if (auto drape = drape_of(source, rule)) page.drapes.push_back(std::move(*drape));
+    double deepest = 0.0, fastest = 0.0;
+    for (const PackedFrame& frame : frames.frames())
+        deepest = std::max(deepest, frame.deepest), fastest = std::max(fastest, frame.fastest);
+    page.depth_high = high_of(page.drapes, "peak_depth", deepest);
+    page.speed_high = high_of(page.drapes, "peak_speed", fastest);
+    page.footprint_depth = source.footprint_depth;
+    page.survey = source.survey;
+    for (const Profile& profile : source.profiles) page.lines.push_back({profile.name, profile.line});
+    for (const Section& section : source.sections) page.lines.push_back({section.name, section.line});
+    for (const Gauge& gauge : source.gauges) page.gauges.push_back({gauge.name, gauge.point});
+    page.barriers = barriers_of(source);
+    page.curves = curves_of(source, record, warnings);
+    if (frames.frames().empty())
+        page.remarks.push_back(
+            "The run left no frames, so there is no film of it: \"vtk\" or \"web\" in output.formats makes them.");
+    return page;
+}
+
+}  // namespace
+
+bool asks_for_page(const CaseFile& file) {
+    const auto& formats = file.words("output.formats");
+    return std::find(formats.begin(), formats.end(), "web") != formats.end();
+}
+
+void check_page(const CaseFile& file) {
+    if (const std::string why_not = no_page_reason(); asks_for_page(file) && !why_not.empty())
+        throw UserError(fmt::format("{}: found \"web\"; {}", file.place("output.formats"), why_not));
+}
+
+FlowFrames frames_of_run(const FigureSource& source) {
+    FlowFrames frames(source.footprint_depth);
+    if (!fs::exists(source.run_dir / "grid.pvd")) return frames;
+    const std::vector<double> times = frame_times(source.run_dir);
+    for (Index number = 0; number < static_cast<Index>(times.size()); ++number) {
+        LoadedFrame frame = read_frame(source.run_dir, number);
+        if (!frame.has("depth")) continue;
+        std::vector<double>& depth = frame.nodes.at("depth");
+        if (frame.has("elevation"))
+            for (std::size_t n = 0; n < depth.size(); ++n)
+                if (std::isnan(frame.nodes.at("elevation")[n])) depth[n] = 0.0;
+        frames.add(number, times[static_cast<std::size_t>(number)],
+                   {frame.grid, depth.data(), frame.has("speed") ? frame.nodes.at("speed").data() : nullptr});
+    }
+    return frames;
+}
+
+void add_page(const FigureSource& source, const FlowFrames& frames, const std::string& record, Gallery& gallery) {
+    std::string why_not = no_page_reason();
+    if (why_not.empty() && source.bed.values.empty()) why_not = "the run's terrain is not known";
+    std::shared_ptr<const WebPage> page;
+    if (why_not.empty()) try {
+            std::vector<std::string> warnings;
+            page = std::make_shared<const WebPage>(page_of(source, frames, Json::parse(record), warnings));
+            for (std::string& warning : warnings) gallery.warn(std::move(warning));
+        } catch (const std::exception& error) {
+            why_not = error.what();
+        }
+    gallery.add({kPage, "the run in three dimensions and through time, for a browser"},
+                [page, why_not](const fs::path& html, std::string& reason) {
+                    reason = why_not;
+                    if (page) write_text(html, web_page(*page));
+                    return page != nullptr;
+                });
+}
+
+}  // namespace frana
