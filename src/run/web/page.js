@@ -59,7 +59,7 @@ function lightOver(raster, depth) {
   const {nx, ny, x, y, cell} = raster, surface = new Float32Array(nx * ny);
   for (let j = 0, n = 0; j < ny; ++j)
     for (let i = 0; i < nx; ++i, ++n) surface[n] = valueAt(ground, x + i * cell, y + j * cell) + (depth ? depth.values[n] : 0);
-  return (i, j) => 0.86 + 0.28 * (lightOn(...slopeAt(surface, nx, ny, i, j, cell)) - Math.SQRT1_2) + 0.06;
+  return (i, j) => 0.86 + 0.28 * (lightOn(eastward(surface, nx, ny, i, j, cell), northward(surface, nx, ny, i, j, cell)) - Math.SQRT1_2) + 0.06;
 }
 
 function setFrame(k) {

@@ -8,21 +8,19 @@ const lamps = [[315, 0.5], [270, 0.2], [360, 0.2], [225, 0.1]].map(([azimuth, we
 
 /** Light from 0 to 1 on a surface that rises by gx to the east and gy to the north. */
 function lightOn(gx, gy) {
-  const length = Math.hypot(gx, gy, 1);
+  const length = Math.sqrt(gx * gx + gy * gy + 1);
   let light = 0;
-  for (const lamp of lamps) light += lamp.weight * Math.max(0, (lamp.z - gx * lamp.x - gy * lamp.y) / length);
-  return light;
+  for (let k = 0; k < lamps.length; ++k) light += lamps[k].weight * Math.max(0, lamps[k].z - gx * lamps[k].x - gy * lamps[k].y);
+  return light / length;
 }
 
-/** Slopes at node n of a raster, from the neighbours that have values. */
-function slopeAt(z, nx, ny, i, j, cell) {
-  const n = j * nx + i;
-  const along = (before, after) => {
-    const a = before === null || isNaN(z[before]) ? n : before, b = after === null || isNaN(z[after]) ? n : after;
-    return a === b ? 0 : (z[b] - z[a]) / (cell * (a !== n && b !== n ? 2 : 1));
-  };
-  return [along(i > 0 ? n - 1 : null, i + 1 < nx ? n + 1 : null), along(j > 0 ? n - nx : null, j + 1 < ny ? n + nx : null)];
+/** Change of z from one neighbour of node n to the other, per cell; a neighbour that is not there, or has no value, is n. */
+function changeAt(z, n, before, after, cell) {
+  const a = before < 0 || z[before] !== z[before] ? n : before, b = after < 0 || z[after] !== z[after] ? n : after;
+  return a === b ? 0 : (z[b] - z[a]) / (a !== n && b !== n ? 2 * cell : cell);
 }
+const eastward = (z, nx, ny, i, j, cell) => changeAt(z, j * nx + i, i > 0 ? j * nx + i - 1 : -1, i + 1 < nx ? j * nx + i + 1 : -1, cell);
+const northward = (z, nx, ny, i, j, cell) => changeAt(z, j * nx + i, j > 0 ? (j - 1) * nx + i : -1, j + 1 < ny ? (j + 1) * nx + i : -1, cell);
 
 /** Grey of each node, 255 white. Gentle terrain is shaded as if it were steeper; heights stay what they are. */
 function reliefOf(raster) {
@@ -31,9 +29,9 @@ function reliefOf(raster) {
   for (let j = 0, n = 0; j < ny; ++j)
     for (let i = 0; i < nx; ++i, ++n) {
       if (isNaN(values[n])) continue;
-      const [gx, gy] = slopeAt(values, nx, ny, i, j, cell);
+      const gx = eastward(values, nx, ny, i, j, cell), gy = northward(values, nx, ny, i, j, cell);
       slopes[2 * n] = gx, slopes[2 * n + 1] = gy;
-      sum += Math.hypot(gx, gy), ++count;
+      sum += Math.sqrt(gx * gx + gy * gy), ++count;
     }
   const steeper = Math.max(1, Math.min(5, 0.6 / Math.max(1e-6, sum / Math.max(1, count))));
   const light = new Float32Array(nx * ny), sorted = [];
