@@ -253,11 +253,13 @@ int figures_command(const FiguresOptions& options) {
     read_case(options.run_dir, source, warnings);
     Gallery gallery(options.run_dir);
     std::list<ProductRaster> of_the_moment;
+    FlowFrames frames(source.footprint_depth);
     if (options.web) {
         if (const std::string why_not = no_page_reason(); !why_not.empty())
             throw UserError(fmt::format("--web: {}", why_not));
         read_for_page(source, warnings);
-        add_page(source, frames_of_run(source), text_of(options.run_dir / "run.json"), gallery);
+        frames = frames_of_run(source);
+        add_page(source, frames, text_of(options.run_dir / "run.json"), gallery);
     } else {
         add_figures(source, gallery);
     }

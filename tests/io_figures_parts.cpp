@@ -54,12 +54,12 @@ TEST_CASE("The colour range leaves the largest half per cent to the tip of the b
 TEST_CASE("A thick release leaves the colours of the runout, and the bar says how thick it is", "[figures]") {
     std::vector<double> field(1000, 20.0);
     std::fill(field.begin(), field.begin() + 100, 200.0);  // a tenth of the flow: more than the tip of the bar
-    const ColourRange range = colour_range(field, 0.1, Colormap::depth, std::nullopt);
+    const ColourRange range = colour_range(field, 0.1, Colormap::depth, std::nullopt, Top::flow);
     CHECK(range.high == Approx(60.0));
     CHECK(range.more_above);
     CHECK(range.most == 200.0);
     for (std::size_t i = 0; i < field.size(); ++i) field[i] = 0.2 + 0.005 * static_cast<double>(i);  // even, to 5.2
-    CHECK(colour_range(field, 0.1, Colormap::depth, std::nullopt).high >= 5.17);  // the 99.5th percentile
+    CHECK(colour_range(field, 0.1, Colormap::depth, std::nullopt, Top::flow).high >= 5.17);  // the 99.5th percentile
 }
 
 TEST_CASE("All colour maps run evenly from light to dark or through light", "[figures]") {

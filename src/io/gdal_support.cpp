@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <atomic>
 #include <mutex>
 
 #include "base/error.h"
@@ -79,6 +80,11 @@ Dataset warp(const std::string& target, GDALDataset& source, const std::vector<s
     GDALDatasetH sources[] = {GDALDataset::ToHandle(&source)};
     int misuse = 0;
     return Dataset(GDALDataset::FromHandle(GDALWarp(target.c_str(), nullptr, 1, sources, options.get(), &misuse)));
+}
+
+std::string name_in_memory(const std::string& end) {
+    static std::atomic<unsigned> count{0};
+    return fmt::format("/vsimem/frana_{}_{}", count++, end);
 }
 
 std::string taken_from_memory(const std::string& held) {

@@ -54,6 +54,8 @@ Dataset open(const std::filesystem::path& file, unsigned kind);
 /// a mere name). Null when it fails; the reason is in the Messages that are alive.
 Dataset warp(const std::string& target, GDALDataset& source, const std::vector<std::string>& arguments);
 
+/// A name in GDAL's memory ("/vsimem/...") that no other has: several runs may live in one process.
+std::string name_in_memory(const std::string& end);
 /// The bytes of a file that GDAL made in its memory ("/vsimem/..."), which is given back; none where there is no such file.
 std::string taken_from_memory(const std::string& held);
 

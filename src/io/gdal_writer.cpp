@@ -75,7 +75,7 @@ bool fill(GDALDataset& dataset, const Raster& raster, std::vector<float> values,
 /// The bytes of a cloud-optimised copy. It is made in memory: GDAL's passing files would stay in the folder when the
 /// process dies.
 std::string optimised(GDALDataset& dataset, const std::filesystem::path& target, const gdal::Messages& messages) {
-    const std::string held = fmt::format("/vsimem/frana_{}", target.filename().string());
+    const std::string held = gdal::name_in_memory(target.filename().string());
     CPLStringList options;
     for (const char* option : {"COMPRESS=DEFLATE", "PREDICTOR=YES", "OVERVIEW_COMPRESS=DEFLATE",
                                "OVERVIEW_PREDICTOR=YES", "OVERVIEW_RESAMPLING=AVERAGE", "BIGTIFF=IF_SAFER"})

@@ -93,8 +93,22 @@ std::shared_ptr<GDALMDArray> make_field(GDALGroup& root, const Dimensions& dimen
     array->SetNoDataValue(double(kNothing));
     array->SetUnit(variable.unit);
     note(*array, "long_name", variable.meaning);
-    if (crs) array->SetSpatialRef(crs);
+    if (crs) place(root, *array, *crs);
     return array;
+}
+
+/// GDAL writes the grid mapping of the systems that its table of CF names knows. For others the mapping has the well-known
+/// text alone, which CF 1.7 and later allow.
+void place(GDALGroup& root, GDALMDArray& array, const OGRSpatialReference& crs) {
+    array.SetSpatialRef(&crs);
+    if (array.GetAttribute("grid_mapping")) return;
+    constexpr const char* kName = "crs";
+    if (!root.OpenMDArray(kName)) {
+        const auto mapping = root.CreateMDArray(kName, {}, GDALExtendedDataType::Create(GDT_Int32), nullptr);
+        if (!mapping) return;
+        for (const char* key : {"crs_wkt", "spatial_ref"}) note(*mapping, key, gdal::horizontal_wkt(crs));
+    }
+    note(array, "grid_mapping", kName);
 }
 
 /// One plane of a field, all of it for a field without time.
@@ -122,8 +136,8 @@ float as_float(double value, const char* what, double time) {
 class NetcdfWriter final : public Observer {
 public:
     NetcdfWriter(const fs::path& run_dir, std::string title, std::string crs_wkt,
-                 const std::vector<std::string>& fields)
-        : file_(run_dir / "series.nc"), title_(std::move(title)), crs_wkt_(std::move(crs_wkt)) {
+                 const std::vector<std::string>& fields, std::vector<std::string>& warnings)
+        : file_(run_dir / "series.nc"), title_(std::move(title)), crs_wkt_(std::move(crs_wkt)), warnings_(warnings) {
         for (const Variable& variable : kVariables)
             if (fields.empty() || std::find(fields.begin(), fields.end(), variable.field) != fields.end())
                 variables_.push_back(variable);
@@ -154,7 +168,12 @@ public:
         moments_.push_back(std::move(moment));
     }
 
-    void end(const Frame& last) override {
+    /// The run is worth more than this file.
+    void end(const Frame& last) override try { write_file(last); } catch (const UserError& error) {
+        warnings_.push_back(fmt::format("series.nc was not written: {}", error.what()));
+    }
+
+    void write_file(const Frame& last) const {
         AtomicFile file(file_);
         const gdal::Messages messages;
         const char* const options[] = {"FORMAT=NC4", nullptr};
@@ -228,6 +247,7 @@ private:
 
     fs::path file_;
     std::string title_, crs_wkt_;
+    std::vector<std::string>& warnings_;
     std::vector<Variable> variables_;
     GDALDriver* driver_ = nullptr;
     std::vector<Moment> moments_;
@@ -236,8 +256,9 @@ private:
 }  // namespace
 
 std::unique_ptr<Observer> make_netcdf_writer(const fs::path& run_dir, const std::string& title,
-                                             const std::string& crs_wkt, const std::vector<std::string>& fields) {
-    return std::make_unique<NetcdfWriter>(run_dir, title, crs_wkt, fields);
+                                             const std::string& crs_wkt, const std::vector<std::string>& fields,
+                                             std::vector<std::string>& warnings) {
+    return std::make_unique<NetcdfWriter>(run_dir, title, crs_wkt, fields, warnings);
 }
 
 }  // namespace frana

@@ -13,9 +13,11 @@ namespace frana {
 /// [m], speed, velocity_x and velocity_y [m s-1] as float32 with shape (time, y, x), compressed; the south row first, -9999
 /// where nothing lies. Of these only the ones whose field (depth, speed, velocity) is in `fields`; empty: all. Time is in
 /// seconds since 2000-01-01, which stands for the start of the run. `elevation` (y, x) is the bed of the last frame.
-/// Until then it keeps the values of wet nodes, four bytes each, also in the checkpoint. Throws UserError where GDAL cannot
-/// write the format or the disk refuses, NumericsError for a number that is not finite.
+/// Until then it keeps all wet nodes of all outputs, 24 bytes a node, also in each checkpoint. A file that the disk refuses is a
+/// line in `warnings`, which have to stay as long. Throws UserError where GDAL cannot write the format, NumericsError for a
+/// number that is not finite.
 std::unique_ptr<Observer> make_netcdf_writer(const std::filesystem::path& run_dir, const std::string& title,
-                                             const std::string& crs_wkt, const std::vector<std::string>& fields);
+                                             const std::string& crs_wkt, const std::vector<std::string>& fields,
+                                             std::vector<std::string>& warnings);
 
 }  // namespace frana

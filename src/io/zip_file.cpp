@@ -10,7 +10,7 @@ namespace frana {
 
 void write_zip(const std::filesystem::path& archive, const std::string& name, const std::string& text) {
     const gdal::Messages messages;
-    const std::string held = "/vsimem/frana_archive.zip";  // GDAL gives files in archives no date
+    const std::string held = gdal::name_in_memory("archive.zip");  // GDAL gives files in archives no date
     VSILFILE* file = VSIFOpenL(fmt::format("/vsizip/{}/{}", held, name).c_str(), "wb");
     const bool written = file != nullptr && VSIFWriteL(text.data(), 1, text.size(), file) == text.size();
     if (file != nullptr) VSIFCloseL(file);

@@ -1,6 +1,7 @@
 #include "vtk_io/figures/canvas.h"
 
 #include <cairo.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -197,6 +198,13 @@ public:
         cairo_restore(cairo);
     }
 
+    /// After an error cairo draws nothing more.
+    void check() const {
+        const cairo_status_t status = cairo_status(cairo_.get());
+        if (status != CAIRO_STATUS_SUCCESS)
+            throw UserError(fmt::format("the picture cannot be painted: {}", cairo_status_to_string(status)));
+    }
+
     void take(Pixels& picture) {
         cairo_surface_flush(surface_.get());
         for (int row = 0; row < height_; ++row)
@@ -235,6 +243,7 @@ void Canvas::paint(Pixels& picture) const {
     Painter painter(picture);
     for (const auto& shape : shapes_) std::visit(painter, shape);
     for (const Text& text : texts_) painter.write(text);
+    painter.check();
     painter.take(picture);
 }
 

@@ -20,12 +20,12 @@ struct Sheet {
     std::vector<MapFigure> maps;
     int columns, rows;
     int wide, high;  ///< of each map [px]
+    SharedView view;
     MapLayout layout;
 
     explicit Sheet(const Filmstrip& strip)
         : maps(strip.maps), columns(std::min(strip.columns, static_cast<int>(maps.size()))) {
         rows = (static_cast<int>(maps.size()) + columns - 1) / columns;
-        SharedView view;
         for (const MapFigure& map : maps) view.add(map);
         wide = high = static_cast<int>((strip.width - bar_room(strip.width)) / columns);
         for (MapFigure& map : maps) {
@@ -65,7 +65,7 @@ bool render_filmstrip(const Filmstrip& strip, const fs::path& png, std::string& 
     const double u = 1.2 * sheet.layout.unit;
     const MapFigure& map = sheet.maps.front();
     draw_colour_bar(canvas, {right + 0.5 * u, sheet.foot() + 3.0 * u, right + 1.6 * u, top - 3.0 * u},
-                    sheet.layout.colours, map.colormap, map.field_label, u);
+                    sheet.view.range(), map.colormap, map.field_label, u);
     draw_strip(canvas, sheet.layout);
     Pixels picture(right + static_cast<int>(Sheet::bar_room(strip.width)), top);
     canvas.paint(picture);

@@ -38,6 +38,7 @@ struct MapFigure {
     std::string title;
     std::string field_label = "peak depth [m]";      ///< name and unit, for the colour bar
     std::optional<std::pair<double, double>> range;  ///< of the colours; default: from the field
+    bool thick_release = false;                      ///< the depth of a flow: map_range.h, Top::flow
     Colormap colormap = Colormap::depth;
     std::optional<Polygons> survey;  ///< mapped outline
     /// Rings of the simulated extent: with a survey, areas of both, of this one and of the survey only are coloured

@@ -1,7 +1,5 @@
 #include "vtk_io/figures/map_figure_furniture.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -40,10 +38,8 @@ void draw_colour_bar(Canvas& canvas, const Rectangle& bar, const ColourRange& ra
         canvas.text(ticks.labels[i], {bar.x1 + 0.6 * unit, y}, style);
         widest = std::max(widest, text_size(ticks.labels[i], style).x());
     }
-    if (range.more_above && range.most > range.high) {  // how far beyond the tip
-        style.upward = Upward::bottom;
-        canvas.text(fmt::format("to {:.3g}", range.most), {bar.x1 + 0.35 * unit, bar.y1 - 0.6 * unit}, style);
-    }
+    style.upward = Upward::bottom;
+    canvas.text(beyond_text(range), {bar.x1 + 0.35 * unit, bar.y1 - 0.6 * unit}, style);
     style.across = Across::centre;
     style.upward = Upward::top;
     style.angle = 90.0;

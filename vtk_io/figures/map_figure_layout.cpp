@@ -166,6 +166,15 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
     return legend;
 }
 
+}  // namespace
+
+std::string beyond_text(const ColourRange& range) {
+    if (!range.more_above || !(range.most > range.high)) return "";
+    return range.most >= 1000.0 ? fmt::format("to {:.0f}", range.most) : fmt::format("to {:.3g}", range.most);
+}
+
+namespace {
+
 double widest(const std::vector<std::string>& labels, const TextStyle& style) {
     double width = 0.0;
     for (const auto& label : labels) width = std::max(width, text_size(label, style).x());
@@ -183,7 +192,9 @@ Margins margins_of(const MapLayout& layout, bool colour_bar) {
     const TextStyle plain = layout.text(Across::left, Upward::bottom);
     const double strip = layout.row_height() * layout.strip.count;
     return {3.4 * u + widest(layout.y_ticks.labels, plain),
-            colour_bar ? 4.9 * u + widest(colour_ticks(layout.colours).labels, plain) : 2.0 * u,
+            colour_bar ? 4.9 * u + std::max(widest(colour_ticks(layout.colours).labels, plain),
+                                            text_size(beyond_text(layout.colours), plain).x() - 2.6 * u)
+                       : 2.0 * u,
             4.1 * u + strip + layout.captions.footer_height(), 1.3 * u + layout.captions.title_height()};
 }
 
@@ -244,8 +255,8 @@ MapLayout lay_out(const MapFigure& figure) {
     layout.width = figure.width;
     layout.height = figure.height;
     layout.unit = text_unit(figure.width, figure.height);
-    layout.colours =
-        colours_within(figure.field, figure.outline_field, figure.shown_above, figure.colormap, figure.range);
+    layout.colours = colours_within(figure.field, figure.outline_field, figure.shown_above, figure.colormap,
+                                    figure.range, figure.thick_release ? Top::flow : Top::percentile);
     const auto wanted = wanted_view(figure);
     for (int pass = 0; pass < 4; ++pass) place(layout, figure, wanted);  // margins and labels settle in two
     return layout;

@@ -58,6 +58,9 @@ struct MapLayout {
 
 MapLayout lay_out(const MapFigure& figure);
 
+/// "to 214": the largest value, where it lies beyond the range's tip; else empty.
+std::string beyond_text(const ColourRange& range);
+
 /// Widths of the strip's items: scale bar with north arrow, then the legend [px].
 std::vector<double> strip_widths(const MapLayout& layout);
 

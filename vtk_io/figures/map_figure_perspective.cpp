@@ -47,8 +47,8 @@ public:
     explicit BlockDrawing(const PerspectiveFigure& figure)
         : figure_(figure),
           unit_(text_unit(figure.width, figure.height)),
-          colours_(
-              colours_within(figure.field, figure.outline_field, figure.shown_above, figure.colormap, figure.range)),
+          colours_(colours_within(figure.field, figure.outline_field, figure.shown_above, figure.colormap, figure.range,
+                                  figure.thick_release ? Top::flow : Top::percentile)),
           captions_(make_captions(figure.title, figure.footer, unit_, figure.width)) {
         const MapBox box = block_of(figure);
         origin_ = {0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])};

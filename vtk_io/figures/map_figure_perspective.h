@@ -14,6 +14,7 @@ struct PerspectiveFigure {
     std::string title;
     std::string field_label = "depth [m]";
     std::optional<std::pair<double, double>> range;
+    bool thick_release = false;  ///< the depth of a flow: map_range.h, Top::flow
     Colormap colormap = Colormap::depth;
     std::optional<Polygons> survey;
     std::string footer;

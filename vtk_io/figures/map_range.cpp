@@ -10,7 +10,7 @@
 namespace frana {
 
 ColourRange colour_range(const std::vector<double>& field, double shown_above, Colormap map,
-                         const std::optional<std::pair<double, double>>& given) {
+                         const std::optional<std::pair<double, double>>& given, Top top) {
     std::vector<double> shown;
     for (const double value : field)
         if (std::abs(value) > shown_above) shown.push_back(value);
@@ -29,7 +29,7 @@ ColourRange colour_range(const std::vector<double>& field, double shown_above, C
         };
         constexpr double above_most = 3.0;  // an even spread of values, and a steep decay, stay as they are
         const double usual = quantile(0.75), high = quantile(0.995);
-        const double limit = usual > 0.0 ? std::min(high, above_most * usual) : high;
+        const double limit = top == Top::flow && usual > 0.0 ? std::min(high, above_most * usual) : high;
         const double smallest = *std::min_element(sorted.begin(), sorted.end());
         range.high = limit > 0.0 ? round_limit(limit) : 0.0;
         range.low = smallest < 0.0 ? -round_limit(-smallest) : 0.0;
@@ -78,9 +78,9 @@ std::vector<double> inside_outline(std::vector<double> field, const std::vector<
 }
 
 ColourRange colours_within(const std::vector<double>& field, const std::vector<double>& outlined, double shown_above,
-                           Colormap map, const std::optional<std::pair<double, double>>& given) {
-    if (outlined.empty()) return colour_range(field, shown_above, map, given);
-    return colour_range(inside_outline(field, outlined, shown_above), kAll, map, given);
+                           Colormap map, const std::optional<std::pair<double, double>>& given, Top top) {
+    if (outlined.empty()) return colour_range(field, shown_above, map, given, top);
+    return colour_range(inside_outline(field, outlined, shown_above), kAll, map, given, top);
 }
 
 }  // namespace frana

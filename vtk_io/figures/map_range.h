@@ -11,15 +11,17 @@
 namespace frana {
 
 /// Limits of the colours: given, or zero (the smallest value, when negative) to a round number at or above
-/// the 99.5th percentile of the values shown; symmetric about zero for the diverging map. Where few values are much larger
-/// than the others, as a thick release is, to three times what three quarters of them are below.
+/// the 99.5th percentile of the values shown; symmetric about zero for the diverging map.
 struct ColourRange {
     double low = 0.0, high = 1.0;
     bool more_below = false, more_above = false;
     double most = 0.0;  ///< largest value that is shown
 };
+/// `flow`: no further than three times what three quarters of the values are below. A thick release would turn all of the
+/// runout into one colour.
+enum class Top { percentile, flow };
 ColourRange colour_range(const std::vector<double>& field, double shown_above, Colormap map,
-                         const std::optional<std::pair<double, double>>& given);
+                         const std::optional<std::pair<double, double>>& given, Top top = Top::percentile);
 
 /// [xmin, ymin, xmax, ymax] of all nodes where |field| exceeds the limit, half a cell wider; nothing when
 /// none.
@@ -34,6 +36,7 @@ std::vector<double> inside_outline(std::vector<double> field, const std::vector<
 constexpr double kAll = -1.0;  ///< "shown above" that hides NaN only
 /// The limits of the colours of a field that is shown where `outlined` exceeds the limit; empty: where the field does.
 ColourRange colours_within(const std::vector<double>& field, const std::vector<double>& outlined, double shown_above,
-                           Colormap map, const std::optional<std::pair<double, double>>& given);
+                           Colormap map, const std::optional<std::pair<double, double>>& given,
+                           Top top = Top::percentile);
 
 }  // namespace frana

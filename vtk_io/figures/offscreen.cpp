@@ -229,7 +229,9 @@ bool Offscreen::grab(Pixels& picture, std::string& why_not) {
     vtkNew<vtkUnsignedCharArray> bytes;
     window_->vtk->GetPixelData(0, 0, size[0] - 1, size[1] - 1, 0, bytes, 0);
     why_not = window_->errors();
-    if (!why_not.empty() || bytes->GetNumberOfValues() != static_cast<vtkIdType>(picture.rgb.size())) return false;
+    if (why_not.empty() && bytes->GetNumberOfValues() != static_cast<vtkIdType>(picture.rgb.size()))
+        why_not = "VTK gave no picture of the size that was asked for";
+    if (!why_not.empty()) return false;
     std::copy_n(bytes->GetPointer(0), picture.rgb.size(), picture.rgb.begin());
     return true;
 }

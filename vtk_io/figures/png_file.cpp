@@ -27,7 +27,8 @@ void write_png(const Pixels& picture, const fs::path& png) {
     writer->SetInputData(image);
     writer->Write();
     vtkUnsignedCharArray* bytes = writer->GetResult();
-    expect(writer->GetErrorCode() == 0 && bytes != nullptr, "a picture that VTK makes a PNG of");
+    if (writer->GetErrorCode() != 0 || bytes == nullptr)
+        throw UserError(fmt::format("{}: VTK could not make a PNG of the picture", png.string()));
     write_text(png, std::string(reinterpret_cast<const char*>(bytes->GetPointer(0)),
                                 static_cast<std::size_t>(bytes->GetNumberOfValues())));
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vtk_io/figures/map_figure.h"
+#include "vtk_io/figures/map_range.h"
 
 namespace frana {
 
@@ -14,9 +15,14 @@ public:
     void add(const MapFigure& map);
     /// Sets the map's range, and its focus unless it has one. At least one map must have been added.
     void apply(MapFigure& map) const;
+    /// The colours of all maps together, for the bar that they share.
+    const ColourRange& range() const;
 
 private:
-    std::vector<double> shown_;  ///< some of the values of all maps
+    std::vector<float> shown_;  ///< some of the values of all maps
+    double most_ = 0.0;
+    Top top_ = Top::percentile;
+    mutable std::optional<ColourRange> range_;  ///< once it was asked for
     Colormap colormap_ = Colormap::depth;
     bool any_ = false;
     std::optional<std::array<double, 4>> covered_;  ///< [m]; nothing where no map shows anything

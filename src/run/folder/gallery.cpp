@@ -15,7 +15,6 @@ namespace frana {
 namespace fs = std::filesystem;
 
 void Gallery::make(Wanted& wanted) const {
-    if (!wanted.draw || Cutoff::asked()) return;
     const fs::path png = run_dir_ / wanted.figure.path;
     std::string why_not;
     try {
@@ -24,8 +23,11 @@ void Gallery::make(Wanted& wanted) const {
     } catch (const std::exception& error) {
         why_not = error.what();
     }
+    wanted.draw = nullptr;  // with what it held
     if (!wanted.drawn) wanted.warning = fmt::format("{} was not drawn: {}", wanted.figure.path, why_not);
 }
+
+bool Gallery::stop() const { return Cutoff::asked() || (stop_ && stop_()); }
 
 std::size_t Gallery::pictures() const {
     return static_cast<std::size_t>(
@@ -35,15 +37,17 @@ std::size_t Gallery::pictures() const {
 std::vector<DrawnFigure> Gallery::draw(int threads, std::vector<std::string>& warnings, const Tell& tell) {
     std::atomic<std::size_t> next{0};
     std::mutex telling;
+    const std::size_t all = pictures();
     std::size_t done = 0;
     const auto work = [&] {
         for (std::size_t k = next++; k < wanted_.size(); k = next++) {
+            if (!wanted_[k].draw || stop()) continue;
             make(wanted_[k]);
             const std::lock_guard<std::mutex> lock(telling);
-            if (tell && wanted_[k].draw) tell(++done, pictures());
+            if (tell) tell(++done, all);
         }
     };
-    if (tell && pictures() > 0) tell(0, pictures());
+    if (tell && all > 0) tell(0, all);
     std::vector<std::thread> others;
     for (std::size_t n = 1; n < std::min(static_cast<std::size_t>(threads), wanted_.size()); ++n) try {
             others.emplace_back(work);

@@ -21,11 +21,12 @@ public:
 
     /// What `draw` refers to has to stay until draw() is over.
     void add(DrawnFigure figure, Draw draw) { wanted_.push_back({std::move(figure), std::move(draw), "", false}); }
+    void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
     /// A warning in its place among those of the figures.
     void warn(std::string warning) { wanted_.push_back({{}, nullptr, std::move(warning), false}); }
 
     /// Draws all on so many threads. Returns what was made, in the order in which it was added. Once an end was asked for
-    /// (run/folder/cutoff.h) nothing more is begun.
+    /// (run/folder/cutoff.h, or `stop_when`) nothing more is begun.
     /// `tell` hears how many are done, of how many; one thread at a time, with none done first.
     using Tell = std::function<void(std::size_t done, std::size_t all)>;
     std::vector<DrawnFigure> draw(int threads, std::vector<std::string>& warnings, const Tell& tell = {});
@@ -38,9 +39,11 @@ private:
         bool drawn;
     };
     void make(Wanted& wanted) const;
+    bool stop() const;
     std::size_t pictures() const;
 
     std::filesystem::path run_dir_;
+    std::function<bool()> stop_;
     std::vector<Wanted> wanted_;
 };
 

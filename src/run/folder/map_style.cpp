@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "base/atomic_file.h"
 #include "vtk_io/figures/map_range.h"
 
@@ -19,6 +21,16 @@ Colormap colours_of(const std::string& name) {
 ColourRange range_of(const ProductRaster& product, const ProductRaster* peak_depth, double limit, Colormap map) {
     std::optional<std::pair<double, double>> given;
     if (product.name.find("damage") != std::string::npos) given = {0.0, 1.0};
+    if (product.name == "bed_change") {
+        double most = 0.0;
+        for (const double value : product.raster.values)
+            if (std::abs(value) > most) most = std::abs(value);
+        if (most > 0.0) given = {-most, most};
+    }
+    const bool thick = product.unit == "m" && map != Colormap::diverging;  // shown where they are thick themselves
+    if (thick)
+        return colour_range(product.raster.values, limit, map, given,
+                            product.name == "peak_depth" ? Top::flow : Top::percentile);
     const bool flow = peak_depth != nullptr && !is_friction(product.name) &&
                       peak_depth->raster.values.size() == product.raster.values.size();
     if (flow) return colours_within(product.raster.values, peak_depth->raster.values, limit, map, given);
@@ -28,7 +40,9 @@ ColourRange range_of(const ProductRaster& product, const ProductRaster* peak_dep
 /// "2.5 m"; pictures and legends have kPa.
 std::string label(double value, const std::string& unit) {
     const bool pascal = unit == "Pa";
-    return fmt::format("{:.4g}{}", pascal ? 1e-3 * value : value, pascal ? " kPa" : unit == "1" ? "" : " " + unit);
+    const double shown = pascal ? 1e-3 * value : value;
+    const std::string number = std::abs(shown) >= 1e4 ? fmt::format("{:.0f}", shown) : fmt::format("{:.4g}", shown);
+    return number + (pascal ? " kPa" : unit == "1" ? "" : " " + unit);
 }
 
 std::string item(double value, const Colour& colour, const std::string& words) {

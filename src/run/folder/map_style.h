@@ -12,8 +12,8 @@ namespace frana {
 /// Text as XML has it.
 std::string xml(const std::string& text);
 
-/// The `<pipe>` of a raster: elevations as hillshade; other values in steps from zero to a round number that holds 99.5 % of
-/// the pixels where the flow was deeper than `limit` [m] (for friction: of all), signed ones to either side of grey. Depths below `limit`
+/// The `<pipe>` of a raster: elevations as hillshade; other values in steps over the range of the report's pictures
+/// (map_range.h), signed ones to either side of grey. Depths below `limit`
 /// fade out. Labels have units, kPa for Pa.
 std::string raster_pipe(const ProductRaster& product, const ProductRaster* peak_depth, double limit);
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "base/error.h"
 #include "run/folder/run_film.h"
@@ -156,13 +158,14 @@ void add_3d(const FigureSource& source, Gallery& gallery) {
                                              one.name, one.caption));
                 continue;
             }
-            gallery.add(
-                {"figures/view_" + one.name + ".png", "points in space " + one.caption},
-                [figure](const fs::path& png, std::string& why_not) { return render_3d(figure, png, why_not); });
+            const auto seen = std::make_shared<const Figure3d>(figure);
+            gallery.add({"figures/view_" + one.name + ".png", "points in space " + one.caption},
+                        [seen](const fs::path& png, std::string& why_not) { return render_3d(*seen, png, why_not); });
             figure.title += ", section along the flow";
+            const auto cut = std::make_shared<const Figure3d>(std::move(figure));
             gallery.add(
                 {"figures/section_" + one.name + ".png", "section along the flow " + one.caption},
-                [figure](const fs::path& png, std::string& why_not) { return render_section(figure, png, why_not); });
+                [cut](const fs::path& png, std::string& why_not) { return render_section(*cut, png, why_not); });
         }
     } catch (const UserError& error) {
         gallery.warn(fmt::format("figures/view_points.png was not drawn: {}", error.what()));

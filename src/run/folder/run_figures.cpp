@@ -45,6 +45,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
         map.outline_field = depth_without_gaps(*extent);
         map.outline_label = extent->name == "peak_depth" ? "peak depth [m]" : "depth [m]";
     }
+    map.thick_release = product.name == "peak_depth" || product.name.rfind("depth", 0) == 0;
     if (product.name.find("stress") != std::string::npos) map.colormap = Colormap::diverging;
     if (product.name.find("damage") != std::string::npos) map.range = {0.0, 1.0};
     map.title = fmt::format("{}: {}", source.title, what);
@@ -88,6 +89,7 @@ void add_view(const FigureSource& source, const ProductRaster& peak_depth, Galle
     view.field = peak_depth.raster.values;
     view.shown_above = source.footprint_depth;
     view.title = source.title + ": peak depth";
+    view.thick_release = true;
     view.field_label = "peak depth [m]";
     view.survey = source.survey;
     view.footer = source.footer;
@@ -154,7 +156,7 @@ void add_overlay(const FigureSource& source, Gallery& gallery) {
         const Overlap areas = overlap(peak->raster, source.footprint_depth, rings_of(*source.survey));
         map.footer = fmt::format("both {:.0f} m2, simulated only {:.0f} m2, surveyed only {:.0f} m2, IoU {:.3f}; ",
                                  areas.hit, areas.beyond, areas.missed, areas.iou()) +
-                     source.footer;
+                     map.footer;
         return render_map(map, png, why_not);
     });
 }

@@ -36,6 +36,7 @@ MapFigure depth_map(const FigureSource& source, Index number) {
     map.field = part_of(Raster{frame.grid, std::move(frame.nodes.at("depth")), "", ""}, *box).values;
     map.shown_above = source.footprint_depth;
     map.field_label = "depth [m]";
+    map.thick_release = true;
     map.survey = source.survey;
     return map;
 }

@@ -252,7 +252,8 @@ std::string names_of(const fs::path& run_dir, const std::vector<fs::path>& files
 
 /// A product that a killed process was writing when it died has a name like ".peak_depth.tmp4711.tif".
 void remove_half_written(const fs::path& run_dir) {
-    static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*)?");
+    // SQLite, which writes GeoPackages, has files of its own beside one
+    static const std::regex half_written("\\.(.*)\\.tmp\\d+(\\..*?)?(-journal|-wal|-shm)?");
     std::error_code ignored;
     for (const ProductKind& kind : product_kinds()) {
         std::vector<fs::path> found;

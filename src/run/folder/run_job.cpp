@@ -193,6 +193,7 @@ void draw(const FigureSource& source, const Output& output, const FlowFrames& fr
             std::cerr << cutoff_sentence(run_dir) << std::endl;
         });
     Gallery gallery(run_dir);
+    gallery.stop_when([&interrupt] { return interrupt.requested(); });
     if (output.png) add_figures(source, gallery);
     if (record.page) add_page(source, frames, run_json(record), gallery);
     if (!output.film.empty()) {
@@ -250,7 +251,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     Observers observers = make_observers(scene, run_dir, record.barriers, rasters);
     if (auto sections = make_sections(scene, run_dir, record.sections)) observers.push_back(std::move(sections));
     if (record.netcdf)
-        observers.push_back(make_netcdf_writer(run_dir, record.title, scene.bed.crs_wkt, scene.output.fields));
+        observers.push_back(
+            make_netcdf_writer(run_dir, record.title, scene.bed.crs_wkt, scene.output.fields, record.warnings));
     for (auto& observer : make_insitu(scene, run_dir, record.insitu)) observers.push_back(std::move(observer));
     FlowFrames frames(scene.output.footprint_depth);
     if (record.page) observers.push_back(make_frame_keeper(frames));
@@ -286,7 +288,11 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     });
     timed(record.summary, "states", [&] { leave_states(scene, run_dir, record); });
     close_record(record, run_dir);
-    if (keep_rasters) *keep_rasters = std::move(rasters);
+    if (keep_rasters) {  // those that are read back from the folder, too
+        if (const ProductRaster* bed_too = find_product(rasters, "elevation"))
+            rasters.erase(rasters.begin() + (bed_too - rasters.data()));
+        *keep_rasters = std::move(rasters);
+    }
     return record;
 }
 

@@ -17,7 +17,7 @@ void check_page(const CaseFile& file);
 /// Depth and speed of the frames that the run wrote for ParaView; none without them.
 FlowFrames frames_of_run(const FigureSource& source);
 
-/// The page. `record` is the text of run.json.
+/// The page. `record` is the text of run.json. The frames have to stay until it is drawn, as the source does.
 void add_page(const FigureSource& source, const FlowFrames& frames, const std::string& record, Gallery& gallery);
 
 }  // namespace frana
