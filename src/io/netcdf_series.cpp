@@ -77,6 +77,20 @@ bool write_axis(GDALGroup& root, const std::shared_ptr<GDALDimension>& dimension
     return array->Write(&start, &count, nullptr, nullptr, type, values.data());
 }
 
+/// GDAL writes the grid mapping of the systems that its table of CF names knows. For others the mapping has the well-known
+/// text alone, which CF 1.7 and later allow.
+void place(GDALGroup& root, GDALMDArray& array, const OGRSpatialReference& crs) {
+    array.SetSpatialRef(&crs);
+    if (array.GetAttribute("grid_mapping")) return;
+    constexpr const char* kName = "crs";
+    if (!root.OpenMDArray(kName)) {
+        const auto mapping = root.CreateMDArray(kName, {}, GDALExtendedDataType::Create(GDT_Int32), nullptr);
+        if (!mapping) return;
+        for (const char* key : {"crs_wkt", "spatial_ref"}) note(*mapping, key, gdal::horizontal_wkt(crs));
+    }
+    note(array, "grid_mapping", kName);
+}
+
 std::shared_ptr<GDALMDArray> make_field(GDALGroup& root, const Dimensions& dimensions, const Variable& variable,
                                         const OGRSpatialReference* crs) {
     constexpr GUInt64 kLargest = 512;
@@ -95,20 +109,6 @@ std::shared_ptr<GDALMDArray> make_field(GDALGroup& root, const Dimensions& dimen
     note(*array, "long_name", variable.meaning);
     if (crs) place(root, *array, *crs);
     return array;
-}
-
-/// GDAL writes the grid mapping of the systems that its table of CF names knows. For others the mapping has the well-known
-/// text alone, which CF 1.7 and later allow.
-void place(GDALGroup& root, GDALMDArray& array, const OGRSpatialReference& crs) {
-    array.SetSpatialRef(&crs);
-    if (array.GetAttribute("grid_mapping")) return;
-    constexpr const char* kName = "crs";
-    if (!root.OpenMDArray(kName)) {
-        const auto mapping = root.CreateMDArray(kName, {}, GDALExtendedDataType::Create(GDT_Int32), nullptr);
-        if (!mapping) return;
-        for (const char* key : {"crs_wkt", "spatial_ref"}) note(*mapping, key, gdal::horizontal_wkt(crs));
-    }
-    note(array, "grid_mapping", kName);
 }
 
 /// One plane of a field, all of it for a field without time.
