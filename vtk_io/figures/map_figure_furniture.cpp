@@ -39,7 +39,8 @@ void draw_colour_bar(Canvas& canvas, const Rectangle& bar, const ColourRange& ra
         widest = std::max(widest, text_size(ticks.labels[i], style).x());
     }
     style.upward = Upward::bottom;
-    canvas.text(beyond_text(range), {bar.x1 + 0.35 * unit, bar.y1 - 0.6 * unit}, style);
+    style.size = 0.85 * unit;
+    canvas.text(beyond_text(range), {bar.x0, bar.y1 + 0.1 * unit}, style);
     style.across = Across::centre;
     style.upward = Upward::top;
     style.angle = 90.0;
