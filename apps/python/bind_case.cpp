@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "bindings.h"
 #include "io/gdal_reader.h"
+#include "run/folder/run_page.h"
 #include "scene/build_scene.h"
 #include "scene/memory_need.h"
 #include "vtk_io/barrier_mesh.h"
@@ -68,6 +69,7 @@ Checked check(const CaseFile& file) {
         Checked found;
         const MeshReader meshes = barrier_meshes_told([&](const std::string& line) { found.text += line + '\n'; });
         const BuiltScene built = build_scene_in_detail(file, GdalReader(), meshes);
+        check_page(file);
         found.text += told_of(built);
         for (const Seeds* seeds : built.scene.all_particles()) found.particles += seeds->count();
         for (const ReleaseSummary& release : built.releases) found.volume += release.report.particle_volume;

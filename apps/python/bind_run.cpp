@@ -101,6 +101,7 @@ public:
 
     py::object next() {
         mine();
+        alone();
         if (over()) return py::none();
         if (unseen_) return shown();
         session_->go_to_output();
@@ -108,15 +109,17 @@ public:
     }
     py::object advance(double until) {
         mine();
+        alone();
         if (over()) return py::none();
         session_->go_to(until);
         return stand();
     }
-    /// Ends the run where it is, unless it is over.
+    /// Ends the run where it is, unless it is over. What went wrong meanwhile comes through, once.
     void close() {
         if (!session_ || ::getpid() != process_ || over()) return;
         session_->end();
         wait_out();
+        if (!busy_) tell_failure();  // else whoever steps it tells
     }
     bool over() const { return session_->state() == Session::State::over; }
     Session& session() const {
@@ -124,11 +127,11 @@ public:
         return *session_;
     }
     /// Only while it stands: another thread may have told it to go on.
-    Status status() const {
+    const Session& standing() const {
         mine();
         if (session_->state() == Session::State::runs)
             throw std::runtime_error("the run is stepping in another thread; look at it there");
-        return session_->status();
+        return *session_;
     }
 
 private:
@@ -136,6 +139,10 @@ private:
         if (::getpid() != process_)
             throw std::runtime_error(
                 "the run belongs to the process that started it; start another one after the fork");
+    }
+
+    void alone() const {
+        if (busy_) throw std::runtime_error("the run is stepping in another thread; a run belongs to one at a time");
     }
 
     py::object stand() {
@@ -158,7 +165,6 @@ private:
     /// Waits until it stands at a frame, is ready or over. Ctrl-C is answered after the present step; the run then stands and
     /// may go on.
     void settle() {
-        if (busy_) throw std::runtime_error("the run is stepping in another thread; a run belongs to one at a time");
         const Busy busy(busy_);
         for (;;) {
             if (!waited(std::chrono::milliseconds(50))) {
@@ -173,10 +179,13 @@ private:
             if (state != Session::State::tick && state != Session::State::paused) break;
             session_->go_on();
         }
-        if (over() && session_->failure() && !told_failure_) {
-            told_failure_ = true;
-            std::rethrow_exception(session_->failure());
-        }
+        tell_failure();
+    }
+
+    void tell_failure() {
+        if (!over() || !session_->failure() || told_failure_) return;
+        told_failure_ = true;
+        std::rethrow_exception(session_->failure());
     }
 
     /// Until it is over; a Ctrl-C meanwhile is told afterwards.
@@ -219,7 +228,7 @@ private:
 
 py::list rasters_of(const Run& run) {
     py::list all;
-    for (const ProductRaster& product : run.session().rasters())
+    for (const ProductRaster& product : run.standing().rasters())
         all.append(py::make_tuple(product.name, product.unit, product.description, north_up(product.raster)));
     return all;
 }
@@ -274,10 +283,10 @@ void bind_run(py::module_& module) {
         .def("advance", &Run::advance)
         .def("close", &Run::close)
         .def_property_readonly("over", &Run::over)
-        .def_property_readonly("status", &Run::status)
+        .def_property_readonly("status", [](const Run& run) { return run.standing().status(); })
         .def_property_readonly("end", [](const Run& run) { return run.session().planned_end(); })
-        .def_property_readonly("remarks", [](const Run& run) { return run.session().remarks(); })
-        .def("record", [](const Run& run) { return run_json(run.session().record()); })
+        .def_property_readonly("remarks", [](const Run& run) { return run.standing().remarks(); })
+        .def("record", [](const Run& run) { return run_json(run.standing().record()); })
         .def("rasters", &rasters_of);
 }
 

@@ -1,4 +1,5 @@
 """Cases: keys, values, problems."""
+import gc
 import os
 import pickle
 import unittest
@@ -69,6 +70,15 @@ class Keys(InFolder):
         self.assertEqual([problem.key for problem in bad.problems], ["release.0.outline"])
         self.assertIn("release.geojson", str(bad))
 
+    def test_a_check_tells_what_a_run_would_of_the_page(self):
+        self.case["output.formats"] = ["web"]
+        try:
+            self.case.run().close()
+        except frana.CaseError as error:  # built without libjs-three
+            self.assertEqual(self.case.check().problems, error.problems)
+        else:
+            self.assertTrue(self.case.check())
+
     def test_a_dictionary_is_a_case(self):
         case = frana.Case({"terrain": {"dem": self.path("dem.tif")},
                            "release": [{"outline": self.path("release.geojson"), "depth": 1.5}],
@@ -121,6 +131,21 @@ class Arrays(InFolder):
         case = frana.Case.from_rasters(dem=frana.Raster(slope(), where, crs=UTM), release=frana.Raster(depth, where, crs=UTM),
                                        density=1800, end=1.0, law="coulomb", friction_angle_deg=15.0)
         self.assertAlmostEqual(case.check().volume, 16 * CELL * CELL * 1.5, places=6)
+        run = case.run()
+        folder = os.path.dirname(case["terrain.dem"])
+        del case
+        gc.collect()
+        self.assertTrue(os.path.exists(folder))  # as long as the run may read it
+        run.close()
+        del run
+        gc.collect()
+        self.assertFalse(os.path.exists(folder))
+
+    def test_a_depth_may_be_a_number_of_any_kind(self):
+        for depth in (2, 2.0, numpy.float32(2), numpy.int64(2)):
+            case = frana.Case.from_rasters(dem=self.path("dem.tif"), release=self.path("release.geojson"), depth=depth,
+                                           density=1800, law="coulomb", friction_angle_deg=15.0)
+            self.assertEqual(case["release.0.depth"], 2.0)
 
 
 class Numerics(unittest.TestCase):

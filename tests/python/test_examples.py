@@ -24,7 +24,15 @@ class Examples(InFolder):
         said = self.run_example("watch_a_run.py", self.cases("maungawhau", "case.toml"))
         speeds = [float(speed) for speed in re.findall(r"front .* ([\d.]+) m/s", said)]
         self.assertEqual(len(speeds), 6)
+        self.assertEqual(speeds[0], 0.0)
         self.assertGreater(speeds[-1], speeds[1])
+        fronts = [float(front) for front in re.findall(r"front +([\d.]+) m", said)]
+        self.assertEqual(fronts, sorted(fronts))
+        deepest = [float(depth) for depth in re.findall(r"deepest ([\d.]+) m", said)]
+        self.assertEqual(deepest[0], 4.0)  # the release's
+        area = float(re.search(r"by reason of end; (\d+) m2 were covered", said)[1])
+        released = float(re.search(r"particles, ([\d.]+) m3 of", said)[1])
+        self.assertGreater(area, released / max(deepest))  # on less it would be deeper
 
     def test_friction(self):
         said = self.run_example("vary_friction.py", self.cases("maungawhau", "case.toml"))
@@ -34,15 +42,33 @@ class Examples(InFolder):
 
     def test_own_ground(self):
         said = self.run_example("own_ground.py")
-        self.assertRegex(said, r"deepest at the foot")
+        frames = [[float(number) for number in row]
+                  for row in re.findall(r"([\d.]+) s: (\d+) particles, x from (\d+) to (\d+) m", said)]
+        self.assertEqual([frame[0] for frame in frames], [0.0, 5.0, 10.0, 15.0, 20.0])
+        self.assertEqual(frames[0][1:], [400.0, 40.0, 60.0])  # 4 in each of 100 cells of 2 m
+        fronts = [frame[3] for frame in frames]
+        self.assertEqual(fronts, sorted(set(fronts)))
+        depth, x = [float(number) for number in re.search(r"\? ([\d.]+) m at x = (\d+) m", said).groups()]
+        self.assertTrue(0.0 < depth < 2.0)  # the release spreads
+        self.assertAlmostEqual(x, 180.0, delta=20.0)  # the release's length
 
     def test_hydrograph(self):
         said = self.run_example("hydrograph.py", self.cases("maungawhau", "case.toml"))
-        self.assertRegex(said, r"passes .* m3")
+        times = [float(time) for time in re.findall(r"([\d.]+) s: ", said)]
+        self.assertEqual(len(times), 6)
+        rates = [float(rate) for rate in re.findall(r"(-?[\d.]+) m3/s pass", said)]
+        passed, released = [float(volume) for volume in re.search(r"passes (\d+) m3 of (\d+) m3", said).groups()]
+        self.assertTrue(0.0 < passed <= released, said)
+        self.assertAlmostEqual(sum(2.0 * rate for rate in rates), passed, delta=6 * 0.1 + 0.5)  # of printed digits
 
     def test_read_back(self):
         said = self.run_example("read_a_run.py", self.cases("maungawhau", "case.toml"))
-        self.assertRegex(said, r"IoU")
+        energy = [(float(t), float(kinetic)) for t, kinetic in re.findall(r"([\d.]+) s: kinetic energy ([\d.]+) MJ", said)]
+        self.assertEqual((energy[0], energy[-1][0]), ((0.0, 0.0), 8.0))
+        self.assertGreater(energy[-1][1], 0.0)
+        self.assertRegex(said, r"frame 8 has .*\bdepth\b.*\bvelocity\b")
+        iou = float(re.search(r"IoU is ([\d.]+)", said)[1])
+        self.assertTrue(0.0 < iou < 1.0, said)  # other friction, another footprint
 
 
 if __name__ == "__main__":

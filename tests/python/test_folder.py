@@ -37,6 +37,17 @@ class Folders(InFolder):
         self.assertEqual(len(history), 1 + self.result.record["steps"])  # a line a step
         self.assertAlmostEqual(history["mass"][0], 600.0 * 1800.0, places=3)
 
+    def test_a_row_that_is_being_written_is_left_out_and_words_are_refused(self):
+        whole = self.old.history
+        with open(self.path("out", "history.csv"), "a", encoding="utf-8") as file:
+            file.write("2.5,1")
+        numpy.testing.assert_array_equal(self.old.history, whole)
+        for text in ("", "t [s],name\n0,bridge\n", "t [s],depth [m]\n0\n"):
+            with open(self.path("out", "words.csv"), "w", encoding="utf-8") as file:
+                file.write(text)
+            with self.subTest(text), self.assertRaisesRegex(frana.DataError, "words.csv: .*expected"):
+                self.old.table("words.csv")
+
     def test_record_and_rasters_are_those_of_the_result(self):
         self.assertTrue(self.old.finished)
         self.assertEqual(self.old.record, self.result.record)

@@ -142,6 +142,20 @@ class Frames(InFolder):
         self.assertIsNone(run.advance(until=1.0))
         self.assertEqual(list(run), [])
 
+    def test_relative_paths_are_of_the_folder_at_the_start(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        case = frana.Case("case.toml")
+        os.mkdir("elsewhere")
+        with case.run("out") as run:
+            next(run)
+            os.chdir("elsewhere")
+            run.finish()
+        self.assertEqual(os.listdir("."), [])
+        self.assertEqual(run.result.folder, os.path.abspath("../out"))
+        self.assertTrue(frana.open("../out").finished)
+        self.assertTrue(case.check())
+
 
 class Outside(InFolder):
     def test_transform_crs_and_numbers_are_those_that_gdal_reads(self):
@@ -309,6 +323,38 @@ class Stopping(InFolder):
         self.assertRegex(said[0], r"0\.000 of 2 s   step 0   64 particles")
         self.assertEqual(run.result.reason, "interrupted")
         self.assertTrue(os.path.exists(self.path("out", "run.json")))
+
+    def test_a_call_that_is_refused_does_not_move_the_run(self):
+        refused, times = [], []
+
+        def progress(_):
+            for call in (run._run.next, lambda: run._run.advance(99.0)):
+                with self.assertRaisesRegex(RuntimeError, "one at a time"):
+                    call()
+                refused.append(call)
+
+        with self.case.run(progress=progress) as run:
+            for frame in run:
+                times.append(frame.time)
+        self.assertGreaterEqual(len(refused), 2 * 5)
+        self.assertEqual(times, [0.0, 0.5, 1.0, 1.5, 2.0])
+
+    def test_what_goes_wrong_while_it_ends_is_told(self):
+        def begin(out):
+            run = self.case.run(out)
+            next(run)
+            with open(os.path.join(out, "rasters"), "w", encoding="utf-8"):
+                pass  # no folder can be made there
+            return run
+
+        with self.assertRaisesRegex(frana.DataError, "rasters"), begin(self.path("one")):
+            pass
+        with self.assertRaisesRegex(KeyError, "on its way"), begin(self.path("two")):
+            raise KeyError("on its way")
+        run = begin(self.path("three"))
+        with self.assertRaisesRegex(frana.DataError, "rasters"):
+            run.close()
+        run.close()  # told once
 
     def test_problems_come_before_anything_is_written(self):
         os.remove(self.path("release.geojson"))

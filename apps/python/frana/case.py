@@ -1,4 +1,5 @@
 """Cases: files or dictionaries of the same keys."""
+import numbers
 import os
 
 from . import _frana
@@ -104,7 +105,7 @@ class Case:
             self._path = os.path.join(os.getcwd(), "dictionary")
             self._text = "\n".join(_tables(source)) + "\n"
         else:
-            self._path = os.fspath(source)
+            self._path = os.path.abspath(source)  # the present folder may change before the case is read again
         for key, value in (set or {}).items():
             self._put(key, value)
         self._read()
@@ -143,7 +144,7 @@ class Case:
 
         where = {"outline": file_of(release, "release.tif")} if depth is not None else {"depth": file_of(release, "depth.tif")}
         if depth is not None:
-            where["depth"] = float(depth) if isinstance(depth, (int, float)) else file_of(depth, "depth.tif")
+            where["depth"] = float(depth) if isinstance(depth, numbers.Real) else file_of(depth, "depth.tif")
         case = cls({"terrain": {"dem": file_of(dem, "dem.tif")}, "release": [where],
                     "material": {"density": float(density), "bed": bed},
                     "time": {"end": float(end)}, "output": {"every": float(every)}})
@@ -243,10 +244,10 @@ class Case:
             raise ValueError("overwrite, resume: found without a folder; expected out=DIR with them")
         sets = self._read()
         tell = None if progress is None else lambda status, end: progress(_progress(status, end))
-        folder = None if out is None else os.fspath(out)
+        folder = None if out is None else os.path.abspath(out or os.path.join("out", self.name))
         run = _frana.Run(self._file, folder, sets, int(threads or 0), None if until is None else float(until),
                          bool(overwrite), bool(resume), tell)
-        return Run(run, folder)
+        return Run(run, folder, self._kept)
 
     def __repr__(self):
         return f"<frana.Case {self.name}>"

@@ -144,13 +144,23 @@ class Folder:
         return self.table("history.csv")
 
     def table(self, name):
-        """A CSV file of the folder, "gauges/bridge.csv", as a structured array; empty cells are NaN. Names have no units."""
+        """A CSV file of the folder, "gauges/bridge.csv", as a structured array; empty cells are NaN. Names have no units.
+
+        A row that a run is still writing is left out. DataError for a table that holds words.
+        """
         import numpy
 
-        rows = list(csv.reader(self._text(name).splitlines()))
-        names = [header.split(" [")[0] for header in rows[0]]
-        numbers = [tuple(float(cell) if cell else float("nan") for cell in row) for row in rows[1:]]
-        return numpy.array(numbers, dtype=[(name, float) for name in names])
+        text = self._text(name)
+        rows = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))
+        if not rows:
+            raise DataError([f"{os.path.join(self.path, name)}: found no whole line; expected a table; wait for the run"])
+        columns = [header.split(" [")[0] for header in rows[0]]
+        try:
+            numbers = [tuple(float(cell) if cell else float("nan") for cell in row) for row in rows[1:]]
+            return numpy.array(numbers, dtype=[(column, float) for column in columns])
+        except ValueError as error:
+            raise DataError([f"{os.path.join(self.path, name)}: {error}; expected a number in each of the columns "
+                             f"{', '.join(columns)}; read a table with words by the module csv"]) from None
 
     @property
     def rasters(self):

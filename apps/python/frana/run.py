@@ -145,14 +145,19 @@ class Run:
     A run belongs to one thread at a time, and to the process that started it.
     """
 
-    def __init__(self, run, folder):
+    def __init__(self, run, folder, kept=()):
         self._run, self._folder, self._result = run, folder, None
+        self._kept = kept  # temporary folders of the case, which may go before its run
 
     def __enter__(self):
         return self
 
-    def __exit__(self, *what):
-        self.close()
+    def __exit__(self, kind, error, trace):
+        try:
+            self.close()
+        except Exception:
+            if kind is None:  # else what is on its way already tells more
+                raise
 
     def __iter__(self):
         return self
@@ -182,7 +187,7 @@ class Run:
         return self.result
 
     def close(self):
-        """Ends the run where it is, unless it is over."""
+        """Ends the run where it is, unless it is over. Raises what goes wrong meanwhile, as a full disk."""
         self._run.close()
 
     @property
