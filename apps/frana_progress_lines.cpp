@@ -1,6 +1,8 @@
 #include "frana_progress_lines.h"
 
+#include <filesystem>
 #include <iostream>
+#include <new>
 
 #include "base/error.h"
 #include "base/version.h"
@@ -59,6 +61,15 @@ int ProgressLines::around(const std::function<int()>& command) {
         throw;
     } catch (const Interrupted& error) {
         last(130, "interrupted", error.what());
+        throw;
+    } catch (const std::bad_alloc& error) {
+        last(2, "refused", error.what());
+        throw;
+    } catch (const std::filesystem::filesystem_error& error) {
+        last(2, "refused", error.what());
+        throw;
+    } catch (const std::exception& error) {
+        last(1, "failed", error.what());
         throw;
     }
 }

@@ -59,7 +59,7 @@ def find(setting=""):
 def _output(path, *arguments):
     """Standard output of a call that takes no time; Trouble when it fails."""
     try:
-        done = subprocess.run([path, *arguments], capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run([path, *arguments], capture_output=True, encoding="utf-8", timeout=60, check=False)
     except (OSError, subprocess.SubprocessError) as error:
         raise Trouble(f"program: {path} does not start: {error}; expected frana; correct it in {_SETTING}") from error
     if done.returncode != 0:
@@ -197,6 +197,8 @@ def sentence(ended):
         return f"numerics: {said}; the folder has a last frame to look at"
     if ended.code == 130:
         return f"interrupted from outside: {said}; the run can be resumed"
+    if ended.code < 0 and ended.stopped:
+        return "canceled before the run began"
     if ended.code < 0:
         return f"the program was ended by signal {-ended.code}; its last kept state can be resumed"
     return f"a mistake of frana (exit code {ended.code}): {said}; please report it with the case"

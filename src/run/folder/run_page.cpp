@@ -96,8 +96,10 @@ std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& r
         any |= std::isfinite(value) && (!bed || value != 0.0);
     }
     if (!any) return {};
-    const ColourRange range = colour_range(drape.raster.values, kAll, rule.colours, {});
+    const ColourRange range = colour_range(drape.raster.values, kAll, rule.colours, {},
+                                           drape.name == "peak_depth" ? Top::flow : Top::percentile);
     drape.low = range.low, drape.high = range.high;
+    drape.above = range.more_above, drape.below = range.more_below;
     return drape;
 }
 

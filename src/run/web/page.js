@@ -24,7 +24,7 @@ function drawScale() {
   const ticks = [0, 0.25, 0.5, 0.75, 1].map(share => {
     const tick = document.createElement("span");
     tick.style.bottom = `${100 * share}%`;
-    tick.textContent = (share === 1 && scale.more !== false ? "≥ " : "") + written(scale.from + share * (scale.to - scale.from));
+    tick.textContent = (share === 1 && scale.above !== false ? "≥ " : share === 0 && scale.below ? "≤ " : "") + written(scale.from + share * (scale.to - scale.from));
     return tick;
   });
   get("ticks").replaceChildren(...ticks);
@@ -54,7 +54,7 @@ async function render() {
   tell();
 }
 
-/** Light on the ground, or on the flow that lies on it; 1 where it is level. */
+/** Light on the ground, or on the flow that lies on it; a little below 1 where it is level. */
 function lightOver(raster, depth) {
   const {nx, ny, x, y, cell} = raster, surface = new Float32Array(nx * ny);
   for (let j = 0, n = 0; j < ny; ++j)
@@ -122,7 +122,7 @@ function tell() {
     if (data.frames.some(frame => frame.fastest !== undefined)) rows.push(["Speed", value(state.flow && state.flow.speed, "m/s")]);
   } else if (state.drapes[state.show]) {
     const scale = scaleOf(state.show), found = nearestValue(state.drapes[state.show], x, y);
-    rows.push([scale.label[0].toUpperCase() + scale.label.slice(1), isNaN(found) ? "not reached" : `${written(found)} ${scale.unit}`]);
+    rows.push([scale.label[0].toUpperCase() + scale.label.slice(1), isNaN(found) ? (state.show === "final_depth" ? `at most ${written(data.footprint_depth)} m` : "not reached") : `${written(found)} ${scale.unit}`]);
   }
   get("under").replaceChildren(...rows.flatMap(([name, text], k) => {
     const label = document.createElement("i"), number = document.createElement("b");
@@ -168,7 +168,7 @@ function fillPage() {
     row.append(...fact.map(text => { const cell = document.createElement("td"); cell.textContent = text; return cell; }));
     return row;
   }));
-  const notes = data.drapes.length ? data.notes : ["Nothing flowed: the run left no depth above "
+  const notes = data.drapes.length || data.frames.length ? data.notes : ["Nothing flowed: the run left no depth above "
     + `${written(data.footprint_depth)} m anywhere.`, ...data.notes];
   get("notes").replaceChildren(...notes.map(text => {
     const note = document.createElement("p");
@@ -309,4 +309,8 @@ async function begin() {
   if (asked.has("check")) await check();
 }
 
-begin();
+begin().catch(error => {
+  const note = document.createElement("p");
+  note.textContent = `This browser cannot show the page: ${error.message}`;
+  get("notes").prepend(note);
+});

@@ -56,7 +56,7 @@ function colourOf(colours, share) {
 
 /**
  * Pixels of `values` in the scale's colours, red, green and blue times opacity. `shown(n)` says where; `light(i, j)` is
- * 1 on level ground.
+ * A little below 1 on level ground.
  */
 function pixelsOf(raster, scale, shown, light) {
   const {nx, ny, values} = raster, pixels = new Uint8Array(4 * nx * ny), opacity = 0.92;

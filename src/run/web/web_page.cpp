@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -93,7 +94,8 @@ Json drapes_json(const WebPage& page, const Places& places, std::vector<std::str
         coarsest = std::max(coarsest, k);
         Json json = raster_json(largest_in_blocks(whole, k), 1e-4 * (drape.high - drape.low), places);
         json["name"] = drape.name, json["label"] = drape.label, json["unit"] = drape.unit;
-        json["from"] = drape.low, json["to"] = drape.high, json["colours"] = colours_json(drape.colours);
+        json["from"] = drape.low, json["to"] = drape.high, json["above"] = drape.above, json["below"] = drape.below,
+        json["colours"] = colours_json(drape.colours);
         list.push_back(json);
     }
     if (coarsest > 1)
@@ -156,7 +158,11 @@ Json curves_json(const PageCurves& curves) {
     Json time = Json::array(), runout = Json::array(), volume = Json::array();
     for (std::size_t k = 0; k < curves.time.size(); ++k) {
         if (k % stride != 0 && k + 1 != curves.time.size()) continue;
-        const auto short_number = [](double value) { return std::stod(fmt::format("{:.7g}", value)); };
+        const auto short_number = [](double value) {  // whatever language the process speaks
+            const std::string text = fmt::format("{:.7g}", value);
+            std::from_chars(text.data(), text.data() + text.size(), value);
+            return value;
+        };
         time.push_back(short_number(curves.time[k]));
         runout.push_back(short_number(curves.runout[k]));
         volume.push_back(short_number(curves.volume[k]));
@@ -211,7 +217,7 @@ std::string script_safe(const Json& json) {
     return text;
 }
 
-/// A text between tags, beyond ASCII as numbers of its characters.
+/// A text between tags, in UTF-8.
 std::string html_safe(const std::string& text) {
     std::string safe;
     // JSON's writer knows how to replace what is no UTF-8.

@@ -18,8 +18,9 @@ struct PageDrape {
     std::string label;  ///< for people: "peak depth"
     std::string unit;   ///< of the values: "m"
     Colormap colours = Colormap::depth;
-    double low = 0.0, high = 1.0;  ///< of the colours
-    Raster raster;                 ///< NaN: nothing is shown there
+    double low = 0.0, high = 1.0;       ///< of the colours
+    Raster raster;                      ///< NaN: nothing is shown there
+    bool above = false, below = false;  ///< values lie beyond the colours
 };
 
 struct PagePlace {
