@@ -98,8 +98,7 @@ void Progress::pictures(std::size_t done, std::size_t all) {
     if (style_ == Style::lines && done == 0)
         stream_ << fmt::format("drawing {} picture{}\n", all, plural) << std::flush;
     if (style_ == Style::bar)
-        stream_ << fmt::format("\rpictures: {} of {} done\033[K{}", done, all, done == all ? "\n" : "")
-                << std::flush;
+        stream_ << fmt::format("\rpictures: {} of {} done\033[K{}", done, all, done == all ? "\n" : "") << std::flush;
 }
 
 std::string Progress::bar(const Status& now, double wall) const {
