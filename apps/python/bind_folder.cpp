@@ -27,7 +27,7 @@ py::tuple north_up(const Raster& raster) {
 namespace {
 
 py::dict columns_of(std::map<std::string, std::vector<double>>& columns, const std::map<std::string, int>& components,
-                    const std::map<std::string, std::string>& units, std::vector<py::ssize_t> shape) {
+                    const std::map<std::string, std::string>& units, const std::vector<py::ssize_t>& shape) {
     py::dict all;
     for (auto& [name, numbers] : columns) {
         std::vector<py::ssize_t> of = shape;
