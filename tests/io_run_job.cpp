@@ -250,7 +250,7 @@ TEST_CASE("the closing lines are ten and name the report, the pictures and the s
     const FakeRun run({}, Interrupt(), Pictures::yes);
     const std::string text = closing_lines(run.record, run.dir());
     CHECK(std::count(text.begin(), text.end(), '\n') == 10);
-    for (const char* place : {"report.md", "grid.pvd", "rasters", "figures"})
+    for (const char* place : {"report.md", "grid.pvd", "run.qgz", "figures"})
         CHECK(text.find((run.dir() / place).string()) != std::string::npos);
 }
 
