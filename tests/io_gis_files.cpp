@@ -12,7 +12,10 @@
 #include "base/atomic_file.h"
 #include "base/colour.h"
 #include "catch.h"
+#include "fake_simulation.h"
+#include "fresh_folder.h"
 #include "io/gdal_writer.h"
+#include "io/netcdf_series.h"
 #include "io_gdal_make.h"
 #include "program.h"
 #include "read_layer.h"
@@ -391,4 +394,38 @@ TEST_CASE("series.nc has depth, speed and velocity at every output, by CF's name
     CHECK(depths.root->OpenMDArray("depth"));
     CHECK_FALSE(depths.root->OpenMDArray("speed"));
     CHECK_FALSE(fs::exists(slope.path() / "depth/run.qgz"));
+}
+
+TEST_CASE("series.nc keeps coordinate systems that CF has no names for, and a full disk costs no run",
+          "[gis][netcdf]") {
+    GDALAllRegister();
+    if (GetGDALDriverManager()->GetDriverByName("netCDF") == nullptr) return;
+    for (const char* code : {"2056", "5514", "32632"}) {  // LV95 and Krovak are oblique, UTM is not
+        CAPTURE(code);
+        const FreshFolder folder;
+        FakeSimulation simulation;
+        std::vector<std::string> warnings;
+        const auto writer = make_netcdf_writer(folder.path(), "a hill", wkt_of((std::string("EPSG:") + code).c_str()),
+                                               {"depth"}, warnings);
+        writer->observe(simulation.frame());
+        writer->end(simulation.frame());
+        REQUIRE(warnings.empty());
+        const Series series(folder.path() / "series.nc");
+        for (const char* name : {"depth", "elevation"}) {
+            const auto crs = series.root->OpenMDArray(name)->GetSpatialRef();
+            REQUIRE(crs);
+            OGRSpatialReference wanted;
+            wanted.SetFromUserInput((std::string("EPSG:") + code).c_str());
+            const char* const loosely[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
+                                           "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
+            CHECK(crs->IsSame(&wanted, loosely));
+        }
+    }
+    FakeSimulation simulation;
+    std::vector<std::string> warnings;
+    const auto writer = make_netcdf_writer("/nowhere", "a hill", "", {"depth"}, warnings);
+    writer->observe(simulation.frame());
+    writer->end(simulation.frame());
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings.front(), Contains("series.nc was not written: "));
 }
