@@ -220,8 +220,9 @@ public:
 private:
     /// Four bytes of the surface; row 0 is the lowest one.
     unsigned char* pixel(int x, int y) {
+        unsigned char* const bytes = cairo_image_surface_get_data(surface_.get());
         const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface_.get());
-        return cairo_image_surface_get_data(surface_.get()) + (height_ - 1 - y) * stride + std::ptrdiff_t{4} * x;
+        return &bytes[(height_ - 1 - y) * stride + std::ptrdiff_t{4} * x];
     }
     void source(const Colour& c) {
         cairo_set_source_rgba(cairo_.get(), c.r / 255.0, c.g / 255.0, c.b / 255.0, c.a / 255.0);
