@@ -72,9 +72,9 @@ def link_cameras(views):
         AddCameraLink(views[0], view, "cameras %d" % (k + 1))
 
 
-def heading(view, text):
-    """A line of text at the top of a view."""
-    source = Text(registrationName=text)
+def heading(view, text, name=None):
+    """A line of text at the top of a view; `name` of its source, the text when None."""
+    source = Text(registrationName=name or text)
     source.Text = text
     place_text(Show(source, view), "Upper Center")
 
@@ -196,6 +196,7 @@ def bar_of(colours, view, title):
     bar.AddRangeLabels = 0
     bar.ScalarBarLength, bar.ScalarBarThickness = 0.3, 14
     bar.AutoOrient, bar.Orientation = 0, "Vertical"
+    bar.HorizontalTitle = 1  # above the bar; beside it, it runs into wide labels
     bar.WindowLocation = "Lower Right Corner"
     return bar
 

@@ -1,7 +1,7 @@
 """Points in space in the colours of their speed, barriers in those of the pressure on them, and the terrain."""
 import os
 
-from paraview.simple import PVDReader, Show, Threshold
+from paraview.simple import PVDReader, Show, Threshold, WarpByScalar
 
 import frana_scene as scene
 
@@ -39,8 +39,10 @@ def show_points(run_dir, view, look):
 
 
 def show_barriers(run_dir, view, look):
-    """Faces in patches; a patch has the mean pressure since the output before."""
-    barriers = PVDReader(registrationName="barriers", FileName=os.path.join(run_dir, "barriers.pvd"))
+    """Faces in patches, from the ground to the barrier's top; a patch has the mean pressure since the output before."""
+    faces = PVDReader(registrationName="barriers", FileName=os.path.join(run_dir, "barriers.pvd"))
+    barriers = WarpByScalar(registrationName="barriers in their height", Input=faces)
+    barriers.Scalars = ["POINTS", "to_true_height"]
     display = Show(barriers, view)
     scene.paint(display, view, "pressure", "pressure [Pa]", look["range"]["pressure"], "Greens", True, where="CELLS")
     display.Ambient, display.Diffuse, display.Specular = 0.7, 0.3, 0.0

@@ -135,8 +135,9 @@ def save(name, run_dir, look, slots, folder):
     servermanager.ActiveConnection.Session.GetSessionProxyManager().UnRegisterAllLinks()  # a reset keeps them
     simple._DisableFirstRenderCameraReset()
     module = importlib.import_module(name)
-    layout = module.build(run_dir)
-    layout.SetSize(*module.SIZE)
+    module.build(run_dir)
+    for layout in simple.GetLayouts().values():
+        layout.SetSize(*module.SIZE)
     simple.RenderAllViews()
     raw = os.path.join(folder, name + ".raw")
     servermanager.SaveState(raw)

@@ -23,8 +23,8 @@ import sys
 from paraview import servermanager
 from paraview.simple import (
     AnnotateTimeFilter, Clip, ColorBy, GetActiveViewOrCreate, GetAnimationScene, GetColorTransferFunction,
-    GetScalarBar, GetViewsInLayout, Hide, PVDReader, Render, ResetCamera, SaveScreenshot, Show, Threshold, WarpByScalar,
-    XMLImageDataReader,
+    GetLayouts, GetScalarBar, GetViewsInLayout, Hide, PVDReader, Render, ResetCamera, SaveScreenshot, Show, Threshold,
+    WarpByScalar, XMLImageDataReader,
 )
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -183,26 +183,28 @@ def open_run(run_dir, colour="depth", maximum=None, time=None):
 
 
 def open_state(run_dir, name, time=None):
-    """Shows one of STATES in a layout of its own, and returns it with its size for pictures.
+    """Shows one of STATES in layouts of its own, mostly one, and returns them with their size for pictures.
 
     `time` [s]: output time; the state's own when None. Raises NoState with a sentence when the run lacks what it shows.
     """
     if name not in STATES:
         raise NoState("no state \"%s\"; expected one of %s" % (name, ", ".join(STATES)))
     module = importlib.import_module(name)
-    layout = module.build(os.path.abspath(run_dir))
+    before = set(GetLayouts())
+    module.build(os.path.abspath(run_dir))
+    layouts = [layout for key, layout in GetLayouts().items() if key not in before]
     if time is not None and name not in ("survey", "budgets"):
-        at_time(GetViewsInLayout(layout), time)
-    return layout, module.SIZE
+        at_time([view for layout in layouts for view in GetViewsInLayout(layout)], time)
+    return layouts, module.SIZE
 
 
 def picture_of(given):
-    """Draws what the command line asks for; returns what to save, and the size."""
+    """Draws what the command line asks for; returns what to save, a picture each, and the size."""
     if given.state:
         return open_state(given.run_dir, given.state, given.time)
     view = open_run(given.run_dir, given.colour, given.max, given.time)
     view.ViewSize = [1400, 900]
-    return view, [1400, 900]
+    return [view], [1400, 900]
 
 
 def main():
@@ -213,6 +215,7 @@ def main():
     parser.add_argument("--colour", default="depth", help="depth or speed")
     parser.add_argument("--max", type=float, help="upper end of the colour range; default: from the run")
     parser.add_argument("--state", help="one of %s instead" % ", ".join(STATES))
+    parser.add_argument("--size", help="of the picture, as 1600x900 [pixels]")
     given = parser.parse_args()
     name = "paraview_%s.png" % given.state if given.state else "paraview.png"
     png = given.png or os.path.join(given.run_dir, "figures", name)
@@ -222,11 +225,15 @@ def main():
         print(problem, file=sys.stderr)
         sys.stderr.flush()
         os._exit(2)  # pvbatch's own way out loses the status
+    if given.size:
+        size = [int(part) for part in given.size.split("x")]
     os.makedirs(os.path.dirname(os.path.abspath(png)), exist_ok=True)
-    if given.state:
-        shown.SetSize(*size)
-    SaveScreenshot(png, shown, ImageResolution=size, SaveAllViews=1 if given.state else 0)
-    print(png)
+    for k, one in enumerate(shown):  # RUN_DIR/figures/paraview_stress.png, paraview_stress_2.png
+        file = png if k == 0 else "%s_%d%s" % (os.path.splitext(png)[0], k + 1, os.path.splitext(png)[1])
+        if given.state:
+            one.SetSize(*size)
+        SaveScreenshot(file, one, ImageResolution=size, SaveAllViews=1 if given.state else 0)
+        print(file)
 
 
 if __name__ == "__main__" and len(sys.argv) > 1:

@@ -1,13 +1,14 @@
 """Stress in the moving mass, from above, through time: the components of the rheology's stress, of the effective stress
 (with the depth-averaged pressure, Fois et al. 2024), and the principal stresses as crosses.
 
-Tension is positive. The long bar of a cross lies along the principal stress of the largest size.
+Tension is positive. The long bar of a cross lies along the principal stress of the largest size. Two layouts (tabs in
+ParaView) of three panes in a row, so that each is as high as the window.
 """
 from paraview.simple import Calculator, ExtractSubset, Glyph, Show, Threshold, WarpByScalar
 
 import frana_scene as scene
 
-SIZE = [1800, 1200]  # of a picture [pixels]
+SIZE = [1800, 900]  # of a picture of a layout [pixels]
 DIVERGING, SEQUENTIAL = "Blue Orange (divergent)", "Viridis (matplotlib)"
 
 # Angle of the first principal direction, and half the difference of the two principal stresses.
@@ -27,7 +28,9 @@ def build(run_dir):
     look = scene.look_of(run_dir, "stress")
     stress, effective = look["range"]["stress"], look["range"]["effective_stress"]
     layout = scene.new_layout("stress")
-    views = six_views(layout, look)
+    views = three_views(layout, look, ["stress xx", "stress yy", "stress xy"])
+    views += three_views(scene.new_layout("effective and principal"), look,
+                         ["effective xx", "effective yy", "principal"])
     terrain = scene.terrain_surface(run_dir)
     grid = scene.open_grid(run_dir)
     flow, edge = scene.flow_surface(grid, look)
@@ -45,22 +48,19 @@ def build(run_dir):
     scene.show_line(edge, views[5], look["lift"])
     show_crosses(grid, views[5], look)
     scene.heading(views[5], "Principal stresses [Pa]")
-    scene.clock(views[0], grid)
+    for first in views[::3]:
+        scene.clock(first, grid)
     scene.link_cameras(views)
     scene.at_time(views, look["busy_time"])
     return layout
 
 
-def six_views(layout, look):
-    """Three in a row, two rows."""
-    upper, places = layout.SplitVertical(0, 0.5), []
-    for row in (upper, upper + 1):
-        left = layout.SplitHorizontal(row, 1.0 / 3.0)
-        middle = layout.SplitHorizontal(left + 1, 0.5)
-        places += [left, middle, middle + 1]
-    names = ["stress xx", "stress yy", "stress xy", "effective xx", "effective yy", "principal"]
-    return [scene.render_view(layout, place, name, look["camera"]["map"], flat=True)
-            for place, name in zip(places, names)]
+def three_views(layout, look, names):
+    """Three in a row."""
+    left = layout.SplitHorizontal(0, 1.0 / 3.0)
+    middle = layout.SplitHorizontal(left + 1, 0.5)
+    return [scene.render_view(layout, place, name, look["camera"]["map"], flat=True, scale="scale_row")
+            for place, name in zip([left, middle, middle + 1], names)]
 
 
 def show_crosses(grid, view, look):

@@ -32,8 +32,8 @@ def build(run_dir):
     tension.AttributeType = "Point Data"
     tension.ResultArrayName, tension.Function = "tension", TENSION
     scene.show_flow(tension, views[3], look, "tension", "Pa", look["range"]["stress"], "Blue Orange (divergent)")
-    for view, text in zip(views, ("Damage", "Depth", "Cohesion that is left", "Larger principal stress")):
-        scene.heading(view, text)
+    for view, text in zip(views, ("Damage", "Depth", look["cohesion_text"], "Larger principal stress")):
+        scene.heading(view, text, "cohesion" if text == look["cohesion_text"] else text)
     scene.clock(views[0], grid)
     scene.link_cameras(views)
     scene.at_time(views, look["last_time"])

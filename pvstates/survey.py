@@ -8,8 +8,10 @@ from paraview.simple import (
 import frana_scene as scene
 
 SIZE = [1500, 1000]  # of a picture [pixels]
-AREAS = [("1", "simulated and surveyed", scene.BLUE), ("2", "simulated only", scene.YELLOW),
-         ("3", "surveyed only", scene.VERMILION)]
+# The colours of figures/compare.png (src/base/colour.h: hit, beyond, missed, survey).
+AREAS = [("1", "simulated and surveyed", [0.0, 0.62, 0.451]), ("2", "simulated only", [0.941, 0.706, 0.157]),
+         ("3", "surveyed only", [0.0, 0.243, 0.51])]
+SURVEYED = [0.902, 0.0, 0.235]
 
 
 def build(run_dir):
@@ -19,7 +21,7 @@ def build(run_dir):
     scene.show_terrain(scene.terrain_surface(run_dir), view)
     show_areas(run_dir, view, look)
     show_outlines(run_dir, view, look)
-    scene.heading(view, "Simulated (white) and surveyed (black) extent")
+    scene.heading(view, "Simulated (black) and surveyed (red) extent")
     return layout
 
 
@@ -41,8 +43,8 @@ def show_areas(run_dir, view, look):
 
 def show_outlines(run_dir, view, look):
     outlines = XMLPolyDataReader(registrationName="outlines", FileName=[os.path.join(run_dir, "survey_outlines.vtp")])
-    for value, name, colour, width in ((1, "simulated outline", scene.WHITE, 2.0),
-                                       (2, "surveyed outline", scene.BLACK, 3.0)):
+    for value, name, colour, width in ((1, "simulated outline", scene.BLACK, 1.5),
+                                       (2, "surveyed outline", SURVEYED, 3.0)):
         one = Threshold(registrationName=name, Input=outlines)
         one.Scalars = ["CELLS", "extent"]
         one.LowerThreshold = one.UpperThreshold = float(value)

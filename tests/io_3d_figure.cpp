@@ -1,4 +1,6 @@
 // Pictures of 3D points: barriers put together from their patches, the oblique view, the section.
+#include <vtkPointData.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
@@ -8,6 +10,7 @@
 #include "fresh_folder.h"
 #include "io_3d_pictures.h"
 #include "io_figures_scene.h"
+#include "read_polydata.h"
 #include "vtk_io/figures/colours_3d.h"
 #include "vtk_io/figures/figure_3d.h"
 #include "vtk_io/reader.h"
@@ -194,6 +197,34 @@ TEST_CASE("A barrier of a height ends that much above the ground", "[space]") {
             most = std::max(most, p.z());
         }
     CHECK(most == Approx(11.5));  // at y = 15 m, the highest ground
+}
+
+TEST_CASE("In ParaView a barrier stands from the ground to its top, however far its faces reach", "[space]") {
+    const FreshFolder folder;
+    Raster slope = floor_of_10();
+    for (Index j = 0; j < slope.geometry.ny; ++j)
+        for (Index i = 0; i < slope.geometry.nx; ++i) slope.at(i, j) = 10.0 + 0.1 * (slope.geometry.y(j) - 15.0);
+    Frame frame;
+    frame.status.time = 1.5;
+    frame.faces = wall();
+    frame.grid = slope.geometry;
+    frame.nodes = {{"elevation", "m", 1, slope.values.data(), slope.geometry.size()}};
+    make_barrier_writer(folder.path(), {{std::nullopt, 1.5}})->observe(frame);
+    const auto faces = test::polydata(folder.path() / "barriers" / "barriers_000000.vtp");
+    vtkDataArray* const shift = faces->GetPointData()->GetArray("to_true_height");
+    REQUIRE(shift);
+    REQUIRE(shift->GetNumberOfTuples() == faces->GetNumberOfPoints());
+    double most = -1e300, least = 1e300;
+    for (vtkIdType k = 0; k < faces->GetNumberOfPoints(); ++k) {
+        double p[3];
+        faces->GetPoint(k, p);
+        const double above = p[2] + shift->GetTuple1(k) - elevation_at(slope, {p[0], p[1]});
+        CHECK(above >= -0.25 - 1e-6);  // half a patch under the ground; shifts are written in single precision
+        CHECK(above <= 1.5 + 1e-6);
+        most = std::max(most, above), least = std::min(least, above);
+    }
+    CHECK(most == Approx(1.5).epsilon(1e-6));
+    CHECK(least == Approx(-0.25).epsilon(1e-6));
 }
 
 TEST_CASE("What pictures of a run share: the flow goes where it pushes, and the load is in the middle", "[space]") {

@@ -5,11 +5,15 @@
 #include <vtkPolyData.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
+#include "base/colour.h"
 #include "base/error.h"
 #include "catch.h"
 #include "frana_commands.h"
@@ -160,7 +164,9 @@ std::set<std::string> arrays_written(const fs::path& run) {
     for (const auto& column : read_frame(structure_run(), -1).nodes) names.insert(column.first);
     for (const auto& column : read_frame(phases_run(), -1).nodes) names.insert(column.first);
     for (const auto& column : read_maps(ensemble_folder()).nodes) names.insert(column.first);
-    add_arrays(polydata(impact_run() / "barriers/barriers_000020.vtp")->GetCellData(), names);
+    const auto barriers = polydata(impact_run() / "barriers/barriers_000020.vtp");
+    add_arrays(barriers->GetCellData(), names);
+    add_arrays(barriers->GetPointData(), names);
     for (const auto& column : read_terrain(run).nodes) names.insert(column.first);
     for (const char* file : {"survey_areas.vtp", "survey_outlines.vtp", "profiles/profiles_000000.vtp"}) {
         const auto data = polydata(run / file);
@@ -300,6 +306,57 @@ TEST_CASE("the look of an impact has its time, the points' size and a camera on 
     CHECK(camera["focal"][0].get<double>() < 22.0);
     CHECK(camera["position"][2].get<double>() > camera["focal"][2].get<double>());
     CHECK(fs::exists(impact_run() / "states" / "impact.pvsm"));
+}
+
+TEST_CASE("the look of a profile draws depths a round number of times larger, up to a fifth of its relief",
+          "[states]") {
+    const Json look = Json::parse(text_of(full_run() / "states" / "look.json"));
+    const ProfileShape shape = profile_shape(full_run());
+    REQUIRE(shape.deepest > 0.5);
+    const auto [lowest, highest] = std::minmax_element(shape.elevation.begin(), shape.elevation.end());
+    CHECK(shape.elevation.size() > 50);
+    CHECK(*highest > *lowest + 10.0);
+    CHECK(look["legend"] == 2);  // it rises to a ridge in the middle and ends higher than it began
+    const std::string formula = look["profile"]["surface"];
+    int times = 0;
+    REQUIRE(std::sscanf(formula.c_str(), "elevation+%d*depth", &times) == 1);
+    const double fifth = 0.2 * (*highest - *lowest);
+    CHECK((times == 1 || times * shape.deepest <= fifth));
+    CHECK(2.5 * times * shape.deepest > fifth);  // the next round number would be too large
+    CHECK(look["profile"]["title"].get<std::string>().find("depths times") ==
+          (times == 1 ? std::string::npos : std::string("Surfaces along the line, ").size()));
+}
+
+TEST_CASE("a structure of which no cohesion is left says so, and since when", "[states]") {
+    const Json look = Json::parse(text_of(structure_run() / "states" / "look.json"));
+    const std::string text = look["cohesion_text"];
+    const std::vector<double> times = frame_times(structure_run());
+    const auto largest = [&](Index number) {
+        const std::vector<double> cohesion = read_frame(structure_run(), number).nodes.at("cohesion");
+        return *std::max_element(cohesion.begin(), cohesion.end());
+    };
+    const bool left = largest(static_cast<Index>(times.size()) - 1) > 1e-3 * largest(0);
+    CHECK((text.find("none at") == std::string::npos) == left);
+    CHECK(text_of(structure_run() / "states" / "structure.pvsm").find('"' + text + '"') != std::string::npos);
+}
+
+TEST_CASE("ParaView's colours are those of the pictures", "[states]") {
+    const Json presets = Json::parse(text_of(FRANA_SOURCE_DIR "/pvstates/frana_colours.json"));
+    const std::map<std::string, Colormap> maps = {{"frana depth", Colormap::depth},
+                                                  {"frana speed", Colormap::speed},
+                                                  {"frana pressure", Colormap::pressure},
+                                                  {"frana signed", Colormap::diverging}};
+    REQUIRE(presets.size() == maps.size());
+    for (const Json& preset : presets) {
+        const std::vector<double> points = preset["RGBPoints"];
+        REQUIRE(points.size() >= 4 * 9);
+        for (std::size_t k = 0; k + 3 < points.size(); k += 4) {
+            const Colour colour = colour_at(maps.at(preset["Name"]), points[k]);
+            CHECK(std::abs(255.0 * points[k + 1] - colour.r) < 0.51);
+            CHECK(std::abs(255.0 * points[k + 2] - colour.g) < 0.51);
+            CHECK(std::abs(255.0 * points[k + 3] - colour.b) < 0.51);
+        }
+    }
 }
 
 TEST_CASE("a run with 3D points draws them, and frana figures does it again", "[space]") {

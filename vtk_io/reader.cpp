@@ -16,7 +16,9 @@
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "vtk_io/pvd.h"
@@ -147,16 +149,22 @@ LoadedParticles read_particles(const std::filesystem::path& run_dir, Index numbe
     return particles;
 }
 
-std::pair<double, double> profile_ends(const std::filesystem::path& run_dir) {
-    const auto entry = entry_of(run_dir / "profiles.pvd", 0).first;
-    const vtkSmartPointer<vtkPolyData> lines = read_polydata(run_dir / entry.file);
-    if (lines->GetNumberOfCells() == 0) return {0.0, 0.0};
-    vtkIdList* stations = lines->GetCell(0)->GetPointIds();
-    if (stations->GetNumberOfIds() == 0) return {0.0, 0.0};
-    double first[3], last[3];
-    lines->GetPoint(stations->GetId(0), first);
-    lines->GetPoint(stations->GetId(stations->GetNumberOfIds() - 1), last);
-    return {first[2], last[2]};
+ProfileShape profile_shape(const std::filesystem::path& run_dir) {
+    const std::filesystem::path pvd = run_dir / "profiles.pvd";
+    const auto frames = static_cast<Index>(times_in(pvd).size());
+    ProfileShape shape;
+    for (Index k = 0; k < 7; ++k) {
+        const vtkSmartPointer<vtkPolyData> lines =
+            read_polydata(run_dir / entry_of(pvd, k * (frames - 1) / 6).first.file);
+        vtkDataArray* const depth = lines->GetPointData()->GetArray("depth");
+        if (lines->GetNumberOfCells() == 0 || !depth) return shape;
+        vtkIdList* const stations = lines->GetCell(0)->GetPointIds();
+        for (vtkIdType n = 0; n < stations->GetNumberOfIds(); ++n) {
+            if (k == 0) shape.elevation.push_back(lines->GetPoint(stations->GetId(n))[2]);
+            shape.deepest = std::max(shape.deepest, depth->GetTuple1(stations->GetId(n)));
+        }
+    }
+    return shape;
 }
 
 std::vector<double> barrier_times(const std::filesystem::path& run_dir) {

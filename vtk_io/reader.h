@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -61,9 +60,14 @@ LoadedFrame read_terrain(const std::filesystem::path& run_dir);
 /// maps.vti of an ensemble's folder, likewise.
 LoadedFrame read_maps(const std::filesystem::path& dir);
 
-/// Elevation [m] at the first and the last station of the first profile of RUN_DIR/profiles.pvd; 0 and 0 when that
-/// has none.
-std::pair<double, double> profile_ends(const std::filesystem::path& run_dir);
+/// The first profile of a run, over at most seven of its frames.
+struct ProfileShape {
+    std::vector<double> elevation;  ///< at its stations in the first frame [m]
+    double deepest = 0.0;           ///< flow on it [m]
+};
+
+/// Of RUN_DIR/profiles.pvd; empty when the profile has no station. UserError when a file is missing or damaged.
+ProfileShape profile_shape(const std::filesystem::path& run_dir);
 
 /// A square of a barrier's face with its load (writers.h).
 struct LoadedPatch {

@@ -5,11 +5,13 @@
 #include <vtkFloatArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vtk_io/pvd.h"
 #include "vtk_io/writers.h"
@@ -26,10 +28,20 @@ Place moved(const Place& from, const Place& right, double a, const Place& up, do
 
 double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+/// The bed of a frame; without nodes when it has none.
+Raster bed_of(const Frame& frame) {
+    Raster bed;
+    if (const Field* elevation = frame.node("elevation")) {
+        bed.geometry = frame.grid;
+        bed.values.assign(elevation->data, elevation->data + elevation->count);
+    }
+    return bed;
+}
+
 class BarrierWriter final : public Observer {
 public:
-    explicit BarrierWriter(const std::filesystem::path& run_dir)
-        : series_(run_dir / "barriers.pvd", "barriers", ".vtp") {}
+    BarrierWriter(const std::filesystem::path& run_dir, std::vector<BarrierTop> tops)
+        : series_(run_dir / "barriers.pvd", "barriers", ".vtp"), tops_(std::move(tops)) {}
 
     std::string name() const override { return "vtk barriers"; }
 
@@ -37,6 +49,7 @@ public:
         if (frame.faces.empty()) return;
         const double span = frame.status.time - time_;
         const auto data = polydata_of(frame, span > 0.0 ? span : 0.0);
+        add_heights(frame, data);
         add_time(data->GetFieldData(), frame.status.time);
         vtkNew<vtkXMLPolyDataWriter> writer;
         write_xml(writer, data, series_.file(frame.number));
@@ -101,7 +114,34 @@ private:
         return data;
     }
 
+    /// What to add to the elevation of each corner, so that it lies on what is seen of the barrier.
+    void add_heights(const Frame& frame, vtkPolyData* data) const {
+        const Raster bed = bed_of(frame);
+        vtkNew<vtkFloatArray> shifts;
+        shifts->SetName("to_true_height");
+        vtkIdType corner = 0;
+        for (const PatchedFace& face : frame.faces)
+            for (Index k = 0; k < 4 * face.count[0] * face.count[1]; ++k, ++corner) {
+                double p[3];
+                data->GetPoint(corner, p);
+                shifts->InsertNextValue(static_cast<float>(shift(face, {p[0], p[1], p[2]}, bed)));
+            }
+        data->GetPointData()->AddArray(shifts);
+        add_unit(data->GetFieldData(), "to_true_height", "m");
+    }
+
+    /// Half a patch of it stands in the ground, or a gap would show between two nodes.
+    double shift(const PatchedFace& face, const Place& corner, const Raster& bed) const {
+        const auto barrier = static_cast<std::size_t>(face.barrier);
+        if (bed.values.empty()) return 0.0;
+        const Vec2 at(corner[0], corner[1]);
+        const double z = corner[2], ground = elevation_at(bed, at) - 0.5 * face.size;
+        const double crest = barrier < tops_.size() ? top_at(tops_[barrier], bed, at, z) : HUGE_VAL;
+        return std::min(std::isnan(ground) ? z : std::max(z, ground), crest) - z;
+    }
+
     PvdSeries series_;
+    std::vector<BarrierTop> tops_;
     double time_ = 0.0;
     std::vector<double> before_, peak_;  ///< per patch: impulse across the face [kg m/s]; largest mean [Pa]
 };
@@ -133,8 +173,8 @@ void write_barrier_meshes(const std::filesystem::path& run_dir, const BarrierMes
     write_xml(writer, data, run_dir / "barrier_meshes.vtp");
 }
 
-std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir) {
-    return std::make_unique<BarrierWriter>(run_dir);
+std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir, std::vector<BarrierTop> tops) {
+    return std::make_unique<BarrierWriter>(run_dir, std::move(tops));
 }
 
 }  // namespace frana

@@ -1,20 +1,14 @@
 #pragma once
 // Barriers as solids to be drawn, put together again from the patches of their faces.
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "terrain/raster.h"
 #include "terrain/triangle_mesh.h"
+#include "vtk_io/barrier_top.h"
 #include "vtk_io/reader.h"
 
 namespace frana {
-
-/// Where a barrier ends upwards: a level top, or one that follows the bed.
-struct BarrierTop {
-    std::optional<double> level;  ///< elevation [m]
-    double height = 0.0;          ///< above the bed, where there is no level [m]
-};
 
 /// What can be seen of a barrier.
 struct BarrierSolid {
@@ -42,10 +36,5 @@ struct BarrierSolid {
 /// that are below the ground.
 std::vector<BarrierSolid> barrier_solids(const std::vector<LoadedPatch>& patches, const std::vector<BarrierTop>& tops,
                                          const Raster& bed, const BarrierMeshes& meshes = {});
-
-/// Elevation between the nodes [m]; beside the raster that of its nearest place. NaN near nodata.
-double elevation_at(const Raster& bed, const Vec2& p);
-/// Elevation of a barrier's top there; `otherwise` where the bed has none.
-double top_at(const BarrierTop& top, const Raster& bed, const Vec2& p, double otherwise);
 
 }  // namespace frana

@@ -38,7 +38,7 @@
     ROW(read_particles)          \
     ROW(read_terrain)            \
     ROW(read_maps)               \
-    ROW(profile_ends)            \
+    ROW(profile_shape)           \
     ROW(barrier_times)           \
     ROW(read_barriers)           \
     ROW(read_barrier_meshes)     \

@@ -67,7 +67,9 @@ std::unique_ptr<Observer> make_grid_writer(const fs::path& run_dir) { return vtk
 std::unique_ptr<Observer> make_profile_writer(const fs::path& run_dir, std::vector<ProfileLine> lines) {
     return vtk().make_profile_writer(run_dir, std::move(lines));
 }
-std::unique_ptr<Observer> make_barrier_writer(const fs::path& run_dir) { return vtk().make_barrier_writer(run_dir); }
+std::unique_ptr<Observer> make_barrier_writer(const fs::path& run_dir, std::vector<BarrierTop> tops) {
+    return vtk().make_barrier_writer(run_dir, std::move(tops));
+}
 void write_barrier_meshes(const fs::path& run_dir, const BarrierMeshes& meshes) {
     vtk().write_barrier_meshes(run_dir, meshes);
 }
@@ -91,7 +93,7 @@ LoadedFrame read_frame(const fs::path& run_dir, Index number) { return vtk().rea
 LoadedParticles read_particles(const fs::path& run_dir, Index number) { return vtk().read_particles(run_dir, number); }
 LoadedFrame read_terrain(const fs::path& run_dir) { return vtk().read_terrain(run_dir); }
 LoadedFrame read_maps(const fs::path& dir) { return vtk().read_maps(dir); }
-std::pair<double, double> profile_ends(const fs::path& run_dir) { return vtk().profile_ends(run_dir); }
+ProfileShape profile_shape(const fs::path& run_dir) { return vtk().profile_shape(run_dir); }
 std::vector<double> barrier_times(const fs::path& run_dir) { return vtk().barrier_times(run_dir); }
 std::vector<LoadedPatch> read_barriers(const fs::path& run_dir, Index number) {
     return vtk().read_barriers(run_dir, number);

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "observe/table.h"
@@ -60,6 +62,7 @@ struct Seen {
     std::map<std::string, double>
         largest;  ///< of depth, speed, cohesion, stress, effective_stress (size of any component), of
                   ///< water_depth, and of bound_depth, which is the rest
+    std::vector<std::pair<double, double>> cohesion;  ///< largest at each time that was looked at [s], [Pa]
     Extent extent;
 };
 
@@ -93,7 +96,9 @@ void observe_values(const LoadedFrame& frame, Seen& seen) {
         for (std::size_t node = 0; node < depth.size(); ++node)
             for (std::size_t c = 0; c < components; ++c)
                 if (depth[node] > seen.thin) wet.push_back(std::abs(values[node * components + c]));
-        seen.largest[name] = std::max(seen.largest[name], most(std::move(wet)));
+        const double largest = most(std::move(wet));
+        seen.largest[name] = std::max(seen.largest[name], largest);
+        if (name == std::string("cohesion")) seen.cohesion.emplace_back(frame.time, largest);
     }
     if (!frame.has("water_depth")) return;
     const auto& water = frame.nodes.at("water_depth");
@@ -147,7 +152,8 @@ Json camera(const Place& position, const Place& focal, const Place& up, double h
             {"angle", 30.0},
             {"scale", std::max(half_height, half_width)},
             {"scale_wide", std::max(half_height, half_width / 1.5)},
-            {"scale_tall", std::max(half_height, half_width / 0.6)}};
+            {"scale_tall", std::max(half_height, half_width / 0.6)},
+            {"scale_row", std::max(half_height, half_width / 0.5)}};
 }
 
 constexpr double pi = 3.14159265358979323846;
@@ -296,11 +302,58 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     look["camera"]["impact"] = camera(position, focal, {0.0, 0.0, 1.0}, reach, reach);
 }
 
-/// Corner of the profile's chart that the terrain leaves free, in ParaView's numbers: 0 top left where it rises along
-/// the line, 3 bottom left where it falls.
-int free_corner(const fs::path& run_dir) {
-    const auto [first, last] = profile_ends(run_dir);
-    return last > first ? 0 : 3;
+/// How many times deeper than it is flow is drawn on a profile: a round number, so that the deepest has a fifth of the
+/// relief; no exaggeration where it has that already.
+int times_deeper(double relief, double deepest) {
+    const double wanted = deepest > 0.0 ? 0.2 * relief / deepest : 1.0;
+    int times = 1;
+    for (int power = 1; power <= 1000; power *= 10)
+        for (const int step : {1, 2, 5})
+            if (step * power <= wanted) times = step * power;
+    return times;
+}
+
+/// Corner of the profile's chart where the terrain leaves most room, in ParaView's numbers: 0 top left, 1 top right,
+/// 2 bottom right, 3 bottom left.
+int free_corner(const std::vector<double>& elevation, double lowest, double highest) {
+    constexpr double kWide = 0.35;    // of the chart, a legend's width
+    constexpr double kSurface = 0.2;  // of the relief: flow drawn on the terrain
+    const auto all = static_cast<double>(elevation.size());
+    const auto wide = std::max<std::ptrdiff_t>(1, std::llround(kWide * all));
+    const auto [left_low, left_high] = std::minmax_element(elevation.begin(), elevation.begin() + wide);
+    const auto [right_low, right_high] = std::minmax_element(elevation.end() - wide, elevation.end());
+    const double top = highest - kSurface * (highest - lowest);
+    const std::array<double, 4> room{top - *left_high, top - *right_high, *right_low - lowest, *left_low - lowest};
+    return static_cast<int>(std::max_element(room.begin(), room.end()) - room.begin());
+}
+
+/// The chart of the profile: formulas of what is drawn, its title, and where its legend stands.
+void look_at_profile(const fs::path& run_dir, Json& look) {
+    ProfileShape shape = profile_shape(run_dir);
+    if (shape.elevation.empty()) shape.elevation = {0.0};
+    const auto [lowest, highest] = std::minmax_element(shape.elevation.begin(), shape.elevation.end());
+    const int times = times_deeper(*highest - *lowest, shape.deepest);
+    look["legend"] = free_corner(shape.elevation, *lowest, *highest);
+    look["profile"] = {{"surface", fmt::format("elevation+{}*depth", times)},
+                       {"initial_surface", fmt::format("elevation+{}*(initial_surface-elevation)", times)},
+                       {"title", times == 1 ? "Surfaces along the line"
+                                            : fmt::format("Surfaces along the line, depths times {}", times)}};
+}
+
+/// What the state "structure" says of the cohesion.
+std::string cohesion_text(const Seen& seen) {
+    constexpr double kNone = 1e-3;  // of the largest
+    const auto found = seen.largest.find("cohesion");
+    if (found == seen.largest.end()) return "Cohesion that is left";
+    std::optional<double> none_from;
+    for (const auto& [time, cohesion] : seen.cohesion)
+        if (cohesion > kNone * found->second)
+            none_from.reset();
+        else if (!none_from)
+            none_from = time;
+    if (!none_from) return "Cohesion that is left";
+    return fmt::format("Cohesion that is left: none at {:.4g} s{}", *none_from,
+                       *none_from < seen.last_time ? " and later" : "");
 }
 
 }  // namespace
@@ -362,7 +415,10 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     for (const char* name : {"depth", "speed"}) look["range"][name] = {0.0, round_up(seen.largest[name])};
     const double stress = round_up(seen.largest["stress"]);
     look["range"]["stress"] = {-stress, stress};
-    if (shows("structure")) look["range"]["cohesion"] = {0.0, round_up(seen.largest["cohesion"])};
+    if (shows("structure")) {
+        look["range"]["cohesion"] = {0.0, round_up(seen.largest["cohesion"])};
+        look["cohesion_text"] = cohesion_text(seen);
+    }
     if (shows("phases"))
         for (const char* name : {"water_depth", "bound_depth"})
             look["range"][name] = {0.0, round_up(seen.largest[name])};
@@ -376,7 +432,7 @@ Json look_at_run(const fs::path& run_dir, const std::string& title) {
     look["cross"] = {{"stride", stride},
                      {"scale", 2.5 * static_cast<double>(stride) * seen.grid.cell / stress},
                      {"extent", {0, seen.grid.nx - 1, 0, seen.grid.ny - 1, 0, 0}}};
-    if (shows("profiles")) look["legend"] = free_corner(run_dir);
+    if (shows("profiles")) look_at_profile(run_dir, look);
     look["camera"] = cameras(run_dir, seen.extent, shows("survey"));
     try {
         if (shows("impact")) look_at_impact(run_dir, look);

@@ -129,6 +129,15 @@ void leave_states(const Scene& scene, const fs::path& run_dir, RunRecord& record
     }
 }
 
+/// Of all barriers, in the case's order. One that was given as a mesh is as high as that.
+std::vector<BarrierTop> tops_of(const Scene& scene) {
+    constexpr double kNowhere = 1e300;
+    std::vector<BarrierTop> tops;
+    for (const Barrier& barrier : scene.barriers)
+        tops.push_back(barrier.shape ? BarrierTop{kNowhere, 0.0} : BarrierTop{barrier.top, barrier.height});
+    return tops;
+}
+
 FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path& run_dir, const RunRecord& record,
                            const std::vector<ProductRaster>& rasters) {
     FigureSource source;
@@ -145,7 +154,7 @@ FigureSource figure_source(const Scene& scene, const Raster& bed, const fs::path
     source.gauges = scene.gauges;
     source.sections = scene.sections;
     source.in_3d = scene.solid.has_value();
-    for (const Barrier& barrier : scene.barriers) source.barrier_tops.push_back({barrier.top, barrier.height});
+    source.barrier_tops = tops_of(scene);
     source.barriers = scene.barriers;
     source.density = scene.density;
     return source;
@@ -232,7 +241,7 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
     if (output.vtk) {
         observers.push_back(only_fields(make_particle_writer(run_dir), output.fields));
         observers.push_back(only_fields(make_grid_writer(run_dir), output.fields));
-        if (!names.empty()) observers.push_back(make_barrier_writer(run_dir));
+        if (!names.empty()) observers.push_back(make_barrier_writer(run_dir, tops_of(scene)));
         if (!profiles.empty()) observers.push_back(make_profile_writer(run_dir, profiles));
     }
     if (output.xdmf) observers.push_back(only_fields(make_xdmf_writer(run_dir), output.fields));
