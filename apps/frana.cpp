@@ -225,6 +225,10 @@ void add_states(CLI::App& app, StatesOptions& options, Action& action) {
     command->add_option("NAME", options.names,
                         "states that must be there: overview, stress, profiles, survey, impact, structure, budgets, "
                         "probability");
+    command->footer(
+        "File > Load State opens one in ParaView. pvstates/frana_paraview.py (share/frana where frana is installed) is "
+        "a "
+        "plugin of ParaView that opens run.json; the README.md beside it says how to load it.");
     command->callback(
         [&] { action = [&] { return adding_to(options.run_dir, [&] { return states_command(options); }); }; });
 }
