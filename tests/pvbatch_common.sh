@@ -16,7 +16,7 @@ modules=${FRANA_PARAVIEW_PREFIX:+$FRANA_PARAVIEW_PREFIX/usr/lib/python3/dist-pac
 
 # A pvbatch that crashed may ignore SIGTERM, hence -k.
 run_pvbatch() {
-    PYTHONPATH=$modules${PYTHONPATH:+:$PYTHONPATH} timeout -k 5 600 pvbatch "$@"
+    PYTHONPATH=$modules${PYTHONPATH:+:$PYTHONPATH} timeout -k 5 1200 pvbatch "$@"
 }
 
 mkdir -p "$work" || exit 1

@@ -1,21 +1,28 @@
-"""Loads the states of a run in ParaView, and holds each against the readable Python state that it was made from.
+"""Loads the states of runs in ParaView, and holds each against the readable Python state that it was made from.
 
-Usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [STATE]
+Usage: pvbatch pvbatch_states.py PVSTATES_DIR PICTURES_DIR JOB...
 
-Checks for every state of RUN_DIR/states but those of special runs (impact, structure, phases) and of ensembles, or for one alone, that every reader reads a file of this run,
-and every array of the state is there: loaded as it is (plain), or with RUN_DIR as data directory (searched); so are the
-files of the templates in PVSTATES_DIR.
-full: both, and the picture equals that of the Python state, and is not blank (flow and areas are in colour, on grey
-terrain). Prints the count of checks and a sentence for each that failed; exits with 1 when there is one.
+A job is MODE:STATE:RUN_DIR. All are done by one ParaView, which takes as long to start as several states take to load.
+MODE full, plain, searched: checks for the STATE, or without one for every state of RUN_DIR/states but those of special
+runs (impact, structure, phases) and of ensembles, that every reader reads a file of this run, and every array of the
+state is there: loaded as it is (plain), or with RUN_DIR as data directory (searched); so are the files of the templates
+in PVSTATES_DIR. full: both, and the picture equals that of the Python state, and is not blank (flow and areas are in
+colour, on grey terrain).
+MODE plugin: the reader and the filters of frana_paraview.py on that run (pvbatch_plugin.py). Prints the count of checks
+and a sentence for each that failed; exits with 1 when there is one.
 """
 import importlib
 import os
 import sys
+import time
 
 from paraview import servermanager, simple
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-SIZE = [900, 600]
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import pvbatch_plugin  # noqa: E402
+
+SIZE = [720, 480]
 ALONE = {"impact", "structure", "phases", "probability"}  # states of runs of their own
 COLOURED = {  # least share of coloured pixels, of those in the middle; a tenth of what the test's run shows
     "overview": 0.02, "stress": 0.02, "profiles": 0.01, "survey": 0.02, "impact": 0.02, "structure": 0.01, "phases": 0.01,
@@ -23,8 +30,8 @@ COLOURED = {  # least share of coloured pixels, of those in the middle; a tenth 
 ARRAYS = {  # what the state's own sources must have made, besides what its readers read
     "overview": ["depth", "surface", "speed"],
     "stress": ["sigma_xx", "sigma_yy", "sigma_xy", "effective_xx", "effective_yy", "principal_1", "principal_2"],
-    "profiles": ["distance", "elevation", "initial_surface", "surface", "depth"],
-    "impact": ["model", "speed", "pressure", "barrier", "hillshade"],
+    "profiles": ["distance", "elevation", "drawn_initial_surface", "drawn_surface", "depth"],
+    "impact": ["model", "speed", "pressure", "barrier", "to_true_height", "hillshade"],
     "structure": ["damage", "cohesion", "tension", "hillshade"],
     "phases": ["bound_depth", "bound_surface", "water_depth", "hillshade"],
     "probability": ["probability_reached", "elevation", "hillshade"],
@@ -47,8 +54,15 @@ def fresh():
     simple._DisableFirstRenderCameraReset()
 
 
+def pictures_of_all(png):
+    """The rows of all layouts' pixels, one layout after the other in the order of their names."""
+    layouts = [layout for _, layout in sorted(simple.GetLayouts().items(), key=lambda item: item[0])]
+    files = [png] + [png.replace(".png", "_%d.png" % k) for k in range(2, len(layouts) + 1)]
+    return [row for file, layout in zip(files, layouts) for row in picture(layout, file)]
+
+
 def picture(layout, png):
-    """The pixels of a layout: rows of r, g, b."""
+    """The rows of a layout's pixels, each r, g, b, r, ..."""
     layout.SetSize(*SIZE)
     simple.SaveScreenshot(png, layout, SaveAllViews=1, ImageResolution=SIZE)
     reader = vtkPNGReader()
@@ -57,18 +71,27 @@ def picture(layout, png):
     image = reader.GetOutput()
     parts = image.GetNumberOfScalarComponents()
     colours = bytes(memoryview(image.GetPointData().GetScalars()))
-    return [colours[k:k + 3] for k in range(0, len(colours), parts)]
+    length = parts * SIZE[0]
+    rows = [colours[k:k + length] for k in range(0, len(colours), length)]
+    return rows if parts == 3 else [bytes(v for k, v in enumerate(row) if k % parts < 3) for row in rows]
+
+
+def pixels(row):
+    return zip(row[0::3], row[1::3], row[2::3])
 
 
 def differing(one, other):
     """Share of pixels that differ by more than a tenth of the range in some colour."""
-    return sum(max(abs(a - b) for a, b in zip(p, q)) > 25 for p, q in zip(one, other)) / len(one)
+    unlike = [pair for pair in zip(one, other) if pair[0] != pair[1]]
+    return sum(max(abs(a - b) for a, b in zip(p, q)) > 25
+               for row, as_well in unlike for p, q in zip(pixels(row), pixels(as_well))) / (SIZE[0] * len(one))
 
 
-def coloured(pixels):
-    """Share of pixels that are clearly not grey, away from the right edge of each half where colour bars stand."""
-    width = SIZE[0]
-    middle = [p for k, p in enumerate(pixels) if (k % width) % (width // 6) < 0.6 * (width // 6)]
+def coloured(rows):
+    """Share of pixels that are clearly not grey, away from the right edge of each sixth where colour bars stand; every
+    other row."""
+    sixth = SIZE[0] // 6
+    middle = [p for row in rows[::2] for k, p in enumerate(pixels(row)) if k % sixth < 0.6 * sixth]
     return sum(max(p) - min(p) > 40 for p in middle) / len(middle)
 
 
@@ -83,9 +106,9 @@ def files_of(source):
 
 def arrays_in_sources():
     names = set()
-    time = simple.GetAnimationScene().AnimationTime  # points in space are not there from the start
+    moment = simple.GetAnimationScene().AnimationTime  # points in space are not there from the start
     for source in simple.GetSources().values():
-        source.UpdatePipeline(time)
+        source.UpdatePipeline(moment)
         information = source.GetDataInformation()
         for attributes in (information.GetPointDataInformation(), information.GetCellDataInformation(),
                            information.GetRowDataInformation()):
@@ -122,42 +145,59 @@ def check_loading(state, states_dir, run_dir, mode):
 
 def check_picture(state, run_dir, pictures):
     fresh()
-    wanted = picture(importlib.import_module(state).build(run_dir), os.path.join(pictures, state + "_python.png"))
+    importlib.import_module(state).build(run_dir)
+    wanted = pictures_of_all(os.path.join(pictures, state + "_python.png"))
     fresh()
     simple.LoadState(os.path.join(run_dir, "states", state + ".pvsm"))
-    layouts = list(simple.GetLayouts().values())
-    check(len(layouts) == 1, "%s: has %d layouts" % (state, len(layouts)))
-    found = picture(layouts[0], os.path.join(pictures, state + ".png"))
-    share = differing(wanted, found)
+    found = pictures_of_all(os.path.join(pictures, state + ".png"))
+    check(len(found) == len(wanted), "%s: its layouts have %d rows of pixels; expected %d"
+          % (state, len(found), len(wanted)))
+    share, in_colour = differing(wanted, found), coloured(found)
     print("%s: %.2f %% of the pixels differ from the Python state's, %.2f %% are coloured"
-          % (state, 100 * share, 100 * coloured(found)))
+          % (state, 100 * share, 100 * in_colour))
     # The same renderer draws the same scene: lines' edges may differ where ranges were rounded to the state's digits.
     check(share < 0.005, "%s: %.2f %% of the pixels differ from the Python state's picture" % (state, 100 * share))
-    check(coloured(found) > COLOURED[state], "%s: the picture is blank" % state)
+    check(in_colour > COLOURED[state], "%s: the picture is blank" % state)
 
 
-def main(states_dir, run_dir, pictures, mode, alone):
-    sys.path.insert(0, states_dir)
-    os.makedirs(pictures, exist_ok=True)
-    for state in alone or [name for name in ARRAYS if name not in ALONE]:
+def look_at_states(states_dir, pictures, mode, alone, run_dir):
+    for state in [alone] if alone else [name for name in ARRAYS if name not in ALONE]:
         file = os.path.join(run_dir, "states", state + ".pvsm")
         check(os.path.exists(file), "%s: not there" % file)
         if os.path.exists(file):
             check_loading(state, states_dir, run_dir, mode)
             if mode == "full":
                 check_picture(state, run_dir, pictures)
-    print("read back by ParaView, states %s: %d checks, %d problems" % (mode, checks, len(problems)))
+
+
+def main(states_dir, pictures, jobs):
+    sys.path.insert(0, states_dir)
+    os.makedirs(pictures, exist_ok=True)
+    for mode, alone, run_dir in jobs:
+        before, start = checks, time.process_time()
+        if mode == "plugin":
+            fresh()
+            if alone == "impact":  # a wall from the ground at 6.67 m, in patches of 0.5 m, up to 8.67 m
+                pvbatch_plugin.look_at_barriers(check, states_dir, os.path.abspath(run_dir), 6.67 - 0.251, 8.671)
+            else:
+                pvbatch_plugin.look(check, states_dir, os.path.abspath(run_dir))
+        else:
+            look_at_states(states_dir, pictures, mode, alone, os.path.abspath(run_dir))
+        print("%s %s of %s: %d checks, %.1f s" % (mode, alone or "states", run_dir, checks - before,
+                                                  time.process_time() - start))
+    print("read back by ParaView: %d checks of states and plugin, %d problems" % (checks, len(problems)))
     for problem in problems:
         print(problem)
     return 1 if problems else 0
 
 
 if __name__ == "__main__":
-    alone = sys.argv[5:]
-    if len(sys.argv) < 5 or len(alone) > 1 or not set(alone) <= ALONE or sys.argv[4] not in ("full", "plain", "searched"):
-        print("usage: pvbatch pvbatch_states.py PVSTATES_DIR RUN_DIR PICTURES_DIR full|plain|searched [STATE]",
+    jobs = [argument.split(":", 2) for argument in sys.argv[3:]]
+    if not jobs or any(len(job) < 3 or job[0] not in ("full", "plain", "searched", "plugin") or
+                       job[1] not in ALONE | {""} for job in jobs):
+        print("usage: pvbatch pvbatch_states.py PVSTATES_DIR PICTURES_DIR full|plain|searched|plugin:[STATE]:RUN_DIR ...",
               file=sys.stderr)
         sys.exit(2)
-    status = main(*[os.path.abspath(argument) for argument in sys.argv[1:4]], sys.argv[4], alone)
+    status = main(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), jobs)
     sys.stdout.flush()
     os._exit(status)  # pvbatch's own way out loses the status

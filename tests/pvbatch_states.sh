@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs a small case that has everything, and looks at its states in ParaView: as the run left them, after the folder was
-# moved, and the templates. Usage: pvbatch_states.sh FRANA SOURCE_DIR WORK_FOLDER
+# moved, and the templates; and at the run with the plugin. Usage: pvbatch_states.sh FRANA SOURCE_DIR WORK_FOLDER
 # Needs pvbatch (see pvbatch_common.sh) and a display or Xvfb (package xvfb), for the pictures. Exits with 77 (skipped)
 # when one of them is missing, 1 when something is wrong; pictures lie in WORK_FOLDER/pictures.
 set -u
@@ -21,53 +21,35 @@ if [ -z "${DISPLAY:-}" ]; then
     export DISPLAY=":$(cat "$work/display")"
 fi
 
-look() {  # RUN_DIR mode what [STATE]
-    for _ in 1 2 3; do  # a loaded machine may refuse the connection to its X server
-        look_once "$1" "$2" ${4:-}
-        grep -q "bad X server connection" "$work/states.log" || break
-    done
-    cat "$work/states.out"
-    grep -m 5 "ERR|" "$work/states.log" && status=1
-    [ $status -eq 0 ] || { echo "$3: wrong (status $status), see $work"; tail -20 "$work/states.log"; exit 1; }
-}
-
-look_once() {
-    run_pvbatch "$source/tests/pvbatch_states.py" "$source/pvstates" "$1" "$work/pictures" "$2" ${3:-} \
-        >"$work/states.out" 2>"$work/states.log"
-    status=$?
-}
-
 rm -rf "$work/run" "$work/impact" "$work/structure" "$work/phases" "$work/ensemble" "$work/elsewhere"
-"$frana" run "$source/tests/states_case/case.toml" --out "$work/run" --threads 1 --overwrite --quiet || exit 1
-look "$work/run" full "as the run left them"
-
-# Points in space before a wall: a run of its own.
-"$frana" run "$source/tests/states_case/impact.toml" --out "$work/impact" --threads 1 --overwrite --quiet || exit 1
-look "$work/impact" full "the impact" impact
-look "$work/impact" searched "the impact, with the folder given to ParaView" impact
-
-# Solids that hold together: another one.
-"$frana" run "$source/tests/states_case/structure.toml" --out "$work/structure" --threads 1 --overwrite --quiet || exit 1
-look "$work/structure" full "the structure" structure
-
-# Solids and free water: another one.
-"$frana" run "$source/tests/states_case/phases.toml" --out "$work/phases" --threads 1 --overwrite --quiet || exit 1
-look "$work/phases" full "the phases" phases
-
-# Many runs: the folder of an ensemble.
+for name in case impact structure phases; do
+    folder=$([ $name = case ] && echo run || echo $name)
+    "$frana" run "$source/tests/states_case/$name.toml" --out "$work/$folder" --threads 1 --overwrite --quiet || exit 1
+done
 "$frana" ensemble "$source/tests/states_case/ensemble.toml" --out "$work/ensemble" --threads 1 --quiet || exit 1
-look "$work/ensemble" full "the probability" probability
 
+# Moved: once as it is, and once with its states written again.
 moved="$work/elsewhere/a run & more"
-mkdir -p "$work/elsewhere" && mv "$work/run" "$moved" || exit 1
-look "$moved" searched "moved, with the folder given to ParaView"
-"$frana" states "$moved" >/dev/null || exit 1
-look "$moved" plain "moved, and written again by frana states"
+again="$work/elsewhere/again"
+mkdir -p "$work/elsewhere" && cp -r "$work/run" "$moved" && cp -r "$work/run" "$again" || exit 1
+"$frana" states "$again" >/dev/null || exit 1
+
+for _ in 1 2 3; do  # a loaded machine may refuse the connection to its X server
+    run_pvbatch "$source/tests/pvbatch_states.py" "$source/pvstates" "$work/pictures" "full::$work/run" \
+        "full:impact:$work/impact" "searched:impact:$work/impact" "full:structure:$work/structure" \
+        "full:phases:$work/phases" "full:probability:$work/ensemble" "searched::$moved" "plain::$again" \
+        "plugin::$work/run" "plugin:impact:$work/impact" >"$work/states.out" 2>"$work/states.log"
+    status=$?
+    grep -q "bad X server connection" "$work/states.log" || break
+done
+cat "$work/states.out"
+grep -m 5 "ERR|" "$work/states.log" && status=1
+[ $status -eq 0 ] || { echo "wrong (status $status), see $work"; tail -20 "$work/states.log"; exit 1; }
 
 # A state that the run has no files for: one sentence, exit code 2.
-rm "$moved/survey_areas.vtp"
-"$frana" states "$moved" >/dev/null || exit 1
-said=$(run_pvbatch "$source/pvstates/open_run.py" "$moved" --state survey 2>&1 >/dev/null)
+rm "$again/survey_areas.vtp"
+"$frana" states "$again" >/dev/null || exit 1
+said=$(run_pvbatch "$source/pvstates/open_run.py" "$again" --state survey 2>&1 >/dev/null)
 status=$?
 [ $status -eq 2 ] || { echo "exit code $status of a state that is not there; expected 2"; exit 1; }
 echo "$said" | grep -q 'no state "survey": the run was not held against a survey' || { echo "said: $said"; exit 1; }
