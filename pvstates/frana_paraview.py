@@ -713,7 +713,7 @@ class FranaProfile(VTKPythonAlgorithmBase):
             return 1
         profile = profile_of(image, self._lines(image, given))
         if profile.GetNumberOfPoints() < 2:
-            say("Profile Along Line: the line has no two places on the terrain (x %g to %g, y %g to %g); give Start and "
-                "End within it" % image.GetBounds()[:4])
+            say("Profile Along Line: the line has no two places on the terrain (x %.0f to %.0f, y %.0f to %.0f); give "
+                "Start and End within it" % image.GetBounds()[:4])
         output.ShallowCopy(profile)
         return 1

@@ -42,7 +42,7 @@ def times_of(pvd):
 
 
 def look(check, states_dir, run_dir):
-    """Times, units, values, areas and lines of a run that has everything but barriers, and what bad folders are told."""
+    """Times, units, values, areas and lines of a run that has everything but barriers; what is said of bad folders."""
     load(states_dir)
     with open(os.path.join(run_dir, "run.json")) as stream:
         record = json.load(stream)

@@ -3,11 +3,11 @@
 Usage: pvbatch pvbatch_states.py PVSTATES_DIR PICTURES_DIR JOB...
 
 A job is MODE:STATE:RUN_DIR. All are done by one ParaView, which takes as long to start as several states take to load.
-MODE full, plain, searched: checks for the STATE, or without one for every state of RUN_DIR/states but those of special
-runs (impact, structure, phases) and of ensembles, that every reader reads a file of this run, and every array of the
-state is there: loaded as it is (plain), or with RUN_DIR as data directory (searched); so are the files of the templates
-in PVSTATES_DIR. full: both, and the picture equals that of the Python state, and is not blank (flow and areas are in
-colour, on grey terrain).
+MODE full, drawn, plain, searched: checks for the STATE, or without one for every state of RUN_DIR/states but those of
+special runs (impact, structure, phases) and of ensembles, that every reader reads a file of this run, and every array
+of the state is there: loaded as it is (plain), or with RUN_DIR as data directory (searched); so are the files of the
+templates in PVSTATES_DIR. drawn: plain, and the picture equals that of the Python state, and is not blank (flow and
+areas are in colour, on grey terrain). full: drawn and searched.
 MODE plugin: the reader and the filters of frana_paraview.py on that run (pvbatch_plugin.py). Prints the count of checks
 and a sentence for each that failed; exits with 1 when there is one.
 """
@@ -49,8 +49,8 @@ def check(holds, sentence):
 
 
 def skip_help_texts():
-    """A new session makes paraview.simple's functions again, and searches all definitions for the help text of each: three
-    fifths of what this test took."""
+    """A new session makes paraview.simple's functions again, and searches all definitions for the help text of each:
+    three fifths of what this test took."""
     of_functions = type(servermanager.ActiveConnection.ProxiesNS.filters)
     if hasattr(of_functions, "getDocumentation"):
         of_functions.getDocumentation = lambda self, name: ""
@@ -141,12 +141,13 @@ def check_arrays(state, how):
 def check_loading(state, states_dir, run_dir, mode, pictures):
     file = os.path.join(run_dir, "states", state + ".pvsm")
     ways = [("plain", file)] if mode != "searched" else []
-    ways += [("searched", file), ("template", os.path.join(states_dir, state + ".pvsm"))] if mode != "plain" else []
+    if mode in ("full", "searched"):
+        ways += [("searched", file), ("template", os.path.join(states_dir, state + ".pvsm"))]
     for how, path in ways:
         fresh()
         moved = {} if how == "plain" else {"data_directory": run_dir, "restrict_to_data_directory": True}
         simple.LoadState(path, **moved)
-        drawn = how == "plain" and mode == "full"
+        drawn = how == "plain" and mode in ("full", "drawn")
         found = pictures_of_all(os.path.join(pictures, state + ".png")) if drawn else []  # before sources are updated
         check_files(state, run_dir, how)
         if how != "template":  # at another run's time and depth there may be nothing to make arrays of
@@ -201,10 +202,10 @@ def main(states_dir, pictures, jobs):
 
 if __name__ == "__main__":
     jobs = [argument.split(":", 2) for argument in sys.argv[3:]]
-    if not jobs or any(len(job) < 3 or job[0] not in ("full", "plain", "searched", "plugin") or
+    if not jobs or any(len(job) < 3 or job[0] not in ("full", "drawn", "plain", "searched", "plugin") or
                        job[1] not in ALONE | {""} for job in jobs):
-        print("usage: pvbatch pvbatch_states.py PVSTATES_DIR PICTURES_DIR full|plain|searched|plugin:[STATE]:RUN_DIR ...",
-              file=sys.stderr)
+        print("usage: pvbatch pvbatch_states.py PVSTATES_DIR PICTURES_DIR MODE:[STATE]:RUN_DIR ...; MODE full, drawn, "
+              "plain, searched or plugin", file=sys.stderr)
         sys.exit(2)
     status = main(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), jobs)
     sys.stdout.flush()

@@ -35,9 +35,9 @@ mkdir -p "$work/elsewhere" && cp -r "$work/run" "$moved" && cp -r "$work/run" "$
 "$frana" states "$again" >/dev/null || exit 1
 
 for _ in 1 2 3; do  # a loaded machine may refuse the connection to its X server
-    run_pvbatch "$source/tests/pvbatch_states.py" "$source/pvstates" "$work/pictures" "full::$work/run" \
-        "full:impact:$work/impact" "searched:impact:$work/impact" "full:structure:$work/structure" \
-        "full:phases:$work/phases" "full:probability:$work/ensemble" "searched::$moved" "plain::$again" \
+    run_pvbatch "$source/tests/pvbatch_states.py" "$source/pvstates" "$work/pictures" "drawn::$work/run" \
+        "full:impact:$work/impact" "full:structure:$work/structure" "full:phases:$work/phases" \
+        "full:probability:$work/ensemble" "searched::$moved" "plain::$again" \
         "plugin::$work/run" "plugin:impact:$work/impact" >"$work/states.out" 2>"$work/states.log"
     status=$?
     grep -q "bad X server connection" "$work/states.log" || break
