@@ -302,10 +302,11 @@ void BarrierWatch::sample(const Mpm3d& flow) {
     for (std::size_t n = 0; n < surfaces_.size(); ++n) {
         const Surface& solid = flow.body().surfaces[static_cast<std::size_t>(surfaces_[n])];
         BarrierLoad& load = loads_.barriers[n];
+        reached_.begin();
         for (Index p = 0; p < flow.body().points.count(); ++p) {
             const Vec3 x = flow.position(p);
             if (!stands_near(solid, boxes_[n], x, kClose * cell, cell)) continue;
-            load.run_up = std::max(load.run_up, x.z());
+            reached_.add(x.z(), flow.body().points.mass[static_cast<std::size_t>(p)]);
             const auto id = static_cast<std::size_t>(flow.body().points.id[p]);
             if (over_[n].size() <= id) over_[n].resize(id + 1, 0);
             if (over_[n][id]) continue;
@@ -314,6 +315,7 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             over_[n][id] = 1;
             load.overtopped += flow.body().points.mass[p] / density_;
         }
+        load.run_up = std::max(load.run_up, reached_.level());
     }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "convert/flow_columns.h"
+#include "coupling/run_up.h"
 #include "observe/observer.h"
 #include "scene/scene.h"
 #include "solid3d/mpm3d.h"
@@ -111,6 +112,7 @@ private:
     std::vector<std::pair<Vec3, Vec3>> boxes_;     ///< around each
     std::vector<std::vector<std::uint8_t>> over_;  ///< per barrier, by number of the point: was over it
     BarrierLoads loads_;
+    RunUp reached_;  ///< at one barrier at a time
     double density_;
 };
 

@@ -18,7 +18,7 @@ struct BarrierSummary {
     double blur = 0.0;             ///< [s]
     Vec3 impulse{0, 0, 0};         ///< since the start [kg m/s]
     Vec3 about{0, 0, 0};           ///< place that moments are about [m]
-    double run_up = 0.0;           ///< highest elevation of material within two cells of it [m]
+    double run_up = 0.0;           ///< as in BarrierLoad [m]
     double overtopped = 0.0;       ///< material that was over it at any time [m3]
 };
 
