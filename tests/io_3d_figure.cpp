@@ -245,6 +245,35 @@ TEST_CASE("What pictures of a run share: the flow goes where it pushes, and the 
     CHECK(view.box[2] > 31.2);
 }
 
+TEST_CASE("The picture of an impact comes as near as three heights of the wall", "[space]") {
+    const Moment3d moment = flow({20, 10, 10.2});
+    Shared3d shared;
+    shared.add(moment);
+    const View3d all = shared.view(), close = close_view(all, moment);
+    // [30, 31.2] x [5, 15] m; its sides are cut a little below the ground and end 2 m above it: at most 2.75 m in all.
+    CHECK(close.box[0] >= 30.0 - 3.0 * 2.75);
+    CHECK(close.box[0] <= 30.0 - 3.0 * 2.0);
+    CHECK(close.box[0] > all.box[0] + 5.0);
+    CHECK(close.box[2] == std::min(all.box[2], 31.2 + (30.0 - close.box[0])));
+    CHECK(close.pressure == all.pressure);
+    CHECK(close_view(all, flow({20, 10, 10.2}, false)).box == all.box);  // nothing stands there
+}
+
+TEST_CASE("The pressure on the wall is drawn beside the block and not over it", "[space]") {
+    if (cannot_draw()) return;
+    const Colour pressed = colour_at(Colormap::pressure, 1.0);
+    const Pixels picture = drawn(render_3d, figure_of(flow({24, 10, 10.2})));
+    // The corner has a white rim of its own below it, across the picture.
+    int lowest = 0;
+    for (int y = 0; y < picture.height; ++y)
+        if (alike(picture.at(60, y), pressed)) lowest = lowest == 0 ? y : lowest;
+    REQUIRE(lowest > 350);  // row 0 is the lowest of the picture
+    int white = 0;
+    for (int x = 0; x < picture.width - 200; ++x)
+        white += figures::distance(picture.at(x, lowest - 4), colours::white) == 0;
+    CHECK(white > 200);
+}
+
 TEST_CASE("The oblique view shows points by their speed, and none through the ground", "[space]") {
     if (cannot_draw()) return;
     const Colour fast = colour_at(Colormap::speed, 1.0), slow = colour_at(Colormap::speed, 0.0);

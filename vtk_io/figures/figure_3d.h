@@ -36,7 +36,8 @@ bool render_3d(const Figure3d& figure, const std::filesystem::path& png, std::st
 
 /// The vertical section along the flow through the middle of what happens: ground, barriers with the pressure
 /// on their sides there, points no further from the plane than twice their typical size (about a cell of
-/// their grid), columns as bars. Heights and lengths have one scale. Else as above.
+/// their grid), columns as bars. Heights and lengths have one scale. False with a reason when no point is near or pictures
+/// are switched off; else as above.
 bool render_section(const Figure3d& figure, const std::filesystem::path& png, std::string& why_not);
 
 }  // namespace frana

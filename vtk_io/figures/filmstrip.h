@@ -15,8 +15,8 @@ struct Filmstrip {
     int width = 1800;  ///< of the picture [px]
 };
 
-/// Draws the maps in rows into one PNG. False with a reason when there is no renderer (no file is made); UserError when
-/// the file cannot be written.
+/// Draws the maps in rows into one PNG, with one colour bar and one legend for all. False with a reason when pictures are
+/// switched off (no file is made); UserError when the file cannot be written.
 bool render_filmstrip(const Filmstrip& strip, const std::filesystem::path& png, std::string& why_not);
 
 }  // namespace frana

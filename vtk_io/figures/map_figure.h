@@ -65,7 +65,7 @@ struct MapFigure {
 /// Draws the map into a PNG. Where `focus` is not given, the covered area and the survey are in view with a
 /// margin, and at least 30 % of the terrain's width and height. Width and height are met exactly unless the
 /// terrain is too narrow to fill 90 % of them; then the picture is cut to what it needs. False with a reason
-/// when there is no renderer (no file is made); UserError when the file cannot be written.
+/// when pictures are switched off (no file is made); UserError when the file cannot be written.
 bool render_map(const MapFigure& figure, const std::filesystem::path& png, std::string& why_not);
 
 }  // namespace frana

@@ -65,6 +65,7 @@ private:
     void aim_from_eye(vtkRenderer* renderer);
     void keep_projection(vtkCamera* camera);
     std::vector<Vec3> silhouette() const;
+    Vec2 most_of_inset() const { return {0.5 * figure_.width, 0.16 * figure_.height}; }
     double aspect_of_room() const { return room_.width() / room_.height(); }
     Vec2 on_picture(const Vec3& point) const;
     void edge_length(Canvas& canvas, const Vec3& a, const Vec3& b, double metres) const;
@@ -118,8 +119,10 @@ void BlockDrawing::build(const MapBox& box) {
     const double from_the_left = azimuth_ - 30.0 * kDegree;  // the eye expects light from the upper left
     skin_ = painted(fine, field_fine, {figure_.colormap, colours_, shown_above, from_the_left});
     const double left = 1.5 * unit_, right = 9.0 * unit_;
+    const double inset =
+        height_of_inset(figure_.objects.inset, most_of_inset(), unit_);  // nothing may lie over the block
     room_ = {left, captions_.footer_height() + 2.5 * unit_, figure_.width - right,
-             figure_.height - captions_.title_height() - 1.2 * unit_};
+             figure_.height - captions_.title_height() - 1.2 * unit_ - inset};
 }
 
 void BlockDrawing::lines(vtkRenderer* renderer) const {
@@ -280,7 +283,7 @@ void BlockDrawing::explanations(Canvas& canvas) const {
                         bars[n].range, bars[n].colormap, bars[n].label, u);
     }
     const Vec2 corner(1.5 * u, h - captions_.title_height() - 1.7 * u);
-    draw_inset(canvas, figure_.objects.inset, corner, {0.34 * w, 0.16 * h}, u);
+    draw_inset(canvas, figure_.objects.inset, corner, most_of_inset(), u);
     if (figure_.survey) {
         LegendEntry entry;
         entry.kind = LegendEntry::Kind::cased_line;

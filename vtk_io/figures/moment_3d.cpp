@@ -136,4 +136,20 @@ View3d Shared3d::view() const {
     return view;
 }
 
+View3d close_view(View3d shared, const Moment3d& moment) {
+    constexpr double kHeights = 3.0;
+    const BarrierSolid* barrier = moment.most_loaded();
+    if (!barrier) return shared;
+    double low = INFINITY, high = -INFINITY;
+    for (const auto& piece : barrier->pieces)
+        for (const Vec3& p : piece.corners) low = std::min(low, p.z()), high = std::max(high, p.z());
+    const double reach = kHeights * std::max(0.0, high - low);
+    const std::array<double, 4> box = around(*barrier);
+    for (std::size_t k = 0; k < 2; ++k) {
+        shared.box[k] = std::max(shared.box[k], box[k] - reach);
+        shared.box[k + 2] = std::min(shared.box[k + 2], box[k + 2] + reach);
+    }
+    return shared;
+}
+
 }  // namespace frana

@@ -58,4 +58,8 @@ private:
     Vec2 force_{0, 0}, at_load_{0, 0}, motion_{1, 0}, middle_{0, 0};
 };
 
+/// The same with its box drawn in around the most loaded barrier of the moment, three times that barrier's height about it:
+/// the wall is what has to be seen. Without a load nothing changes.
+View3d close_view(View3d shared, const Moment3d& moment);
+
 }  // namespace frana

@@ -42,6 +42,9 @@ struct Objects3d {
     bool empty() const { return balls.empty() && facets.empty(); }
 };
 
+/// What an inset takes of a picture's height, its caption with it, if it is to be no larger than `most`; 0 without any [px].
+double height_of_inset(const Objects3d::Inset& inset, const Vec2& most, double unit);
+
 /// Draws an inset with its upper left corner there, no larger than `most` [px].
 void draw_inset(Canvas& canvas, const Objects3d::Inset& inset, const Vec2& corner, const Vec2& most, double unit);
 

@@ -109,21 +109,23 @@ bool has_points(const FigureSource& source) {
 struct Wanted {
     Index number;
     std::string name, caption;
+    bool close = false;  ///< the barrier and what is about it, not all of the flow
 };
 
 std::vector<Wanted> wanted_moments(const Run3d& run, const FigureSource& source) {
     std::vector<Wanted> wanted;
     if (const auto hardest = run.hardest())
-        wanted.push_back(
-            {*hardest, "impact",
-             fmt::format("at {:.4g} s, the output with the largest load on a barrier", run.time(*hardest))});
+        wanted.push_back({*hardest, "impact",
+                          fmt::format("at {:.4g} s, the output with the largest load on a barrier", run.time(*hardest)),
+                          true});
     const Index last = run.last();
     wanted.push_back({last, "points",
-                      last + 1 == run.count() ? "at the end" : fmt::format("at {:.4g} s, the last", run.time(last))});
+                      last + 1 == run.count() ? "at the end" : fmt::format("at {:.4g} s, the last", run.time(last)),
+                      false});
     if (source.time) {
         const Index number = run.nearest(*source.time);
         const std::string moment = fmt::format("{:.6g}", run.time(number));
-        wanted.push_back({number, "points_t" + moment + "s", "at " + moment + " s"});
+        wanted.push_back({number, "points_t" + moment + "s", "at " + moment + " s", false});
     }
     return wanted;
 }
@@ -152,6 +154,7 @@ void add_3d(const FigureSource& source, Gallery& gallery) {
         if (shared.empty()) return;  // it ended before there were any
         for (const Wanted& one : wanted) {
             Figure3d figure = run.figure(one.number, shared.view(), run.digits());
+            if (one.close) figure.view = close_view(figure.view, figure.moment);
             if (figure.moment.typical_size <= 0.0) {
                 if (one.name != "points")
                     gallery.warn(fmt::format("figures/view_{}.png was not drawn: there are no points in space {}",

@@ -14,7 +14,7 @@ void add_filmstrip(const FigureSource& source, Gallery& gallery);
 
 /// figures/film_depth.mp4 or .gif (`kind`: "mp4" or "gif"), the depth at every output time in one view and one range of
 /// colours, about eight seconds long with 2 to 25 pictures a second. One warning and no film without the program
-/// ffmpeg, frames on the grid or a renderer.
+/// ffmpeg, frames on the grid, or where pictures are switched off.
 void add_film(const FigureSource& source, const std::string& kind, Gallery& gallery);
 
 /// A film of `count` pictures, the k-th drawn by `draw(k, png)`, about eight seconds long. False with a reason when one
