@@ -125,7 +125,8 @@ std::string Progress::json(const Status& now, double wall) const {
 
 double Progress::remaining(const Status& now, double wall) const {
     const double done = now.time - start_time_;
-    return done > 0.0 ? wall * (end_time_ - now.time) / done : std::numeric_limits<double>::infinity();
+    if (!(done > 0.0)) return std::numeric_limits<double>::infinity();
+    return wall * (end_time_ - now.time) / done + after_the_end_;
 }
 
 double Progress::wall_seconds() const {

@@ -14,6 +14,8 @@ public:
     /// `density` [kg/m^3] turns masses into volumes.
     Progress(std::ostream& stream, Style style, double density) : stream_(stream), style_(style), density_(density) {}
 
+    /// So long pictures are expected to take after the end: what is left of a run counts them, too [s].
+    void expect_after_the_end(double seconds) { after_the_end_ = seconds; }
     void begin(const Status& first, double end);
     /// After begin(), when the run goes on from a kept state.
     void resumed(const Status& now);
@@ -40,7 +42,8 @@ private:
     double density_;
     double start_time_ = 0.0;
     double end_time_ = 0.0;
-    double last_drawn_ = -1.0;  ///< [s] of wall time since begin()
+    double after_the_end_ = 0.0;  ///< [s] of wall time
+    double last_drawn_ = -1.0;    ///< [s] of wall time since begin()
     std::chrono::steady_clock::time_point began_;
 };
 

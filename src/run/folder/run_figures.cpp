@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -141,6 +142,21 @@ void add_figures(const FigureSource& source, Gallery& gallery) {
     add_3d(source, gallery);
     add_barriers(source, gallery);
     add_budgets(source, gallery);
+}
+
+double expected_drawing_seconds(const Scene& scene, Index outputs, int threads) {
+    constexpr double kPlain = 0.15, kInSpace = 0.7;  // a map or a chart, and a view that is rendered [s]
+    constexpr Index kMaps = 6, kMostInAFilm = 200;   // of any run, the strip counted as one
+    double plain = 0.0, in_space = 0.0;
+    if (scene.output.png) {
+        plain = static_cast<double>(kMaps + 1) + static_cast<double>(scene.profiles.size() + scene.barriers.size());
+        plain += scene.gauges.empty() ? 0.0 : 1.0;
+        plain += scene.sections.empty() ? 0.0 : 1.0;
+        in_space = scene.solid ? 3.0 : 1.0;
+    }
+    if (!scene.output.film.empty()) plain += static_cast<double>(std::min(outputs, kMostInAFilm));
+    // Views are rendered one after the other, the rest side by side with them.
+    return std::max(kInSpace * in_space, (kPlain * plain + kInSpace * in_space) / std::max(threads, 1));
 }
 
 void add_overlay(const FigureSource& source, Gallery& gallery) {

@@ -1,6 +1,7 @@
 #include "run/folder/run_job.h"
 
 #include <fmt/core.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <chrono>
@@ -19,6 +20,7 @@
 #include "observe/only_fields.h"
 #include "observe/profiles.h"
 #include "observe/sections.h"
+#include "observe/side_by_side.h"
 #include "run/folder/comparison.h"
 #include "run/folder/cutoff.h"
 #include "run/folder/gis_files.h"
@@ -239,10 +241,12 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
     for (const Profile& profile : scene.profiles) profiles.push_back({profile.name, profile.line});
     if (!profiles.empty()) observers.push_back(std::make_unique<Profiles>(run_dir, profiles));
     if (output.vtk) {
-        observers.push_back(only_fields(make_particle_writer(run_dir), output.fields));
-        observers.push_back(only_fields(make_grid_writer(run_dir), output.fields));
-        if (!names.empty()) observers.push_back(make_barrier_writer(run_dir, tops_of(scene)));
-        if (!profiles.empty()) observers.push_back(make_profile_writer(run_dir, profiles));
+        std::vector<std::unique_ptr<Observer>> writers;
+        writers.push_back(only_fields(make_particle_writer(run_dir), output.fields));
+        writers.push_back(only_fields(make_grid_writer(run_dir), output.fields));
+        if (!names.empty()) writers.push_back(make_barrier_writer(run_dir, tops_of(scene)));
+        if (!profiles.empty()) writers.push_back(make_profile_writer(run_dir, profiles));
+        observers.push_back(side_by_side("VTK files", std::move(writers), omp_get_max_threads()));
     }
     if (output.xdmf) observers.push_back(only_fields(make_xdmf_writer(run_dir), output.fields));
     observers.push_back(std::make_unique<LastFields>(scene.bed.crs_wkt, rasters));
@@ -268,6 +272,8 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     for (auto& observer : more) observers.push_back(std::move(observer));
     if (scene.output.vtk) write_terrain(run_dir, scene.bed);
 
+    progress.expect_after_the_end(expected_drawing_seconds(
+        scene, static_cast<Index>(std::ceil(scene.end / scene.output.every)), threads_for_figures()));
     record.summary =
         run(simulation, plan_of(scene, record.end < record.whole_end), observers, interrupt, progress, keeper);
     note_simulation(record, scene, simulation);

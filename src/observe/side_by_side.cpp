@@ -1,0 +1,73 @@
+#include "observe/side_by_side.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "observe/archive.h"
+
+namespace frana {
+namespace {
+
+class SideBySide final : public Observer {
+public:
+    SideBySide(std::string name, std::vector<std::unique_ptr<Observer>> parts, int threads)
+        : name_(std::move(name)), parts_(std::move(parts)), threads_(threads) {}
+    std::string name() const override { return name_; }
+    void step(const Status& now, const Probe& probe) override {
+        for (auto& part : parts_) part->step(now, probe);
+    }
+    void observe(const Frame& frame) override {
+        for_all([&](Observer& part) { part.observe(frame); });
+    }
+    void end(const Frame& frame) override {
+        for_all([&](Observer& part) { part.end(frame); });
+    }
+    void serialize(Archive& archive) override {
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            const Archive::Part part(archive, fmt::format("{:02d}", i));
+            parts_[i]->serialize(archive);
+        }
+    }
+
+private:
+    void for_all(const std::function<void(Observer&)>& work) {
+        std::vector<std::exception_ptr> failed(parts_.size());
+        std::atomic<std::size_t> next{0};
+        const auto some = [&] {
+            for (std::size_t k = next++; k < parts_.size(); k = next++) try {
+                    work(*parts_[k]);
+                } catch (...) {
+                    failed[k] = std::current_exception();
+                }
+        };
+        std::vector<std::thread> others;
+        for (std::size_t n = 1; n < std::min(static_cast<std::size_t>(std::max(threads_, 1)), parts_.size()); ++n) try {
+                others.emplace_back(some);
+            } catch (const std::system_error&) {
+                break;  // fewer threads write as well
+            }
+        some();
+        for (std::thread& other : others) other.join();
+        for (const std::exception_ptr& failure : failed)
+            if (failure) std::rethrow_exception(failure);
+    }
+
+    std::string name_;
+    std::vector<std::unique_ptr<Observer>> parts_;
+    int threads_;
+};
+
+}  // namespace
+
+std::unique_ptr<Observer> side_by_side(std::string name, std::vector<std::unique_ptr<Observer>> parts, int threads) {
+    return std::make_unique<SideBySide>(std::move(name), std::move(parts), threads);
+}
+
+}  // namespace frana
