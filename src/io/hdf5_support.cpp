@@ -57,18 +57,42 @@ void put_numbers(const Access& access, hid_t object, const char* name, const std
     access.check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, numbers.data()));
 }
 
-void write_whole(const Access& access, hid_t set, hid_t type, const void* values) {
+namespace {
+
+/// The first axis that is more than a formality.
+std::size_t axis_of(const std::vector<hsize_t>& shape) {
+    std::size_t axis = 0;
+    while (axis + 1 < shape.size() && shape[axis] == 1) ++axis;
+    return axis;
+}
+
+/// What follows it, for each of its places.
+hsize_t bytes_of_a_row(const std::vector<hsize_t>& shape, std::size_t axis, std::size_t bytes_of_a_number) {
+    hsize_t row = bytes_of_a_number;
+    for (std::size_t n = axis + 1; n < shape.size(); ++n) row *= shape[n];
+    return row;
+}
+
+}  // namespace
+
+std::vector<hsize_t> piece_of(std::vector<hsize_t> shape, std::size_t bytes_of_a_number) {
     constexpr hsize_t kPiece = hsize_t{1} << 20;  // bytes
+    if (shape.empty()) return shape;
+    const std::size_t axis = axis_of(shape);
+    const hsize_t row = bytes_of_a_row(shape, axis, bytes_of_a_number);
+    if (row > 0) shape[axis] = std::min(shape[axis], std::max<hsize_t>(1, kPiece / row));
+    return shape;
+}
+
+void write_whole(const Access& access, hid_t set, hid_t type, const void* values) {
     const Handle space(access, H5Dget_space(set), H5Sclose);
     std::vector<hsize_t> shape(static_cast<std::size_t>(access.check(H5Sget_simple_extent_ndims(space))));
     if (shape.empty()) return;
     access.check(H5Sget_simple_extent_dims(space, shape.data(), nullptr));
-    std::size_t axis = 0;  // the first that is more than a formality
-    while (axis + 1 < shape.size() && shape[axis] == 1) ++axis;
-    hsize_t row = H5Tget_size(type);
-    for (std::size_t n = axis + 1; n < shape.size(); ++n) row *= shape[n];
+    const std::size_t axis = axis_of(shape);
+    const hsize_t row = bytes_of_a_row(shape, axis, H5Tget_size(type));
     if (row == 0) return;
-    const hsize_t rows = shape[axis], at_once = std::max<hsize_t>(1, kPiece / row);
+    const hsize_t rows = shape[axis], at_once = piece_of(shape, H5Tget_size(type))[axis];
     std::vector<hsize_t> start(shape.size(), 0), count = shape;
     for (hsize_t first = 0; first < rows; first += at_once) {
         start[axis] = first;
