@@ -1,8 +1,8 @@
 #!/bin/sh
 # The Debian packages: made, installed, used and removed. Usage: package.sh BUILD_FOLDER WORK_FOLDER
-# Installs them into an empty root, where the program uses the libraries of this system. With FRANA_BARE_ROOT=FOLDER, a bare
-# Debian made by `debootstrap --variant=minbase bookworm FOLDER`, apt installs them there with all that they depend on; needs
-# root and a network. Exits with 77 (skipped) without cpack and dpkg, 1 when something is wrong.
+# Installs them over this system in a layer that is thrown away, as root and where the kernel has overlays. With
+# FRANA_BARE_ROOT=FOLDER, a bare Debian made by `debootstrap --variant=minbase bookworm FOLDER`, apt installs them there with all
+# that they depend on; needs root and a network. Exits with 77 (skipped) without cpack and dpkg, 1 when something is wrong.
 set -eu
 build=$1
 work=$2
@@ -25,24 +25,43 @@ depends=$(dpkg-deb --field "$program" Depends)
 for needed in libgdal libvtk9 libhdf5 libcairo2 libegl1 fonts-dejavu-core; do
     case $depends in *$needed*) ;; *) fail "the package does not depend on $needed: $depends" ;; esac
 done
-zcat_doc=$(dpkg-deb --fsys-tarfile "$program" | tar -xO ./usr/share/doc/frana/changelog.gz | gzip -d | head -n 1)
+newest=$(dpkg-deb --fsys-tarfile "$program" | tar -xO ./usr/share/doc/frana/changelog.gz | gzip -d | head -n 1)
 version=$(dpkg-deb --field "$program" Version)
-case $zcat_doc in "frana ($version)"*) ;; *) fail "the changelog begins with '$zcat_doc', the package is version $version" ;; esac
+case $newest in "frana ($version)"*) ;; *) fail "the changelog begins with '$newest', the package is version $version" ;; esac
 
-# An empty root: nothing may be left of it after its removal.
-root=$work/root
-mkdir -p "$root/var/lib/dpkg/info" "$root/var/lib/dpkg/updates" "$root/var/lib/dpkg/triggers"
-: >"$root/var/lib/dpkg/status"
-into() { dpkg --root="$root" --log=/dev/null --force-not-root --force-depends "$@" >"$work/dpkg.log" 2>&1; }
-into -i "$program" "$library" || { cat "$work/dpkg.log"; fail "installing into an empty root failed"; }
-"$root/usr/bin/frana" --version | grep -q "frana $version" || fail "the installed program does not say version $version"
-"$root/usr/bin/frana" run "$root/usr/share/frana/cases/maungawhau/case.toml" --until 1 --out "$work/run" --quiet
-for made in rasters/peak_depth.tif figures/map_peak_depth.png run.qgz report.md; do
-    [ -s "$work/run/$made" ] || fail "the installed program left no $made"
-done
-into --purge frana libfrana-dev || { cat "$work/dpkg.log"; fail "the removal failed"; }
-left=$(find "$root" -path "$root/var/lib/dpkg" -prune -o ! -type d -print)
-[ -z "$left" ] || fail "left after the removal: $left"
+# This system as a root of its own, whose changes are thrown away: dpkg holds the packages against what is installed here.
+overlay=$work/overlay
+cat >"$work/inside.sh" <<INSIDE
+set -eu
+mount -t tmpfs none "$overlay"
+mkdir "$overlay/changed" "$overlay/work" "$overlay/root"
+mount -t overlay none -o "lowerdir=/,upperdir=$overlay/changed,workdir=$overlay/work" "$overlay/root" || exit 77
+mount -t proc none "$overlay/root/proc"
+mkdir "$overlay/root/packages"
+cp "$program" "$library" "$overlay/root/packages/"
+chroot "$overlay/root" sh -eu -c '
+    dpkg -i /packages/*.deb
+    frana --version
+    frana run /usr/share/frana/cases/maungawhau/case.toml --until 1 --out /packages/run --quiet
+    for made in rasters/peak_depth.tif figures/view_peak_depth.png particles.pvd run.qgz report.md; do
+        [ -s /packages/run/\$made ] || { echo "the installed program left no \$made"; exit 1; }
+    done
+    dpkg --purge frana libfrana-dev'
+find "$overlay/changed/usr" -name '*frana*' ! -type c >"$work/left"
+INSIDE
+mkdir -p "$overlay"
+if [ "$(id -u)" = 0 ] && unshare -m true 2>/dev/null; then
+    result=0
+    unshare -m sh "$work/inside.sh" >"$work/inside.log" 2>&1 || result=$?
+    case $result in
+        0) [ ! -s "$work/left" ] || fail "left after the removal: $(cat "$work/left")"
+           grep "^frana $version" "$work/inside.log" || fail "the installed program does not say version $version" ;;
+        77) echo "no overlay of file systems here: the packages were made and not installed" ;;
+        *) cat "$work/inside.log"; fail "installing, running or removing failed ($result)" ;;
+    esac
+else
+    echo "not root, or no unshare: the packages were made and not installed"
+fi
 
 [ -n "${FRANA_BARE_ROOT:-}" ] || exit 0
 bare=$FRANA_BARE_ROOT
