@@ -7,13 +7,13 @@
 
 #include <array>
 #include <charconv>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/number_text.h"
 
 namespace frana {
 namespace {
@@ -33,10 +33,10 @@ void add_point(const Place& place, std::istringstream& words, vtkPoints* points)
     std::array<double, 3> x{};
     std::string word;
     for (double& coordinate : x) {
-        char* end = nullptr;
         if (!(words >> word)) place.refuse("found a point without three coordinates", "three numbers in metres");
-        coordinate = std::strtod(word.c_str(), &end);
-        if (*end != '\0') place.refuse(fmt::format("found \"{}\" in a point", word), "three numbers in metres");
+        const auto number = number_in(word);
+        if (!number) place.refuse(fmt::format("found \"{}\" in a point", word), "three numbers in metres");
+        coordinate = *number;
     }
     points->InsertNextPoint(x.data());
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "ensemble/hazard_reader.h"
 #include "ensemble/sample_table.h"
@@ -254,17 +255,15 @@ std::string ensemble_of_table(const EnsemblePlan& plan, const std::filesystem::p
 void add_exceedance(EnsemblePlan& plan, const std::string& argument) {
     const auto equals = argument.find('=');
     const std::string field = argument.substr(0, equals);
-    char* end = nullptr;
-    const std::string number = equals == std::string::npos ? "" : argument.substr(equals + 1);
-    const double value = std::strtod(number.c_str(), &end);
+    const auto value = number_in(equals == std::string::npos ? "" : argument.substr(equals + 1));
     const bool known =
         field != "arrival_time" && std::find(plan.fields.begin(), plan.fields.end(), field) != plan.fields.end();
-    if (!known || number.empty() || *end != '\0' || !(value >= 0.0 && std::isfinite(value)))
+    if (!known || !value || !(*value >= 0.0 && std::isfinite(*value)))
         throw UserError(
             fmt::format("--exceed: found \"{}\"; expected FIELD=VALUE with a number from 0 on and {}; "
                         "write it like peak_depth=1.3",
                         argument, listed(plan.fields)));
-    plan.exceed[field].push_back(value);
+    plan.exceed[field].push_back(*value);
 }
 
 }  // namespace frana

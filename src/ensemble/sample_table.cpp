@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "ensemble/toml_file.h"
 #include "ensemble/vary_reader.h"
 
@@ -26,10 +26,10 @@ bool note_key(const std::string& name, const std::string& place, EnsemblePlan& p
 
 /// A number that belongs to a sample, or a problem.
 double number_of(const std::string& name, const std::string& field, const std::string& place, Problems& problems) {
-    char* end = nullptr;
-    const double number = std::strtod(field.c_str(), &end);
+    const std::optional<double> found = number_in(field);
+    const double number = found.value_or(0.0);
     const bool years = name == kReturnPeriod;
-    if (field.empty() || *end != '\0' || !(number >= 0.0) || !std::isfinite(number) || (years && number == 0.0))
+    if (!found || !(number >= 0.0) || !std::isfinite(number) || (years && number == 0.0))
         problems.add(place, fmt::format("found the {} \"{}\"", name, field),
                      years ? "expected years above 0" : "expected a number from 0 on", "correct it");
     return number;

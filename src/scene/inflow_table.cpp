@@ -6,11 +6,11 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/number_text.h"
 
 namespace frana {
 namespace {
@@ -76,11 +76,7 @@ Column column_of(const std::string& heading, const std::string& source) {
                                 heading, kHeader));
 }
 
-bool is_number(const std::string& cell) {
-    char* end = nullptr;
-    std::strtod(cell.c_str(), &end);
-    return !cell.empty() && *end == '\0';
-}
+bool is_number(const std::string& cell) { return number_in(cell).has_value(); }
 
 /// t, Q, v, Q, v, ... without a unit: numbers already, or their names.
 bool is_of_avaflow(const std::vector<std::string>& cells) {
@@ -95,12 +91,11 @@ bool is_of_avaflow(const std::vector<std::string>& cells) {
 }
 
 double number_of(const std::string& cell, const std::string& source, Index line) {
-    char* end = nullptr;
-    const double value = std::strtod(cell.c_str(), &end);
-    if (cell.empty() || *end != '\0' || !std::isfinite(value))
+    const std::optional<double> value = number_in(cell);
+    if (!value || !std::isfinite(*value))
         throw UserError(
             fmt::format("{}:{}: found \"{}\"; expected a number in each column; fill the gap", source, line, cell));
-    return value;
+    return *value;
 }
 
 void require_valid(const Hydrograph& table, const std::string& source) {

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
+
+#include "base/number_text.h"
 
 namespace frana {
 namespace {
@@ -79,10 +80,9 @@ private:
     std::string number_way_out(const toml::node& node) const {
         const auto text = node.value<std::string>();
         if (!text) return explained();
-        char* end = nullptr;
-        const double value = std::strtod(text->c_str(), &end);
-        if (end == text->c_str() || !std::isfinite(value)) return explained();
-        return fmt::format("write {} = {}, without quotes and unit", parameter_.name(), toml_text(value));
+        const auto found = leading_number(*text);
+        if (!found || !std::isfinite(found->value)) return explained();
+        return fmt::format("write {} = {}, without quotes and unit", parameter_.name(), toml_text(found->value));
     }
 
     std::optional<double> integer(const toml::node& node) const {

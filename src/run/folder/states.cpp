@@ -2,10 +2,9 @@
 
 #include <fmt/core.h>
 
-#include <cstdlib>
-
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "run/folder/look.h"
 
 namespace frana {
@@ -46,7 +45,7 @@ std::string slot_value(const std::string& slot, const Json& look, const fs::path
     const Json& value = look.at(pointer);
     if (at == std::string::npos) return text_of(value);
     const double low = value.at(0).get<double>(), high = value.at(1).get<double>();
-    return fmt::format("{}", low + std::strtod(slot.c_str() + at + 1, nullptr) * (high - low));
+    return fmt::format("{}", low + number_in(slot.substr(at + 1)).value() * (high - low));
 }
 
 }  // namespace
