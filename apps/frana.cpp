@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "frana_commands.h"
+#include "frana_failure.h"
 #include "io/gdal_reader.h"
 #include "io/hdf5_version.h"
 #include "run/folder/run_folder.h"
@@ -297,18 +298,6 @@ void add_stress(CLI::App& app, StressOptions& options, Action& action) {
     command->callback([&] { action = [&] { return stress_command(options); }; });
 }
 
-int complain(const std::string& text, int code) {
-    std::cout << std::flush;
-    std::cerr << text << '\n';
-    return code;
-}
-
-int complain(const UserError& error) {
-    const std::size_t count = error.problems().size();
-    const std::string sum = count > 1 ? fmt::format("\n{} problems", count) : "";
-    return complain(error.what() + sum, 2);
-}
-
 /// CLI11 alone would only say that a command is missing.
 void refuse_unknown(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
@@ -380,59 +369,20 @@ int run_program(int argc, char** argv) {
     if (!std::getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "1000", 0);
 }
 
-/// Threads, memory or file handles that the system will not give.
-bool is_shortage(const std::error_code& code) {
-    return code == std::errc::resource_unavailable_try_again || code == std::errc::not_enough_memory ||
-           code == std::errc::too_many_files_open || code == std::errc::too_many_files_open_in_system;
-}
-
-/// TBB, which VTK may work with, tells of a shortage by an error without code that ends with the system's words for it.
-bool tells_of_shortage(const std::exception& error) {
-    const std::string text = error.what();
-    for (const std::errc code : {std::errc::resource_unavailable_try_again, std::errc::not_enough_memory}) {
-        const std::string words = std::make_error_code(code).message();
-        if (text.size() >= words.size() && text.compare(text.size() - words.size(), words.size(), words) == 0)
-            return true;
-    }
-    return false;
-}
-
-int short_of(const std::exception& error) {
-    return complain(
-        fmt::format("{}; expected a system with memory, threads and file handles to spare; free some, or raise "
-                    "the limits of the process",
-                    error.what()),
-        2);
-}
-
-int mistake(const std::exception& error) {
-    return complain(fmt::format("{} (a mistake of the program; please report it with the case)", error.what()), 1);
+int complain(const Failure& failure) {
+    std::cout << std::flush;
+    std::cerr << failure.text << '\n';
+    if (failure.problems > 1) std::cerr << failure.problems << " problems\n";
+    return failure.code;
 }
 
 }  // namespace
 }  // namespace frana
 
 int main(int argc, char** argv) {
-    using namespace frana;
     try {
-        return run_program(argc, argv);
-    } catch (const UserError& error) {
-        return complain(error);
-    } catch (const NumericsError& error) {
-        return complain(error.what(), 3);
-    } catch (const Interrupted& error) {
-        return complain(error.what(), 130);
-    } catch (const std::filesystem::filesystem_error& error) {
-        return complain(fmt::format("{}; check the folder, its permissions and free space", error.what()), 2);
-    } catch (const std::bad_alloc&) {
-        return complain(
-            "memory: found too little; expected what `frana check` tells of the case; use fewer particles or points, "
-            "or "
-            "a larger grid.cell",
-            2);
-    } catch (const std::system_error& error) {
-        return is_shortage(error.code()) ? short_of(error) : mistake(error);
-    } catch (const std::exception& error) {
-        return tells_of_shortage(error) ? short_of(error) : mistake(error);
+        return frana::run_program(argc, argv);
+    } catch (...) {
+        return frana::complain(frana::failure_of(std::current_exception()));
     }
 }

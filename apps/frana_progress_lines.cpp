@@ -1,11 +1,11 @@
 #include "frana_progress_lines.h"
 
+#include <exception>
 #include <filesystem>
 #include <iostream>
-#include <new>
 
-#include "base/error.h"
 #include "base/version.h"
+#include "frana_failure.h"
 
 namespace frana {
 
@@ -53,28 +53,14 @@ int ProgressLines::around(const std::function<int()>& command) {
         const int code = command();
         last(code, code == 0 ? "end" : code == 130 ? "interrupted" : "failed", "");
         return code;
-    } catch (const UserError& error) {
-        last(2, "refused", error.what());
-        throw;
-    } catch (const NumericsError& error) {
-        last(3, "numerics", error.what());
-        throw;
-    } catch (const Interrupted& error) {
-        last(130, "interrupted", error.what());
-        throw;
-    } catch (const std::bad_alloc& error) {
-        last(2, "refused", error.what());
-        throw;
-    } catch (const std::filesystem::filesystem_error& error) {
-        last(2, "refused", error.what());
-        throw;
-    } catch (const std::exception& error) {
-        last(1, "failed", error.what());
+    } catch (...) {
+        const Failure failure = failure_of(std::current_exception());
+        last(failure.code, failure.reason, failure.text);
         throw;
     }
 }
 
-void ProgressLines::last(int code, const char* usual_reason, const std::string& error) const {
+void ProgressLines::last(int code, const std::string& usual_reason, const std::string& error) const {
     nlohmann::ordered_json end = {{"event", "end"},
                                   {"exit_code", code},
                                   {"exit_reason", reason_.empty() ? usual_reason : reason_},

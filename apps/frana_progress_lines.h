@@ -29,7 +29,7 @@ public:
     int around(const std::function<int()>& command);
 
 private:
-    void last(int code, const char* usual_reason, const std::string& error) const;
+    void last(int code, const std::string& usual_reason, const std::string& error) const;
 
     bool wanted_;
     std::string folder_, reason_;
