@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "ensemble/sample_table.h"
-#include "frana_ensemble_folder.h"
-#include "frana_kept_rows.h"
+#include "run/ensemble/kept_rows.h"
+#include "run/ensemble/shard_store.h"
 #include "run/folder/input_sums.h"
 #include "scene/case_file.h"
 
@@ -63,10 +63,10 @@ std::string row_of(const EventRun& run) {
 /// What the fields from `at` on say.
 EventRun run_of(const std::vector<std::string>& fields, std::size_t at) {
     const auto known = [&](std::size_t k) {
-        return fields[k].empty() ? std::optional<double>() : std::optional<double>(std::stod(fields[k]));
+        return fields[k].empty() ? std::optional<double>() : std::optional<double>(kept_number(fields[k]));
     };
     EventRun run;
-    run.reason = fields[at], run.seconds = std::stod(fields[at + 1]);
+    run.reason = fields[at], run.seconds = kept_number(fields[at + 1]);
     run.scores.iou = known(at + 2), run.scores.boundary = known(at + 3);
     for (std::size_t k = 0; k < kEvidence; ++k)
         if (const std::size_t from = at + 4 + kFieldsOfMisfit * k; const auto rms = known(from))

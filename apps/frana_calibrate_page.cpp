@@ -14,7 +14,7 @@
 #include "frana_calibrate.h"
 #include "frana_calibrate_kept.h"
 #include "frana_calibrate_predictions.h"
-#include "frana_ensemble_folder.h"
+#include "run/ensemble/shard_store.h"
 #include "vtk_io/figures/chart_figure.h"
 
 namespace frana {

@@ -7,8 +7,8 @@
 #include "frana_calibrate_event.h"
 #include "frana_calibrate_kept.h"
 #include "io/gdal_reader.h"
+#include "run/ensemble/run_pool.h"
 #include "run/interrupt.h"
-#include "run_pool.h"
 #include "scene/shared_reader.h"
 
 namespace frana {

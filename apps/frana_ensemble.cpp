@@ -2,22 +2,18 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <optional>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "frana_commands.h"
-#include "frana_ensemble_folder.h"
-#include "frana_ensemble_maps.h"
 #include "frana_progress_lines.h"
-#include "io/gdal_reader.h"
-#include "run/folder/run_lock.h"
+#include "frana_run_teller.h"
+#include "run/ensemble/ensemble_run.h"
+#include "run/ensemble/run_pool.h"
 #include "run/interrupt.h"
-#include "run_pool.h"
 #include "scene/case_file.h"
-#include "scene/shared_reader.h"
 
 namespace frana {
 namespace fs = std::filesystem;
@@ -27,43 +23,14 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Those of the shard that no shard in the folder has run; what was refused is tried again.
-std::vector<Index> left_to_run(const EnsembleOptions& options, const EnsemblePlan& plan, const EnsembleBase& base,
-                               const Shard& shard) {
-    const fs::path rows = shard_folder(options.out, shard) / "runs.csv";
-    if (fs::exists(rows) && !options.resume)
-        throw UserError(
-            fmt::format("{}: found the runs of an earlier ensemble; expected a folder without; choose another "
-                        "one with --out, or give --resume to go on with it",
-                        rows.string()));
-    std::vector<bool> has(static_cast<std::size_t>(plan.samples), false);
-    for (const SampleResult& result : read_results(options.out, plan, base, false))
-        has[static_cast<std::size_t>(result.sample)] = options.resume && result.reason != "refused";
-    std::vector<Index> samples;
-    for (Index i = shard.begin(plan.samples); i < shard.end(plan.samples); ++i)
-        if (!has[static_cast<std::size_t>(i)]) samples.push_back(i);
-    return samples;
-}
-
-/// Shards of one ensemble would all write the same.
-void write_once(const fs::path& file, const std::string& text) {
-    std::ifstream stream(file, std::ios::binary);
-    if (std::string{std::istreambuf_iterator<char>(stream), {}} != text) write_text(file, text);
-}
-
 void say_result(const fs::path& dir, const EnsembleSummary& summary) {
     std::cout << runs_sentence(summary) << '\n';
     for (const std::string& file : summary.files) std::cout << (dir / file).string() << '\n';
 }
 
 /// The maps of all runs in the folder.
-int join(const EnsembleOptions& options, const EnsemblePlan& plan, const EnsembleBase& base,
-         std::optional<double> wall_seconds) {
-    const RunLock lock(options.out);
-    for (const char* folder : {"", "rasters", "figures"}) remove_leftovers(options.out / folder);
-    write_once(options.out / "samples.csv", samples_table(plan));
-    const EnsembleSummary summary =
-        write_maps(options.out, plan, base, read_results(options.out, plan, base, true), wall_seconds);
+int join(const EnsembleOptions& options, const EnsembleRun& ensemble, std::optional<double> wall_seconds) {
+    const EnsembleSummary summary = ensemble.join(wall_seconds);
     if (!options.quiet && options.progress.empty()) say_result(options.out, summary);
     if (!summary.too_many_failed()) return 0;
     std::cerr << fmt::format(
@@ -73,8 +40,8 @@ int join(const EnsembleOptions& options, const EnsemblePlan& plan, const Ensembl
 }
 
 /// What the first samples are, and what all would take, from two of them.
-int foretell(const EnsemblePlan& plan, const EnsembleBase& base, const GisReader& reader, const MeshReader& meshes,
-             const EnsembleOptions& options) {
+int foretell(const EnsembleRun& ensemble, const EnsembleOptions& options) {
+    const EnsemblePlan& plan = ensemble.plan();
     std::cout << fmt::format("{}: {} samples by \"{}\", seed {}\n", plan.file.string(), plan.samples, plan.method_name,
                              plan.seed);
     constexpr Index shown = 5;
@@ -87,8 +54,7 @@ int foretell(const EnsemblePlan& plan, const EnsembleBase& base, const GisReader
     const std::vector<Index> pilots = {0, plan.samples / 2};
     const Interrupt never;
     std::vector<std::optional<SampleResult>> results(pilots.size());
-    for_each_run(pilots.size(), 1, never,
-                 [&](std::size_t k) { results[k] = run_sample(plan, base, pilots[k], reader, meshes, never); });
+    for_each_run(pilots.size(), 1, never, [&](std::size_t k) { results[k] = ensemble.try_out(pilots[k], never); });
     for (const auto& result : results) {
         std::cout << fmt::format("  sample {} ran: {} after {:g} s simulated, {:.3g} s{}{}\n", result->sample,
                                  result->reason, result->time, result->seconds, result->message.empty() ? "" : ": ",
@@ -128,20 +94,6 @@ int print_job(const EnsembleOptions& options) {
     return 0;
 }
 
-/// Where the file of an ensemble is, for who joins its runs later.
-constexpr const char* kOrigin = "ensemble.path";
-
-fs::path origin_of(const fs::path& dir) {
-    std::ifstream stream(dir / kOrigin);
-    std::string name;
-    if (!std::getline(stream, name))
-        throw UserError(
-            fmt::format("{}: found no {}; expected the folder of an ensemble; name the folder, or the ensemble's "
-                        "file before --join",
-                        dir.string(), kOrigin));
-    return name;
-}
-
 void require_names(const EnsembleOptions& options) {
     if (options.join.empty() && options.file.empty())
         throw UserError("FILE: found none; expected the ensemble's file; see apps/README.md for an example");
@@ -151,48 +103,32 @@ void require_names(const EnsembleOptions& options) {
         throw UserError("--out: found none; expected a folder for the runs and maps; name one");
 }
 
-int run_shard(const EnsembleOptions& options, const EnsemblePlan& plan, const EnsembleBase& base,
-              const GisReader& reader, const MeshReader& meshes) {
+int run_shard(const EnsembleOptions& options, const EnsembleRun& ensemble) {
     const auto start = Clock::now();
     const Shard shard = options.shard.empty() ? Shard{} : read_shard(options.shard);
-    const fs::path folder = shard_folder(options.out, shard);
-    const std::vector<Index> samples = left_to_run(options, plan, base, shard);
-    const RunLock lock(folder);
-    remove_leftovers(folder);
-    write_once(options.out / "samples.csv", samples_table(plan));
-    write_once(options.out / kOrigin, fs::absolute(plan.file).string() + "\n");
+    const std::vector<Index> samples = ensemble.left_to_run(shard, options.resume);
     const Interrupt interrupt(Interrupt::Listen::signals);
-    ShardStore store(folder, plan, base);
     RunTeller teller(samples.size(), options.quiet, options.progress);
-    for_each_run(samples.size(), threads_for_runs(options.threads), interrupt, [&](std::size_t k) {
-        auto result = run_sample(plan, base, samples[k], reader, meshes, interrupt);
-        if (!result) return;
-        const bool failed = !result->ended();
-        store.add(std::move(*result));
-        teller.done(failed);
-    });
-    store.flush();
+    ensemble.run(shard, samples, options.threads, interrupt, [&](bool failed) { teller.done(failed); });
     if (interrupt.requested())
-        throw Interrupted(fmt::format("interrupted; what has run is in {}; --resume goes on", folder.string()));
-    return options.shard.empty() ? join(options, plan, base, seconds_since(start)) : 0;
+        throw Interrupted(fmt::format("interrupted; what has run is in {}; --resume goes on",
+                                      shard_folder(options.out, shard).string()));
+    return options.shard.empty() ? join(options, ensemble, seconds_since(start)) : 0;
 }
 
 int run_ensemble(EnsembleOptions options, ProgressLines& lines) {
     require_names(options);
     if (!options.join.empty()) options.out = options.join;
-    if (options.file.empty()) options.file = origin_of(options.join);
+    if (options.file.empty()) options.file = origin_of_ensemble(options.join);
     if (!options.out.empty()) lines.into(options.out);
     EnsemblePlan plan = read_ensemble(options.file);
     for (const std::string& wish : options.exceed) add_exceedance(plan, wish);
     if (options.slurm > 0) return print_job(options);
     if (options.again) return run_again(options, plan);
-    const GdalReader files;
-    const SharedReader reader(files);
-    const MeshReader meshes = meshes_in_turn();
-    const EnsembleBase base = ensemble_base(plan, reader, meshes);
-    if (options.check) return foretell(plan, base, reader, meshes, options);
-    if (!options.join.empty()) return join(options, plan, base, std::nullopt);
-    return run_shard(options, plan, base, reader, meshes);
+    const EnsembleRun ensemble(std::move(plan), options.out);
+    if (options.check) return foretell(ensemble, options);
+    if (!options.join.empty()) return join(options, ensemble, std::nullopt);
+    return run_shard(options, ensemble);
 }
 
 }  // namespace

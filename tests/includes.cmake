@@ -100,10 +100,11 @@ room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
 room(vtk_io/module base vtk_io vtk_io/figures)
 room(src/run/web base terrain observe io PACKAGES "nlohmann/")
 room(src/run/folder base terrain observe convert compare run run/web scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
-room(apps base terrain observe particles convert compare run run/web scene ensemble shallow checks/verify checks/bench checks/fuzz io vtk_io
-     vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|nlopt|benchmark/")
+room(src/run/ensemble base ensemble run run/folder scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
+room(apps base terrain observe particles convert compare run run/web run/ensemble scene ensemble shallow checks/verify checks/bench checks/fuzz
+     io vtk_io vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|nlopt|benchmark/")
 
-room(apps/python base terrain scene run/folder io vtk_io apps)
+room(apps/python base terrain particles run run/folder run/ensemble scene io vtk_io apps)
 
 # The time loop and the faces of solvers and observers; not what writes tables.
 foreach(model mpm shallow solid3d water structured)

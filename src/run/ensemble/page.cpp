@@ -8,8 +8,8 @@
 #include "base/atomic_file.h"
 #include "base/text_file.h"
 #include "base/version.h"
-#include "frana_ensemble_folder.h"
-#include "frana_ensemble_outcomes.h"
+#include "run/ensemble/outcomes.h"
+#include "run/ensemble/shard_store.h"
 
 namespace frana {
 namespace fs = std::filesystem;

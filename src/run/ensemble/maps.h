@@ -35,6 +35,11 @@ struct EnsembleSummary {
 EnsembleSummary write_maps(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                            const std::vector<SampleResult>& results, std::optional<double> wall_seconds);
 
+/// What rasters/probability_FIELD_THRESHOLD.tif holds or would hold, in double precision. `results` are as for write_maps(). Throws
+/// UserError where no run has an answer, or the ensemble keeps no such field.
+Raster probability_map(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
+                       const std::vector<SampleResult>& results, const std::string& field, double threshold);
+
 /// samples.csv: number, weight and the values of the keys that vary.
 std::string samples_table(const EnsemblePlan& plan);
 

@@ -1,4 +1,4 @@
-#include "frana_ensemble_folder.h"
+#include "run/ensemble/shard_store.h"
 
 #include <fmt/core.h>
 
@@ -11,8 +11,8 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "ensemble/sample_table.h"
-#include "frana_kept_rows.h"
 #include "io/hdf5_peaks.h"
+#include "run/ensemble/kept_rows.h"
 #include "run/folder/input_sums.h"
 #include "scene/case_file.h"
 
@@ -55,12 +55,12 @@ std::pair<SampleResult, std::string> result_of(const fs::path& file, const std::
     if (f.size() != kColumnCount + kGaugeColumns * gauges) throw broken_row(file, line);
     SampleResult r;
     try {
-        r.sample = std::stoll(f[0]), r.reason = f[1], r.time = std::stod(f[2]), r.steps = std::stoll(f[3]);
+        r.sample = std::stoll(f[0]), r.reason = f[1], r.time = kept_number(f[2]), r.steps = std::stoll(f[3]);
         double* const numbers[] = {&r.seconds,   &r.volume,    &r.runout,     &r.reach,     &r.footprint_area,
                                    &r.max_depth, &r.max_speed, &r.left_share, &r.mass_error};
-        for (std::size_t k = 0; k < std::size(numbers); ++k) *numbers[k] = std::stod(f[4 + k]);
+        for (std::size_t k = 0; k < std::size(numbers); ++k) *numbers[k] = kept_number(f[4 + k]);
         const auto known = [&](std::size_t k) {
-            return f[k].empty() ? std::nullopt : std::optional<double>(std::stod(f[k]));
+            return f[k].empty() ? std::nullopt : std::optional<double>(kept_number(f[k]));
         };
         r.iou = known(13), r.boundary = known(14);
         r.message = f[16];

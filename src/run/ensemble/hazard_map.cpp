@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <map>
 
-#include "frana_ensemble_outcomes.h"
 #include "io/gdal_writer.h"
+#include "run/ensemble/outcomes.h"
 #include "vtk_io/figures/map_figure.h"
 
 namespace frana {

@@ -10,7 +10,7 @@
 #include "ensemble/sample_run.h"
 #include "ensemble/sensitivity.h"
 #include "ensemble/statistics.h"
-#include "frana_ensemble_maps.h"
+#include "run/ensemble/maps.h"
 
 namespace frana {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frana_ensemble_outcomes.h"
+#include "run/ensemble/outcomes.h"
 #include "vtk_io/figures/chart_figure.h"
 
 namespace frana {

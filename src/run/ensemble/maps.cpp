@@ -1,6 +1,6 @@
-#include "frana_ensemble_maps.h"
+#include "run/ensemble/maps.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 #include "base/error.h"
 #include "ensemble/statistics.h"
-#include "frana_ensemble_outcomes.h"
-#include "frana_kept_rows.h"
 #include "io/gdal_writer.h"
+#include "run/ensemble/kept_rows.h"
+#include "run/ensemble/outcomes.h"
 #include "run/folder/states.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/writers.h"
@@ -24,6 +24,26 @@ const PeakField& described(const std::string& name) {
     for (const PeakField& field : peak_fields())
         if (name == field.name) return field;
     throw InternalError("internal error: a field without a meaning");
+}
+
+void require_answer(const WeightedRuns& runs, const fs::path& dir) {
+    if (!(runs.total > 0.0))
+        throw UserError(fmt::format(
+            "{}: found no run with an answer; expected one or more; the reasons are in runs.csv", dir.string()));
+}
+
+/// Where no run came there is nothing to show.
+void hide_unreached(Raster& values, const Raster& reached) {
+    for (std::size_t k = 0; k < values.values.size(); ++k)
+        if (reached.values[k] == 0.0) values.values[k] = Raster::nodata;
+}
+
+/// Nor beyond the terrain.
+void onto_terrain(Raster& values, const EnsembleBase& base) {
+    if (base.whole == base.bed.geometry)
+        for (std::size_t k = 0; k < values.values.size(); ++k)
+            if (std::isnan(base.bed.values[k])) values.values[k] = Raster::nodata;
+    values.crs_wkt = base.bed.crs_wkt;
 }
 
 /// A threshold for people: pressures in kPa.
@@ -39,9 +59,7 @@ public:
         : dir_(dir), plan_(plan), base_(base), runs_(runs), summary_(summary) {}
 
     void write() {
-        if (!(runs_.total > 0.0))
-            throw UserError(fmt::format(
-                "{}: found no run with an answer; expected one or more; the reasons are in runs.csv", dir_.string()));
+        require_answer(runs_, dir_);
         fs::create_directories(dir_ / "rasters");
         fs::create_directories(dir_ / "figures");
         for (std::size_t f = 0; f < plan_.fields.size(); ++f) write_field(f);
@@ -49,18 +67,13 @@ public:
     }
 
 private:
-    /// Where no run came there is nothing to show.
     void raster(const std::string& name, Raster values, const char* unit, const std::string& meaning) {
-        for (std::size_t k = 0; k < values.values.size(); ++k)
-            if (reached_.values[k] == 0.0) values.values[k] = Raster::nodata;
+        hide_unreached(values, reached_);
         everywhere(name, std::move(values), unit, meaning);
     }
 
     void everywhere(const std::string& name, Raster values, const char* unit, const std::string& meaning) {
-        if (base_.whole == base_.bed.geometry)
-            for (std::size_t k = 0; k < values.values.size(); ++k)
-                if (std::isnan(base_.bed.values[k])) values.values[k] = Raster::nodata;
-        values.crs_wkt = base_.bed.crs_wkt;
+        onto_terrain(values, base_);
         write_geotiff(dir_ / "rasters" / (name + ".tif"), values, unit, meaning);
         summary_.files.push_back("rasters/" + name + ".tif");
     }
@@ -240,6 +253,31 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     write_page(dir, plan, base, runs, results, summary);
     remove_others(dir, before, summary.files);
     return summary;
+}
+
+Raster probability_map(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
+                       const std::vector<SampleResult>& results, const std::string& field, double threshold) {
+    const auto found = std::find(plan.fields.begin(), plan.fields.end(), field);
+    if (found == plan.fields.end() || described(field).is_time)
+        throw UserError(
+            fmt::format("{}: found no {} of its runs; expected a field of ensemble.fields but arrival_time: {}; "
+                        "add it there and run the ensemble again",
+                        dir.string(), field, fmt::join(plan.fields, ", ")));
+    if (!(threshold >= base.footprint_depth || field != "peak_depth"))
+        throw UserError(
+            fmt::format("above: found {:g} m of peak_depth; expected at least output.footprint_depth, {:g} m, "
+                        "below which nothing is kept of the runs",
+                        threshold, base.footprint_depth));
+    const WeightedRuns runs(plan, results);
+    require_answer(runs, dir);
+    PixelValues pixels(base.whole);
+    pixels.gather(runs.peaks, runs.weights, 0);
+    const Raster reached = pixels.reached();
+    pixels.gather(runs.peaks, runs.weights, static_cast<std::size_t>(found - plan.fields.begin()));
+    Raster probability = pixels.exceeds(threshold);
+    hide_unreached(probability, reached);
+    onto_terrain(probability, base);
+    return probability;
 }
 
 }  // namespace frana

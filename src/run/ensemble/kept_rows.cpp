@@ -1,14 +1,16 @@
-#include "frana_kept_rows.h"
+#include "run/ensemble/kept_rows.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <vector>
 
 #include "base/checksum.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "ensemble/sample_table.h"
 
 namespace frana {
@@ -48,6 +50,12 @@ std::string plain_field(std::string text) {
     for (char& letter : text)
         if (letter == ',' || letter == '\n' || letter == '\r') letter = letter == ',' ? ';' : ' ';
     return text;
+}
+
+double kept_number(const std::string& field) {
+    const std::optional<double> number = number_in(field);
+    if (!number) throw std::invalid_argument("no number");
+    return *number;
 }
 
 UserError broken_row(const fs::path& file, const std::string& line) {

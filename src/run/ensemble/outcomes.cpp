@@ -1,4 +1,4 @@
-#include "frana_ensemble_outcomes.h"
+#include "run/ensemble/outcomes.h"
 
 #include <fmt/core.h>
 

@@ -18,6 +18,9 @@ std::uint64_t sum_of(const std::string& text);
 /// A text as a field that ends neither a field nor a line.
 std::string plain_field(std::string text);
 
+/// A field of a row. Throws std::invalid_argument where it is no number.
+double kept_number(const std::string& field);
+
 /// A row that is none of those that `file` should hold.
 UserError broken_row(const std::filesystem::path& file, const std::string& line);
 

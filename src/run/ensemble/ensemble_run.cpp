@@ -1,0 +1,97 @@
+#include "run/ensemble/ensemble_run.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "run/ensemble/kept_rows.h"
+#include "run/ensemble/run_pool.h"
+#include "run/folder/run_lock.h"
+
+namespace frana {
+namespace fs = std::filesystem;
+namespace {
+
+/// Where the file of an ensemble is, for who joins its runs later.
+constexpr const char* kOrigin = "ensemble.path";
+
+/// Shards of one ensemble would all write the same.
+void write_once(const fs::path& file, const std::string& text) {
+    if (text_in(file) != text) write_text(file, text);
+}
+
+}  // namespace
+
+fs::path origin_of_ensemble(const fs::path& dir) {
+    std::ifstream stream(dir / kOrigin);
+    std::string name;
+    if (!std::getline(stream, name))
+        throw UserError(
+            fmt::format("{}: found no {}; expected the folder of an ensemble; name the folder, or the ensemble's "
+                        "file before --join",
+                        dir.string(), kOrigin));
+    return name;
+}
+
+EnsembleRun::EnsembleRun(EnsemblePlan plan, fs::path dir)
+    : plan_(std::move(plan)),
+      dir_(std::move(dir)),
+      reader_(files_),
+      meshes_(meshes_in_turn()),
+      base_(ensemble_base(plan_, reader_, meshes_)) {}
+
+std::vector<Index> EnsembleRun::left_to_run(const Shard& shard, bool resume) const {
+    const fs::path rows = shard_folder(dir_, shard) / "runs.csv";
+    if (fs::exists(rows) && !resume)
+        throw UserError(
+            fmt::format("{}: found the runs of an earlier ensemble; expected a folder without; choose another "
+                        "one with --out, or give --resume to go on with it",
+                        rows.string()));
+    std::vector<bool> has(static_cast<std::size_t>(plan_.samples), false);
+    for (const SampleResult& result : read_results(dir_, plan_, base_, false))
+        has[static_cast<std::size_t>(result.sample)] = resume && result.reason != "refused";
+    std::vector<Index> samples;
+    for (Index i = shard.begin(plan_.samples); i < shard.end(plan_.samples); ++i)
+        if (!has[static_cast<std::size_t>(i)]) samples.push_back(i);
+    return samples;
+}
+
+void EnsembleRun::run(const Shard& shard, const std::vector<Index>& samples, int threads, const Interrupt& interrupt,
+                      const std::function<void(bool)>& done) const {
+    const fs::path folder = shard_folder(dir_, shard);
+    const RunLock lock(folder);
+    remove_leftovers(folder);
+    write_once(dir_ / "samples.csv", samples_table(plan_));
+    write_once(dir_ / kOrigin, fs::absolute(plan_.file).string() + "\n");
+    ShardStore store(folder, plan_, base_);
+    for_each_run(samples.size(), threads_for_runs(threads), interrupt, [&](std::size_t k) {
+        auto result = run_sample(plan_, base_, samples[k], reader_, meshes_, interrupt);
+        if (!result) return;
+        const bool failed = !result->ended();
+        store.add(std::move(*result));
+        done(failed);
+    });
+    store.flush();
+}
+
+std::optional<SampleResult> EnsembleRun::try_out(Index sample, const Interrupt& interrupt) const {
+    return run_sample(plan_, base_, sample, reader_, meshes_, interrupt);
+}
+
+EnsembleSummary EnsembleRun::join(std::optional<double> wall_seconds) const {
+    const RunLock lock(dir_);
+    for (const char* folder : {"", "rasters", "figures"}) remove_leftovers(dir_ / folder);
+    write_once(dir_ / "samples.csv", samples_table(plan_));
+    return write_maps(dir_, plan_, base_, read_results(dir_, plan_, base_, true), wall_seconds);
+}
+
+Raster EnsembleRun::probability(const std::string& field, double threshold) const {
+    return probability_map(dir_, plan_, base_, read_results(dir_, plan_, base_, true), field, threshold);
+}
+
+}  // namespace frana
