@@ -44,6 +44,11 @@ void GrowingColumns::advance(double until) {
     sample();
 }
 
+void GrowingColumns::add(const Seeds& columns) {
+    columns_->add(columns);
+    if (!aside_) sample();
+}
+
 /// Notes where material is, and grows where it comes near an edge that is none of the terrain.
 void GrowingColumns::sample() {
     NodeBox worked = columns_->worked();

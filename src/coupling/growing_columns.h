@@ -25,6 +25,8 @@ public:
     std::vector<PhaseTime> timings() const override { return columns_->timings(); }
     const Raster* ground() const override { return &scene_.bed; }
     void serialize(Archive& archive) override;
+    std::string why_not_add(const Seeds& columns) const override { return columns_->why_not_add(columns); }
+    void add(const Seeds& columns) override;
 
     const NodeBox& held() const { return held_; }  ///< nodes of the whole terrain that it works on
 

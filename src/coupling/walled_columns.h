@@ -25,6 +25,8 @@ public:
     std::vector<std::string> remarks() const override { return columns_->remarks(); }
     std::vector<PhaseTime> timings() const override;
     void serialize(Archive& archive) override;
+    std::string why_not_add(const Seeds& columns) const override { return columns_->why_not_add(columns); }
+    void add(const Seeds& columns) override { columns_->add(columns); }
 
     const DepthAveraged& columns() const { return *columns_; }
 

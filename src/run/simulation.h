@@ -2,8 +2,10 @@
 // The one abstract face of every solver: step, look, sample.
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "observe/archive.h"
 #include "observe/frame.h"
 #include "observe/observer.h"
@@ -12,6 +14,7 @@
 namespace frana {
 
 struct Scene;
+struct Seeds;
 
 class Simulation : public Probe {
 public:
@@ -31,6 +34,14 @@ public:
     /// What the last frame's fields point into, for those who look at them longer than until the next step: they stay as
     /// they are while somebody holds it. To be called before the next advance() or frame().
     virtual std::shared_ptr<const void> give_frame_away() = 0;
+    /// Why material from outside cannot be added: what was found, expected, and what to do; empty: it can.
+    virtual std::string why_not_add(const Seeds&) const {
+        return "found a case with 3D points or structured solids; expected one of depth-averaged flow alone; give what "
+               "comes later as a release or an inflow of the case";
+    }
+    /// Adds columns between two steps: mass and momentum come in as those of inflows do (Status::mass_in). While the state is
+    /// put aside they wait for the step after it.
+    virtual void add(const Seeds&) { throw InternalError("internal error: this model takes no material from outside"); }
     /// The ground that the run works on now, where that has grown beyond the scene's; frames lie within it.
     virtual const Raster* ground() const { return nullptr; }
     /// What the user should know of how the run was set up.

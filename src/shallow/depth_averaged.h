@@ -42,6 +42,8 @@ public:
     Extras extras() const override;
     std::vector<std::string> remarks() const override;
     void serialize(Archive& archive) override;
+    std::string why_not_add(const Seeds& columns) const override;
+    void add(const Seeds& columns) override;
 
     /// From now on columns leave at the nodes marked (1; row after row from the south) and are noted; with `leave_now`
     /// also those that stand there, which are not.
@@ -120,6 +122,7 @@ private:
     void take_late(const std::vector<const LateRelease*>& releases);
     template <class Real>
     double place_late(const LateRelease& release, PointSums& came);
+    void enter_added();
     void support_inflows();
     double potential_of_support() const;
     void choose_sleep();
@@ -151,6 +154,9 @@ private:
     TileSorter sorter_;
     std::optional<Feed> feed_;          ///< nothing without inflows
     std::optional<LateReleases> late_;  ///< nothing without late releases
+    Seeds added_;                       ///< from outside, that wait for the next step
+    double mass_added_ = 0.0;           ///< that has entered [kg]
+    bool aside_ = false;                ///< it comes back to a state that was put aside
     struct Supported {
         Index k;
         double before;

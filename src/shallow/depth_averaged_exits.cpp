@@ -1,4 +1,5 @@
 // Where a depth-averaged run gives its material to another model, and what it tells of its columns.
+#include <fmt/core.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -197,6 +198,32 @@ void DepthAveraged::take_late(const std::vector<const LateRelease*>& releases) {
     arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest_step()); }));
     signal_ = std::max(signal, status_.max_speed_on_map + std::sqrt(flow_.gravity * status_.max_depth));
     status_.energy_left -= kinetic + (status_.potential - potential);
+}
+
+std::string DepthAveraged::why_not_add(const Seeds& columns) const {
+    for (Index n = 0; n < columns.count(); ++n)
+        if (!may_stand(columns.x[n], columns.y[n]))
+            return fmt::format(
+                "found the place ({:.10g}, {:.10g}); expected one on the terrain that the run holds now, and "
+                "not where material leaves it; choose another one, or a larger terrain.window",
+                columns.x[n], columns.y[n]);
+    return "";
+}
+
+void DepthAveraged::add(const Seeds& columns) {
+    added_.append(columns, 0, columns.count());
+    if (!aside_) enter_added();
+}
+
+/// As a release whose time has come.
+void DepthAveraged::enter_added() {
+    LateRelease release;
+    release.seeds = std::move(added_);
+    added_ = {};
+    release.first_id = splitter_.next_id();
+    splitter_.set_next_id(release.first_id + release.seeds.count());
+    mass_added_ += release.volume() * flow_.density;
+    take_late({&release});
 }
 
 /// Drops the points at exits and deposits the others again, recording what left as at other exits.

@@ -53,6 +53,7 @@ void serialize_tiles(Archive& archive, const std::string& name, const Flow& flow
 }  // namespace
 
 void DepthAveraged::serialize(Archive& archive) {
+    aside_ = archive.aside() && !archive.loading();
     serialize_points(archive);
     serialize_sums(archive);
     serialize_nodes(archive);
@@ -87,8 +88,8 @@ void DepthAveraged::serialize_points(Archive& archive) {
 
 void DepthAveraged::serialize_sums(Archive& archive) {
     frana::serialize(archive, "status", status_);
-    archive.numbers("sums", {&signal_, &since_split_, &drift_, &stress_power_, &lost_in_holes_, &start_momentum_[0],
-                             &start_momentum_[1], &centre_.x(), &centre_.y()});
+    archive.numbers("sums", {&signal_, &since_split_, &drift_, &stress_power_, &lost_in_holes_, &mass_added_,
+                             &start_momentum_[0], &start_momentum_[1], &centre_.x(), &centre_.y()});
     Index next_id = splitter_.next_id(), most = merger_ ? merger_->most() : 0, fitted = fit_ ? 1 : 0;
     archive.number("next_id", next_id);
     archive.number("most_in_a_square", most);
