@@ -5,6 +5,7 @@ From outside by qgis_process, which starts a new QGIS for each call (3 s); from 
 """
 import json
 import os
+import shlex
 import shutil
 import struct
 import subprocess
@@ -269,7 +270,10 @@ class FromInside(unittest.TestCase):
         self.assertEqual(len(names), len(files))
         self.assertEqual(len(QgsProject.instance().layerTreeRoot().findLayers()), len(files))
         self.assertEqual([node.itemVisibilityChecked() for node in group.findLayers()][:3], [True, True, False])
-        self.assertEqual(group.findLayers()[0].layer().renderer().symbol().symbolLayer(0).brushStyle(), 0)  # a line
+        outline = group.findLayers()[0].layer().renderer().symbol().symbolLayer(0)
+        self.assertEqual((outline.layerType(), outline.width()), ("SimpleLine", 0.5))  # of footprint.qml
+        alone = QgsVectorLayer(os.path.join(WORK, "group/footprint.geojson"), "alone")  # dragged into any map
+        self.assertEqual(alone.renderer().symbol().symbolLayer(0).layerType(), "SimpleLine")
         speed = group.findLayers()[2].layer()
         self.assertAlmostEqual(speed.renderer().opacity(), 0.37)
 
@@ -295,6 +299,39 @@ class FromInside(unittest.TestCase):
         found = self.call("frana:compare", {"RUN": run, "SURVEY": QgsVectorLayer(os.path.join(run, "footprint.geojson"), "f")})
         self.assertAlmostEqual(found["IOU"], 1.0, places=3)  # against itself
         self.assertTrue(os.path.exists(found["SCORES"]))
+
+    def test_a_run_on_local_coordinates_is_compared_with_a_survey_on_them(self):
+        """Neither has a coordinate system; maungawhau's do not."""
+        run = os.path.join(WORK, "local")
+        subprocess.run([FRANA, "run", os.path.join(SOURCE, "cases/maungawhau/case.toml"), "--out", run, "--quiet", "--set",
+                        "time.end=5", "--set", 'output.formats=["geotiff"]'], check=True)
+        layer = QgsVectorLayer(os.path.join(run, "footprint.geojson"), "f")
+        layer.setCrs(QgsCoordinateReferenceSystem())
+        deposit = QgsRasterLayer(os.path.join(run, "rasters/final_depth.tif"), "d")
+        deposit.setCrs(QgsCoordinateReferenceSystem())
+        found = self.call("frana:compare", {"RUN": run, "SURVEY": layer, "DEPOSIT": deposit})
+        self.assertAlmostEqual(found["IOU"], 1.0, places=3)
+
+    def test_a_temporary_folder_is_one_folder(self):
+        found = self.call("frana:run", self.inputs("unused", OUTPUT="TEMPORARY_OUTPUT"))
+        self.assertTrue(os.path.exists(os.path.join(found["OUTPUT"], "run.json")))
+        self.assertTrue(os.path.exists(os.path.join(found["OUTPUT"], "input", "release.gpkg")))
+        with open(os.path.join(found["OUTPUT"], "case.toml"), encoding="utf-8") as file:
+            self.assertIn(os.path.join(found["OUTPUT"], "input"), file.read())
+
+    def test_a_refused_case_leaves_the_earlier_runs_inputs(self):
+        run = self.call("frana:run", self.inputs("keeps"))["OUTPUT"]
+        before = sorted(os.listdir(run)), os.stat(os.path.join(run, "input", "release.gpkg")).st_mtime_ns
+        with self.assertRaisesRegex(QgsProcessingException, "scheme.cfl"):
+            self.call("frana:run", self.inputs("keeps", OVERWRITE=True, SET="scheme.cfl=-1"))
+        self.assertEqual((sorted(os.listdir(run)), os.stat(os.path.join(run, "input", "release.gpkg")).st_mtime_ns), before)
+        self.call("frana:run", self.inputs("keeps", OVERWRITE=True))
+        self.assertGreater(os.stat(os.path.join(run, "input", "release.gpkg")).st_mtime_ns, before[1])
+
+    def test_the_command_in_the_log_can_be_pasted_into_a_shell(self):
+        self.call("frana:run", self.inputs("with blanks"))
+        command = next(line for line in self.listener.log if line.startswith("frana run "))
+        self.assertIn(os.path.join(WORK, "with blanks"), shlex.split(command))
 
     def test_check_tells_what_a_run_would_take(self):
         found = self.call("frana:check", {"CASE": os.path.join(SOURCE, "cases/maungawhau/case.toml")})

@@ -17,6 +17,7 @@ package.__path__ = [PLUGIN]
 sys.modules["frana_qgis"] = package
 program = importlib.import_module("frana_qgis.program")
 case_text = importlib.import_module("frana_qgis.case_text")
+staged = importlib.import_module("frana_qgis.staged")
 
 
 class Plain(unittest.TestCase):
@@ -101,6 +102,57 @@ class Plain(unittest.TestCase):
         self.assertTrue(ended.stopped)
         self.assertEqual(ended.code, 130)
         self.assertIn("end", ended.last)
+
+    def test_a_run_that_must_be_killed_is_not_told_to_have_never_begun(self):
+        begun = '{\\"event\\": \\"start\\"}'
+        patience, program.STOP_PATIENCE = program.STOP_PATIENCE, 0.3
+        try:
+            told = []
+            ended = program.call([self.script(f"trap '' TERM; echo \"{begun}\"; echo started; while :; do sleep 0.05; done")],
+                                 lambda event, text: told.append(text), lambda: "started" in told)
+        finally:
+            program.STOP_PATIENCE = patience
+        self.assertTrue(ended.stopped and ended.killed)
+        self.assertEqual(ended.code, -9)
+        self.assertRegex(program.sentence(ended), "ended by force since it did not end by itself within 120 s")
+        before = program.Ended(-15, stopped=True, last={"start": {}})
+        self.assertEqual(program.sentence(before), "canceled before the run began")
+        after = program.Ended(-15, stopped=True, last={"start": {}, "scene": {}})
+        self.assertEqual(program.sentence(after), "canceled; what it wrote before may be resumed")
+
+    def test_inputs_of_an_earlier_run_stay_until_others_are_accepted(self):
+        def put(path, text):
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+
+        def found():
+            with open(os.path.join(self.folder.name, "run", "input", "case.toml"), encoding="utf-8") as file:
+                return file.read()
+
+        folder = os.path.join(self.folder.name, "run")
+        first = staged.Inputs(folder)
+        self.assertFalse(first.replaces())
+        put(os.path.join(first.path, "case.toml"), "first")
+        put(os.path.join(first.path, "release.gpkg"), "old")
+        first.accept()
+        first.drop()
+        self.assertEqual(found(), "first")
+        refused = staged.Inputs(folder)
+        self.assertTrue(refused.replaces())
+        put(os.path.join(refused.path, "case.toml"), "refused")
+        refused.drop()
+        self.assertEqual(found(), "first")
+        second = staged.Inputs(folder)
+        put(os.path.join(second.path, "case.toml"), "second")
+        self.assertEqual(second.place(os.path.join(second.path, "dem.vrt")), os.path.join(folder, "input", "dem.vrt"))
+        self.assertEqual(second.place("/data/dem.tif"), "/data/dem.tif")
+        second.accept()
+        second.drop()
+        self.assertEqual(found(), "second")
+        self.assertEqual(os.listdir(folder), ["input"])  # nothing of those before is left
+        self.assertEqual(os.listdir(os.path.join(folder, "input")), ["case.toml"])
+        put(os.path.join(self.folder.name, "file"), "")
+        self.refused("OUTPUT: found .*nothing can be written", staged.Inputs, os.path.join(self.folder.name, "file"))
 
     def test_the_plugin_is_of_the_programs_version(self):
         with open(os.path.join(PLUGIN, "metadata.txt"), encoding="utf-8") as file:

@@ -1,5 +1,6 @@
 """What all algorithms share: the program called with progress, cancel, remarks and errors as Processing has them."""
 import os
+import shlex
 
 from qgis.core import (
     NULL,
@@ -90,7 +91,7 @@ class FranaAlgorithm(QgsProcessingAlgorithm):
     def call(self, arguments, feedback):
         """Runs `frana ARGUMENTS` to its end. QgsProcessingException with the program's sentence where it failed."""
         path = settings.frana()
-        feedback.pushCommandInfo(" ".join(["frana", *arguments]))
+        feedback.pushCommandInfo(shlex.join(["frana", *arguments]))
 
         def tell(event, text):
             if event is None:

@@ -2,7 +2,6 @@ import json
 import os
 
 from qgis.core import (
-    QgsCoordinateReferenceSystem,
     QgsProcessing,
     QgsProcessingOutputFile,
     QgsProcessingOutputNumber,
@@ -49,7 +48,9 @@ class CompareWithSurvey(FranaAlgorithm):
         self._arguments = ["compare", folder, "--survey", self._vector("SURVEY", crs, inputs, parameters, context)]
         if self.given(parameters, "DEPOSIT"):
             deposit = self.parameterAsRasterLayer(parameters, "DEPOSIT", context)
-            self._arguments += ["--deposit", layers.elevation_file("DEPOSIT", deposit, inputs)]
+            # A run on local coordinates takes them as they are.
+            as_file = layers.elevation_file if crs.isValid() else layers.raster_file
+            self._arguments += ["--deposit", as_file("DEPOSIT", deposit, inputs)]
         if self.given(parameters, "PATH"):
             self._arguments += ["--path", self._vector("PATH", crs, inputs, parameters, context)]
 
@@ -66,6 +67,4 @@ class CompareWithSurvey(FranaAlgorithm):
     def _vector(self, name, crs, inputs, parameters, context):
         source = self.parameterAsSource(parameters, name, context)
         layer = self.parameterAsVectorLayer(parameters, name, context)
-        if not crs.isValid():  # a run on local coordinates: the survey's are taken as they are
-            crs = layer.crs() if layer.crs().isValid() else QgsCoordinateReferenceSystem()
         return layers.vector_file(name, layer, source, crs, inputs, context)

@@ -99,7 +99,8 @@ def raster_file(name, layer, folder):
         source = _written_raster(name, layer, os.path.join(folder, f"{name.lower()}.tif"))
     data = _require_upright(name, layer, source)
     crs = data.GetSpatialRef()
-    if crs is None or QgsCoordinateReferenceSystem.fromWkt(crs.ExportToWkt()) != layer.crs():
+    known = QgsCoordinateReferenceSystem.fromWkt(crs.ExportToWkt()) if crs else QgsCoordinateReferenceSystem()
+    if layer.crs().isValid() and known != layer.crs():
         # What the layer is told to have in QGIS the file does not know.
         file = os.path.join(folder, f"{name.lower()}.vrt")
         gdal.Translate(file, data, format="VRT", outputSRS=layer.crs().toWkt())
@@ -124,10 +125,12 @@ def _plain(geometry):
 def vector_file(name, layer, source, crs, folder, context):
     """
     Features of a layer (of those selected, where only they are asked for) as a GeoPackage in `folder`, in `crs`. So layers
-    in memory, in a database and with a filter are all the same, and the folder holds what its run was made from.
+    in memory, in a database and with a filter are all the same, and the folder holds what its run was made from. Without a
+    `crs`, that of a run on local coordinates, places are taken as they are.
     """
     _require_saved(name, layer)
-    _require_crs(name, layer)
+    if crs.isValid():
+        _require_crs(name, layer)
     file = os.path.join(folder, f"{name.lower()}.gpkg")
     if os.path.exists(file):
         os.remove(file)
@@ -135,7 +138,9 @@ def vector_file(name, layer, source, crs, folder, context):
     options.driverName = "GPKG"
     options.layerName = name.lower()
     writer = QgsVectorFileWriter.create(file, source.fields(), source.wkbType(), crs, context.transformContext(), options)
-    request = QgsFeatureRequest().setDestinationCrs(crs, context.transformContext())
+    request = QgsFeatureRequest()
+    if crs.isValid():
+        request.setDestinationCrs(crs, context.transformContext())
     count = 0
     for feature in source.getFeatures(request):
         kept = QgsFeature(source.fields())

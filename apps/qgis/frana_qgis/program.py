@@ -28,6 +28,11 @@ class Ended:
     errors: str = ""  # standard error
     last: dict = field(default_factory=dict)  # the last JSON line of each event, by event
     stopped: bool = False  # because it was asked to
+    killed: bool = False  # because it did not end within STOP_PATIENCE once it was asked to
+
+    def began(self):
+        """Whether runs had begun; None where the call tells nothing of that."""
+        return bool({"scene", "progress", "pictures", "result"} & self.last.keys()) if "start" in self.last else None
 
     def remarks(self):
         told = self.last.get("result") or self.last.get("scene") or {}
@@ -150,8 +155,9 @@ def _follow(child, lines, ended, tell, canceled):
             child.terminate()
             ended.stopped, asked = True, time.monotonic()
             tell(None, "stopping: the run finishes its step and leaves a whole folder")
-        if asked is not None and time.monotonic() - asked > STOP_PATIENCE:
+        if asked is not None and not ended.killed and time.monotonic() - asked > STOP_PATIENCE:
             child.kill()
+            ended.killed = True
         try:
             name, line = lines.get(timeout=0.1)
         except queue.Empty:
@@ -197,8 +203,11 @@ def sentence(ended):
         return f"numerics: {said}; the folder has a last frame to look at"
     if ended.code == 130:
         return f"interrupted from outside: {said}; the run can be resumed"
+    if ended.killed:
+        return (f"canceled, and ended by force since it did not end by itself within {STOP_PATIENCE:g} s; what it wrote "
+                "before may be resumed")
     if ended.code < 0 and ended.stopped:
-        return "canceled before the run began"
+        return "canceled; what it wrote before may be resumed" if ended.began() else "canceled before the run began"
     if ended.code < 0:
         return f"the program was ended by signal {-ended.code}; its last kept state can be resumed"
     return f"a mistake of frana (exit code {ended.code}): {said}; please report it with the case"

@@ -11,6 +11,7 @@ from qgis.core import (
 from . import case_text, layers, program, settings, widgets
 from .base import existing
 from .run_base import RunAlgorithm
+from .staged import Inputs
 
 # Keys that have a widget of their own, and those behind "Advanced". The rest of the table goes by SET.
 _FRONT = {"DEPTH": "release.depth", "LAW": "material.bed.law", "MU": "material.bed.mu", "XI": "material.bed.xi",
@@ -67,26 +68,44 @@ class Run(RunAlgorithm):
         source = self.parameterAsSource(parameters, "RELEASE", context)
         release = self.parameterAsVectorLayer(parameters, "RELEASE", context)
         self._more = case_text.sets(self.parameterAsString(parameters, "SET", context))
-        folder = self.output_folder(parameters, context)
+        super().prepare(parameters, context, feedback)
+        folder = self._folder
         if existing(folder, "case.toml") and not self.parameterAsBool(parameters, "OVERWRITE", context):
             raise program.Trouble(f"OUTPUT: found an earlier run in {folder}; expected a folder without; choose another one, "
                                   "or tick \"Replace an earlier run\" (OVERWRITE)")
-        inputs = layers.require_folder(os.path.join(folder, "input"))
-        dem = layers.elevation_file("DEM", terrain, inputs)
-        outline = layers.vector_file("RELEASE", release, source, terrain.crs(), inputs, context)
-        layers.require_overlap("RELEASE", source, "DEM", terrain)
-        self._file = os.path.join(inputs, "case.toml")
-        with open(self._file, "w", encoding="utf-8") as file:
-            file.write(case_text.text(self._case(dem, outline, parameters, context)))
+        self._inputs = Inputs(folder)
+        try:
+            dem = layers.elevation_file("DEM", terrain, self._inputs.path)
+            outline = layers.vector_file("RELEASE", release, source, terrain.crs(), self._inputs.path, context)
+            layers.require_overlap("RELEASE", source, "DEM", terrain)
+            self._values = self._case(dem, outline, parameters, context)
+        except BaseException:
+            self._inputs.drop()
+            raise
 
     def work(self, parameters, context, feedback):
+        try:
+            if self._inputs.replaces():  # an earlier run keeps its own until the new ones are known to be right
+                self.call(["check", self._written(self._values), *self._more], feedback)
+            files = {key: self._inputs.place(self._values[key]) for key in ("terrain.dem", "release.outline")}
+            self._written({**self._values, **files})
+            self._inputs.accept()
+        finally:
+            self._inputs.drop()
         more = self._more + self.threads(parameters, context) + self.ticked(parameters, context, "OVERWRITE")
-        return self.run_case(self._file, more, parameters, context, feedback)
+        return self.run_case(os.path.join(self._inputs.final, "case.toml"), more, parameters, context, feedback)
+
+    def _written(self, values):
+        """The case as a file among the inputs."""
+        path = os.path.join(self._inputs.path, "case.toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(case_text.text(values))
+        return path
 
     def _case(self, dem, outline, parameters, context):
         """Keys of the case in the order of a case file."""
         title = self.parameterAsString(parameters, "TITLE", context)
-        values = {"case.title": title or os.path.basename(self.parameterAsString(parameters, "OUTPUT", context)),
+        values = {"case.title": title or os.path.basename(self._folder),
                   "terrain.dem": dem, "release.outline": outline}
         if self.given(parameters, "DEPTH_FIELD"):
             values["release.depth"] = "field:" + self.parameterAsString(parameters, "DEPTH_FIELD", context)

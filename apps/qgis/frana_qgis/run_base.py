@@ -36,12 +36,13 @@ class RunAlgorithm(FranaAlgorithm):
         self.addOutput(QgsProcessingOutputFile("PROJECT", "Project of the run, where the program writes one"))
         self.addOutput(QgsProcessingOutputNumber("STOPPED", "1 where the run was stopped before its end"))
 
-    def output_folder(self, parameters, context):
-        return require_folder(self.parameterAsString(parameters, "OUTPUT", context))
+    def prepare(self, parameters, context, feedback):
+        # Asked for once: a temporary folder would be another one each time.
+        self._folder = require_folder(self.parameterAsString(parameters, "OUTPUT", context))
 
     def run_case(self, case, more, parameters, context, feedback):
         """`frana run`, its results, and the words about going on where it was stopped."""
-        folder = self.output_folder(parameters, context)
+        folder = self._folder
         ended = self.call(["run", case, "--out", folder, "--progress", "json", *more], feedback)
         if ended.stopped:
             feedback.pushWarning(f"stopped before its end: what lies in {folder} is whole and can be resumed: use Run case "
