@@ -181,7 +181,7 @@ TEST_CASE("A resumed run leaves the same bytes for a GIS; SOURCE_DATE_EPOCH date
     const fs::path straight = slope.run("straight"), parts = slope.run("parts", "--until 1.5");
     slope.run("parts", "--resume");
     for (const char* file : {"run.qgz", "results.gpkg", "rasters/peak_depth.tif", "rasters/elevation.tif",
-                             "rasters/peak_depth.qml", "rasters/arrival_time.qml"}) {
+                             "rasters/peak_depth.qml", "rasters/arrival_time.qml", "footprint.qml"}) {
         INFO(file);
         CHECK_FALSE(text_of(straight / file).empty());
         CHECK(text_of(parts / file) == text_of(straight / file));
@@ -211,6 +211,12 @@ TEST_CASE("The project names each of its layers by a path beside it, and what it
                               "release", "gauges", "profiles", "sections", "survey"})
         CHECK(found.count(layer) == 1);
     CHECK_THAT(text, !Contains(slope.path().string()) && Contains("<layer-tree-group name=\"Survey\""));
+    // The footprint alone is shown as it is there.
+    const std::string style = text_of(run / "footprint.qml");
+    const std::size_t from = style.find("<renderer-v2"), to = style.find("</qgis>");
+    REQUIRE((from != std::string::npos && to != std::string::npos));
+    CHECK_THAT(style, Contains("class=\"SimpleLine\""));
+    CHECK_THAT(text, Contains(style.substr(from, to - from)));
     // It begins at the flow.
     const Band peak(run / "rasters/peak_depth.tif");
     std::smatch extent;

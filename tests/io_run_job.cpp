@@ -89,7 +89,8 @@ TEST_CASE("a run leaves every product, and the report mentions each of them") {
         if (!entry.is_regular_file() || entry.path().filename() == "report.md") continue;
         const fs::path path = fs::relative(entry.path(), run.dir());
         const std::string folder = path.parent_path().generic_string();
-        const bool frame = folder == "particles" || folder == "grid" || path.extension() == ".qml" ||
+        const bool frame = folder == "particles" || folder == "grid" ||
+                           (folder == "rasters" && path.extension() == ".qml") ||
                            (folder == "profiles" && path.extension() == ".vtp");
         INFO(path);
         CHECK(report.find(frame ? "`" + folder + "/`" : path.generic_string()) != std::string::npos);

@@ -90,7 +90,7 @@ MapLayer shape_layer(const ShapeRule& rule, const ShapeLayer& layer, const MapPr
         double millimetres;
     };
     constexpr Kind kinds[] = {
-        {"Polygon", Shapes::outlines, 0.5}, {"Line", Shapes::lines, 0.5}, {"Point", Shapes::points, 2.5}};
+        {"Polygon", Shapes::outlines, kOutline}, {"Line", Shapes::lines, kOutline}, {"Point", Shapes::points, 2.5}};
     const Kind& kind = kinds[layer.shapes.front().shape.index()];
     const std::string id = fmt::format("shapes_{}", rule.layer);
     return {id, rule.title, rule.shown,

@@ -141,10 +141,13 @@ std::string shape_renderer(Shapes shapes, const Colour& colour, double millimetr
 
 void write_styles(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters, double limit) {
     const ProductRaster* peak = find_product(rasters, "peak_depth");
+    const auto write = [](const std::filesystem::path& file, const std::string& style) {
+        write_text(file, "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n<qgis version=\"3.22\">\n" +
+                             style + "</qgis>\n");
+    };
     for (const ProductRaster& product : rasters)
-        write_text(run_dir / "rasters" / (product.name + ".qml"),
-                   "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n<qgis version=\"3.22\">\n" +
-                       raster_pipe(product, peak, limit) + "</qgis>\n");
+        write(run_dir / "rasters" / (product.name + ".qml"), raster_pipe(product, peak, limit));
+    write(run_dir / "footprint.qml", shape_renderer(Shapes::outlines, colours::black, kOutline));
 }
 
 }  // namespace frana

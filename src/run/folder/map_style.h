@@ -20,8 +20,9 @@ std::string raster_pipe(const ProductRaster& product, const ProductRaster* peak_
 /// The `<renderer-v2>` of shapes: lines, outlines of polygons, or points, of one colour.
 enum class Shapes { lines, outlines, points };
 std::string shape_renderer(Shapes shapes, const Colour& colour, double millimetres, bool dashed = false);
+constexpr double kOutline = 0.5;  ///< width of outlines on a map [mm]
 
-/// rasters/NAME.qml beside each raster; QGIS takes it up with the raster. Throws UserError.
+/// rasters/NAME.qml beside each raster, and footprint.qml; QGIS takes them up with what they lie beside. Throws UserError.
 void write_styles(const std::filesystem::path& run_dir, const std::vector<ProductRaster>& rasters, double limit);
 
 }  // namespace frana

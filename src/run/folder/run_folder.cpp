@@ -55,6 +55,7 @@ const std::vector<ProductKind>& product_kinds() {
         {"rasters", "(" + raster_names + "|" + friction_names() + ")\\.qml",
          "styles of the rasters, which QGIS takes up with them", true},
         {"", "footprint\\.geojson", "outline of everything ever covered", false},
+        {"", "footprint\\.qml", "style of that outline, which QGIS takes up with it", false},
         {"", "barriers\\.csv", "what hit each barrier, when, and from which side", false},
         {"", "run\\.qgz", "project of QGIS: open it to see the run on its terrain", false},
         {"", "results\\.gpkg",
