@@ -1,17 +1,25 @@
 // Runs: frames as views, progress, Ctrl-C.
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
 #include "bindings.h"
+#include "run/simulation.h"
 #include "session.h"
+#include "waiting.h"
 
 namespace frana {
 namespace {
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// In a process that was forked from the one which started a run, its thread is not there: the run is left alone.
 struct EndSession {
     pid_t process = ::getpid();
     void operator()(Session* session) const {
-        if (::getpid() != process) return;
+        if (::getpid() != process || Waiting::outlived()) return;
         if (!PyGILState_Check()) {
             delete session;
             return;
@@ -114,6 +122,30 @@ public:
         session_->go_to(until);
         return stand();
     }
+    /// Squares of the map with their masses; arrays of the same length.
+    void add_mass(const Numbers& x, const Numbers& y, const Numbers& mass, const Numbers& vx, const Numbers& vy,
+                  const Numbers& size) {
+        mine();
+        alone();
+        const Simulation* const simulation = session_->simulation();
+        if (!simulation || session_->status().time >= session_->planned_end())
+            throw std::runtime_error("the run is at its end; add mass before, or give a later time.end");
+        Seeds columns;
+        for (py::ssize_t n = 0; n < x.size(); ++n)
+            add_square(columns, {x.at(n), y.at(n)}, {vx.at(n), vy.at(n)}, mass.at(n) / session_->density(), size.at(n));
+        const std::string why_not = simulation->why_not_add(columns);
+        if (!why_not.empty()) throw UserError("add_mass: " + why_not);
+        session_->add(columns);
+    }
+    /// As it is now, north row first, read-only.
+    py::tuple bed() const {
+        const Session& session = standing();
+        if (const Frame* const frame = session.frame()) return bed_of(*frame);
+        Simulation* const simulation = session.simulation();
+        if (!simulation)
+            throw std::runtime_error("the run is over; its last bed is in a frame of its folder, or in result.rasters");
+        return bed_of(aside([&] { return simulation->frame(); }));
+    }
     /// Ends the run where it is, unless it is over. What went wrong meanwhile comes through, once.
     void close() {
         if (!session_ || ::getpid() != process_ || over()) return;
@@ -135,6 +167,32 @@ public:
     }
 
 private:
+    /// A square of material [m3] as columns of at most half a cell each, as releases have them.
+    void add_square(Seeds& columns, const Vec2& middle, const Vec2& velocity, double volume, double given_size) const {
+        const double half_cell = 0.5 * session_->cell(), size = given_size > 0.0 ? given_size : half_cell;
+        const auto count = std::max(Index{1}, static_cast<Index>(std::ceil(size / half_cell - 1e-9)));
+        const double edge = size / static_cast<double>(count);
+        for (Index j = 0; j < count; ++j)
+            for (Index i = 0; i < count; ++i) {
+                columns.x.push_back(middle.x() - 0.5 * size + (static_cast<double>(i) + 0.5) * edge);
+                columns.y.push_back(middle.y() - 0.5 * size + (static_cast<double>(j) + 0.5) * edge);
+                columns.vx.push_back(velocity.x()), columns.vy.push_back(velocity.y());
+                columns.volume.push_back(volume / static_cast<double>(count * count));
+                columns.depth.push_back(volume / (size * size));
+                columns.size.push_back(edge);
+            }
+    }
+
+    py::tuple bed_of(const Frame& frame) const {
+        const Field* const elevation = frame.node("elevation");
+        if (!elevation) throw std::runtime_error("the model of this case tells no bed in its frames");
+        Raster raster;
+        raster.geometry = frame.grid;
+        raster.crs_wkt = session_->crs();
+        raster.values.assign(elevation->data, elevation->data + frame.grid.size());
+        return north_up(raster);
+    }
+
     void mine() const {
         if (::getpid() != process_)
             throw std::runtime_error(
@@ -165,8 +223,10 @@ private:
     /// Waits until it stands at a frame, is ready or over. Ctrl-C is answered after the present step; the run then stands and
     /// may go on.
     void settle() {
+        const Waiting waiting;
         const Busy busy(busy_);
         for (;;) {
+            if (Waiting::outlived()) session_->end();
             if (!waited(std::chrono::milliseconds(50))) {
                 if (PyErr_CheckSignals() == 0) continue;
                 session_->pause();
@@ -190,6 +250,7 @@ private:
 
     /// Until it is over; a Ctrl-C meanwhile is told afterwards.
     void wait_out() {
+        const Waiting waiting;
         bool asked = false;
         py::object type, value, trace;
         for (;;) {
@@ -267,6 +328,7 @@ void bind_run(py::module_& module) {
         .def("unit", &FrameOfRun::unit)
         .def("view", &FrameOfRun::view);
 
+    module.def("end_all", &end_all_waiting);
     py::class_<Run>(module, "Run")
         .def(py::init([](const CaseFile& file, const std::optional<std::string>& out,
                          const std::vector<std::string>& sets, int threads, std::optional<double> until, bool overwrite,
@@ -282,6 +344,10 @@ void bind_run(py::module_& module) {
         .def("next", &Run::next)
         .def("advance", &Run::advance)
         .def("close", &Run::close)
+        .def("add_mass", &Run::add_mass)
+        .def("bed", &Run::bed)
+        .def_property_readonly("cell", [](const Run& run) { return run.session().cell(); })
+        .def_property_readonly("crs", [](const Run& run) { return run.session().crs(); })
         .def_property_readonly("over", &Run::over)
         .def_property_readonly("status", [](const Run& run) { return run.standing().status(); })
         .def_property_readonly("end", [](const Run& run) { return run.session().planned_end(); })

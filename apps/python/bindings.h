@@ -9,18 +9,21 @@
 #include <utility>
 
 #include "terrain/raster.h"
+#include "waiting.h"
 
 namespace frana {
 namespace py = pybind11;
 
-void bind_case(py::module_& module);    // bind_case.cpp
-void bind_run(py::module_& module);     // bind_run.cpp
-void bind_folder(py::module_& module);  // bind_folder.cpp
+void bind_case(py::module_& module);      // bind_case.cpp
+void bind_run(py::module_& module);       // bind_run.cpp
+void bind_folder(py::module_& module);    // bind_folder.cpp
+void bind_ensemble(py::module_& module);  // bind_ensemble.cpp
 
 /// Calls `work` on a thread of its own, without the interpreter's lock: a process that forks later has no threads of OpenMP
 /// on its main one.
 template <class Work>
 auto aside(Work&& work) {
+    const Waiting waiting;
     const py::gil_scoped_release release;
     return std::async(std::launch::async, std::forward<Work>(work)).get();
 }

@@ -46,4 +46,5 @@ PYBIND11_MODULE(_frana, module) {
     frana::bind_case(module);
     frana::bind_run(module);
     frana::bind_folder(module);
+    frana::bind_ensemble(module);
 }

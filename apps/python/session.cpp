@@ -17,6 +17,7 @@ public:
         if (!session_.pause_ && !tick_due()) return;
         session_.status_ = now;
         session_.stand(session_.pause_ ? State::paused : State::tick);
+        session_.enter();
         last_tick_ = std::chrono::steady_clock::now();
     }
     bool wants_frame(const Status& now) override { return !session_.to_output_ && now.time >= session_.until_; }
@@ -39,9 +40,11 @@ private:
         session_.stand(State::at_frame);
         session_.frame_ = nullptr;
         std::shared_ptr<FrameMemory>& memory = session_.memory_;
-        if (memory.use_count() == 1) return;  // nobody looks any more, and nobody can begin to
-        memory->given = session_.simulation_->give_frame_away();
-        memory = std::make_shared<FrameMemory>();
+        if (memory.use_count() > 1) {  // else nobody looks any more, and nobody can begin to
+            memory->given = session_.simulation_->give_frame_away();
+            memory = std::make_shared<FrameMemory>();
+        }
+        session_.enter();
     }
 
     Session& session_;
@@ -86,6 +89,13 @@ void Session::stand(State state) {
     changed_.wait(lock, [this] { return state_ == State::runs; });
 }
 
+/// What was added while it stood. On the run's thread, since frames are borrowed until then.
+void Session::enter() {
+    if (added_.count() == 0) return;
+    if (!ending_) simulation_->add(added_);
+    added_ = {};
+}
+
 void Session::work() {
     try {
         if (wishes_.threads > 0) omp_set_num_threads(wishes_.threads);  // of this thread's own work alone
@@ -104,8 +114,9 @@ void Session::work() {
 void Session::begin(const Scene& scene, Simulation& simulation) {
     simulation_ = &simulation;
     status_ = simulation.status();
-    planned_end_ = scene.end;
+    planned_end_ = scene.end, density_ = scene.density, cell_ = scene.bed.geometry.cell, crs_ = scene.bed.crs_wkt;
     stand(State::ready);
+    enter();
 }
 
 void Session::run_in_folder(const CaseFile& file) {

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "particles/seeds.h"
 #include "run/folder/run_case.h"
 
 namespace frana {
@@ -52,6 +53,8 @@ public:
     void pause() { pause_ = true; }
     /// Asks for an end, without any more stands.
     void end();
+    /// Material that enters when the run goes on, while it stands.
+    void add(const Seeds& columns) { added_.append(columns, 0, columns.count()); }
     /// Whether it stands, or came to stand within the time.
     bool wait(std::chrono::milliseconds time);
 
@@ -65,6 +68,11 @@ public:
     const std::shared_ptr<FrameMemory>& memory() const { return memory_; }
     const Status& status() const { return status_; }  ///< of the last step
     double planned_end() const { return planned_end_; }
+    double density() const { return density_; }      ///< of the case [kg/m3]
+    double cell() const { return cell_; }            ///< of the case [m]
+    const std::string& crs() const { return crs_; }  ///< of the case, WKT
+    /// nullptr before it is `ready` and once it is `over`.
+    Simulation* simulation() const { return simulation_; }
     const std::vector<std::string>& remarks() const { return record_.warnings; }
     /// Why it did not begin or went wrong on the way, once it is `over`; null: it did not.
     const std::exception_ptr& failure() const { return failure_; }
@@ -79,6 +87,7 @@ private:
     void run_in_memory(const CaseFile& file);
     void begin(const Scene& scene, Simulation& simulation);
     void stand(State state);
+    void enter();
 
     Wishes wishes_;
     CaseFile file_;
@@ -95,7 +104,9 @@ private:
     Index frames_ = 0;
     std::shared_ptr<FrameMemory> memory_ = std::make_shared<FrameMemory>();
     Status status_;
-    double planned_end_ = 0.0;
+    double planned_end_ = 0.0, density_ = 1.0, cell_ = 1.0;
+    std::string crs_;
+    Seeds added_;
     std::exception_ptr failure_;
     RunRecord record_;
     std::vector<ProductRaster> rasters_;

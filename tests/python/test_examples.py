@@ -70,6 +70,23 @@ class Examples(InFolder):
         iou = float(re.search(r"IoU is ([\d.]+)", said)[1])
         self.assertTrue(0.0 < iou < 1.0, said)  # other friction, another footprint
 
+    def test_pour_in(self):
+        said = self.run_example("pour_in.py", self.cases("maungawhau", "case.toml"), "140", "300")
+        came = [float(mass) for mass in re.findall(r"s: (\d+) kg came in", said)]
+        self.assertGreater(len(came), 2)
+        for k, mass in enumerate(came):
+            self.assertAlmostEqual(mass, 2.0e4 * (k + 1), delta=1.0)
+        self.assertLess(abs(float(re.search(r"([-\d.e+]+) of the mass", said)[1])), 1e-12)
+
+    def test_how_likely(self):
+        with open(self.path("ensemble.toml"), "w", encoding="utf-8") as file:
+            file.write('[ensemble]\ncase = "case.toml"\nmethod = "sobol"\nsamples = 4\n[[ensemble.vary]]\n'
+                       'key = "material.bed.mu"\nrange = [0.1, 0.3]\n')
+        said = self.run_example("how_likely.py", self.path("ensemble.toml"), "500050", "4999925", "0.3")
+        self.assertRegex(said, r"4 runs; more than 0\.3 m at the place in (0|25|50|75|100) % of them")
+        low, high = [float(number) for number in re.search(r"bed\.mu: ([\d.]+) to ([\d.]+)", said).groups()]
+        self.assertTrue(0.1 < low < high < 0.3)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -10,6 +10,7 @@
 
 Numbers are in SI units; depths are vertical, speeds along the bed. Keys of a case: ``print(frana.describe())``.
 """
+import atexit as _atexit
 import os as _os
 
 
@@ -27,20 +28,22 @@ def _load():
 
 
 _frana = _load()
+_atexit.register(_frana.end_all)  # a thread that steps a run beyond this would abort the process
 from .case import Case, Check  # noqa: E402
+from .ensemble import Ensemble, EnsembleFolder, EnsembleProgress, is_ensemble as _is_ensemble  # noqa: E402
 from .errors import CaseError, DataError, Error, NumericsError, Problem  # noqa: E402
 from .folder import Folder  # noqa: E402
 from .raster import Affine, Raster  # noqa: E402
 from .run import Frame, Progress, Result, Run  # noqa: E402
 
 __version__ = _frana.version
-__all__ = ["Affine", "Case", "CaseError", "Check", "DataError", "Error", "Folder", "Frame", "NumericsError", "Problem",
-           "Progress", "Raster", "Result", "Run", "describe", "keys", "open"]
+__all__ = ["Affine", "Case", "CaseError", "Check", "DataError", "Ensemble", "EnsembleFolder", "EnsembleProgress", "Error",
+           "Folder", "Frame", "NumericsError", "Problem", "Progress", "Raster", "Result", "Run", "describe", "keys", "open"]
 
 
 def open(path):
-    """The `Folder` of a run, finished or running."""
-    return Folder(path)
+    """The `Folder` of a run, finished or running, or the `EnsembleFolder` of an ensemble."""
+    return EnsembleFolder(path) if _is_ensemble(path) else Folder(path)
 
 
 def describe(key=""):

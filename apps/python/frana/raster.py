@@ -1,7 +1,7 @@
 """Rasters as they are given out and taken in: north row first, with transform and CRS."""
 from collections import namedtuple
 
-from . import _frana
+from . import _frana, convert
 from .errors import DataError
 
 
@@ -107,15 +107,30 @@ class Raster:
         _frana.save_raster(str(path), self.array, self.transform.c, self.transform.f, self.cell, self.crs, self.unit,
                            self.description)
 
-    def to_xarray(self):
-        """An xarray.DataArray with the pixels' centres as x and y [m]. ImportError without xarray."""
-        try:
-            import xarray
-        except ImportError as error:
-            raise ImportError("to_xarray() needs xarray: apt install python3-xarray") from error
+    def _centres(self):
+        """Map x of the columns and y of the rows, the northernmost first [m]."""
         rows, columns = self.array.shape
         x = [self.transform.c + (column + 0.5) * self.cell for column in range(columns)]
-        y = [self.transform.f - (row + 0.5) * self.cell for row in range(rows)]
+        return x, [self.transform.f - (row + 0.5) * self.cell for row in range(rows)]
+
+    def to_pyvista(self):
+        """A flat pyvista.StructuredGrid with the numbers at the pixels' centres. ImportError without pyvista."""
+        return convert.raster_to_pyvista(self, *self._centres())
+
+    def to_geodataframe(self, above=None):
+        """A geopandas.GeoDataFrame of pixels with data, a square each. ImportError without geopandas.
+
+        Parameters
+        ----------
+        above : float, optional
+            Only pixels with more than this [unit].
+        """
+        return convert.raster_to_geodataframe(self, above)
+
+    def to_xarray(self):
+        """An xarray.DataArray with the pixels' centres as x and y [m]. ImportError without xarray."""
+        xarray = convert.needed("xarray", "to_xarray()")
+        x, y = self._centres()
         about = {"units": self.unit, "long_name": self.description, "crs_wkt": self.crs}
         return xarray.DataArray(self.array, coords={"y": y, "x": x}, dims=("y", "x"), name=self.name, attrs=about)
 

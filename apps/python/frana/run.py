@@ -2,7 +2,7 @@
 import json
 from collections.abc import Mapping
 
-from . import _frana, raster
+from . import _frana, convert, raster
 
 
 class Fields(Mapping):
@@ -11,8 +11,8 @@ class Fields(Mapping):
     A view costs nothing. It stays as it is when the run goes on: the run then takes other memory for its next frame.
     """
 
-    def __init__(self, frame, of_grid):
-        self._frame, self._of_grid = frame, of_grid
+    def __init__(self, frame, of_grid, crs=""):
+        self._frame, self._of_grid, self._crs = frame, of_grid, crs
 
     def __getitem__(self, name):
         return self._frame.view(self._of_grid, name)
@@ -52,6 +52,26 @@ class Grid(Fields):
         """Distance of the nodes [m]."""
         return self._frame.grid_geometry[4]
 
+    def to_xarray(self):
+        """An xarray.Dataset of copies, with x and y of the nodes and units; y grows. ImportError without xarray."""
+        return convert.grid_to_xarray(self, self.x, self.y, self._crs)
+
+    def to_pyvista(self):
+        """A pyvista.StructuredGrid on the ground, fields at its points. ImportError without pyvista."""
+        return convert.grid_to_pyvista(self, self.x, self.y)
+
+
+class Particles(Fields):
+    """Fields of particles, of the shape (n,) or (n, components)."""
+
+    def to_pyvista(self):
+        """A pyvista.PolyData of points with their fields. ImportError without pyvista."""
+        return convert.particles_to_pyvista(self)
+
+    def to_geodataframe(self):
+        """A geopandas.GeoDataFrame of points on the map, a column for each number. ImportError without geopandas."""
+        return convert.particles_to_geodataframe(self, self._crs)
+
 
 class Frame:
     """A state of a run. ``time`` and ``status`` stay; fields can be asked for until the run goes on.
@@ -66,13 +86,13 @@ class Frame:
         Sums and extremes.
     grid : Grid
         Fields of nodes: "elevation", "depth", "surface", "velocity" (ny, nx, 3), "peak_depth", ...
-    particles : Fields
+    particles : Particles
         Fields of particles: "position" (n, 3), "depth" (n,), "velocity" (n, 3), ...
     """
 
-    def __init__(self, frame):
+    def __init__(self, frame, crs=""):
         self.number, self.time, self.status = frame.number, frame.status.time, frame.status
-        self.grid, self.particles = Grid(frame, True), Fields(frame, False)
+        self.grid, self.particles = Grid(frame, True, crs), Particles(frame, False, crs)
 
     def __repr__(self):
         return f"<frana.Frame {self.number} at {self.time:g} s>"
@@ -166,7 +186,7 @@ class Run:
         frame = self._run.next()
         if frame is None:
             raise StopIteration
-        return Frame(frame)
+        return Frame(frame, self._run.crs)
 
     def advance(self, *, until):
         """Goes on to the first moment at or after ``until`` [s], and returns its frame; None: the run is over.
@@ -177,7 +197,64 @@ class Run:
         if not self.over and not until > self.time:
             raise ValueError(f"until: found {until:g} s; expected a time after the present one, {self.time:g} s")
         frame = self._run.advance(until)
-        return None if frame is None else Frame(frame)
+        return None if frame is None else Frame(frame, self._run.crs)
+
+    def add_mass(self, x, y, mass, velocity=(0.0, 0.0), *, size=None):
+        """Adds material from outside: from another model, a person, a sensor. It enters when the run goes on.
+
+        It is booked as what inflows bring: in ``status.mass_in``, and in run.json as what came in. At an output the step that
+        passes its time takes it in, so it may be a step late. A folder's run that is resumed knows only of what has entered.
+
+        Parameters
+        ----------
+        x, y : float or array_like, shape (n,)
+            Places on the map [m].
+        mass : float or array_like, shape (n,)
+            Of each, above 0 [kg].
+        velocity : array_like, shape (2,) or (n, 2)
+            Along the map, x and y [m/s].
+        size : float or array_like, optional
+            Edge of the square that a mass covers [m]. Default half a cell. Larger ones become several particles.
+
+        Raises
+        ------
+        DataError
+            Where the model takes none (3D points, structured solids), or a place is not on the terrain of the run.
+        ValueError
+            For numbers that are not finite, masses that are not above 0, or shapes that do not fit.
+        RuntimeError
+            When the run is at its end. A run that is to wait for more says ``time.stop_at_rest = false``.
+        """
+        import numpy
+
+        x, y, mass, sizes = numpy.broadcast_arrays(*(numpy.atleast_1d(numpy.asarray(given, dtype=float)) for given in
+                                                     (x, y, mass, self._run.cell / 2 if size is None else size)))
+        velocity = numpy.asarray(velocity, dtype=float)
+        if velocity.shape not in ((2,), (x.size, 2)) or x.ndim != 1:
+            raise ValueError(f"velocity: found the shape {velocity.shape}; expected (2,) or ({x.size}, 2)")
+        velocity = numpy.broadcast_to(velocity, (x.size, 2))
+        for name, numbers in (("x", x), ("y", y), ("mass", mass), ("size", sizes), ("velocity", velocity)):
+            if not numpy.isfinite(numbers).all():
+                raise ValueError(f"{name}: found a number that is not finite; expected finite ones")
+        for name, numbers in (("mass", mass), ("size", sizes)):
+            if not (numbers > 0.0).all():
+                raise ValueError(f"{name}: found {numbers.min():g}; expected more than 0")
+        self._run.add_mass(x, y, mass, velocity[:, 0], velocity[:, 1], sizes)
+
+    @property
+    def bed(self):
+        """Elevation of the ground as it is now, with what was eroded and deposited: a `Raster` [m], read-only.
+
+        On the nodes of the grid, north row first. Between outputs it is that of the last step that was looked at.
+        """
+        bed = raster.Raster._of("elevation", "m", "bed elevation", self._run.bed())
+        bed.array.flags.writeable = False
+        return bed
+
+    @property
+    def crs(self):
+        """Of the case, WKT; empty: unknown."""
+        return self._run.crs
 
     def finish(self):
         """Goes on to the end, and returns the result."""
