@@ -1,12 +1,15 @@
 // What `frana ensemble` tells of gauges, arrival, indices and hazard, on ponds whose answers are known.
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
 #include "ensemble/statistics.h"
+#include "io/deflate.h"
 #include "pond.h"
+#include "run/web/web_page.h"
 
 namespace fs = std::filesystem;
 using Catch::Contains;
@@ -177,4 +180,45 @@ TEST_CASE("A scenario without an answer is told with the classes of hazard, and 
     CHECK_FALSE(fs::exists(pond.path("many/rasters/hazard_class.tif")));
     CHECK_FALSE(fs::exists(pond.path("many/rasters/hazard_class.tif.aux.xml")));
     CHECK(fs::exists(pond.path("many/rasters/probability_reached.tif")));
+}
+
+TEST_CASE("The page of an ensemble holds the shares of its runs above each threshold, and their quantiles",
+          "[ensemble][page]") {
+    if (!frana::no_page_reason().empty()) {
+        WARN(frana::no_page_reason() << "; this test is skipped");
+        return;
+    }
+    const Pond pond;
+    pond.write("many.toml",
+               "[ensemble]\ncase = \"case.toml\"\nmethod = \"lhs\"\nsamples = 20\nquantiles = [0.5]\n"
+               "fields = [\"peak_depth\"]\nexceed = { peak_depth = [1.234] }\n"
+               "[[ensemble.vary]]\nkey = \"release.0.depth\"\nrange = [1.0, 2.0]\n");
+    REQUIRE(pond.frana("ensemble many.toml --out many --quiet").code == 0);
+    const std::string html = text_of(pond.path("many/figures/view.html")), begin = "id=\"data\">";
+    const std::size_t first = html.find(begin) + begin.size();
+    const Json runs = Json::parse(html.substr(first, html.find("</script>", first) - first)).at("runs");
+    const Json ladder = runs.at("ladders").at(0);
+    const auto table = [](const Json& json) {
+        const frana::GridGeometry grid{json.at("nx"), json.at("ny"), 0.0, 0.0, 1.0};
+        return frana::unpacked({grid, json.at("low"), json.at("step"), frana::from_base64(json.at("values"))});
+    };
+    const std::vector<double> thresholds = ladder.at("thresholds");
+    const frana::Raster shares = table(ladder.at("probabilities")), median = table(ladder.at("quantiles"));
+    REQUIRE(shares.geometry.ny == 144);  // all of the pond
+    REQUIRE(shares.geometry.nx == static_cast<frana::Index>(thresholds.size()));
+    CHECK(thresholds.front() == 0.1);  // below, nothing is kept
+    CHECK(thresholds.at(ladder.at("first")) == 1.234);
+    CHECK(std::is_sorted(thresholds.begin(), thresholds.end()));
+    const frana::Raster map = pond.map("many", "probability_peak_depth_1.234"),
+                        half = pond.map("many", "quantile_peak_depth_0.5");
+    for (frana::Index row = 0; row < 144; ++row) {
+        CHECK(shares.at(ladder.at("first"), row) == Approx(map.values[static_cast<std::size_t>(row)]).margin(1e-7));
+        CHECK(median.at(0, row) == Approx(half.values[static_cast<std::size_t>(row)]).margin(1e-4));
+        CHECK(shares.at(0, row) == Approx(1.0));
+        CHECK(shares.at(shares.geometry.nx - 1, row) == 0.0);
+    }
+    // A depth between 1 and 2 m exceeds a threshold there with the share of the range above it, to one of 20 slices.
+    for (std::size_t k = 0; k < thresholds.size(); ++k)
+        if (thresholds[k] >= 1.0 && thresholds[k] <= 2.0)
+            CHECK(shares.at(static_cast<frana::Index>(k), 70) == Approx(2.0 - thresholds[k]).margin(0.05 + 1e-6));
 }

@@ -177,6 +177,7 @@ TEST_CASE("A page holds any title, asks for nothing, and says that nothing flowe
     WebPage page;
     page.title = title;
     page.bed = hill();
+    page.depth = {3.0, true};
     const std::string html = web_page(page);
     CHECK_THAT(
         html,
@@ -188,6 +189,9 @@ TEST_CASE("A page holds any title, asks for nothing, and says that nothing flowe
         CHECK(html.find(from) == std::string::npos);
     CHECK(data.at("frames").empty());
     CHECK(data.at("drapes").empty());
+    CHECK(data.at("runs").is_null());
+    CHECK(data.at("depth").at("above") == true);
+    CHECK(data.at("speed").at("above") == false);  // no sign of larger values where there are none
     PackedRaster terrain;
     const Json& json = data.at("terrain");
     terrain.grid = grid_of(json, data.at("origin"));

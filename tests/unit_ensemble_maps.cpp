@@ -137,3 +137,28 @@ TEST_CASE("Wilson's bounds are the probabilities that are a normal error away fr
     CHECK(wilson_bounds(1.0, 10.0).first == Approx(10.0 / (10.0 + 3.841458820694124)).epsilon(1e-12));
     CHECK(wilson_bounds(0.3, 0.0) == std::pair{0.0, 1.0});
 }
+
+TEST_CASE("The shares of the runs above a ladder of thresholds are those above each of them", "[ensemble]") {
+    std::vector<SparseRasters> runs;
+    std::vector<const SparseRasters*> all;
+    std::vector<double> weights;
+    for (int k = 0; k < 40; ++k) {
+        runs.emplace_back();
+        runs.back().rows.push_back({k % 3, 2});  // pixels 0 to 3 of five
+        runs.back().values.push_back({0.1F * static_cast<float>(k % 7), 0.05F * static_cast<float>(k)});
+    }
+    for (const SparseRasters& run : runs)
+        all.push_back(&run), weights.push_back(1.0 + static_cast<double>(all.size() % 4));
+    PixelValues values({5, 1, 0.0, 0.0, 1.0});
+    values.gather(all, weights, 0);
+    const std::vector<double> thresholds = {0.0, 0.1, 0.3, 0.35, 1.2, 5.0};  // 0.1 and 0.3 are values of runs too
+    Index pixels = 0;
+    values.for_each_curve(thresholds, [&](Index pixel, const std::vector<double>& shares) {
+        ++pixels;
+        REQUIRE(shares.size() == thresholds.size());
+        for (std::size_t k = 0; k < shares.size(); ++k)
+            CHECK(shares[k] ==
+                  Approx(values.exceeds(thresholds[k]).values[static_cast<std::size_t>(pixel)]).margin(1e-15));
+    });
+    CHECK(pixels == 4);
+}

@@ -219,6 +219,12 @@ const std::vector<PeakField>& peak_fields() {
     return fields;
 }
 
+const PeakField& peak_field(const std::string& name) {
+    for (const PeakField& field : peak_fields())
+        if (name == field.name) return field;
+    throw InternalError("internal error: a field without a meaning");
+}
+
 std::vector<std::string> EnsemblePlan::sets_of(Index sample) const {
     std::vector<std::string> sets;
     for (std::size_t k = 0; k < vary.size(); ++k)

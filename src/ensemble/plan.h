@@ -53,6 +53,8 @@ struct PeakField {
     bool is_time = false;  ///< of arrival: there is none where a run never came
 };
 const std::vector<PeakField>& peak_fields();
+/// The one of that name; InternalError without it.
+const PeakField& peak_field(const std::string& name);
 
 /// Reads and checks `file`. Throws one UserError with every problem found.
 EnsemblePlan read_ensemble(const std::filesystem::path& file);

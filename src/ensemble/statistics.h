@@ -1,5 +1,6 @@
 #pragma once
 // Maps of an ensemble: in how many of its runs a pixel saw more than a threshold, and what a share of them stayed below.
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -40,6 +41,26 @@ public:
                 values[values_[n].run] = static_cast<double>(values_[n].value);
             body(static_cast<Index>(k), values);
             for (std::size_t n = first_[k]; n < first_[k + 1]; ++n) values[values_[n].run] = 0.0;
+        }
+    }
+
+    /// Calls body(pixel, shares) for each pixel that a run came to: the share of the weights with more than each of
+    /// `thresholds`, which ascend.
+    template <class Body>
+    void for_each_curve(const std::vector<double>& thresholds, Body&& body) const {
+        const std::vector<float> limits(thresholds.begin(), thresholds.end());
+        std::vector<double> shares(limits.size());
+        for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
+            if (first_[k] == first_[k + 1]) continue;
+            std::fill(shares.begin(), shares.end(), 0.0);
+            for (std::size_t n = first_[k]; n < first_[k + 1]; ++n) {
+                const auto above = std::lower_bound(limits.begin(), limits.end(), values_[n].value);
+                if (above != limits.begin())
+                    shares[static_cast<std::size_t>(above - limits.begin()) - 1] += weight_of(values_[n]);
+            }
+            for (std::size_t t = shares.size(); t-- > 1;) shares[t - 1] += shares[t];
+            for (double& share : shares) share /= weight_;
+            body(static_cast<Index>(k), shares);
         }
     }
 

@@ -20,12 +20,6 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-const PeakField& described(const std::string& name) {
-    for (const PeakField& field : peak_fields())
-        if (name == field.name) return field;
-    throw InternalError("internal error: a field without a meaning");
-}
-
 void require_answer(const WeightedRuns& runs, const fs::path& dir) {
     if (!(runs.total > 0.0))
         throw UserError(fmt::format(
@@ -46,10 +40,10 @@ void onto_terrain(Raster& values, const EnsembleBase& base) {
     values.crs_wkt = base.bed.crs_wkt;
 }
 
-/// A threshold for people: pressures in kPa.
+/// A threshold for people.
 std::string amount(double value, const PeakField& field) {
-    const bool pressure = std::string(field.unit) == "Pa";
-    return fmt::format("{:g} {}", pressure ? 1e-3 * value : value, pressure ? "kPa" : field.unit);
+    const ShownUnit shown = shown_unit(field);
+    return fmt::format("{:g} {}", shown.factor * value, shown.name);
 }
 
 class MapWriter {
@@ -79,7 +73,7 @@ private:
     }
 
     void write_field(std::size_t f) {
-        const PeakField& field = described(plan_.fields[f]);
+        const PeakField& field = peak_field(plan_.fields[f]);
         PixelValues pixels(base_.whole);
         pixels.gather(runs_.peaks, runs_.weights, f);
         if (f == 0) reached_ = pixels.reached();
@@ -250,6 +244,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     MapWriter(dir, plan, base, runs, summary).write();
     write_hazard(dir, plan, base, runs, summary);
     draw_charts(dir, plan, base, runs, summary);
+    write_view(dir, plan, base, runs, summary);
     write_page(dir, plan, base, runs, results, summary);
     remove_others(dir, before, summary.files);
     return summary;
@@ -258,7 +253,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
 Raster probability_map(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                        const std::vector<SampleResult>& results, const std::string& field, double threshold) {
     const auto found = std::find(plan.fields.begin(), plan.fields.end(), field);
-    if (found == plan.fields.end() || described(field).is_time)
+    if (found == plan.fields.end() || peak_field(field).is_time)
         throw UserError(
             fmt::format("{}: found no {} of its runs; expected a field of ensemble.fields but arrival_time: {}; "
                         "add it there and run the ensemble again",

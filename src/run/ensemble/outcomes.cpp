@@ -19,6 +19,11 @@ double Outcome::counted(const SampleResult& result) const {
     return value(result).value_or(never == Never::infinite ? infinite : 0.0);
 }
 
+ShownUnit shown_unit(const PeakField& field) {
+    if (std::string(field.unit) == "Pa") return {"kPa", 1e-3};
+    return {field.unit, 1.0};
+}
+
 Outcome straight_reach() { return always("reach_m", "straight reach [m]", &SampleResult::reach); }
 
 Outcome runout() { return always("runout_m", "runout [m]", &SampleResult::runout); }

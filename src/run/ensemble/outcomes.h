@@ -86,6 +86,18 @@ void write_hazard(const std::filesystem::path& dir, const EnsemblePlan& plan, co
 void draw_charts(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                  const WeightedRuns& runs, EnsembleSummary& summary);
 
+/// Writes figures/view.html: the probabilities in a browser. Nothing where a part of the terrain is held only, or the build
+/// has no three.js.
+void write_view(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
+                const WeightedRuns& runs, EnsembleSummary& summary);
+
+/// A unit for people, and how many of it a unit of the field is: pressures in kPa.
+struct ShownUnit {
+    std::string name;
+    double factor = 1.0;
+};
+ShownUnit shown_unit(const PeakField& field);
+
 /// Writes runs.csv.
 void write_runs(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                 const std::vector<SampleResult>& results);

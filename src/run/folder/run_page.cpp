@@ -134,10 +134,10 @@ std::vector<PageBarrier> barriers_of(const FigureSource& source) {
 }
 
 /// The largest of what frames hold; of the peaks, where the run has them, so that both have the same colours.
-double high_of(const std::vector<PageDrape>& drapes, const char* name, double of_frames) {
+PageTop top_of(const std::vector<PageDrape>& drapes, const char* name, double of_frames) {
     for (const PageDrape& drape : drapes)
-        if (drape.name == name) return drape.high;
-    return of_frames > 0.0 ? of_frames : 1.0;
+        if (drape.name == name) return {drape.high, of_frames > drape.high};
+    return {of_frames > 0.0 ? of_frames : 1.0, false};
 }
 
 WebPage page_of(const FigureSource& source, const FlowFrames& frames, const Json& record,
@@ -152,8 +152,8 @@ WebPage page_of(const FigureSource& source, const FlowFrames& frames, const Json
     double deepest = 0.0, fastest = 0.0;
     for (const PackedFrame& frame : frames.frames())
         deepest = std::max(deepest, frame.deepest), fastest = std::max(fastest, frame.fastest);
-    page.depth_high = high_of(page.drapes, "peak_depth", deepest);
-    page.speed_high = high_of(page.drapes, "peak_speed", fastest);
+    page.depth = top_of(page.drapes, "peak_depth", deepest);
+    page.speed = top_of(page.drapes, "peak_speed", fastest);
     page.footprint_depth = source.footprint_depth;
     page.survey = source.survey;
     for (const Profile& profile : source.profiles) page.lines.push_back({profile.name, profile.line});

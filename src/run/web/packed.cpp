@@ -109,6 +109,21 @@ Index block_for(const GridGeometry& grid, Index most) {
     return k;
 }
 
+Raster part_with_values(const Raster& raster) {
+    const GridGeometry& g = raster.geometry;
+    Index i0 = g.nx, j0 = g.ny, i1 = -1, j1 = -1;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i) {
+            if (std::isnan(raster.at(i, j))) continue;
+            i0 = std::min(i0, i), i1 = std::max(i1, i), j0 = std::min(j0, j), j1 = std::max(j1, j);
+        }
+    if (i1 < 0) i0 = j0 = i1 = j1 = 0;
+    Raster part = Raster::filled(NodeBox{i0, j0, i1 - i0 + 1, j1 - j0 + 1}.of(g), Raster::nodata);
+    for (Index j = j0; j <= j1; ++j)
+        for (Index i = i0; i <= i1; ++i) part.at(i - i0, j - j0) = raster.at(i, j);
+    return part;
+}
+
 PackedRaster packed(const Raster& raster, double finest) {
     PackedRaster result{raster.geometry, 0.0, finest, {}};
     double low = INFINITY, high = -INFINITY;

@@ -48,6 +48,8 @@ struct UnpackedFrame {
 };
 UnpackedFrame unpacked(const PackedFrame& frame);
 
+/// The part of a raster that has values; of one without any its first pixel.
+Raster part_with_values(const Raster& raster);
 /// Blocks of k x k nodes, the means of those that have values: for terrain. Blocks without any have none.
 Raster in_blocks(const Raster& raster, Index k);
 /// Likewise with the largest values: for what a flow did.

@@ -34,12 +34,12 @@ function reliefOf(raster) {
       sum += Math.sqrt(gx * gx + gy * gy), ++count;
     }
   const steeper = Math.max(1, Math.min(5, 0.6 / Math.max(1e-6, sum / Math.max(1, count))));
-  const light = new Float32Array(nx * ny), sorted = [];
+  const light = new Float32Array(nx * ny), stride = Math.max(7, Math.ceil(nx * ny / 20000)), some = [];
   for (let n = 0; n < nx * ny; ++n) {
     light[n] = isNaN(values[n]) ? NaN : lightOn(steeper * slopes[2 * n], steeper * slopes[2 * n + 1]);
-    if (n % 7 === 0 && !isNaN(light[n])) sorted.push(light[n]);
+    if (n % stride === 0 && !isNaN(light[n])) some.push(light[n]);
   }
-  sorted.sort((a, b) => a - b);
+  const sorted = Float32Array.from(some).sort();  // numbers sort as numbers, without a function
   const at = share => sorted[Math.floor(share * (sorted.length - 1))] ?? 0.7;
   const middle = at(0.5), span = Math.max(0.35, at(0.99) - at(0.01));
   const grey = new Uint8Array(nx * ny);
@@ -55,8 +55,8 @@ function colourOf(colours, share) {
 }
 
 /**
- * Pixels of `values` in the scale's colours, red, green and blue times opacity. `shown(n)` says where; `light(i, j)` is
- * A little below 1 on level ground.
+ * Pixels of `values` in the scale's colours, red, green and blue times opacity. `shown(n)` says where; `light(i, j)` is a little
+ * below 1 on level ground.
  */
 function pixelsOf(raster, scale, shown, light) {
   const {nx, ny, values} = raster, pixels = new Uint8Array(4 * nx * ny), opacity = 0.92;

@@ -1,4 +1,4 @@
-// Runout and volume through time.
+// Curves under the picture: through time, or over thresholds.
 
 /** A round number at or above. */
 function roundAbove(value) {
@@ -25,21 +25,30 @@ const svg = (name, attributes, text) => {
 };
 
 class Chart {
-  constructor(holder, name, unit, values, times, pick) {
-    Object.assign(this, {name, unit, values, times, pick});
-    this.element = svg("svg", {role: "img", "aria-label": `${name} through time`});
+  /** `pick` is called with the place on the axis that is clicked. */
+  constructor(holder, pick) {
+    this.element = svg("svg", {role: "img"});
     holder.append(this.element);
-    this.element.addEventListener("click", event => this.pick(this.timeAt(event.clientX)));
+    this.element.addEventListener("click", event => pick(this.alongAt(event.clientX)));
+  }
+
+  /** A curve {name, unit, values, along, alongUnit, most}: `values` over `along`, which ascends; `most` is the top, if not the largest. No
+   * values: the axes alone. */
+  show(curve) {
+    this.curve = curve;
+    this.element.setAttribute("aria-label", curve.name);
+    this.draw();
   }
 
   draw() {
+    const {name, unit, values, along, alongUnit} = this.curve;
     const width = this.element.clientWidth || 500, height = 104, left = 58, right = 12, top = 20, bottom = 18;
-    const last = this.times[this.times.length - 1] || 1, most = roundAbove(Math.max(...this.values));
+    const last = along[along.length - 1] || 1, most = this.curve.most || roundAbove(Math.max(...values));
     this.x = t => left + (width - left - right) * t / last;
-    this.toTime = x => Math.max(0, Math.min(last, (x - left) / (width - left - right) * last));
+    this.toAlong = x => Math.max(0, Math.min(last, (x - left) / (width - left - right) * last));
     const y = value => height - bottom - (height - top - bottom) * value / most;
     this.element.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    this.element.replaceChildren(svg("text", {x: 0, y: 12, class: "name"}, `${this.name} [${this.unit}]`));
+    this.element.replaceChildren(svg("text", {x: 0, y: 12, class: "name"}, `${name} [${unit}]`));
     for (const share of [0, 0.5, 1]) {
       const at = y(share * most);
       this.element.append(svg("line", {x1: left, x2: width - right, y1: at, y2: at, stroke: "#dadada"}),
@@ -47,20 +56,21 @@ class Chart {
     }
     for (const share of [0, 0.25, 0.5, 0.75, 1])
       this.element.append(svg("text", {x: this.x(share * last), y: height - 4, "text-anchor": share === 1 ? "end" : "middle"},
-        `${written(share * last)}${share === 1 ? " s" : ""}`));
-    const points = this.times.map((t, k) => `${this.x(t).toFixed(1)},${y(this.values[k]).toFixed(1)}`);
+        `${written(share * last)}${share === 1 ? ` ${alongUnit}` : ""}`));
+    const points = values.map((value, k) => `${this.x(along[k]).toFixed(1)},${y(value).toFixed(1)}`);
     this.element.append(svg("polyline", {points: points.join(" "), fill: "none", stroke: "#0072b2", "stroke-width": 2}));
     this.cursor = svg("line", {y1: top - 4, y2: height - bottom, stroke: "#d55e00", "stroke-width": 1.5});
     this.now = svg("text", {x: width - right, y: 12, "text-anchor": "end", class: "name"});
     this.element.append(this.cursor, this.now);
   }
 
-  timeAt(clientX) { return this.toTime(clientX - this.element.getBoundingClientRect().left); }
+  alongAt(clientX) { return this.toAlong(clientX - this.element.getBoundingClientRect().left); }
 
-  at(time) {
+  at(place) {
+    const {unit, values, along} = this.curve;
     let k = 0;
-    while (k + 1 < this.times.length && this.times[k + 1] <= time + 1e-9) ++k;
-    this.cursor.setAttribute("x1", this.x(time)), this.cursor.setAttribute("x2", this.x(time));
-    this.now.textContent = `${written(this.values[k])} ${this.unit}`;
+    while (k + 1 < along.length && along[k + 1] <= place + 1e-9) ++k;
+    this.cursor.setAttribute("x1", this.x(place)), this.cursor.setAttribute("x2", this.x(place));
+    this.now.textContent = `${written(values[k])} ${unit}`;
   }
 }

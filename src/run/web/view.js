@@ -114,7 +114,7 @@ function ribbonMaterial(shade, width, opacity, nearer, hidden) {
 class View {
   constructor(holder, ground) {
     this.holder = holder;
-    this.ground = ground;
+    this.ground = this.surface = ground;  // the surface is what is seen: ground, or the flow on it
     THREE.Object3D.DefaultUp.set(0, 0, 1);
     this.renderer = new THREE.WebGLRenderer({antialias: true, alpha: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
@@ -141,7 +141,7 @@ class View {
 
   measure() {
     const g = this.ground;
-    this.low = Infinity, this.high = -Infinity;
+    this.low = Infinity, this.high = -Infinity, this.top = 0;  // of the ground, and the deepest flow on it
     for (const z of g.values)
       if (!isNaN(z)) this.low = Math.min(this.low, z), this.high = Math.max(this.high, z);
     if (!(this.low <= this.high)) this.low = this.high = 0;
@@ -181,9 +181,15 @@ class View {
     this.draw();
   }
 
+  /** Draws at once, and from now on whenever something changes: no picture is drawn before all is there. */
+  begin() {
+    this.begun = true;
+    this.drawNow();
+  }
+
   /** Once before the next picture of the screen, however often it is asked for. */
   draw() {
-    if (this.asked) return;
+    if (this.asked || !this.begun) return;
     this.asked = true;
     requestAnimationFrame(() => this.drawNow());
   }
@@ -299,11 +305,13 @@ class View {
     return label;
   }
 
+  /** A label that stands on the surface, also when that rises. */
   addPin(name, x, y) {
-    const z = valueAt(this.ground, x, y);
+    const z = valueAt(this.surface, x, y);
     if (isNaN(z)) return null;
     const label = this.addLabel(name, x, y, z);
     label.element.classList.add("pin");
+    label.pinned = true;
     return label;
   }
 
@@ -327,21 +335,28 @@ class View {
 
   /** Raises the surface by a depth; null: back to the ground. */
   lift(depth) {
-    const g = this.ground, attribute = this.mesh.geometry.attributes.lift;
-    attribute.array.fill(0);
+    const g = this.ground, attribute = this.mesh.geometry.attributes.lift, lifts = attribute.array;
+    if (!depth && this.surface === g) return;
+    lifts.fill(0);
+    this.top = 0;
     if (depth) {
       const first = (low, cell, from) => Math.max(0, Math.ceil((from - low) / cell));
       const west = depth.x - depth.cell / 2, south = depth.y - depth.cell / 2;
       const i1 = Math.min(g.nx - 1, Math.floor((west + depth.nx * depth.cell - g.x) / g.cell));
       const j1 = Math.min(g.ny - 1, Math.floor((south + depth.ny * depth.cell - g.y) / g.cell));
       for (let j = first(g.y, g.cell, south); j <= j1; ++j)
-        for (let i = first(g.x, g.cell, west); i <= i1; ++i)
-          attribute.array[j * g.nx + i] = valueAt(depth, g.x + i * g.cell, g.y + j * g.cell) || 0;
+        for (let i = first(g.x, g.cell, west); i <= i1; ++i) {
+          const lift = valueAt(depth, g.x + i * g.cell, g.y + j * g.cell) || 0;
+          lifts[j * g.nx + i] = lift, this.top = Math.max(this.top, lift);
+        }
     }
     attribute.needsUpdate = true;
+    this.surface = depth ? {...g, values: g.values.map((z, n) => z + lifts[n])} : g;
+    for (const label of this.labels)
+      if (label.pinned) label.place.z = valueAt(this.surface, label.place.x, label.place.y);
   }
 
-  /** The place of the ground under a point of the window, or null: along the ray until it is below the ground. */
+  /** The place [x, y] of the surface under a point of the window, or null: along the ray until it is below the surface. */
   under(clientX, clientY) {
     const frame = this.renderer.domElement.getBoundingClientRect(), g = this.ground;
     const pointer = new THREE.Vector2(2 * (clientX - frame.left) / frame.width - 1, 1 - 2 * (clientY - frame.top) / frame.height);
@@ -349,8 +364,8 @@ class View {
     caster.setFromCamera(pointer, this.camera);
     const {origin, direction} = caster.ray, step = Math.max(g.cell, this.size / 4000) / 2;
     const at = s => [origin.x + s * direction.x, origin.y + s * direction.y, origin.z + s * direction.z];
-    const above = s => { const [x, y, z] = at(s); return z - valueAt(g, x, y); };
-    let s = direction.z < 0 ? Math.max(0, (this.high - origin.z) / direction.z) : 0;
+    const above = s => { const [x, y, z] = at(s); return z - valueAt(this.surface, x, y); };
+    let s = direction.z < 0 ? Math.max(0, (this.high + this.top - origin.z) / direction.z) : 0;
     for (const end = s + 4 * this.size + this.camera.position.length(); s < end; s += step) {
       if (!(above(s) <= 0)) continue;
       let low = s - step, high = s;

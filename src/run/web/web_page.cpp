@@ -59,22 +59,6 @@ Json raster_json(const Raster& raster, double finest, const Places& places) {
     return json;
 }
 
-/// Of a drape the part that has values; a raster without any becomes its first pixel.
-Raster cut_to_values(const Raster& raster) {
-    const GridGeometry& g = raster.geometry;
-    Index i0 = g.nx, j0 = g.ny, i1 = -1, j1 = -1;
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i) {
-            if (std::isnan(raster.at(i, j))) continue;
-            i0 = std::min(i0, i), i1 = std::max(i1, i), j0 = std::min(j0, j), j1 = std::max(j1, j);
-        }
-    if (i1 < 0) i0 = j0 = i1 = j1 = 0;
-    Raster part = Raster::filled(NodeBox{i0, j0, i1 - i0 + 1, j1 - j0 + 1}.of(g), Raster::nodata);
-    for (Index j = j0; j <= j1; ++j)
-        for (Index i = i0; i <= i1; ++i) part.at(i - i0, j - j0) = raster.at(i, j);
-    return part;
-}
-
 Json colours_json(Colormap map) {
     Json list = Json::array();
     constexpr int kSteps = 64;
@@ -89,7 +73,7 @@ Json drapes_json(const WebPage& page, const Places& places, std::vector<std::str
     Json list = Json::array();
     Index coarsest = 1;
     for (const PageDrape& drape : page.drapes) {
-        const Raster whole = cut_to_values(drape.raster);
+        const Raster whole = part_with_values(drape.raster);
         const Index k = block_for(whole.geometry, kMostPixels);
         coarsest = std::max(coarsest, k);
         Json json = raster_json(largest_in_blocks(whole, k), 1e-4 * (drape.high - drape.low), places);
@@ -102,6 +86,53 @@ Json drapes_json(const WebPage& page, const Places& places, std::vector<std::str
         notes.push_back(
             fmt::format("Peaks are shown in blocks of {0} x {0} cells, each with its largest value.", coarsest));
     return list;
+}
+
+/// A raster whose rows are no places on the map.
+Json table_json(const Raster& table, double finest) {
+    const PackedRaster small = packed(table, finest);
+    return {{"nx", small.grid.nx},
+            {"ny", small.grid.ny},
+            {"low", small.low},
+            {"step", small.step},
+            {"values", base64(small.bytes)}};
+}
+
+/// Of rasters that are packed a ten-thousandth of their largest value is known.
+double fine_step(const Raster& raster) {
+    double most = 0.0;
+    for (const double value : raster.values)
+        if (std::isfinite(value)) most = std::max(most, std::abs(value));
+    return most > 0.0 ? 1e-4 * most : 1.0;
+}
+
+Json runs_json(const WebPage& page, const Places& places) {
+    if (!page.runs) return nullptr;
+    const PageRuns& runs = *page.runs;
+    const double finest = runs.count > 0.0 && runs.count < 6e4 ? 1.0 / runs.count : 1e-4;
+    Json json = {
+        {"reached", raster_json(runs.reached, finest, places)},
+        {"effective", runs.effective},
+        {"failed_share", runs.failed_share},
+        {"shown_above", runs.shown_above},
+        {"start", Json()},
+        {"shares", runs.shares},
+        {"probability", {{"from", 0.0}, {"to", 100.0}, {"unit", "%"}, {"colours", colours_json(Colormap::depth)}}},
+        {"ladders", Json::array()}};
+    if (runs.start) json["start"] = {places.x(runs.start->x()), places.y(runs.start->y())};
+    for (const PageLadder& ladder : runs.ladders)
+        json["ladders"].push_back({{"name", ladder.name},
+                                   {"label", ladder.label},
+                                   {"unit", ladder.unit},
+                                   {"thresholds", ladder.thresholds},
+                                   {"first", ladder.first},
+                                   {"probabilities", table_json(ladder.probabilities, finest)},
+                                   {"quantiles", table_json(ladder.quantiles, fine_step(ladder.quantiles))}});
+    return json;
+}
+
+Json top_json(const PageTop& top, Colormap colours) {
+    return {{"from", 0.0}, {"to", top.high}, {"above", top.above}, {"colours", colours_json(colours)}};
 }
 
 Json frames_json(const WebPage& page, const Places& places, std::vector<std::string>& notes) {
@@ -188,8 +219,9 @@ Json data_json(const WebPage& page) {
                  {"terrain", terrain_json(page, places, notes)},
                  {"frames", frames_json(page, places, notes)},
                  {"drapes", drapes_json(page, places, notes)},
-                 {"depth", {{"from", 0.0}, {"to", page.depth_high}, {"colours", colours_json(Colormap::depth)}}},
-                 {"speed", {{"from", 0.0}, {"to", page.speed_high}, {"colours", colours_json(Colormap::speed)}}},
+                 {"depth", top_json(page.depth, Colormap::depth)},
+                 {"speed", top_json(page.speed, Colormap::speed)},
+                 {"runs", runs_json(page, places)},
                  {"survey", page.survey ? places.rings(*page.survey) : Json::array()},
                  {"lines", Json::array()},
                  {"gauges", Json::array()},

@@ -1,5 +1,5 @@
 #pragma once
-// A page to look at a flow on its terrain: one HTML file, which asks for nothing from anywhere.
+// A page to look at a flow, or at what many runs say of it, on its terrain: one HTML file, which asks for nothing from anywhere.
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,6 +47,34 @@ struct PageCurves {
     std::vector<double> time, runout, volume;  ///< [s], [m], [m3]
 };
 
+/// How likely more than each of some thresholds is, and what shares of the runs do not exceed. A row of a table belongs to a
+/// place: a pixel of PageRuns::reached that has a value, in the order of its values.
+struct PageLadder {
+    std::string name, label, unit;   ///< "peak_depth", "peak depth", "m"
+    std::vector<double> thresholds;  ///< ascending, in `unit`
+    std::size_t first = 0;           ///< of them: the page begins with it
+    Raster probabilities;            ///< a column for each threshold [1]
+    Raster quantiles;                ///< a column for each share of PageRuns, in `unit`; NaN: fewer runs come
+};
+
+/// What the runs of an ensemble say.
+struct PageRuns {
+    Raster reached;                   ///< share of the runs that come; NaN where none does
+    double count = 0.0;               ///< of equal weights: their number, of which a probability is a multiple; else 0
+    double effective = 0.0;           ///< number of independent runs that tell as much, for bounds of a probability
+    double failed_share = 0.0;        ///< of all weights, of runs without an answer
+    double shown_above = 0.01;        ///< a probability that is less is not shown
+    std::optional<Vec2> start;        ///< where it flows from
+    std::vector<double> shares;       ///< of the quantiles
+    std::vector<PageLadder> ladders;  ///< the page begins with the first
+};
+
+/// The largest value of a scale, and whether there are values beyond.
+struct PageTop {
+    double high = 1.0;
+    bool above = false;
+};
+
 struct WebPage {
     std::string title;
     std::string caption;                                     ///< parameters in a line
@@ -55,8 +83,9 @@ struct WebPage {
     Raster bed;
     const FlowFrames* frames = nullptr;  ///< nullptr: none are known
     std::vector<PageDrape> drapes;
-    double depth_high = 1.0, speed_high = 1.0;  ///< of the colours of frames [m], [m/s]
-    double footprint_depth = 0.1;               ///< what is thinner is not shown [m]
+    PageTop depth, speed;          ///< of the colours of frames [m], [m/s]
+    std::optional<PageRuns> runs;  ///< of an ensemble, which has neither frames nor curves
+    double footprint_depth = 0.1;  ///< what is thinner is not shown [m]
     std::optional<Polygons> survey;
     std::vector<PageLine> lines;
     std::vector<PagePlace> gauges;
