@@ -139,13 +139,13 @@ async function begin() {
     trouble("This browser shows no three-dimensional pictures (WebGL): switch it on, or try another browser.");
     return showFirst();
   }
-  view.fit();
+  view.fit();  // the terrain alone is drawn while the rest is unpacked
   const where = await extents();
   furnish(where);
   startView(where);
   listenToPointer();
   await showFirst();
-  view.begin();
+  view.drawNow();
   document.body.dataset.ready = Math.round(performance.now());
   if (location.hash.includes("check")) await check();
 }

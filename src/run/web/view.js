@@ -181,15 +181,9 @@ class View {
     this.draw();
   }
 
-  /** Draws at once, and from now on whenever something changes: no picture is drawn before all is there. */
-  begin() {
-    this.begun = true;
-    this.drawNow();
-  }
-
   /** Once before the next picture of the screen, however often it is asked for. */
   draw() {
-    if (this.asked || !this.begun) return;
+    if (this.asked) return;
     this.asked = true;
     requestAnimationFrame(() => this.drawNow());
   }
