@@ -100,7 +100,7 @@ room(vtk_io/figures base terrain vtk_io PACKAGES "vtk|EGL/")
 room(vtk_io/module base vtk_io vtk_io/figures)
 room(src/run/web base terrain observe io PACKAGES "nlohmann/")
 room(src/run/folder base terrain observe convert compare run run/web scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
-room(src/run/ensemble base ensemble run run/folder scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
+room(src/run/ensemble base ensemble run run/web run/folder scene io vtk_io vtk_io/figures PACKAGES "nlohmann/")
 room(apps base terrain observe particles convert compare run run/web run/ensemble scene ensemble shallow checks/verify checks/bench checks/fuzz
      io vtk_io vtk_io/figures run/folder PACKAGES "gdal|ogr|cpl_|CLI/|nlohmann/|nlopt|benchmark/")
 

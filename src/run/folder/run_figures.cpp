@@ -145,18 +145,18 @@ void add_figures(const FigureSource& source, Gallery& gallery) {
 }
 
 double expected_drawing_seconds(const Scene& scene, Index outputs, int threads) {
-    constexpr double kPlain = 0.15, kInSpace = 0.7;  // a map or a chart, and a view that is rendered [s]
+    constexpr double kPlain = 0.15, kRendered = 0.7;  // a map or a chart, and a view that is rendered [s]
     constexpr Index kMaps = 6, kMostInAFilm = 200;   // of any run, the strip counted as one
-    double plain = 0.0, in_space = 0.0;
+    double plain = 0.0, rendered = 0.0;
     if (scene.output.png) {
         plain = static_cast<double>(kMaps + 1) + static_cast<double>(scene.profiles.size() + scene.barriers.size());
         plain += scene.gauges.empty() ? 0.0 : 1.0;
         plain += scene.sections.empty() ? 0.0 : 1.0;
-        in_space = scene.solid ? 3.0 : 1.0;
+        rendered = scene.solid ? 3.0 : 1.0;
     }
     if (!scene.output.film.empty()) plain += static_cast<double>(std::min(outputs, kMostInAFilm));
     // Views are rendered one after the other, the rest side by side with them.
-    return std::max(kInSpace * in_space, (kPlain * plain + kInSpace * in_space) / std::max(threads, 1));
+    return std::max(kRendered * rendered, (kPlain * plain + kRendered * rendered) / std::max(threads, 1));
 }
 
 void add_overlay(const FigureSource& source, Gallery& gallery) {
