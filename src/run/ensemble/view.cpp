@@ -26,7 +26,8 @@ std::vector<double> thresholds_between(double low, double high, const std::vecto
     double last = low;
     for (int ten = static_cast<int>(std::floor(std::log10(std::max(low, 1e-3 * high)))) - 1; last < high; ++ten)
         for (int tenths = 10; tenths < 100 && last < high; tenths += tenths < 20 ? 1 : tenths < 40 ? 2 : 5) {
-            const double value = number_in(fmt::format("{}e{}", tenths, ten)).value();  // as people write it, to the last bit
+            const double value =
+                number_in(fmt::format("{}e{}", tenths, ten)).value();  // as people write it, to the last bit
             if (value > low) all.push_back(last = value);
         }
     if (all.empty()) all.push_back(0.0);

@@ -146,7 +146,7 @@ void add_figures(const FigureSource& source, Gallery& gallery) {
 
 double expected_drawing_seconds(const Scene& scene, Index outputs, int threads) {
     constexpr double kPlain = 0.15, kRendered = 0.7;  // a map or a chart, and a view that is rendered [s]
-    constexpr Index kMaps = 6, kMostInAFilm = 200;   // of any run, the strip counted as one
+    constexpr Index kMaps = 6, kMostInAFilm = 200;    // of any run, the strip counted as one
     double plain = 0.0, rendered = 0.0;
     if (scene.output.png) {
         plain = static_cast<double>(kMaps + 1) + static_cast<double>(scene.profiles.size() + scene.barriers.size());
