@@ -169,7 +169,7 @@ private:
         if (known && std::isfinite(drawn.high)) high = drawn.high;
         const Parameter* parameter = find_parameter(plan_.vary[key].key);
         const std::string unit = parameter == nullptr || parameter->unit == "1" ? "" : parameter->unit;
-        return fmt::format("{:.3g} to {:.3g}{}{}", low, high, unit.empty() ? "" : "\u2009", unit);
+        return fmt::format("{:.4g} to {:.4g}{}{}", low, high, unit.empty() ? "" : "\u2009", unit);
     }
 
     std::string choices_of(std::size_t key) const {
