@@ -104,6 +104,9 @@ def check_use():
     for name in ("run", "flat", "thin", "many"):
         errors = told(name, "probe")["errors"]
         expect(not errors, f"{name}: {errors[:3]}")
+        expect("cannot show the page" not in told(name, "probe")["notes"], f"{name}: {told(name, 'probe')['notes']}")
+        flat = told(name, "probe")["flat"]
+        expect(flat == (name == "flat"), f"{name}: pictures in three dimensions are {'not ' if flat else ''}shown")
     found, data = told("run", "probe"), page_of("run")
     for field, top in (("depth", "deepest"), ("speed", "fastest")):
         beyond = max(frame.get(top, 0.0) for frame in data["frames"]) > data[field]["to"]
@@ -121,7 +124,7 @@ def check_use():
 
 def check_many():
     """Probabilities at thresholds and quantiles of all pixels; bounds of a probability."""
-    page, many, read = told("many", "check"), work / "many", 0
+    page, many, read, compared = told("many", "check"), work / "many", 0, set()
     page_of("many")
     units = {"m": 1.0, "m/s": 1.0, "kPa": 1e3}
     for ladder in page["ladders"]:
@@ -131,6 +134,7 @@ def check_many():
             file = many / "rasters" / f"probability_{ladder['name']}_{above['threshold'] * units[ladder['unit']]:g}.tif"
             if not file.is_file():
                 continue
+            compared.add(file.name)
             truth = raster(file)
             shown = {place: p for place, p in zip(places, above["percents"]) if p is not None}
             expect(shown.keys() == truth.keys(), f"{file.name}: the page shows {len(shown)} pixels of {len(truth)}")
@@ -146,6 +150,8 @@ def check_many():
                 # To half of a ten-thousandth of the largest.
                 expect(row is None or abs(row[k] - value) <= 0.6e-4 * largest, f"{ladder['name']}, {q}: {row} instead of {value}")
             read += len(truth)
+    written = {file.name for file in (many / "rasters").glob("probability_peak_*.tif") if file.stem[-1].isdigit()}
+    expect(compared == written and written, f"compared {sorted(compared)} of {sorted(written)}")
     expect(read > 2000, f"only {read} numbers could be compared")
     for p, bounds in zip((0.0, 0.3, 1.0), page["wilson"]):
         for bound in bounds:  # where the difference is 1.96 of the bound's own standard errors, or nothing lies beyond

@@ -1,5 +1,5 @@
 // tests/web_page.sh puts this at the end of a copy of a page: it uses what the page offers, and tells what came of it.
-const probe = {errors: [], legends: {}, notes: "", under: [], pointing: null};
+const probe = {errors: [], legends: {}, notes: "", flat: false, under: [], pointing: null};
 window.addEventListener("error", event => probe.errors.push(event.message));
 window.addEventListener("unhandledrejection", event => probe.errors.push(String(event.reason)));
 const rest = ms => new Promise(done => setTimeout(done, ms));
@@ -32,6 +32,7 @@ async function useAll() {
   while (!get("check") && get("trouble").hidden) await rest(20);  // which chooses too
   await rest(300);
   probe.notes = get("notes").textContent;
+  probe.flat = !get("trouble").hidden;
   for (const button of document.querySelectorAll("#shows input")) {
     button.click();
     await rest(300);

@@ -125,12 +125,17 @@ public:
     /// Squares of the map with their masses; arrays of the same length.
     void add_mass(const Numbers& x, const Numbers& y, const Numbers& mass, const Numbers& vx, const Numbers& vy,
                   const Numbers& size) {
-        mine();
         alone();
-        const Simulation* const simulation = session_->simulation();
+        const Simulation* const simulation = standing().simulation();
         if (!simulation || session_->status().time >= session_->planned_end())
             throw std::runtime_error("the run is at its end; add mass before, or give a later time.end");
         Seeds columns;
+        for (py::ssize_t n = 0; n < x.size(); ++n) {
+            if (!(size.at(n) <= kMostCells * session_->cell()))
+                throw py::value_error(
+                    fmt::format("size: found {:g} m; expected at most {:g} cells of {:g} m; give several masses",
+                                size.at(n), kMostCells, session_->cell()));
+        }
         for (py::ssize_t n = 0; n < x.size(); ++n)
             add_square(columns, {x.at(n), y.at(n)}, {vx.at(n), vy.at(n)}, mass.at(n) / session_->density(), size.at(n));
         const std::string why_not = simulation->why_not_add(columns);
@@ -138,12 +143,14 @@ public:
         session_->add(columns);
     }
     /// As it is now, north row first, read-only.
-    py::tuple bed() const {
+    py::tuple bed() {
         const Session& session = standing();
         if (const Frame* const frame = session.frame()) return bed_of(*frame);
         Simulation* const simulation = session.simulation();
         if (!simulation)
             throw std::runtime_error("the run is over; its last bed is in a frame of its folder, or in result.rasters");
+        alone();  // a frame is made of what a step works on
+        const Busy busy(busy_);
         return bed_of(aside([&] { return simulation->frame(); }));
     }
     /// Ends the run where it is, unless it is over. What went wrong meanwhile comes through, once.
@@ -167,6 +174,8 @@ public:
     }
 
 private:
+    static constexpr double kMostCells = 200.0;  ///< across a square that is added: 160 000 columns
+
     /// A square of material [m3] as columns of at most half a cell each, as releases have them.
     void add_square(Seeds& columns, const Vec2& middle, const Vec2& velocity, double volume, double given_size) const {
         const double half_cell = 0.5 * session_->cell(), size = given_size > 0.0 ? given_size : half_cell;
@@ -200,7 +209,9 @@ private:
     }
 
     void alone() const {
-        if (busy_) throw std::runtime_error("the run is stepping in another thread; a run belongs to one at a time");
+        if (busy_)
+            throw std::runtime_error(
+                "the run is stepping, in another thread or around this callback; a run belongs to one at a time");
     }
 
     py::object stand() {

@@ -14,11 +14,13 @@ public:
     explicit Gate(Session& session) : session_(session) {}
     std::string name() const override { return "python"; }
     void step(const Status& now, const Probe&) override {
-        if (!session_.pause_ && !tick_due()) return;
-        session_.status_ = now;
-        session_.stand(session_.pause_ ? State::paused : State::tick);
-        session_.enter();
-        last_tick_ = std::chrono::steady_clock::now();
+        if (first_step_ < 0) first_step_ = now.step;
+        if (session_.pause_ || tick_due()) {
+            session_.status_ = now;
+            session_.stand(session_.pause_ ? State::paused : State::tick);
+            last_tick_ = std::chrono::steady_clock::now();
+        }
+        if (now.step > first_step_) session_.enter();
     }
     bool wants_frame(const Status& now) override { return !session_.to_output_ && now.time >= session_.until_; }
     void observe_between(const Frame& frame) override { show(frame); }
@@ -44,10 +46,10 @@ private:
             memory->given = session_.simulation_->give_frame_away();
             memory = std::make_shared<FrameMemory>();
         }
-        session_.enter();
     }
 
     Session& session_;
+    Index first_step_ = -1;  ///< where it began
     std::chrono::steady_clock::time_point last_tick_{};
 };
 
@@ -89,7 +91,8 @@ void Session::stand(State state) {
     changed_.wait(lock, [this] { return state_ == State::runs; });
 }
 
-/// What was added while it stood. On the run's thread, since frames are borrowed until then.
+/// What was added while it stood, after a step: nothing that is shown changes any more, a state that was kept has been taken up,
+/// and a run that ends takes nothing in. On the run's thread.
 void Session::enter() {
     if (added_.count() == 0) return;
     if (!ending_) simulation_->add(added_);
@@ -116,7 +119,6 @@ void Session::begin(const Scene& scene, Simulation& simulation) {
     status_ = simulation.status();
     planned_end_ = scene.end, density_ = scene.density, cell_ = scene.bed.geometry.cell, crs_ = scene.bed.crs_wkt;
     stand(State::ready);
-    enter();
 }
 
 void Session::run_in_folder(const CaseFile& file) {

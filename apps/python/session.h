@@ -53,7 +53,7 @@ public:
     void pause() { pause_ = true; }
     /// Asks for an end, without any more stands.
     void end();
-    /// Material that enters when the run goes on, while it stands.
+    /// Material that enters with the next step, while it stands.
     void add(const Seeds& columns) { added_.append(columns, 0, columns.count()); }
     /// Whether it stands, or came to stand within the time.
     bool wait(std::chrono::milliseconds time);

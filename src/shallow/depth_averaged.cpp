@@ -267,10 +267,10 @@ void DepthAveraged::make_merger() {
 }
 
 Index DepthAveraged::split_points() {
-    if (!passages_) return splitter_.split(flow_);
-    splitter_.note_parents();
-    passages_->note(flow_);
+    if (passages_) splitter_.note_parents(), passages_->note(flow_);
     const Index born = splitter_.split(flow_);
+    end_of_births_ = splitter_.next_id();
+    if (!passages_) return born;
     if (born > 0) passages_->count_halved(flow_, flow_.columns.count() - born, splitter_.parents());
     if (!births_wanted_) splitter_.forget_parents();
     return born;

@@ -30,7 +30,7 @@ public:
     double longest_step() const override;
     MovingMass motion(const MotionQuery& query) const override;
     /// What has just entered has not moved yet.
-    bool may_rest() const override { return !more_comes() && (!late_ || status_.dt > 0.0); }
+    bool may_rest() const override { return !more_comes() && ((!late_ && mass_added_ == 0.0) || status_.dt > 0.0); }
     bool more_comes() const override {
         return (feed_ && !feed_->over()) || (late_ && late_->next() < std::numeric_limits<double>::infinity());
     }
@@ -164,6 +164,7 @@ private:
     std::vector<Supported> supported_;  ///< nodes with depth of what is still to come in; their mass without [kg]
     std::optional<Passages> passages_;  ///< nothing without sections
     bool births_wanted_ = false;
+    Index end_of_births_ = 0;  ///< number after that of the last point that a split made
     Peaks peaks_;
     StepClock timed_;
     Status status_;

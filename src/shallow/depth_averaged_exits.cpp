@@ -264,7 +264,7 @@ std::vector<Departed> DepthAveraged::take_departed() {
 std::vector<DepthAveraged::Birth> DepthAveraged::take_births() {
     std::vector<Birth> births;
     const std::vector<Index> parents = splitter_.take_parents();
-    const Index first = splitter_.next_id() - static_cast<Index>(parents.size());
+    const Index first = end_of_births_ - static_cast<Index>(parents.size());  // later numbers are of what came in
     for (std::size_t n = 0; n < parents.size(); ++n) births.push_back({first + static_cast<Index>(n), parents[n]});
     return births;
 }

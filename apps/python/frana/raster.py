@@ -132,7 +132,7 @@ class Raster:
         xarray = convert.needed("xarray", "to_xarray()")
         x, y = self._centres()
         about = {"units": self.unit, "long_name": self.description, "crs_wkt": self.crs}
-        return xarray.DataArray(self.array, coords={"y": y, "x": x}, dims=("y", "x"), name=self.name, attrs=about)
+        return xarray.DataArray(self.array.copy(), coords={"y": y, "x": x}, dims=("y", "x"), name=self.name, attrs=about)
 
     def __repr__(self):
         rows, columns = self.array.shape

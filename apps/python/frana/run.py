@@ -202,8 +202,8 @@ class Run:
     def add_mass(self, x, y, mass, velocity=(0.0, 0.0), *, size=None):
         """Adds material from outside: from another model, a person, a sensor. It enters when the run goes on.
 
-        It is booked as what inflows bring: in ``status.mass_in``, and in run.json as what came in. At an output the step that
-        passes its time takes it in, so it may be a step late. A folder's run that is resumed knows only of what has entered.
+        It is booked as what inflows bring: in ``status.mass_in``, and in run.json as what came in. It enters at the end of the
+        next step. What is added at the last frame never does. A folder's run that is resumed knows only of what has entered.
 
         Parameters
         ----------
@@ -223,14 +223,17 @@ class Run:
         ValueError
             For numbers that are not finite, masses that are not above 0, or shapes that do not fit.
         RuntimeError
-            When the run is at its end. A run that is to wait for more says ``time.stop_at_rest = false``.
+            When the run is at its end. A run that is to wait for more says ``time.stop_at_rest = false``; one without any
+            material ends all the same.
         """
         import numpy
 
         x, y, mass, sizes = numpy.broadcast_arrays(*(numpy.atleast_1d(numpy.asarray(given, dtype=float)) for given in
                                                      (x, y, mass, self._run.cell / 2 if size is None else size)))
         velocity = numpy.asarray(velocity, dtype=float)
-        if velocity.shape not in ((2,), (x.size, 2)) or x.ndim != 1:
+        if x.ndim != 1:
+            raise ValueError(f"x, y, mass, size: found {x.ndim} dimensions; expected one")
+        if velocity.shape not in ((2,), (x.size, 2)):
             raise ValueError(f"velocity: found the shape {velocity.shape}; expected (2,) or ({x.size}, 2)")
         velocity = numpy.broadcast_to(velocity, (x.size, 2))
         for name, numbers in (("x", x), ("y", y), ("mass", mass), ("size", sizes), ("velocity", velocity)):

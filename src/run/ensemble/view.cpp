@@ -23,8 +23,10 @@ constexpr Index kMostPlaces = 60'000;
 std::vector<double> thresholds_between(double low, double high, const std::vector<double>& asked) {
     std::vector<double> all = asked;
     if (low > 0.0) all.push_back(low);
+    if (!(high > 0.0)) high = low;  // nowhere more than nothing
     double last = low;
-    for (int ten = static_cast<int>(std::floor(std::log10(std::max(low, 1e-3 * high)))) - 1; last < high; ++ten)
+    const double least = std::max(low, 1e-3 * high);
+    for (int ten = least > 0.0 ? static_cast<int>(std::floor(std::log10(least))) - 1 : 0; last < high; ++ten)
         for (int tenths = 10; tenths < 100 && last < high; tenths += tenths < 20 ? 1 : tenths < 40 ? 2 : 5) {
             const double value =
                 number_in(fmt::format("{}e{}", tenths, ten)).value();  // as people write it, to the last bit
@@ -44,15 +46,17 @@ public:
         for (double& share : came.values)
             if (!(share > 0.0)) share = Raster::nodata;
         const Raster part = part_with_values(came);
-        k_ = block_for(part.geometry, kMostPlaces);
+        k_ = blocks_for(part);
         i0_ = std::lround((part.geometry.x0 - whole_.x0) / whole_.cell);
         j0_ = std::lround((part.geometry.y0 - whole_.y0) / whole_.cell);
         raster = largest_in_blocks(part, k_);
         for (const double share : raster.values) rows_.push_back(std::isnan(share) ? -1 : count++);
     }
-    /// Row of a pixel that runs came to.
+    /// Row of a pixel; -1 where only runs without weight came.
     Index row(Index pixel) const {
         const Index i = pixel % whole_.nx - i0_, j = pixel / whole_.nx - j0_;
+        const GridGeometry& g = raster.geometry;
+        if (i < 0 || j < 0 || i / k_ >= g.nx || j / k_ >= g.ny) return -1;
         return rows_[static_cast<std::size_t>(j / k_ * raster.geometry.nx + i / k_)];
     }
     Index block() const { return k_; }
@@ -64,6 +68,16 @@ public:
     Index count = 0;
 
 private:
+    /// The smallest blocks of which few enough hold something, and few enough are drawn.
+    static Index blocks_for(const Raster& part) {
+        constexpr Index kMostDrawn = 1'000'000;
+        for (Index k = block_for(part.geometry, kMostDrawn);; ++k) {
+            const std::vector<double> blocks = largest_in_blocks(part, k).values;
+            const auto held = std::count_if(blocks.begin(), blocks.end(), [](double share) { return share > 0.0; });
+            if (static_cast<Index>(held) <= kMostPlaces) return k;
+        }
+    }
+
     GridGeometry whole_;
     Index k_ = 1, i0_ = 0, j0_ = 0;
     std::vector<Index> rows_;  ///< by pixel of the raster; -1: none
@@ -131,6 +145,7 @@ private:
         ladder.probabilities = places.table(thresholds.size());
         pixels.for_each_curve(thresholds, [&](Index pixel, const std::vector<double>& shares) {
             const Index row = places.row(pixel);
+            if (row < 0) return;
             for (std::size_t k = 0; k < shares.size(); ++k)
                 keep_largest(ladder.probabilities.at(static_cast<Index>(k), row), shares[k]);
         });
@@ -169,7 +184,7 @@ private:
         if (known && std::isfinite(drawn.high)) high = drawn.high;
         const Parameter* parameter = find_parameter(plan_.vary[key].key);
         const std::string unit = parameter == nullptr || parameter->unit == "1" ? "" : parameter->unit;
-        return fmt::format("{:.4g} to {:.4g}{}{}", low, high, unit.empty() ? "" : "\u2009", unit);
+        return fmt::format("{:.6g} to {:.6g}{}{}", low, high, unit.empty() ? "" : "\u2009", unit);
     }
 
     std::string choices_of(std::size_t key) const {
@@ -183,11 +198,13 @@ private:
             {"Runs", fmt::format("{} of {}", summary_.run, summary_.samples)},
             {"Failed", fmt::format("{}", summary_.failed)}};
         for (std::size_t k = 0; k < plan_.vary.size(); ++k) facts.emplace_back(plan_.vary[k].key, range_of(k));
-        facts.emplace_back("Samples by", fmt::format("{}, seed {}", plan_.method_name, plan_.seed));
+        const bool seeded = plan_.method != Method::table && plan_.method != Method::grid;
+        facts.emplace_back("Samples by",
+                           seeded ? fmt::format("{}, seed {}", plan_.method_name, plan_.seed) : plan_.method_name);
         const Outcome far = runout();
         for (const double q : plan_.quantiles)
             facts.emplace_back(fmt::format("Runout, {:g} % of the runs at most", 100.0 * q),
-                               fmt::format("{:.3g}\u2009m", runs_.quantile(far, q)));
+                               fmt::format("{:.0f}\u2009m", runs_.quantile(far, q)));
         return facts;
     }
 
@@ -198,8 +215,9 @@ private:
             all.emplace_back(
                 "The 95 % bounds are those of independent runs (Wilson). Samples that are spread evenly err less.");
         if (block_ > 1)
-            all.push_back(
-                fmt::format("Probabilities are shown in blocks of {0} x {0} cells, each with its largest.", block_));
+            all.push_back(fmt::format(
+                "Probabilities are shown in blocks of {0} x {0} cells, each with its largest. So areas are too large.",
+                block_));
         return all;
     }
 

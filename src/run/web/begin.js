@@ -136,7 +136,7 @@ async function begin() {
   try {
     view = new View(get("view"), ground);
   } catch (error) {
-    trouble("This browser shows no three-dimensional pictures (WebGL): switch it on, or try another browser.");
+    trouble(`This browser shows no three-dimensional pictures (WebGL): switch it on, or try another browser (${error.message}).`);
     return showFirst();
   }
   view.fit();  // the terrain alone is drawn while the rest is unpacked

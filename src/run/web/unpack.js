@@ -58,8 +58,9 @@ function valueAt(raster, x, y) {
   const i = Math.max(0, Math.min(raster.nx - 2, Math.floor(u))), j = Math.max(0, Math.min(raster.ny - 2, Math.floor(v)));
   const a = Math.max(0, Math.min(1, u - i)), b = Math.max(0, Math.min(1, v - j));
   const i1 = Math.min(i + 1, raster.nx - 1), j1 = Math.min(j + 1, raster.ny - 1), z = raster.values;
-  return (1 - b) * ((1 - a) * z[j * raster.nx + i] + a * z[j * raster.nx + i1]) +
-      b * ((1 - a) * z[j1 * raster.nx + i] + a * z[j1 * raster.nx + i1]);
+  const share = (weight, k) => weight > 0 ? weight * z[k] : 0;  // no data beside a node is nothing to the node
+  return share((1 - b) * (1 - a), j * raster.nx + i) + share((1 - b) * a, j * raster.nx + i1) +
+      share(b * (1 - a), j1 * raster.nx + i) + share(b * a, j1 * raster.nx + i1);
 }
 
 /** The value of the nearest node. */
