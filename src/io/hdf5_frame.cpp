@@ -144,10 +144,13 @@ Handle open_file(Output& output, bool fresh) {
     const Handle access(output, H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     output.check(H5Pset_file_locking(access, false, true));
     const std::string file = output.file().string();
-    return {output,
-            fresh ? H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)
-                  : H5Fopen(file.c_str(), H5F_ACC_RDWR, access),
-            H5Fclose};
+    // Most arrays are one chunk: the usual tables of 64 would be kept with each state.
+    const Handle creation(output, H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    output.check(H5Pset_istore_k(creation, 2));
+    return {
+        output,
+        fresh ? H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation, access) : H5Fopen(file.c_str(), H5F_ACC_RDWR, access),
+        H5Fclose};
 }
 
 /// Space that a frame needs at most, its metadata included [bytes].

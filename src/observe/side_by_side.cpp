@@ -23,6 +23,15 @@ public:
     void step(const Status& now, const Probe& probe) override {
         for (auto& part : parts_) part->step(now, probe);
     }
+    bool wants_frame(const Status& now) override {
+        wanting_.clear();
+        for (auto& part : parts_)
+            if (part->wants_frame(now)) wanting_.push_back(part.get());
+        return !wanting_.empty();
+    }
+    void observe_between(const Frame& frame) override {
+        for (Observer* part : wanting_) part->observe_between(frame);
+    }
     void observe(const Frame& frame) override {
         for_all([&](Observer& part) { part.observe(frame); });
     }
@@ -61,6 +70,7 @@ private:
 
     std::string name_;
     std::vector<std::unique_ptr<Observer>> parts_;
+    std::vector<Observer*> wanting_;  ///< a frame between outputs
     int threads_;
 };
 

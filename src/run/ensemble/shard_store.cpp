@@ -110,7 +110,7 @@ void take_peaks(const fs::path& file, const EnsemblePlan& plan, const GridGeomet
 void remove_leftovers(const fs::path& folder) {
     static const std::regex half_written(
         "\\.(peaks|runs|probability|quantile|mean|first_order|total|hazard|terrain|maps|reached|report|ensemble|"
-        "calibrate|posterior|predict).*\\.tmp\\d+(\\..*)?");
+        "view|runout|gauges|convergence|scatter|samples|calibrate|posterior|predict).*\\.tmp\\d+(\\..*)?");
     std::vector<fs::path> found;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored))

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <omp.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -175,6 +176,13 @@ void close_record(RunRecord& record, const fs::path& run_dir) {
     write_text(run_dir / "run.json", run_json(record));  // last: until then it says which files are not the run's
 }
 
+/// Where the address space is limited, writers that ask for room beforehand do so one after the other.
+int threads_for_files() {
+    rlimit limit{};
+    const bool known = getrlimit(RLIMIT_AS, &limit) == 0;
+    return known && limit.rlim_cur == RLIM_INFINITY ? omp_get_max_threads() : 1;
+}
+
 /// What passes the sections of the scene; nothing without any.
 std::unique_ptr<Observer> make_sections(const Scene& scene, const fs::path& run_dir,
                                         std::vector<SectionSummary>& summaries) {
@@ -246,7 +254,7 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
         writers.push_back(only_fields(make_grid_writer(run_dir), output.fields));
         if (!names.empty()) writers.push_back(make_barrier_writer(run_dir, tops_of(scene)));
         if (!profiles.empty()) writers.push_back(make_profile_writer(run_dir, profiles));
-        observers.push_back(side_by_side("VTK files", std::move(writers), omp_get_max_threads()));
+        observers.push_back(side_by_side("VTK files", std::move(writers), threads_for_files()));
     }
     if (output.xdmf) observers.push_back(only_fields(make_xdmf_writer(run_dir), output.fields));
     observers.push_back(std::make_unique<LastFields>(scene.bed.crs_wkt, rasters));
