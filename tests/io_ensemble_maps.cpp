@@ -222,3 +222,25 @@ TEST_CASE("The page of an ensemble holds the shares of its runs above each thres
         if (thresholds[k] >= 1.0 && thresholds[k] <= 2.0)
             CHECK(shares.at(static_cast<frana::Index>(k), 70) == Approx(2.0 - thresholds[k]).margin(0.05 + 1e-6));
 }
+
+TEST_CASE("A run without weight reaches no place of an ensemble's page", "[ensemble][page]") {
+    if (!frana::no_page_reason().empty()) {
+        WARN(frana::no_page_reason() << "; this test is skipped");
+        return;
+    }
+    const Pond pond;
+    std::string weights = two_outlines;
+    weights.replace(weights.find("[0.7, 0.3]"), 10, "[0.0, 1.0]");  // the run of all of the pond goes farthest
+    pond.write("many.toml", weights);
+    const auto done = pond.frana("ensemble many.toml --out many --quiet");
+    INFO(done.err);
+    REQUIRE(done.code == 0);
+    const std::string html = text_of(pond.path("many/figures/view.html")), begin = "id=\"data\">";
+    const std::size_t first = html.find(begin) + begin.size();
+    const Json runs = Json::parse(html.substr(first, html.find("</script>", first) - first)).at("runs");
+    const frana::Raster map = pond.map("many", "probability_reached");
+    const auto reached = std::count_if(map.values.begin(), map.values.end(), [](double share) { return share > 0.0; });
+    CHECK(reached > 0);
+    CHECK(reached < 144);
+    CHECK(runs.at("ladders").at(0).at("probabilities").at("ny") == reached);
+}
