@@ -311,6 +311,13 @@ class FromInside(unittest.TestCase):
         deposit.setCrs(QgsCoordinateReferenceSystem())
         found = self.call("frana:compare", {"RUN": run, "SURVEY": layer, "DEPOSIT": deposit})
         self.assertAlmostEqual(found["IOU"], 1.0, places=3)
+        self.assertNotIn("coordinate system", self.listener.said())
+        layer.setCrs(QgsCoordinateReferenceSystem(UTM))
+        found = self.call("frana:compare", {"RUN": run, "SURVEY": layer})
+        self.assertAlmostEqual(found["IOU"], 1.0, places=3)
+        self.assertIn(f'SURVEY: the layer "f" has a coordinate system ({UTM}), and the run has none', self.listener.said())
+        with self.assertRaisesRegex(QgsProcessingException, r'SURVEY: the layer "scar" is in degrees \(EPSG:4326\)'):
+            self.call("frana:compare", {"RUN": run, "SURVEY": square(10.3, 46.0, side=0.01, crs="EPSG:4326")})
 
     def test_a_temporary_folder_is_one_folder(self):
         found = self.call("frana:run", self.inputs("unused", OUTPUT="TEMPORARY_OUTPUT"))
@@ -327,6 +334,40 @@ class FromInside(unittest.TestCase):
         self.assertEqual((sorted(os.listdir(run)), os.stat(os.path.join(run, "input", "release.gpkg")).st_mtime_ns), before)
         self.call("frana:run", self.inputs("keeps", OVERWRITE=True))
         self.assertGreater(os.stat(os.path.join(run, "input", "release.gpkg")).st_mtime_ns, before[1])
+
+    def test_layers_among_the_earlier_runs_inputs_are_read(self):
+        run = self.call("frana:run", self.inputs("again"))["OUTPUT"]
+        dem = QgsRasterLayer(slope(os.path.join(run, "input", "mine.tif"), None), "mine")
+        dem.setCrs(QgsCoordinateReferenceSystem(UTM))
+        self.call("frana:run", self.inputs("again", OVERWRITE=True, DEM=dem))
+        other = QgsRasterLayer(os.path.join(run, "input", "dem.vrt"), "other")  # of mine.tif
+        other.setCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
+        release = square(WEST + 100, SOUTH + 160, crs="EPSG:32633")
+        found = self.call("frana:run", self.inputs("again", OVERWRITE=True, DEM=other, RELEASE=release))
+        self.assertEqual(QgsRasterLayer(found["PEAK_DEPTH"]).crs().authid(), "EPSG:32633")
+
+    def test_cancel_while_a_case_is_checked_leaves_the_earlier_runs_inputs(self):
+        class Impatient(Listener):
+            def pushInfo(self, text):
+                super().pushInfo(text)
+                if text == "checking":
+                    self.cancel()
+
+        run = self.call("frana:run", self.inputs("impatient"))["OUTPUT"]
+        case = os.path.join(run, "input", "case.toml")
+        before = os.stat(case).st_mtime_ns
+        slow = os.path.join(WORK, "slow")
+        with open(slow, "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\n[ $1 = check ] || exec " + shlex.quote(FRANA) + " \"$@\"\n"
+                       "trap 'exit 0' TERM; echo checking; while :; do sleep 0.05; done\n")
+        os.chmod(slow, 0o755)
+        kept, os.environ["FRANA_PROGRAM"] = os.environ["FRANA_PROGRAM"], slow
+        try:
+            with self.assertRaisesRegex(QgsProcessingException, "canceled before the run began; the earlier run keeps"):
+                self.call("frana:run", self.inputs("impatient", OVERWRITE=True), Impatient())
+        finally:
+            os.environ["FRANA_PROGRAM"] = kept
+        self.assertEqual(os.stat(case).st_mtime_ns, before)
 
     def test_the_command_in_the_log_can_be_pasted_into_a_shell(self):
         self.call("frana:run", self.inputs("with blanks"))

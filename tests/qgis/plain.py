@@ -149,10 +149,32 @@ class Plain(unittest.TestCase):
         second.accept()
         second.drop()
         self.assertEqual(found(), "second")
-        self.assertEqual(os.listdir(folder), ["input"])  # nothing of those before is left
-        self.assertEqual(os.listdir(os.path.join(folder, "input")), ["case.toml"])
+        self.assertEqual(os.listdir(folder), ["input"])
+        # What was not replaced is still there: it may be what the new case names.
+        self.assertEqual(sorted(os.listdir(os.path.join(folder, "input"))), ["case.toml", "release.gpkg"])
+        third = staged.Inputs(folder)
+        put(os.path.join(third.path, "release.gpkg"), "new")
+        put(os.path.join(third.final, "release.gpkg-wal"), "of the old one")
+        third.accept()
+        third.drop()
+        self.assertEqual(sorted(os.listdir(third.final)), ["case.toml", "release.gpkg"])
+        with open(os.path.join(third.final, "release.gpkg"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), "new")
         put(os.path.join(self.folder.name, "file"), "")
         self.refused("OUTPUT: found .*nothing can be written", staged.Inputs, os.path.join(self.folder.name, "file"))
+
+    def test_inputs_that_were_left_go_and_those_that_fail_leave_the_earlier(self):
+        folder = os.path.join(self.folder.name, "run")
+        os.makedirs(os.path.join(folder, "input"))
+        staged.Inputs(folder)  # canceled between prepare and work
+        later = staged.Inputs(folder)
+        self.assertEqual(sorted(os.listdir(folder)), [os.path.basename(later.path), "input"])
+        os.mkdir(os.path.join(later.final, "case.toml"))  # cannot be replaced by a file
+        with open(os.path.join(later.path, "case.toml"), "w", encoding="utf-8"):
+            pass
+        self.refused("OUTPUT: the inputs cannot be put into .*choose another one", later.accept)
+        later.drop()
+        self.assertEqual(os.listdir(folder), ["input"])
 
     def test_the_plugin_is_of_the_programs_version(self):
         with open(os.path.join(PLUGIN, "metadata.txt"), encoding="utf-8") as file:

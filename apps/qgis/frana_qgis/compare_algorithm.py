@@ -45,14 +45,15 @@ class CompareWithSurvey(FranaAlgorithm):
             raise Trouble(f"RUN: found no rasters/peak_depth.tif in {folder}; expected the folder of a finished run")
         crs = QgsRasterLayer(peak).crs()
         inputs = layers.require_folder(os.path.join(folder, "input"))
-        self._arguments = ["compare", folder, "--survey", self._vector("SURVEY", crs, inputs, parameters, context)]
+        self._arguments = ["compare", folder, "--survey", self._vector("SURVEY", crs, inputs, parameters, context, feedback)]
         if self.given(parameters, "DEPOSIT"):
             deposit = self.parameterAsRasterLayer(parameters, "DEPOSIT", context)
-            # A run on local coordinates takes them as they are.
+            if not crs.isValid():
+                layers.accept_local("DEPOSIT", deposit, feedback)
             as_file = layers.elevation_file if crs.isValid() else layers.raster_file
             self._arguments += ["--deposit", as_file("DEPOSIT", deposit, inputs)]
         if self.given(parameters, "PATH"):
-            self._arguments += ["--path", self._vector("PATH", crs, inputs, parameters, context)]
+            self._arguments += ["--path", self._vector("PATH", crs, inputs, parameters, context, feedback)]
 
     def work(self, parameters, context, feedback):
         self.call(self._arguments, feedback)
@@ -64,7 +65,9 @@ class CompareWithSurvey(FranaAlgorithm):
         found.update(SCORES=scores, TABLE=existing(folder, "compare.md"))
         return found
 
-    def _vector(self, name, crs, inputs, parameters, context):
+    def _vector(self, name, crs, inputs, parameters, context, feedback):
         source = self.parameterAsSource(parameters, name, context)
         layer = self.parameterAsVectorLayer(parameters, name, context)
+        if not crs.isValid():
+            layers.accept_local(name, layer, feedback)
         return layers.vector_file(name, layer, source, crs, inputs, context)

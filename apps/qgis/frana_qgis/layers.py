@@ -13,6 +13,7 @@ from qgis.core import (
     QgsProject,
     QgsRasterFileWriter,
     QgsRasterPipe,
+    QgsRectangle,
     QgsUnitTypes,
     QgsVectorFileWriter,
     QgsVectorLayer,
@@ -92,6 +93,13 @@ def _written_raster(name, layer, file):
     return file
 
 
+def _file_beside(source, name, ending, folder):
+    """Where a copy of a source goes: never in the place of what it is read from, which may be an input of an earlier run."""
+    file = os.path.join(folder, name.lower() + ending)
+    own = os.path.basename(source.split("|")[0]) == os.path.basename(file)
+    return os.path.join(folder, f"{name.lower()}_again{ending}") if own else file
+
+
 def raster_file(name, layer, folder):
     """File of a raster layer, with the coordinate system that the project gives it."""
     source = layer.source()
@@ -102,7 +110,7 @@ def raster_file(name, layer, folder):
     known = QgsCoordinateReferenceSystem.fromWkt(crs.ExportToWkt()) if crs else QgsCoordinateReferenceSystem()
     if layer.crs().isValid() and known != layer.crs():
         # What the layer is told to have in QGIS the file does not know.
-        file = os.path.join(folder, f"{name.lower()}.vrt")
+        file = _file_beside(source, name, ".vrt", folder)
         gdal.Translate(file, data, format="VRT", outputSRS=layer.crs().toWkt())
         return file
     return os.path.abspath(source) if os.path.exists(source) else source
@@ -113,6 +121,20 @@ def elevation_file(name, layer, folder):
     _require_crs(name, layer)
     _require_metres(name, layer)
     return raster_file(name, layer, folder)
+
+
+def accept_local(name, layer, feedback):
+    """A layer for a run on local coordinates: those of one with a coordinate system are taken too, unless in degrees."""
+    crs = layer.crs()
+    if not crs.isValid():
+        return
+    system = crs.authid() or crs.description()
+    # A GeoJSON without a system is told to be in degrees whatever its numbers are.
+    if crs.isGeographic() and QgsRectangle(-360.0, -90.0, 360.0, 90.0).contains(layer.extent()):
+        raise Trouble(f"{name}: the layer \"{layer.name()}\" is in degrees ({system}), and the run on local coordinates; "
+                      "expected the run's metres; where its numbers are metres, take its system away with Layer CRS")
+    feedback.pushWarning(f"{name}: the layer \"{layer.name()}\" has a coordinate system ({system}), and the run has none: "
+                         "its numbers are taken as the run's metres")
 
 
 def _plain(geometry):
@@ -131,7 +153,7 @@ def vector_file(name, layer, source, crs, folder, context):
     _require_saved(name, layer)
     if crs.isValid():
         _require_crs(name, layer)
-    file = os.path.join(folder, f"{name.lower()}.gpkg")
+    file = _file_beside(layer.source(), name, ".gpkg", folder)
     if os.path.exists(file):
         os.remove(file)
     options = QgsVectorFileWriter.SaveVectorOptions()

@@ -86,7 +86,9 @@ class Run(RunAlgorithm):
     def work(self, parameters, context, feedback):
         try:
             if self._inputs.replaces():  # an earlier run keeps its own until the new ones are known to be right
-                self.call(["check", self._written(self._values), *self._more], feedback)
+                stopped = self.call(["check", self._written(self._values), *self._more], feedback).stopped
+                if stopped or feedback.isCanceled():
+                    raise program.Trouble("canceled before the run began; the earlier run keeps its inputs")
             files = {key: self._inputs.place(self._values[key]) for key in ("terrain.dem", "release.outline")}
             self._written({**self._values, **files})
             self._inputs.accept()
