@@ -13,6 +13,7 @@ ParaView 5.11 of Debian 12 needs the folder paraview_5_11, which lies beside thi
 Units (all SI) are in the field data of each output as NAME_unit, and with each array as its UNITS_LABEL.
 """
 import bisect
+import contextlib
 import csv
 import json
 import math
@@ -22,7 +23,8 @@ import xml.etree.ElementTree as tree
 from paraview.util.vtkAlgorithm import smdomain, smhint, smproperty, smproxy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import (
-    vtkDataArray, vtkDataArraySelection, vtkDoubleArray, vtkIntArray, vtkOutputWindow, vtkPoints, vtkStringArray,
+    vtkDataArray, vtkDataArraySelection, vtkDoubleArray, vtkIntArray, vtkObject, vtkOutputWindow, vtkPoints,
+    vtkStringArray,
 )
 from vtkmodules.vtkCommonDataModel import (
     vtkCellArray, vtkDataObject, vtkImageData, vtkPolyData, vtkTable, vtkUnstructuredGrid,
@@ -56,9 +58,10 @@ PORTS = [  # name, type, the series of files that it shows over time
     ("barriers", vtkPolyData, "barriers.pvd"), ("history", vtkTable, None), ("results", vtkTable, None)]
 FOOTPRINT, SURVEY = 1, 2  # kinds of outlines
 ENDED = ("end", "rest", "left")  # run.json's exit_reason of a run that went to its end
-
+RUNNING = "running"  # of one that goes on, or was killed; nothing else of it is known
 
 GONE = "%s: is not there, but the run names it; copy the whole folder of the run, or run it again"
+TORN = "%s: cannot be read; copy the whole folder of the run, or run it again"
 
 
 class Trouble(Exception):
@@ -80,16 +83,16 @@ def record_of(path):
     if not os.path.exists(path):
         frames = os.path.join(os.path.dirname(path), "grid.pvd")
         if os.path.exists(frames):
-            raise Trouble("%s: is not there, so the run has not ended or was killed; open %s, which has its frames so "
-                          "far, or go on with it: frana run --resume" % (path, frames))
+            raise Trouble("%s: is not there, only frames are; copy the whole folder of the run, or open %s"
+                          % (path, frames))
         raise Trouble("%s: is not there; expected the run.json that frana run leaves in its folder" % path)
     try:
         with open(path, encoding="utf-8") as stream:
             record = json.load(stream)
     except (OSError, ValueError) as problem:
         raise Trouble("%s: cannot be read as JSON (%s); expected the run.json of frana run" % (path, problem))
-    if not isinstance(record, dict) or "exit_reason" not in record or "simulated_time" not in record:
-        raise Trouble("%s: has no exit_reason and simulated_time; expected the run.json of frana run" % path)
+    if not isinstance(record, dict) or "exit_reason" not in record:
+        raise Trouble("%s: has no exit_reason; expected the run.json of frana run" % path)
     return record
 
 
@@ -105,27 +108,53 @@ def series_of(pvd):
     return sorted(entries)
 
 
+@contextlib.contextmanager
+def quiet():
+    """VTK's own lines about a damaged file are many; ours is one."""
+    before = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.GlobalWarningDisplayOff()
+    try:
+        yield
+    finally:
+        vtkObject.SetGlobalWarningDisplay(before)
+
+
 def read(reader, path):
     """The data set in a file, as a copy without the reader. Raises Trouble."""
     if not os.path.exists(path):
         raise Trouble(GONE % path)
     reader.SetFileName(path)
-    reader.Update()
-    if reader.GetErrorCode() or reader.GetOutput().GetNumberOfPoints() == 0 and os.path.getsize(path) == 0:
-        raise Trouble("%s: cannot be read; copy the whole folder of the run, or run it again" % path)
+    with quiet():
+        done = reader.GetExecutive().Update()
+    if not done or reader.GetErrorCode():
+        raise Trouble(TORN % path)
     data = reader.GetOutput().NewInstance()
     data.ShallowCopy(reader.GetOutput())
     return data
 
 
 def extent_of(path):
-    """[0, nx - 1, 0, ny - 1, 0, 0] of an image."""
+    """[0, nx - 1, 0, ny - 1, 0, 0] of an image. Raises Trouble."""
     reader = vtkXMLImageDataReader()
     if not os.path.exists(path):
         raise Trouble(GONE % path)
     reader.SetFileName(path)
-    reader.UpdateInformation()
-    return list(reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT()))
+    with quiet():
+        reader.UpdateInformation()
+    extent = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
+    if extent is None:
+        raise Trouble(TORN % path)
+    return list(extent)
+
+
+def first_extent(paths):
+    """Of the first of some images that can be read. Raises Trouble, that of the last one, when none can."""
+    for path in paths:
+        try:
+            return extent_of(path)
+        except Trouble as problem:
+            trouble = problem
+    raise trouble
 
 
 # --- data ------------------------------------------------------------------------------------------------------
@@ -215,18 +244,22 @@ def lines_of(rings, kinds):
 
 
 def rings_of(path, terrain):
-    """The rings of a GeoJSON file of polygons, on the terrain."""
-    with open(path, encoding="utf-8") as stream:
-        document = json.load(stream)
+    """The rings of a GeoJSON file of polygons, on the terrain. Raises Trouble."""
     rings = []
-    for feature in document.get("features", []):
-        geometry = feature.get("geometry") or {}
-        parts = {"Polygon": lambda c: [c], "MultiPolygon": lambda c: c}.get(geometry.get("type"), lambda c: [])
-        rings += [ring for polygon in parts(geometry.get("coordinates")) for ring in polygon]
+    try:
+        with open(path, encoding="utf-8") as stream:
+            document = json.load(stream)
+        for feature in document.get("features", []):
+            geometry = feature.get("geometry") or {}
+            parts = {"Polygon": lambda c: [c], "MultiPolygon": lambda c: c}.get(geometry.get("type"), lambda c: [])
+            rings += [[(float(place[0]), float(place[1])) for place in ring]
+                      for polygon in parts(geometry.get("coordinates")) for ring in polygon]
+    except (OSError, ValueError, TypeError, AttributeError, IndexError):
+        raise Trouble("%s: is not a GeoJSON of polygons; copy the whole folder of the run, or run it again" % path)
     field = Field(terrain)
     draped = []
     for ring in rings:
-        places = [(place[0], place[1], field.corners(place[0], place[1])) for place in ring]
+        places = [(x, y, field.corners(x, y)) for x, y in ring]
         known = [field.at("elevation", corners) for _, _, corners in places if corners]
         lowest = min(known) if known else 0.0
         draped.append([(x, y, field.at("elevation", corners) if corners else lowest) for x, y, corners in places])
@@ -266,7 +299,8 @@ def table_of(path):
     if not os.path.exists(path):
         return table
     with open(path, encoding="utf-8") as stream:
-        rows = [row for row in csv.reader(stream) if row]
+        whole = [line for line in stream if line.endswith("\n")]  # a run that goes on may be writing the last one
+    rows = [row for row in csv.reader(whole) if row]
     for k, title in enumerate(rows[0] if rows else []):
         name = title.split(" [")[0]
         try:
@@ -362,6 +396,8 @@ class FranaRun(VTKPythonAlgorithmBase):
         for name, _, series in PORTS:
             if series:
                 self._series[name] = series_of(os.path.join(run_dir, series))
+        if not self._series["grid"] and self._record["exit_reason"] == RUNNING:
+            raise Trouble("%s: the run has begun and has no frames yet; open it again later" % run_dir)
         if not self._series["grid"]:
             raise Trouble("%s: the run has no frames (grid.pvd), only its history and results can be shown; add "
                           "\"vtk\" to output.formats and run again" % run_dir)
@@ -372,11 +408,8 @@ class FranaRun(VTKPythonAlgorithmBase):
     def RequestInformation(self, request, inInfo, outInfo):
         try:
             self._open()
-            reason = self._record["exit_reason"]
-            if reason not in ENDED:
-                say("%s: the run did not go to its end (%s at %g s); its frames up to there are shown"
-                    % (self._file, reason, self._record["simulated_time"]), error=False)
             extents = self._extents()
+            self._warn()
         except Trouble as problem:
             say(str(problem))
             self._series = {name: [] for name, _, series in PORTS if series}
@@ -394,9 +427,21 @@ class FranaRun(VTKPythonAlgorithmBase):
                 info.Set(executive.WHOLE_EXTENT(), extents.get(name, [0, -1, 0, -1, 0, -1]), 6)
         return 1
 
+    def _warn(self):
+        """Of a run that did not go to its end."""
+        reason, time = str(self._record["exit_reason"]), self._record.get("simulated_time")
+        if reason == RUNNING:
+            say("%s: the run goes on or was killed; these are its frames so far; `frana run CASE --resume --out %s` "
+                "goes on" % (self._file, os.path.dirname(self._file) or "."), error=False)
+        elif reason not in ENDED:
+            when = " at %g s" % time if isinstance(time, (int, float)) else ""
+            say("%s: the run did not go to its end (%s%s); its frames up to there are shown"
+                % (self._file, reason, when), error=False)
+
     def _extents(self):
-        """Of the images; a grid that grows has its largest."""
-        first, last = (extent_of(self._series["grid"][k][1]) for k in (0, -1))
+        """Of the images; a grid that grows has its largest. A frame that is missing is told when it is asked for."""
+        files = [file for _, file in self._series["grid"]]
+        first, last = first_extent(files), first_extent(files[::-1])
         return {"terrain": list(self._fixed["terrain"].GetExtent()),
                 "grid": [(max if k % 2 else min)(first[k], last[k]) for k in range(6)]}
 
@@ -710,6 +755,9 @@ class FranaProfile(VTKPythonAlgorithmBase):
         if not image.GetPointData().GetArray("elevation"):
             say("Profile Along Line: the input has no elevation; expected the output \"grid\" of a Frana Run, or "
                 "grid.pvd")
+            return 1
+        if given and not given.GetNumberOfCells():
+            say("Profile Along Line: the input Line has no lines; disconnect it, or give a [[profile]]")
             return 1
         profile = profile_of(image, self._lines(image, given))
         if profile.GetNumberOfPoints() < 2:

@@ -23,13 +23,25 @@ class NoState(Exception):
     """A state that a run has not the files for; the text says which, and what to do."""
 
 
+class Look(dict):
+    """A part of look.json. Raises NoState for a key that is not there: an older frana did not write it."""
+
+    def __init__(self, run_dir, entries):
+        dict.__init__(self, entries)
+        self.run_dir = run_dir
+
+    def __missing__(self, key):
+        raise NoState("%s: was written by an older frana (it has no %s); run: frana states %s"
+                      % (os.path.join(self.run_dir, "states", "look.json"), key, self.run_dir))
+
+
 def look_of(run_dir, state):
     """The run's look. Raises NoState when `state` cannot be shown."""
     path = os.path.join(run_dir, "states", "look.json")
     if not os.path.exists(path):
         raise NoState("%s: is not there; make it with: frana states %s" % (path, run_dir))
     with open(path) as stream:
-        look = json.load(stream)
+        look = json.load(stream, object_hook=lambda entries: Look(run_dir, entries))
     why_not = look["states"][state]
     if why_not:
         raise NoState("%s: no state \"%s\": %s" % (run_dir, state, why_not))

@@ -207,6 +207,14 @@ def picture_of(given):
     return [view], [1400, 900]
 
 
+def size_of(text):
+    """[width, height] of "1600x900"."""
+    parts = text.split("x")
+    if len(parts) != 2 or not all(part.isdecimal() and int(part) > 0 for part in parts):
+        raise argparse.ArgumentTypeError("found %s; expected WxH in pixels, as 1600x900" % text)
+    return [int(part) for part in parts]
+
+
 def main():
     parser = argparse.ArgumentParser(description="Opens a run of frana in ParaView and saves a picture.")
     parser.add_argument("run_dir")
@@ -215,7 +223,7 @@ def main():
     parser.add_argument("--colour", default="depth", help="depth or speed")
     parser.add_argument("--max", type=float, help="upper end of the colour range; default: from the run")
     parser.add_argument("--state", help="one of %s instead" % ", ".join(STATES))
-    parser.add_argument("--size", help="of the picture, as 1600x900 [pixels]")
+    parser.add_argument("--size", type=size_of, help="of the picture, as 1600x900 [pixels]")
     given = parser.parse_args()
     name = "paraview_%s.png" % given.state if given.state else "paraview.png"
     png = given.png or os.path.join(given.run_dir, "figures", name)
@@ -225,8 +233,7 @@ def main():
         print(problem, file=sys.stderr)
         sys.stderr.flush()
         os._exit(2)  # pvbatch's own way out loses the status
-    if given.size:
-        size = [int(part) for part in given.size.split("x")]
+    size = given.size or size
     os.makedirs(os.path.dirname(os.path.abspath(png)), exist_ok=True)
     for k, one in enumerate(shown):  # RUN_DIR/figures/paraview_stress.png, paraview_stress_2.png
         file = png if k == 0 else "%s_%d%s" % (os.path.splitext(png)[0], k + 1, os.path.splitext(png)[1])

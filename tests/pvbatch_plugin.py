@@ -102,6 +102,7 @@ def look_at_tables(check, run, run_dir, record):
 def look_at_exceedance(check, run, times, record):
     """Areas count whole pixels, as those of the rasters in run.json do."""
     cell = record["grid"]["cell"]
+    ground = at(run, "terrain", times[-1]).GetPointData().GetArray("elevation").GetRange()
     deep = simple.ExceedanceAbove(Input=simple.OutputPort(run, "grid"))
     for field, above in (("peak_depth", record["results"]["footprint_depth"]), ("depth", 1.0), ("depth", 1e6)):
         deep.Field, deep.Above = field, above
@@ -116,8 +117,9 @@ def look_at_exceedance(check, run, times, record):
         if field == "peak_depth":
             check(math.isclose(area, record["results"]["footprint_area"], rel_tol=1e-9) and count > 100,
                   "plugin: area %g; run.json has %g" % (area, record["results"]["footprint_area"]))
-    check(all(low < value < high for (value,), low, high in zip(numbers(found, "elevation", "Cell"), [0], [1e4])),
-          "plugin: exceedance has lost the elevation")
+            heights = [value for value, in numbers(found, "elevation", "Cell")]
+            check(len(heights) == count and ground[0] <= min(heights) < max(heights) <= ground[1],
+                  "plugin: exceedance has %d elevations of %d pixels, or some off the terrain" % (len(heights), count))
 
 
 def look_at_profiles(check, run, times):
@@ -146,6 +148,10 @@ def look_at_profiles(check, run, times):
     alone.LowerThreshold = alone.UpperThreshold = float(wanted.GetNumberOfCells() - 1)
     alone.UpdatePipeline(time)
     compare(servermanager.Fetch(straight), servermanager.Fetch(alone), "a straight line")
+    alone.LowerThreshold = alone.UpperThreshold = -1.0
+    surface = simple.ExtractSurface(Input=alone)
+    said = said_by(lambda: simple.ProfileAlongLine(Input=run, Line=surface).UpdatePipeline(time))
+    check(len(said) == 1 and "the input Line has no lines" in said[0], "plugin: of no lines it says %s" % said)
 
 
 def look_at_outlines(check, run, run_dir, times):
@@ -173,17 +179,28 @@ def look_at_barriers(check, states_dir, run_dir, lowest, highest):
           "plugin: barriers from %g to %g m; expected %g to %g" % (bounds[4], bounds[5], lowest, highest))
 
 
-def said_of(run_json, time=None):
-    """What the reader says of a file: the lines."""
+def said_by(action):
+    """What comes among ParaView's messages meanwhile: the lines."""
     window, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
     vtkOutputWindow.SetInstance(window)
     try:
-        run = simple.FranaRun(FileName=run_json)
-        run.UpdatePipeline() if time is None else run.UpdatePipeline(time)
-        simple.Delete(run)
+        action()
     finally:
         vtkOutputWindow.SetInstance(before)
     return [line for line in window.GetOutput().splitlines() if line.strip()]
+
+
+def said_of(run_json, time=None):
+    """What the reader says of a file: the lines; and the times that it has."""
+    times = []
+
+    def open_it():
+        run = simple.FranaRun(FileName=run_json)
+        run.UpdatePipeline() if time is None else run.UpdatePipeline(time)
+        times.extend(run.TimestepValues or [])
+        simple.Delete(run)
+
+    return said_by(open_it), times
 
 
 def look_at_bad_folders(check, run_dir, times):
@@ -195,29 +212,49 @@ def look_at_bad_folders(check, run_dir, times):
                 os.symlink(os.path.join(run_dir, file), os.path.join(target, file))
             return os.path.join(target, "run.json")
 
+        def with_frames(name):
+            """A copy whose frames are its own."""
+            run_json = copy(name, "grid.pvd", "terrain.vti", "history.csv", "run.json")
+            shutil.copytree(os.path.join(run_dir, "grid"), os.path.join(folder, name, "grid"))
+            return run_json, [os.path.join(folder, name, "grid", "grid_%06d.vti" % k) for k in range(len(times))]
+
+        def copy_with(name, record):
+            run_json = copy(name, *everything)
+            with open(run_json, "w") as stream:
+                json.dump(record, stream)
+            return run_json
+
         everything = ["grid.pvd", "grid", "terrain.vti", "history.csv"]
-        killed = copy("killed", *everything)
         torn = copy("torn", *everything)
         with open(torn, "w") as stream:
             stream.write('{"version": "1", "exit_')
-        other = copy("other")
-        with open(other, "w") as stream:
-            stream.write("[1, 2]")
-        interrupted = copy("interrupted", *everything)
-        with open(interrupted, "w") as stream:
-            json.dump({"exit_reason": "interrupted", "simulated_time": 7.5}, stream)
-        lost = copy("lost", "grid.pvd", "terrain.vti", "history.csv", "run.json")
-        shutil.copytree(os.path.join(run_dir, "grid"), os.path.join(folder, "lost", "grid"))
-        os.remove(os.path.join(folder, "lost", "grid", "grid_000001.vti"))
-        for run_json, time, part in (
-                (copy("empty"), None, "is not there; expected the run.json that frana run leaves"),
-                (killed, None, "is not there, so the run has not ended or was killed; open"),
-                (copy("no_frames", "run.json", "history.csv"), None, "has no frames (grid.pvd)"),
-                (copy("no_terrain", "run.json", "grid.pvd", "grid"), None, "terrain.vti: is not there"),
-                (torn, None, "cannot be read as JSON"), (other, None, "has no exit_reason"),
-                (interrupted, None, "did not go to its end (interrupted at 7.5 s)"),
-                (lost, times[1], "grid_000001.vti: is not there")):
-            said = said_of(run_json, time)
+        killed = copy_with("killed", {"exit_reason": "running", "others": {}})
+        unwhole = copy("unwhole", *everything, "run.json")
+        with open(os.path.join(folder, "unwhole", "footprint.geojson"), "w") as stream:
+            stream.write('{"type": "FeatureCollection", "feat')
+        lost, frames = with_frames("lost")
+        os.remove(frames[1])
+        last, frames = with_frames("last")
+        os.remove(frames[-1])
+        cut, frames = with_frames("cut")
+        os.truncate(frames[0], 300)
+        for run_json, time, shown, part in (
+                (copy("empty"), None, False, "is not there; expected the run.json that frana run leaves"),
+                (copy("frames", *everything), None, False, "is not there, only frames are"),
+                (killed, None, True, "the run goes on or was killed; these are its frames so far"),
+                (copy("no_frames", "run.json", "history.csv"), None, False, "has no frames (grid.pvd)"),
+                (copy("no_terrain", "run.json", "grid.pvd", "grid"), None, False, "terrain.vti: is not there"),
+                (torn, None, False, "cannot be read as JSON"),
+                (copy_with("other", [1, 2]), None, False, "has no exit_reason"),
+                (unwhole, None, False, "is not a GeoJSON of polygons"),
+                (copy_with("interrupted", {"exit_reason": "interrupted", "simulated_time": 7.5}), None, True,
+                 "did not go to its end (interrupted at 7.5 s)"),
+                (lost, times[1], True, "grid_000001.vti: is not there"),
+                (last, times[-1], True, "grid_%06d.vti: is not there" % (len(times) - 1)),
+                (cut, times[0], True, "grid_000000.vti: cannot be read")):
+            said, found = said_of(run_json, time)
+            name = os.path.relpath(run_json, folder)
             check(len(said) == 1 and part in said[0] and said[0].startswith("frana: " + folder),
-                  "plugin: of %s it says %s; expected one line with \"%s\""
-                  % (os.path.relpath(run_json, folder), said, part))
+                  "plugin: of %s it says %s; expected one line with \"%s\"" % (name, said, part))
+            check(found == (times if shown else []), "plugin: of %s it has the times %s" % (name, found))
+        check(said_of(last, times[0])[0] == [], "plugin: complains of a frame that is not asked for")

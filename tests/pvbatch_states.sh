@@ -53,4 +53,12 @@ said=$(run_pvbatch "$source/pvstates/open_run.py" "$again" --state survey 2>&1 >
 status=$?
 [ $status -eq 2 ] || { echo "exit code $status of a state that is not there; expected 2"; exit 1; }
 echo "$said" | grep -q 'no state "survey": the run was not held against a survey' || { echo "said: $said"; exit 1; }
+
+# What an older version left out of a look, and a size that is none: likewise.
+sed -i 's/"profile": /"older": /' "$again/states/look.json"
+said=$(run_pvbatch "$source/pvstates/open_run.py" "$again" --state profiles 2>&1 >/dev/null)
+echo "$said" | grep -q 'look.json: was written by an older frana (it has no profile); run: frana states' ||
+    { echo "said: $said"; exit 1; }
+said=$(run_pvbatch "$source/pvstates/open_run.py" "$again" --size 1600 2>&1 >/dev/null)
+echo "$said" | grep -q 'found 1600; expected WxH' || { echo "said: $said"; exit 1; }
 echo "states load and show what the Python states show"

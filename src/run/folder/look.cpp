@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -205,6 +207,18 @@ std::string lacks_arrays(const Seen& seen, const std::vector<std::string>& names
     return "";
 }
 
+/// Whether faces of barriers can be drawn in their height; earlier versions did not say it.
+bool have_height(const fs::path& run_dir) {
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(run_dir / "barriers", none)) {
+        if (entry.path().extension() != ".vtp") continue;
+        std::ifstream file(entry.path(), std::ios::binary);
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        return text.find("\"to_true_height\"") != std::string::npos;
+    }
+    return true;
+}
+
 /// Why a state cannot be shown; empty when it can.
 std::string missing_for(const std::string& state, const fs::path& run_dir, const Seen& seen) {
     const bool history = fs::exists(run_dir / "history.csv");
@@ -220,6 +234,8 @@ std::string missing_for(const std::string& state, const fs::path& run_dir, const
     if (state == "impact" && !fs::exists(run_dir / "barriers.pvd"))
         return "no points in space stood before a barrier; give a [[barrier]] and a [[stage]] with model = "
                "\"solid_flow\"";
+    if (state == "impact" && !have_height(run_dir))
+        return "an earlier version wrote the barriers without to_true_height; run the case again";
     if (state == "stress" && lacks.empty())
         lacks = lacks_arrays(seen, {"stress", "effective_stress"},
                              "give a [material.rheology], leave output.fields at \"all\", and run again");
