@@ -66,6 +66,7 @@ fi
 [ -n "${FRANA_BARE_ROOT:-}" ] || exit 0
 bare=$FRANA_BARE_ROOT
 cp "$program" "$library" "$bare/tmp/"
+[ -e "$bare/proc/self" ] || mount -t proc none "$bare/proc"  # a program finds its own folder by it
 inside() { chroot "$bare" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive "$@"; }
 inside apt-get -q update
 inside sh -c 'apt-get -q install -y --no-install-recommends /tmp/frana_*.deb /tmp/libfrana-dev_*.deb'
