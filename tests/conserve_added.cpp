@@ -3,6 +3,7 @@
 #include "catch.h"
 #include "coupling/growing_columns.h"
 #include "coupling/walled_columns.h"
+#include "growing_slope.h"
 #include "observe/budget.h"
 #include "run/memory_state.h"
 #include "state_bits.h"
@@ -148,18 +149,7 @@ TEST_CASE("Material is added beside barriers, and where the terrain grows for it
     near_wall.add(cap_at(80.0));
     CHECK(near_wall.status().mass_in > 0.0);
 
-    const GridGeometry terrain{400, 200, 0.0, 0.0, 4.0};
-    const auto ground = [terrain](const NodeBox& box) {
-        Raster bed = Raster::filled(box.of(terrain), 0.0);
-        for (Index j = 0; j < bed.geometry.ny; ++j)
-            for (Index i = 0; i < bed.geometry.nx; ++i) bed.at(i, j) = 0.5 * bed.geometry.x(i);
-        return bed;
-    };
-    const NodeBox begin{180, 20, 200, 160};
-    Scene scene;
-    scene.bed = ground(begin);
-    scene.wider = std::make_shared<WiderTerrain>(WiderTerrain{terrain, begin, ground, {}});
-    scene.bed_law = bed::Voellmy{0.1, 1000.0};
+    Scene scene = growing_slope(NodeBox{180, 20, 200, 160});
     fill(scene, [](double x, double y) { return std::hypot(x - 1240, y - 400) < 40 ? 2.0 : 0.0; });
     GrowingColumns part(scene);
     const Status first = part.status();

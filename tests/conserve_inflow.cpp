@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "coupling/growing_columns.h"
 #include "coupling/walled_columns.h"
+#include "growing_slope.h"
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
 #include "state_bits.h"
@@ -216,18 +217,7 @@ TEST_CASE("What a row passes on its way from the line counts", "[inflow][section
 }
 
 TEST_CASE("An inflow goes on where the terrain grows in the middle of its table, with sections", "[inflow][terrain]") {
-    const GridGeometry terrain{400, 200, 0.0, 0.0, 4.0};
-    const auto ground = [terrain](const NodeBox& box) {
-        Raster bed = Raster::filled(box.of(terrain), 0.0);
-        for (Index j = 0; j < bed.geometry.ny; ++j)
-            for (Index i = 0; i < bed.geometry.nx; ++i) bed.at(i, j) = 0.5 * bed.geometry.x(i);
-        return bed;
-    };
-    const NodeBox begin{240, 40, 120, 120};
-    Scene scene;
-    scene.bed = ground(begin);
-    scene.wider = std::make_shared<WiderTerrain>(WiderTerrain{terrain, begin, ground, {}});
-    scene.bed_law = bed::Voellmy{0.1, 1000.0};
+    Scene scene = growing_slope(NodeBox{240, 40, 120, 120});
     Inflow inflow = flood();
     inflow.line = {{1240, 390}, {1240, 420}}, inflow.to_right = false, inflow.spacing = 2.0;
     inflow.time = {0.0, 60.0}, inflow.discharge = {120.0, 0.0}, inflow.speed = {10.0, 5.0};

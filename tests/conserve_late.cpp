@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "coupling/growing_columns.h"
 #include "coupling/walled_columns.h"
+#include "growing_slope.h"
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "run/run_loop.h"
@@ -285,18 +286,7 @@ TEST_CASE("A run waits for a release with a time, and is over without one that n
 }
 
 TEST_CASE("Late releases go along where the terrain grows, and beside barriers", "[late][terrain]") {
-    const GridGeometry terrain{400, 200, 0.0, 0.0, 4.0};
-    const auto ground = [terrain](const NodeBox& box) {
-        Raster bed = Raster::filled(box.of(terrain), 0.0);
-        for (Index j = 0; j < bed.geometry.ny; ++j)
-            for (Index i = 0; i < bed.geometry.nx; ++i) bed.at(i, j) = 0.5 * bed.geometry.x(i);
-        return bed;
-    };
-    const NodeBox begin{180, 20, 200, 160};
-    Scene scene;
-    scene.bed = ground(begin);
-    scene.wider = std::make_shared<WiderTerrain>(WiderTerrain{terrain, begin, ground, {}});
-    scene.bed_law = bed::Voellmy{0.1, 1000.0};
+    Scene scene = growing_slope(NodeBox{180, 20, 200, 160});
     const auto heap = [](double x, double y) { return std::hypot(x - 1240, y - 400) < 40 ? 2.0 : 0.0; };
     fill(scene, heap);
     delay(scene, "early", 3.0, heap), delay(scene, "late", 16.0, heap), delay(scene, "hit", {}, heap);

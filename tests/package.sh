@@ -65,15 +65,17 @@ fi
 
 [ -n "${FRANA_BARE_ROOT:-}" ] || exit 0
 bare=$FRANA_BARE_ROOT
-cp "$program" "$library" "$bare/tmp/"
+rm -rf "$bare/packages"
+mkdir "$bare/packages"
+cp "$program" "$library" "$bare/packages/"
 [ -e "$bare/proc/self" ] || mount -t proc none "$bare/proc"  # a program finds its own folder by it
 inside() { chroot "$bare" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive "$@"; }
 inside apt-get -q update
-inside sh -c 'apt-get -q install -y --no-install-recommends /tmp/frana_*.deb /tmp/libfrana-dev_*.deb'
-inside frana run /usr/share/frana/cases/maungawhau/case.toml --until 5 --out /tmp/run --quiet
-[ -s "$bare/tmp/run/figures/view_peak_depth.png" ] || fail "no view was drawn in the bare root"
+inside sh -c 'apt-get -q install -y --no-install-recommends /packages/frana_*.deb /packages/libfrana-dev_*.deb'
+inside frana run /usr/share/frana/cases/maungawhau/case.toml --until 5 --out /packages/run --quiet
+[ -s "$bare/packages/run/figures/view_peak_depth.png" ] || fail "no view was drawn in the bare root"
 if [ -d "$bare/usr/lib/python3/dist-packages/frana" ]; then
-    inside python3 -c "import frana; print(frana.open('/tmp/run').frames[-1].grid['depth'].max())"
+    inside python3 -c "import frana; print(frana.open('/packages/run').frames[-1].grid['depth'].max())"
 fi
 inside apt-get -q purge -y frana libfrana-dev
 left=$(find "$bare/usr" -name '*frana*' ! -path '*/__pycache__*' -print)

@@ -6,10 +6,9 @@
 #include <atomic>
 #include <exception>
 #include <functional>
-#include <system_error>
-#include <thread>
 #include <utility>
 
+#include "base/on_threads.h"
 #include "observe/archive.h"
 
 namespace frana {
@@ -56,14 +55,7 @@ private:
                     failed[k] = std::current_exception();
                 }
         };
-        std::vector<std::thread> others;
-        for (std::size_t n = 1; n < std::min(static_cast<std::size_t>(std::max(threads_, 1)), parts_.size()); ++n) try {
-                others.emplace_back(some);
-            } catch (const std::system_error&) {
-                break;  // fewer threads write as well
-            }
-        some();
-        for (std::thread& other : others) other.join();
+        on_threads(std::min(static_cast<std::size_t>(std::max(threads_, 1)), parts_.size()), some);
         for (const std::exception_ptr& failure : failed)
             if (failure) std::rethrow_exception(failure);
     }

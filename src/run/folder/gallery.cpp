@@ -7,8 +7,8 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <thread>
 
+#include "base/on_threads.h"
 #include "run/folder/cutoff.h"
 
 namespace frana {
@@ -48,14 +48,7 @@ std::vector<DrawnFigure> Gallery::draw(int threads, std::vector<std::string>& wa
         }
     };
     if (tell && all > 0) tell(0, all);
-    std::vector<std::thread> others;
-    for (std::size_t n = 1; n < std::min(static_cast<std::size_t>(threads), wanted_.size()); ++n) try {
-            others.emplace_back(work);
-        } catch (const std::system_error&) {
-            break;  // fewer threads draw as well
-        }
-    work();
-    for (std::thread& other : others) other.join();
+    on_threads(std::min(static_cast<std::size_t>(threads), wanted_.size()), work);
     std::vector<DrawnFigure> drawn;
     for (Wanted& wanted : wanted_) {
         if (wanted.drawn) drawn.push_back(std::move(wanted.figure));

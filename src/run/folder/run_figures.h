@@ -39,8 +39,8 @@ struct FigureSource {
 /// All figures but films.
 void add_figures(const FigureSource& source, Gallery& gallery);
 
-/// About how long the pictures of a case that has `outputs` outputs take on so many threads [s]; 0 where it asks for none. From
-/// what a picture of this size was measured to take on one thread of 2024, so that a run can say when all of it is done.
+/// About how long the pictures of a case that has `outputs` outputs take on so many threads [s]; 0 where it asks for none. A
+/// forecast for people who wait: it takes each picture to be of the usual size.
 double expected_drawing_seconds(const Scene& scene, Index outputs, int threads);
 
 /// A map of one raster on the terrain: figures/map_<name>.png. `what` is its name for people, `extent` the depth
