@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "terrain_scenes.h"
 
 namespace frana {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kWidth = 750.0, kHeight = 1000.0, kCell = 5.0;  // [m]; 151 x 201 nodes
 const Vec2 kSummit(600.0, 608.0);
 const Vec2 kRelease(420.0, 550.0);           // centre of the ellipse, of the paper
@@ -79,7 +79,7 @@ std::vector<Vec2> release_outline() {
     std::vector<Vec2> ring;
     const int corners = 360;  // the polygon has 0.9999492 of the ellipse's area
     for (int k = 0; k < corners; ++k) {
-        const double angle = 360.0 * kDegree * k / corners;
+        const double angle = 360.0 * constants::kDegree * k / corners;
         ring.emplace_back(kRelease.x() + kHalfX * std::cos(angle), kRelease.y() + kHalfY * std::sin(angle));
     }
     return ring;
@@ -96,7 +96,7 @@ double level_for_volume(const Elevation& z) {
             if (u * u + v * v > 1.0) continue;
             sum += z(kRelease.x() + u * kHalfX, kRelease.y() + v * kHalfY), count += 1.0;
         }
-    const double area = 180.0 * kDegree * kHalfX * kHalfY;
+    const double area = 180.0 * constants::kDegree * kHalfX * kHalfY;
     return kVolume / (kShare * area) - sum / count;
 }
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "terrain_scenes.h"
 
 namespace frana {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kWidth = 1500.0, kHeight = 1350.0, kCell = 2.0;  // [m]; the slope falls to the south
 constexpr double kMiddle = 675.0;                                 // x of the mass's axis: the paper's profile line [m]
 constexpr double kToe = 520.0;                                    // y of the mass's lower end [m]
@@ -26,7 +26,7 @@ constexpr double kRiver = 365.0;                                  // y of the ri
 /// Slope along the fall line [1].
 double slope_at(double y) {
     const double s = (y - kToe) / kLength;
-    const double front = std::tan(31.5 * kDegree), back = std::tan(25.0 * kDegree);
+    const double front = std::tan(31.5 * constants::kDegree), back = std::tan(25.0 * constants::kDegree);
     const double slope = front + (back - front) * smooth_step((s - 0.2) / 0.4) - 0.25 * smooth_step((s - 1.4) / 0.6);
     return 0.01 + (slope - 0.01) * smooth_step((y - (kFloorEdge - 40.0)) / 80.0);
 }
@@ -78,7 +78,7 @@ double ground(const FallLine& line, double x, double y) {
 /// Depth of the standing mass, up to the factor that makes the volume right.
 double mass_shape(double x, double y) {
     // Width such that the integral over the ellipse, kDepth * area * kShape/(kShape + 2), is the volume.
-    const double width = 4.0 * kVolume * (kShape + 2.0) / (kDepth * kShape * 3.14159265358979323846 * kLength);
+    const double width = 4.0 * kVolume * (kShape + 2.0) / (kDepth * kShape * constants::kPi * kLength);
     const double s = (y - kToe) / kLength;
     const double along = s < kDeepest ? 1.0 - s / kDeepest : (s - kDeepest) / (1.0 - kDeepest);
     const double across = (x - kMiddle) / (0.5 * width);
@@ -106,7 +106,7 @@ std::vector<Vec2> survey_outline() {
     std::vector<Vec2> east, west;
     for (int k = 0; k <= steps; ++k) {
         // close steps at both ends, where the outline turns
-        const double y = 0.5 * (crown + toe + (crown - toe) * std::cos(180.0 * kDegree * k / steps));
+        const double y = 0.5 * (crown + toe + (crown - toe) * std::cos(180.0 * constants::kDegree * k / steps));
         const double half = surveyed_half_width(y, crown, toe);
         const double axis = kMiddle + 12.0 * smooth_step((kToe + 20.0 - y) / 100.0);
         const double wavers = 5.0 * smooth_step(half / 60.0);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 double squared(double a) { return a * a; }
 
@@ -18,7 +18,7 @@ std::vector<Vec2> ellipse(const Vec2& centre, double half_x, double half_y) {
     std::vector<Vec2> ring;
     const int corners = 72;
     for (int k = 0; k < corners; ++k) {
-        const double angle = 360.0 * kDegree * k / corners;
+        const double angle = 360.0 * constants::kDegree * k / corners;
         ring.emplace_back(centre.x() + half_x * std::cos(angle), centre.y() + half_y * std::sin(angle));
     }
     return ring;
@@ -67,7 +67,8 @@ MadeScene column_collapse() {
 }
 
 MadeScene clay_flume() {
-    const double cell = 0.0125, steep = std::sin(42.0 * kDegree), gentle = std::sin(5.0 * kDegree);
+    const double cell = 0.0125, steep = std::sin(42.0 * constants::kDegree),
+                 gentle = std::sin(5.0 * constants::kDegree);
     const double obstacle = 0.125 + 0.4 * 0.25 - 0.5 * cell;  // nodes along its side are free
     Raster floor = on_nodes(2.2, 0.5, cell, [=](double s, double) {
         const double x = s - 0.4;
@@ -98,13 +99,13 @@ Raster ground_of_blocks(const Formula& z) {
 MadeScene blocks() {
     const double turn = 10.0;  // length of the bends [m]
     const auto convex = [=](double x, double) {
-        const double first = std::tan(10.0 * kDegree), second = std::tan(30.0 * kDegree);
+        const double first = std::tan(10.0 * constants::kDegree), second = std::tan(30.0 * constants::kDegree);
         return 200.0 - first * x - (second - first) * risen(x - 50.0, turn) + second * risen(x - 250.0, turn);
     };
     const auto valley = [=](double fan) {
         return [=](double x, double y) {
             const double foot = 220.0, share = 0.5 * (1.0 + std::tanh((x - foot) / turn)), across = (y - 30.0) / 20.0;
-            const double slope = std::tan(25.0 * kDegree);
+            const double slope = std::tan(25.0 * constants::kDegree);
             return 150.0 - slope * x + slope * risen(x - foot, turn) + share * fan * 20.0 * std::log(std::cosh(across));
         };
     };
@@ -116,7 +117,7 @@ MadeScene blocks() {
 
 MadeScene debris_flow() {
     const double width = 1600.0, height = 500.0, middle = 250.0, cell = 5.0, mouth = 900.0;
-    const double head_slope = std::tan(28.0 * kDegree), mouth_slope = std::tan(5.0 * kDegree);
+    const double head_slope = std::tan(28.0 * constants::kDegree), mouth_slope = std::tan(5.0 * constants::kDegree);
     std::vector<double> drop{0.0};  // below x = 0, on the nodes
     for (int k = 0; k * cell < width; ++k) {
         const double x = (k + 0.5) * cell;
@@ -149,7 +150,7 @@ MadeScene tiff_particles() {
 MadeScene avalanche_track() {
     const double width = 2000.0, height = 800.0, middle = 400.0, cell = 5.0;
     const double foot = 1200.0;  // from here the slope fades into flat ground within 150 m
-    const double head_slope = std::tan(34.0 * kDegree), foot_slope = std::tan(12.0 * kDegree);
+    const double head_slope = std::tan(34.0 * constants::kDegree), foot_slope = std::tan(12.0 * constants::kDegree);
     const auto slope = [=](double x) {
         const double parabola = head_slope + (foot_slope - head_slope) * std::min(x / foot, 1.0);
         return parabola * (1.0 - smooth_step((x - foot) / 150.0));

@@ -3,12 +3,12 @@
 #include <array>
 #include <cmath>
 
+#include "base/constants.h"
 #include "terrain_scenes.h"
 
 namespace frana {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kCell = 2.5;  // [m]
 
 double squared(double a) { return a * a; }
@@ -40,8 +40,8 @@ std::vector<Vec2> house(const Vec2& centre, double half_x, double half_y, double
 
 MadeScene loose_gully() {
     const double length = 1500.0, width = 360.0, middle = 180.0, mouth = 950.0;
-    const double head_slope = std::tan(30.0 * kDegree), mouth_slope = std::tan(9.0 * kDegree),
-                 foot_slope = std::tan(3.0 * kDegree);
+    const double head_slope = std::tan(30.0 * constants::kDegree), mouth_slope = std::tan(9.0 * constants::kDegree),
+                 foot_slope = std::tan(3.0 * constants::kDegree);
     const std::vector<double> drop = fall_along(length, [&](double x) {
         return head_slope + (mouth_slope - head_slope) * smooth_step(x / mouth) +
                (foot_slope - mouth_slope) * smooth_step((x - mouth) / 350.0);
@@ -59,7 +59,7 @@ MadeScene loose_gully() {
     };
     std::vector<Vec2> scar;
     for (int k = 0; k < 48; ++k) {
-        const double angle = 2.0 * 180.0 * kDegree * k / 48;
+        const double angle = 2.0 * 180.0 * constants::kDegree * k / 48;
         scar.emplace_back(75.0 + 28.0 * std::cos(angle), axis(75.0) + 9.0 * std::sin(angle));
     }
     return {{{"dem.tif", on_nodes(length, width, kCell, z)}, {"loose.tif", on_nodes(length, width, kCell, loose)}},
@@ -68,8 +68,8 @@ MadeScene loose_gully() {
 
 MadeScene fan() {
     const double length = 800.0, width = 600.0, middle = 300.0, apex = 200.0;
-    const double gully_slope = std::tan(14.0 * kDegree), fan_slope = std::tan(8.0 * kDegree),
-                 foot_slope = std::tan(4.0 * kDegree);
+    const double gully_slope = std::tan(14.0 * constants::kDegree), fan_slope = std::tan(8.0 * constants::kDegree),
+                 foot_slope = std::tan(4.0 * constants::kDegree);
     // Down the gully along x, then away from the apex in all directions, ever gentler.
     const auto fall = [&](double r) {
         const double end = 600.0, gentle = (fan_slope - foot_slope) / end;
@@ -100,7 +100,7 @@ MadeScene fan() {
 
 MadeScene two_gullies() {
     const double length = 1400.0, width = 620.0, cell = 10.0, mouth = 800.0, bend = 350.0;
-    const double head_slope = std::tan(32.0 * kDegree), foot_slope = std::tan(3.0 * kDegree);
+    const double head_slope = std::tan(32.0 * constants::kDegree), foot_slope = std::tan(3.0 * constants::kDegree);
     const auto first = [](double x) { return 200.0 + 20.0 * std::sin(x / 90.0); };
     const auto second = [](double x) { return 430.0 - 15.0 * std::sin(x / 120.0); };
     const auto z = [&](double x, double y) {
@@ -115,7 +115,7 @@ MadeScene two_gullies() {
     const auto scar = [](const Vec2& middle, double along, double across) {
         std::vector<Vec2> ring;
         for (int k = 0; k < 32; ++k) {
-            const double angle = 2.0 * 180.0 * kDegree * k / 32;
+            const double angle = 2.0 * 180.0 * constants::kDegree * k / 32;
             ring.emplace_back(middle.x() + along * std::cos(angle), middle.y() + across * std::sin(angle));
         }
         return ring;

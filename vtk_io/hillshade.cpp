@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana {
 namespace {
 
@@ -150,13 +152,12 @@ std::vector<float> hillshade(const Raster& bed, double exaggeration, double turn
         double azimuth, weight;
     };
     constexpr std::array<Lamp, 4> lamps{{{315.0, 0.5}, {270.0, 0.2}, {360.0, 0.2}, {225.0, 0.1}}};
-    constexpr double degree = 0.017453292519943295;
     const double height = std::sqrt(0.5);  // sine and cosine of 45 degrees
     const GridGeometry& g = bed.geometry;
     std::vector<float> shade(static_cast<std::size_t>(g.size()), std::nanf(""));
     std::array<Vec2, 4> light;
     for (std::size_t k = 0; k < 4; ++k) {
-        const double azimuth = lamps[k].azimuth * degree + turn;
+        const double azimuth = lamps[k].azimuth * constants::kDegree + turn;
         light[k] = height * Vec2(std::sin(azimuth), std::cos(azimuth));
     }
     for (Index j = 0; j < g.ny; ++j)

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/constants.h"
 #include "observe/file_columns.h"
 #include "vtk_io/hillshade.h"
 #include "vtk_io/writers.h"
@@ -12,8 +13,7 @@
 namespace frana {
 namespace {
 
-constexpr double degrees = 57.29577951308232;  ///< in one radian
-constexpr double exaggeration = 1.4;           ///< of heights, in the shading
+constexpr double exaggeration = 1.4;  ///< of heights, in the shading
 
 /// Difference quotient between the two neighbours, one-sided where one is missing, zero where both are.
 double difference(double before, double here, double after, double cell) {
@@ -56,7 +56,7 @@ void write_terrain(const std::filesystem::path& run_dir, const Raster& bed) {
         for (Index i = 0; i < grid.nx; ++i) {
             if (std::isnan(bed.at(i, j))) continue;
             const double tangent = gradient(bed, i, j).norm();
-            slope_deg[static_cast<std::size_t>(j * grid.nx + i)] = std::atan(tangent) * degrees;
+            slope_deg[static_cast<std::size_t>(j * grid.nx + i)] = std::atan(tangent) * constants::kRadian;
         }
     Frame frame;
     frame.grid = grid;

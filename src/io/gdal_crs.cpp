@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "base/types.h"
 
@@ -130,14 +131,14 @@ std::optional<std::array<double, 2>> map_scale(const OGRSpatialReference& crs, c
     const double x = place[0], y = place[1];
     double lon[] = {x, x - reach, x + reach, x, x}, lat[] = {y, y, y, y - reach, y + reach};
     if (!to_degrees || !to_degrees->Transform(5, lon, lat)) return {};
-    constexpr double radians = 3.14159265358979323846 / 180.0;
-    const double e2 = inverse > 0.0 ? (2.0 - 1.0 / inverse) / inverse : 0.0, sine = std::sin(lat[0] * radians);
+    const double e2 = inverse > 0.0 ? (2.0 - 1.0 / inverse) / inverse : 0.0,
+                 sine = std::sin(lat[0] * constants::kDegree);
     const double w2 = 1.0 - e2 * sine * sine;
-    const double across = a / std::sqrt(w2) * std::cos(lat[0] * radians);  // radius of the parallel
-    const double along = a * (1.0 - e2) / (w2 * std::sqrt(w2));            // of the meridian's curvature
+    const double across = a / std::sqrt(w2) * std::cos(lat[0] * constants::kDegree);  // radius of the parallel
+    const double along = a * (1.0 - e2) / (w2 * std::sqrt(w2));                       // of the meridian's curvature
     const auto ground = [&](int from, int to) -> Vec2 {
         const double degrees_east = std::remainder(lon[to] - lon[from], 360.0), degrees_north = lat[to] - lat[from];
-        return Vec2(across * degrees_east, along * degrees_north) * (radians / (2.0 * reach));
+        return Vec2(across * degrees_east, along * degrees_north) * (constants::kDegree / (2.0 * reach));
     };
     // The ellipse that a circle of the map is on the ground: its half axes are the singular values of this matrix.
     const Vec2 east = ground(1, 2), north = ground(3, 4);

@@ -4,6 +4,7 @@
 // doi:10.5194/gmd-14-1841-2021, eqs. 31 to 39), and the step of their velocities, exact for constant
 // coefficients. The printed equations were reconstructed from the prose and from the literature they cite.
 // THEORY: src/water/THEORY.md.
+#include "base/constants.h"
 #include "base/types.h"
 
 namespace frana {
@@ -24,7 +25,7 @@ struct Mixture {
 struct TwoPhaseMaterial {
     double solid_density = 2650.0, fluid_density = 1000.0;  ///< [kg/m^3]
     double viscosity = 1e-3;                                ///< of the fluid, eta [Pa s]
-    double gravity = 9.81;                                  ///< [m/s^2]
+    double gravity = constants::kGravity;                   ///< [m/s^2]
     double grain = 1e-3, block = 0.1;                       ///< diameters of grains and of blocks [m]
     int power = 2;                                          ///< j: drag grows with the slip (1) or with its square (2)
     bool split = true;     ///< drag of blocks apart from that of grains; or all solids as grains, all water free

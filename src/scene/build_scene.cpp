@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "base/free_memory.h"
 #include "particles/outline_area.h"
@@ -17,7 +18,6 @@
 namespace frana {
 namespace {
 
-constexpr double degrees = 180.0 / 3.14159265358979323846;
 constexpr Index nodata_reach = 3;  ///< cells; the stencils of the first steps read no further
 
 class Builder {
@@ -244,7 +244,8 @@ private:
         Index count = 0;
         for (Index k = 0; k < grid.size(); ++k) {
             if (!marks[static_cast<std::size_t>(k)]) continue;
-            const double slope = std::atan(node_gradient(scene_.bed, k % grid.nx, k / grid.nx).norm()) * degrees;
+            const double slope =
+                std::atan(node_gradient(scene_.bed, k % grid.nx, k / grid.nx).norm()) * constants::kRadian;
             steepest = std::max(steepest, slope);
             flattest = std::min(flattest, slope);
             sum += slope;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana {
 namespace {
 
@@ -29,10 +31,9 @@ Vec2 gradient_of(const Raster& bed, Index i, Index j) {
 
 std::uint8_t class_of(const Raster& bed, Index i, Index j, const GroundBorders& borders) {
     enum : std::uint8_t { kFlat, kOpen, kChannelled, kGully };
-    constexpr double kDegrees = 180.0 / 3.14159265358979323846;
     const Vec2 gradient = gradient_of(bed, i, j);
     if (!std::isfinite(gradient.x()) || !std::isfinite(gradient.y())) return kOpen;  // not known: the middle class
-    if (std::atan(gradient.norm()) * kDegrees < borders.flat_below_deg) return kFlat;
+    if (std::atan(gradient.norm()) * constants::kRadian < borders.flat_below_deg) return kFlat;
     const double curvature = plan_curvature(bed, i, j);
     return curvature < borders.curvature[0]   ? kFlat
            : curvature < borders.curvature[1] ? kOpen

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana {
 namespace {
 
@@ -73,7 +75,7 @@ const std::vector<ParameterRange>& parameter_ranges() {
 RangeKey range_key(const std::string& key) {
     const auto same = [](double value) { return value; };
     if (key == "material.bed.friction_angle_deg")
-        return {mu, [](double tangent) { return std::atan(tangent) * 180.0 / 3.14159265358979323846; }};
+        return {mu, [](double tangent) { return std::atan(tangent) * 180.0 / constants::kPi; }};
     if (key == "material.bed.yield_stress") return {yield, same};
     if (key == "material.bed.viscosity") return {viscosity, same};
     return {key, same};

@@ -1,6 +1,7 @@
 // The table itself: every key a case file can have. The order is that of the documentation.
 #include <cmath>
 
+#include "base/constants.h"
 #include "law/bed/laws.h"
 #include "law/catalogue.h"
 #include "law/rheology/laws.h"
@@ -40,7 +41,8 @@ void add_terrain(Table& table) {
         flag("terrain.unrolled", false,
              "coordinates are measured along the ground, as along the floor of a flume, not on the map; with "
              "material.structure only"));
-    table.push_back(number("terrain.gravity", "m/s^2", above_to(0.0, 300.0), 9.81, "acceleration of gravity"));
+    table.push_back(
+        number("terrain.gravity", "m/s^2", above_to(0.0, 300.0), constants::kGravity, "acceleration of gravity"));
     table.push_back(
         absent(number("grid.cell", "m", positive, "node distance of the grid"), "the pixel of the elevation model"));
 }

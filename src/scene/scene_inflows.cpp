@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "law/bed/normal_flow.h"
 #include "particles/generate.h"
 #include "scene/inflow_facts.h"
@@ -13,7 +14,6 @@
 namespace frana {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr Index kReach = 6;         ///< cells; what holds the flow up behind the line takes so many
 constexpr double kDeepest = 100.0;  ///< more than so much on all of the terrain is a mistake [m]
 /// Over an area a row is complete when so much has come, in cells: the step at the area's edge then hardly pushes, and a
@@ -271,7 +271,7 @@ private:
     /// Along the bed [m/s].
     double normal_speed(double discharge) const {
         const char* const way_out = "give velocity = a number [m/s]";
-        const double degrees = std::atan(inflow_.slope) * kDegrees;
+        const double degrees = std::atan(inflow_.slope) * constants::kRadian;
         if (!(discharge > 0.0)) return 0.0;
         if (!(inflow_.slope > 0.0))
             throw UserError(

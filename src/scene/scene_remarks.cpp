@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "scene/parameter_ranges.h"
 #include "scene/remarks.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
-
-constexpr double degrees = 180.0 / 3.14159265358979323846;
 
 /// "dem.tif dem_metres.tif": what a line of gdal_translate ends with.
 std::string into(const std::string& source, const char* suffix) {
@@ -111,7 +110,8 @@ void remark_on_material(const CaseFile& file, Scene& scene) {
     const auto angle = [&](const std::string& key, bool tangent) {
         if (!file.given(key) || file.is_text(key)) return;
         const double value = file.number(key);
-        remark_on(scene.log, Remark::friction, file.place(key), {tangent ? std::atan(value) * degrees : value});
+        remark_on(scene.log, Remark::friction, file.place(key),
+                  {tangent ? std::atan(value) * constants::kRadian : value});
     };
     const auto xi = [&](const std::string& key) {
         if (file.given(key) && !file.is_text(key))

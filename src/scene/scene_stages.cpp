@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 class StageReader {
 public:
@@ -235,7 +234,7 @@ private:
             return elastic;
         }
         const bool plane = case_.word(prefix_ + "cone") == "plane_strain";
-        return solid::DruckerPrager::of(elastic, angle * kDegree, cohesion,
+        return solid::DruckerPrager::of(elastic, angle * constants::kDegree, cohesion,
                                         plane ? solid::Cone::plane_strain : solid::Cone::compression);
     }
 

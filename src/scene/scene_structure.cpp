@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "scene/scene_parts.h"
 
 namespace frana {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 class StructureReader {
 public:
@@ -28,9 +27,9 @@ public:
         ColumnMaterial& m = structure.material;
         m.young = number("young_modulus");
         m.poisson = poisson(m.young);
-        m.friction = number("friction_angle_deg") * kDegree;
+        m.friction = number("friction_angle_deg") * constants::kDegree;
         if (!structure.hydrostatic) refuse_steep_friction();
-        m.dilatancy = number("dilatancy_angle_deg") * kDegree;
+        m.dilatancy = number("dilatancy_angle_deg") * constants::kDegree;
         m.yield = yield();
         m.damage_by = damage_by();
         m.critical_strain = number("critical_strain");

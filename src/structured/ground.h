@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/constants.h"
 #include "base/types.h"
 
 namespace frana {
@@ -10,7 +11,7 @@ namespace frana {
 /// Gravity at a place: along the plane of the columns, and across the ground [m/s^2]; and how the ground
 /// slopes against that plane [1]. Columns leave where there is no ground.
 struct GroundGravity {
-    double x = 0.0, y = 0.0, across = 9.81;
+    double x = 0.0, y = 0.0, across = constants::kGravity;
     double slope_x = 0.0, slope_y = 0.0;
     double elevation = 0.0;           ///< [m]
     bool exit = false, hole = false;  ///< no ground; and that in a hole of the terrain
@@ -20,7 +21,7 @@ using Ground = std::function<GroundGravity(double x, double y)>;
 /// THEORY (2): over terrain in map coordinates, given its slope (db/dx, db/dy): what slides without friction has the
 /// horizontal acceleration -g_z grad b, g_z = g / (1 + |grad b|^2). A solid keeps its length on the map over
 /// a break of slope.
-inline Ground terrain_ground(std::function<Vec2(double x, double y)> slope, double g = 9.81) {
+inline Ground terrain_ground(std::function<Vec2(double x, double y)> slope, double g = constants::kGravity) {
     return [slope = std::move(slope), g](double x, double y) {
         const Vec2 s = slope(x, y);
         const double across = g / (1.0 + s.squaredNorm());
@@ -29,7 +30,7 @@ inline Ground terrain_ground(std::function<Vec2(double x, double y)> slope, doub
 }
 
 /// Down a flume, x being the length along its floor, which falls by angle(x) [rad] there.
-inline Ground flume_ground(std::function<double(double x)> angle, double g = 9.81) {
+inline Ground flume_ground(std::function<double(double x)> angle, double g = constants::kGravity) {
     return [angle = std::move(angle), g](double x, double) {
         const double a = angle(x);
         return GroundGravity{g * std::sin(a), 0.0, g * std::cos(a)};

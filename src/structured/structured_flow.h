@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/constants.h"
 #include "law/bed/laws.h"
 #include "law/free_water.h"
 #include "law/structured_law.h"
@@ -44,8 +45,8 @@ struct StructuredScene {
     Ground ground = terrain_ground([](double, double) { return Vec2(0.0, 0.0); });
     double density = 1700.0;  ///< [kg/m^3]
     ColumnMaterial material;
-    double share = 1.0;        ///< of the solids that have structure, undamaged [1]
-    double gravity = 9.81;     ///< [m/s^2]
+    double share = 1.0;                    ///< of the solids that have structure, undamaged [1]
+    double gravity = constants::kGravity;  ///< [m/s^2]
     bool hydrostatic = false;  ///< grains push sideways as they do down, K = 1; otherwise by Rankine's Ka to Kp
     /// The bed under the grains' surface, on the map, asked for when there are grains. None: a plane that the columns'
     /// coordinates lie in, and gravity along it by the ground.

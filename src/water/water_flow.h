@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/constants.h"
 #include "law/free_water.h"
 #include "law/water_friction.h"
 #include "mpm/step_clock.h"
@@ -33,7 +34,7 @@ struct WaterScene {
     std::array<WaterSide, 4> sides{};                          ///< at low x, high x, low y, high y
     WaterFriction friction;
     WaterViscosity viscosity;
-    double gravity = 9.81;  ///< [m/s^2]
+    double gravity = constants::kGravity;  ///< [m/s^2]
     /// Gravity across the ground is g / (1 + |grad b|^2), as for solids (structured/ground.h), so that thin
     /// water slides down a steep plane as a block does; else g, which are the shallow-water equations as they
     /// are printed. Both keep lakes at rest: each cell's slope of the surface is multiplied by its own value.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "vtk_io/figures/chart_figure_ticks.h"
 #include "vtk_io/figures/map_figure_furniture.h"
@@ -104,7 +105,7 @@ std::vector<double> small_ticks(const Axis& axis) {
 void draw_mark(Canvas& canvas, const Vec2& at, double unit, const Colour& colour) {
     std::vector<Vec2> disc;
     for (int k = 0; k < 16; ++k) {
-        const double turn = 2.0 * 3.14159265358979323846 * k / 16.0;
+        const double turn = 2.0 * constants::kPi * k / 16.0;
         disc.push_back(at + 0.3 * unit * Vec2(std::cos(turn), std::sin(turn)));
     }
     canvas.fill(disc, colour);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "vtk_io/figures/colours_3d.h"
 #include "vtk_io/figures/map_figure_perspective.h"
 
@@ -54,7 +55,6 @@ double share_in_sight(const Figure3d& figure, const std::vector<Vec3>& places, d
 }  // namespace
 
 ViewAngles3d best_view(const Figure3d& figure) {
-    constexpr double kDegree = 0.017453292519943295;
     struct Choice {
         double turn, weight;  ///< from the flow's direction [degrees]
     };
@@ -67,7 +67,7 @@ ViewAngles3d best_view(const Figure3d& figure) {
     double best_score = -1.0;
     for (const Choice& turn : turns)
         for (const Choice& down : downs) {
-            const ViewAngles3d look{flow + turn.turn * kDegree, down.turn * kDegree};
+            const ViewAngles3d look{flow + turn.turn * constants::kDegree, down.turn * constants::kDegree};
             const double points = share_in_sight(figure, subjects.points, look.azimuth, look.down),
                          barriers = share_in_sight(figure, subjects.barriers, look.azimuth, look.down);
             const double score = turn.weight * down.weight * points * barriers;
@@ -144,7 +144,6 @@ std::vector<ColourBar> Colours3d::bars() const {
 }
 
 bool render_3d(const Figure3d& figure, const std::filesystem::path& png, std::string& why_not) {
-    constexpr double kDegree = 0.017453292519943295;
     const ViewAngles3d look = figure.look ? *figure.look : best_view(figure);
     PerspectiveFigure view;
     view.bed = figure.bed;
@@ -152,8 +151,8 @@ bool render_3d(const Figure3d& figure, const std::filesystem::path& png, std::st
     view.title = figure.title;
     view.footer = figure.footer;
     view.focus = figure.view.box;
-    view.look_azimuth_deg = look.azimuth / kDegree;
-    view.look_down_deg = look.down / kDegree;
+    view.look_azimuth_deg = look.azimuth / constants::kDegree;
+    view.look_down_deg = look.down / constants::kDegree;
     view.width = figure.width;
     view.height = figure.height;
     view.objects = objects_of(figure, look.azimuth);

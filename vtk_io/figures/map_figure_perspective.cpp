@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "vtk_io/figures/actors_3d.h"
 #include "vtk_io/figures/map_figure_block.h"
@@ -24,8 +25,6 @@
 
 namespace frana {
 namespace {
-
-constexpr double kDegree = 0.017453292519943295;
 
 using Vec3 = Eigen::Vector3d;
 
@@ -113,10 +112,11 @@ void BlockDrawing::build(const MapBox& box) {
         if (!std::isnan(z)) low = std::min(low, z);
     foot_ = (low < 1e300 ? low : 0.0) - 0.05 * longest;
     const double up = uphill_azimuth(surface_, outlined_, figure_.shown_above);
-    azimuth_ = figure_.look_azimuth_deg ? *figure_.look_azimuth_deg * kDegree : up + 25.0 * kDegree;
+    azimuth_ =
+        figure_.look_azimuth_deg ? *figure_.look_azimuth_deg * constants::kDegree : up + 25.0 * constants::kDegree;
     if (const auto& eye = figure_.eye)
         azimuth_ = std::atan2(eye->target[0] - eye->position[0], eye->target[1] - eye->position[1]);
-    const double from_the_left = azimuth_ - 30.0 * kDegree;  // the eye expects light from the upper left
+    const double from_the_left = azimuth_ - 30.0 * constants::kDegree;  // the eye expects light from the upper left
     skin_ = painted(fine, field_fine, {figure_.colormap, colours_, shown_above, from_the_left});
     const double left = 1.5 * unit_, right = 9.0 * unit_;
     const double inset =
@@ -205,7 +205,7 @@ void BlockDrawing::aim_from_eye(vtkRenderer* renderer) {
 /// Moves the camera back and sideways until the block just fills its room.
 void BlockDrawing::aim(vtkRenderer* renderer) {
     const GridGeometry& g = surface_.geometry;
-    const double down = figure_.look_down_deg * kDegree;
+    const double down = figure_.look_down_deg * constants::kDegree;
     const Vec3 ahead(std::sin(azimuth_) * std::cos(down), std::cos(azimuth_) * std::cos(down), -std::sin(down));
     const Vec3 right(std::cos(azimuth_), -std::sin(azimuth_), 0.0);
     const Vec3 up = right.cross(ahead);
@@ -216,7 +216,7 @@ void BlockDrawing::aim(vtkRenderer* renderer) {
     double distance = 3.0 * size;
     vtkCamera* camera = renderer->GetActiveCamera();
     camera->SetViewAngle(24.0);
-    const double half = std::tan(12.0 * kDegree);
+    const double half = std::tan(12.0 * constants::kDegree);
     for (int pass = 0; pass < 12; ++pass) {
         eye_ = target - distance * ahead;
         camera->SetFocalPoint(target.x(), target.y(), target.z());
@@ -263,7 +263,7 @@ void BlockDrawing::edge_length(Canvas& canvas, const Vec3& a, const Vec3& b, dou
     const Vec2 along = (to - from).normalized();
     if ((to - from).norm() < 5.0 * unit_) return;
     TextStyle style{0.9 * unit_, Across::centre, Upward::top, 0.0, false, false, colours::note};
-    style.angle = std::atan2(along.y(), along.x()) / kDegree;
+    style.angle = std::atan2(along.y(), along.x()) / constants::kDegree;
     const std::string text =
         metres >= 1000.0 ? fmt::format("{:.2g} km", 1e-3 * metres) : fmt::format("{:.3g} m", metres);
     canvas.text(text, 0.5 * (from + to) + 0.4 * unit_ * Vec2(along.y(), -along.x()), style);

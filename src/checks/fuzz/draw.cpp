@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::stress {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Pixel (i, j) and its image.
 template <class Body>
@@ -74,7 +74,7 @@ void draw_pile(Dice& dice, Draft& draft) {
     grid.cell = dice.one_of({0.03125, 0.5, 1.0, 5.0, 24.0});
     const bool steep = dice.chance(0.6);
     const double slope = steep ? dice.between(0.0, 1.2) : dice.between(0.0, 0.6);
-    const double flank = dice.between(0.02, 0.5), turn = dice.chance(0.5) ? 0.0 : dice.between(0.0, 2 * kPi);
+    const double flank = dice.between(0.02, 0.5), turn = dice.chance(0.5) ? 0.0 : dice.between(0.0, 2 * constants::kPi);
     // Drive over holding friction where the pile is steepest on the way down; steep ground eases the drive by
     // 1 + B.e and the normal force by 1 + B^2.
     const double e = slope + flank;

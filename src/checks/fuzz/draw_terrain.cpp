@@ -2,12 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/fuzz/draw.h"
 
 namespace frana::stress {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Of 1 cm to 100 m; three significant bits, so that map coordinates and pixel edges are exact.
 double draw_cell(Dice& dice) {
@@ -30,7 +29,8 @@ GridGeometry draw_grid(Dice& dice, bool wide) {
 
 /// A direction of the map: along the axes, the diagonal, or any.
 Vec2 direction(Dice& dice) {
-    const double angle = dice.chance(0.5) ? 0.25 * kPi * static_cast<double>(dice.below(8)) : 2 * kPi * dice.unit();
+    const double angle = dice.chance(0.5) ? 0.25 * constants::kPi * static_cast<double>(dice.below(8))
+                                          : 2 * constants::kPi * dice.unit();
     return {std::cos(angle), std::sin(angle)};
 }
 
@@ -44,7 +44,8 @@ void add(Raster& dem, Shape&& shape) {
 
 void add_plane(Dice& dice, Raster& dem) {
     const double any = dice.between(0.0, 80.0);
-    const double steepness = std::tan(dice.one_of({0.0, 5.0, 20.0, 35.0, 50.0, 70.0, 80.0, any}) * kPi / 180);
+    const double steepness =
+        std::tan(dice.one_of({0.0, 5.0, 20.0, 35.0, 50.0, 70.0, 80.0, any}) * constants::kPi / 180);
     const Vec2 down = direction(dice);
     add(dem, [&](double x, double y) { return -steepness * (down.x() * x + down.y() * y); });
 }
@@ -52,7 +53,9 @@ void add_plane(Dice& dice, Raster& dem) {
 void add_waves(Dice& dice, Raster& dem) {
     const Vec2 along = direction(dice);
     const double length = dice.decades(3.0, 60.0), height = length * dice.decades(0.003, 0.3);
-    add(dem, [&](double x, double y) { return height * std::sin(2 * kPi * (along.x() * x + along.y() * y) / length); });
+    add(dem, [&](double x, double y) {
+        return height * std::sin(2 * constants::kPi * (along.x() * x + along.y() * y) / length);
+    });
 }
 
 void add_hill(Dice& dice, Raster& dem) {

@@ -2,6 +2,7 @@
 // Keys that several bed laws have, under [material.bed] of a case.
 #include <cmath>
 
+#include "base/constants.h"
 #include "law/key.h"
 
 namespace frana::bed {
@@ -19,7 +20,7 @@ Key<Law> friction_angle(double Law::*mu, Missing missing = Missing::refused) {
             "friction angle at the bed",
             missing,
             "mu",
-            [](double degrees) { return std::tan(degrees * 3.14159265358979323846 / 180.0); }};
+            [](double degrees) { return std::tan(degrees * constants::kPi / 180.0); }};
 }
 
 /// The friction coefficient; beside friction_angle().

@@ -13,6 +13,7 @@
 #include <set>
 #include <utility>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "observe/table.h"
 #include "vtk_io/figures/figure_3d.h"
@@ -158,7 +159,6 @@ Json camera(const Place& position, const Place& focal, const Place& up, double h
             {"scale_row", std::max(half_height, half_width / 0.5)}};
 }
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double around = 1.12;  ///< 12 % of ground around what was covered
 
 /// Half the extent's size in space, with ground around it [m].
@@ -177,7 +177,7 @@ Json map_camera(const Extent& extent) {
 
 /// From before the deposit, up the way that the mass came.
 Json view_camera(const Extent& extent) {
-    constexpr double half_angle = 15.0 * pi / 180.0, above = 35.0 * pi / 180.0;
+    constexpr double half_angle = 15.0 * constants::kPi / 180.0, above = 35.0 * constants::kPi / 180.0;
     const double reach = reach_of(extent);
     const Place middle = extent.middle();
     double to_x = extent.last[0] - extent.first[0], to_y = extent.last[1] - extent.first[1];
@@ -303,7 +303,8 @@ void look_at_impact(const fs::path& run_dir, Json& look) {
     extent = Extent{
         box[0], box[2], box[1], box[3], std::isfinite(middle) ? middle : 0.0, std::isfinite(middle) ? middle : 0.0,
         {},     {}};
-    const double reach = reach_of(extent), distance = 0.75 * reach / std::tan(15.0 * pi / 180.0);  // seen askew
+    const double reach = reach_of(extent),
+                 distance = 0.75 * reach / std::tan(15.0 * constants::kPi / 180.0);  // seen askew
     const Place focal = extent.middle();
     const Place position{focal[0] - distance * std::sin(eye.azimuth) * std::cos(eye.down),
                          focal[1] - distance * std::cos(eye.azimuth) * std::cos(eye.down),
