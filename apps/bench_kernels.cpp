@@ -22,7 +22,7 @@ struct Bed {
         DepthAveraged simulation(scene);
         for (int n = 0; n < 6; ++n) simulation.advance(1e9);
         flow.columns = simulation.flow().columns;
-        flow.active = simulation.flow().active;
+        TileSorter().sort(flow.columns, flow.grid, {}, flow.active);  // as they lie
         step = simulation.status().dt;
         transfer->deposit(flow, step);
         surface();

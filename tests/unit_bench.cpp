@@ -81,6 +81,24 @@ TEST_CASE("bench writes the contract's keys with finite numbers above zero", "[b
     CHECK(occurrences(json, "\"depth_averaged/kick_and_friction/double\"") == 4);
 }
 
+TEST_CASE("The table of bench tells how much faster two threads are, phase by phase", "[bench]") {
+    const std::string table = bench::table_of(report());
+    const std::size_t begin = table.find("speed-up over one thread");
+    REQUIRE(begin != std::string::npos);
+    const std::string part = table.substr(begin, table.find("\n\n", begin) - begin);
+    for (const Index particles : {Index{1000}, Index{4000}}) {
+        const bench::Timed *one = bench::find(report(), "depth_averaged", particles, 1),
+                           *two = bench::find(report(), "depth_averaged", particles, 2);
+        REQUIRE((one != nullptr && two != nullptr));
+        const std::regex row("depth_averaged/full/double +" + std::to_string(particles) + " +([0-9.]+)\n");
+        std::smatch found;
+        REQUIRE(std::regex_search(part, found, row));
+        CHECK(std::stod(found[1]) == Approx(one->cost.full().wall_ns / two->cost.full().wall_ns).margin(0.006));
+    }
+    CHECK(occurrences(part, "depth_averaged/kick_and_friction/double") == 2);
+    CHECK(occurrences(part, "structured/") == 0);  // timed with one thread only
+}
+
 TEST_CASE("bench finds the same bits for one, two and four threads, and other bits in another state", "[bench]") {
     CHECK(report().hashes.size() == 3);
     CHECK(bench::same_bits(report()));

@@ -139,7 +139,7 @@ void StructuredRun::inner_fields(Frame& frame) {
         const Index first = body.grid.at(body.grid.tile_i(tile), body.grid.tile_j(tile));
         for (Index j = 0; j < kTile; ++j) std::fill_n(&inner_[first + j * body.grid.stride()], kTile, Inner{});
     });
-    for_each_tile_coloured(body.active, [&](Index n) {
+    for_each_tile_in_turn(body.active, [&](Index n) {
         for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
             const Quadratic sx(q.x[p]), sy(q.y[p]);
             for (int j = 0; j < 3; ++j)

@@ -26,9 +26,10 @@ public:
     void find_tiles(Index count, Index tiles, TileOf&& tile_of) {
         make_room(count, tiles);
         std::int32_t* key = key_.data();
-#pragma omp parallel for schedule(static) if (count > 4096)
-        for (Index p = 0; p < count; ++p) key[p] = static_cast<std::int32_t>(tile_of(p));
-        tally(count);
+        for_each_part([&](Part& part) {
+            for (Index p = part.first; p < part.end; ++p) key[p] = static_cast<std::int32_t>(tile_of(p));
+            tally(part);
+        });
     }
     /// Tile of each point as it was found.
     const std::vector<std::int32_t>& key() const { return key_; }
@@ -47,22 +48,34 @@ public:
     void close_gaps(const std::vector<PointField>& fields) const;
 
     /// Memory that grows with the points [bytes].
-    Index bytes() const {
-        Index sum = allocated(key_) + allocated(order_);
-        for (const Array& column : scratch_) sum += allocated(column);
-        return sum;
-    }
+    Index bytes() const { return allocated(key_) + allocated(order_) + allocated(kept_) + allocated(scratch_); }
 
 private:
+    /// Points in a row that one thread counts and lays out.
+    struct Part {
+        Index first = 0, end = 0;
+        LazyArray<std::int32_t> count;   ///< per tile of the domain, of its points; then where its next one goes
+        std::vector<std::int32_t> used;  ///< tiles of which the count is not zero
+    };
+    template <class Body>
+    void for_each_part(Body&& body) {
+        const std::size_t parts = parts_in_use_;
+#pragma omp parallel for schedule(static, 1) if (parts > 1)
+        for (std::size_t n = 0; n < parts; ++n) body(parts_[n]);
+    }
     void make_room(Index count, Index tiles);
-    void tally(Index count);
+    void tally(Part& part) const;
+    void lay_out(Part& part);
     template <class At>
     void retain(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile
-    std::vector<Index> tile_count_;          ///< per tile of the domain; only entries in `used_` are non-zero
-    std::vector<Index> used_;
-    std::vector<Array> scratch_;  ///< one per thread: columns are permuted one by one through it
+    std::vector<std::int32_t> kept_;         ///< order_ to come, when points are left out of it
+    std::vector<Part> parts_;                ///< as many as there are threads
+    std::size_t parts_in_use_ = 1;           ///< small lists have one
+    std::vector<std::int32_t> used_;         ///< tiles with points
+    std::vector<Index> first_;               ///< of the points that stay, by position in ActiveTiles
+    Array scratch_;                          ///< columns are permuted one by one through it
 };
 
 }  // namespace frana

@@ -1,7 +1,6 @@
 #pragma once
 // The background grid: nodes stored row-major in tiles of 16 x 16, with a ring of spare tiles around the domain.
 // Only tiles near material are ever touched; arrays come zeroed from the system and cost nothing until then.
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "mpm/tile_turns.h"
 #include "terrain/raster.h"
 
 namespace frana {
@@ -90,17 +90,16 @@ private:
 /// Gathers at rest before a tile sleeps: two rounds of splitting and merging that found nothing to do.
 constexpr std::uint8_t kAsleep = 6;
 
-/// Tiles that hold particles (with their ranges), those tiles grown by one (the work list of node loops), and the
-/// particle tiles by colour: tiles of one colour share no node, so that they scatter at once without locks and
-/// every sum has one order, whatever the number of threads.
+/// Tiles that hold particles (with their ranges), those tiles grown by one (the work list of node loops), and whose turn
+/// it is to scatter.
 struct ActiveTiles {
-    std::vector<Index> tile;                   ///< ids of tiles with particles, ascending
-    std::vector<Index> begin;                  ///< first particle of each, and the count at the end
-    std::array<std::vector<Index>, 8> colour;  ///< positions in `tile`, by colour; in the plane the first four
-    std::vector<Index> work;                   ///< ids of tiles with particles and their neighbours, ascending
-    std::vector<Index> run;                    ///< positions in `work` where runs begin, and the count at the end
-    std::vector<std::uint8_t> in_work;         ///< per tile of the domain: 1 when it is on the work list
-    std::vector<std::uint8_t> quiet;  ///< per tile of the domain: gathers in a row that left its points at rest
+    std::vector<Index> tile;            ///< ids of tiles with particles, ascending
+    std::vector<Index> begin;           ///< first particle of each, and the count at the end
+    TileTurns turns;                    ///< of positions in `tile`
+    std::vector<Index> work;            ///< ids of tiles with particles and their neighbours, ascending
+    std::vector<Index> run;             ///< positions in `work` where runs begin, and the count at the end
+    std::vector<std::uint8_t> in_work;  ///< per tile of the domain: 1 when it is on the work list
+    std::vector<std::uint8_t> quiet;    ///< per tile of the domain: gathers in a row that left its points at rest
 
     Index count() const { return static_cast<Index>(tile.size()); }
 };
@@ -120,10 +119,10 @@ void for_each_listed(const Lists& lists, bool in_parallel, Body&& body) {
     }
 }
 
-/// Runs body(position) for all particle tiles, colour after colour.
+/// Runs body(position) for all particle tiles, in parallel; tiles that share nodes have turns in a fixed order.
 template <class Body>
-void for_each_tile_coloured(const ActiveTiles& active, Body&& body) {
-    for_each_listed(active.colour, active.count() >= kTilesForThreads, body);
+void for_each_tile_in_turn(const ActiveTiles& active, Body&& body) {
+    active.turns.run(active.count() >= kTilesForThreads, body);
 }
 
 /// Runs body(position) for all particle tiles, in parallel; the body writes to its own particles only.

@@ -1,5 +1,7 @@
 #include "shallow/columns.h"
 
+#include <omp.h>
+
 #include <algorithm>
 
 namespace frana {
@@ -29,15 +31,16 @@ void TileSorter::carry_out(Columns& columns) { order_.permute(fields_of(columns)
 void TileSorter::wake(Index count, ActiveTiles& active) {
     if (active.quiet.empty()) return;
     const std::vector<std::int32_t>& key = order_.key();
-    Index p = 0;
-    for (Index n = 0; n < active.count(); ++n)
-        for (; p < active.begin[n + 1]; ++p)
-            if (key[p] != active.tile[n]) {
-                active.quiet[active.tile[n]] = 0;
-                if (key[p] >= 0) active.quiet[key[p]] = 0;
-            }
-    for (; p < count; ++p)
-        if (key[p] >= 0) active.quiet[key[p]] = 0;
+    const auto wake_tile = [&](Index tile) {
+        if (tile < 0) return;
+#pragma omp atomic write
+        active.quiet[tile] = 0;
+    };
+    for_each_tile(active, [&](Index n) {
+        for (Index p = active.begin[n]; p < active.begin[n + 1]; ++p)
+            if (key[p] != active.tile[n]) wake_tile(active.tile[n]), wake_tile(key[p]);
+    });
+    for (Index p = active.count() > 0 ? active.begin[active.count()] : 0; p < count; ++p) wake_tile(key[p]);
 }
 
 void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
@@ -47,10 +50,8 @@ void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, A
 }
 
 void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
-    for (auto& positions : active.colour) {
-        positions.clear();
-        positions.reserve(active.tile.capacity());  // grows with the list of tiles, not some steps later
-    }
+    constexpr std::size_t kTilesBeside = 8;
+    active.turns.begin(active.tile, grid.tiles(), kTilesBeside);
     active.in_work.resize(static_cast<std::size_t>(grid.tiles()));
     active.quiet.resize(static_cast<std::size_t>(grid.tiles()));
     for (const Index tile : active.work) active.in_work[tile] = 0;
@@ -58,31 +59,35 @@ void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
     const Index width = grid.tiles_x();
     for (Index n = 0; n < active.count(); ++n) {
         const Index tile = active.tile[n], column = tile % width, row = tile / width;
-        active.colour[(row % 2) * 2 + column % 2].push_back(n);
+        const auto colour = [&](Index dr, Index dc) { return ((row + dr) % 2) * 2 + (column + dc) % 2; };
+        active.turns.add(colour(0, 0));
         for (Index dr = -1; dr <= 1; ++dr)
             for (Index dc = -1; dc <= 1; ++dc) {
                 if (column + dc < 0 || column + dc >= width) continue;
                 const Index neighbour = tile + dr * width + dc;
                 if (neighbour < 0 || neighbour >= grid.tiles()) continue;
+                if (colour(dr, dc) < colour(0, 0)) active.turns.wait_for(neighbour, active.tile);
                 if (!active.in_work[neighbour]) {
                     active.in_work[neighbour] = 1;
                     active.work.push_back(neighbour);
                 }
             }
     }
+    active.turns.end();
     std::sort(active.work.begin(), active.work.end());
     list_runs(width, active);
 }
 
-/// Tiles of a run lie in one row of tiles.
+/// Tiles of a run lie in one row of tiles. With many threads runs are shorter: each thread has two or more.
 void TileSorter::list_runs(Index width, ActiveTiles& active) {
     active.run.clear();
     active.run.reserve(active.work.capacity() + 1);
-    const Index count = static_cast<Index>(active.work.size());
+    const Index count = static_cast<Index>(active.work.size()), threads = omp_get_max_threads();
+    const Index longest = threads == 1 ? kRunTiles : std::clamp<Index>(count / (2 * threads), 1, kRunTiles);
     for (Index n = 0; n < count; ++n) {
         const Index tile = active.work[n];
         const bool goes_on = n > 0 && tile == active.work[n - 1] + 1 && tile % width != 0;
-        if (!goes_on || n - active.run.back() == kRunTiles) active.run.push_back(n);
+        if (!goes_on || n - active.run.back() == longest) active.run.push_back(n);
     }
     active.run.push_back(count);
 }

@@ -102,7 +102,7 @@ void Erosion::give(Flow& flow) {
     }
     deposited_.add(given.value());
     flow.columns.with_real([&](auto real) {
-        for_each_eroding_coloured(flow, [&](Index n) { spread<decltype(real)>(flow, n, wanted_, demand_); });
+        for_each_eroding_in_turn(flow, [&](Index n) { spread<decltype(real)>(flow, n, wanted_, demand_); });
     });
     collect_reach(flow);
     fold(flow, demand_);

@@ -250,7 +250,7 @@ void DepthAveraged::stress_on_nodes(const double* stresses) {
     for (const Index tile : flow_.active.work)
         for_each_node_of(flow_.grid, tile, kAllGroups, [&](Index k, Index, Index) { stress_sums_[k] = {}; });
     const Columns& c = flow_.columns;
-    for_each_tile_coloured(flow_.active, [&](Index n) {
+    for_each_tile_in_turn(flow_.active, [&](Index n) {
         for (Index p = flow_.active.begin[n]; p < flow_.active.begin[n + 1]; ++p) {
             const Quadratic sx(c.x[p]), sy(c.y[p]);
             const double* s = stresses + 3 * p;

@@ -220,7 +220,7 @@ void Erosion::make_room(const Flow& flow) {
 void Erosion::find_demand(Flow& flow, double dt) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
-        for_each_eroding_coloured(flow, [&](Index n) {
+        for_each_eroding_in_turn(flow, [&](Index n) {
             const auto demand = [&](const auto& law, const auto& friction) {
                 using Law = std::decay_t<decltype(law)>;
                 using Under = std::decay_t<decltype(friction)>;
@@ -387,7 +387,7 @@ bool Erosion::find_shares(Flow& flow) {
 void Erosion::share_out(Flow& flow) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
-        for_each_eroding_coloured(flow, [&](Index n) {
+        for_each_eroding_in_turn(flow, [&](Index n) {
             take_shares<Real>(flow, n);
             spread<Real>(flow, n, gained_, taken_);
         });

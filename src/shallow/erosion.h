@@ -110,7 +110,7 @@ private:
     template <class Body>
     void for_each_eroding(const Flow& flow, Body&& body) const;
     template <class Body>
-    void for_each_eroding_coloured(const Flow& flow, Body&& body) const;
+    void for_each_eroding_in_turn(const Flow& flow, Body&& body) const;
 
     ErosionLaw law_;
     BedLaw friction_;
@@ -167,8 +167,8 @@ void Erosion::for_each_eroding(const Flow& flow, Body&& body) const {
 }
 
 template <class Body>
-void Erosion::for_each_eroding_coloured(const Flow& flow, Body&& body) const {
-    for_each_tile_coloured(flow.active, [&](Index n) {
+void Erosion::for_each_eroding_in_turn(const Flow& flow, Body&& body) const {
+    for_each_tile_in_turn(flow.active, [&](Index n) {
         if (eroding_[static_cast<std::size_t>(n)]) body(n);
     });
 }

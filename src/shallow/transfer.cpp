@@ -68,7 +68,7 @@ public:
         make_room(flow);
         start_deposit(flow, kBefore, kAfter);
         const double cap = most_viscosity(flow, velocity_dt);
-        for_each_tile_coloured(flow.active, [&](Index n) {
+        for_each_tile_in_turn(flow.active, [&](Index n) {
             if (!flow.rest.deposits[n]) return;
             const Index tile = flow.active.tile[n];
             PointSums sums;

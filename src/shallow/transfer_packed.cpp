@@ -28,7 +28,7 @@ public:
 
     PointSums deposit(Flow& flow, double velocity_dt) override {
         const double cap = prepare_deposit(flow, velocity_dt);
-        for_each_tile_coloured(flow.active, [&](Index n) {
+        for_each_tile_in_turn(flow.active, [&](Index n) {
             if (!flow.rest.deposits[n]) return;
             const Index tile = flow.active.tile[n];
             touch_deposits(flow, n);
@@ -65,7 +65,7 @@ public:
         if (some_asleep(flow)) return carry_apart(flow, dt, velocity_dt);  // what sleeps is chosen between the two
         prepare_gather(flow);
         const double cap = prepare_deposit(flow, velocity_dt);
-        for_each_tile_coloured(flow.active, [&](Index n) {
+        for_each_tile_in_turn(flow.active, [&](Index n) {
             const Index tile = flow.active.tile[n];
             touch_motions(flow, n);
             touch_deposits(flow, n);

@@ -41,7 +41,7 @@ struct MirrorBatch {
         slides = std::max(slides, mirror.slides);
         ++count;
     }
-    /// Lanes without an mirror particle become copies of the first: any finite numbers.
+    /// Lanes without a mirror particle become copies of the first: any finite numbers.
     void fill() {
         for (int lane = count; lane < 4; ++lane) {
             point[lane] = point[0];

@@ -15,8 +15,15 @@ namespace frana {
 namespace {
 
 /// Cells a point may have moved since the last sort: tiles of one colour stand 16 nodes apart and reach 8 + 2
-/// nodes and twice the drift; mirror particles, 32 apart, reach 8 + 2 + 2 * 9 and twice the drift.
+/// nodes and twice the drift.
 constexpr double kDriftLimit = 1.5;
+
+/// Tiles whose mirror particles give to nodes at once stand so many tiles apart, from two to four: a tile's reach 8 + 2
+/// nodes, twice the drift and twice the distance of a mirror particle from its point [cells].
+constexpr double kOwnReach = static_cast<double>(kTile3d) + 2.0 + 2.0 * kDriftLimit;
+Index tiles_apart(double farthest) {
+    return static_cast<Index>(std::ceil((kOwnReach + 2.0 * farthest) / static_cast<double>(kTile3d)));
+}
 
 /// Seeds that would not be where the solver looks for them.
 void require_inside(const SolidSeeds& seeds, const GridGeometry3d& grid) {
@@ -137,6 +144,7 @@ void Mpm3d::mark_near() {
     const double h = grid.cell();
     const std::size_t surfaces = body_.surfaces.size();
     body_.near_points.assign(body_.active.tile.size(), 0);
+    body_.mirror_reach.resize(body_.active.tile.size());
     body_.near_nodes.assign(body_.active.work.size(), 0);
     body_.sums.resize(body_.active.tile.size());
     body_.boxes.resize(body_.active.tile.size());
@@ -145,32 +153,46 @@ void Mpm3d::mark_near() {
     body_.point_impulse.resize(body_.active.tile.size() * surfaces);
     for (auto& colour : body_.mirror_colour) colour.clear();
     if (surfaces == 0) return;
-    const auto near = [&](Index tile, double before, double behind) {
+    const auto box = [&](Index tile, double before, double behind) {
         const std::array<Index, 3> t = grid.tile_place(tile);
-        Vec3 low, high;
+        std::pair<Vec3, Vec3> box;
         for (int axis = 0; axis < 3; ++axis) {
             const double first = static_cast<double>(grid.first_node(t[axis]));
-            low[axis] = grid.geometry().origin[axis] + h * (first - before);
-            high[axis] = grid.geometry().origin[axis] + h * (first + static_cast<double>(kTile3d) + behind);
+            box.first[axis] = grid.geometry().origin[axis] + h * (first - before);
+            box.second[axis] = grid.geometry().origin[axis] + h * (first + static_cast<double>(kTile3d) + behind);
         }
-        return surfaces_near(body_.surfaces, low, high, h, 0.0);
+        return box;
     };
     for (Index n = 0; n < body_.active.count(); ++n) {
         // A point whose first node is n lies from n + 1/2 to n + 3/2.
-        const SurfaceSet set = near(body_.active.tile[n], kDriftLimit - 0.5, kDriftLimit + 0.5);
+        const auto [low, high] = box(body_.active.tile[n], kDriftLimit - 0.5, kDriftLimit + 0.5);
+        const SurfaceSet set = surfaces_near(body_.surfaces, low, high, h, 0.0);
         body_.near_points[static_cast<std::size_t>(n)] = set;
-        if (set == 0) continue;
-        const std::array<Index, 3> t = grid.tile_place(body_.active.tile[n]);
-        body_.mirror_colour[static_cast<std::size_t>(t[0] % 4 + 4 * (t[1] % 4) + 16 * (t[2] % 4))].push_back(n);
+        if (set != 0) list_mirrors(n, set, low, high);
     }
-    for (std::size_t n = 0; n < body_.active.work.size(); ++n)
-        body_.near_nodes[n] = near(body_.active.work[n], 0.0, -1.0);
+    for (std::size_t n = 0; n < body_.active.work.size(); ++n) {
+        const auto [low, high] = box(body_.active.work[n], 0.0, -1.0);
+        body_.near_nodes[n] = surfaces_near(body_.surfaces, low, high, h, 0.0);
+    }
     mark_visible_mirrors();
     if (body_.barriers != 0) make_room_for_impulses();
 }
 
+/// Mirror particles in a level bed stand below their points, not beside them: more tiles may give to nodes at once.
+/// Where more surfaces are near, there are mirror particles of mirror particles.
+void Mpm3d::list_mirrors(Index n, SurfaceSet near, const Vec3& low, const Vec3& high) {
+    const bool one = (near & (near - 1)) == 0;
+    const Surface& surface = body_.surfaces[static_cast<std::size_t>(__builtin_ctz(near))];
+    const double farthest = one ? std::min(sideways_reach(surface, low, high), kFarthestMirror) : kFarthestMirror;
+    const Index apart = tiles_apart(farthest);
+    body_.mirror_reach[static_cast<std::size_t>(n)] = 0.5 * (static_cast<double>(apart * kTile3d) - kOwnReach);
+    const std::array<Index, 3> t = body_.grid.tile_place(body_.active.tile[n]);
+    const Index colour = t[0] % apart + 4 * (t[1] % apart) + 16 * (t[2] % 4);
+    body_.mirror_colour[static_cast<std::size_t>(64 * (apart - 2) + colour)].push_back(n);
+}
+
 /// Mirror particles in a surface that bends may stand where its nodes lie farther from it than mirror particles reach
-/// in a plane: there too the real material has to be told from them. An mirror particle stands up to nine cells from
+/// in a plane: there too the real material has to be told from them. A mirror particle stands up to nine cells from
 /// its point (solid_kernel.cpp).
 void Mpm3d::mark_visible_mirrors() {
     SurfaceSet bent = 0;
@@ -259,7 +281,7 @@ void Mpm3d::accumulate() {
         all.mass += sums.mass, all.momentum += sums.momentum, all.moment += sums.moment;
         all.kinetic += sums.kinetic, all.speeds += sums.speeds, all.volume += sums.volume;
         all.left_mass += sums.left_mass, all.left_momentum += sums.left_momentum;
-        all.left_energy += sums.left_energy;
+        all.left_energy += sums.left_energy, left += sums.left;
         all.stored += sums.stored, all.material += sums.material, all.contact_work += sums.contact_work;
         all.max_speed2 = std::max(all.max_speed2, sums.max_speed2);
         all.max_shift = std::max(all.max_shift, sums.max_shift);
@@ -267,7 +289,6 @@ void Mpm3d::accumulate() {
     }
     for (const SurfaceWork& work : body_.tile_work)
         all.contact_work += work.contact_work, all.friction += work.friction;
-    for (const auto gone : body_.gone) left += gone;
     for (const std::vector<Vec3>* list : {&body_.tile_impulse, &body_.point_impulse})
         for (std::size_t n = 0; n < list->size(); ++n) body_.impulse[n % body_.surfaces.size()] += (*list)[n];
     if (body_.barriers != 0) accumulate_barrier_impulses();

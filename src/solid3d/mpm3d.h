@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/constants.h"
 #include "law/solid_law.h"
 #include "mpm/step_clock.h"
 #include "observe/frame.h"
@@ -51,8 +52,8 @@ struct DepartedPoint {
 
 struct SolidScene {
     GridGeometry3d grid;
-    Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
-    double density = 1000.0;    ///< without stress [kg/m^3]
+    Vec3 gravity{0, 0, -constants::kGravity};  ///< [m/s^2]
+    double density = 1000.0;                   ///< without stress [kg/m^3]
     SolidLaw law = solid::Fluid{};
     Affine affine = Affine::tpic;
     /// Points keep their velocities and learn how those of the nodes change (affine FLIP), but for a share of
@@ -106,8 +107,12 @@ struct SolidSums {
     double left_mass = 0.0, left_energy = 0.0;
     double stored = 0.0, material = 0.0, contact_work = 0.0, friction = 0.0;  ///< energies, as in the status
     Vec3 left_momentum{0, 0, 0};
+    Index left = 0;  ///< points
     Index bad = -1;  ///< a point whose numbers are not finite, or that ran away
 };
+
+/// Of a mirror particle from its point along an axis [cells].
+constexpr double kFarthestMirror = 9.0;
 
 /// All that the kernels share.
 struct SolidBody {
@@ -119,8 +124,10 @@ struct SolidBody {
     Grid3d grid;
     MaterialPoints points;
     ActiveTiles active;
-    /// Positions of tiles near surfaces, four colours an axis.
-    std::array<std::vector<Index>, 64> mirror_colour;
+    /// Positions of tiles near surfaces: those two, three and four apart, each by colour.
+    std::array<std::vector<Index>, 3 * 64> mirror_colour;
+    std::vector<double>
+        mirror_reach;  ///< per particle tile: how far to the side its mirror particles may stand [cells]
     std::vector<SurfaceSet> near_points;  ///< per particle tile
     std::vector<SurfaceSet> near_nodes;   ///< per tile of the work list
     std::vector<std::uint8_t> gone;       ///< per point: left the grid in this step
@@ -237,6 +244,7 @@ private:
     void sort();
     void split();
     void mark_near();
+    void list_mirrors(Index n, SurfaceSet near, const Vec3& low, const Vec3& high);
     void mark_visible_mirrors();
     void make_room_for_ghosts();
     void note_near(std::size_t seed);

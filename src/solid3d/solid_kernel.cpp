@@ -15,8 +15,6 @@
 namespace frana {
 namespace {
 
-/// Of an mirror particle from its point along an axis [cells], for the distances of colours (mpm3d.cpp).
-constexpr double kFarthestMirror = 9.0;
 constexpr double kLongestShift = 1.0;  ///< of a point in a step [cells]: the time step allows its cfl
 
 /// A point's 27 nodes in the grid, for mirror particles: they lie anywhere.
@@ -72,7 +70,7 @@ public:
 
     /// Tile by tile through a block of nodes.
     void scatter(SolidBody& body, double dt) const override {
-        for_each_tile_coloured(body.active, [&](Index n) {
+        for_each_tile_in_turn(body.active, [&](Index n) {
             const Index begin = body.active.begin[n], end = body.active.begin[n + 1];
             const Box3d box = box_of(body.points, begin, end);
             body.boxes[static_cast<std::size_t>(n)] = box;
@@ -84,8 +82,8 @@ public:
         });
     }
 
-    /// Mirror particles lie on the far side of surfaces: tiles that scatter them at once stand four apart. Those
-    /// further off than kFarthestMirror, deep in a corner, reach no node that material touches.
+    /// Mirror particles lie on the far side of surfaces: tiles that scatter them at once stand two to four apart
+    /// (mpm3d.cpp). Those further off, of points deep in a corner or behind a surface, reach no node that material touches.
     void scatter_mirrors(SolidBody& body, double dt) const override {
         for_each_work_tile(body.active, [&](Index n, Index tile) {
             if (body.near_nodes[static_cast<std::size_t>(n)] != 0)
@@ -95,13 +93,15 @@ public:
         const Vec3& origin = body.grid.geometry().origin;
         for_each_listed(body.mirror_colour, body.active.count() >= kTilesForThreads, [&](Index n) {
             MirrorBatch batch;
+            const double sideways = std::min(body.mirror_reach[static_cast<std::size_t>(n)], kFarthestMirror);
             for (Index p = body.active.begin[n]; p < body.active.begin[n + 1]; ++p) {
                 const Vec3 x = position(body, p);
                 const MirrorParticles mirrors(body.surfaces, body.near_points[static_cast<std::size_t>(n)],
                                               origin + h * x, h);
                 for (const MirrorParticle& mirror : mirrors) {
                     const Vec3 place = (mirror.place - origin) / h;
-                    const bool far = (place - x).cwiseAbs().maxCoeff() > kFarthestMirror;
+                    const Vec3 shift = (place - x).cwiseAbs();
+                    const bool far = std::max(shift.x(), shift.y()) > sideways || shift.z() > kFarthestMirror;
                     if (far || !seen(body, place)) continue;
                     if (mirror.cuts > 0) {
                         show_before_cuts(body, p, mirror, place, dt);
@@ -228,7 +228,7 @@ private:
         return contribution;
     }
 
-    /// The motion and the stress that an mirror particle shows; a point and it push each other alike.
+    /// The motion and the stress that a mirror particle shows; a point and it push each other alike.
     static Point mirrored(const Point& p, const MirrorParticle& mirror) {
         Point other;
         other.mass = p.mass, other.j = p.j;
@@ -345,7 +345,7 @@ private:
         batch.count = 0, batch.slides = 0;
     }
 
-    /// Whether any tile that an mirror particle's stencil touches is on the work list.
+    /// Whether any tile that a mirror particle's stencil touches is on the work list.
     static bool seen(const SolidBody& body, const Vec3& place) {
         std::array<Index, 3> first;
         for (int axis = 0; axis < 3; ++axis) first[axis] = static_cast<Index>(std::floor(place[axis] - 0.5));
@@ -900,7 +900,7 @@ private:
     static void leave(SolidBody& body, Index p, const BatchPoints& now, int lane, SolidSums& sums) {
         const double mass = now.mass[lane];
         body.gone[static_cast<std::size_t>(p)] = 1;
-        sums.left_mass += mass;
+        sums.left_mass += mass, ++sums.left;
         const Vec3 v(now.v[0][lane], now.v[1][lane], now.v[2][lane]);
         const Vec3 place = body.grid.geometry().origin + body.grid.cell() * position(body, p);
         sums.left_momentum += mass * v;

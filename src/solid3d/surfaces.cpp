@@ -109,6 +109,44 @@ SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, 
     return set;
 }
 
+namespace {
+
+/// Least and largest size of two numbers and all between.
+struct Sizes {
+    double least, most;
+    Sizes(double a, double b)
+        : least(a * b < 0.0 ? 0.0 : std::min(std::abs(a), std::abs(b))), most(std::max(std::abs(a), std::abs(b))) {}
+};
+
+/// With slopes a and b along x and y the normal's entries are a, b and 1 over sqrt(1 + a^2 + b^2).
+double sideways_reach(const Sizes& x, const Sizes& y) {
+    const double square = 1.0 + x.least * x.least + y.least * y.least;
+    return 2.0 * mirror_reach({x.most, y.most, 1.0}) * std::max(x.most, y.most) / square;
+}
+
+}  // namespace
+
+double sideways_reach(const Surface& surface, const Vec3& low, const Vec3& high) {
+    if (surface.kind == Surface::Kind::plane) {
+        const Vec3& n = surface.normal;
+        return 2.0 * mirror_reach(n) * std::max(std::abs(n.x()), std::abs(n.y()));
+    }
+    if (surface.is_barrier()) return std::numeric_limits<double>::infinity();
+    const Raster& bed = surface.bed;
+    const GridGeometry& g = bed.geometry;
+    const auto cell_at = [&](double x, double x0, Index n) {
+        return static_cast<Index>(std::clamp((x - x0) / g.cell, 0.0, static_cast<double>(n - 2)));
+    };
+    double reach = 0.0;  // where the bed is no number no mirror particle stands
+    for (Index j = cell_at(low.y(), g.y0, g.ny); j <= cell_at(high.y(), g.y0, g.ny); ++j)
+        for (Index i = cell_at(low.x(), g.x0, g.nx); i <= cell_at(high.x(), g.x0, g.nx); ++i) {
+            const double a = bed.at(i, j), b = bed.at(i + 1, j), c = bed.at(i, j + 1), d = bed.at(i + 1, j + 1);
+            reach = std::max(reach, sideways_reach(Sizes((b - a) / g.cell, (d - c) / g.cell),
+                                                   Sizes((c - a) / g.cell, (d - b) / g.cell)));
+        }
+    return reach;
+}
+
 MirrorParticles::MirrorParticles(const std::vector<Surface>& surfaces, SurfaceSet near, const Vec3& x, double cell) {
     Near list[kMostNear];
     int count = 0;
@@ -136,7 +174,7 @@ int MirrorParticles::near_barrier(const Surface& surface, const Vec3& x, double 
     return count;
 }
 
-/// In a barrier an mirror particle shows only down to half of its thickness.
+/// In a barrier a mirror particle shows only down to half of its thickness.
 void MirrorParticles::cut_off(MirrorParticle& mirror, const Near& near, const Vec3& from) {
     const Vec3& normal = near.contact.normal;
     if (near.thick < std::numeric_limits<double>::infinity() && mirror.cuts < 2)
@@ -151,7 +189,7 @@ bool MirrorParticles::corner(const Near* near, int count, int n) {
     return false;
 }
 
-/// The next surface of a corner that an mirror particle is mirrored in, after those of `turn`.
+/// The next surface of a corner that a mirror particle is mirrored in, after those of `turn`.
 void MirrorParticles::slide_along(MirrorParticle& mirror, const Near& near, const Mat3& turn) {
     if (!mirror.held) mirror.slide[mirror.slides++] = turn.transpose() * near.contact.normal;
 }
@@ -188,7 +226,7 @@ void MirrorParticles::reflect_in_others(const Near* near, int count, int n, cons
     reflect(others, left, mirror, depth + 1);
 }
 
-/// The same of an mirror particle. Surfaces are perpendicular to each other when the cosine of their angle is below
+/// The same of a mirror particle. Surfaces are perpendicular to each other when the cosine of their angle is below
 /// kSquare, round-off.
 void MirrorParticles::reflect(const Near* near, int count, const MirrorParticle& from, int depth) {
     for (int n = 0; n < count && count_ < kMost; ++n) {

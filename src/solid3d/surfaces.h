@@ -62,24 +62,28 @@ constexpr int kMostSurfaces = 32;
 SurfaceSet surfaces_near(const std::vector<Surface>& surfaces, const Vec3& low, const Vec3& high, double cell,
                          double more);
 
+/// How far beside their points mirror particles in that surface stand at most, along x or y, for points over a box from
+/// `low` to `high` [cells]. Without end for barriers.
+double sideways_reach(const Surface& surface, const Vec3& low, const Vec3& high);
+
 /// A mirror particle of a point and of what surrounds it: dx' = turn dx, v' = motion v. A free surface mirrors
 /// both; a stuck one turns velocities round, so that all of them vanish on it. In a barrier it shows only
 /// down to half of the barrier's thickness: the other half is for the other side's material.
 struct MirrorParticle {
     Vec3 place;  ///< of the point's mirror particle [m]
     Mat3 turn, motion;
-    /// Of the one stuck surface that it is an mirror particle in, and how far the point is above it: what flows there
+    /// Of the one stuck surface that it is a mirror particle in, and how far the point is above it: what flows there
     /// bends. Zero in barriers, and in corners of which not all surfaces are perpendicular to that one.
     Vec3 held_normal;
     double held_above;  ///< [m]
     bool held;          ///< in a stuck surface, or more
-    /// In corners of free surfaces: normals of those that it is an mirror particle in, as its point sees them (see
+    /// In corners of free surfaces: normals of those that it is a mirror particle in, as its point sees them (see
     /// without_shear).
     int slides;
     Vec3 slide[3];
     /// A free surface turns the shear beside it round: the mirror particle shows the speed along the surface with a
     /// kink there. The surface itself asks for none of that. But the other one of a corner takes it for motion, and
-    /// would drive what shears. So an mirror particle in a corner shows its point's speed along the surface everywhere.
+    /// would drive what shears. So a mirror particle in a corner shows its point's speed along the surface everywhere.
     Mat3 without_shear(Mat3 gradient) const {
         for (const Vec3* n = slide; n < slide + slides; ++n) {
             const Vec3 across = gradient * *n;

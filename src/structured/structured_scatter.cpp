@@ -158,7 +158,7 @@ void clear_nodes(StructuredBody& body) {
 
 void scatter(StructuredBody& body) {
     with_kinds(body, [&](auto grains, auto water) {
-        for_each_tile_coloured(body.active, [&](Index n) { scatter_tile<grains.value, water.value>(body, n); });
+        for_each_tile_in_turn(body.active, [&](Index n) { scatter_tile<grains.value, water.value>(body, n); });
     });
 }
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/constants.h"
 #include "mpm/tile_grid.h"
 
 namespace frana::bench {
 namespace {
 
-constexpr double kCell = 5.0;  ///< [m]
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kCell = 5.0;   ///< [m]
 constexpr Index kRoom = 48;     ///< [cells]
 constexpr double kDepth = 4.0;  ///< [m]
 
@@ -22,7 +22,7 @@ struct Place {
 
 /// The `count` places nearest to the centre, row by row.
 std::vector<Place> nearest_places(Index count) {
-    const Index reach = static_cast<Index>(std::ceil(std::sqrt(static_cast<double>(count) / kPi))) + 2;
+    const Index reach = static_cast<Index>(std::ceil(std::sqrt(static_cast<double>(count) / constants::kPi))) + 2;
     std::vector<Place> places;
     for (Index j = -reach; j < reach; ++j)
         for (Index i = -reach; i < reach; ++i) places.push_back({i, j});
@@ -48,7 +48,8 @@ Index first_moving(const std::vector<Place>& places, double resting) {
 
 /// Bed elevation at (x, y) from the blob's centre [m].
 double ground(double x, double y) {
-    return 2000.0 - 0.5 * x + 4.0 * std::sin(2.0 * kPi * x / 190.0) * std::cos(2.0 * kPi * y / 230.0);
+    return 2000.0 - 0.5 * x +
+           4.0 * std::sin(2.0 * constants::kPi * x / 190.0) * std::cos(2.0 * constants::kPi * y / 230.0);
 }
 
 Raster bed_of(const Blob& blob, Index nodes, Index centre) {
@@ -64,7 +65,8 @@ Raster bed_of(const Blob& blob, Index nodes, Index centre) {
 }  // namespace
 
 Scene blob_scene(const Blob& blob) {
-    const double cells = static_cast<double>(blob.particles) / 4.0, radius = std::sqrt(cells / kPi);  // [cells]
+    const double cells = static_cast<double>(blob.particles) / 4.0,
+                 radius = std::sqrt(cells / constants::kPi);  // [cells]
     const Index tight = 2 * (static_cast<Index>(std::ceil(radius)) + kRoom + kTile);
     const Index nodes = std::max(tight, static_cast<Index>(std::lround(std::sqrt(blob.emptiness * cells))));
     const Index centre = nodes / 2 / kTile * kTile;

@@ -42,6 +42,36 @@ std::string phase_lines(const Report& report) {
     return text;
 }
 
+/// Wall time of the phase with that name, 0 when it was not timed [ns].
+double wall_of(const Timed* timed, const std::string& name) {
+    if (timed == nullptr) return 0.0;
+    for (const PhaseCost& phase : timed->cost.phases)
+        if (phase.name == name) return phase.wall_ns;
+    return 0.0;
+}
+
+/// The time of one thread over that of many, by the wall, of what was timed with both.
+std::string speed_up_lines(const Report& report) {
+    std::string head = fmt::format("{:45} {:>9}", "speed-up over one thread, by wall time", "particles"), text;
+    for (const int threads : report.options.threads)
+        if (threads > 1) head += fmt::format(" {:>7}", fmt::format("x{}", threads));
+    for (const Timed& one : report.timed) {
+        if (one.cost.threads != 1) continue;
+        for (const PhaseCost& phase : one.cost.phases) {
+            std::string ratios;
+            for (const int threads : report.options.threads) {
+                if (threads == 1) continue;
+                const double many =
+                    wall_of(find(report, one.model, one.cost.particles, threads, one.precision), phase.name);
+                if (many > 0.0) ratios += fmt::format(" {:>7.2f}", phase.wall_ns / many);
+            }
+            if (!ratios.empty())
+                text += fmt::format("{:45} {:>9}{}\n", name_of(one, phase), one.cost.particles, ratios);
+        }
+    }
+    return text.empty() ? "" : head + "\n" + text + "\n";
+}
+
 std::string frame_lines(const Report& report) {
     if (report.frames.empty()) return "";
     std::string text =
@@ -118,8 +148,8 @@ std::string json_gate(const Gate& gate) {
 }  // namespace
 
 std::string table_of(const Report& report) {
-    return calibration_lines(report.calibration) + "\n" + phase_lines(report) + "\n" + frame_lines(report) +
-           gate_lines(report) + "\n" + hash_lines(report) + warning(report);
+    return calibration_lines(report.calibration) + "\n" + phase_lines(report) + "\n" + speed_up_lines(report) +
+           frame_lines(report) + gate_lines(report) + "\n" + hash_lines(report) + warning(report);
 }
 
 std::string json_of(const Report& report) {
