@@ -306,7 +306,7 @@ TEST_CASE("A barrier's mean force knows nothing of a short blow", "[barrier]") {
     const FreshFolder scratch;
     const auto& folder = scratch.path();
     std::vector<BarrierSummary> summaries;
-    Barriers table(folder, {"dam"}, summaries);
+    Barriers table(folder, {{"dam", {}}}, summaries);
     Pushed probe;
     Status now;
     table.step(now, probe);
@@ -328,10 +328,47 @@ TEST_CASE("A barrier's mean force knows nothing of a short blow", "[barrier]") {
     CHECK(read.column("f0x").back() == Approx(2.0));
 }
 
+TEST_CASE("A barrier's largest means are those of its windows, with force and moment then", "[barrier]") {
+    const FreshFolder scratch;
+    std::vector<BarrierSummary> summaries;
+    Barriers table(scratch.path(), {{"dam", {0.01, 0.05, 1.0, 7.0}}}, summaries);
+    Pushed probe;
+    Status now;
+    table.step(now, probe);
+    // 5 N from 1.000 s to 1.020 s along x and y, 2 N along x else, in steps that meet no end of a window; up to 3 s.
+    FaceLoad& face = probe.state.barriers[0].faces[0];
+    double last = 0.0;
+    for (int step = 1; last < 3.0; ++step) {
+        now.time = step % 3 == 0 ? last + 0.0007 : last + 0.0011;
+        const auto pushed = [&](double from, double to) {
+            return std::max(0.0, std::min(now.time, to) - std::max(last, from));
+        };
+        const double hard = pushed(1.0, 1.02), soft = now.time - last - hard;
+        face.impulse += Vec3(3.0 * hard + 2.0 * soft, 4.0 * hard, -1.0 * (now.time - last));
+        face.moment += Vec3(0.0, 0.0, 10.0 * hard);
+        last = now.time;
+        table.step(now, probe);
+    }
+    const std::vector<MeanForce>& means = summaries.at(0).means;
+    REQUIRE(means.size() == 4);
+    // The impulse between two steps is taken as even: a mean is off by up to a step's part with another force.
+    constexpr double kStep = 0.0011;
+    CHECK(means[0].largest == Approx(5.0));
+    CHECK(means[0].time == Approx(1.015).margin(0.005 + kStep));
+    CHECK(means[0].force.y() == Approx(4.0));
+    CHECK(means[0].moment.z() == Approx(10.0));
+    CHECK(means[1].largest == Approx(std::hypot(2.0 + 1.0 * 0.4, 4.0 * 0.4)));  // 20 of its 50 ms
+    CHECK(means[1].force.z() == Approx(-1.0));
+    CHECK(means[2].largest == Approx(std::hypot(2.0 + 0.02, 4.0 * 0.02)));
+    CHECK(means[2].moment.z() == Approx(0.2));
+    CHECK(means[3].largest == Approx(std::hypot(2.0 * last + 0.02, 4.0 * 0.02) / 7.0));  // the run is shorter
+    CHECK(means[3].time == Approx(last));
+}
+
 TEST_CASE("A barrier's mean force begins within a step, and its raw peak is horizontal", "[barrier]") {
     const FreshFolder scratch;
     std::vector<BarrierSummary> summaries;
-    Barriers table(scratch.path(), {"dam"}, summaries);
+    Barriers table(scratch.path(), {{"dam", {}}}, summaries);
     Pushed probe;
     Status now;
     table.step(now, probe);
@@ -351,11 +388,12 @@ TEST_CASE("A barrier's mean force goes on from what was measured before the run 
           "[barrier][resume]") {
     const FreshFolder scratch;
     std::vector<BarrierSummary> summaries, summaries_after;
-    Barriers whole(scratch.path() / "whole", {"dam"}, summaries), cut(scratch.path() / "cut", {"dam"}, summaries_after);
+    const std::vector<NamedBarrier> dams{{"dam", {0.25, 1.5}}};
+    Barriers whole(scratch.path() / "whole", dams, summaries), cut(scratch.path() / "cut", dams, summaries_after);
     Pushed probe;
     Status now;
     std::vector<BarrierSummary> resumed_summaries;
-    Barriers resumed(scratch.path() / "cut", {"dam"}, resumed_summaries);
+    Barriers resumed(scratch.path() / "cut", dams, resumed_summaries);
     for (int step = 0; step <= 20; ++step) {
         now.time = 0.1 * step;
         probe.state.barriers[0].faces[0].impulse.x() += 0.1 * step;
@@ -369,6 +407,11 @@ TEST_CASE("A barrier's mean force goes on from what was measured before the run 
     }
     whole.observe({}), resumed.observe({});
     CHECK(resumed_summaries.at(0).peak_force == summaries.at(0).peak_force);
+    for (std::size_t n = 0; n < 2; ++n) {
+        const MeanForce &one = summaries.at(0).means[n], &other = resumed_summaries.at(0).means[n];
+        CHECK(one.largest > 0.0);
+        CHECK((one.largest == other.largest && one.time == other.time && one.force == other.force));
+    }
     CHECK(read_table(scratch.path() / "cut" / "barriers" / "dam.csv").column("mean_force") ==
           read_table(scratch.path() / "whole" / "barriers" / "dam.csv").column("mean_force"));
 }

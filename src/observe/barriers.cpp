@@ -23,11 +23,15 @@ std::vector<std::string> columns_of(std::size_t faces) {
 
 }  // namespace
 
-Barriers::Barriers(std::filesystem::path run_dir, std::vector<std::string> names,
+Barriers::Barriers(std::filesystem::path run_dir, const std::vector<NamedBarrier>& barriers,
                    std::vector<BarrierSummary>& summaries)
-    : run_dir_(std::move(run_dir)), names_(std::move(names)), summaries_(summaries) {
-    summaries_.resize(names_.size());
-    for (std::size_t n = 0; n < names_.size(); ++n) summaries_[n].name = names_[n];
+    : run_dir_(std::move(run_dir)), summaries_(summaries) {
+    summaries_.resize(barriers.size());
+    for (std::size_t n = 0; n < barriers.size(); ++n) {
+        names_.push_back(barriers[n].name);
+        summaries_[n].name = names_[n];
+        for (const double window : barriers[n].windows) summaries_[n].means.emplace_back().window = window;
+    }
 }
 
 void Barriers::begin(const BarrierLoads& loads) {
@@ -37,7 +41,7 @@ void Barriers::begin(const BarrierLoads& loads) {
     for (std::size_t n = 0; n < names_.size(); ++n) {
         tables_.emplace_back(run_dir_ / "barriers" / (names_[n] + ".csv"), columns_of(loads.barriers[n].faces.size()));
         watched_[n].before.resize(loads.barriers[n].faces.size());
-        watched_[n].lately.push_back({time_, 0.0, 0.0});
+        watched_[n].lately.emplace_back().time = time_;
     }
 }
 
@@ -53,15 +57,18 @@ void Barriers::step(const Status& now, const Probe& probe) {
         Watched& watched = watched_[n];
         BarrierSummary& summary = summaries_[n];
         std::vector<double> row(10), faces;
-        Vec3 force(0, 0, 0), moment(0, 0, 0), impulse(0, 0, 0);
+        Vec3 force(0, 0, 0), moment(0, 0, 0);
+        Received all;
+        all.time = now.time;
         for (std::size_t face = 0; face < load.faces.size(); ++face) {
             const Vec3 f = (load.faces[face].impulse - watched.before[face].impulse) / dt;
             const Vec3 m = (load.faces[face].moment - watched.before[face].moment) / dt;
-            force += f, moment += m, impulse += load.faces[face].impulse;
+            force += f, moment += m;
+            all.impulse += load.faces[face].impulse, all.moment += load.faces[face].moment;
             faces.insert(faces.end(), {f[0], f[1], f[2], m[0], m[1], m[2]});
         }
         watched.before = load.faces;
-        const double mean = mean_force(watched, {now.time, impulse[0], impulse[1]}, loads->blur);
+        const double mean = load.faces.empty() ? 0.0 : note_means(watched, all, loads->blur, summary.means);
         row = {now.time,  force[0],  force[1], force[2],    moment[0],
                moment[1], moment[2], mean,     load.run_up, load.overtopped};
         row.insert(row.end(), faces.begin(), faces.end());
@@ -71,7 +78,7 @@ void Barriers::step(const Status& now, const Probe& probe) {
         if (mean > summary.peak_force) summary.peak_force = mean, summary.peak_force_time = now.time;
         summary.raw_peak_force = std::max(summary.raw_peak_force, force.head<2>().norm());
         summary.blur = loads->blur;
-        summary.impulse = impulse;
+        summary.impulse = all.impulse;
         summary.about = load.about;
         summary.run_up = load.run_up;
         summary.overtopped = load.overtopped;
@@ -86,18 +93,37 @@ void Barriers::step_without_forces(const BarrierLoads& loads) {
     }
 }
 
-/// From the impulse now and that of `blur` ago, or of the beginning.
-double Barriers::mean_force(Watched& watched, const Moment& now, double blur) const {
-    std::vector<Moment>& lately = watched.lately;
+/// Keeps what means need, and the largest ones. Returns the horizontal force's over `blur`.
+double Barriers::note_means(Watched& watched, const Received& now, double blur, std::vector<MeanForce>& means) {
+    double longest = blur;
+    for (const MeanForce& mean : means) longest = std::max(longest, mean.window);
+    std::vector<Received>& lately = watched.lately;
     lately.push_back(now);
-    const double start = now.time - blur;
-    std::size_t from = 0;
-    while (from + 2 < lately.size() && lately[from + 1].time <= start) ++from;
-    lately.erase(lately.begin(), lately.begin() + static_cast<std::ptrdiff_t>(from));
-    if (!(blur > 0.0)) return 0.0;
-    const Moment &a = lately[0], &b = lately[1];
+    while (watched.first + 2 < lately.size() && lately[watched.first + 1].time <= now.time - longest) ++watched.first;
+    if (watched.first > lately.size() / 2) {  // not at every step: it moves all that is left
+        lately.erase(lately.begin(), lately.begin() + static_cast<std::ptrdiff_t>(watched.first));
+        watched.first = 0;
+    }
+    for (MeanForce& largest : means)
+        if (const MeanForce mean = mean_over(watched, largest.window); mean.largest > largest.largest) largest = mean;
+    return blur > 0.0 ? mean_over(watched, blur).largest : 0.0;
+}
+
+/// From what was received up to now and up to `window` ago, or to the beginning.
+MeanForce Barriers::mean_over(const Watched& watched, double window) {
+    const auto first = watched.lately.begin() + static_cast<std::ptrdiff_t>(watched.first), end = watched.lately.end();
+    const Received& now = watched.lately.back();
+    const double start = now.time - window;
+    const auto later =
+        std::upper_bound(first + 1, end - 1, start, [](double time, const Received& r) { return time < r.time; });
+    const Received &a = *(later - 1), &b = *later;
     const double share = std::clamp((start - a.time) / (b.time - a.time), 0.0, 1.0);
-    return std::hypot(now.x - a.x - share * (b.x - a.x), now.y - a.y - share * (b.y - a.y)) / blur;
+    MeanForce mean;
+    mean.window = window, mean.time = now.time;
+    mean.force = (now.impulse - a.impulse - share * (b.impulse - a.impulse)) / window;
+    mean.moment = (now.moment - a.moment - share * (b.moment - a.moment)) / window;
+    mean.largest = mean.force.head<2>().norm();
+    return mean;
 }
 
 void Barriers::observe(const Frame&) {
@@ -141,15 +167,30 @@ void Barriers::serialize(Archive& archive) {
         for (FaceLoad& load : watched_[n].before)
             for (int k = 0; k < 3; ++k) before.push_back(&load.impulse[k]), before.push_back(&load.moment[k]);
         archive.numbers("before", before);
-        std::vector<double> lately;
-        for (const Moment& moment : watched_[n].lately) lately.insert(lately.end(), {moment.time, moment.x, moment.y});
-        archive.array("lately", lately);
-        if (!archive.loading()) continue;
-        watched_[n].lately.clear();
-        for (std::size_t k = 0; k + 2 < lately.size(); k += 3)
-            watched_[n].lately.push_back({lately[k], lately[k + 1], lately[k + 2]});
+        for (std::size_t k = 0; k < s.means.size(); ++k) {
+            MeanForce& mean = s.means[k];
+            archive.numbers(fmt::format("mean_{}", k),
+                            {&mean.largest, &mean.time, &mean.force[0], &mean.force[1], &mean.force[2], &mean.moment[0],
+                             &mean.moment[1], &mean.moment[2]});
+        }
+        serialize_lately(archive, watched_[n]);
     }
     serialize_all(archive, tables_);
+}
+
+void Barriers::serialize_lately(Archive& archive, Watched& watched) {
+    constexpr std::size_t kNumbers = 7;
+    std::vector<Received>& lately = watched.lately;
+    std::vector<double> all;
+    for (auto r = lately.begin() + static_cast<std::ptrdiff_t>(watched.first); r != lately.end(); ++r)
+        all.insert(all.end(),
+                   {r->time, r->impulse[0], r->impulse[1], r->impulse[2], r->moment[0], r->moment[1], r->moment[2]});
+    archive.array("lately", all);
+    if (!archive.loading()) return;
+    expect(!all.empty() && all.size() % kNumbers == 0, "a state has what barriers received lately");
+    lately.clear(), watched.first = 0;
+    for (std::size_t k = 0; k + kNumbers <= all.size(); k += kNumbers)
+        lately.push_back({all[k], Vec3(all[k + 1], all[k + 2], all[k + 3]), Vec3(all[k + 4], all[k + 5], all[k + 6])});
 }
 
 }  // namespace frana

@@ -8,6 +8,21 @@
 
 namespace frana {
 
+/// A barrier's name, and the times over which its force is averaged [s].
+struct NamedBarrier {
+    std::string name;
+    std::vector<double> windows;
+};
+
+/// The largest horizontal force on a barrier as a mean over a time. Before the start there is no force.
+struct MeanForce {
+    double window = 0.0;   ///< [s]
+    double largest = 0.0;  ///< [N]
+    double time = 0.0;     ///< end of the time that it is the mean of [s]
+    Vec3 force{0, 0, 0};   ///< then [N]
+    Vec3 moment{0, 0, 0};  ///< then, about BarrierSummary::about [N m]
+};
+
 /// What a run did to a barrier.
 struct BarrierSummary {
     std::string name;
@@ -20,6 +35,7 @@ struct BarrierSummary {
     Vec3 about{0, 0, 0};           ///< place that moments are about [m]
     double run_up = 0.0;           ///< as in BarrierLoad [m]
     double overtopped = 0.0;       ///< material that was over it at any time [m3]
+    std::vector<MeanForce> means;  ///< for each window of the barrier
 };
 
 /// More barriers than these have no table of their own: opening hundreds at every output costs more than steps do.
@@ -32,26 +48,31 @@ inline constexpr std::size_t kMostBarrierTables = 24;
 /// barriers, which columns alone can have, leave their summaries only.
 class Barriers final : public Observer {
 public:
-    Barriers(std::filesystem::path run_dir, std::vector<std::string> names, std::vector<BarrierSummary>& summaries);
+    Barriers(std::filesystem::path run_dir, const std::vector<NamedBarrier>& barriers,
+             std::vector<BarrierSummary>& summaries);
     std::string name() const override { return "barriers"; }
     void step(const Status& now, const Probe& probe) override;
     void observe(const Frame& frame) override;
     void serialize(Archive& archive) override;
 
 private:
-    /// Impulse on a barrier at a time, for means.
-    struct Moment {
-        double time, x, y;
+    /// What a barrier has got up to a time, for means.
+    struct Received {
+        double time = 0.0;
+        Vec3 impulse{0, 0, 0}, moment{0, 0, 0};  ///< [N s], [N m s]
     };
     struct Watched {
         std::vector<FaceLoad> before;
-        std::vector<Moment> lately;  ///< as old as the mean needs, and one before
+        std::vector<Received> lately;  ///< from `first` on as old as the longest mean needs, and one before
+        std::size_t first = 0;
     };
     void begin(const BarrierLoads& loads);
     bool has_tables() const { return names_.size() <= kMostBarrierTables; }
     void step_without_forces(const BarrierLoads& loads);
     void serialize_without_tables(Archive& archive);
-    double mean_force(Watched& watched, const Moment& now, double blur) const;
+    static double note_means(Watched& watched, const Received& now, double blur, std::vector<MeanForce>& means);
+    static MeanForce mean_over(const Watched& watched, double window);
+    static void serialize_lately(Archive& archive, Watched& watched);
 
     std::filesystem::path run_dir_;
     std::vector<std::string> names_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/constants.h"
 #include "convert/profile.h"
 #include "law/bed/law_map.h"
 #include "law/detrainment.h"
@@ -170,6 +171,7 @@ struct Barrier {
     double height = 0.0;              ///< above the bed, which the top then follows [m]
     bool stuck = false;               ///< material does not slide along it
     double friction = 0.0;            ///< Coulomb's coefficient [1]
+    std::vector<double> windows;      ///< times over which its force is averaged [s]
 };
 
 /// Solids that hold together: columns are elastic, yield and break (structured/structured_flow.h).
@@ -264,9 +266,9 @@ struct Scene {
     std::string name;  ///< case file's folder or stem
     std::string title;
     std::filesystem::path case_file;
-    std::filesystem::path footprint;  ///< survey outline, empty when none
-    double gravity = 9.81;            ///< [m/s^2]
-    double density = 1000.0;          ///< [kg/m^3]
+    std::filesystem::path footprint;       ///< survey outline, empty when none
+    double gravity = constants::kGravity;  ///< [m/s^2]
+    double density = 1000.0;               ///< [kg/m^3]
 
     Raster bed;                                 ///< bed elevation on the solver's nodes [m]; NaN: outside (an exit)
     std::shared_ptr<const WiderTerrain> wider;  ///< nothing: the bed is all of the terrain

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "base/error.h"
@@ -81,6 +82,7 @@ public:
                           "correct it; an elevation is given by top");
         barrier.friction = case_.number(prefix_ + "friction");
         barrier.stuck = case_.flag(prefix_ + "stuck");
+        barrier.windows = windows();
         remark_thin(barrier.outline);
         if (!case_.flag(prefix_ + "each")) return scene_.barriers.push_back(std::move(barrier));
         add_each(barrier);
@@ -90,6 +92,24 @@ private:
     bool given(const char* name) const { return case_.given(prefix_ + name); }
     std::string place() const {
         return case_.place(prefix_ + (given("mesh") ? "mesh" : given("line") ? "line" : "outline"));
+    }
+
+    /// Times over which forces are averaged [s].
+    std::vector<double> windows() {
+        constexpr double kLongest = 10.0;
+        constexpr std::size_t kMost = 8;
+        const std::vector<double> windows = case_.numbers(prefix_ + "windows");
+        const bool fit = !windows.empty() && windows.size() <= kMost && windows.front() > 0.0 &&
+                         windows.back() <= kLongest &&
+                         std::is_sorted(windows.begin(), windows.end(), std::less_equal<>());  // and none twice
+        if (!fit)
+            problems_.add(
+                case_.place(prefix_ + "windows"),
+                windows.empty() ? "found no number" : fmt::format("found [{:.6g}]", fmt::join(windows, ", ")),
+                fmt::format("expected one to {} times above 0 and up to {:.6g} s, each longer than the one before",
+                            kMost, kLongest),
+                "give the times over which a designer needs the force, such as [0.01, 0.05, 1.0]");
+        return windows;
     }
 
     /// Every polygon on the terrain by itself. Files of a whole valley have many beyond it: their numbers are left out.
@@ -109,7 +129,7 @@ private:
             one.outline.parts = {barrier.outline.parts[n]};
             one.outline.source = barrier.outline.source;
             one.top = barrier.top, one.height = heights_.empty() ? barrier.height : heights_[n];
-            one.stuck = barrier.stuck, one.friction = barrier.friction;
+            one.stuck = barrier.stuck, one.friction = barrier.friction, one.windows = barrier.windows;
             scene_.barriers.push_back(std::move(one));
         }
         if (beyond > 0)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/constants.h"
 #include "base/version.h"
 #include "run/folder/comparison.h"
 #include "run/folder/run_folder.h"
@@ -222,22 +223,37 @@ std::vector<std::size_t> shown_barriers(const RunRecord& r) {
 std::string barrier_row(const BarrierSummary& b) {
     const std::string run_up = b.run_up > b.about[2] ? fmt::format("{:.5g} m", b.run_up) : "-";  // where it begins
     if (b.first_contact < 0.0)
-        return fmt::format("| {} | {} | - | - | {} | {:.5g} m3 |\n", b.name,
+        return fmt::format("| {} | {} | - | {} | {:.5g} m3 |\n", b.name,
                            b.blur <= 0.0 && b.run_up > b.about[2] ? "-" : "none", run_up, b.overtopped);
     if (b.blur <= 0.0)
-        return fmt::format("| {} | {:.4g} s | - | - | {} | {:.5g} m3 |\n", b.name, b.first_contact, run_up,
-                           b.overtopped);
-    return fmt::format("| {} | {:.4g} s | {:.4g} N at {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n",
-                       b.name, b.first_contact, b.peak_force, b.peak_force_time, b.impulse[0], b.impulse[1],
-                       b.impulse[2], b.run_up, b.overtopped);
+        return fmt::format("| {} | {:.4g} s | - | {} | {:.5g} m3 |\n", b.name, b.first_contact, run_up, b.overtopped);
+    return fmt::format("| {} | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N s | {:.5g} m | {:.5g} m3 |\n", b.name,
+                       b.first_contact, b.impulse[0], b.impulse[1], b.impulse[2], b.run_up, b.overtopped);
+}
+
+/// The largest means of the forces on those barriers; empty where no forces are known.
+std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& shown) {
+    std::string rows;
+    for (const std::size_t n : shown) {
+        const BarrierSummary& b = r.barriers[n];
+        if (b.first_contact < 0.0 || b.blur <= 0.0) continue;
+        for (const MeanForce& m : b.means)
+            rows += fmt::format(
+                "| {} | {:.4g} s | {:.4g} N | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N | {:.4g}, {:.4g}, {:.4g} N m |\n",
+                b.name, m.window, m.largest, m.time, m.force[0], m.force[1], m.force[2], m.moment[0], m.moment[1],
+                m.moment[2]);
+    }
+    if (rows.empty()) return "";
+    return "\n| Barrier | Mean over | Largest horizontal force | Up to | Force x, y, z | Moment x, y, z |\n"
+           "|---|---|---|---|---|---|\n" +
+           rows;
 }
 
 std::string barriers(const RunRecord& r) {
     if (r.barriers.empty()) return "";
     std::string text =
-        "## Barriers\n\n| Barrier | First contact | Largest horizontal force | Impulse x, y, z | Run-up to | "
-        "Over it |\n"
-        "|---|---|---|---|---|---|\n";
+        "## Barriers\n\n| Barrier | First contact | Impulse x, y, z | Run-up to | Over it |\n"
+        "|---|---|---|---|---|\n";
     double blur = 0.0, hardest = 0.0;
     for (const BarrierSummary& b : r.barriers)
         blur = std::max(blur, b.blur), hardest = std::max(hardest, b.raw_peak_force);
@@ -249,14 +265,13 @@ std::string barriers(const RunRecord& r) {
         text += fmt::format("\nOf {} barriers {} were hit.{} `barriers.csv` has all.\n", r.barriers.size(), hit,
                             shown.empty() ? "" : " These stood deepest.");
     }
+    text += mean_forces(r, shown);
     if (hardest > 0.0)
         text += fmt::format(
-            "\nForces are means over {:.3g} s, twenty times what sound takes through the flow: the blow of a "
-            "first contact is "
-            "as hard as the artificial sound is fast ({:.4g} N in the worst step of them all). Over it: what "
-            "stood over the "
-            "barrier at any time.\n",
-            blur, hardest);
+            "\nThe first blow of a contact is as hard as the artificial sound is fast ({:.4g} N in the worst step of "
+            "all). Means over less than {:.3g} s, twenty times what sound takes through the flow, may hold some of it. "
+            "Over it: what stood over the barrier at any time.\n",
+            hardest, blur);
     else if (blur <= 0.0)
         text += fmt::format(
             "\nFirst contact is when the depth at a face first exceeds {:.4g} m (`output.footprint_depth`); of walls "
@@ -274,8 +289,7 @@ std::string sections(const RunRecord& r) {
         "discharge |\n"
         "|---|---|---|---|---|\n";
     for (const SectionSummary& s : r.sections) {
-        constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-        const double azimuth = std::fmod(std::atan2(s.towards.x(), s.towards.y()) * kDegrees + 360.0, 360.0);
+        const double azimuth = std::fmod(std::atan2(s.towards.x(), s.towards.y()) * constants::kRadian + 360.0, 360.0);
         text += fmt::format("| {} | {:.0f} degrees from north | {:.6g} m3 | {:.4g} m3/s at {:.4g} s | {:.4g} m3 |\n",
                             s.name, azimuth, s.volume, s.peak, s.peak_time, s.integral);
     }

@@ -242,8 +242,8 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
     std::vector<GaugePoint> gauges;
     for (const Gauge& gauge : scene.gauges) gauges.push_back({gauge.name, gauge.point});
     if (!gauges.empty()) observers.push_back(std::make_unique<Gauges>(run_dir, gauges));
-    std::vector<std::string> names;
-    for (const Barrier& barrier : scene.barriers) names.push_back(barrier.name);
+    std::vector<NamedBarrier> names;
+    for (const Barrier& barrier : scene.barriers) names.push_back({barrier.name, barrier.windows});
     if (!names.empty()) observers.push_back(std::make_unique<Barriers>(run_dir, names, barriers));
     std::vector<ProfileLine> profiles;
     for (const Profile& profile : scene.profiles) profiles.push_back({profile.name, profile.line});

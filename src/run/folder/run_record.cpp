@@ -207,6 +207,17 @@ Json rest_json(const RunSummary& s) {
             {"fastest", s.motion.fastest}};
 }
 
+Json means_json(const std::vector<MeanForce>& means) {
+    Json list = Json::array();
+    for (const MeanForce& m : means)
+        list.push_back({{"averaged_over", m.window},
+                        {"largest", m.largest},
+                        {"time", m.time},
+                        {"force", {m.force[0], m.force[1], m.force[2]}},
+                        {"moment", {m.moment[0], m.moment[1], m.moment[2]}}});
+    return list;
+}
+
 Json barriers_json(const std::vector<BarrierSummary>& barriers) {
     Json list = Json::array();
     for (const BarrierSummary& b : barriers)
@@ -216,6 +227,7 @@ Json barriers_json(const std::vector<BarrierSummary>& barriers) {
                         {"peak_force_time", b.peak_force_time},
                         {"averaged_over", b.blur},
                         {"raw_peak_force", b.raw_peak_force},
+                        {"mean_forces", means_json(b.blur > 0.0 ? b.means : std::vector<MeanForce>())},
                         {"impulse", {b.impulse[0], b.impulse[1], b.impulse[2]}},
                         {"moments_about", {b.about[0], b.about[1], b.about[2]}},
                         {"run_up", b.run_up},
