@@ -1,13 +1,16 @@
-"""What a run through Python costs beside the program's own: bench.py [CASE] [--pairs N]
+"""What a run through Python costs beside the program's own: bench.py [CASE] [--pairs N] [--count]
 
 Pairs of child processes on one thread, both at the same time, since what else the machine does then touches both. Each makes a
 long run and a short one: the difference of their processor times is that of the steps between, without what starting costs. Told is
-the median over the pairs; on a busy machine single pairs differ by tens of percent. The gates are those of apps/python/README.md;
-the exit code is 1 where one is missed. Needs PYTHONPATH=build/python and FRANA_PROGRAM=build/bin/frana.
+the median over the pairs; on a busy machine single pairs differ by tens of percent. With --count only the steps are
+held, by instructions in place of time (valgrind's callgrind): minutes, the same on any machine. The gates are those of apps/python/README.md; the exit code is 1
+where one is missed. Needs PYTHONPATH=build/python and FRANA_PROGRAM=build/bin/frana.
 """
 import argparse
 import concurrent.futures
 import os
+import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -51,39 +54,46 @@ def cpu(arguments):
     return used.ru_utime + used.ru_stime
 
 
+def instructions(arguments):
+    """Instructions of a child, in 10^9."""
+    counted = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *arguments], check=True,
+                             capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1", "PYTHONHASHSEED": "0"})
+    return 1e-9 * int(re.search(r"Collected : (\d+)", counted.stderr).group(1))
+
+
 def toml(value):
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def steps_by_program(case, out, short, long):
+def steps_by_program(case, out, short, long, cost):
     sets = [part for key, value in SETS.items() for part in ("--set", f"{key}={toml(value)}")]
 
     def call(until):
-        return cpu([PROGRAM, "run", case, "--out", out, "--overwrite", "--quiet", "--threads", "1", "--until", str(until), *sets])
+        return cost([PROGRAM, "run", case, "--out", out, "--overwrite", "--quiet", "--threads", "1", "--until", str(until), *sets])
 
     return call(long) - call(short)
 
 
-def steps_by_python(case, out, short, long):
+def steps_by_python(case, out, short, long, cost):
     import json
 
     def call(until):
-        return cpu([sys.executable, "-c", STEPPING, case, out, json.dumps(SETS), str(until)])
+        return cost([sys.executable, "-c", STEPPING, case, out, json.dumps(SETS), str(until)])
 
     return call(long) - call(short)
 
 
-def stepping(case, pairs):
+def stepping(case, pairs, cost, unit, end):
     """Median excess of Python over the program [1]."""
     ratios = []
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(pairs):
             with concurrent.futures.ThreadPoolExecutor(2) as pool:
-                waits = {name: pool.submit(measured, case, os.path.join(folder, name), 1.0, SETS["time.end"])
+                waits = {name: pool.submit(measured, case, os.path.join(folder, name), 1.0, end, cost)
                          for name, measured in (("program", steps_by_program), ("python", steps_by_python))}
                 both = {name: wait.result() for name, wait in waits.items()}
             ratios.append(both["python"] / both["program"] - 1.0)
-            print(f"  steps: program {both['program']:.3f} s, Python {both['python']:.3f} s, {100 * ratios[-1]:+.2f} %",
+            print(f"  steps: program {both['program']:.3f} {unit}, Python {both['python']:.3f} {unit}, {100 * ratios[-1]:+.2f} %",
                   flush=True)
     return statistics.median(ratios)
 
@@ -116,9 +126,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("case", nargs="?", default=os.path.join(HERE, "..", "..", "cases", "maungawhau", "case.toml"))
     parser.add_argument("--pairs", type=int, default=7)
+    parser.add_argument("--count", action="store_true")
     given = parser.parse_args()
-    found = [("import frana", importing(), 0.15, "s"), ("case.run() beyond its steps", beyond_stepping(), 50.0, "ms"),
-             ("steps through Python", 100.0 * stepping(os.path.abspath(given.case), given.pairs), 1.0, "% more")]
+    steps = (1, instructions, "x 10^9", 5.0) if given.count else (given.pairs, cpu, "s", SETS["time.end"])
+    if given.count and shutil.which("valgrind") is None:
+        raise SystemExit("--count needs valgrind (package valgrind)")
+    timed = [] if given.count else [("import frana", importing(), 0.15, "s"),
+                                    ("case.run() beyond its steps", beyond_stepping(), 50.0, "ms")]
+    found = [*timed, ("steps through Python", 100.0 * stepping(os.path.abspath(given.case), *steps), 1.0, "% more")]
     for name, value, gate, unit in found:
         print(f"{name}: {value:.3g} {unit}, at most {gate:g}: {'well' if value <= gate else 'MISSED'}")
     return int(any(value > gate for _, value, gate, _ in found))

@@ -1,11 +1,12 @@
 """The examples run and say what they should."""
+import importlib.util
 import os
 import re
 import subprocess
 import sys
 import unittest
 
-from common import SOURCE, InFolder
+from common import PROGRAM, SOURCE, InFolder
 
 EXAMPLES = os.path.join(SOURCE, "apps", "python", "examples")
 
@@ -86,6 +87,19 @@ class Examples(InFolder):
         self.assertRegex(said, r"4 runs; more than 0\.3 m at the place in (0|25|50|75|100) % of them")
         low, high = [float(number) for number in re.search(r"bed\.mu: ([\d.]+) to ([\d.]+)", said).groups()]
         self.assertTrue(0.1 < low < high < 0.3)
+
+    @unittest.skipUnless(importlib.util.find_spec("distributed"), "no dask.distributed")
+    def test_with_dask(self):
+        file = self.path("ensemble.toml")
+        with open(file, "w", encoding="utf-8") as toml:
+            toml.write('[ensemble]\ncase = "case.toml"\nmethod = "sobol"\nsamples = 6\n[[ensemble.vary]]\n'
+                       'key = "material.bed.mu"\nrange = [0.1, 0.3]\n')
+        said = self.run_example("with_dask.py", file, self.path("parts"), "3")
+        self.assertEqual(sorted(re.findall(r"shard (\d)/3", said)), ["0", "1", "2"])
+        subprocess.run([PROGRAM, "ensemble", file, "--out", self.path("whole"), "--quiet"], check=True, timeout=300)
+        for name in ("runs.csv", "rasters/probability_reached.tif"):
+            with open(self.path("parts", name), "rb") as parts, open(self.path("whole", name), "rb") as whole:
+                self.assertEqual(parts.read(), whole.read(), name)
 
 
 if __name__ == "__main__":
