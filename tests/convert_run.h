@@ -12,6 +12,12 @@ namespace convert_run {
 namespace fs = std::filesystem;
 using Numbers = std::vector<double>;
 
+inline double sum(const Numbers& numbers) {
+    double total = 0.0;
+    for (const double number : numbers) total += number;
+    return total;
+}
+
 /// A short run, made once: a plane that falls 0.1 in x, 1.5 m of a viscous fluid, frames every half second to 2 s.
 inline const PlaneCase& finished_run() {
     static const PlaneCase scene;

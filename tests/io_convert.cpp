@@ -33,12 +33,6 @@ Numbers run_particles(int frame, const char* name) {
                                                       : cloud->GetPointData()->GetArray(name));
 }
 
-double sum(const Numbers& numbers) {
-    double total = 0.0;
-    for (const double number : numbers) total += number;
-    return total;
-}
-
 }  // namespace
 
 TEST_CASE("HDF5 holds the points that the run's particles make, with pressure, stress and conservation", "[convert]") {

@@ -33,12 +33,6 @@ Pixels pixels_of(const fs::path& file) {
     return pixels;
 }
 
-double sum(const Numbers& numbers) {
-    double total = 0.0;
-    for (const double number : numbers) total += number;
-    return total;
-}
-
 /// Three points as another program might leave them.
 void write_foreign(const fs::path& file, const Numbers& mass, bool velocity = true) {
     const Numbers position{22, 32, 99, 23, 33, 101, 500, 500, 90}, speed{1, 0, -5, 3, 2, 4, 9, 9, 9}, volume{2, 2, 2};

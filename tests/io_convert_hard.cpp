@@ -62,7 +62,7 @@ TEST_CASE("A run that is being written can be converted all the while", "[conver
     Outcome run;
     std::atomic<bool> done{false};
     std::thread writer([&] {
-        run = scene.frana("run CASE --out out --quiet --threads 1 --set time.end=8");
+        run = scene.frana("run CASE --out out --quiet --threads 1 --set time.end=2");
         done = true;
     });
     int converted = 0;

@@ -124,6 +124,7 @@ void PointOrder::lay_out(Part& part) {
 template <class At>
 void PointOrder::retain(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at) {
     const auto stays = [&](Index place) { return !gone[static_cast<std::size_t>(at(place))]; };
+    if (parts_in_use_ == 1) return retain_serially(active, stays, at);
     resize_sparingly(first_, static_cast<std::size_t>(active.count() + 1));
     for_each_tile(active, [&](Index n) {
         Index count = 0;
@@ -142,12 +143,27 @@ void PointOrder::retain(const std::vector<std::uint8_t>& gone, ActiveTiles& acti
     std::copy_n(first_.begin(), active.count() + 1, active.begin.begin());
 }
 
+/// The same by one thread, in one pass.
+template <class Stays, class At>
+void PointOrder::retain_serially(ActiveTiles& active, Stays&& stays, At&& at) {
+    Index kept = 0;
+    for (Index n = 0, place = 0; n < active.count(); ++n) {
+        const Index end = active.begin[n + 1];
+        active.begin[n] = kept;
+        for (; place < end; ++place)
+            if (stays(place)) order_[static_cast<std::size_t>(kept++)] = at(place);
+    }
+    active.begin[active.count()] = kept;
+    order_.resize(static_cast<std::size_t>(kept));
+}
+
 void PointOrder::leave_out(const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
     retain(gone, active, [&](Index place) { return order_[static_cast<std::size_t>(place)]; });
 }
 
 void PointOrder::retain_places(Index count, const std::vector<std::uint8_t>& gone, ActiveTiles& active) {
     expect(active.begin[active.count()] == count, "points that are left out lie in tiles");
+    resize_sparingly(order_, static_cast<std::size_t>(count));
     retain(gone, active, [](Index place) { return static_cast<std::int32_t>(place); });
 }
 

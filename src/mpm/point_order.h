@@ -68,6 +68,8 @@ private:
     void lay_out(Part& part);
     template <class At>
     void retain(const std::vector<std::uint8_t>& gone, ActiveTiles& active, At&& at);
+    template <class Stays, class At>
+    void retain_serially(ActiveTiles& active, Stays&& stays, At&& at);
 
     std::vector<std::int32_t> key_, order_;  ///< tile of each point, -1 when it goes; points by tile
     std::vector<std::int32_t> kept_;         ///< order_ to come, when points are left out of it

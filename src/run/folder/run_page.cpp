@@ -20,7 +20,7 @@ namespace frana {
 namespace fs = std::filesystem;
 namespace {
 
-using Json = nlohmann::json;
+using PlainJson = nlohmann::json;
 
 constexpr const char* kPage = "figures/view.html";
 
@@ -40,7 +40,7 @@ std::string measured(double value, const char* unit) {
     return grouped(value, decimals) + "\u2009" + unit;
 }
 
-std::string end_of(const Json& record) {
+std::string end_of(const PlainJson& record) {
     const std::string reason = record.value("exit_reason", "");
     if (reason == "rest") return "the mass came to rest";
     if (reason == "end") return "the simulated time was over";
@@ -48,8 +48,8 @@ std::string end_of(const Json& record) {
     return reason;
 }
 
-std::vector<std::pair<std::string, std::string>> facts_of(const Json& record) {
-    const Json results = record.at("results"), mass = record.at("budgets").at("mass");
+std::vector<std::pair<std::string, std::string>> facts_of(const PlainJson& record) {
+    const PlainJson results = record.at("results"), mass = record.at("budgets").at("mass");
     std::vector<std::pair<std::string, std::string>> facts = {
         {"Released", measured(record.at("release_volume"), "m\u00b3")},
         {"Runout", measured(results.at("max_front"), "m")},
@@ -104,7 +104,7 @@ std::optional<PageDrape> drape_of(const FigureSource& source, const DrapeRule& r
 }
 
 /// The first run of the curves: history.csv; none where it is gone.
-PageCurves curves_of(const FigureSource& source, const Json& record, std::vector<std::string>& warnings) {
+PageCurves curves_of(const FigureSource& source, const PlainJson& record, std::vector<std::string>& warnings) {
     PageCurves curves;
     try {
         const Table history = read_table(source.run_dir / "history.csv");
@@ -140,7 +140,7 @@ PageTop top_of(const std::vector<PageDrape>& drapes, const char* name, double of
     return {of_frames > 0.0 ? of_frames : 1.0, false};
 }
 
-WebPage page_of(const FigureSource& source, const FlowFrames& frames, const Json& record,
+WebPage page_of(const FigureSource& source, const FlowFrames& frames, const PlainJson& record,
                 std::vector<std::string>& warnings) {
     WebPage page;
     page.title = source.title, page.caption = source.footer;
@@ -202,7 +202,7 @@ void add_page(const FigureSource& source, const FlowFrames& frames, const std::s
     std::shared_ptr<const WebPage> page;
     if (why_not.empty()) try {
             std::vector<std::string> warnings;
-            page = std::make_shared<const WebPage>(page_of(source, frames, Json::parse(record), warnings));
+            page = std::make_shared<const WebPage>(page_of(source, frames, PlainJson::parse(record), warnings));
             for (std::string& warning : warnings) gallery.warn(std::move(warning));
         } catch (const std::exception& error) {
             why_not = error.what();
