@@ -222,7 +222,8 @@ TEST_CASE("Barriers that cannot be are refused in one sentence", "[barrier]") {
     CHECK(has(barrier("height = 4\nline = [[1020, 2040], [1020, 2060], [1021, 2040]]\n"),
               "barrier.0.line: found a turn by more than 120 degrees at (1020, 2060)"));
     CHECK(has(barrier("height = -4\noutline = \"wall.geojson\"\n"), "barrier.0.height: found -4"));
-    for (const char* windows : {"[]", "[0.1, 0.1]", "[1.0, 0.01]", "[0.0]", "[20.0]", "[1, 2, 3, 4, 5, 6, 7, 8, 9]"})
+    for (const char* windows :
+         {"[]", "[0.1, 0.1]", "[1.0, 0.01]", "[0.0]", "[1e-9]", "[20.0]", "[1, 2, 3, 4, 5, 6, 7, 8, 9]"})
         CHECK(has(barrier(std::string("outline = \"wall.geojson\"\nheight = 4\nwindows = ") + windows + "\n"),
                   "barrier.0.windows: found "));
 }

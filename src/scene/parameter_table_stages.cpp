@@ -103,9 +103,10 @@ void add_barriers(Table& table) {
     table.push_back(number("barrier.friction", "1", between(0.0, 10.0), 0.0,
                            "Coulomb's friction coefficient between points in space and the barrier"));
     table.push_back(flag("barrier.stuck", false, "points in space do not slide along the barrier"));
-    Parameter windows = make("barrier.windows", Kind::numbers, "s",
-                             "times over which forces of points in space are averaged: for each the largest mean is "
-                             "told; before the start there is no force");
+    Parameter windows =
+        make("barrier.windows", Kind::numbers, "s",
+             "times over which forces of points in space are averaged: one to eight, ascending, up to 10 s; the report "
+             "gives the largest mean over each; before the start there is no force");
     windows.fallback = std::vector<double>{0.01, 0.05, 1.0};
     table.push_back(windows);
 }

@@ -96,19 +96,18 @@ private:
 
     /// Times over which forces are averaged [s].
     std::vector<double> windows() {
-        constexpr double kLongest = 10.0;
+        constexpr double kShortest = 1e-6, kLongest = 10.0;
         constexpr std::size_t kMost = 8;
         const std::vector<double> windows = case_.numbers(prefix_ + "windows");
-        const bool fit = !windows.empty() && windows.size() <= kMost && windows.front() > 0.0 &&
-                         windows.back() <= kLongest &&
-                         std::is_sorted(windows.begin(), windows.end(), std::less_equal<>());  // and none twice
+        const bool ascend = std::adjacent_find(windows.begin(), windows.end(), std::greater_equal<>()) == windows.end();
+        const bool fit = !windows.empty() && windows.size() <= kMost && windows.front() >= kShortest &&
+                         windows.back() <= kLongest && ascend;
         if (!fit)
-            problems_.add(
-                case_.place(prefix_ + "windows"),
-                windows.empty() ? "found no number" : fmt::format("found [{:.6g}]", fmt::join(windows, ", ")),
-                fmt::format("expected one to {} times above 0 and up to {:.6g} s, each longer than the one before",
-                            kMost, kLongest),
-                "give the times over which a designer needs the force, such as [0.01, 0.05, 1.0]");
+            problems_.add(case_.place(prefix_ + "windows"),
+                          windows.empty() ? "found no number" : fmt::format("found [{:.6g}]", fmt::join(windows, ", ")),
+                          fmt::format("expected one to {} times from {:g} to {:g} s, each longer than the one before",
+                                      kMost, kShortest, kLongest),
+                          "give the times over which a designer needs the force, such as [0.01, 0.05, 1.0]");
         return windows;
     }
 
