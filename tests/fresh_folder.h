@@ -10,9 +10,7 @@
 /// An empty folder of its own, removed at the end of the test.
 class FreshFolder {
 public:
-    FreshFolder() {
-        static int count = 0;
-        path_ = std::filesystem::temp_directory_path() / fmt::format("frana_test_{}_{}", ::getpid(), count++);
+    FreshFolder() : path_(next_place()) {
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
@@ -25,6 +23,11 @@ public:
     const std::filesystem::path& path() const { return path_; }
 
 private:
+    static std::filesystem::path next_place() {
+        static int count = 0;
+        return std::filesystem::temp_directory_path() / fmt::format("frana_test_{}_{}", ::getpid(), count++);
+    }
+
     std::filesystem::path path_;
 };
 
