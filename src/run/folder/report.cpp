@@ -231,17 +231,24 @@ std::string barrier_row(const BarrierSummary& b) {
                        b.first_contact, b.impulse[0], b.impulse[1], b.impulse[2], b.run_up, b.overtopped);
 }
 
+/// Without what is round-off beside the largest entry.
+Vec3 without_round_off(const Vec3& v) {
+    const double least = 1e-9 * v.cwiseAbs().maxCoeff();
+    return v.unaryExpr([&](double entry) { return std::abs(entry) < least ? 0.0 : entry; });
+}
+
 /// The largest means of the forces on those barriers; empty where no forces are known.
 std::string mean_forces(const RunRecord& r, const std::vector<std::size_t>& shown) {
     std::string rows;
     for (const std::size_t n : shown) {
         const BarrierSummary& b = r.barriers[n];
         if (b.first_contact < 0.0 || b.blur <= 0.0) continue;
-        for (const MeanForce& m : b.means)
+        for (const MeanForce& m : b.means) {
+            const Vec3 force = without_round_off(m.force), moment = without_round_off(m.moment);
             rows += fmt::format(
                 "| {} | {:.4g} s | {:.4g} N | {:.4g} s | {:.4g}, {:.4g}, {:.4g} N | {:.4g}, {:.4g}, {:.4g} N m |\n",
-                b.name, m.window, m.largest, m.time, m.force[0], m.force[1], m.force[2], m.moment[0], m.moment[1],
-                m.moment[2]);
+                b.name, m.window, m.largest, m.time, force[0], force[1], force[2], moment[0], moment[1], moment[2]);
+        }
     }
     if (rows.empty()) return "";
     return "\n| Barrier | Mean over | Largest horizontal force | Up to | Force x, y, z | Moment x, y, z |\n"
