@@ -50,8 +50,8 @@ void TileSorter::drop(Columns& columns, const std::vector<std::uint8_t>& gone, A
 }
 
 void TileSorter::list_tiles(const TileGrid& grid, ActiveTiles& active) {
-    constexpr std::size_t kTilesBeside = 8;
-    active.turns.begin(active.tile, grid.tiles(), kTilesBeside);
+    constexpr std::size_t kAdjacentTiles = 8;
+    active.turns.begin(active.tile, grid.tiles(), kAdjacentTiles);
     active.in_work.resize(static_cast<std::size_t>(grid.tiles()));
     active.quiet.resize(static_cast<std::size_t>(grid.tiles()));
     for (const Index tile : active.work) active.in_work[tile] = 0;

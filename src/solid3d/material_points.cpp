@@ -26,8 +26,8 @@ void Sorter3d::sort(MaterialPoints& points, const Grid3d& grid, const std::vecto
 }
 
 void Sorter3d::list_tiles(const Grid3d& grid, ActiveTiles& active) {
-    constexpr std::size_t kTilesBeside = 26;
-    active.turns.begin(active.tile, grid.tiles(), kTilesBeside);
+    constexpr std::size_t kAdjacentTiles = 26;
+    active.turns.begin(active.tile, grid.tiles(), kAdjacentTiles);
     active.in_work.resize(static_cast<std::size_t>(grid.tiles()));
     for (const Index tile : active.work) active.in_work[tile] = 0;
     active.work.clear();
