@@ -13,6 +13,7 @@
 #include "run/memory_state.h"
 #include "shallow/depth_averaged.h"
 #include "state_bits.h"
+#include "threads_of_test.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -60,14 +61,6 @@ void check_same(DepthAveraged& a, DepthAveraged& b) {
                              &BedGeometry::slope_y, &BedGeometry::hxx, &BedGeometry::hxy, &BedGeometry::smooth_x})
         CHECK(std::memcmp((x.*field).data(), (y.*field).data(), size) == 0);
 }
-
-class Threads {
-public:
-    ~Threads() { omp_set_num_threads(before_); }
-
-private:
-    int before_ = omp_get_max_threads();
-};
 
 /// A flow of points at rest but for one tile, and its bed, without a run around them.
 struct Still {

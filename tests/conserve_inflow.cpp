@@ -11,6 +11,7 @@
 #include "observe/memory_archive.h"
 #include "run/run_loop.h"
 #include "state_bits.h"
+#include "threads_of_test.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -41,14 +42,6 @@ double residual(const Status& first, const Status& now) {
     const Budget b = budget(first, now);
     return std::hypot(b.momentum_residual[0], b.momentum_residual[1]);
 }
-
-class Threads {
-public:
-    ~Threads() { omp_set_num_threads(before_); }
-
-private:
-    int before_ = omp_get_max_threads();
-};
 
 }  // namespace
 

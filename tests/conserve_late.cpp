@@ -12,6 +12,7 @@
 #include "run/memory_state.h"
 #include "run/run_loop.h"
 #include "state_bits.h"
+#include "threads_of_test.h"
 
 using namespace frana;
 using namespace frana::test;
@@ -69,14 +70,6 @@ void require_same_columns(const DepthAveraged& a, const DepthAveraged& b) {
     REQUIRE((c.cxx == d.cxx));
     REQUIRE((c.r1x == d.r1x));
 }
-
-class Threads {
-public:
-    ~Threads() { omp_set_num_threads(before_); }
-
-private:
-    int before_ = omp_get_max_threads();
-};
 
 }  // namespace
 

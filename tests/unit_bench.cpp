@@ -93,7 +93,8 @@ TEST_CASE("The table of bench tells how much faster two threads are, phase by ph
         const std::regex row("depth_averaged/full/double +" + std::to_string(particles) + " +([0-9.]+)\n");
         std::smatch found;
         REQUIRE(std::regex_search(part, found, row));
-        CHECK(std::stod(found[1]) == Approx(one->cost.full().wall_ns / two->cost.full().wall_ns).margin(0.006));
+        CHECK(std::stod(found[1]) ==
+              Approx(one->cost.full().wall_ns / two->cost.full().wall_ns).margin(0.006));  // two digits
     }
     CHECK(occurrences(part, "depth_averaged/kick_and_friction/double") == 2);
     CHECK(occurrences(part, "structured/") == 0);  // timed with one thread only

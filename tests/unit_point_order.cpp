@@ -1,7 +1,5 @@
 // The order of points by tile, and the turns of tiles: the same for any number of threads. How far to the side of their
 // points mirror particles stand, which turns in space depend on.
-#include <omp.h>
-
 #include <algorithm>
 #include <random>
 
@@ -10,18 +8,11 @@
 #include "shallow/columns.h"
 #include "solid3d/material_points.h"
 #include "solid3d/surfaces.h"
+#include "threads_of_test.h"
 
 using namespace frana;
 
 namespace {
-
-struct Threads {
-    explicit Threads(int count) { omp_set_num_threads(count); }
-    ~Threads() { omp_set_num_threads(before_); }
-
-private:
-    int before_ = omp_get_max_threads();
-};
 
 /// Points as they lie after a few steps: most in the tile of the one before, some gone.
 std::vector<Index> drifted_keys(Index count, Index tiles, unsigned seed) {

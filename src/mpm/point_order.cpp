@@ -176,9 +176,10 @@ void PointOrder::permute(const std::vector<PointField>& fields) {
 #pragma omp parallel firstprivate(spare) if (kept > kPointsForThreads)
     for (const PointField& field : fields)
         std::visit([&](auto* of) { spare = permuted(*of, order, kept, spare); }, field);
-    for (const PointField& field : fields)
-        if (Array* const* of = std::get_if<Array*>(&field)) (*of)->swap(scratch_);
-    for (const PointField& field : fields) std::visit([&](auto* of) { of->resize(order_.size()); }, field);
+    for (const PointField& field : fields) {
+        if (Array* const* of = std::get_if<Array*>(&field)) (*of)->swap(scratch_);  // as the threads took them
+        std::visit([&](auto* of) { of->resize(order_.size()); }, field);
+    }
 }
 
 void PointOrder::close_gaps(const std::vector<PointField>& fields) const {

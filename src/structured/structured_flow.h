@@ -237,7 +237,7 @@ private:
     StructuredBody body_;
     Ground ground_;
     PointOrder order_;
-    TileSorter lists_;  ///< of tiles, by colour
+    TileSorter lists_;  ///< of tiles, and their turns
     std::vector<PointField> fields_;
     std::function<BedGeometry(const TileGrid&)> bed_;
     HalvingRules rules_;
