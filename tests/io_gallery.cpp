@@ -1,6 +1,8 @@
 // Figures that are drawn side by side: in their order whatever the threads, and each failure a warning in its place.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <thread>
 
 #include "base/atomic_file.h"
@@ -64,6 +66,41 @@ TEST_CASE("figures come in the order in which they were added, on one thread and
         CHECK(ten.most_at_once <= threads);
         if (threads > 1) CHECK(ten.most_at_once > 1);  // the first alone would hold the others up
     }
+}
+
+TEST_CASE("pictures for the renderer are begun first, one after the other while there is anything else", "[gallery]") {
+    const FreshFolder folder;
+    Gallery gallery(folder.path());
+    std::mutex mutex;
+    std::vector<std::string> begun;
+    int rendering = 0, most_rendering = 0, plain_left = 6;
+    const auto draw = [&](const fs::path& png, bool rendered) {
+        {
+            const std::lock_guard<std::mutex> lock(mutex);
+            begun.push_back(png.stem().string());
+            plain_left -= !rendered;
+            rendering += rendered;
+            if (plain_left > 0) most_rendering = std::max(most_rendering, rendering);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(rendered ? 30 : 10));
+        const std::lock_guard<std::mutex> lock(mutex);
+        rendering -= rendered;
+        return true;
+    };
+    for (const char* name : {"a", "b", "c", "d", "e", "f"})
+        gallery.add({"figures/" + std::string(name) + ".png", name},
+                    [&](const fs::path& png, std::string&) { return draw(png, false); });
+    for (const char* name : {"view", "close", "section"})
+        gallery.add_rendered({"figures/" + std::string(name) + ".png", name},
+                             [&](const fs::path& png, std::string&) { return draw(png, true); });
+    std::vector<std::string> warnings;
+    const auto drawn = gallery.draw(2, warnings);
+    REQUIRE(drawn.size() == 9);
+    CHECK(drawn.front().caption == "a");  // in the order in which they were added
+    REQUIRE(begun.size() == 9);
+    CHECK((begun[0] == "view" || begun[1] == "view"));
+    CHECK(most_rendering == 1);
+    CHECK(warnings.empty());
 }
 
 TEST_CASE("a gallery without pictures says nothing but its warnings", "[gallery]") {

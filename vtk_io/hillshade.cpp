@@ -77,13 +77,18 @@ Stencil stencil_at(double place, Index count, Between between) {
     return s;
 }
 
-double weighted(const Raster& raster, const Stencil& x, const Stencil& y) {
+/// Four rows of the raster brought to one, at the nodes from `first` to `last`.
+void sum_rows(const Raster& raster, const Stencil& y, Index first, Index last, std::vector<double>& row) {
+    std::array<const double*, 4> rows{};
+    for (std::size_t b = 0; b < 4; ++b) rows[b] = raster.values.data() + y.node[b] * raster.geometry.nx;
+    for (Index i = first; i <= last; ++i)
+        row[static_cast<std::size_t>(i)] =
+            y.weight[0] * rows[0][i] + y.weight[1] * rows[1][i] + y.weight[2] * rows[2][i] + y.weight[3] * rows[3][i];
+}
+
+double weighted(const std::vector<double>& row, const Stencil& x) {
     double sum = 0.0;
-    for (std::size_t b = 0; b < 4; ++b) {
-        double row = 0.0;
-        for (std::size_t a = 0; a < 4; ++a) row += x.weight[a] * raster.at(x.node[a], y.node[b]);
-        sum += y.weight[b] * row;
-    }
+    for (std::size_t a = 0; a < 4; ++a) sum += x.weight[a] * row[static_cast<std::size_t>(x.node[a])];
     return sum;
 }
 
@@ -110,15 +115,22 @@ Raster resampled(const Raster& raster, const GridGeometry& target, Between betwe
     Raster result = Raster::filled(target, Raster::nodata);
     result.crs_wkt = raster.crs_wkt;
     std::vector<Stencil> columns;
-    for (Index i = 0; i < target.nx; ++i)
+    Index first = from.nx, last = -1;
+    for (Index i = 0; i < target.nx; ++i) {
         columns.push_back(stencil_at((target.x(i) - from.x0) / from.cell, from.nx, between));
+        if (columns.back().nearest < 0) continue;
+        first = std::min(first, columns.back().node.front());
+        last = std::max(last, columns.back().node.back());
+    }
+    std::vector<double> summed(static_cast<std::size_t>(from.nx));
     for (Index j = 0; j < target.ny; ++j) {
         const Stencil row = stencil_at((target.y(j) - from.y0) / from.cell, from.ny, between);
         if (row.nearest < 0) continue;
+        sum_rows(raster, row, first, last, summed);
         for (Index i = 0; i < target.nx; ++i) {
             const Stencil& column = columns[static_cast<std::size_t>(i)];
             if (column.nearest < 0 || std::isnan(raster.at(column.nearest, row.nearest))) continue;
-            const double value = weighted(raster, column, row);
+            const double value = weighted(summed, column);
             result.at(i, j) = std::isnan(value) ? weighted_valid(raster, column, row) : value;
         }
     }
@@ -164,11 +176,10 @@ std::vector<float> hillshade(const Raster& bed, double exaggeration, double turn
         for (Index i = 0; i < g.nx; ++i) {
             if (std::isnan(bed.at(i, j))) continue;
             const Vec2 s = exaggeration * gradient(bed, i, j);
-            const double length = std::sqrt(1.0 + s.squaredNorm());
             double sum = 0.0;
-            for (std::size_t k = 0; k < 4; ++k)
-                sum += lamps[k].weight * std::max(0.0, (height - s.dot(light[k])) / length);
-            shade[static_cast<std::size_t>(j * g.nx + i)] = static_cast<float>(std::min(sum, 1.0));
+            for (std::size_t k = 0; k < 4; ++k) sum += lamps[k].weight * std::max(0.0, height - s.dot(light[k]));
+            const double length = std::sqrt(1.0 + s.squaredNorm());
+            shade[static_cast<std::size_t>(j * g.nx + i)] = static_cast<float>(std::min(sum / length, 1.0));
         }
     return shade;
 }

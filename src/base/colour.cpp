@@ -54,19 +54,7 @@ constexpr std::array<Colour, 9> cool_to_warm{{{59, 76, 192},
 constexpr std::array<Colour, 6> curves{
     {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {0, 0, 0}, {86, 180, 233}}};
 
-std::uint8_t channel(double value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))); }
-
 }  // namespace
-
-Colour mixed(const Colour& a, const Colour& b, double share) {
-    const double rest = 1.0 - share;
-    return {channel(rest * a.r + share * b.r), channel(rest * a.g + share * b.g), channel(rest * a.b + share * b.b),
-            a.a};
-}
-
-Colour scaled(const Colour& colour, double factor) {
-    return {channel(factor * colour.r), channel(factor * colour.g), channel(factor * colour.b), colour.a};
-}
 
 Colour colour_at(Colormap map, double t) {
     const double place = t > 0.0 ? std::min(t, 1.0) : 0.0;

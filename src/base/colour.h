@@ -1,5 +1,6 @@
 #pragma once
 // Colours of pictures and styles: perceptual maps for fields, colour-blind safe colours for curves.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -22,11 +23,20 @@ enum class Colormap {
 /// Colour at t in [0, 1] (clamped; NaN counts as 0).
 Colour colour_at(Colormap map, double t);
 
+/// The nearest of a channel's values.
+inline std::uint8_t channel_of(double value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0) + 0.5); }
+
 /// (1 - share) a + share b, channel by channel; alpha of `a`.
-Colour mixed(const Colour& a, const Colour& b, double share);
+inline Colour mixed(const Colour& a, const Colour& b, double share) {
+    const double rest = 1.0 - share;
+    return {channel_of(rest * a.r + share * b.r), channel_of(rest * a.g + share * b.g),
+            channel_of(rest * a.b + share * b.b), a.a};
+}
 
 /// Each channel times `factor`, clamped.
-Colour scaled(const Colour& colour, double factor);
+inline Colour scaled(const Colour& colour, double factor) {
+    return {channel_of(factor * colour.r), channel_of(factor * colour.g), channel_of(factor * colour.b), colour.a};
+}
 
 /// Perceived brightness of a colour in [0, 1] (Rec. 709 weights on the sRGB values).
 double brightness(const Colour& colour);

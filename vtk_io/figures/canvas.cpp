@@ -143,12 +143,15 @@ public:
     void operator()(const Image& image) {
         cairo_surface_flush(surface_.get());
         const Pixels& from = image.pixels;
-        for (int row = std::max(0, -image.y); row < std::min(from.height, height_ - image.y); ++row)
-            for (int column = std::max(0, -image.x); column < std::min(from.width, width_ - image.x); ++column) {
+        const int first = std::max(0, -image.x), last = std::min(from.width, width_ - image.x);
+        for (int row = std::max(0, -image.y); row < std::min(from.height, height_ - image.y); ++row) {
+            unsigned char* const onto = row_of(row + image.y);
+            for (int column = first; column < last; ++column) {
                 const Colour c = from.at(column, row);
                 const std::uint32_t packed = std::uint32_t{c.r} << 16 | std::uint32_t{c.g} << 8 | std::uint32_t{c.b};
-                std::memcpy(pixel(column + image.x, row + image.y), &packed, sizeof packed);
+                std::memcpy(onto + kBytes * (column + image.x), &packed, sizeof packed);
             }
+        }
         cairo_surface_mark_dirty(surface_.get());
     }
 
@@ -207,22 +210,25 @@ public:
 
     void take(Pixels& picture) {
         cairo_surface_flush(surface_.get());
-        for (int row = 0; row < height_; ++row)
+        for (int row = 0; row < height_; ++row) {
+            const unsigned char* const from = row_of(row);
             for (int column = 0; column < width_; ++column) {
                 std::uint32_t packed = 0;
-                std::memcpy(&packed, pixel(column, row), sizeof packed);
+                std::memcpy(&packed, from + kBytes * column, sizeof packed);
                 picture.set(column, row,
                             {static_cast<std::uint8_t>(packed >> 16), static_cast<std::uint8_t>(packed >> 8),
                              static_cast<std::uint8_t>(packed)});
             }
+        }
     }
 
 private:
-    /// Four bytes of the surface; row 0 is the lowest one.
-    unsigned char* pixel(int x, int y) {
+    static constexpr std::ptrdiff_t kBytes = 4;  // of a pixel of the surface
+
+    /// The surface's pixels of a row; row 0 is the lowest one.
+    unsigned char* row_of(int y) {
         unsigned char* const bytes = cairo_image_surface_get_data(surface_.get());
-        const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface_.get());
-        return &bytes[(height_ - 1 - y) * stride + std::ptrdiff_t{4} * x];
+        return bytes + (height_ - 1 - y) * std::ptrdiff_t{cairo_image_surface_get_stride(surface_.get())};
     }
     void source(const Colour& c) {
         cairo_set_source_rgba(cairo_.get(), c.r / 255.0, c.g / 255.0, c.b / 255.0, c.a / 255.0);

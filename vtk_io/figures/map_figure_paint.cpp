@@ -1,15 +1,12 @@
 #include "vtk_io/figures/map_figure_paint.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "vtk_io/hillshade.h"
 
 namespace frana {
-
-Colour colour_on_ground(const Colour& colour, double grey) {
-    return mixed(scaled(colours::white, grey), scaled(colour, 0.62 + 0.45 * grey), 0.88);
-}
 
 Colour on_ground(double value, double grey, const FieldStyle& style) {
     if (!(std::abs(value) > style.shown_above)) return scaled(colours::white, grey);
@@ -17,15 +14,42 @@ Colour on_ground(double value, double grey, const FieldStyle& style) {
     return colour_on_ground(colour_at(style.colormap, t), grey);
 }
 
+namespace {
+
+/// A colour map's colours, finer than eye and file tell apart.
+class ColourTable {
+public:
+    explicit ColourTable(Colormap map) {
+        for (std::size_t k = 0; k < colours_.size(); ++k)
+            colours_[k] = colour_at(map, static_cast<double>(k) / (kColours - 1));
+    }
+    const Colour& operator()(double t) const {
+        return colours_[t > 0.0 ? static_cast<std::size_t>(std::min(t, 1.0) * (kColours - 1) + 0.5) : 0];
+    }
+
+private:
+    static constexpr int kColours = 4096;
+    std::array<Colour, kColours> colours_;
+};
+
+}  // namespace
+
 Pixels painted(const Raster& bed, const Raster& field, const FieldStyle& style) {
     const GridGeometry& g = bed.geometry;
     Pixels pixels(static_cast<int>(g.nx), static_cast<int>(g.ny));
     const auto shade = hillshade(bed, shading_exaggeration(bed), style.light_turn);
     const ReliefGrey relief(shade);
+    const ColourTable table(style.colormap);
+    const double scale = 1.0 / (style.range.high - style.range.low);
     for (int y = 0; y < pixels.height; ++y)
         for (int x = 0; x < pixels.width; ++x) {
-            const double s = shade[static_cast<std::size_t>(y) * pixels.width + x];
-            pixels.set(x, y, std::isnan(s) ? colours::no_data : on_ground(field.at(x, y), relief(s), style));
+            const double s = shade[static_cast<std::size_t>(y) * pixels.width + x], value = field.at(x, y);
+            const double grey = relief(s);
+            const bool shown = std::abs(value) > style.shown_above;
+            pixels.set(x, y,
+                       std::isnan(s) ? colours::no_data
+                       : shown       ? colour_on_ground(table(scale * (value - style.range.low)), grey)
+                                     : scaled(colours::white, grey));
         }
     return pixels;
 }

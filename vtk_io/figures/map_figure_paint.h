@@ -21,7 +21,9 @@ Pixels painted(const Raster& bed, const Raster& field, const FieldStyle& style);
 Pixels painted_classes(const Raster& bed, const Raster& numbers, const std::vector<MapClass>& classes);
 
 /// Colour of something opaque on ground of the given grey (`painted` has the formula).
-Colour colour_on_ground(const Colour& colour, double grey);
+inline Colour colour_on_ground(const Colour& colour, double grey) {
+    return mixed(scaled(colours::white, grey), scaled(colour, 0.62 + 0.45 * grey), 0.88);
+}
 
 /// Colour of one value on ground of the given grey in [0, 1] (`painted` has the formula).
 Colour on_ground(double value, double grey, const FieldStyle& style);

@@ -1,13 +1,11 @@
 #include "vtk_io/figures/png_file.h"
 
 #include <fmt/core.h>
+#include <png.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
-#include <vtkPNGWriter.h>
-#include <vtkUnsignedCharArray.h>
 
-#include <cstring>
 #include <string>
 
 #include "base/atomic_file.h"
@@ -17,20 +15,19 @@ namespace frana {
 namespace fs = std::filesystem;
 
 void write_png(const Pixels& picture, const fs::path& png) {
-    vtkNew<vtkImageData> image;
-    image->SetDimensions(picture.width, picture.height, 1);
-    image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-    std::memcpy(image->GetScalarPointer(), picture.rgb.data(), picture.rgb.size());
-    vtkNew<vtkPNGWriter> writer;
-    writer->WriteToMemoryOn();       // on a full disk libpng would talk to the console
-    writer->SetCompressionLevel(3);  // half the time of the default; files are a few per cent larger
-    writer->SetInputData(image);
-    writer->Write();
-    vtkUnsignedCharArray* bytes = writer->GetResult();
-    if (writer->GetErrorCode() != 0 || bytes == nullptr)
-        throw UserError(fmt::format("{}: VTK could not make a PNG of the picture", png.string()));
-    write_text(png, std::string(reinterpret_cast<const char*>(bytes->GetPointer(0)),
-                                static_cast<std::size_t>(bytes->GetNumberOfValues())));
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = static_cast<png_uint_32>(picture.width);
+    image.height = static_cast<png_uint_32>(picture.height);
+    image.format = PNG_FORMAT_RGB;
+    image.flags = PNG_IMAGE_FLAG_FAST;  // a third of the time of all filters; files of maps are 4 % larger
+    std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
+    png_alloc_size_t size = bytes.size();
+    const int upwards = -3 * picture.width;  // from one row to the next: ours begin at the lowest
+    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgb.data(), upwards, nullptr))
+        throw UserError(fmt::format("{}: libpng could not make a PNG of the picture: {}", png.string(), image.message));
+    bytes.resize(size);
+    write_text(png, bytes);
 }
 
 Pixels read_png(const fs::path& png) {

@@ -4,7 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <atomic>
+#include <deque>
 #include <exception>
 #include <mutex>
 
@@ -13,6 +13,35 @@
 
 namespace frana {
 namespace fs = std::filesystem;
+
+/// What is still to be drawn. Several threads may take at the same time.
+class Gallery::Queue {
+public:
+    explicit Queue(std::vector<Wanted>& wanted) {
+        for (Wanted& one : wanted)
+            if (one.draw) (one.rendered ? rendered_ : plain_).push_back(&one);
+    }
+    /// Null when all are taken. Another one for the renderer only when nothing else is left.
+    Wanted* take() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        const bool from_rendered = !rendered_.empty() && (rendering_ == 0 || plain_.empty());
+        std::deque<Wanted*>& queue = from_rendered ? rendered_ : plain_;
+        if (queue.empty()) return nullptr;
+        Wanted* const next = queue.front();
+        queue.pop_front();
+        rendering_ += next->rendered;
+        return next;
+    }
+    void give_back(const Wanted& done) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        rendering_ -= done.rendered;
+    }
+
+private:
+    std::mutex mutex_;
+    std::deque<Wanted*> rendered_, plain_;
+    int rendering_ = 0;
+};
 
 void Gallery::make(Wanted& wanted) const {
     const fs::path png = run_dir_ / wanted.figure.path;
@@ -35,14 +64,14 @@ std::size_t Gallery::pictures() const {
 }
 
 std::vector<DrawnFigure> Gallery::draw(int threads, std::vector<std::string>& warnings, const Tell& tell) {
-    std::atomic<std::size_t> next{0};
+    Queue queue(wanted_);
     std::mutex telling;
     const std::size_t all = pictures();
     std::size_t done = 0;
     const auto work = [&] {
-        for (std::size_t k = next++; k < wanted_.size(); k = next++) {
-            if (!wanted_[k].draw || stop()) continue;
-            make(wanted_[k]);
+        for (Wanted* next = queue.take(); next != nullptr && !stop(); next = queue.take()) {
+            make(*next);
+            queue.give_back(*next);
             const std::lock_guard<std::mutex> lock(telling);
             if (tell) tell(++done, all);
         }

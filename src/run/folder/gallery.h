@@ -20,10 +20,17 @@ public:
     explicit Gallery(std::filesystem::path run_dir) : run_dir_(std::move(run_dir)) {}
 
     /// What `draw` refers to has to stay until draw() is over.
-    void add(DrawnFigure figure, Draw draw) { wanted_.push_back({std::move(figure), std::move(draw), "", false}); }
+    void add(DrawnFigure figure, Draw draw) {
+        wanted_.push_back({std::move(figure), std::move(draw), "", false, false});
+    }
+    /// One for the renderer, of which a process has one. These are begun first, since they take longest, and one after the
+    /// other while there is anything else to draw.
+    void add_rendered(DrawnFigure figure, Draw draw) {
+        wanted_.push_back({std::move(figure), std::move(draw), "", false, true});
+    }
     void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
     /// A warning in its place among those of the figures.
-    void warn(std::string warning) { wanted_.push_back({{}, nullptr, std::move(warning), false}); }
+    void warn(std::string warning) { wanted_.push_back({{}, nullptr, std::move(warning), false, false}); }
 
     /// Draws all on so many threads. Returns what was made, in the order in which it was added. Once an end was asked for
     /// (run/folder/cutoff.h, or `stop_when`) nothing more is begun.
@@ -36,8 +43,9 @@ private:
         DrawnFigure figure;
         Draw draw;
         std::string warning;
-        bool drawn;
+        bool drawn, rendered;
     };
+    class Queue;
     void make(Wanted& wanted) const;
     bool stop() const;
     std::size_t pictures() const;

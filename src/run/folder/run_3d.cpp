@@ -162,8 +162,9 @@ void add_3d(const FigureSource& source, Gallery& gallery) {
                 continue;
             }
             const auto seen = std::make_shared<const Figure3d>(figure);
-            gallery.add({"figures/view_" + one.name + ".png", "points in space " + one.caption},
-                        [seen](const fs::path& png, std::string& why_not) { return render_3d(*seen, png, why_not); });
+            gallery.add_rendered(
+                {"figures/view_" + one.name + ".png", "points in space " + one.caption},
+                [seen](const fs::path& png, std::string& why_not) { return render_3d(*seen, png, why_not); });
             figure.title += ", section along the flow";
             const auto cut = std::make_shared<const Figure3d>(std::move(figure));
             gallery.add(
@@ -177,32 +178,33 @@ void add_3d(const FigureSource& source, Gallery& gallery) {
 
 void add_film_3d(const FigureSource& source, const std::string& kind, Gallery& gallery) {
     if (!has_points(source)) return;
-    gallery.add({"figures/film_points." + kind, "points in space through time"}, [&source](const fs::path& film,
-                                                                                           std::string& why_not) {
-        why_not = no_film_reason();
-        if (!why_not.empty()) return false;
-        const Run3d run(source);
-        Shared3d shared;  // every output is read twice, so that they need not fit the memory together
-        std::vector<Index> shown;
-        std::vector<Vec3> room;
-        for (Index number = 0; number < run.count(); ++number) {
-            const Moment3d moment = run.moment(number);
-            if (moment.typical_size <= 0.0) continue;
-            shared.add(moment);
-            shown.push_back(number);
-            add_some(moment, room);
-        }
-        if (shown.empty()) return why_not = "no output has points in space", false;
-        const ViewAngles3d look =
-            best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
-        return make_film(film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
-            const Index number = shown[static_cast<std::size_t>(k)];
-            Figure3d figure = run.figure(number, shared.view(), run.digits());
-            figure.look = look;  // one for all, and one scale
-            figure.room = room;
-            return render_3d(figure, png, why_not);
+    gallery.add_rendered(
+        {"figures/film_points." + kind, "points in space through time"},
+        [&source](const fs::path& film, std::string& why_not) {
+            why_not = no_film_reason();
+            if (!why_not.empty()) return false;
+            const Run3d run(source);
+            Shared3d shared;  // every output is read twice, so that they need not fit the memory together
+            std::vector<Index> shown;
+            std::vector<Vec3> room;
+            for (Index number = 0; number < run.count(); ++number) {
+                const Moment3d moment = run.moment(number);
+                if (moment.typical_size <= 0.0) continue;
+                shared.add(moment);
+                shown.push_back(number);
+                add_some(moment, room);
+            }
+            if (shown.empty()) return why_not = "no output has points in space", false;
+            const ViewAngles3d look =
+                best_view(run.figure(run.hardest().value_or(shown.back()), shared.view(), run.digits()));
+            return make_film(film, static_cast<Index>(shown.size()), why_not, [&](Index k, const fs::path& png) {
+                const Index number = shown[static_cast<std::size_t>(k)];
+                Figure3d figure = run.figure(number, shared.view(), run.digits());
+                figure.look = look;  // one for all, and one scale
+                figure.room = room;
+                return render_3d(figure, png, why_not);
+            });
         });
-    });
 }
 
 }  // namespace frana

@@ -96,10 +96,10 @@ void add_view(const FigureSource& source, const ProductRaster& peak_depth, Galle
     view.footer = source.footer;
     view.width = source.width;
     view.height = source.height;
-    gallery.add({"figures/view_peak_depth.png", "peak depth, seen up the slope"},
-                [view = std::move(view)](const fs::path& png, std::string& why_not) {
-                    return render_perspective(view, png, why_not);
-                });
+    gallery.add_rendered({"figures/view_peak_depth.png", "peak depth, seen up the slope"},
+                         [view = std::move(view)](const fs::path& png, std::string& why_not) {
+                             return render_perspective(view, png, why_not);
+                         });
 }
 
 }  // namespace
