@@ -1,4 +1,5 @@
 // Pictures of 3D points: barriers put together from their patches, the oblique view, the section.
+#include <vtkCellData.h>
 #include <vtkPointData.h>
 
 #include <cmath>
@@ -208,8 +209,10 @@ TEST_CASE("In ParaView a barrier stands from the ground to its top, however far 
     frame.status.time = 1.5;
     frame.faces = wall();
     frame.grid = slope.geometry;
-    frame.nodes = {{"elevation", "m", 1, slope.values.data(), slope.geometry.size()}};
-    make_barrier_writer(folder.path(), {{std::nullopt, 1.5}})->observe(frame);
+    Raster with_wall = slope;  // as columns see it
+    for (double& z : with_wall.values) z += 1.0;
+    frame.nodes = {{"elevation", "m", 1, with_wall.values.data(), with_wall.geometry.size()}};
+    make_barrier_writer(folder.path(), {{std::nullopt, 1.5}}, slope)->observe(frame);
     const auto faces = test::polydata(folder.path() / "barriers" / "barriers_000000.vtp");
     vtkDataArray* const shift = faces->GetPointData()->GetArray("to_true_height");
     REQUIRE(shift);
@@ -225,6 +228,26 @@ TEST_CASE("In ParaView a barrier stands from the ground to its top, however far 
     }
     CHECK(most == Approx(1.5).epsilon(1e-6));
     CHECK(least == Approx(-0.25).epsilon(1e-6));
+}
+
+TEST_CASE("Patches around a top that are not on it are not written, unless they were pushed", "[space]") {
+    const FreshFolder folder;
+    Frame frame;
+    frame.status.time = 1.5;
+    frame.faces = wall();
+    PatchedFace& top = frame.faces.back();
+    const auto all = top.impulse.size();
+    top.beside.assign(all, 0);
+    top.beside[1] = top.beside[7] = 1;
+    top.impulse[7] = {0.0, 0.0, 5.0};
+    make_barrier_writer(folder.path(), {{std::nullopt, 1.5}}, floor_of_10())->observe(frame);
+    const auto faces = test::polydata(folder.path() / "barriers" / "barriers_000000.vtp");
+    vtkDataArray* const number = faces->GetCellData()->GetArray("face");
+    REQUIRE(number);
+    std::size_t written = 0;
+    for (vtkIdType k = 0; k < faces->GetNumberOfCells(); ++k) written += number->GetTuple1(k) == 4;
+    CHECK(written == all - 1);
+    CHECK(faces->GetPointData()->GetArray("to_true_height")->GetNumberOfTuples() == faces->GetNumberOfPoints());
 }
 
 TEST_CASE("What pictures of a run share: the flow goes where it pushes, and the load is in the middle", "[space]") {

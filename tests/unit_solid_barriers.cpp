@@ -274,3 +274,14 @@ TEST_CASE("Patches of a face tell places apart, and a face's moment is about any
     CHECK((sum - front.impulse).norm() < 1e-12);
     CHECK(FaceLedger::moment_about(front, {2, 4.2, 1.1}).norm() < 1e-12);
 }
+
+TEST_CASE("Squares in the bend of an L are not of its top", "[solid]") {
+    const FaceLedger ledger({Surface::barrier(Prism(l_shape(), 2.0))}, {-1, -1, -1}, {8, 8, 7}, 0.5);
+    const Face& top = ledger.face(0, 6);
+    REQUIRE(top.patches.count == std::array<Index, 2>{12, 12});
+    REQUIRE(top.patches.beside.size() == 144);
+    for (Index row = 0; row < 12; ++row)
+        for (Index column = 0; column < 12; ++column)
+            CHECK(bool(top.patches.beside[static_cast<std::size_t>(row * 12 + column)]) == (row >= 4 && column >= 4));
+    CHECK(ledger.face(0, 0).patches.beside.empty());
+}

@@ -40,9 +40,10 @@ std::unique_ptr<Observer> make_profile_writer(const std::filesystem::path& run_d
 /// of about a cell of the 3D model. Cell data `pressure` (mean since the frame before, across the face),
 /// `peak_pressure` (largest of these) [Pa], `impulse_per_area` [Pa s], `barrier`, `face`. Sides may reach far into the
 /// ground and above a top that follows it: point data `to_true_height` [m], added to a corner's elevation, puts it
-/// between half a patch below the ground and the barrier's top. A barrier without an entry in `tops` is as high as its
-/// faces. Errors as above.
-std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir, std::vector<BarrierTop> tops = {});
+/// between half a patch below the ground, `bed`, and the barrier's top. A barrier without an entry in `tops` is as high as
+/// its faces; without a bed all stay where they are. Errors as above.
+std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir, std::vector<BarrierTop> tops = {},
+                                              Raster bed = {});
 
 /// barrier_meshes.vtp: the triangles of barriers that were given as meshes, in map coordinates; cell data `barrier` as
 /// above. No file without any. UserError as above.

@@ -28,20 +28,16 @@ Place moved(const Place& from, const Place& right, double a, const Place& up, do
 
 double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// The bed of a frame; without nodes when it has none.
-Raster bed_of(const Frame& frame) {
-    Raster bed;
-    if (const Field* elevation = frame.node("elevation")) {
-        bed.geometry = frame.grid;
-        bed.values.assign(elevation->data, elevation->data + elevation->count);
-    }
-    return bed;
+/// Patches around a top that are not on it, and were not pushed, are not shown.
+bool shown(const PatchedFace& face, std::size_t square) {
+    const Place& given = face.impulse[square];
+    return face.beside.empty() || !face.beside[square] || dot(given, given) > 0.0;
 }
 
 class BarrierWriter final : public Observer {
 public:
-    BarrierWriter(const std::filesystem::path& run_dir, std::vector<BarrierTop> tops)
-        : series_(run_dir / "barriers.pvd", "barriers", ".vtp"), tops_(std::move(tops)) {}
+    BarrierWriter(const std::filesystem::path& run_dir, std::vector<BarrierTop> tops, Raster bed)
+        : series_(run_dir / "barriers.pvd", "barriers", ".vtp"), tops_(std::move(tops)), bed_(std::move(bed)) {}
 
     std::string name() const override { return "vtk barriers"; }
 
@@ -79,14 +75,15 @@ private:
                                   face.right[0] * face.up[1] - face.right[1] * face.up[0]};
             for (Index b = 0; b < face.count[1]; ++b)
                 for (Index a = 0; a < face.count[0]; ++a, ++n) {
+                    const auto square = static_cast<std::size_t>(b * face.count[0] + a);
+                    if (before_.size() <= n) before_.push_back(0.0), peak_.push_back(0.0);
+                    if (!shown(face, square)) continue;
                     const double u = face.size * static_cast<double>(a), v = face.size * static_cast<double>(b);
                     cells->InsertNextCell(4);
                     for (const auto& [du, dv] :
                          {std::pair{0.0, 0.0}, {face.size, 0.0}, {face.size, face.size}, {0.0, face.size}})
                         cells->InsertCellPoint(
                             points->InsertNextPoint(moved(face.corner, face.right, u + du, face.up, v + dv).data()));
-                    if (before_.size() <= n) before_.push_back(0.0), peak_.push_back(0.0);
-                    const auto square = static_cast<std::size_t>(b * face.count[0] + a);
                     const Place& given = face.impulse[square];
                     const double area = face.area[square];
                     const double push = std::abs(dot(given, normal));
@@ -116,32 +113,33 @@ private:
 
     /// What to add to the elevation of each corner, so that it lies on what is seen of the barrier.
     void add_heights(const Frame& frame, vtkPolyData* data) const {
-        const Raster bed = bed_of(frame);
         vtkNew<vtkFloatArray> shifts;
         shifts->SetName("to_true_height");
         vtkIdType corner = 0;
         for (const PatchedFace& face : frame.faces)
-            for (Index k = 0; k < 4 * face.count[0] * face.count[1]; ++k, ++corner) {
+            for (std::size_t k = 0; k < 4 * face.impulse.size(); ++k) {
+                if (!shown(face, k / 4)) continue;
                 double p[3];
-                data->GetPoint(corner, p);
-                shifts->InsertNextValue(static_cast<float>(shift(face, {p[0], p[1], p[2]}, bed)));
+                data->GetPoint(corner++, p);
+                shifts->InsertNextValue(static_cast<float>(shift(face, {p[0], p[1], p[2]})));
             }
         data->GetPointData()->AddArray(shifts);
         add_unit(data->GetFieldData(), "to_true_height", "m");
     }
 
     /// Half a patch of it stands in the ground, or a gap would show between two nodes.
-    double shift(const PatchedFace& face, const Place& corner, const Raster& bed) const {
+    double shift(const PatchedFace& face, const Place& corner) const {
         const auto barrier = static_cast<std::size_t>(face.barrier);
-        if (bed.values.empty()) return 0.0;
+        if (bed_.values.empty()) return 0.0;
         const Vec2 at(corner[0], corner[1]);
-        const double z = corner[2], ground = elevation_at(bed, at) - 0.5 * face.size;
-        const double crest = barrier < tops_.size() ? top_at(tops_[barrier], bed, at, z) : HUGE_VAL;
+        const double z = corner[2], ground = elevation_at(bed_, at) - 0.5 * face.size;
+        const double crest = barrier < tops_.size() ? top_at(tops_[barrier], bed_, at, z) : HUGE_VAL;
         return std::min(std::isnan(ground) ? z : std::max(z, ground), crest) - z;
     }
 
     PvdSeries series_;
     std::vector<BarrierTop> tops_;
+    Raster bed_;  ///< without barriers, which a frame's elevation may have where columns meet them
     double time_ = 0.0;
     std::vector<double> before_, peak_;  ///< per patch: impulse across the face [kg m/s]; largest mean [Pa]
 };
@@ -173,8 +171,9 @@ void write_barrier_meshes(const std::filesystem::path& run_dir, const BarrierMes
     write_xml(writer, data, run_dir / "barrier_meshes.vtp");
 }
 
-std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir, std::vector<BarrierTop> tops) {
-    return std::make_unique<BarrierWriter>(run_dir, std::move(tops));
+std::unique_ptr<Observer> make_barrier_writer(const std::filesystem::path& run_dir, std::vector<BarrierTop> tops,
+                                              Raster bed) {
+    return std::make_unique<BarrierWriter>(run_dir, std::move(tops), std::move(bed));
 }
 
 }  // namespace frana

@@ -9,7 +9,7 @@ namespace frana {
 namespace {
 
 Patches squares(const Vec3& origin, const Vec3& right, const Vec3& up, const Vec2& length, double size) {
-    Patches p{origin, right, up, size, {}, {}, {}, {}};
+    Patches p{origin, right, up, size, {}, {}, {}, {}, {}};
     for (std::size_t n = 0; n < 2; ++n) {
         p.extent[n] = std::max(0.0, length[static_cast<Eigen::Index>(n)] / size);
         p.count[n] = std::max<Index>(1, static_cast<Index>(std::ceil(p.extent[n] - 1e-9)));
@@ -80,6 +80,23 @@ void Patches::measure(const std::vector<Surface>& others) {
         }
 }
 
+void Patches::leave_out_beside(const Prism& prism) {
+    constexpr double kPlaces = 5.0;
+    const auto on_it = [&](Index row, Index column) {
+        for (double b = 0.5; b < kPlaces; b += 1.0)
+            for (double a = 0.5; a < kPlaces; a += 1.0) {
+                const double along = static_cast<double>(column) + a / kPlaces,
+                             across = static_cast<double>(row) + b / kPlaces;
+                const Vec3 place = origin + size * (along * right + across * up);
+                if (prism.within(place.head<2>())) return true;
+            }
+        return false;
+    };
+    beside.clear();
+    for (Index row = 0; row < count[1]; ++row)
+        for (Index column = 0; column < count[0]; ++column) beside.push_back(!on_it(row, column));
+}
+
 void Patches::spread(const FacePart& part, const Vec3& given) {
     constexpr double kPoint = 1e-9;  // [squares] shorter, a part is a place
     std::array<Index, 2> first{0, 0}, last{0, 0};
@@ -109,6 +126,8 @@ FaceLedger::FaceLedger(const std::vector<Surface>& surfaces, const Vec3& low, co
             face.patches = surface.kind == Surface::Kind::prism ? of_prism(*surface.prism, n, low, high, cell)
                                                                 : of_shape(*surface.shape, n, cell);
             face.patches.measure(surfaces);
+            if (surface.kind == Surface::Kind::prism && n == surface.prism->top_face())
+                face.patches.leave_out_beside(*surface.prism);
             faces_.push_back(std::move(face));
         }
     }

@@ -42,12 +42,13 @@ public:
     };
     const std::vector<Edge>& edges() const { return edges_; }
     double top_at(const Vec2& p) const;
+    /// Whether a place is on the footprint.
+    bool within(const Vec2& p) const;
 
 private:
     void add_ring(std::vector<Vec2> ring, bool hole);
     void find_box();
     double highest_top() const;
-    bool within(const Vec2& p) const;
     Contact top_contact(const Vec3& x) const;
     Contact lifted(const Vec3& x, double distance, const Vec2& normal, int face) const;
     int before_it(const Vec3& x, double reach, Contact* list) const;

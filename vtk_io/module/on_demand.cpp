@@ -67,8 +67,8 @@ std::unique_ptr<Observer> make_grid_writer(const fs::path& run_dir) { return vtk
 std::unique_ptr<Observer> make_profile_writer(const fs::path& run_dir, std::vector<ProfileLine> lines) {
     return vtk().make_profile_writer(run_dir, std::move(lines));
 }
-std::unique_ptr<Observer> make_barrier_writer(const fs::path& run_dir, std::vector<BarrierTop> tops) {
-    return vtk().make_barrier_writer(run_dir, std::move(tops));
+std::unique_ptr<Observer> make_barrier_writer(const fs::path& run_dir, std::vector<BarrierTop> tops, Raster bed) {
+    return vtk().make_barrier_writer(run_dir, std::move(tops), std::move(bed));
 }
 void write_barrier_meshes(const fs::path& run_dir, const BarrierMeshes& meshes) {
     vtk().write_barrier_meshes(run_dir, meshes);

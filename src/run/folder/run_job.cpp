@@ -252,7 +252,7 @@ Observers make_observers(const Scene& scene, const fs::path& run_dir, std::vecto
         std::vector<std::unique_ptr<Observer>> writers;
         writers.push_back(only_fields(make_particle_writer(run_dir), output.fields));
         writers.push_back(only_fields(make_grid_writer(run_dir), output.fields));
-        if (!names.empty()) writers.push_back(make_barrier_writer(run_dir, tops_of(scene)));
+        if (!names.empty()) writers.push_back(make_barrier_writer(run_dir, tops_of(scene), scene.bed));
         if (!profiles.empty()) writers.push_back(make_profile_writer(run_dir, profiles));
         observers.push_back(side_by_side("VTK files", std::move(writers), threads_for_files()));
     }
