@@ -174,11 +174,18 @@ TEST_CASE("A scenario without an answer is told with the classes of hazard, and 
     const std::string told = "No run of the scenario of 300 years has an answer";
     CHECK_THAT(text_of(pond.path("many/report.md")), Contains(told));
     CHECK_THAT(text_of(pond.path("many/ensemble.json")), Contains(told));
+    // The lost scenario is later than the table's years: no class, whatever it was; the other one has all its answers.
+    const Json high = Json::parse(text_of(pond.path("many/ensemble.json")))["hazard"]["classes"][0];
+    CHECK(high["area_if_unanswered_came_nowhere_m2"] == high["area_m2"]);
+    CHECK(high["area_if_unanswered_came_everywhere_m2"] == high["area_m2"]);
+    CHECK(fs::exists(pond.path("many/rasters/hazard_class_at_least.tif")));
+    CHECK(fs::exists(pond.path("many/rasters/hazard_class_at_most.tif")));
     CHECK(fs::exists(pond.path("many/rasters/hazard_class.tif")));
     pond.write("many.toml", many);
     CHECK(pond.frana("ensemble --join many --quiet").code == 3);
     CHECK_FALSE(fs::exists(pond.path("many/rasters/hazard_class.tif")));
     CHECK_FALSE(fs::exists(pond.path("many/rasters/hazard_class.tif.aux.xml")));
+    CHECK_FALSE(fs::exists(pond.path("many/rasters/hazard_class_at_most.tif")));
     CHECK(fs::exists(pond.path("many/rasters/probability_reached.tif")));
 }
 

@@ -172,3 +172,33 @@ TEST_CASE("A file asks for a table of hazard, by a preset or its own, and what i
                   text.substr(text.find("[[")) + periods + "[ensemble.hazard]\npreset = \"swiss_debris_flow\"\n"),
         Contains("expected peak_speed among ensemble.fields"));
 }
+
+TEST_CASE("Runs without an answer bound the classes from below and above", "[ensemble][hazard]") {
+    HazardTable table = own_table();
+    const SparseRasters weak = pixel_of({0.5F}), strong = pixel_of({1.5F}), dry;
+    const auto number = [&](const std::vector<HazardRun>& runs, Unanswered how) {
+        return static_cast<int>(hazard_classes(table, {"peak_depth"}, runs, 1, how).at(0));
+    };
+    // A scenario of 30 years, share 0.5: one run strong, one weak, two without an answer.
+    const std::vector<HazardRun> four = {{&strong, 1, 30}, {&weak, 1, 30}, {nullptr, 1, 30}, {nullptr, 1, 30}};
+    CHECK(number(four, Unanswered::left_out) == 3);      // half of two is strong
+    CHECK(number(four, Unanswered::came_nowhere) == 2);  // a quarter of four is; half of them come
+    CHECK(number(four, Unanswered::came_everywhere) == 3);
+    const std::vector<HazardRun> three = {{&weak, 1, 30}, {nullptr, 1, 30}, {nullptr, 1, 30}};
+    CHECK(number(three, Unanswered::left_out) == 2);
+    CHECK(number(three, Unanswered::came_nowhere) == 0);  // a third of the runs come
+    CHECK(number(three, Unanswered::came_everywhere) == 3);
+    // A scenario without any answer: left out it has no class, and at most the greatest, where another one came.
+    const std::vector<HazardRun> lost = {{&weak, 1, 100}, {nullptr, 1, 30}};
+    CHECK(number(lost, Unanswered::left_out) == 1);
+    CHECK(number(lost, Unanswered::came_nowhere) == 1);
+    CHECK(number(lost, Unanswered::came_everywhere) == 3);
+    CHECK(number({{&dry, 1, 30}, {nullptr, 1, 30}}, Unanswered::came_everywhere) == 0);
+    // Of one event: half of its runs come, or one and two thirds of three.
+    const std::vector<HazardRun> event = {{&weak, 1, 0}, {&dry, 1, 0}, {nullptr, 1, 0}};
+    table.event_years = 50.0;
+    CHECK(number(event, Unanswered::left_out) == 1);      // once in 100 years
+    CHECK(number(event, Unanswered::came_nowhere) == 0);  // once in 150
+    table.event_years = 30.0;
+    CHECK(number(event, Unanswered::came_everywhere) == 2);  // strong once in 90
+}

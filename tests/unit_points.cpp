@@ -96,6 +96,33 @@ TEST_CASE("The rectangle of given second moments has them, and a square lies alo
     CHECK(square.r1x == Approx(1.0).epsilon(1e-14));
 }
 
+TEST_CASE("A domain narrower than a sixteenth of a cell spans that much less of a gradient", "[points]") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> any(-1, 1), angle(0, 3.1);
+    for (const double length : {0.0, 0.01, 0.05, 1.0 / 16.0, 0.3, 1.0})
+        for (const double share : {0.0, 1e-9, 0.1, 0.7, 1.0}) {
+            const double width = share * length, at = angle(random), shear = any(random);
+            const double cosine = std::cos(at), sine = std::sin(at), turn = std::cos(shear), back = std::sin(shear);
+            // Edges of the rectangle, mixed by a rotation of their pair, which keeps the moments.
+            const Vec2 a(length * cosine, length * sine), b(-width * sine, width * cosine);
+            const Vec2 r1 = turn * a + back * b, r2 = turn * b - back * a;
+            const Gradient c{any(random), any(random), any(random), any(random)};
+            const Gradient g = spanned(c, r1.x(), r1.y(), r2.x(), r2.y());
+            const double along = std::min(1.0, 16.0 * length), across = std::min(1.0, 16.0 * width);
+            const double pxx = along * cosine * cosine + across * sine * sine,
+                         pyy = along * sine * sine + across * cosine * cosine, pxy = (along - across) * cosine * sine;
+            CAPTURE(length, width);
+            // The width is a difference of products of edges: good to round-off of the longer one, in sixteenths.
+            CHECK(std::abs(g.xx - (c.xx * pxx + c.xy * pxy)) < 1e-14);
+            CHECK(std::abs(g.xy - (c.xx * pxy + c.xy * pyy)) < 1e-14);
+            CHECK(std::abs(g.yx - (c.yx * pxx + c.yy * pxy)) < 1e-14);
+            CHECK(std::abs(g.yy - (c.yx * pxy + c.yy * pyy)) < 1e-14);
+            Double4 cxx = all(c.xx), cxy = all(c.xy), cyx = all(c.yx), cyy = all(c.yy);
+            leave_spanned(all(r1.x()), all(r1.y()), all(r2.x()), all(r2.y()), cxx, cxy, cyx, cyy);
+            CHECK((cxx[2] == g.xx && cxy[2] == g.xy && cyx[2] == g.yx && cyy[2] == g.yy));
+        }
+}
+
 TEST_CASE("Merging thins a crowd and keeps mass, momentum, centre and second moments", "[points]") {
     Pool pool;
     pool.sort();

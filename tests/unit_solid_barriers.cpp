@@ -279,9 +279,9 @@ TEST_CASE("Squares in the bend of an L are not of its top", "[solid]") {
     const FaceLedger ledger({Surface::barrier(Prism(l_shape(), 2.0))}, {-1, -1, -1}, {8, 8, 7}, 0.5);
     const Face& top = ledger.face(0, 6);
     REQUIRE(top.patches.count == std::array<Index, 2>{12, 12});
-    REQUIRE(top.patches.beside.size() == 144);
+    REQUIRE(top.patches.off_top.size() == 144);
     for (Index row = 0; row < 12; ++row)
         for (Index column = 0; column < 12; ++column)
-            CHECK(bool(top.patches.beside[static_cast<std::size_t>(row * 12 + column)]) == (row >= 4 && column >= 4));
-    CHECK(ledger.face(0, 0).patches.beside.empty());
+            CHECK(bool(top.patches.off_top[static_cast<std::size_t>(row * 12 + column)]) == (row >= 4 && column >= 4));
+    CHECK(ledger.face(0, 0).patches.off_top.empty());
 }

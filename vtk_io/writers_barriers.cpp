@@ -31,7 +31,7 @@ double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + 
 /// Patches around a top that are not on it, and were not pushed, are not shown.
 bool shown(const PatchedFace& face, std::size_t square) {
     const Place& given = face.impulse[square];
-    return face.beside.empty() || !face.beside[square] || dot(given, given) > 0.0;
+    return face.off_top.empty() || !face.off_top[square] || dot(given, given) > 0.0;
 }
 
 class BarrierWriter final : public Observer {

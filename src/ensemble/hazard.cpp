@@ -32,10 +32,13 @@ std::vector<std::vector<Demand>> demands_of(const HazardTable& table, const std:
 /// By pixel and level, the weight of the runs that reach that level or a stronger one.
 class Reached {
 public:
-    Reached(Index pixels, const std::vector<std::vector<Demand>>& demands)
-        : demands_(demands), weights_(static_cast<std::size_t>(pixels) * demands.size(), 0.0) {}
+    Reached(Index pixels, const std::vector<std::vector<Demand>>& demands, Unanswered unanswered)
+        : demands_(demands),
+          unanswered_(unanswered),
+          weights_(static_cast<std::size_t>(pixels) * demands.size(), 0.0) {}
 
     void add(const HazardRun& run) {
+        if (!run.peaks) return add_unanswered(run.weight);
         all_ += run.weight;
         run.peaks->for_each([&](Index pixel, std::size_t n) {
             for (std::size_t level = strongest(*run.peaks, n); level > 0; --level)
@@ -43,10 +46,15 @@ public:
         });
     }
     double share(Index pixel, std::size_t level) const {
-        return weights_[static_cast<std::size_t>(pixel) * demands_.size() + level] / all_;
+        const double weight = weights_[static_cast<std::size_t>(pixel) * demands_.size() + level] + everywhere_;
+        return all_ > 0.0 ? weight / all_ : 0.0;
     }
 
 private:
+    void add_unanswered(double weight) {
+        if (unanswered_ != Unanswered::left_out) all_ += weight;
+        if (unanswered_ == Unanswered::came_everywhere) everywhere_ += weight;
+    }
     /// One more than the number of the strongest level reached; 0: none.
     std::size_t strongest(const SparseRasters& peaks, std::size_t n) const {
         for (std::size_t level = demands_.size(); level > 0; --level) {
@@ -59,8 +67,9 @@ private:
     }
 
     const std::vector<std::vector<Demand>>& demands_;
+    Unanswered unanswered_;
     std::vector<double> weights_;
-    double all_ = 0.0;
+    double all_ = 0.0, everywhere_ = 0.0;
 };
 
 /// The class of a scenario's strength, the strongest that enough of its runs reach.
@@ -80,6 +89,15 @@ std::size_t class_by_frequency(const HazardTable& table, const Reached& reached,
     return most;
 }
 
+/// Where any run came.
+std::vector<char> pixels_reached(const std::vector<HazardRun>& runs, Index pixels) {
+    std::vector<char> reached(static_cast<std::size_t>(pixels), 0);
+    for (const HazardRun& run : runs)
+        if (run.peaks)
+            run.peaks->for_each([&](Index pixel, std::size_t) { reached[static_cast<std::size_t>(pixel)] = 1; });
+    return reached;
+}
+
 }  // namespace
 
 std::size_t HazardTable::column_of(double return_period) const {
@@ -89,15 +107,17 @@ std::size_t HazardTable::column_of(double return_period) const {
 }
 
 std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<std::string>& fields,
-                                         const std::vector<HazardRun>& runs, Index pixels) {
+                                         const std::vector<HazardRun>& runs, Index pixels, Unanswered unanswered) {
     const auto demands = demands_of(table, fields);
     std::map<double, std::vector<const HazardRun*>> scenarios;
     for (const HazardRun& run : runs) scenarios[table.event_years ? 0.0 : run.return_period].push_back(&run);
     std::vector<std::uint8_t> classes(static_cast<std::size_t>(pixels), 0);
+    const std::vector<char> came = pixels_reached(runs, pixels);
     for (const auto& [return_period, members] : scenarios) {
-        Reached reached(pixels, demands);
+        Reached reached(pixels, demands, unanswered);
         for (const HazardRun* run : members) reached.add(*run);
         for (Index pixel = 0; pixel < pixels; ++pixel) {
+            if (!came[static_cast<std::size_t>(pixel)]) continue;
             const std::size_t found = table.event_years ? class_by_frequency(table, reached, pixel)
                                                         : class_of_scenario(table, reached, pixel, return_period);
             std::uint8_t& most = classes[static_cast<std::size_t>(pixel)];

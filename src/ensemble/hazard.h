@@ -41,16 +41,21 @@ const std::vector<HazardTable>& hazard_presets();
 
 /// What the classes need to know of a run.
 struct HazardRun {
-    const SparseRasters* peaks = nullptr;
+    const SparseRasters* peaks = nullptr;  ///< none: it has no answer
     double weight = 1.0;
     double return_period = 0.0;  ///< of its scenario [years]; not looked at with `event_years`
 };
+
+/// What runs without an answer are taken for: left out; or the two ends of what they may have been. Those that came
+/// everywhere did so where any other run came, as strong as the table knows.
+enum class Unanswered { left_out, came_nowhere, came_everywhere };
 
 /// The number of the class on each pixel, 0 for none. `fields` are those of the runs' peaks; the table's are among them.
 /// Scenarios: each has the strength that at least `share` of its runs reach; the class is the greatest of all scenarios'.
 /// Otherwise each strength comes back after event_years over the share of the runs that reach it; the class is the greatest of
 /// all strengths'.
 std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<std::string>& fields,
-                                         const std::vector<HazardRun>& runs, Index pixels);
+                                         const std::vector<HazardRun>& runs, Index pixels,
+                                         Unanswered unanswered = Unanswered::left_out);
 
 }  // namespace frana

@@ -40,6 +40,17 @@ template <class Real>
                                                 x * (62.0 / 2835 + x * (-1382.0 / 155925 + x * (21844.0 / 6081075))))));
 }
 
+/// Largest |x| for which tangent_fraction is right to round-off.
+constexpr double kTangentFraction = 1.0;
+
+/// The same by the ninth convergent of Lambert's continued fraction (1768), 1 / (1 + x / (3 + x / (5 + ...))).
+template <class Real>
+[[gnu::always_inline]] inline Real tangent_fraction(Real x) {
+    const Real above = 1.0 + x * (7.0 / 51 + x * (1.0 / 255 + x * (2.0 / 69615 + x * (1.0 / 34459425))));
+    const Real below = 1.0 + x * (8.0 / 17 + x * (7.0 / 255 + x * (4.0 / 9945 + x * (1.0 / 765765))));
+    return above / below;
+}
+
 /// THEORY (38): one step of  ds/dt = drive - coulomb - quadratic s^2, exactly (Riccati): with net = drive - coulomb and
 /// T = tangent_ratio(net quadratic dt^2), s = (s0 + net dt T) / (1 + quadratic s0 dt T). `s0`: speed at the start along
 /// the driven direction, `driven`: speed that the drive alone would give at the end. Returns the speed after dt >= 0.
@@ -47,12 +58,14 @@ template <class Real>
 template <class Real>
 [[gnu::always_inline]] inline Real riccati_speed(Real s0, Real driven, Real coulomb, Real quadratic, double dt) {
     const Real gain = driven - s0 - dt * coulomb, x = dt * quadratic * gain, none = {};
+    const Real size = abs(x);
     Real ratio = tangent_series(x);
+    if (any(size >= kTangentSeries)) ratio = select(size < kTangentSeries, ratio, tangent_fraction(x));
     if constexpr (std::is_same_v<Real, double>) {
-        if (!(abs(x) < kTangentSeries)) ratio = tangent_ratio(x);
-    } else if (any(abs(x) >= kTangentSeries)) {
+        if (!(size < kTangentFraction)) ratio = tangent_ratio(x);
+    } else if (any(size >= kTangentFraction)) {
         for (int n = 0; n < 4; ++n)
-            if (!(std::abs(x[n]) < kTangentSeries)) ratio[n] = tangent_ratio(x[n]);
+            if (!(size[n] < kTangentFraction)) ratio[n] = tangent_ratio(x[n]);
     }
     const Real speed = max((s0 + gain * ratio) / (1.0 + dt * quadratic * s0 * ratio), none);
     return select((s0 + gain <= 0.0) | (ratio <= 0.0), none, speed);

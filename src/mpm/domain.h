@@ -3,6 +3,7 @@
 // src/shallow/THEORY.md (53).
 #include <cmath>
 
+#include "base/simd.h"
 #include "base/types.h"
 
 namespace frana {
@@ -69,6 +70,30 @@ struct Gradient {
 /// THEORY (12): the gradient without what a domain narrower than a sixteenth of a cell does not span. Points that
 /// converge are squeezed to such domains, but a node, a cell away, would take their gradient times that cell for
 /// motion: a kinetic energy that no matter has, and that carries a block beyond its stop.
-Gradient spanned(const Gradient& c, double r1x, double r1y, double r2x, double r2y);
+/// Real: double, or Double4 of four points. r: edges [cells], c: the gradient.
+template <class Real>
+[[gnu::always_inline]] inline void leave_spanned(const Real& r1x, const Real& r1y, const Real& r2x, const Real& r2y,
+                                                 Real& cxx, Real& cxy, Real& cyx, Real& cyy) {
+    constexpr double least = 1.0 / 16.0,
+                     tiny = 1e-300;  // [cells]; so that a domain without length divides nothing by zero
+    const Real xx = r1x * r1x + r2x * r2x, yy = r1y * r1y + r2y * r2y, xy = r1x * r1y + r2x * r2y;
+    const Real half = 0.5 * (xx - yy), radius = sqrt(half * half + xy * xy);
+    const Real length = sqrt(0.5 * (xx + yy) + radius);  // of the rectangle that has these moments, u along it
+    const Real width = abs(r1x * r2y - r1y * r2x) / max(length, Real{} + tiny);
+    const Real along = min(length / least, Real{} + 1.0), across = min(width / least, Real{} + 1.0);
+    // The projector along u u^T + across (1 - u u^T), with u u^T = (r r^T - width^2) / (length^2 - width^2).
+    // Next to a square no direction is chosen by round-off.
+    const Real turn = (along - across) / max(max(2.0 * radius, 1e-12 * length * length), Real{} + tiny);
+    const Real pxx = across + turn * (xx - width * width), pyy = across + turn * (yy - width * width), pxy = turn * xy;
+    const Real x = cxx * pxx + cxy * pxy, y = cyx * pxx + cyy * pxy;
+    cxy = cxx * pxy + cxy * pyy, cyy = cyx * pxy + cyy * pyy;
+    cxx = x, cyx = y;
+}
+
+/// The same of one point.
+inline Gradient spanned(Gradient c, double r1x, double r1y, double r2x, double r2y) {
+    leave_spanned(r1x, r1y, r2x, r2y, c.xx, c.xy, c.yx, c.yy);
+    return c;
+}
 
 }  // namespace frana

@@ -87,6 +87,29 @@ bool four_stay(const Held& held, Index p, const HalvingRules& rules) {
     return !any(~stay);
 }
 
+/// Cuts the edges of four points in a row, unless one of them may have to be halved or straightened: then does nothing, and
+/// returns false. A thin sheet is made of points that are long and too light to be halved.
+template <class Points, class Held>
+bool four_cut(const Points& c, Held& held, Index p, const HalvingRules& rules, double longest, bool& changed) {
+    Double4 r1x = load(&held.r1x[p], 4), r1y = load(&held.r1y[p], 4);
+    Double4 r2x = load(&held.r2x[p], 4), r2y = load(&held.r2y[p], 4);
+    const Double4 l1 = r1x * r1x + r1y * r1y, l2 = r2x * r2x + r2y * r2y, area = r1x * r2y - r1y * r2x;
+    Mask4 one = l1 >= 0.0;
+    if (rules.straighten) one &= l1 * l2 <= most_sheared() * area * area;
+    if (rules.split)
+        one &= (max(l1, l2) < (1.0 - kSameLength<Held>)*rules.length * rules.length) | (abs(area) < 0.1) |
+               (load(&c.mass[p], 4) <= rules.least_mass);
+    if (any(~one)) return false;
+    const Double4 length1 = sqrt(l1), length2 = sqrt(l2), whole = all(1.0);
+    if (!any(max(length1, length2) > longest)) return true;
+    const Double4 share1 = select(length1 > longest, longest / length1, whole),
+                  share2 = select(length2 > longest, longest / length2, whole);
+    store(&held.r1x[p], share1 * r1x, 4), store(&held.r1y[p], share1 * r1y, 4);
+    store(&held.r2x[p], share2 * r2x, 4), store(&held.r2y[p], share2 * r2y, 4);
+    changed = true;
+    return true;
+}
+
 template <class Held>
 bool first_is_longer(const Held& held, Index p) {
     const Edges e = edges_of(held, p);
@@ -152,7 +175,7 @@ Index halve_points(const TileGrid& grid, ActiveTiles& active, const HalvingRules
         if (active.quiet[tile] >= kAsleep) return;
         const Index end = active.begin[n + 1];
         for (Index p = active.begin[n]; p < end; ++p) {
-            if (p + 4 <= end && four_stay(held, p, rules)) {
+            if (p + 4 <= end && (four_stay(held, p, rules) || four_cut(c, held, p, rules, longest, changed))) {
                 p += 3;
                 continue;
             }

@@ -23,12 +23,39 @@ struct Node {
     Real acceleration_x, acceleration_y;  ///< artificial viscosity and stress [m/s^2]
     Real loss_x, loss_y;                  ///< the viscosity's part, whose work is lost [m/s^2]
     Real at_front;                        ///< 1 at margins, whose surface may be that of what lies behind; otherwise 0
+
+    /// One of four.
+    Node<double> at(int n) const {
+        return {vx[n],
+                vy[n],
+                ex[n],
+                ey[n],
+                depth[n],
+                mass[n],
+                law_depth[n],
+                acceleration_x[n],
+                acceleration_y[n],
+                loss_x[n],
+                loss_y[n],
+                at_front[n]};
+    }
+    void set(int n, const Node<double>& one) {
+        vx[n] = one.vx, vy[n] = one.vy, ex[n] = one.ex, ey[n] = one.ey;
+        depth[n] = one.depth, mass[n] = one.mass, law_depth[n] = one.law_depth;
+        acceleration_x[n] = one.acceleration_x, acceleration_y[n] = one.acceleration_y;
+        loss_x[n] = one.loss_x, loss_y[n] = one.loss_y, at_front[n] = one.at_front;
+    }
 };
 
 template <class Real>
 struct Updated {
     Real vx, vy, kinetic, dissipated, wave_gravity;
     Real velocity_share;  ///< share of the velocity that friction left [1]
+
+    /// One of four.
+    Updated<double> at(int n) const {
+        return {vx[n], vy[n], kinetic[n], dissipated[n], wave_gravity[n], velocity_share[n]};
+    }
 };
 
 /// At the rim of a stencil mass vanishes faster than force: a node that has depth counts half of it at least, or a
@@ -137,7 +164,7 @@ private:
         return moving;
     }
 
-    /// Four nodes in a row: together where all lie inside the flow, otherwise one by one.
+    /// Four nodes in a row: loaded together where all lie inside the flow, otherwise one by one.
     void update_four(Flow& flow, Index k, Index i, Index j, double dt, TileWork& work) {
         const std::uint8_t* f = flow.nodes.flags.data() + k;
         constexpr int kInside = kMoving | kWideX | kWideY;
@@ -152,33 +179,60 @@ private:
             transpose(after.vx, after.vy, node.depth, after.velocity_share, out);
             for (int n = 0; n < 4; ++n) store(motion + n, out[n]);
         } else {
-            for (Index n = 0; n < 4; ++n) update_node(flow, k + n, i + n, j, dt, work.single);
+            update_some(flow, k, i, j, dt, work.single);
         }
+    }
+
+    /// Those of four nodes in a row that move and are of the grid; the laws take them together.
+    void update_some(Flow& flow, Index k, Index i, Index j, double dt, Sums<double>& sums) {
+        Node<Double4> four{};
+        std::array<double, 4> share{};
+        int moving = 0, last = 0;
+        for (int n = 0; n < 4; ++n) {
+            flow.nodes.motions()[k + n] = {0.0, 0.0, flow.nodes.depth[k + n], 1.0};
+            if (flow.nodes.flags[k + n] & kMoving) share[static_cast<std::size_t>(n)] = flow.share(i + n, j);
+            if (share[static_cast<std::size_t>(n)] == 0.0) continue;
+            four.set(n, prepared_at(flow, k + n, i + n, j));
+            ++moving, last = n;
+        }
+        if (moving == 0) return;
+        if (moving == 1 || !(dt > 0.0)) {
+            for (int n = 0; n <= last; ++n)
+                if (share[static_cast<std::size_t>(n)] > 0.0)
+                    update_one(flow, k + n, four.at(n), dt, share[static_cast<std::size_t>(n)], sums);
+            return;
+        }
+        const auto after =
+            updated(flow, typename Terrain::template Bed<Double4>(flow, k), four, law_at<Double4>(flow, k), dt);
+        for (int n = 0; n <= last; ++n)
+            if (share[static_cast<std::size_t>(n)] > 0.0)
+                take(flow, k + n, four.at(n), after.at(n), share[static_cast<std::size_t>(n)], sums);
     }
 
     static bool inside(const Flow& flow, Index i, Index j) {
         return !flow.walls || (i > 0 && j > 0 && i + 4 < flow.grid.nx() && j + 1 < flow.grid.ny());
     }
 
-    void update_node(Flow& flow, Index k, Index i, Index j, double dt, Sums<double>& sums) {
-        const Nodes& nodes = flow.nodes;
-        Motion& motion = flow.nodes.motions()[k];
-        motion = {0.0, 0.0, nodes.depth[k], 1.0};
-        if (!(nodes.flags[k] & kMoving)) return;
-        const double share = flow.share(i, j);
-        if (share == 0.0) return;
+    void update_one(Flow& flow, Index k, const Node<double>& node, double dt, double share, Sums<double>& sums) {
+        const typename Terrain::template Bed<double> bed(flow, k);
+        take(flow, k, node, dt > 0.0 ? updated(flow, bed, node, law_at<double>(flow, k), dt) : resting_clock(bed, node),
+             share, sums);
+    }
+
+    static void take(Flow& flow, Index k, const Node<double>& node, const Updated<double>& after, double share,
+                     Sums<double>& sums) {
+        flow.nodes.motions()[k] = {after.vx, after.vy, node.depth, after.velocity_share};
+        add(flow, node, after, share, sums);
+    }
+
+    /// What a mirror cancels at a wall, it cancels exactly.
+    Node<double> prepared_at(const Flow& flow, Index k, Index i, Index j) const {
         Node<double> node = prepared(flow, k);
-        if (flow.walls) {  // what a mirror cancels, it cancels exactly
+        if (flow.walls) {
             if (i == 0 || i == flow.grid.nx() - 1) node.ex = node.acceleration_x = node.loss_x = node.vx = 0.0;
             if (j == 0 || j == flow.grid.ny() - 1) node.ey = node.acceleration_y = node.loss_y = node.vy = 0.0;
         }
-        const typename Terrain::template Bed<double> bed(flow, k);
-        const Updated<double> after =
-            dt > 0.0 ? updated(flow, bed, node, law_at<double>(flow, k), dt) : resting_clock(bed, node);
-        motion.vx = after.vx;
-        motion.vy = after.vy;
-        motion.velocity_share = after.velocity_share;
-        add(flow, node, after, share, sums);
+        return node;
     }
 
     template <class Real>

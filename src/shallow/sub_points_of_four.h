@@ -1,5 +1,6 @@
 #pragma once
 // Four points at once: their columns on the nodes, from their sub-points (sub_points.h), and gradients as they feel them.
+#include "mpm/domain.h"
 #include "mpm/stencils.h"
 #include "shallow/sub_points.h"
 
@@ -17,11 +18,7 @@ struct Domains {
     const Double4 xx = r.r1x * r.r1x + r.r2x * r.r2x, yy = r.r1y * r.r1y + r.r2y * r.r2y,
                   xy = r.r1x * r.r1y + r.r2x * r.r2y;
     const Mask4 wide = (xx >= least) & ((xx - least) * (yy - least) >= xy * xy);
-    if (!any(~wide)) return;
-    for (int n = 0; n < 4; ++n) {
-        const Gradient g = spanned({cxx[n], cxy[n], cyx[n], cyy[n]}, r.r1x[n], r.r1y[n], r.r2x[n], r.r2y[n]);
-        cxx[n] = g.xx, cxy[n] = g.xy, cyx[n] = g.yx, cyy[n] = g.yy;
-    }
+    if (any(~wide)) leave_spanned(r.r1x, r.r1y, r.r2x, r.r2y, cxx, cxy, cyx, cyy);
 }
 
 /// Where the sub-points of four points spread: weights of the four by four nodes that hold all of a point's.

@@ -78,9 +78,6 @@ double emerging(const Flow& flow, Index k, double level) {
     return sum;
 }
 
-/// Flags that another thread may be writing: it only adds the present sweep, which readers take for none.
-std::uint8_t flags_now(const Nodes& nodes, Index k) { return __atomic_load_n(&nodes.flags[k], __ATOMIC_RELAXED); }
-
 /// What a film adds to the line through its surface at p and q when that is continued to k: it bends as the ground does. Of a
 /// film only, on ground that bends by more than it is deep: on what a grid resolves waves are linear at shores. Nothing where
 /// the ground from q to p is next to level, as on a crest: a lake is as level there as a film.
@@ -92,18 +89,78 @@ double film_bend(const Flow& flow, Index k, Index p, Index q) {
     return std::min(1.0, std::abs(bend) / depth - 1.0) * film_share(rise / flow.cell, ground / flow.cell) * bend;
 }
 
-/// Of all flags, whether a node that has them is known before a sweep.
-using Known = std::array<bool, 256>;
-constexpr Known known_before(int sweep) {
-    Known known{};
-    for (int f = 0; f < 256; ++f) {
-        const int found = f / kSweep;
-        known[static_cast<std::size_t>(f)] = (f & kWet) && (!(f & kMargin) || (found > 0 && found < sweep));
-    }
-    return known;
+static_assert(kWet == 1 && kMargin == 2 && kSweep == 64 && kSweeps == 3, "as below");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "bytes and bits count from the same end");
+
+/// The flags of eight nodes in a row, a byte each.
+typedef std::uint64_t __attribute__((may_alias)) EightFlags;
+constexpr std::uint64_t kEachByte = 0x0101010101010101;
+
+/// The lowest bit of each of eight bytes.
+std::uint32_t bits_of(std::uint64_t bytes) {
+    return static_cast<std::uint32_t>((bytes & kEachByte) * 0x0102040810204080 >> 56);
 }
-constexpr std::array<Known, kSweeps + 1> kKnown{known_before(0), known_before(1), known_before(2), known_before(3)};
-static_assert(kSweeps == 3, "a list for each sweep");
+
+/// Which of eight nodes are known before a sweep: wet, and not of the margin or found by an earlier sweep.
+std::uint32_t known_of(std::uint64_t flags, int sweep) {
+    const std::uint64_t margin = flags >> 1, odd = flags >> 6, even = flags >> 7;  // sweeps 1 and 3; 2 and 3
+    std::uint64_t found = 0;
+    if (sweep >= 2) found |= odd & ~even;
+    if (sweep >= 3) found |= even & ~odd;
+    return bits_of(flags & (~margin | found));
+}
+
+/// Margin nodes of a tile that no sweep has reached: bit i of row j is node (i, j).
+struct UnknownRows {
+    std::uint32_t row[kTile] = {};
+    bool any = false;
+    UnknownRows(const Flow& flow, Index tile) {
+        const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+        std::uint32_t columns = 0;
+        for (Index i = 0; i < kTile; ++i)
+            columns |= std::uint32_t{!flow.walls || (i0 + i >= 0 && i0 + i < flow.grid.nx())} << i;
+        for (Index j = 0; j < kTile; ++j) {
+            if (flow.walls && (j0 + j < 0 || j0 + j >= flow.grid.ny())) continue;
+            const std::uint32_t here = nodes_in(flow.in_reach[tile] >> (4 * j) & 0xf);
+            if (!here) continue;
+            const auto* flags = reinterpret_cast<const EightFlags*>(&flow.nodes.flags[flow.grid.at(i0, j0 + j)]);
+            const auto unknown = [](std::uint64_t f) { return bits_of(f >> 1 & ~(f >> 6) & ~(f >> 7)); };
+            row[j] = (unknown(flags[0]) | unknown(flags[1]) << 8) & here & columns;
+            any = any || row[j] != 0;
+        }
+    }
+};
+
+/// Nodes of a tile and three around it that are known before a sweep: bit i + 8 of row j + 3 is node (i, j). Right three or
+/// fewer nodes from one of `unknown`, along lines of nodes that are known; anything elsewhere.
+struct KnownRows {
+    std::uint32_t row[kTile + 6] = {};
+    KnownRows(const Flow& flow, Index tile, int sweep, const UnknownRows& unknown) {
+        const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+        for (Index j = -3; j < kTile + 3; ++j) {
+            bool asked = false;
+            for (Index n = std::max<Index>(j - 3, 0); n <= std::min<Index>(j + 3, kTile - 1); ++n)
+                asked = asked || unknown.row[n] != 0;
+            const Index first = flow.grid.at(i0, j0 + j) - 8;
+            if (!asked || first < 0 || first + 32 > flow.grid.size()) continue;  // beyond the spare ring: dry
+            const auto* flags = reinterpret_cast<const EightFlags*>(&flow.nodes.flags[first]);
+            // Another thread may be writing: it only adds the present sweep, which counts for none.
+            for (int n = 0; n < 4; ++n)
+                row[j + 3] |= known_of(__atomic_load_n(flags + n, __ATOMIC_RELAXED), sweep) << (8 * n);
+        }
+    }
+    bool operator()(Index i, Index j) const { return row[j + 3] >> (i + 8) & 1; }
+    /// Nodes of row j that have two known ones in a row in some direction.
+    std::uint32_t next_to_two(Index j) const {
+        std::uint32_t any = 0;
+        for (int dj = -1; dj <= 1; ++dj) {
+            const std::uint32_t near = row[j + 3 + dj], far = row[j + 3 + 2 * dj];
+            if (dj != 0) any |= near & far;
+            any |= (near << 1 & far << 2) | (near >> 1 & far >> 2);
+        }
+        return any >> 8;
+    }
+};
 
 /// 1 where a node rests, 0 where it moves at `creeps` or faster.
 double resting(const Pair& velocity, double creeps) {
@@ -111,32 +168,25 @@ double resting(const Pair& velocity, double creeps) {
     return std::max(0.0, 1.0 - std::hypot(velocity.x, velocity.y) / creeps);
 }
 
-/// What a sweep goes by.
-struct Sweep {
-    int number;
-    const Known& known;
-    double creeps;  ///< a slower node rests [m/s]
-};
-
-/// One extrapolated surface value from up to eight directions, made of nodes known before this sweep, or nothing.
-bool extrapolate(const Flow& flow, Index k, const Sweep& sweep, double& value) {
+/// One extrapolated surface value of node (i, j) of a tile, k of all, from up to eight directions, made of nodes known before
+/// this sweep, or nothing.
+bool extrapolate(const Flow& flow, Index k, Index i, Index j, const KnownRows& known, double creeps, double& value) {
     const Nodes& nodes = flow.nodes;
-    const auto known = [&](Index n) { return sweep.known[flags_now(nodes, n)]; };
     const Index up = flow.grid.stride();
     // The flank of what rests bends down to the level at most: bent on under the ground, it would be steeper than it is
     // anywhere and pull the pile apart. (Not to the bed itself, or a dry neighbour as high would be a shore by round-off.)
     // A front in motion has a tip that bends so. Between the two not at once, or round-off would choose.
-    const double rests = resting(nodes.before[k], sweep.creeps);
+    const double rests = resting(nodes.before[k], creeps);
     double sum = 0.0, weights = 0.0;
     for (int dj = -1; dj <= 1; ++dj)
         for (int di = -1; di <= 1; ++di) {
             if (di == 0 && dj == 0) continue;
             const Index step = dj * up + di, p = k + step, q = p + step, r = q + step;
-            if (!known(p) || !known(q)) continue;
+            if (!known(i + di, j + dj) || !known(i + 2 * di, j + 2 * dj)) continue;
             const double film = film_bend(flow, k, p, q);
             double e = 2.0 * nodes.surface[p] - nodes.surface[q] + film;
             const double limit = flow.scheme.margin_limit * nodes.depth[p];
-            if (known(r)) {
+            if (known(i + 3 * di, j + 3 * dj)) {
                 const double bend =
                     std::clamp(nodes.surface[p] - 2.0 * nodes.surface[q] + nodes.surface[r] - film, -limit, limit);
                 e += bend + rests * (std::max(bend, std::min(0.0, nodes.level[k] - e)) - bend);
@@ -159,45 +209,70 @@ bool extrapolate(const Flow& flow, Index k, const Sweep& sweep, double& value) {
 void shoreline_sweep(Flow& flow, int number) {
     Nodes& nodes = flow.nodes;
     constexpr double kCreeps = 1e-6;  // of the speed of a wave one cell deep, where it is a front
-    const Sweep sweep{number, kKnown[static_cast<std::size_t>(number)], kCreeps * std::sqrt(flow.gravity * flow.cell)};
-    const auto inside = [&](Index i, Index j) {
-        return !flow.walls || (i >= 0 && i < flow.grid.nx() && j >= 0 && j < flow.grid.ny());
-    };
+    const double creeps = kCreeps * std::sqrt(flow.gravity * flow.cell);
     const Index count = static_cast<Index>(flow.shore.size());
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) {
         const Index tile = flow.shore[static_cast<std::size_t>(n)];
-        const auto find = [&](Index k, Index i, Index j) {
-            const std::uint8_t f = nodes.flags[k];
-            if (!(f & kMargin) || f >= kSweep || !inside(i, j) || !extrapolate(flow, k, sweep, nodes.surface[k]))
-                return;
-            __atomic_store_n(&nodes.flags[k], static_cast<std::uint8_t>(f | number * kSweep), __ATOMIC_RELAXED);
-        };
-        for_each_four_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
-            if (four_have(nodes.flags.data() + k, 0, kMargin)) return;
-            for (Index n = 0; n < 4; ++n) find(k + n, i + n, j);
-        });
+        const UnknownRows unknown(flow, tile);
+        if (!unknown.any) continue;
+        const KnownRows known(flow, tile, number, unknown);
+        const Index first = flow.grid.at(flow.grid.tile_i(tile), flow.grid.tile_j(tile));
+        for (Index j = 0; j < kTile; ++j)
+            for (std::uint32_t left = unknown.row[j] & known.next_to_two(j); left != 0; left &= left - 1) {
+                const Index i = __builtin_ctz(left), k = first + j * flow.grid.stride() + i;
+                if (!extrapolate(flow, k, i, j, known, creeps, nodes.surface[k])) continue;
+                __atomic_store_n(&nodes.flags[k], static_cast<std::uint8_t>(nodes.flags[k] | number * kSweep),
+                                 __ATOMIC_RELAXED);
+            }
     }
 }
 
-/// Whether a node and two each way are wet and not of the margin.
-bool five_known(const Nodes& nodes, Index k, Index step) {
-    const std::uint8_t* f = nodes.flags.data() + k;
-    const int all = f[0] & f[step] & f[-step] & f[2 * step] & f[-2 * step];
-    const int any = f[0] | f[step] | f[-step] | f[2 * step] | f[-2 * step];
-    return (all & kWet) && !(any & kMargin);
+/// Nodes of a tile that are wet and not of the margin, with two each way: bit i of row j is node (i, j). Of rows that have some
+/// of the groups.
+struct InnerRows {
+    std::uint32_t along_x[kTile] = {}, along_y[kTile] = {};
+    InnerRows(const Flow& flow, Index tile, NodeGroups groups) {
+        const Index first = flow.grid.at(flow.grid.tile_i(tile), flow.grid.tile_j(tile)) - 8;
+        std::uint32_t row[kTile + 4] = {};  // bit i + 8 of row j + 2
+        for (Index j = -2; j < kTile + 2; ++j) {
+            const Index from = std::max<Index>(j - 2, 0), past = std::min<Index>(j + 3, kTile);
+            const NodeGroups below = past < kTile ? (NodeGroups{1} << (4 * past)) - 1 : kAllGroups;
+            const Index k = first + j * flow.grid.stride();
+            if (!((groups & below) >> (4 * from)) || k < 0 || k + 32 > flow.grid.size()) continue;
+            const auto* flags = reinterpret_cast<const EightFlags*>(&flow.nodes.flags[k]);
+            for (int n = 0; n < 4; ++n) row[j + 2] |= bits_of(flags[n] & ~(flags[n] >> 1)) << (8 * n);
+        }
+        for (Index j = 0; j < kTile; ++j) {
+            const std::uint32_t* r = row + j;
+            along_x[j] = (r[2] & r[2] << 1 & r[2] << 2 & r[2] >> 1 & r[2] >> 2) >> 8;
+            along_y[j] = (r[0] & r[1] & r[2] & r[3] & r[4]) >> 8;
+        }
+    }
+};
+
+/// Calls body(first node of the four, bits along x, bits along y) for each of the groups of a tile.
+template <class Body>
+void for_each_inner_four(const Flow& flow, Index tile, Body&& body) {
+    const NodeGroups groups = flow.active_nodes(tile);
+    if (groups == 0) return;
+    const InnerRows inner(flow, tile, groups);
+    const Index i0 = flow.grid.tile_i(tile), j0 = flow.grid.tile_j(tile);
+    for_each_four_of(flow.grid, tile, groups, [&](Index k, Index i, Index j) {
+        body(k, inner.along_x[j - j0] >> (i - i0) & 0xf, inner.along_y[j - j0] >> (i - i0) & 0xf);
+    });
 }
 
-void wave_along_x(Nodes& nodes, Index k) {
+void wave_along_x(Nodes& nodes, Index k, std::uint32_t known) {
     const double* e = nodes.level.data() + k;
-    if (eight_have(nodes.flags.data() + k - 2, kWet, kMargin)) {
+    if (known == 0xf) {
         std::memset(nodes.row_known.data() + k, 1, 4);
         store(&nodes.wave_x[k], wave_along<Double4>(e, 1));
         return;
     }
     for (Index n = 0; n < 4; ++n) {
-        nodes.row_known[k + n] = five_known(nodes, k + n, 1);
-        nodes.wave_x[k + n] = nodes.row_known[k + n] ? wave_along<double>(e + n, 1) : 0.0;
+        nodes.row_known[k + n] = known >> n & 1;
+        nodes.wave_x[k + n] = known >> n & 1 ? wave_along<double>(e + n, 1) : 0.0;
     }
 }
 
@@ -223,9 +298,7 @@ Real without_wave(Real h, Real wave) {
 
 /// (1 - s X)(1 - s Y) multiplied out, so that x and y may change places; where the product is not known, two thirds
 /// of each: the waves along one axis and the chequerboard then both keep a third.
-void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool sensed) {
-    const bool x = nodes.row_known[k], y = five_known(nodes, k, up);
-    if (!x && !y) return;
+void filter_node(const Flow& flow, Nodes& nodes, Index k, Index up, bool x, bool y, bool sensed) {
     const double held = sensed ? std::max(0.0, 1.0 - 2.0 * shock_near(nodes, k, up)) : 1.0;
     const double strength = flow.scheme.filter * held;
     const double wave_y = y ? wave_along<double>(nodes.level.data() + k, up) : 0.0;
@@ -384,16 +457,15 @@ void filter(Flow& flow) {
     Nodes& nodes = flow.nodes;
     const Index up = flow.grid.stride();
     const bool sensed = has_viscosity(flow.scheme) && flow.scheme.shock_sensor > 0.0;
-    for_each_work_run(flow.active, [&](const TileRun& run) {
-        for_each_four_of_run(flow.grid, run, flow.active_nodes(),
-                             [&](Index, Index k, Index, Index) { wave_along_x(nodes, k); });
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_inner_four(flow, tile, [&](Index k, std::uint32_t x, std::uint32_t) { wave_along_x(nodes, k, x); });
     });
-    for_each_work_run(flow.active, [&](const TileRun& run) {
-        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index, Index k, Index, Index) {
-            if (calm(nodes, k, up)) {
-                filter_calm(flow, nodes, k, up);
-            } else {
-                for (Index n = 0; n < 4; ++n) filter_node(flow, nodes, k + n, up, sensed);
+    for_each_work_tile(flow.active, [&](Index, Index tile) {
+        for_each_inner_four(flow, tile, [&](Index k, std::uint32_t x, std::uint32_t y) {
+            if ((x & y) == 0xf && calm(nodes, k, up)) return filter_calm(flow, nodes, k, up);
+            for (std::uint32_t left = x | y; left != 0; left &= left - 1) {
+                const Index n = __builtin_ctz(left);
+                filter_node(flow, nodes, k + n, up, x >> n & 1, y >> n & 1, sensed);
             }
         });
     });

@@ -80,7 +80,7 @@ void Patches::measure(const std::vector<Surface>& others) {
         }
 }
 
-void Patches::leave_out_beside(const Prism& prism) {
+void Patches::find_off_top(const Prism& prism) {
     constexpr double kPlaces = 5.0;
     const auto on_it = [&](Index row, Index column) {
         for (double b = 0.5; b < kPlaces; b += 1.0)
@@ -92,9 +92,9 @@ void Patches::leave_out_beside(const Prism& prism) {
             }
         return false;
     };
-    beside.clear();
+    off_top.clear();
     for (Index row = 0; row < count[1]; ++row)
-        for (Index column = 0; column < count[0]; ++column) beside.push_back(!on_it(row, column));
+        for (Index column = 0; column < count[0]; ++column) off_top.push_back(!on_it(row, column));
 }
 
 void Patches::spread(const FacePart& part, const Vec3& given) {
@@ -127,7 +127,7 @@ FaceLedger::FaceLedger(const std::vector<Surface>& surfaces, const Vec3& low, co
                                                                 : of_shape(*surface.shape, n, cell);
             face.patches.measure(surfaces);
             if (surface.kind == Surface::Kind::prism && n == surface.prism->top_face())
-                face.patches.leave_out_beside(*surface.prism);
+                face.patches.find_off_top(*surface.prism);
             faces_.push_back(std::move(face));
         }
     }

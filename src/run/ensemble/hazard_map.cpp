@@ -64,28 +64,63 @@ void draw(const std::filesystem::path& dir, const EnsembleBase& base, const Haza
         summary.files.emplace_back("figures/hazard_class.png");
 }
 
+/// All runs of the plan that have a weight; those without an answer have no peaks.
+std::vector<HazardRun> runs_of(const EnsemblePlan& plan, const WeightedRuns& of, bool& all_answered) {
+    std::vector<HazardRun> runs;
+    std::vector<char> answered(plan.points.size(), 0);
+    for (std::size_t k = 0; k < of.ended.size(); ++k) {
+        const auto sample = static_cast<std::size_t>(of.ended[k]->sample);
+        answered[sample] = 1;
+        runs.push_back({of.peaks[k], of.weights[k], plan.points[sample].return_period});
+    }
+    const std::size_t ended = runs.size();
+    for (std::size_t k = 0; k < plan.points.size(); ++k)
+        if (!answered[k] && plan.points[k].weight > 0.0)
+            runs.push_back({nullptr, plan.points[k].weight, plan.points[k].return_period});
+    all_answered = runs.size() == ended;
+    return runs;
+}
+
+/// Writes classes as a raster, and returns the area of each [m2].
+std::vector<double> written(const std::filesystem::path& dir, const std::string& name, const EnsembleBase& base,
+                            const HazardTable& table, const std::vector<std::uint8_t>& numbers,
+                            const std::string& description, EnsembleSummary& summary) {
+    std::vector<RasterClass> classes;
+    std::vector<double> areas;
+    for (std::size_t k = 0; k < table.classes.size(); ++k) {
+        const auto count = std::count(numbers.begin(), numbers.end(), static_cast<std::uint8_t>(k + 1));
+        areas.push_back(static_cast<double>(count) * base.whole.cell * base.whole.cell);
+        classes.push_back({table.classes[k].name, table.classes[k].colour});
+    }
+    const std::string file = "rasters/" + name + ".tif";
+    write_class_geotiff(dir / file, base.whole, base.bed.crs_wkt, numbers, classes, description + rule_of(table));
+    summary.files.insert(summary.files.end(), {file, file + ".aux.xml"});
+    return areas;
+}
+
 }  // namespace
 
 void write_hazard(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
                   const WeightedRuns& of, EnsembleSummary& summary) {
     if (!plan.hazard) return;
     const HazardTable& table = *plan.hazard;
-    std::vector<HazardRun> runs;
-    for (std::size_t k = 0; k < of.ended.size(); ++k)
-        runs.push_back(
-            {of.peaks[k], of.weights[k], plan.points[static_cast<std::size_t>(of.ended[k]->sample)].return_period});
+    bool all_answered = true;
+    const std::vector<HazardRun> runs = runs_of(plan, of, all_answered);
     summary.hazard_remark = remark_on_scenarios(table, plan, of);
-    const std::vector<std::uint8_t> numbers = hazard_classes(table, plan.fields, runs, base.whole.size());
-    std::vector<RasterClass> classes;
-    for (std::size_t k = 0; k < table.classes.size(); ++k) {
-        const auto count = std::count(numbers.begin(), numbers.end(), static_cast<std::uint8_t>(k + 1));
-        summary.hazard.push_back({table.classes[k].name, static_cast<Index>(k + 1),
-                                  static_cast<double>(count) * base.whole.cell * base.whole.cell});
-        classes.push_back({table.classes[k].name, table.classes[k].colour});
+    const auto classes_if = [&](Unanswered unanswered) {
+        return hazard_classes(table, plan.fields, runs, base.whole.size(), unanswered);
+    };
+    const std::vector<std::uint8_t> numbers = classes_if(Unanswered::left_out);
+    const std::vector<double> areas = written(dir, "hazard_class", base, table, numbers, "class of hazard: ", summary);
+    for (std::size_t k = 0; k < areas.size(); ++k)
+        summary.hazard.push_back({table.classes[k].name, static_cast<Index>(k + 1), areas[k], std::nullopt});
+    if (!all_answered) {
+        const auto least = written(dir, "hazard_class_at_least", base, table, classes_if(Unanswered::came_nowhere),
+                                   "class of hazard, had runs without an answer come nowhere: ", summary);
+        const auto most = written(dir, "hazard_class_at_most", base, table, classes_if(Unanswered::came_everywhere),
+                                  "class of hazard, had runs without an answer come wherever another did: ", summary);
+        for (std::size_t k = 0; k < areas.size(); ++k) summary.hazard[k].bounds = {least[k], most[k]};
     }
-    write_class_geotiff(dir / "rasters" / "hazard_class.tif", base.whole, base.bed.crs_wkt, numbers, classes,
-                        "class of hazard: " + rule_of(table));
-    summary.files.insert(summary.files.end(), {"rasters/hazard_class.tif", "rasters/hazard_class.tif.aux.xml"});
     draw(dir, base, table, numbers, summary);
 }
 

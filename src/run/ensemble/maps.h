@@ -2,6 +2,7 @@
 // What an ensemble says: maps, table, page and pictures.
 #include <filesystem>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "ensemble/sample_run.h"
@@ -13,6 +14,8 @@ struct HazardArea {
     std::string name;
     Index number = 0;   ///< in the raster
     double area = 0.0;  ///< [m2]
+    /// Where runs have no answer: had they come nowhere, and had they come wherever another one did [m2].
+    std::optional<std::pair<double, double>> bounds;
 };
 
 /// How its runs went.

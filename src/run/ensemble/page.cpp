@@ -98,8 +98,13 @@ Json hazard_json(const HazardTable& table, const EnsembleSummary& summary) {
                  {"share", table.share},
                  {"remark", summary.hazard_remark},
                  {"classes", Json::array()}};
-    for (const HazardArea& one : summary.hazard)
-        json["classes"].push_back({{"name", one.name}, {"number", one.number}, {"area_m2", one.area}});
+    for (const HazardArea& one : summary.hazard) {
+        Json told = {{"name", one.name}, {"number", one.number}, {"area_m2", one.area}};
+        if (one.bounds)
+            told["area_if_unanswered_came_nowhere_m2"] = one.bounds->first,
+            told["area_if_unanswered_came_everywhere_m2"] = one.bounds->second;
+        json["classes"].push_back(std::move(told));
+    }
     return json;
 }
 
@@ -118,8 +123,15 @@ std::string hazard_section(const EnsemblePlan& plan, const EnsembleSummary& summ
             page += fmt::format(" {} |", number > 0 ? table.classes[number - 1].name : "none");
     }
     if (!summary.hazard_remark.empty()) page += "\n\n" + summary.hazard_remark;
-    page += "\n\n| Class | Area [m2] |\n|---|---:|";
-    for (const HazardArea& one : summary.hazard) page += fmt::format("\n| {} | {:.6g} |", one.name, one.area);
+    const bool bounded = !summary.hazard.empty() && summary.hazard.front().bounds;
+    page += bounded
+                ? "\n\n| Class | Area [m2] | had runs without an answer come nowhere | had they come wherever another "
+                  "run did, as strong as the table knows |\n|---|---:|---:|---:|"
+                : "\n\n| Class | Area [m2] |\n|---|---:|";
+    for (const HazardArea& one : summary.hazard) {
+        page += fmt::format("\n| {} | {:.6g} |", one.name, one.area);
+        if (one.bounds) page += fmt::format(" {:.6g} | {:.6g} |", one.bounds->first, one.bounds->second);
+    }
     return page;
 }
 
