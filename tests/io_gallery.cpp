@@ -82,7 +82,12 @@ TEST_CASE("pictures for the renderer are begun first, one after the other while 
             rendering += rendered;
             if (plain_left > 0) most_rendering = std::max(most_rendering, rendering);
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(rendered ? 30 : 10));
+        for (int wait = 0; !rendered && wait < 200; ++wait) {  // or a thread that is held up would tell its name late
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            const std::lock_guard<std::mutex> lock(mutex);
+            if (std::find(begun.begin(), begun.end(), "view") != begun.end()) break;
+        }
+        if (rendered) std::this_thread::sleep_for(std::chrono::milliseconds(30));
         const std::lock_guard<std::mutex> lock(mutex);
         rendering -= rendered;
         return true;

@@ -1,11 +1,13 @@
 // Points that split, merge and touch nodes: what each must keep.
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <random>
 
 #include "analytic_scene.h"
 #include "catch.h"
 #include "mpm/domain.h"
+#include "mpm/halving.h"
 #include "mpm/stencil.h"
 #include "shallow/merge.h"
 #include "shallow/split.h"
@@ -121,6 +123,57 @@ TEST_CASE("A domain narrower than a sixteenth of a cell spans that much less of 
             leave_spanned(all(r1.x()), all(r1.y()), all(r2.x()), all(r2.y()), cxx, cxy, cyx, cyy);
             CHECK((cxx[2] == g.xx && cxy[2] == g.xy && cyx[2] == g.yx && cyy[2] == g.yy));
         }
+}
+
+TEMPLATE_TEST_CASE("Four points that stay whole are cut as each of them is", "[points]", double, float) {
+    struct Masses {
+        std::vector<double> mass{1.0, 2.0, 3.0, 4.0};
+    } points;
+    struct Edges4 {
+        std::vector<TestType> r1x = std::vector<TestType>(4), r1y = r1x, r2x = r1x, r2y = r1x;
+    };
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> any(-1, 1);
+    const double longest = 1.0;
+    int cut = 0, left = 0, whole = 0;
+    for (int k = 0; k < 4000; ++k) {
+        Edges4 held;
+        const double size = std::pow(10.0, any(random));
+        for (std::size_t n = 0; n < 4; ++n) {
+            held.r1x[n] = static_cast<TestType>(size * any(random)),
+            held.r1y[n] = static_cast<TestType>(0.3 * any(random));
+            held.r2x[n] = static_cast<TestType>(0.3 * any(random)),
+            held.r2y[n] = static_cast<TestType>(size * any(random));
+        }
+        const HalvingRules rules{1.0, 2.5 + 2.0 * any(random), k % 5 != 0, k % 2 == 0, 0.0};
+        Edges4 before = held, one = held;
+        bool changed = false, one_changed = false, simple = true;
+        for (Index n = 0; n < 4; ++n) {
+            one_changed |= clamp_edges(one, n, 2.0 * longest);
+            if (rules.straighten && straighten(one, n)) simple = false;
+            if (rules.split && parts_of(one, n, points.mass[static_cast<std::size_t>(n)], rules) > 1) simple = false;
+            one_changed |= clamp_edges(one, n, longest);
+        }
+        const bool done = four_cut(points, held, 0, rules, longest, changed);
+        if (!simple) CHECK_FALSE(done);  // it may leave more alone than it must
+        if (!done) {
+            ++left;
+            CHECK((held.r1x == before.r1x && held.r2y == before.r2y && !changed));
+            continue;
+        }
+        ++(changed ? cut : whole);
+        CHECK(changed == one_changed);
+        for (std::size_t n = 0; n < 4; ++n) {  // cut at once, or to twice the length first: two roundings more
+            const double slack = 4.0 * std::numeric_limits<TestType>::epsilon();
+            CHECK(std::abs(held.r1x[n] - one.r1x[n]) <= slack);
+            CHECK(std::abs(held.r1y[n] - one.r1y[n]) <= slack);
+            CHECK(std::abs(held.r2x[n] - one.r2x[n]) <= slack);
+            CHECK(std::abs(held.r2y[n] - one.r2y[n]) <= slack);
+        }
+    }
+    CHECK(cut > 100);
+    CHECK(left > 100);
+    CHECK(whole > 100);
 }
 
 TEST_CASE("Merging thins a crowd and keeps mass, momentum, centre and second moments", "[points]") {

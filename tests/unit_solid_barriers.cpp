@@ -1,5 +1,6 @@
 // Barriers: distances, faces, corners, ways that end on them, walls along a line.
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "base/error.h"
 #include "catch.h"
@@ -284,4 +285,15 @@ TEST_CASE("Squares in the bend of an L are not of its top", "[solid]") {
         for (Index column = 0; column < 12; ++column)
             CHECK(bool(top.patches.off_top[static_cast<std::size_t>(row * 12 + column)]) == (row >= 4 && column >= 4));
     CHECK(ledger.face(0, 0).patches.off_top.empty());
+    // A wall of a twentieth of a square, askew: squares that it passes are on it, however little it covers of them.
+    const Polygons thin = ring({{0.1, 0.2}, {6.1, 4.2}, {6.1 - 0.014, 4.2 + 0.021}, {0.1 - 0.014, 0.2 + 0.021}});
+    const FaceLedger askew({Surface::barrier(Prism(thin, 2.0))}, {-1, -1, -1}, {8, 8, 7}, 0.5);
+    const Patches& rim = askew.face(0, 4).patches;
+    for (double t = 0.0; t < 1.0; t += 0.01) {
+        const Vec2 at = (Vec2(0.1, 0.2) + t * Vec2(6, 4) - rim.origin.head<2>()) / rim.size;
+        const auto square = static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(rim.count[0]) +
+                            static_cast<std::size_t>(at.x());
+        CHECK_FALSE(rim.off_top[square]);
+    }
+    CHECK(std::count(rim.off_top.begin(), rim.off_top.end(), 1) > 60);
 }

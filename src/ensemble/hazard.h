@@ -46,8 +46,9 @@ struct HazardRun {
     double return_period = 0.0;  ///< of its scenario [years]; not looked at with `event_years`
 };
 
-/// What runs without an answer are taken for: left out; or the two ends of what they may have been. Those that came
-/// everywhere did so where any other run came, as strong as the table knows.
+/// What runs without an answer are taken for: left out, or one of two ends. Those that came everywhere did so where any
+/// other run came, as strong as the table knows. The ends bound the class if a table's never falls with strength and never
+/// rises with years.
 enum class Unanswered { left_out, came_nowhere, came_everywhere };
 
 /// The number of the class on each pixel, 0 for none. `fields` are those of the runs' peaks; the table's are among them.

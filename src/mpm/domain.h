@@ -74,8 +74,8 @@ struct Gradient {
 template <class Real>
 [[gnu::always_inline]] inline void leave_spanned(const Real& r1x, const Real& r1y, const Real& r2x, const Real& r2y,
                                                  Real& cxx, Real& cxy, Real& cyx, Real& cyy) {
-    constexpr double least = 1.0 / 16.0,
-                     tiny = 1e-300;  // [cells]; so that a domain without length divides nothing by zero
+    constexpr double least = 1.0 / 16.0;  // [cells]
+    constexpr double tiny = 1e-300;       // a domain without length divides nothing by zero
     const Real xx = r1x * r1x + r2x * r2x, yy = r1y * r1y + r2y * r2y, xy = r1x * r1y + r2x * r2y;
     const Real half = 0.5 * (xx - yy), radius = sqrt(half * half + xy * xy);
     const Real length = sqrt(0.5 * (xx + yy) + radius);  // of the rectangle that has these moments, u along it

@@ -87,8 +87,8 @@ bool four_stay(const Held& held, Index p, const HalvingRules& rules) {
     return !any(~stay);
 }
 
-/// Cuts the edges of four points in a row, unless one of them may have to be halved or straightened: then does nothing, and
-/// returns false. A thin sheet is made of points that are long and too light to be halved.
+/// Cuts the edges of four points in a row. Does nothing and returns false if one may have to be halved or straightened.
+/// A thin sheet is made of points that are long and too light to be halved.
 template <class Points, class Held>
 bool four_cut(const Points& c, Held& held, Index p, const HalvingRules& rules, double longest, bool& changed) {
     Double4 r1x = load(&held.r1x[p], 4), r1y = load(&held.r1y[p], 4);

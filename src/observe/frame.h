@@ -132,7 +132,7 @@ struct PatchedFace {
     double size = 1.0;                              ///< edge of a patch [m]
     std::array<Index, 2> count{};                   ///< patches along right and up
     std::vector<double> area;                       ///< of each patch that material can reach [m^2]
-    std::vector<char> off_top;                      ///< patches around a top that are not on it; none for a side
+    std::vector<char> off_top;                      ///< per patch: 1 if it is not on the top; empty for sides
     std::vector<std::array<double, 3>> impulse;     ///< on the barrier, row after row from the corner [kg m/s]
 };
 

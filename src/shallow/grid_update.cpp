@@ -164,7 +164,7 @@ private:
         return moving;
     }
 
-    /// Four nodes in a row: loaded together where all lie inside the flow, otherwise one by one.
+    /// Four nodes in a row: loaded together where all lie inside the flow, otherwise one by one (update_some).
     void update_four(Flow& flow, Index k, Index i, Index j, double dt, TileWork& work) {
         const std::uint8_t* f = flow.nodes.flags.data() + k;
         constexpr int kInside = kMoving | kWideX | kWideY;

@@ -92,7 +92,7 @@ double film_bend(const Flow& flow, Index k, Index p, Index q) {
 static_assert(kWet == 1 && kMargin == 2 && kSweep == 64 && kSweeps == 3, "as below");
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "bytes and bits count from the same end");
 
-/// The flags of eight nodes in a row, a byte each.
+/// The flags of eight nodes in a row, a byte each. Storage begins, and its rows do, at a multiple of eight (TileGrid).
 typedef std::uint64_t __attribute__((may_alias)) EightFlags;
 constexpr std::uint64_t kEachByte = 0x0101010101010101;
 
@@ -131,8 +131,8 @@ struct UnknownRows {
     }
 };
 
-/// Nodes of a tile and three around it that are known before a sweep: bit i + 8 of row j + 3 is node (i, j). Right three or
-/// fewer nodes from one of `unknown`, along lines of nodes that are known; anything elsewhere.
+/// Nodes of a tile and three around it that are known before a sweep: bit i + 8 of row j + 3 is node (i, j). Valid within
+/// three nodes of one of `unknown`, along known nodes; elsewhere bits mean nothing.
 struct KnownRows {
     std::uint32_t row[kTile + 6] = {};
     KnownRows(const Flow& flow, Index tile, int sweep, const UnknownRows& unknown) {
@@ -168,8 +168,8 @@ double resting(const Pair& velocity, double creeps) {
     return std::max(0.0, 1.0 - std::hypot(velocity.x, velocity.y) / creeps);
 }
 
-/// One extrapolated surface value of node (i, j) of a tile, k of all, from up to eight directions, made of nodes known before
-/// this sweep, or nothing.
+/// One extrapolated surface value of node (i, j) of a tile, number k in storage; or nothing. It is made from up to eight
+/// directions, of nodes known before this sweep.
 bool extrapolate(const Flow& flow, Index k, Index i, Index j, const KnownRows& known, double creeps, double& value) {
     const Nodes& nodes = flow.nodes;
     const Index up = flow.grid.stride();
@@ -228,8 +228,8 @@ void shoreline_sweep(Flow& flow, int number) {
     }
 }
 
-/// Nodes of a tile that are wet and not of the margin, with two each way: bit i of row j is node (i, j). Of rows that have some
-/// of the groups.
+/// Nodes of a tile that are wet and not of the margin, and so are two each way: bit i of row j is node (i, j). Rows far from
+/// all of the groups are not set.
 struct InnerRows {
     std::uint32_t along_x[kTile] = {}, along_y[kTile] = {};
     InnerRows(const Flow& flow, Index tile, NodeGroups groups) {

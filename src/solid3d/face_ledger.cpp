@@ -37,6 +37,21 @@ Patches of_shape(const DistanceField& shape, int number, double cell) {
     return squares(least, Vec3::Unit(a), Vec3::Unit(b), {size[a], size[b]}, cell);
 }
 
+/// Whether an edge goes through a rectangle in plan (Liang and Barsky 1984).
+bool passes(const Prism::Edge& edge, const Vec2& low, const Vec2& high) {
+    double from = 0.0, to = edge.length;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double way = edge.along[axis], at = edge.from[axis];
+        if (way == 0.0) {
+            if (at < low[axis] || at > high[axis]) return false;
+            continue;
+        }
+        const double a = (low[axis] - at) / way, b = (high[axis] - at) / way;
+        from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
+    }
+    return from < to;
+}
+
 }  // namespace
 
 FacePart Patches::around(const Vec3& x, double reach, const std::vector<Surface>& others) const {
@@ -81,16 +96,14 @@ void Patches::measure(const std::vector<Surface>& others) {
 }
 
 void Patches::find_off_top(const Prism& prism) {
-    constexpr double kPlaces = 5.0;
     const auto on_it = [&](Index row, Index column) {
-        for (double b = 0.5; b < kPlaces; b += 1.0)
-            for (double a = 0.5; a < kPlaces; a += 1.0) {
-                const double along = static_cast<double>(column) + a / kPlaces,
-                             across = static_cast<double>(row) + b / kPlaces;
-                const Vec3 place = origin + size * (along * right + across * up);
-                if (prism.within(place.head<2>())) return true;
-            }
-        return false;
+        const Vec2 low = origin.head<2>() + size * Vec2(static_cast<double>(column), static_cast<double>(row));
+        const Vec2 high = low + Vec2(size, size),
+                   inset = Vec2::Constant(1e-6 * size);  // what only touches is not on it
+        const auto& edges = prism.edges();
+        return prism.within(0.5 * (low + high)) ||
+               std::any_of(edges.begin(), edges.end(),
+                           [&](const Prism::Edge& edge) { return passes(edge, low + inset, high - inset); });
     };
     off_top.clear();
     for (Index row = 0; row < count[1]; ++row)

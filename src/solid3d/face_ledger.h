@@ -27,7 +27,7 @@ struct Patches {
     std::array<Index, 2> count{0, 0};    ///< along right and up
     std::array<double, 2> extent{0, 0};  ///< of the face [squares]; the last row and column may stick out
     std::vector<double> area;            ///< of each square that material can reach [m^2]
-    std::vector<char> off_top;           ///< of a prism's top: squares within its box that are not on it
+    std::vector<char> off_top;           ///< per square: 1 if it is not on the prism's top; empty for sides
     std::vector<Vec3> impulse;           ///< on the material since the start, at row * count[0] + column [kg m/s]
 
     /// What lies within `reach` [m] of a place on the face, and neither beyond the face nor beyond `others`, surfaces
@@ -36,7 +36,7 @@ struct Patches {
     /// Finds `area`: what of each square is of the face and not beyond `others`, a quarter of it at least, lest single
     /// points tell too much.
     void measure(const std::vector<Surface>& others);
-    /// Finds `off_top`, by five times five places in each square.
+    /// Finds `off_top`: neither an edge of the prism goes through the square, nor is its middle within.
     void find_off_top(const Prism& prism);
     /// Gives each square the share of an impulse that it has of the part.
     void spread(const FacePart& part, const Vec3& given);

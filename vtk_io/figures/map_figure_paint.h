@@ -25,7 +25,7 @@ inline Colour colour_on_ground(const Colour& colour, double grey) {
     return mixed(scaled(colours::white, grey), scaled(colour, 0.62 + 0.45 * grey), 0.88);
 }
 
-/// Colour of one value on ground of the given grey in [0, 1] (`painted` has the formula).
+/// Colour of one value on ground of the given grey in [0, 1]: what `painted` takes from a table, without one.
 Colour on_ground(double value, double grey, const FieldStyle& style);
 
 }  // namespace frana

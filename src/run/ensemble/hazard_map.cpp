@@ -19,7 +19,7 @@ std::string rule_of(const HazardTable& table) {
     return fmt::format("{}; of each scenario the strength that {:g} of its runs reach", from, table.share);
 }
 
-/// How the runs of each scenario ended: what failed or was not run makes the classes too low.
+/// How the runs of each scenario ended. Shares are of those that have an answer: classes may be wrong either way.
 std::string remark_on_scenarios(const HazardTable& table, const EnsemblePlan& plan, const WeightedRuns& of) {
     if (table.event_years) return "";
     std::map<double, std::pair<Index, Index>> scenarios;  // runs with an answer, of how many
@@ -35,9 +35,10 @@ std::string remark_on_scenarios(const HazardTable& table, const EnsemblePlan& pl
             remark +=
                 fmt::format("No run of the scenario of {:g} years has an answer: its classes are missing. ", years);
         else if (answered < all)
-            remark +=
-                fmt::format("{} of {} runs of the scenario of {:g} years have no answer: classes may be too low. ",
-                            all - answered, all, years);
+            remark += fmt::format(
+                "{} of {} runs of the scenario of {:g} years have no answer: classes may be wrong either way, within "
+                "the bounds told. ",
+                all - answered, all, years);
         else if (answered < few && all > 1)
             remark += fmt::format("The scenario of {:g} years has {} runs only. ", years, answered);
     }
