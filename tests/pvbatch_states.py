@@ -186,8 +186,8 @@ def main(states_dir, pictures, jobs):
         before, start = checks, time.process_time()
         if mode == "plugin":
             fresh()
-            if alone == "impact":  # a wall from the ground at 6.67 m, in patches of 0.5 m, up to 8.67 m
-                pvbatch_plugin.look_at_barriers(check, states_dir, os.path.abspath(run_dir), 6.67 - 0.251, 8.671)
+            if alone == "impact":  # a wall from the ground at 20/3 m, half a patch of 0.5 m in it, up to 8.67 m
+                pvbatch_plugin.look_at_barriers(check, states_dir, os.path.abspath(run_dir), 20 / 3 - 0.251, 8.671)
             else:
                 pvbatch_plugin.look(check, states_dir, os.path.abspath(run_dir))
         else:
