@@ -7,10 +7,15 @@
 #include <sstream>
 #include <string>
 
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "catch.h"
 #include "expected_means.h"
+#include "fresh_folder.h"
+#include "io/hdf5_peaks.h"
 #include "plane_case.h"
 #include "pond.h"
+#include "run/ensemble/kept_peaks.h"
 
 namespace fs = std::filesystem;
 using Catch::Contains;
@@ -300,4 +305,79 @@ TEST_CASE("What flowed is what was released and taken of the bed, once however o
     // Round-off of sums of some thousand terms, over some thousand steps.
     CHECK(number("volume_m3") == Approx(flowed).epsilon(1e-10));
     CHECK(number("left_share") == Approx(out / (density * flowed)).epsilon(1e-10));
+}
+
+namespace {
+
+const frana::GridGeometry pixels{5, 4, 10.0, 20.0, 2.0};
+const std::vector<std::string> two_fields = {"peak_depth", "peak_speed"};
+
+/// A run on as many pixels as its number says and one more, so none is like another.
+frana::SparseRasters run_of(frana::Index sample) {
+    frana::SparseRasters run;
+    run.rows.push_back({sample, sample + 1});
+    run.values.resize(2);
+    for (frana::Index k = 0; k <= sample; ++k) {
+        run.values[0].push_back(static_cast<float>(sample) + 0.25F * static_cast<float>(k));
+        run.values[1].push_back(100.0F + static_cast<float>(sample * k));
+    }
+    return run;
+}
+
+void write_runs(const std::filesystem::path& file, const std::vector<frana::Index>& samples) {
+    frana::PeakBlock block{pixels, two_fields, samples, {}};
+    for (const frana::Index sample : samples) block.peaks.push_back(run_of(sample));
+    frana::write_peaks(file, block);
+}
+
+std::string complaint(std::vector<frana::KeptRun> runs, const std::vector<std::string>& wanted,
+                      const frana::GridGeometry& on) {
+    try {
+        frana::KeptPeaks(std::move(runs), wanted, on);
+    } catch (const frana::UserError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("peaks come run by run in the order of the samples, however they lie in files", "[ensemble]") {
+    const FreshFolder folder;
+    const auto a = folder.path() / "a.h5", b = folder.path() / "b.h5";
+    write_runs(a, {0, 3, 4});
+    write_runs(b, {1, 2, 5});  // what two threads or two shards leave
+    // Run 3 was lost and is not asked for.
+    const frana::KeptPeaks kept({{0, a}, {1, b}, {2, b}, {4, a}, {5, b}}, two_fields, pixels);
+    REQUIRE(kept.runs() == 5);
+    const std::vector<frana::Index> samples = {0, 1, 2, 4, 5};
+    for (const std::vector<std::size_t>& asked : {std::vector<std::size_t>{0, 1}, {1}, {}}) {
+        std::size_t next = 0;
+        kept.for_each_run(asked, [&](std::size_t run, const frana::SparseRasters& peaks) {
+            REQUIRE(run == next++);
+            const frana::SparseRasters expected = run_of(samples[run]);
+            REQUIRE(peaks.rows.size() == 1);
+            CHECK(peaks.rows[0].first == expected.rows[0].first);
+            CHECK(peaks.rows[0].count == expected.rows[0].count);
+            REQUIRE(peaks.values.size() == 2);
+            for (std::size_t f = 0; f < 2; ++f) {
+                const bool wanted = std::find(asked.begin(), asked.end(), f) != asked.end();
+                CHECK(peaks.values[f] == (wanted ? expected.values[f] : std::vector<float>()));
+            }
+        });
+        CHECK(next == 5);
+    }
+}
+
+TEST_CASE("peaks that are not those of the ensemble are refused before any of them is used", "[ensemble]") {
+    const FreshFolder folder;
+    const auto a = folder.path() / "a.h5";
+    write_runs(a, {0, 3});
+    CHECK(complaint({{0, a}, {3, a}}, two_fields, pixels).empty());
+    CHECK_THAT(complaint({{0, a}, {2, a}}, two_fields, pixels), Contains("a.h5: found no run 2"));
+    CHECK_THAT(complaint({{0, a}}, {"peak_depth", "arrival_time"}, pixels), Contains("a.h5: found other fields"));
+    CHECK_THAT(complaint({{0, a}}, two_fields, {6, 4, 10.0, 20.0, 2.0}), Contains("a.h5: found runs on 5 x 4 nodes"));
+    CHECK_THAT(complaint({{0, folder.path() / "none.h5"}}, two_fields, pixels), Contains("none.h5"));
+    frana::write_text(folder.path() / "text.h5", "no peaks");
+    CHECK_THAT(complaint({{0, folder.path() / "text.h5"}}, two_fields, pixels), Contains("text.h5"));
 }

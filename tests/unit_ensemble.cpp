@@ -234,18 +234,19 @@ TEST_CASE("Maps of many runs count weights: above a threshold, below a quantile,
     SparseRasters empty = none;
     empty.values.resize(1);
     PixelValues pixels(grid);
-    pixels.gather({&a, &b, &empty}, {0.5, 0.3, 0.2}, 0);
+    pixels.gather(PeaksInMemory({&a, &b, &empty}), {0.5, 0.3, 0.2}, 0);
     const auto near = [](const Raster& found, const std::vector<double>& expected) {
         for (std::size_t k = 0; k < expected.size(); ++k) CHECK(found.values[k] == Approx(expected[k]).margin(1e-7));
     };
     near(pixels.exceeds(2.0), {0.0, 0.3, 0.8, 0.0});  // 2 does not exceed 2
+    CHECK(pixels.largest() == 5.0);
     near(pixels.reached(), {0.5, 0.8, 0.8, 0.0});
     near(pixels.mean(), {0.5, 2.2, 3.0, 0.0});
     near(pixels.quantile(0.1), {0.0, 0.0, 0.0, 0.0});  // a fifth did not come
     near(pixels.quantile(0.5), {0.0, 2.0, 3.0, 0.0});
     near(pixels.quantile(0.95), {1.0, 4.0, 5.0, 0.0});
     const SparseRasters all = row_of(0, {1.0F});
-    pixels.gather({&all, &all, &all}, {1.2, 1.2, 0.6}, 0);  // weights with no exact sum
+    pixels.gather(PeaksInMemory({&all, &all, &all}), {1.2, 1.2, 0.6}, 0);  // weights with no exact sum
     CHECK(standard_error(pixels.exceeds(0.3).values[0], 3.0) == 0.0);
     CHECK(effective_number({1.0, 1.0, 1.0}) == Approx(3.0));
     CHECK(effective_number({2.0, 1.0}) == Approx(1.8));

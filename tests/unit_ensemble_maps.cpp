@@ -26,7 +26,7 @@ struct Gathered {
     explicit Gathered(const std::vector<SparseRasters>& runs, Index pixels) : values({pixels, 1, 0.0, 0.0, 1.0}) {
         std::vector<const SparseRasters*> all;
         for (std::size_t k = 0; k < runs.size(); ++k) all.push_back(&runs[k]), samples.push_back(static_cast<Index>(k));
-        values.gather(all, std::vector<double>(runs.size(), 1.0), 0);
+        values.gather(PeaksInMemory(all), std::vector<double>(runs.size(), 1.0), 0);
     }
     PixelValues values;
     std::vector<Index> samples;
@@ -107,7 +107,7 @@ TEST_CASE("The time by which a share of the runs has come: never is later than a
     // Pixel 0: at 10, 20, 30 and never. Pixel 1: at 5 once in four. Pixel 2: a time below zero is none. Pixel 3: no run.
     const SparseRasters a = run({10.0F, 5.0F, -1.0F}), b = run({30.0F}), c = run({20.0F}), d = run({});
     PixelValues pixels({4, 1, 0.0, 0.0, 1.0});
-    pixels.gather({&a, &b, &c, &d}, {1.0, 1.0, 1.0, 1.0}, 0);
+    pixels.gather(PeaksInMemory({&a, &b, &c, &d}), {1.0, 1.0, 1.0, 1.0}, 0);
     const Raster quarter = pixels.arrival_quantile(0.25), half = pixels.arrival_quantile(0.5),
                  most = pixels.arrival_quantile(0.75), all = pixels.arrival_quantile(0.95);
     CHECK(quarter.values[0] == 10.0);
@@ -118,7 +118,7 @@ TEST_CASE("The time by which a share of the runs has come: never is later than a
     CHECK(std::isnan(half.values[1]));
     for (const Raster* map : {&quarter, &half, &most, &all})
         for (const std::size_t pixel : {2, 3}) CHECK(std::isnan(map->values[pixel]));
-    pixels.gather({&a, &b, &c, &d}, {2.0, 0.5, 0.5, 1.0}, 0);  // weights count
+    pixels.gather(PeaksInMemory({&a, &b, &c, &d}), {2.0, 0.5, 0.5, 1.0}, 0);  // weights count
     CHECK(pixels.arrival_quantile(0.5).values[0] == 10.0);
 }
 
@@ -150,7 +150,7 @@ TEST_CASE("The shares of the runs above a ladder of thresholds are those above e
     for (const SparseRasters& run : runs)
         all.push_back(&run), weights.push_back(1.0 + static_cast<double>(all.size() % 4));
     PixelValues values({5, 1, 0.0, 0.0, 1.0});
-    values.gather(all, weights, 0);
+    values.gather(PeaksInMemory(all), weights, 0);
     const std::vector<double> thresholds = {0.0, 0.1, 0.3, 0.35, 1.2, 5.0};  // 0.1 and 0.3 are values of runs too
     Index pixels = 0;
     values.for_each_curve(thresholds, [&](Index pixel, const std::vector<double>& shares) {

@@ -19,6 +19,11 @@ SparseRasters pixel_of(const std::vector<float>& peaks) {
     return one;
 }
 
+/// What a run with this depth on one pixel reaches of a table.
+ReachedLevels reached_by(const HazardTable& table, float depth) {
+    return reached_levels(table, {"peak_depth"}, pixel_of({depth}));
+}
+
 const HazardTable& preset(const std::string& name) {
     for (const HazardTable& table : hazard_presets())
         if (table.preset == name) return table;
@@ -29,7 +34,8 @@ const HazardTable& preset(const std::string& name) {
 std::string class_of(const HazardTable& table, const std::vector<std::string>& fields, const std::vector<float>& peaks,
                      double years) {
     const SparseRasters run = pixel_of(peaks);
-    const std::size_t number = hazard_classes(table, fields, {{&run, 1.0, years}}, 1).at(0);
+    const ReachedLevels reached = reached_levels(table, fields, run);
+    const std::size_t number = hazard_classes(table, {{&reached, 1.0, years}}, 1).at(0);
     return number > 0 ? table.classes[number - 1].name : "none";
 }
 
@@ -91,11 +97,9 @@ TEST_CASE("Swiss classes of debris flows are those of depth, speed and the retur
 TEST_CASE("A scenario has the strength that enough of its runs reach, and the worst scenario counts",
           "[ensemble][hazard]") {
     HazardTable table = own_table();
-    const SparseRasters weak = pixel_of({0.5F}), strong = pixel_of({1.5F});
-    SparseRasters none;
-    none.values.resize(1);
+    const ReachedLevels weak = reached_by(table, 0.5F), strong = reached_by(table, 1.5F), none;
     const auto classes = [&](const std::vector<HazardRun>& runs) {
-        return static_cast<int>(hazard_classes(table, {"peak_depth"}, runs, 1).at(0));
+        return static_cast<int>(hazard_classes(table, runs, 1).at(0));
     };
     CHECK(classes({{&strong, 1.0, 30.0}, {&weak, 1.0, 30.0}}) == 3);  // a half is enough
     CHECK(classes({{&strong, 0.9, 30.0}, {&weak, 1.1, 30.0}}) == 2);  // by weight
@@ -110,15 +114,13 @@ TEST_CASE("Runs of one event give each strength the return period of the event o
           "[ensemble][hazard]") {
     HazardTable table = own_table();
     table.event_years = 10.0;
-    const SparseRasters weak = pixel_of({0.5F}), strong = pixel_of({1.5F});
-    SparseRasters none;
-    none.values.resize(1);
+    const ReachedLevels weak = reached_by(table, 0.5F), strong = reached_by(table, 1.5F), none;
     const auto classes = [&](int strongs, int weaks, int nones) {
         std::vector<HazardRun> runs;
         for (int k = 0; k < strongs; ++k) runs.push_back({&strong, 1.0, 0.0});
         for (int k = 0; k < weaks; ++k) runs.push_back({&weak, 1.0, 0.0});
         for (int k = 0; k < nones; ++k) runs.push_back({&none, 1.0, 0.0});
-        return static_cast<int>(hazard_classes(table, {"peak_depth"}, runs, 1).at(0));
+        return static_cast<int>(hazard_classes(table, runs, 1).at(0));
     };
     CHECK(classes(1, 0, 2) == 3);  // strong once in 10 / (1/3) = 30 years
     CHECK(classes(1, 0, 3) == 2);  // once in 40
@@ -175,9 +177,9 @@ TEST_CASE("A file asks for a table of hazard, by a preset or its own, and what i
 
 TEST_CASE("Runs without an answer bound the classes from below and above", "[ensemble][hazard]") {
     HazardTable table = own_table();
-    const SparseRasters weak = pixel_of({0.5F}), strong = pixel_of({1.5F}), dry;
+    const ReachedLevels weak = reached_by(table, 0.5F), strong = reached_by(table, 1.5F), dry;
     const auto number = [&](const std::vector<HazardRun>& runs, Unanswered how) {
-        return static_cast<int>(hazard_classes(table, {"peak_depth"}, runs, 1, how).at(0));
+        return static_cast<int>(hazard_classes(table, runs, 1, how).at(0));
     };
     // A scenario of 30 years, share 0.5: one run strong, one weak, two without an answer.
     const std::vector<HazardRun> four = {{&strong, 1, 30}, {&weak, 1, 30}, {nullptr, 1, 30}, {nullptr, 1, 30}};

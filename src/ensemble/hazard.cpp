@@ -1,6 +1,7 @@
 #include "ensemble/hazard.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/error.h"
 
@@ -16,6 +17,7 @@ struct Demand {
 };
 
 std::vector<std::vector<Demand>> demands_of(const HazardTable& table, const std::vector<std::string>& fields) {
+    expect(table.levels.size() <= std::numeric_limits<std::uint16_t>::max(), "so many levels can be numbered");
     std::vector<std::vector<Demand>> all;
     for (const HazardLevel& level : table.levels) {
         std::vector<Demand> demands;
@@ -29,24 +31,33 @@ std::vector<std::vector<Demand>> demands_of(const HazardTable& table, const std:
     return all;
 }
 
+/// One more than the number of the strongest level whose demands the n-th pixel meets; 0: none.
+std::uint16_t strongest(const std::vector<std::vector<Demand>>& levels, const SparseRasters& peaks, std::size_t n) {
+    for (std::size_t level = levels.size(); level > 0; --level) {
+        const auto& demands = levels[level - 1];
+        if (std::all_of(demands.begin(), demands.end(),
+                        [&](const Demand& d) { return peaks.values[d.field][n] >= d.at_least; }))
+            return static_cast<std::uint16_t>(level);
+    }
+    return 0;
+}
+
 /// By pixel and level, the weight of the runs that reach that level or a stronger one.
 class Reached {
 public:
-    Reached(Index pixels, const std::vector<std::vector<Demand>>& demands, Unanswered unanswered)
-        : demands_(demands),
-          unanswered_(unanswered),
-          weights_(static_cast<std::size_t>(pixels) * demands.size(), 0.0) {}
+    Reached(Index pixels, std::size_t levels, Unanswered unanswered)
+        : levels_(levels), unanswered_(unanswered), weights_(static_cast<std::size_t>(pixels) * levels, 0.0) {}
 
     void add(const HazardRun& run) {
-        if (!run.peaks) return add_unanswered(run.weight);
+        if (!run.reached) return add_unanswered(run.weight);
         all_ += run.weight;
-        run.peaks->for_each([&](Index pixel, std::size_t n) {
-            for (std::size_t level = strongest(*run.peaks, n); level > 0; --level)
-                weights_[static_cast<std::size_t>(pixel) * demands_.size() + level - 1] += run.weight;
+        SparseRasters::for_each_pixel(run.reached->rows, [&](Index pixel, std::size_t n) {
+            for (std::size_t level = run.reached->strongest[n]; level > 0; --level)
+                weights_[static_cast<std::size_t>(pixel) * levels_ + level - 1] += run.weight;
         });
     }
     double share(Index pixel, std::size_t level) const {
-        const double weight = weights_[static_cast<std::size_t>(pixel) * demands_.size() + level] + everywhere_;
+        const double weight = weights_[static_cast<std::size_t>(pixel) * levels_ + level] + everywhere_;
         return all_ > 0.0 ? weight / all_ : 0.0;
     }
 
@@ -55,18 +66,8 @@ private:
         if (unanswered_ != Unanswered::left_out) all_ += weight;
         if (unanswered_ == Unanswered::came_everywhere) everywhere_ += weight;
     }
-    /// One more than the number of the strongest level reached; 0: none.
-    std::size_t strongest(const SparseRasters& peaks, std::size_t n) const {
-        for (std::size_t level = demands_.size(); level > 0; --level) {
-            const auto& demands = demands_[level - 1];
-            if (std::all_of(demands.begin(), demands.end(),
-                            [&](const Demand& d) { return peaks.values[d.field][n] >= d.at_least; }))
-                return level;
-        }
-        return 0;
-    }
 
-    const std::vector<std::vector<Demand>>& demands_;
+    std::size_t levels_;
     Unanswered unanswered_;
     std::vector<double> weights_;
     double all_ = 0.0, everywhere_ = 0.0;
@@ -93,8 +94,9 @@ std::size_t class_by_frequency(const HazardTable& table, const Reached& reached,
 std::vector<char> pixels_reached(const std::vector<HazardRun>& runs, Index pixels) {
     std::vector<char> reached(static_cast<std::size_t>(pixels), 0);
     for (const HazardRun& run : runs)
-        if (run.peaks)
-            run.peaks->for_each([&](Index pixel, std::size_t) { reached[static_cast<std::size_t>(pixel)] = 1; });
+        if (run.reached)
+            SparseRasters::for_each_pixel(
+                run.reached->rows, [&](Index pixel, std::size_t) { reached[static_cast<std::size_t>(pixel)] = 1; });
     return reached;
 }
 
@@ -106,15 +108,22 @@ std::size_t HazardTable::column_of(double return_period) const {
     return static_cast<std::size_t>(column - years.begin());
 }
 
-std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<std::string>& fields,
-                                         const std::vector<HazardRun>& runs, Index pixels, Unanswered unanswered) {
+ReachedLevels reached_levels(const HazardTable& table, const std::vector<std::string>& fields,
+                             const SparseRasters& peaks) {
     const auto demands = demands_of(table, fields);
+    ReachedLevels reached{peaks.rows, {}};
+    peaks.for_each([&](Index, std::size_t n) { reached.strongest.push_back(strongest(demands, peaks, n)); });
+    return reached;
+}
+
+std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<HazardRun>& runs, Index pixels,
+                                         Unanswered unanswered) {
     std::map<double, std::vector<const HazardRun*>> scenarios;
     for (const HazardRun& run : runs) scenarios[table.event_years ? 0.0 : run.return_period].push_back(&run);
     std::vector<std::uint8_t> classes(static_cast<std::size_t>(pixels), 0);
     const std::vector<char> came = pixels_reached(runs, pixels);
     for (const auto& [return_period, members] : scenarios) {
-        Reached reached(pixels, demands, unanswered);
+        Reached reached(pixels, table.levels.size(), unanswered);
         for (const HazardRun* run : members) reached.add(*run);
         for (Index pixel = 0; pixel < pixels; ++pixel) {
             if (!came[static_cast<std::size_t>(pixel)]) continue;

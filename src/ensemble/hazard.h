@@ -39,9 +39,19 @@ struct HazardTable {
 /// Published tables, by name. Sources stand in apps/README.md.
 const std::vector<HazardTable>& hazard_presets();
 
+/// Where a run came, and how strong.
+struct ReachedLevels {
+    std::vector<SparseRasters::Row> rows;
+    std::vector<std::uint16_t> strongest;  ///< by pixel: one more than the number of the strongest level; 0: none
+};
+
+/// Of a run's peaks, whose fields are `fields`; those of the table are among them.
+ReachedLevels reached_levels(const HazardTable& table, const std::vector<std::string>& fields,
+                             const SparseRasters& peaks);
+
 /// What the classes need to know of a run.
 struct HazardRun {
-    const SparseRasters* peaks = nullptr;  ///< none: it has no answer
+    const ReachedLevels* reached = nullptr;  ///< none: it has no answer
     double weight = 1.0;
     double return_period = 0.0;  ///< of its scenario [years]; not looked at with `event_years`
 };
@@ -51,12 +61,11 @@ struct HazardRun {
 /// rises with years.
 enum class Unanswered { left_out, came_nowhere, came_everywhere };
 
-/// The number of the class on each pixel, 0 for none. `fields` are those of the runs' peaks; the table's are among them.
+/// The number of the class on each pixel, 0 for none. The runs' levels are those of the table.
 /// Scenarios: each has the strength that at least `share` of its runs reach; the class is the greatest of all scenarios'.
 /// Otherwise each strength comes back after event_years over the share of the runs that reach it; the class is the greatest of
 /// all strengths'.
-std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<std::string>& fields,
-                                         const std::vector<HazardRun>& runs, Index pixels,
+std::vector<std::uint8_t> hazard_classes(const HazardTable& table, const std::vector<HazardRun>& runs, Index pixels,
                                          Unanswered unanswered = Unanswered::left_out);
 
 }  // namespace frana

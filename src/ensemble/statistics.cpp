@@ -12,24 +12,30 @@ constexpr double kRoundOff = 1e-9;  ///< of sums of weights
 
 }  // namespace
 
-void PixelValues::gather(const std::vector<const SparseRasters*>& runs, const std::vector<double>& weights,
-                         std::size_t field) {
-    expect(runs.size() == weights.size(), "a weight for each run");
+void PixelValues::gather(const PeakSource& runs, const std::vector<double>& weights, std::size_t field) {
+    expect(runs.runs() == weights.size(), "a weight for each run");
     const auto pixels = static_cast<std::size_t>(grid_.size());
     first_.assign(pixels + 1, 0);
     weights_ = weights, weight_ = 0.0;
     for (const double weight : weights) weight_ += weight;
-    for (const SparseRasters* run : runs)
-        run->for_each([&](Index pixel, std::size_t) { ++first_[static_cast<std::size_t>(pixel) + 1]; });
+    runs.for_each_run({}, [&](std::size_t, const SparseRasters& run) {
+        run.for_each([&](Index pixel, std::size_t) { ++first_[static_cast<std::size_t>(pixel) + 1]; });
+    });
     for (std::size_t k = 0; k < pixels; ++k) first_[k + 1] += first_[k];
     values_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-        const std::vector<float>& of = runs[r]->values.at(field);
-        runs[r]->for_each([&](Index pixel, std::size_t n) {
+    runs.for_each_run({field}, [&](std::size_t r, const SparseRasters& run) {
+        const std::vector<float>& of = run.values.at(field);
+        run.for_each([&](Index pixel, std::size_t n) {
             values_[next[static_cast<std::size_t>(pixel)]++] = {of[n], static_cast<std::uint32_t>(r)};
         });
-    }
+    });
+}
+
+double PixelValues::largest() const {
+    float most = 0.0F;
+    for (const Value& v : values_) most = std::max(most, v.value);
+    return static_cast<double>(most);
 }
 
 /// body(first, past) of the values of each pixel that has some; the others get 0.
@@ -67,19 +73,27 @@ Raster PixelValues::mean() const {
     });
 }
 
-Raster PixelValues::quantile(double q) const {
+std::vector<Raster> PixelValues::quantiles(const std::vector<double>& shares) const {
+    std::vector<Raster> all(shares.size(), Raster::filled(grid_, 0.0));
     std::vector<Value> sorted;
-    return of_each([&](const Value* first, const Value* past) {
-        sorted.assign(first, past);
+    for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
+        sorted.assign(values_.begin() + static_cast<std::ptrdiff_t>(first_[k]),
+                      values_.begin() + static_cast<std::ptrdiff_t>(first_[k + 1]));
         std::stable_sort(sorted.begin(), sorted.end(),
                          [](const Value& a, const Value& b) { return a.value > b.value; });
-        double above = 0.0;  // from the largest down: what exceeds a value may be at most 1 - q
-        for (const Value& v : sorted) {
-            above += weight_of(v);
-            if (above > (1.0 - q) * weight_ * (1.0 + kRoundOff)) return static_cast<double>(v.value);
-        }
-        return 0.0;
-    });
+        for (std::size_t n = 0; n < shares.size(); ++n) all[n].values[k] = quantile_of(sorted, shares[n]);
+    }
+    return all;
+}
+
+/// Of values that descend: what exceeds a value may be at most 1 - share.
+double PixelValues::quantile_of(const std::vector<Value>& sorted, double share) const {
+    double above = 0.0;
+    for (const Value& v : sorted) {
+        above += weight_of(v);
+        if (above > (1.0 - share) * weight_ * (1.0 + kRoundOff)) return static_cast<double>(v.value);
+    }
+    return 0.0;
 }
 
 Raster PixelValues::arrival_quantile(double q) const {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "ensemble/peak_source.h"
 #include "terrain/sparse_rasters.h"
 
 namespace frana {
@@ -16,14 +17,18 @@ public:
     explicit PixelValues(const GridGeometry& grid) : grid_(grid) {}
 
     /// Takes the `field`-th field of all runs; `weights` are theirs, of the same number.
-    void gather(const std::vector<const SparseRasters*>& runs, const std::vector<double>& weights, std::size_t field);
+    void gather(const PeakSource& runs, const std::vector<double>& weights, std::size_t field);
 
     const GridGeometry& grid() const { return grid_; }
 
+    /// Of all runs and pixels; 0 where none came anywhere.
+    double largest() const;
+
     /// Share of the weights with more than `threshold` [1].
     Raster exceeds(double threshold) const;
-    /// The least value that at least a share `q` of the weights does not exceed; 0 where a run did not come.
-    Raster quantile(double q) const;
+    /// For each share the least value that at least so much of the weights does not exceed; 0 where a run did not come.
+    std::vector<Raster> quantiles(const std::vector<double>& shares) const;
+    Raster quantile(double share) const { return quantiles({share}).front(); }
     /// The least time by which at least a share `q` of the weights has come. A run that never came, or has a time below zero,
     /// comes later than any. NaN where fewer come.
     Raster arrival_quantile(double q) const;
@@ -71,6 +76,7 @@ private:
     };
     template <class Body>
     Raster of_each(Body&& body) const;
+    double quantile_of(const std::vector<Value>& sorted, double share) const;
     double weight_of(const Value& value) const { return weights_[value.run]; }
 
     GridGeometry grid_;

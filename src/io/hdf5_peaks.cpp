@@ -121,7 +121,7 @@ void write_peaks(const std::filesystem::path& target, const PeakBlock& block) {
     made.commit_to_disk();
 }
 
-PeakBlock read_peaks(const std::filesystem::path& from) {
+PeakBlock read_peaks(const std::filesystem::path& from, const std::vector<std::string>& wanted) {
     const hdf5::QuietErrors quiet;
     const Access access(from, Access::Mode::read);
     const Handle file(access, H5Fopen(from.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
@@ -152,6 +152,10 @@ PeakBlock read_peaks(const std::filesystem::path& from) {
         }
     }
     for (const std::string& field : block.fields) {
+        if (std::find(wanted.begin(), wanted.end(), field) == wanted.end()) {
+            for (SparseRasters& peaks : block.peaks) peaks.values.emplace_back();
+            continue;
+        }
         const auto values = get<float>(access, file, field, H5T_NATIVE_FLOAT);
         if (static_cast<std::int64_t>(values.size()) != sum(pixels)) throw access.failure("a field has other pixels");
         auto from_value = values.begin();

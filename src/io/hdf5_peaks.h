@@ -20,7 +20,8 @@ struct PeakBlock {
 /// (of each pixel). Appears whole or not at all. Throws UserError.
 void write_peaks(const std::filesystem::path& file, const PeakBlock& block);
 
-/// Throws UserError for a file that is none of those.
-PeakBlock read_peaks(const std::filesystem::path& file);
+/// Only the fields that are `wanted` have values, those of the others stay empty. Throws UserError for a file that is none of
+/// those.
+PeakBlock read_peaks(const std::filesystem::path& file, const std::vector<std::string>& wanted);
 
 }  // namespace frana

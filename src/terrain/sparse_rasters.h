@@ -20,6 +20,10 @@ struct SparseRasters {
     /// Calls body(pixel, n) for each pixel, n its place in the values.
     template <class Body>
     void for_each(Body&& body) const {
+        for_each_pixel(rows, body);
+    }
+    template <class Body>
+    static void for_each_pixel(const std::vector<Row>& rows, Body&& body) {
         std::size_t n = 0;
         for (const Row& row : rows)
             for (std::int64_t k = 0; k < row.count; ++k) body(static_cast<Index>(row.first + k), n++);

@@ -1,5 +1,6 @@
 """The examples run and say what they should."""
 import importlib.util
+import math
 import os
 import re
 import subprocess
@@ -20,6 +21,30 @@ class Examples(InFolder):
 
     def cases(self, *names):
         return os.path.join(SOURCE, "cases", *names)
+
+    def test_the_page_shows_what_they_print(self):
+        """To 1 %: other processors and compilers may round otherwise."""
+        with open(os.path.join(EXAMPLES, "README.md"), encoding="utf-8") as file:
+            sessions = re.findall(r"```text\n\$ python3 apps/python/examples/(.*)\n((?:.*\n)*?)```", file.read())
+        self.assertGreaterEqual(len(sessions), 5)
+        for command, shown in sessions:
+            name, *arguments = command.split()
+            said = self.run_example(name, *[os.path.join(SOURCE, a) if "/" in a else a for a in arguments]).splitlines()
+            for line in shown.splitlines():
+                if line == "...":
+                    continue
+                while said and not self.is_like(said[0], line):
+                    said.pop(0)
+                self.assertTrue(said, f"{command} does not print: {line}")
+                said.pop(0)
+
+    @staticmethod
+    def is_like(said, shown):
+        number = r"-?\d+\.?\d*"
+        if re.split(number, said) != re.split(number, shown):
+            return False
+        return all(math.isclose(float(a), float(b), rel_tol=0.01)
+                   for a, b in zip(re.findall(number, said), re.findall(number, shown)))
 
     def test_a_run(self):
         said = self.run_example("watch_a_run.py", self.cases("maungawhau", "case.toml"))
@@ -85,6 +110,8 @@ class Examples(InFolder):
                        'key = "material.bed.mu"\nrange = [0.1, 0.3]\n')
         said = self.run_example("how_likely.py", self.path("ensemble.toml"), "500050", "4999925", "0.3")
         self.assertRegex(said, r"4 runs; more than 0\.3 m at the place in (0|25|50|75|100) % of them")
+        nowhere = self.run_example("how_likely.py", self.path("ensemble.toml"), "500290", "4999855", "0.3")
+        self.assertIn("at the place in 0 % of them", nowhere)
         low, high = [float(number) for number in re.search(r"bed\.mu: ([\d.]+) to ([\d.]+)", said).groups()]
         self.assertTrue(0.1 < low < high < 0.3)
 

@@ -53,7 +53,7 @@ std::vector<Index> EnsembleRun::left_to_run(const Shard& shard, bool resume) con
                         "one with --out, or give --resume to go on with it",
                         rows.string()));
     std::vector<bool> has(static_cast<std::size_t>(plan_.samples), false);
-    for (const SampleResult& result : read_results(dir_, plan_, base_, false))
+    for (const SampleResult& result : read_results(dir_, plan_, base_).results)
         has[static_cast<std::size_t>(result.sample)] = resume && result.reason != "refused";
     std::vector<Index> samples;
     for (Index i = shard.begin(plan_.samples); i < shard.end(plan_.samples); ++i)
@@ -87,11 +87,11 @@ EnsembleSummary EnsembleRun::join(std::optional<double> wall_seconds) const {
     const RunLock lock(dir_);
     for (const char* folder : {"", "rasters", "figures"}) remove_leftovers(dir_ / folder);
     write_once(dir_ / "samples.csv", samples_table(plan_));
-    return write_maps(dir_, plan_, base_, read_results(dir_, plan_, base_, true), wall_seconds);
+    return write_maps(dir_, plan_, base_, read_results(dir_, plan_, base_), wall_seconds);
 }
 
 Raster EnsembleRun::probability(const std::string& field, double threshold) const {
-    return probability_map(dir_, plan_, base_, read_results(dir_, plan_, base_, true), field, threshold);
+    return probability_map(dir_, plan_, base_, read_results(dir_, plan_, base_), field, threshold);
 }
 
 }  // namespace frana

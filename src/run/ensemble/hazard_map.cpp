@@ -65,21 +65,33 @@ void draw(const std::filesystem::path& dir, const EnsembleBase& base, const Haza
         summary.files.emplace_back("figures/hazard_class.png");
 }
 
-/// All runs of the plan that have a weight; those without an answer have no peaks.
-std::vector<HazardRun> runs_of(const EnsemblePlan& plan, const WeightedRuns& of, bool& all_answered) {
+/// All runs of the plan that have a weight.
+struct ScenarioRuns {
+    std::vector<ReachedLevels> reached;  ///< of those with an answer
     std::vector<HazardRun> runs;
+    bool all_answered = true;
+};
+
+ScenarioRuns runs_of(const EnsemblePlan& plan, const WeightedRuns& of) {
+    ScenarioRuns all;
+    std::vector<std::size_t> fields;
+    for (std::size_t f = 0; f < plan.fields.size(); ++f) fields.push_back(f);
+    all.reached.resize(of.ended.size());
+    of.peaks->for_each_run(fields, [&](std::size_t run, const SparseRasters& peaks) {
+        all.reached[run] = reached_levels(*plan.hazard, plan.fields, peaks);
+    });
     std::vector<char> answered(plan.points.size(), 0);
     for (std::size_t k = 0; k < of.ended.size(); ++k) {
         const auto sample = static_cast<std::size_t>(of.ended[k]->sample);
         answered[sample] = 1;
-        runs.push_back({of.peaks[k], of.weights[k], plan.points[sample].return_period});
+        all.runs.push_back({&all.reached[k], of.weights[k], plan.points[sample].return_period});
     }
-    const std::size_t ended = runs.size();
     for (std::size_t k = 0; k < plan.points.size(); ++k)
-        if (!answered[k] && plan.points[k].weight > 0.0)
-            runs.push_back({nullptr, plan.points[k].weight, plan.points[k].return_period});
-    all_answered = runs.size() == ended;
-    return runs;
+        if (!answered[k] && plan.points[k].weight > 0.0) {
+            all.runs.push_back({nullptr, plan.points[k].weight, plan.points[k].return_period});
+            all.all_answered = false;
+        }
+    return all;
 }
 
 /// Writes classes as a raster, and returns the area of each [m2].
@@ -105,17 +117,16 @@ void write_hazard(const std::filesystem::path& dir, const EnsemblePlan& plan, co
                   const WeightedRuns& of, EnsembleSummary& summary) {
     if (!plan.hazard) return;
     const HazardTable& table = *plan.hazard;
-    bool all_answered = true;
-    const std::vector<HazardRun> runs = runs_of(plan, of, all_answered);
+    const ScenarioRuns all = runs_of(plan, of);
     summary.hazard_remark = remark_on_scenarios(table, plan, of);
     const auto classes_if = [&](Unanswered unanswered) {
-        return hazard_classes(table, plan.fields, runs, base.whole.size(), unanswered);
+        return hazard_classes(table, all.runs, base.whole.size(), unanswered);
     };
     const std::vector<std::uint8_t> numbers = classes_if(Unanswered::left_out);
     const std::vector<double> areas = written(dir, "hazard_class", base, table, numbers, "class of hazard: ", summary);
     for (std::size_t k = 0; k < areas.size(); ++k)
         summary.hazard.push_back({table.classes[k].name, static_cast<Index>(k + 1), areas[k], std::nullopt});
-    if (!all_answered) {
+    if (!all.all_answered) {
         const auto least = written(dir, "hazard_class_at_least", base, table, classes_if(Unanswered::came_nowhere),
                                    "class of hazard, had runs without an answer come nowhere: ", summary);
         const auto most = written(dir, "hazard_class_at_most", base, table, classes_if(Unanswered::came_everywhere),

@@ -75,15 +75,16 @@ private:
     void write_field(std::size_t f) {
         const PeakField& field = peak_field(plan_.fields[f]);
         PixelValues pixels(base_.whole);
-        pixels.gather(runs_.peaks, runs_.weights, f);
+        pixels.gather(*runs_.peaks, runs_.weights, f);
         if (f == 0) reached_ = pixels.reached();
         if (field.is_time) return write_arrival(field, pixels);
         const auto asked = plan_.exceed.find(field.name);
         if (asked != plan_.exceed.end())
             for (const double threshold : asked->second) write_exceedance(field, threshold, pixels);
-        for (const double q : plan_.quantiles)
-            raster(fmt::format("quantile_{}_{:g}", field.name, q), pixels.quantile(q), field.unit,
-                   fmt::format("{}: {:g} of the runs do not exceed it", field.meaning, q));
+        std::vector<Raster> quantiles = pixels.quantiles(plan_.quantiles);
+        for (std::size_t k = 0; k < quantiles.size(); ++k)
+            raster(fmt::format("quantile_{}_{:g}", field.name, plan_.quantiles[k]), std::move(quantiles[k]), field.unit,
+                   fmt::format("{}: {:g} of the runs do not exceed it", field.meaning, plan_.quantiles[k]));
         raster(fmt::format("mean_{}", field.name), pixels.mean(), field.unit, fmt::format("mean {}", field.meaning));
         write_sensitivity(field, pixels);
         if (f > 0) return;
@@ -225,7 +226,8 @@ void remove_others(const fs::path& dir, const std::vector<std::string>& before, 
 }  // namespace
 
 EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
-                           const std::vector<SampleResult>& results, std::optional<double> wall_seconds) {
+                           const KeptResults& kept, std::optional<double> wall_seconds) {
+    const std::vector<SampleResult>& results = kept.results;
     EnsembleSummary summary;
     summary.samples = plan.samples, summary.run = static_cast<Index>(results.size());
     summary.wall_seconds = wall_seconds;
@@ -239,7 +241,7 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     const std::vector<std::string> before = files_of_last_time(dir);
     write_runs(dir, plan, base, results);
     summary.files = {"samples.csv", "runs.csv"};
-    const WeightedRuns runs(plan, results);
+    const WeightedRuns runs(plan, base, kept);
     summary.effective = std::min(effective_number(runs.weights), runs.independent(plan));
     MapWriter(dir, plan, base, runs, summary).write();
     write_hazard(dir, plan, base, runs, summary);
@@ -250,8 +252,8 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
     return summary;
 }
 
-Raster probability_map(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
-                       const std::vector<SampleResult>& results, const std::string& field, double threshold) {
+Raster probability_map(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base, const KeptResults& kept,
+                       const std::string& field, double threshold) {
     const auto found = std::find(plan.fields.begin(), plan.fields.end(), field);
     if (found == plan.fields.end() || peak_field(field).is_time)
         throw UserError(
@@ -263,12 +265,12 @@ Raster probability_map(const fs::path& dir, const EnsemblePlan& plan, const Ense
             fmt::format("above: found {:g} m of peak_depth; expected at least output.footprint_depth, {:g} m, "
                         "below which nothing is kept of the runs",
                         threshold, base.footprint_depth));
-    const WeightedRuns runs(plan, results);
+    const WeightedRuns runs(plan, base, kept);
     require_answer(runs, dir);
     PixelValues pixels(base.whole);
-    pixels.gather(runs.peaks, runs.weights, 0);
+    pixels.gather(*runs.peaks, runs.weights, 0);
     const Raster reached = pixels.reached();
-    pixels.gather(runs.peaks, runs.weights, static_cast<std::size_t>(found - plan.fields.begin()));
+    pixels.gather(*runs.peaks, runs.weights, static_cast<std::size_t>(found - plan.fields.begin()));
     Raster probability = pixels.exceeds(threshold);
     hide_unreached(probability, reached);
     onto_terrain(probability, base);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "ensemble/sample_run.h"
+#include "run/ensemble/shard_store.h"
 
 namespace frana {
 
@@ -33,15 +33,14 @@ struct EnsembleSummary {
     bool too_many_failed() const { return static_cast<double>(failed) > 0.05 * static_cast<double>(run); }
 };
 
-/// Writes runs.csv, rasters, outlines, pictures, report.md and ensemble.json. `results` are those of all runs so far, by sample, with
-/// their peaks. Throws UserError when none has an answer, or a file cannot be written.
+/// Writes runs.csv, rasters, outlines, pictures, report.md and ensemble.json of all runs so far. Throws UserError when none has an answer, or a file cannot be written.
 EnsembleSummary write_maps(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
-                           const std::vector<SampleResult>& results, std::optional<double> wall_seconds);
+                           const KeptResults& kept, std::optional<double> wall_seconds);
 
-/// What rasters/probability_FIELD_THRESHOLD.tif holds or would hold, in double precision. `results` are as for write_maps(). Throws
+/// What rasters/probability_FIELD_THRESHOLD.tif holds or would hold, in double precision. Throws
 /// UserError where no run has an answer, or the ensemble keeps no such field.
 Raster probability_map(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
-                       const std::vector<SampleResult>& results, const std::string& field, double threshold);
+                       const KeptResults& kept, const std::string& field, double threshold);
 
 /// samples.csv: number, weight and the values of the keys that vary.
 std::string samples_table(const EnsemblePlan& plan);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "run/ensemble/kept_peaks.h"
+
 namespace frana {
 namespace {
 
@@ -50,6 +52,22 @@ std::vector<Outcome> outcomes_of(const EnsembleBase& base) {
     for (std::size_t gauge = 0; gauge < base.gauges.size(); ++gauge)
         for (Outcome& outcome : outcomes_of_gauge(base, gauge)) all.push_back(std::move(outcome));
     return all;
+}
+
+WeightedRuns::WeightedRuns(const EnsemblePlan& plan, const EnsembleBase& base, const KeptResults& kept) {
+    std::vector<KeptRun> runs;
+    for (std::size_t k = 0; k < kept.results.size(); ++k) {
+        const SampleResult& result = kept.results[k];
+        const double weight = plan.points[static_cast<std::size_t>(result.sample)].weight;
+        if (!result.ended()) {
+            failed_weight += weight;
+            continue;
+        }
+        ended.push_back(&result), weights.push_back(weight);
+        runs.push_back({result.sample, kept.peaks_files[k]});
+        total += weight;
+    }
+    peaks = std::make_unique<KeptPeaks>(std::move(runs), plan.fields, base.whole);
 }
 
 double WeightedRuns::quantile(const Outcome& outcome, double q) const {

@@ -2,6 +2,7 @@
 // The runs of an ensemble that have an answer, with their weights, and the numbers that are told of them. Private to the files
 // that write what an ensemble says.
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,17 +38,8 @@ Outcome runout();
 /// Those with an answer.
 class WeightedRuns {
 public:
-    WeightedRuns(const EnsemblePlan& plan, const std::vector<SampleResult>& results) {
-        for (const SampleResult& result : results) {
-            const double weight = plan.points[static_cast<std::size_t>(result.sample)].weight;
-            if (!result.ended()) {
-                failed_weight += weight;
-                continue;
-            }
-            ended.push_back(&result), peaks.push_back(&result.peaks), weights.push_back(weight);
-            total += weight;
-        }
-    }
+    /// Reads the files of their peaks once. Throws UserError when one cannot be read.
+    WeightedRuns(const EnsemblePlan& plan, const EnsembleBase& base, const KeptResults& kept);
 
     /// The least of an outcome that a share `q` of the weights does not exceed; infinite where fewer have one.
     double quantile(const Outcome& outcome, double q) const;
@@ -73,7 +65,7 @@ public:
     }
 
     std::vector<const SampleResult*> ended;
-    std::vector<const SparseRasters*> peaks;
+    std::unique_ptr<PeakSource> peaks;  ///< theirs
     std::vector<double> weights;
     double total = 0.0, failed_weight = 0.0;  ///< sums of weights
 };

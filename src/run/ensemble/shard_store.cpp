@@ -85,26 +85,6 @@ std::vector<fs::path> row_files(const fs::path& dir) {
     return files;
 }
 
-/// Gives the results with an answer their peaks.
-void take_peaks(const fs::path& file, const EnsemblePlan& plan, const GridGeometry& grid,
-                std::map<Index, SampleResult>& results) {
-    PeakBlock block = read_peaks(file);
-    if (!(block.grid == grid))
-        throw UserError(
-            fmt::format("{}: found runs on {} x {} nodes of {:g} m; expected the case's {} x {} nodes of {:g} m; give "
-                        "the elevation model back that these runs were made with",
-                        file.string(), block.grid.nx, block.grid.ny, block.grid.cell, grid.nx, grid.ny, grid.cell));
-    if (block.fields != plan.fields)
-        throw UserError(
-            fmt::format("{}: found other fields than ensemble.fields names; expected the same; run the "
-                        "ensemble into another folder",
-                        file.string()));
-    for (std::size_t k = 0; k < block.samples.size(); ++k) {
-        const auto found = results.find(block.samples[k]);
-        if (found != results.end()) found->second.peaks = std::move(block.peaks[k]);
-    }
-}
-
 }  // namespace
 
 void remove_leftovers(const fs::path& folder) {
@@ -195,28 +175,26 @@ void ShardStore::write() {
     written_ = std::chrono::steady_clock::now();
 }
 
-std::vector<SampleResult> read_results(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base,
-                                       bool with_peaks) {
-    std::map<Index, SampleResult> results;
-    std::set<fs::path> peaks;
+KeptResults read_results(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base) {
+    std::map<Index, std::pair<SampleResult, fs::path>> by_sample;
     const RowsOf of = rows_of(plan, base);
     for (const fs::path& file : row_files(dir)) {
         for_each_row(file, of, [&](const std::string& line) {
             auto [result, name] = result_of(file, line, base.gauges.size());
-            if (result.sample < 0 || result.sample >= plan.samples) throw broken_row(file, line);
-            if (!name.empty()) peaks.insert(file.parent_path() / name);
-            const auto before = results.find(result.sample);
-            if (before == results.end())
-                results.emplace(result.sample, std::move(result));
-            else if (before->second.reason == "refused")  // and tried again
-                before->second = std::move(result);
+            const Index sample = result.sample;
+            if (sample < 0 || sample >= plan.samples || result.ended() == name.empty()) throw broken_row(file, line);
+            std::pair row{std::move(result), name.empty() ? fs::path() : file.parent_path() / name};
+            const auto before = by_sample.find(sample);
+            if (before == by_sample.end())
+                by_sample.emplace(sample, std::move(row));
+            else if (before->second.first.reason == "refused")  // and tried again
+                before->second = std::move(row);
         });
     }
-    if (with_peaks)
-        for (const fs::path& file : peaks) take_peaks(file, plan, base.whole, results);
-    std::vector<SampleResult> all;
-    for (auto& [sample, result] : results) all.push_back(std::move(result));
-    return all;
+    KeptResults kept;
+    for (auto& [sample, row] : by_sample)
+        kept.results.push_back(std::move(row.first)), kept.peaks_files.push_back(std::move(row.second));
+    return kept;
 }
 
 }  // namespace frana

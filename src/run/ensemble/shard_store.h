@@ -3,7 +3,6 @@
 #include <chrono>
 #include <filesystem>
 #include <mutex>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -60,9 +59,14 @@ std::string csv_field(const std::string& text);
 /// A number as a field of a table; empty where it is not known.
 std::string text_of_known(const std::optional<double>& number);
 
-/// Rows of all shards in a folder, by sample; of those that ended also their peaks, where asked for. Throws UserError when a
-/// file cannot be read, or belongs to another ensemble (what differs is said).
-std::vector<SampleResult> read_results(const std::filesystem::path& dir, const EnsemblePlan& plan,
-                                       const EnsembleBase& base, bool with_peaks);
+/// What is kept of all runs so far, by sample.
+struct KeptResults {
+    std::vector<SampleResult> results;               ///< without their peaks
+    std::vector<std::filesystem::path> peaks_files;  ///< of each: where its peaks are; empty: it has no answer
+};
+
+/// Rows of all shards in a folder. Throws UserError when a file cannot be read, or belongs to another ensemble (what differs is
+/// said).
+KeptResults read_results(const std::filesystem::path& dir, const EnsemblePlan& plan, const EnsembleBase& base);
 
 }  // namespace frana

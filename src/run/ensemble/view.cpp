@@ -111,7 +111,7 @@ private:
     PageRuns runs() {
         PageRuns told;
         PixelValues pixels(base_.whole);
-        pixels.gather(runs_.peaks, runs_.weights, 0);
+        pixels.gather(*runs_.peaks, runs_.weights, 0);
         const Places places(pixels.reached());
         block_ = places.block();
         told.reached = places.raster;
@@ -124,7 +124,7 @@ private:
         for (std::size_t f = 0; f < plan_.fields.size(); ++f) {
             const PeakField& field = peak_field(plan_.fields[f]);
             if (field.is_time) continue;
-            if (f > 0) pixels.gather(runs_.peaks, runs_.weights, f);
+            if (f > 0) pixels.gather(*runs_.peaks, runs_.weights, f);
             told.ladders.push_back(ladder(f, field, pixels, places));
         }
         return told;
@@ -133,9 +133,7 @@ private:
     PageLadder ladder(std::size_t f, const PeakField& field, const PixelValues& pixels, const Places& places) const {
         const auto found = plan_.exceed.find(field.name);
         const std::vector<double> asked = found == plan_.exceed.end() ? std::vector<double>() : found->second;
-        double high = 0.0;
-        for (const SparseRasters* run : runs_.peaks)
-            for (const float value : run->values.at(f)) high = std::max(high, static_cast<double>(value));
+        const double high = pixels.largest();
         const double low = f == 0 ? base_.footprint_depth : 1e-2 * high;
         PageLadder ladder;
         const std::vector<double> thresholds = thresholds_between(low, high, asked);
@@ -159,13 +157,12 @@ private:
     Raster quantiles(const PixelValues& pixels, const Places& places, double factor) const {
         Raster table = places.table(plan_.quantiles.size());
         const Raster reached = pixels.reached();
-        for (std::size_t k = 0; k < plan_.quantiles.size(); ++k) {
-            const Raster map = pixels.quantile(plan_.quantiles[k]);
-            for (std::size_t n = 0; n < map.values.size(); ++n)
+        const std::vector<Raster> maps = pixels.quantiles(plan_.quantiles);
+        for (std::size_t k = 0; k < maps.size(); ++k)
+            for (std::size_t n = 0; n < maps[k].values.size(); ++n)
                 if (reached.values[n] > 0.0)
                     keep_largest(table.at(static_cast<Index>(k), places.row(static_cast<Index>(n))),
-                                 factor * map.values[n]);
-        }
+                                 factor * maps[k].values[n]);
         return table;
     }
 
