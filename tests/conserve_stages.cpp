@@ -45,6 +45,20 @@ Scene slide_through() {
     return scene;
 }
 
+/// The largest distance from a place in [x0, x1] x [y0, y1] to the point that is nearest on the map [m].
+double largest_gap(const Mpm3d& points, double x0, double x1, double y0, double y1) {
+    double most = 0.0;
+    constexpr double step = 0.1;
+    for (double x = x0; x <= x1; x += step)
+        for (double y = y0; y <= y1; y += step) {
+            double least = 1e300;
+            for (Index p = 0; p < points.body().points.count(); ++p)
+                least = std::min(least, (points.position(p).head<2>() - Vec2(x, y)).norm());
+            most = std::max(most, least);
+        }
+    return most;
+}
+
 double total(const Field* field, Index from, Index to) {
     double sum = 0.0;
     for (Index p = from; p < to; ++p) sum += field->data[p];
@@ -82,6 +96,29 @@ TEST_CASE("Columns that become points keep mass, momentum and energy, at once an
     CHECK(run.columns().status().mass > 0.1 * mass);
     CHECK(run.status().mass_left > 0.1 * mass);
     CHECK(most > run.points()->status().points);
+}
+
+TEST_CASE("A sheet that is drawn out becomes points without gaps", "[stages]") {
+    // Without friction on a bed z = -k x^2 / 2 each place moves as cosh(sqrt(g k) t): four times as long after 6.6 s.
+    constexpr double k = 0.01;
+    Scene scene = scene_on(81, 9, 1.0, [](double x, double) { return 30.0 - 0.5 * k * x * x; });
+    scene.particles = {};
+    fill(
+        scene, [](double x, double) { return x > 5 && x < 15 ? 1.0 : 0.0; }, 8);
+    scene.sides = Sides::wall;
+    SolidStage stage;
+    stage.from = std::acosh(4.0) / std::sqrt(scene.gravity * k);
+    stage.window = {0, 0, 80, 8};
+    stage.cell = 0.25;
+    stage.spacing = 0.125;
+    stage.law = solid::Fluid{};
+    scene.solid = stage;
+    StagedRun run(scene);
+    run_to(run, stage.from);
+    REQUIRE(run.points() != nullptr);
+    // On a square lattice 1.5 spacings wide no place is farther away than that.
+    CHECK(largest_gap(*run.points(), 35.0, 45.0, 3.0, 5.0) < 1.5 * stage.spacing / std::sqrt(2.0));
+    CHECK(run.points()->status().mass == Approx(run.status().mass).epsilon(1e-12));
 }
 
 TEST_CASE("A 3D frame has the mass of both models on its particles and on its nodes", "[stages]") {

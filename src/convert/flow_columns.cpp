@@ -28,6 +28,7 @@ void FlowColumns::reserve(std::size_t columns) {
 
 void FlowColumns::take(const FlowColumns& other, std::size_t k) {
     for (const auto member : kNumbers) (this->*member).push_back((other.*member)[k]);
+    if (!other.domain.empty()) domain.push_back(other.domain[k]);
     if (other.stress.empty()) return;
     for (std::size_t c = 0; c < 3; ++c) stress.push_back(other.stress[3 * k + c]);
 }

@@ -6,7 +6,7 @@
 namespace frana {
 
 /// A depth-averaged state as 3D conversion sees it: vertical columns of material, one array per quantity, equal lengths
-/// but for the stress, which may be absent (empty).
+/// but for the stress and the domain, which may be absent (empty).
 struct FlowColumns {
     std::vector<double> x, y;              ///< map position [m]
     std::vector<double> bed;               ///< elevation of the bed below [m]
@@ -18,6 +18,7 @@ struct FlowColumns {
     std::vector<double> bed_pressure;      ///< at the bed [Pa]
     std::vector<double> stress;            ///< of the rheology, mean over the depth: xx, yy, xy of each [Pa], or empty
     std::vector<double> id;                ///< the run's number of the column [1]
+    std::vector<Mat2> domain;              ///< edges of the parallelogram it stands on, as columns [m], or empty
 
     std::size_t count() const { return x.size(); }
     void reserve(std::size_t columns);

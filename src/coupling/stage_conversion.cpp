@@ -25,7 +25,23 @@ const double* numbers(const Frame& frame, const char* name) {
 
 }  // namespace
 
-FlowColumns columns_of(const Frame& frame, const Raster& bed, const std::vector<std::uint8_t>& marks) {
+Mat2 domain_of(const Edges& edges, double cell) {
+    Mat2 domain;
+    domain << cell * edges.r1x, cell * edges.r2x, cell * edges.r1y, cell * edges.r2y;
+    return domain;
+}
+
+std::vector<Mat2> domains_of(const Columns& columns, double cell) {
+    std::vector<Mat2> domains;
+    columns.with_real([&](auto real) {
+        const auto& held = columns.carried<decltype(real)>();
+        for (Index p = 0; p < columns.count(); ++p) domains.push_back(domain_of(edges_of(held, p), cell));
+    });
+    return domains;
+}
+
+FlowColumns columns_of(const Frame& frame, const std::vector<Mat2>& domains, const Raster& bed,
+                       const std::vector<std::uint8_t>& marks) {
     const double *position = numbers(frame, "position"), *velocity = numbers(frame, "velocity"),
                  *depth = numbers(frame, "depth"), *mass = numbers(frame, "mass"), *volume = numbers(frame, "volume"),
                  *pressure = numbers(frame, "pressure"), *id = numbers(frame, "id");
@@ -42,6 +58,7 @@ FlowColumns columns_of(const Frame& frame, const Raster& bed, const std::vector<
         columns.volume.push_back(volume[p]);
         columns.bed_pressure.push_back(pressure[p]);
         columns.id.push_back(id[p]);
+        columns.domain.push_back(domains.at(static_cast<std::size_t>(p)));
     }
     take_slopes(columns, bed);
     return columns;
@@ -69,16 +86,44 @@ FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector
 
 namespace {
 
-/// Side of the square that a column stands on, and how many parts lie along it.
+/// What a column stands on, and how many parts lie along its edges.
 struct Division {
-    double width, count;
+    Mat2 domain;
+    double count[2];
+
+    double parts() const { return count[0] * count[1]; }
 };
-Division division_of(double volume, double depth, double spacing, double widest) {
+
+Mat2 domain_of(const FlowColumns& columns, std::size_t k, double widest) {
+    Mat2 domain;
+    if (!columns.domain.empty())
+        domain = columns.domain[k];
+    else if (columns.depth[k] > 0.0)
+        domain = std::sqrt(columns.volume[k] / columns.depth[k]) * Mat2::Identity();
+    else
+        domain = widest * Mat2::Identity();
+    for (Eigen::Index edge = 0; edge < 2; ++edge) {
+        const double length = domain.col(edge).norm();
+        if (length > widest) domain.col(edge) *= widest / length;
+    }
+    return domain;
+}
+
+Division division_of(const FlowColumns& columns, std::size_t k, double spacing, double widest) {
     constexpr double kLeast = 0.125;  // of a full point's volume
-    const double width = depth > 0.0 ? std::min(std::sqrt(volume / depth), widest) : widest;
-    const double layers = static_cast<double>(layer_count(depth, spacing));
-    const double most = std::sqrt(volume / (layers * kLeast * spacing * spacing * spacing));
-    return {width, std::max(1.0, std::min(std::round(width / spacing), std::floor(most)))};
+    Division division{domain_of(columns, k, widest), {}};
+    const double layers = static_cast<double>(layer_count(columns.depth[k], spacing));
+    const double most = columns.volume[k] / (layers * kLeast * spacing * spacing * spacing);
+    double wanted[2];
+    for (int edge = 0; edge < 2; ++edge)
+        wanted[edge] = std::max(1.0, std::round(division.domain.col(edge).norm() / spacing));
+    // Too light for so many: fewer along both edges, but one there is always.
+    const double share = std::sqrt(std::min(1.0, most / (wanted[0] * wanted[1])));
+    const int longer = wanted[1] > wanted[0];
+    double& across = division.count[1 - longer];
+    across = std::max(1.0, std::floor(share * wanted[1 - longer]));
+    division.count[longer] = std::max(1.0, std::min(wanted[longer], std::floor(most / across)));
+    return division;
 }
 
 }  // namespace
@@ -86,9 +131,9 @@ Division division_of(double volume, double depth, double spacing, double widest)
 PartsForecast forecast_parts(const FlowColumns& columns, double spacing, double widest) {
     PartsForecast sum;
     for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double n = division_of(columns.volume[k], columns.depth[k], spacing, widest).count;
-        sum.columns += n * n;
-        sum.points += n * n * static_cast<double>(layer_count(columns.depth[k], spacing));
+        const double parts = division_of(columns, k, spacing, widest).parts();
+        sum.columns += parts;
+        sum.points += parts * static_cast<double>(layer_count(columns.depth[k], spacing));
     }
     return sum;
 }
@@ -97,19 +142,17 @@ FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, 
                      const std::array<double, 4>& extent) {
     FlowColumns parts;
     for (std::size_t k = 0; k < columns.count(); ++k) {
-        const auto division = division_of(columns.volume[k], columns.depth[k], spacing, widest);
-        const double width = division.width;
-        const auto n = static_cast<Index>(division.count);
-        const double share = 1.0 / static_cast<double>(n * n);
-        for (Index j = 0; j < n; ++j)
-            for (Index i = 0; i < n; ++i) {
-                const auto place = [&](double middle, Index m, double low, double high) {
-                    const double at = (static_cast<double>(m) + 0.5) / static_cast<double>(n) - 0.5;
-                    return std::clamp(middle + width * at, low, high);
-                };
+        const Division division = division_of(columns, k, spacing, widest);
+        const double share = 1.0 / division.parts();
+        const auto along = [&](int edge, Index m) {
+            return (static_cast<double>(m) + 0.5) / division.count[edge] - 0.5;
+        };
+        for (Index j = 0; j < static_cast<Index>(division.count[1]); ++j)
+            for (Index i = 0; i < static_cast<Index>(division.count[0]); ++i) {
+                const Vec2 away = division.domain * Vec2(along(0, i), along(1, j));
                 parts.take(columns, k);
-                parts.x.back() = place(columns.x[k], i, extent[0], extent[2]);
-                parts.y.back() = place(columns.y[k], j, extent[1], extent[3]);
+                parts.x.back() = std::clamp(columns.x[k] + away[0], extent[0], extent[2]);
+                parts.y.back() = std::clamp(columns.y[k] + away[1], extent[1], extent[3]);
                 const double ground = bed_below(bed, parts.x.back(), parts.y.back());
                 if (std::isfinite(ground)) parts.bed.back() = ground;
                 parts.mass.back() *= share;

@@ -4,21 +4,29 @@
 #include <functional>
 
 #include "convert/solid_points.h"
+#include "mpm/domain.h"
 #include "scene/scene.h"
+#include "shallow/columns.h"
 #include "solid3d/mpm3d.h"
 
 namespace frana {
 
-/// The columns of a frame of the depth-averaged model that stand in marked nodes' cells.
-FlowColumns columns_of(const Frame& frame, const Raster& bed, const std::vector<std::uint8_t>& marks);
+/// The columns of a frame of the depth-averaged model that stand in marked nodes' cells. `domains` are those of all of its
+/// columns.
+FlowColumns columns_of(const Frame& frame, const std::vector<Mat2>& domains, const Raster& bed,
+                       const std::vector<std::uint8_t>& marks);
+
+/// The edges of the domains of columns, on cells of `cell` [m].
+std::vector<Mat2> domains_of(const Columns& columns, double cell);
+Mat2 domain_of(const Edges& edges, double cell);
 
 /// The seeds of a release as columns, at rest or not; those in marked nodes' cells, or without `marks` all, in their order.
 FlowColumns columns_of(const Seeds& seeds, const Scene& scene, const std::vector<std::uint8_t>& marks);
 
-/// Each column as n x n of them side by side on the square of its volume / depth, n such that they are about
-/// `spacing` apart; fewer where the parts would weigh less than an eighth of a full point. Beds and slopes
-/// are those of `bed` below each part. Parts stay within `extent`. Mass, volume and momentum are those of the
-/// column.
+/// Each column as m x n of them side by side on its domain, so many that they are about `spacing` apart; fewer where the parts
+/// would weigh less than an eighth of a full point. Columns without a domain stand on the square of their volume / depth. Edges
+/// longer than `widest` count as that. Beds and slopes are those of `bed` below each part. Parts stay within `extent`. Mass,
+/// volume and momentum are those of the column.
 FlowColumns in_parts(const FlowColumns& columns, double spacing, double widest, const Raster& bed,
                      const std::array<double, 4>& extent);
 

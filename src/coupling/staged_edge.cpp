@@ -59,14 +59,16 @@ void StagedRun::show_points() {
 FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
     const GridGeometry& g = scene_.bed.geometry;
     Seeds seeds;
-    const auto add = [&](double x, double y, double vx, double vy, double mass, double depth) {
+    std::vector<Mat2> domains;
+    const auto add = [&](double x, double y, double vx, double vy, double mass, double depth, const Edges& edges) {
         seeds.x.push_back(g.x0 + g.cell * x), seeds.y.push_back(g.y0 + g.cell * y);
         seeds.vx.push_back(vx), seeds.vy.push_back(vy);
         seeds.volume.push_back(mass / scene_.density), seeds.depth.push_back(std::max(depth, 0.0));
+        domains.push_back(domain_of(edges, g.cell));
     };
     gradients.clear();
     for (const Departed& column : pending_) {
-        add(column.x, column.y, column.vx, column.vy, column.mass, column.depth);
+        add(column.x, column.y, column.vx, column.vy, column.mass, column.depth, column.edges);
         gradients.push_back(Mat2(column.gradient.data()));
     }
     const auto at_edge = [&](double x, double y) {
@@ -78,13 +80,14 @@ FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
         const auto& held = c.carried<decltype(real)>();
         for (Index p = 0; p < c.count(); ++p) {
             if (!at_edge(c.x[p], c.y[p])) continue;
-            add(c.x[p], c.y[p], held.vx[p], held.vy[p], c.mass[p], held.depth[p]);
+            add(c.x[p], c.y[p], held.vx[p], held.vy[p], c.mass[p], held.depth[p], edges_of(held, p));
             Mat2 gradient;
             gradient << held.cxx[p], held.cxy[p], held.cyx[p], held.cyy[p];
             gradients.push_back(gradient);
         }
     });
     FlowColumns columns = columns_of(seeds, scene_, {});
+    columns.domain = std::move(domains);
     take_start_pressure(columns, scene_);
     return columns;
 }

@@ -40,7 +40,8 @@ void StagedRun::advance(double until) {
         columns_->advance(std::min(until, scene_.solid->from));
         status_ = columns_->status();
         if (status_.time < scene_.solid->from) return;
-        begin_3d([&](const Marks& marks) { return columns_of(columns_->frame(), scene_.bed, marks); });
+        const std::vector<Mat2> domains = domains_of(columns_->flow().columns, scene_.bed.geometry.cell);
+        begin_3d([&](const Marks& marks) { return columns_of(columns_->frame(), domains, scene_.bed, marks); });
         return;
     }
     const auto count = [&] {
@@ -106,7 +107,7 @@ void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns
 /// Refuses what does not fit into memory before it is asked for.
 void StagedRun::require_room(const FlowColumns& columns) const {
     // Of a point: its numbers, room to sort, and both forms while it is converted, at the end back as well.
-    const double per_point = scene_.solid->until ? 600.0 : 450.0, per_column = 128.0;
+    const double per_point = scene_.solid->until ? 600.0 : 450.0, per_column = 160.0;
     const PartsForecast parts = forecast_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell);
     const double bytes = parts.columns * per_column + parts.points * per_point, free = free_memory();
     if (bytes <= free) return;
@@ -346,17 +347,27 @@ void StagedRun::serialize_returning(Archive& archive) {
         ids.push_back(c.id);
         numbers.insert(numbers.end(), {c.x, c.y, c.vx, c.vy, c.depth, c.mass, c.energy});
         numbers.insert(numbers.end(), c.gradient.begin(), c.gradient.end());
+        numbers.insert(numbers.end(), {c.edges.r1x, c.edges.r1y, c.edges.r2x, c.edges.r2y});
     }
     archive.array("pending_id", ids);
     archive.array("pending", numbers);
-    constexpr std::size_t kOfColumn = 11, kOfPoint = 19;
+    constexpr std::size_t kOfColumn = 15, kOfPoint = 19;
     if (numbers.size() != kOfColumn * ids.size())
         Archive::wrong_length("pending", numbers.size(), kOfColumn * ids.size());
     if (archive.loading()) {
         pending_.clear();
         for (std::size_t n = 0; n < ids.size(); ++n) {
             const double* const c = &numbers[kOfColumn * n];
-            pending_.push_back({ids[n], c[0], c[1], c[2], c[3], c[4], c[5], c[6], {c[7], c[8], c[9], c[10]}});
+            pending_.push_back({ids[n],
+                                c[0],
+                                c[1],
+                                c[2],
+                                c[3],
+                                c[4],
+                                c[5],
+                                c[6],
+                                {c[7], c[8], c[9], c[10]},
+                                {c[11], c[12], c[13], c[14]}});
         }
     }
     std::vector<double> back;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/staggered.h"
+#include "mpm/domain.h"
 #include "mpm/point_order.h"
 #include "mpm/tile_grid.h"
 
@@ -99,6 +100,7 @@ struct Departed {
     double mass;                     ///< [kg]
     double energy;                   ///< kinetic and potential, as it was recorded [J]
     std::array<double, 4> gradient;  ///< of the velocity: cxx, cyx, cxy, cyy [1/s]
+    Edges edges;                     ///< of its domain [cells]
 };
 
 /// Sorts columns by tile; points marked in `gone` are dropped. Needs no memory once warmed up.

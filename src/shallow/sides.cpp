@@ -116,7 +116,8 @@ double meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums
                  held.depth[p],
                  c.mass[p],
                  energy,
-                 {held.cxx[p], held.cyx[p], held.cxy[p], held.cyy[p]}});
+                 {held.cxx[p], held.cyx[p], held.cxy[p], held.cyy[p]},
+                 edges_of(held, p)});
         c.mass[p] = 0.0;
     } else if (flow.bed.exit[k] == kWall) {
         const auto node = [](double place) { return static_cast<Index>(std::floor(place + 0.5)); };

@@ -16,7 +16,7 @@ struct KeptRun {
 
 /// Reads files when their first run is asked for, and forgets them after their last one. So it holds some 64 runs for each
 /// process that ran the ensemble.
-class KeptPeaks : public PeakSource {
+class KeptPeaks final : public PeakSource {
 public:
     /// Reads all of the files once. Throws UserError when one of them cannot be read, lacks a run, or has other fields or
     /// another grid.
