@@ -39,6 +39,24 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 }  // namespace
 
+TEST_CASE("Mud by the bed law is mud in space, held by the bed", "[stages]") {
+    const auto of = [](const std::string& bed, const std::string& more) {
+        const std::string text =
+            "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
+            "[time]\nend = 20\n[material.bed]\n" +
+            bed + "[[stage]]\nmodel = \"solid_flow\"\n" + west + more;
+        return build_scene(CaseFile::parse(text, "slide/case.toml"), walled_gis()).solid.value();
+    };
+    const std::string mud = "law = \"bingham\"\nviscosity = 20\nyield_stress = 300\n";
+    const auto law = std::get<solid::Bingham>(of(mud, "").law);
+    CHECK(law.viscosity == 20.0);
+    CHECK(law.yield_stress == 300.0);
+    CHECK(of(mud, "").stuck);
+    CHECK_FALSE(of(mud, "stuck = false\n").stuck);
+    CHECK_FALSE(of(mud, "law = \"fluid\"\n").stuck);
+    CHECK(std::holds_alternative<solid::Fluid>(of("law = \"none\"\n", "").law));
+}
+
 TEST_CASE("A 3D stage has the scene's laws where it gives none of its own", "[stages]") {
     const SolidStage stage = scene_of(two + west).solid.value();
     CHECK(stage.from == 8.0);
@@ -47,7 +65,13 @@ TEST_CASE("A 3D stage has the scene's laws where it gives none of its own", "[st
     CHECK(stage.cell == 2.5);
     CHECK(stage.spacing == 1.25);
     CHECK(stage.bed_friction == 0.2);
-    CHECK(std::holds_alternative<solid::Fluid>(stage.law));
+    // Sand as steep inside as the bed's friction.
+    CHECK(stage.of_bed);
+    CHECK(std::get<solid::DruckerPrager>(stage.law).alpha == solid::DruckerPrager::of({}, std::atan(0.2), 0.0).alpha);
+    CHECK(stage.transfer == Transfer::flip);
+    CHECK_FALSE(stage.stuck);
+    CHECK(std::holds_alternative<solid::Fluid>(scene_of(two + west + "law = \"fluid\"\n").solid->law));
+    CHECK(std::get<solid::Fluid>(scene_of(two + west + "viscosity = 7\n").solid->law).viscosity == 7.0);
     CHECK_FALSE(stage.sound_speed.has_value());
     const Scene bingham = scene_of(
         "[material.rheology]\nlaw = \"bingham\"\nviscosity = 20\nyield_stress = 300\n[[stage]]\nmodel = "
@@ -121,8 +145,9 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
     CHECK(has(problem_of(two + west + "spacing = 1e-5\n"),
               "stage.spacing: found 3e+18 points in space once all of the release is in the window, which need "));
     CHECK(has(problem_of(two + west + "yield_stress = 3\n"),
-              "stage.1.yield_stress: found, but the law \"fluid\" does not"));
-    CHECK(has(problem_of(two + west + "cohesion = 3\n"), "stage.1.cohesion: found, but the law \"fluid\" does not"));
+              "stage.1.yield_stress: found, but the law \"drucker_prager by the bed's friction\" does not"));
+    CHECK(has(problem_of(two + west + "cohesion = 3\n"),
+              "stage.1.cohesion: found, but the law \"drucker_prager by the bed's friction\" does not"));
     CHECK(has(problem_of(two + west + "law = \"bingham\"\n"), "stage.1.law: found \"bingham\" without a yield stress"));
     CHECK(has(problem_of(two + west + "law = \"elastic\"\nyoung_modulus = 1e6\nsound_speed = 3\n"),
               "stage.1.sound_speed: found, but the law \"elastic\" does not"));

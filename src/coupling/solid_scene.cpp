@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "coupling/barriers.h"
+#include "coupling/bed_friction.h"
 
 namespace frana {
 namespace {
@@ -39,14 +40,20 @@ Raster without_gaps(Raster bed) {
     return bed;
 }
 
-SolidLaw with_sound_speed(SolidLaw law, double density, double sound_speed) {
+/// As stiff as makes sound so fast; sand by the bed as strong as the bed's friction.
+SolidLaw law_of(const SolidStage& stage, double density, const SolidStart& start) {
+    const double modulus = density * start.sound_speed * start.sound_speed;
+    SolidLaw law = stage.law;
     std::visit(
         [&](auto& chosen) {
             if constexpr (std::decay_t<decltype(chosen)>::kAverages)  // fluids
-                chosen.bulk = density * sound_speed * sound_speed;
+                chosen.bulk = modulus;
         },
         law);
-    return law;
+    if (!stage.of_bed) return law;
+    constexpr double kPoisson = 0.3;  // as sand by its own keys has
+    const double young = modulus * (1.0 + kPoisson) * (1.0 - 2.0 * kPoisson) / (1.0 - kPoisson);
+    return solid::DruckerPrager::of(solid::Elastic::of(young, kPoisson), std::atan(start.friction), 0.0);
 }
 
 /// Cells that a 3D grid has beyond a side, so that nodes that points and images touch exist: beside
@@ -99,22 +106,27 @@ std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
 }
 
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
-    double fastest = 0.0, head = -INFINITY, deepest = scene.solid->cell;
+    double fastest = 0.0, head = -INFINITY, deepest = scene.solid->cell, friction = friction_at_rest(scene.bed_law);
     for (std::size_t k = 0; k < columns.count(); ++k) {
         const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
         const double v2 = columns.vx[k] * columns.vx[k] + columns.vy[k] * columns.vy[k] + climb * climb;
+        const double cosine =
+            1.0 / std::sqrt(1.0 + columns.slope_x[k] * columns.slope_x[k] + columns.slope_y[k] * columns.slope_y[k]);
+        if (scene.solid->whole_bed_law)
+            friction = std::max(friction, friction_of_flow(scene, columns.depth[k], cosine, std::sqrt(v2)));
         fastest = std::max({fastest, std::sqrt(v2), std::sqrt(2.0 * scene.gravity * columns.depth[k])});
         deepest = std::max(deepest, columns.depth[k]);
         head = std::max(head, columns.bed[k] + columns.depth[k] + 0.5 * v2 / scene.gravity);
     }
     const auto [low, high] = ground_of(scene);
     SolidStart start;
+    start.friction = friction;
     start.sound_speed = scene.solid->sound_speed.value_or(10.0 * std::max(fastest, 0.1));
     constexpr double kRoom = 8.0;    // cells above the ground at least
     constexpr double kSplash = 4.0;  // jets that a wall throws up rise to several times the energy of their flow
     start.top = scene.solid->top.value_or(std::max(low + kSplash * (head - low), high + kRoom * scene.solid->cell));
     constexpr double kTransits = 20.0;
-    const SolidLaw law = with_sound_speed(scene.solid->law, scene.density, start.sound_speed);
+    const SolidLaw law = law_of(*scene.solid, scene.density, start);
     start.blur =
         kTransits * deepest / std::visit([&](const auto& chosen) { return chosen.sound_speed(scene.density); }, law);
     return start;
@@ -156,7 +168,7 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
     for (const Barrier& barrier : scene.barriers) result.surfaces.push_back(surface_of(barrier, scene.bed, stage.cell));
     result.gravity = {0.0, 0.0, -scene.gravity};
     result.density = scene.density;
-    result.law = with_sound_speed(stage.law, scene.density, start.sound_speed);
+    result.law = law_of(stage, scene.density, start);
     result.affine = stage.transfer == Transfer::apic ? Affine::apic : Affine::tpic;
     result.flip = stage.transfer == Transfer::flip;
     result.blending = stage.blending;

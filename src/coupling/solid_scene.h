@@ -8,9 +8,10 @@ namespace frana {
 
 /// What is chosen when a stage begins, from the material there and the stage's keys.
 struct SolidStart {
-    double sound_speed = 0.0;  ///< of fluids [m/s]
+    double sound_speed = 0.0;  ///< of fluids, and of sand that has the bed's friction [m/s]
     double top = 0.0;          ///< elevation where the space ends [m]
-    double blur = 0.0;         ///< time over which forces on barriers are averaged: see BarrierLoads [s]
+    double friction = 0.0;  ///< inside of sand that has the bed's friction: as large as that of any of its columns [1]
+    double blur = 0.0;      ///< time over which forces on barriers are averaged: see BarrierLoads [s]
 };
 
 /// Sound ten times as fast as the fastest of `columns`, or as one that falls by its own depth, so that the

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "coupling/bed_friction.h"
 #include "coupling/start_pressure.h"
 
 namespace frana {
@@ -84,7 +86,7 @@ void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns
     timed_("hand over", [&] {
         const Marks inside = nodes_in_window(scene_), everywhere(inside.size(), 1);
         start_ = choose_start(scene_, columns_at(everywhere));  // what is outside still comes
-        SolidScene space = solid_scene(scene_, start_);
+        SolidScene space = space_of_stage();
         FlowColumns columns = columns_at(inside);
         take_start_pressure(columns, scene_);
         space.points = seeds_of_window(columns, space.surfaces);
@@ -102,6 +104,14 @@ void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns
         converted_.momentum[axis] = now.momentum_left[axis] - before.momentum_left[axis];
     sample(points_->status().time);
     accumulate(columns_->status());
+}
+
+/// The ground comes first; it brakes by the bed law, where that hangs on speed.
+SolidScene StagedRun::space_of_stage() const {
+    SolidScene space = solid_scene(scene_, start_);
+    if (scene_.solid->whole_bed_law && !scene_.solid->stuck)
+        space.surfaces.front().law = std::make_shared<BedFriction>(scene_, map_);
+    return space;
 }
 
 /// Refuses what does not fit into memory before it is asked for.
@@ -259,6 +269,23 @@ Sample StagedRun::at(const Vec2& point) const {
     return sample;
 }
 
+/// What of the case's bed law there is in space.
+void StagedRun::remark_law(std::vector<std::string>& remarks) const {
+    const SolidStage& stage = *scene_.solid;
+    if (stage.of_bed)
+        remarks.push_back(fmt::format(
+            "points in space are sand with an internal friction of {:.3g} degrees, the bed's largest when the "
+            "stage began; stage.law names another law",
+            std::atan(start_.friction) / constants::kDegree));
+    const bool all =
+        std::holds_alternative<bed::None>(scene_.bed_law) || std::holds_alternative<bed::Coulomb>(scene_.bed_law);
+    if (!all && !stage.stuck && !stage.whole_bed_law)
+        remarks.push_back(fmt::format(
+            "points in space feel of the bed law its Coulomb friction alone, {:.3g}: what grows with speed is missing "
+            "there, so they are too fast rather than too slow",
+            stage.bed_friction));
+}
+
 std::vector<std::string> StagedRun::remarks() const {
     std::vector<std::string> remarks = columns_->remarks();
     if (!points_) return remarks;
@@ -270,8 +297,9 @@ std::vector<std::string> StagedRun::remarks() const {
         "{:.6g} m3 became columns again, {:.6g} m3 left through its sides; top of the space {:.6g} m",
         scene_.solid->from, s.points, converted_.mass_later / density, returned_.mass / density,
         gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
+    remark_law(remarks);
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
-    if (fluid)
+    if (fluid || scene_.solid->of_bed)
         remarks.push_back(fmt::format(
             "speed of sound {:.4g} m/s (artificial): the fastest point had {:.2g} of it, so that densities "
             "err by up to "
@@ -304,10 +332,10 @@ std::vector<PhaseTime> StagedRun::timings() const {
 void StagedRun::serialize(Archive& archive) {
     Index in_3d = ended_ ? 2 : points_ ? 1 : 0;
     archive.number("in_space", in_3d);
-    archive.numbers("start", {&start_.sound_speed, &start_.top, &start_.blur});
+    archive.numbers("start", {&start_.sound_speed, &start_.top, &start_.blur, &start_.friction});
     if (archive.loading() && in_3d) {
         ended_ = in_3d == 2;
-        points_ = std::make_unique<Mpm3d>(solid_scene(scene_, start_));
+        points_ = std::make_unique<Mpm3d>(space_of_stage());
         points_->note_departed();
         if (!scene_.barriers.empty()) watch_.emplace(scene_, *points_, start_.blur);
         if (!ended_) columns_->open_exits(nodes_in_window(scene_), false);

@@ -68,6 +68,7 @@ private:
 
     using Marks = std::vector<std::uint8_t>;  ///< of nodes, 1 or 0
     void begin_3d(const std::function<FlowColumns(const Marks&)>& columns_at);
+    SolidScene space_of_stage() const;
     void step_columns(double until);
     void step_points(double until);
     void convert_to_3d();
@@ -91,6 +92,7 @@ private:
     void require_below_top(const FlowColumns& columns) const;
     void sample(double until);
     void find_pieces();
+    void remark_law(std::vector<std::string>& remarks) const;
     void remark_pieces(std::vector<std::string>& remarks) const;
     void accumulate(const Status& columns);
     void serialize_returning(Archive& archive);

@@ -19,7 +19,9 @@ void add_laws(Table& table) {
     const char* const law = "stage.law";
     Parameter choice_of_law = make(law, Kind::choice, "", "law of the material in space");
     choice_of_law.choices = {"fluid", "bingham", "herschel_bulkley", "drucker_prager", "elastic"};
-    table.push_back(of_3d(choice_of_law, "fluid, or bingham where the rheology is"));
+    table.push_back(of_3d(choice_of_law,
+                          "bingham or a fluid, by the rheology or the bed law of mud; else sand as steep inside as the "
+                          "bed's friction, or a fluid on a bed without"));
     table.push_back(of_3d(number("stage.viscosity", "Pa s", not_negative, "viscosity of a fluid, or of bingham"),
                           "the rheology's"));
     table.push_back(
@@ -27,11 +29,11 @@ void add_laws(Table& table) {
               "the rheology's"));
     table.push_back(of_3d(number("stage.shear_modulus", "Pa", positive, "stiffness of both below their yield stress"),
                           "a hundred yield stresses"));
-    table.push_back(of_3d(
-        number("stage.sound_speed", "m/s", positive,
-               "artificial speed of sound of fluids, with a yield stress or without: the density changes by about "
-               "(speed / sound_speed)^2"),
-        "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
+    table.push_back(
+        of_3d(number("stage.sound_speed", "m/s", positive,
+                     "artificial speed of sound of fluids, with a yield stress or without, and of sand where no law is "
+                     "named: the density changes by about (speed / sound_speed)^2"),
+              "ten times the larger of the fastest speed and sqrt(2 g depth) when the stage begins"));
     const std::vector<std::string> mud = {"herschel_bulkley"};
     table.push_back(with(
         number("stage.consistency", "Pa s^n", positive, "K of herschel_bulkley: tau = yield_stress + K rate^exponent"),
@@ -138,10 +140,11 @@ void add_stages(Table& table) {
     table.push_back(of_3d(number("stage.top", "m", any_number, "elevation above which points leave the space"),
                           "four times as high above the lowest ground as the energy of the material reaches"));
     add_laws(table);
-    table.push_back(with(flag("stage.stuck", false, "the lowest material does not slide on the bed"), model, in_3d));
+    table.push_back(of_3d(make("stage.stuck", Kind::flag, "", "the lowest material does not slide on the bed"),
+                          "false; true where the bed law is that of mud, and no stage.law is named"));
     table.push_back(of_3d(number("stage.bed_friction", "1", between(0.0, 10.0),
                                  "Coulomb's friction coefficient between the points and the bed"),
-                          "the friction coefficient of material.bed, without its other terms"));
+                          "the whole law of material.bed"));
     table.push_back(with(
         number("stage.cfl", "1", above_to(0.0, 1.0), 0.4, "largest way of sound and flow in one time step, in cells"),
         model, in_3d));

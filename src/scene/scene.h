@@ -145,11 +145,13 @@ struct SolidStage {
     double cell = 1.0;                   ///< of the 3D grid [m]
     double spacing = 0.5;                ///< of the points at the start [m]
     SolidLaw law;                        ///< of fluids without the bulk modulus, which the speed of sound gives
-    std::optional<double> sound_speed;   ///< of fluids [m/s]; nothing: chosen when the stage begins
+    bool of_bed = false;                 ///< the law is sand with the bed's friction; its stiffness follows from sound
+    std::optional<double> sound_speed;   ///< of fluids and such sand [m/s]; nothing: chosen when the stage begins
     std::optional<double> top;           ///< elevation where the space ends [m]; nothing: chosen when the stage begins
     bool split = false;                  ///< points that are drawn apart become two
     bool stuck = false;                  ///< the lowest material does not slide on the bed
     double bed_friction = 0.0;           ///< Coulomb's coefficient [1]
+    bool whole_bed_law = false;          ///< the case's bed law brakes points, not that coefficient
     double cfl = 0.4;                    ///< fraction of a cell that sound and flow may pass in a step [1]
     Transfer transfer = Transfer::tpic;  ///< tpic, apic or flip
     double blending = 0.0;               ///< of flip: time in which points take over the nodes' velocity [s]

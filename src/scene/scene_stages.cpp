@@ -86,10 +86,11 @@ private:
                 "give a smaller spacing, or a larger cell");
         if (given("sound_speed")) stage.sound_speed = number("sound_speed");
         require_size(stage);
-        stage.law = law();
-        stage.stuck = case_.flag(prefix_ + "stuck");
+        stage.law = law(stage);
+        stage.stuck = given("stuck") ? case_.flag(prefix_ + "stuck") : mud_of_bed() != nullptr;
         stage.split = case_.flag(prefix_ + "split");
         stage.bed_friction = number_or("bed_friction", friction_at_rest(scene_.bed_law));
+        stage.whole_bed_law = !given("bed_friction") && hangs_on_speed(scene_.bed_law);
         stage.cfl = number("cfl");
         read_transfer(stage);
         stage.profile = profile_of(case_.word(prefix_ + "profile"));
@@ -186,10 +187,37 @@ private:
             }
     }
 
-    SolidLaw law() {
-        const std::string law = given("law") ? case_.word(prefix_ + "law")
-                                : std::holds_alternative<rheology::Bingham>(scene_.rheology) ? "bingham"
-                                                                                             : "fluid";
+    /// What the material of the case is in space, where the stage names no law: mud or a fluid by its rheology; without one,
+    /// and with friction at the bed, sand that is as steep inside.
+    std::string law_of_case() const {
+        if (given("law")) return case_.word(prefix_ + "law");
+        if (std::holds_alternative<rheology::Bingham>(scene_.rheology)) return "bingham";
+        if (const bed::Bingham* mud = mud_of_bed()) return mud->yield_stress > 0.0 ? "bingham" : "fluid";
+        const bool viscous = std::holds_alternative<rheology::Newtonian>(scene_.rheology) || given("viscosity");
+        return viscous || !(friction_at_rest(scene_.bed_law) > 0.0) ? "fluid" : "of_bed";
+    }
+
+    /// Laws that are more than a coefficient. That of mud is not among them: it stands for what happens inside.
+    static bool hangs_on_speed(const BedLaw& law) {
+        return std::holds_alternative<bed::Voellmy>(law) || std::holds_alternative<bed::Manning>(law) ||
+               std::holds_alternative<bed::Pouliquen>(law);
+    }
+
+    /// A bed law that stands for mud that shears over its depth, where no rheology says otherwise.
+    const bed::Bingham* mud_of_bed() const {
+        if (given("law") || !std::holds_alternative<rheology::None>(scene_.rheology)) return nullptr;
+        return std::get_if<bed::Bingham>(&scene_.bed_law);
+    }
+
+    SolidLaw law(SolidStage& stage) {
+        const std::string law = law_of_case();
+        if (law == "of_bed") {
+            stage.of_bed = true;
+            for (const char* name : {"yield_stress", "shear_modulus", "friction_angle_deg", "cohesion", "cone",
+                                     "young_modulus", "poisson_ratio", "consistency", "exponent"})
+                if (given(name)) unused(name, "drucker_prager by the bed's friction");
+            return solid::DruckerPrager::of({}, std::atan(friction_at_rest(scene_.bed_law)), 0.0);
+        }
         if (law == "drucker_prager" || law == "elastic") {
             for (const char* name : {"viscosity", "yield_stress", "shear_modulus", "sound_speed"})
                 if (given(name)) unused(name, law);
@@ -206,6 +234,7 @@ private:
             viscosity = newtonian->viscosity;
         if (const auto* bingham = std::get_if<rheology::Bingham>(&scene_.rheology))
             viscosity = bingham->viscosity, yield_stress = bingham->yield_stress;
+        if (const bed::Bingham* mud = mud_of_bed()) viscosity = mud->viscosity, yield_stress = mud->yield_stress;
         viscosity = number_or("viscosity", viscosity);
         if (law == "fluid") {
             for (const char* name : {"yield_stress", "shear_modulus"})

@@ -515,6 +515,8 @@ private:
                 if (surface.hold == Hold::stuck)
                     v = no_faster(held(body, mixed, v, t, {list, list + count}),
                                   oblique(list, count) ? most2 : std::numeric_limits<double>::infinity());
+                else if (surface.law)
+                    v = braked(v, normal, surface.law->coefficient(x) * t->normal_change);
                 else if (surface.friction > 0.0)
                     v = braked(v, normal, surface.friction * t->normal_change);
                 t->brake = v - before;

@@ -17,6 +17,14 @@ namespace frana {
 /// How material moves along a surface. free: nothing holds it but friction; stuck: it does not move along it.
 enum class Hold { free, stuck };
 
+/// Friction that is not the same everywhere and always.
+class SurfaceFriction {
+public:
+    virtual ~SurfaceFriction() = default;
+    /// Friction over push at a place.
+    virtual double coefficient(const Vec3& x) const = 0;
+};
+
 /// A surface with material on the side that its normal points to. Barriers are solids: material may be all
 /// around them, and no point passes through, however thin they are and however fast it comes.
 struct Surface {
@@ -28,7 +36,8 @@ struct Surface {
     std::shared_ptr<const Prism> prism;          ///< of a barrier with a footprint
     std::shared_ptr<const DistanceField> shape;  ///< of a barrier of any shape
     Hold hold = Hold::free;
-    double friction = 0.0;  ///< Coulomb's coefficient of a free surface [1]
+    double friction = 0.0;                       ///< Coulomb's coefficient of a free surface [1]
+    std::shared_ptr<const SurfaceFriction> law;  ///< in place of the coefficient
     std::string name;
 
     static Surface plane(const Vec3& through, const Vec3& normal, Hold hold = Hold::free, double friction = 0.0);
