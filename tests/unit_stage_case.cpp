@@ -181,10 +181,11 @@ TEST_CASE("Sand keeps its velocities unless it is told not to, fluids do not", "
     const SolidStage stage = scene_of(sand).solid.value();
     CHECK(stage.transfer == Transfer::flip);
     CHECK(stage.blending == Approx(std::sqrt(2.5 / 9.81)).epsilon(1e-3));
-    CHECK(scene_of(two + west).solid->transfer == Transfer::tpic);
+    const std::string fluid = two + west + "law = \"fluid\"\n";
+    CHECK(scene_of(fluid).solid->transfer == Transfer::tpic);
     CHECK(scene_of(sand + "transfer = \"tpic\"\n").solid->transfer == Transfer::tpic);
     CHECK(scene_of(two + west + "transfer = \"flip\"\nblending = 0.3\n").solid->blending == 0.3);
-    CHECK(has(problem_of(two + west + "blending = 0.3\n"),
+    CHECK(has(problem_of(fluid + "blending = 0.3\n"),
               "stage.1.blending: found with stage.transfer = \"tpic\"; expected it with \"flip\" only"));
 }
 
