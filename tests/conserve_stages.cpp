@@ -121,6 +121,23 @@ TEST_CASE("A sheet that is drawn out becomes points without gaps", "[stages]") {
     CHECK(run.points()->status().mass == Approx(run.status().mass).epsilon(1e-12));
 }
 
+TEST_CASE("Particles of the paper preset, whose domains stay as they were, become points on squares of their volume",
+          "[stages]") {
+    Scene scene = slide();
+    DepthAveraged columns(scene);
+    const Columns& points = columns.flow().columns;
+    CHECK(domains_of(points, 1.0, scene.scheme).size() == static_cast<std::size_t>(points.count()));
+    scene.scheme.paper_pressure = true;
+    const std::vector<Mat2> none = domains_of(points, 1.0, scene.scheme);
+    CHECK(none.empty());
+    const std::vector<std::uint8_t> all(static_cast<std::size_t>(scene.bed.geometry.size()), 1);
+    const FlowColumns flat = columns_of(columns.frame(), none, scene.bed, all);
+    REQUIRE(flat.count() == static_cast<std::size_t>(points.count()));
+    const FlowColumns parts = in_parts(flat, 0.125, 1.0, scene.bed, {0.0, 0.0, 40.0, 12.0});
+    const double width = std::sqrt(flat.volume[0] / flat.depth[0]);  // of a square, in parts of an eighth of a metre
+    CHECK(parts.x[0] == Approx(flat.x[0] + width * (0.5 / std::round(width / 0.125) - 0.5)));
+}
+
 TEST_CASE("A slab that slides becomes 3D and particles again without a change of its way", "[stages]") {
     constexpr double slope = 0.5, mu = 0.3;
     Scene scene = scene_on(81, 21, 1.0, [](double x, double) { return 50.0 - slope * x; });

@@ -31,8 +31,9 @@ Mat2 domain_of(const Edges& edges, double cell) {
     return domain;
 }
 
-std::vector<Mat2> domains_of(const Columns& columns, double cell) {
+std::vector<Mat2> domains_of(const Columns& columns, double cell, const Scheme& scheme) {
     std::vector<Mat2> domains;
+    if (scheme.paper_pressure) return domains;
     columns.with_real([&](auto real) {
         const auto& held = columns.carried<decltype(real)>();
         for (Index p = 0; p < columns.count(); ++p) domains.push_back(domain_of(edges_of(held, p), cell));
@@ -58,7 +59,7 @@ FlowColumns columns_of(const Frame& frame, const std::vector<Mat2>& domains, con
         columns.volume.push_back(volume[p]);
         columns.bed_pressure.push_back(pressure[p]);
         columns.id.push_back(id[p]);
-        columns.domain.push_back(domains.at(static_cast<std::size_t>(p)));
+        if (!domains.empty()) columns.domain.push_back(domains.at(static_cast<std::size_t>(p)));
     }
     take_slopes(columns, bed);
     return columns;

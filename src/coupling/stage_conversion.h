@@ -12,12 +12,12 @@
 namespace frana {
 
 /// The columns of a frame of the depth-averaged model that stand in marked nodes' cells. `domains` are those of all of its
-/// columns.
+/// columns, or none.
 FlowColumns columns_of(const Frame& frame, const std::vector<Mat2>& domains, const Raster& bed,
                        const std::vector<std::uint8_t>& marks);
 
-/// The edges of the domains of columns, on cells of `cell` [m].
-std::vector<Mat2> domains_of(const Columns& columns, double cell);
+/// The edges of the domains of columns, on cells of `cell` [m]. None in the paper preset, whose domains do not follow the flow.
+std::vector<Mat2> domains_of(const Columns& columns, double cell, const Scheme& scheme);
 Mat2 domain_of(const Edges& edges, double cell);
 
 /// The seeds of a release as columns, at rest or not; those in marked nodes' cells, or without `marks` all, in their order.

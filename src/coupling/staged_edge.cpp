@@ -87,7 +87,7 @@ FlowColumns StagedRun::columns_at_edge(std::vector<Mat2>& gradients) const {
         }
     });
     FlowColumns columns = columns_of(seeds, scene_, {});
-    columns.domain = std::move(domains);
+    if (!scene_.scheme.paper_pressure) columns.domain = std::move(domains);
     take_start_pressure(columns, scene_);
     return columns;
 }

@@ -42,7 +42,7 @@ void StagedRun::advance(double until) {
         columns_->advance(std::min(until, scene_.solid->from));
         status_ = columns_->status();
         if (status_.time < scene_.solid->from) return;
-        const std::vector<Mat2> domains = domains_of(columns_->flow().columns, scene_.bed.geometry.cell);
+        const std::vector<Mat2> domains = domains_of(columns_->flow().columns, scene_.bed.geometry.cell, scene_.scheme);
         begin_3d([&](const Marks& marks) { return columns_of(columns_->frame(), domains, scene_.bed, marks); });
         return;
     }
