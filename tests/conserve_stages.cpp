@@ -331,6 +331,15 @@ TEST_CASE("Runs in stages have the same bits for any number of threads, and when
     take_up_again(slide(), {0.3, 0.55}, 0.7, false);
 }
 
+TEST_CASE("So have runs whose ground brakes points by the whole bed law", "[stages][threads]") {
+    Scene scene = slide();
+    scene.bed_law = bed::Voellmy{0.1, 200.0};
+    scene.solid->law = solid::DruckerPrager::of({}, std::atan(0.1), 0.0);
+    scene.solid->of_bed = scene.solid->whole_bed_law = true;
+    scene.solid->transfer = Transfer::flip, scene.solid->blending = 0.2;
+    take_up_again(scene, {0.3, 0.55}, 0.7, false);
+}
+
 TEST_CASE("So have runs whose points become columns, on their way when it stops, and whose 3D stage ends", "[stages]") {
     Scene scene = slide_through();
     scene.solid->until = 0.95;

@@ -69,6 +69,18 @@ Sample FlowMap::at(const Vec2& point) const {
     return sample;
 }
 
+FlowMap::Mean FlowMap::mean_at(const Vec2& point) const {
+    Mean mean;
+    Vec3 flux(0, 0, 0);
+    Around(grid_, point.x(), point.y()).each([&](Index k, double w) {
+        mean.depth += w * depth(k);
+        mean.cosine += w * cosine(k);
+        flux += w * depth(k) * velocity(k);
+    });
+    if (mean.depth > 0.0) mean.speed = flux.norm() / mean.depth;
+    return mean;
+}
+
 /// One thread: it takes a hundredth of the steps between two looks.
 void FlowMap::sample(const Mpm3d& flow, double time) {
     std::fill(nodes_.begin(), nodes_.end(), Node{});

@@ -39,6 +39,14 @@ public:
     double cosine(Index k) const {
         return 1.0 / std::sqrt(steepening_[static_cast<std::size_t>(k)]);
     }  ///< of the slope
+    /// Of the flow between the nodes, bilinear; beyond them the nearest. The speed is that of the common momentum, up and down
+    /// included.
+    struct Mean {
+        double depth = 0.0;   ///< [m]
+        double speed = 0.0;   ///< [m/s]
+        double cosine = 0.0;  ///< of the slope [1]
+    };
+    Mean mean_at(const Vec2& point) const;
     /// Depth and velocity between the nodes, bilinear; beyond them the nearest. No elevation.
     Sample at(const Vec2& point) const;
     /// The pressure is the weight of what stands there, normal to the bed.
