@@ -205,6 +205,14 @@ TEST_CASE("Of many houses the report has those that are covered most, and a resu
     CHECK(rows.size() == std::min(covered, kMostBarrierTables));
     REQUIRE((hit > 3 && hit < 25));
     CHECK_THAT(text_of(straight / "report.md"), Contains("Of 25 barriers " + std::to_string(hit) + " were hit."));
+    // A wall along a line, whose contact is not known, counts by what runs over it.
+    write_text(village.path() / "dammed.toml",
+               text_of(village.path() / "case.toml") +
+                   "\n[[barrier]]\nname = \"dam\"\nline = [[50.0, 90.0], [50.0, 5.0]]\nheight = 0.2\n");
+    REQUIRE(call_frana(village.path(), "run dammed.toml --out dammed --quiet").code == 0);
+    const std::string report = text_of(village.path() / "dammed" / "report.md");
+    CHECK_THAT(report, Contains("\n| dam | - | - |"));
+    CHECK_THAT(report, Contains("Of 26 barriers "));
 }
 
 TEST_CASE("Attributed polygons come back in the order of the polygons, types widened where features differ",

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "coupling/barriers.h"
 #include "mpm/stored_points.h"
 #include "scene/bed_smoothing.h"
 #include "scene/memory_need.h"
@@ -30,13 +31,30 @@ void lay_over(Raster& bed, const Raster& part, Index i0, Index j0) {
 GrowingColumns::GrowingColumns(const Scene& scene, Start start)
     : scene_(scene), wider_(scene.wider), held_(wider_->held) {
     scene_.wider.reset();  // what the columns have is all that they know of
-    columns_ = std::make_unique<DepthAveraged>(scene_, start);
+    find_raised();
+    columns_ = columns_among_walls(start);
     shown_ = cells_of(wider_->shown, wider_->grid);
     const std::vector<double>& volume = scene_.particles.volume;
     const double largest = volume.empty() ? 0.0 : *std::max_element(volume.begin(), volume.end());
     scene_.particles = {};
     scene_.particles.volume = {largest};  // what may split hangs on it, also when a kept part is taken up again
     if (start == Start::placed) sample();
+}
+
+/// Barriers stand on the part that the run begins with: a larger one has the same tops, to the last bit.
+void GrowingColumns::find_raised() {
+    if (scene_.barriers.empty()) return;
+    const Raster walled = with_barriers(scene_);
+    for (Index j = 0; j < held_.ny; ++j)
+        for (Index i = 0; i < held_.nx; ++i)
+            if (walled.at(i, j) > scene_.bed.at(i, j)) raised_.push_back({held_.i0 + i, held_.j0 + j, walled.at(i, j)});
+}
+
+std::unique_ptr<DepthAveraged> GrowingColumns::columns_among_walls(Start start) const {
+    if (raised_.empty()) return std::make_unique<DepthAveraged>(scene_, start);
+    Scene walled = scene_;
+    for (const Raised& node : raised_) walled.bed.at(node.i - held_.i0, node.j - held_.j0) = node.top;
+    return std::make_unique<DepthAveraged>(walled, start);
 }
 
 void GrowingColumns::advance(double until) {
@@ -106,7 +124,7 @@ void GrowingColumns::grow(const NodeBox& box) {
                                     columns_->status().time, error.what()));
     }
     const Index east = before.i0 - held_.i0, north = before.j0 - held_.j0;
-    auto larger = std::make_unique<DepthAveraged>(scene_, Start::resumed);
+    auto larger = columns_among_walls(Start::resumed);
     larger->take_over(*columns_, east, north);
     columns_ = std::move(larger);
     ++times_grown_;
@@ -146,7 +164,7 @@ void GrowingColumns::serialize(Archive& archive) {
             if (!(common(held_, box) == held_) || !(common(box, NodeBox::all(wider_->grid)) == box))
                 throw misfit("its part of the terrain is not one of this terrain");
             hold(box);
-            columns_ = std::make_unique<DepthAveraged>(scene_, Start::resumed);
+            columns_ = columns_among_walls(Start::resumed);
         }
     }
     columns_->serialize(archive);

@@ -28,9 +28,19 @@ public:
     std::string why_not_add(const Seeds& columns) const override { return columns_->why_not_add(columns); }
     void add(const Seeds& columns) override;
 
-    const NodeBox& held() const { return held_; }  ///< nodes of the whole terrain that it works on
+    const NodeBox& held() const { return held_; }   ///< nodes of the whole terrain that it works on
+    DepthAveraged& columns() { return *columns_; }  ///< others once the part has grown
+    const DepthAveraged& columns() const { return *columns_; }
 
 private:
+    /// A node of the whole terrain that a barrier raises for columns.
+    struct Raised {
+        Index i, j;
+        double top;  ///< [m]
+    };
+
+    void find_raised();
+    std::unique_ptr<DepthAveraged> columns_among_walls(Start start) const;
     void sample();
     NodeBox room_for(const NodeBox& worked, Index clear) const;
     void grow(const NodeBox& box);
@@ -41,6 +51,7 @@ private:
     std::shared_ptr<const WiderTerrain> wider_;
     NodeBox held_;   ///< the scene's bed, of the whole terrain
     NodeBox shown_;  ///< nodes of the whole terrain that frames show
+    std::vector<Raised> raised_;
     std::unique_ptr<DepthAveraged> columns_;
     Index times_grown_ = 0;
     bool aside_ = false;  ///< it comes back to a state that was put aside: until then there is room enough

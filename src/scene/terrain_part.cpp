@@ -19,8 +19,10 @@ void take_corners(const Polygons& polygons, std::vector<Vec2>& points) {
 /// Columns alone can go on on a larger part.
 bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
     if (scene.output.whole_terrain || scene.sides != Sides::open) return false;
-    for (const char* table : {"stage", "barrier", "insitu"})
+    for (const char* table : {"stage", "insitu"})
         if (file.count(table) > 0) return false;
+    for (Index i = 0; i < file.count("barrier"); ++i)
+        if (file.given(fmt::format("barrier.{}.mesh", i))) return false;  // its place is known once it is read
     for (const char* law : {"erodible.law", "deposition.law"})
         if (file.word(law) != "none") return false;  // the ledger is of all of it
     if (file.given("forest.detrainment")) return false;
@@ -70,6 +72,31 @@ std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& rea
     return points;
 }
 
+/// Around barriers that stand on the terrain, a cell beyond their sides. Files of a whole valley have more beyond it.
+std::vector<Vec2> corners_of_barriers(const CaseFile& file, const GisReader& reader, const Raster& whole) {
+    std::vector<Vec2> points;
+    std::vector<std::string> said_later;
+    for (Index i = 0; i < file.count("barrier"); ++i) {
+        const std::string table = fmt::format("barrier.{}.", i);
+        const double thick = file.given(table + "thickness") ? file.number(table + "thickness") : 0.0;
+        const auto take = [&](const std::vector<Vec2>& corners) {
+            const double beyond = thick + whole.geometry.cell;
+            const NodeBox met = common(cells_of(corners, whole.geometry), NodeBox::all(whole.geometry));
+            if (met.nx == 0 || met.ny == 0) return;
+            for (const Vec2& corner : corners)
+                for (const double side : {-beyond, beyond}) points.push_back(corner + Vec2(side, side));
+        };
+        if (file.given(table + "line")) {
+            take(file.points(table + "line"));
+            continue;
+        }
+        const auto outline = reader.read_polygons(file.path(table + "outline"), whole.crs_wkt, said_later);
+        for (const Polygon& polygon : outline.parts)
+            for (const auto& ring : polygon.rings) take(ring);
+    }
+    return points;
+}
+
 std::vector<Vec2> shown_places(const CaseFile& file, const GisReader& reader, const Raster& whole) {
     std::vector<Vec2> points;
     for (Index i = 0; i < file.count("profile"); ++i) {
@@ -81,6 +108,8 @@ std::vector<Vec2> shown_places(const CaseFile& file, const GisReader& reader, co
         take_corners(
             reader.read_survey(file.path("survey.footprint"), whole.geometry.pixel_extent(), whole.crs_wkt, said_later),
             points);
+    const std::vector<Vec2> barriers = corners_of_barriers(file, reader, whole);
+    points.insert(points.end(), barriers.begin(), barriers.end());
     return points;
 }
 

@@ -14,8 +14,8 @@ struct TerrainPart {
     std::vector<Vec2> shown;  ///< places of profiles and the survey [m]
 };
 /// The nodes around the releases, and those of gauges, profiles and the survey. Nothing where the run needs all of
-/// `whole`, which is a raster without values: with other models than columns, with walls at the sides, barriers, looks
-/// in situ or output.extent = "terrain"; with a release without an outline; and where the part would be all of it.
+/// `whole`, which is a raster without values: with other models than columns, with walls at the sides, barriers of
+/// any shape, looks in situ or output.extent = "terrain"; with a release without an outline; and where the part would be all of it.
 std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene& scene, const GisReader& reader,
                                               const Raster& whole);
 

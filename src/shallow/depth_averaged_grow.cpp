@@ -37,6 +37,7 @@ void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
     for (Index p = 0; p < c.count(); ++p) c.x[p] += static_cast<double>(east), c.y[p] += static_cast<double>(north);
     copy_peaks(from.flow_.grid, from.peaks_, flow_.grid, peaks_, east, north);
     splitter_ = std::move(from.splitter_), merger_ = std::move(from.merger_), timed_ = std::move(from.timed_);
+    births_wanted_ = from.births_wanted_, end_of_births_ = from.end_of_births_;
     store_ = std::move(from.store_);
     status_ = from.status_, fit_ = from.fit_, start_momentum_ = from.start_momentum_;
     if (feed_) feed_->take_over(*from.feed_), choose_sleep();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/constants.h"
@@ -205,13 +206,18 @@ std::string files(const RunRecord& r, const std::vector<Product>& products) {
     return text + "\n";
 }
 
-/// The barriers that a report has rows for: all, or the most deeply covered ones of many, in the case's order.
+/// By contact, or where none is known, as of walls along lines, by what ran over it.
+bool was_hit(const BarrierSummary& b) { return b.first_contact >= 0.0 || b.overtopped > 0.0; }
+
+/// The barriers that a report has rows for: all, or the most deeply covered ones of many, in the case's order. What ran over
+/// one whose depth is not known puts it first.
 std::vector<std::size_t> shown_barriers(const RunRecord& r) {
     std::vector<std::size_t> shown(r.barriers.size());
     std::iota(shown.begin(), shown.end(), std::size_t{0});
     if (shown.size() <= kMostBarrierTables || r.barrier_hits.size() != shown.size()) return shown;
     const auto depth = [&](std::size_t n) {
-        return std::isfinite(r.barrier_hits[n].depth) ? r.barrier_hits[n].depth : 0.0;
+        if (std::isfinite(r.barrier_hits[n].depth)) return r.barrier_hits[n].depth;
+        return r.barriers[n].overtopped > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
     };
     std::stable_sort(shown.begin(), shown.end(), [&](std::size_t a, std::size_t b) { return depth(a) > depth(b); });
     shown.resize(kMostBarrierTables);
@@ -267,8 +273,7 @@ std::string barriers(const RunRecord& r) {
     const std::vector<std::size_t> shown = shown_barriers(r);
     for (const std::size_t n : shown) text += barrier_row(r.barriers[n]);
     if (shown.size() < r.barriers.size()) {
-        const auto hit = std::count_if(r.barriers.begin(), r.barriers.end(),
-                                       [](const BarrierSummary& b) { return b.first_contact >= 0.0; });
+        const auto hit = std::count_if(r.barriers.begin(), r.barriers.end(), was_hit);
         text += fmt::format("\nOf {} barriers {} were hit.{} `barriers.csv` has all.\n", r.barriers.size(), hit,
                             shown.empty() ? "" : " These stood deepest.");
     }
