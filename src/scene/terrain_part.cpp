@@ -73,8 +73,8 @@ std::vector<Vec2> corners_of_material(const CaseFile& file, const GisReader& rea
 }
 
 /// Around barriers that stand on the terrain, a cell beyond their sides. Files of a whole valley have more beyond it.
-std::vector<Vec2> corners_of_barriers(const CaseFile& file, const GisReader& reader, const Raster& whole) {
-    std::vector<Vec2> points;
+void take_corners_of_barriers(const CaseFile& file, const GisReader& reader, const Raster& whole,
+                              std::vector<Vec2>& points) {
     std::vector<std::string> said_later;
     for (Index i = 0; i < file.count("barrier"); ++i) {
         const std::string table = fmt::format("barrier.{}.", i);
@@ -94,7 +94,6 @@ std::vector<Vec2> corners_of_barriers(const CaseFile& file, const GisReader& rea
         for (const Polygon& polygon : outline.parts)
             for (const auto& ring : polygon.rings) take(ring);
     }
-    return points;
 }
 
 std::vector<Vec2> shown_places(const CaseFile& file, const GisReader& reader, const Raster& whole) {
@@ -108,8 +107,7 @@ std::vector<Vec2> shown_places(const CaseFile& file, const GisReader& reader, co
         take_corners(
             reader.read_survey(file.path("survey.footprint"), whole.geometry.pixel_extent(), whole.crs_wkt, said_later),
             points);
-    const std::vector<Vec2> barriers = corners_of_barriers(file, reader, whole);
-    points.insert(points.end(), barriers.begin(), barriers.end());
+    take_corners_of_barriers(file, reader, whole, points);
     return points;
 }
 

@@ -11,11 +11,12 @@ namespace frana {
 
 struct TerrainPart {
     NodeBox box;
-    std::vector<Vec2> shown;  ///< places of profiles and the survey [m]
+    std::vector<Vec2> shown;  ///< places of profiles, the survey and barriers [m]
 };
-/// The nodes around the releases, and those of gauges, profiles and the survey. Nothing where the run needs all of
-/// `whole`, which is a raster without values: with other models than columns, with walls at the sides, barriers of
-/// any shape, looks in situ or output.extent = "terrain"; with a release without an outline; and where the part would be all of it.
+/// The nodes around the releases, and those of gauges, profiles, barriers and the survey. `whole` is a raster without
+/// values. Nothing where the run needs all of it, or where the part would be all of it. So with other models than columns,
+/// walls at the sides, barriers given as meshes, looks in situ or output.extent = "terrain". So with loose beds, deposits,
+/// forests or friction in space, and with a release without an outline.
 std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene& scene, const GisReader& reader,
                                               const Raster& whole);
 

@@ -209,8 +209,8 @@ std::string files(const RunRecord& r, const std::vector<Product>& products) {
 /// By contact, or where none is known, as of walls along lines, by what ran over it.
 bool was_hit(const BarrierSummary& b) { return b.first_contact >= 0.0 || b.overtopped > 0.0; }
 
-/// The barriers that a report has rows for: all, or the most deeply covered ones of many, in the case's order. What ran over
-/// one whose depth is not known puts it first.
+/// The barriers that a report has rows for, in the case's order: all, or of many the most deeply covered ones. One whose depth
+/// is not known comes before them if something ran over it.
 std::vector<std::size_t> shown_barriers(const RunRecord& r) {
     std::vector<std::size_t> shown(r.barriers.size());
     std::iota(shown.begin(), shown.end(), std::size_t{0});
@@ -275,7 +275,7 @@ std::string barriers(const RunRecord& r) {
     if (shown.size() < r.barriers.size()) {
         const auto hit = std::count_if(r.barriers.begin(), r.barriers.end(), was_hit);
         text += fmt::format("\nOf {} barriers {} were hit.{} `barriers.csv` has all.\n", r.barriers.size(), hit,
-                            shown.empty() ? "" : " These stood deepest.");
+                            shown.empty() ? "" : " Shown are walls that were run over, and those that stood deepest.");
     }
     text += mean_forces(r, shown);
     if (hardest > 0.0)
