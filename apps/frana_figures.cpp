@@ -60,14 +60,6 @@ void read_record(const fs::path& run_dir, FigureSource& source) {
     }
 }
 
-/// How many barriers a table of the case has made: one, or with `each` one for each polygon of its outline.
-std::size_t made_by(const CaseFile& run_case, const std::string& table, const FigureSource& source) {
-    if (!run_case.flag(table + "each") || source.bed.values.empty()) return 1;
-    std::vector<std::string> said_by_the_run;
-    const fs::path outline = run_case.path(table + "outline");
-    return GdalReader().read_polygons(outline, source.bed.crs_wkt, said_by_the_run).parts.size();
-}
-
 /// Lines, points and the survey, from the case in full. Files that it names may have gone; a survey that has
 /// is left out.
 void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::string>& warnings) {
@@ -87,15 +79,6 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
     }
     for (Index i = 0; i < run_case.count("stage"); ++i)
         source.in_3d |= run_case.word(fmt::format("stage.{}.model", i)) == "solid_flow";
-    for (Index i = 0; i < run_case.count("barrier"); ++i) {
-        const std::string table = fmt::format("barrier.{}.", i);
-        BarrierTop top;
-        if (run_case.has(table + "top"))
-            top.level = run_case.number(table + "top");
-        else if (run_case.has(table + "height"))
-            top.height = run_case.number(table + "height");
-        source.barrier_tops.resize(source.barrier_tops.size() + made_by(run_case, table, source), top);
-    }
     if (!run_case.has("survey.footprint") || source.bed.values.empty()) return;
     const fs::path survey = run_case.path("survey.footprint");
     if (!fs::exists(survey)) {
@@ -105,15 +88,16 @@ void read_case(const fs::path& run_dir, FigureSource& source, std::vector<std::s
     source.survey = GdalReader().read_survey(survey, source.bed.geometry.pixel_extent(), source.bed.crs_wkt, warnings);
 }
 
-/// What the page shows besides. An outline that has gone is left out, and all barriers with it.
-void read_for_page(FigureSource& source, std::vector<std::string>& warnings) {
-    const CaseFile run_case = case_of_run(source.run_dir);
-    source.density = run_case.number("material.density");
+/// An outline that has gone is left out, and all barriers with it.
+void read_barriers(FigureSource& source, std::vector<std::string>& warnings) {
+    if (source.bed.values.empty()) return;
     try {
+        const CaseFile run_case = case_of_run(source.run_dir);
         std::vector<std::string> said_by_the_run;
         source.barriers = barriers_of_case(run_case, GdalReader(), source.bed, said_by_the_run);
+        for (const Barrier& barrier : source.barriers) source.barrier_tops.push_back({barrier.top, barrier.height});
     } catch (const UserError& error) {
-        warnings.push_back(fmt::format("the page is without barriers: {}", error.what()));
+        warnings.push_back(fmt::format("barriers are not shown: {}", error.what()));
     }
 }
 
@@ -251,13 +235,14 @@ int figures_command(const FiguresOptions& options) {
     source.time = options.time;
     if (source.bed.values.empty()) source.rasters.clear();
     read_case(options.run_dir, source, warnings);
+    read_barriers(source, warnings);
     Gallery gallery(options.run_dir);
     std::list<ProductRaster> of_the_moment;
     FlowFrames frames(source.footprint_depth);
     if (options.web) {
         if (const std::string why_not = no_page_reason(); !why_not.empty())
             throw UserError(fmt::format("--web: {}", why_not));
-        read_for_page(source, warnings);
+        source.density = case_of_run(options.run_dir).number("material.density");
         frames = frames_of_run(source);
         add_page(source, frames, text_of(options.run_dir / "run.json"), gallery);
     } else {

@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "io/gdal_features.h"
 #include "io/gdal_reader.h"
+#include "io_figures_scene.h"
 #include "observe/barriers.h"
 #include "program.h"
 #include "read_layer.h"
@@ -106,6 +107,31 @@ TEST_CASE("The report has the time of contact of houses that columns reach, and 
     CHECK_THAT(table, Contains("barrier,first_contact [s],peak_force [N],peak_pressure [Pa]"));
     CHECK_THAT(table, Contains("house_2,,,,,,0,64,,,,,,,,\n"));
     CHECK(std::count(table.begin(), table.end(), '\n') == 4);
+}
+
+TEST_CASE("Maps of a run show its barriers, drawn at once or later", "[barriers][results][figures]") {
+    if (figures::cannot_draw()) return;
+    const Village village;
+    const Outcome run =
+        call_frana(village.path(), "run case.toml --out run --quiet --set 'output.formats=[\"geotiff\",\"png\"]'");
+    INFO(run.err);
+    REQUIRE(run.code == 0);
+    const fs::path pictures = village.path() / "run" / "figures";
+    const auto shown = [&] {
+        return figures::count(read_png(pictures / "map_peak_depth.png"), colours::barrier, 3) +
+               figures::count(read_png(pictures / "view_peak_depth.png"), colours::barrier, 30);
+    };
+    const int at_once = shown();
+    CHECK(figures::count(read_png(pictures / "map_peak_depth.png"), colours::barrier, 3) > 100);
+    CHECK(figures::count(read_png(pictures / "view_peak_depth.png"), colours::barrier, 30) > 50);
+    fs::remove_all(pictures);
+    REQUIRE(call_frana(village.path(), "figures run --size 1400x1200").code == 0);
+    CHECK(shown() == at_once);
+    fs::remove(village.path() / "houses.geojson");
+    const Outcome without = call_frana(village.path(), "figures run --size 1400x1200");
+    CHECK(without.code == 0);
+    CHECK_THAT(without.err, Contains("barriers are not shown"));
+    CHECK(figures::count(read_png(pictures / "map_peak_depth.png"), colours::barrier, 3) == 0);
 }
 
 TEST_CASE("A row of houses mirrored about the flow's axis is met alike, side by side", "[barriers][results]") {

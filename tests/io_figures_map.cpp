@@ -132,6 +132,34 @@ TEST_CASE("The surveyed outline is drawn on its line and nowhere else", "[figure
     CHECK(figures::count(drawn(figure), colours::survey, 3) == 0);
 }
 
+TEST_CASE("Barriers are drawn on their lines, and a few of them by name", "[figures]") {
+    if (cannot_draw()) return;
+    MapFigure figure = figures::valley();
+    const Polyline house{{400, 300}, {800, 300}, {800, 700}, {400, 700}, {400, 300}};
+    figure.barriers = {{"house", house}, {"dam", {{1000, 300}, {1000, 700}}}};
+    const Pixels picture = drawn(figure);
+    const MapLayout layout = lay_out(figure);
+    for (const Vec2& on : {Vec2(600, 300), Vec2(800, 500), Vec2(600, 700), Vec2(400, 500), Vec2(1000, 500)})
+        CHECK(figures::distance(at(picture, layout.pixel(on)), colours::barrier) <= 10);
+    for (const Vec2& off : {Vec2(600, 500), Vec2(900, 500), Vec2(600, 200)})
+        CHECK(figures::saturation(at(picture, layout.pixel(off))) < 40);
+    CHECK(std::count_if(layout.legend.begin(), layout.legend.end(),
+                        [](const LegendEntry& e) { return e.text == "barrier"; }) == 1);
+
+    // The name of a wall stands right of its middle, on a white box.
+    const auto white_at_name = [&](const MapFigure& of) {
+        const Vec2 start = lay_out(of).pixel({1000, 500});
+        const Pixels seen = drawn(of);
+        int white = 0;
+        for (int dx = 20; dx < 60; ++dx)
+            for (int dy = -8; dy <= 8; ++dy) white += brightness(at(seen, start + Vec2(dx, dy))) > 0.93;
+        return white;
+    };
+    const int named = white_at_name(figure);
+    for (int n = 0; n < 5; ++n) figure.barriers.push_back({"far", {{1900, 100}, {1950, 100}}});
+    CHECK(named > white_at_name(figure) + 100);
+}
+
 TEST_CASE("Terrain without data is plain light grey", "[figures]") {
     if (cannot_draw()) return;
     MapFigure figure = figures::valley();

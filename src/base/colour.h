@@ -56,6 +56,7 @@ inline constexpr Colour beyond{240, 180, 40};     ///< simulated only
 inline constexpr Colour missed{0, 62, 130};       ///< surveyed only
 inline constexpr Colour grid{218, 218, 218};      ///< grid lines of charts
 inline constexpr Colour note{70, 70, 70};         ///< footers
+inline constexpr Colour barrier{98, 28, 122};     ///< on maps; drawn on a white casing
 inline constexpr Colour unloaded{238, 238, 232};  ///< barrier in a run without loads
 inline constexpr Colour ground{205, 195, 182};    ///< filled terrain in charts
 }  // namespace colours

@@ -165,6 +165,7 @@ EnsembleBase ensemble_base(const EnsemblePlan& plan, const GisReader& reader, co
     base.footprint_depth = scene.output.footprint_depth;
     base.stops_at_rest = scene.stop_at_rest;
     base.gauges = scene.gauges;
+    base.barriers = scene.barriers;
     base.start = start_of(scene);
     if (base.start) base.path = steepest_path(scene.bed, *base.start);
     if (!(length_of(base.path) > 0.0)) base.path.clear();

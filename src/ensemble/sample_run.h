@@ -26,6 +26,7 @@ struct EnsembleBase {
     std::optional<Polygons> footprint;  ///< surveyed, where the case has one
     std::optional<Rings> survey;        ///< its rings
     std::vector<Gauge> gauges;          ///< of the case
+    std::vector<Barrier> barriers;      ///< of the case, which maps show
     Polyline path;                      ///< that all runouts are measured along; empty: none is known
 };
 

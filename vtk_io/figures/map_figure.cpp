@@ -142,6 +142,7 @@ private:
         if (figure_.survey)
             for (const Polyline& ring : all_rings(*figure_.survey))
                 closed_line(ring, {colours::survey, figure_.survey_pen() * u, {}}, true);
+        barriers();
         for (const NamedPoint& gauge : figure_.gauges) {
             const Vec2 at = layout_.pixel(gauge.point);
             if (!layout_.frame.holds(at)) continue;
@@ -154,6 +155,24 @@ private:
                 stroke_cased(canvas_, piece, {colours::black, 0.12 * u, {0.55 * u, 0.3 * u}});
             if (!pieces.empty()) name(profile.name, pieces.front().front());
         }
+    }
+
+    void barriers() {
+        constexpr std::size_t most_named = 6;  // houses of a village would hide what comes to them
+        for (const NamedLine& barrier : figure_.barriers) {
+            const auto pieces = on_sheet(barrier.line);
+            for (const auto& piece : pieces)
+                stroke_cased(canvas_, piece, {colours::barrier, kBarrierPen * layout_.unit, {}});
+            if (!pieces.empty() && figure_.barriers.size() <= most_named) name(barrier.name, right_of(pieces));
+        }
+    }
+
+    /// At half the height of all of them, where they end to the right.
+    static Vec2 right_of(const std::vector<std::vector<Vec2>>& pieces) {
+        Vec2 low = pieces.front().front(), high = low;
+        for (const auto& piece : pieces)
+            for (const Vec2& p : piece) low = low.cwiseMin(p), high = high.cwiseMax(p);
+        return {high.x(), 0.5 * (low.y() + high.y())};
     }
 
     /// A name beside a point, on the side where there is room.
@@ -218,7 +237,7 @@ private:
     Canvas canvas_;
     Raster field_;                   ///< at the pixels of the frame
     std::vector<Rectangle> labels_;  ///< of contours
-    std::vector<Rectangle> names_;   ///< of profiles and gauges
+    std::vector<Rectangle> names_;   ///< of barriers, profiles and gauges
 };
 
 }  // namespace

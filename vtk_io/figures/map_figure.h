@@ -47,6 +47,7 @@ struct MapFigure {
     /// With classes here, `field` holds their numbers, from 1 on, each node's for all of its pixel; 0 is none. The legend names
     /// them instead of a colour bar.
     std::vector<MapClass> classes;
+    std::vector<NamedLine> barriers;  ///< in plan: outlines are closed, faces of walls along lines are not
     std::vector<NamedLine> profiles;
     std::vector<NamedPoint> gauges;
     std::string footer;                          ///< model, parameters; wrapped

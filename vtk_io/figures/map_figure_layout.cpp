@@ -154,6 +154,8 @@ std::vector<LegendEntry> make_legend(const MapFigure& figure, const MapLayout& l
                                fmt::format("{} {:g}{}{}", name, figure.shown_above, unit.empty() ? "" : " ", unit)));
     if (figure.survey)
         legend.push_back(entry(Kind::cased_line, colours::survey, figure.survey_pen() * u, "surveyed outline"));
+    if (!figure.barriers.empty())
+        legend.push_back(entry(Kind::cased_line, colours::barrier, kBarrierPen * u, "barrier"));
     if (!figure.profiles.empty()) {
         legend.push_back(
             entry(Kind::cased_line, colours::black, 0.12 * u, figure.shows_overlay() ? "runout path" : "profile"));

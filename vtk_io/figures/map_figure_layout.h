@@ -7,6 +7,9 @@
 
 namespace frana {
 
+/// Thickness of a barrier's line, in sizes of ordinary text.
+inline constexpr double kBarrierPen = 0.2;
+
 /// The texts above and below a picture.
 struct Captions {
     TextStyle title_style, footer_style;

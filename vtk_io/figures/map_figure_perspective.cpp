@@ -60,6 +60,9 @@ public:
 private:
     void build(const MapBox& box);
     void lines(vtkRenderer* renderer) const;
+    void cased(vtkRenderer* renderer, const std::vector<Polyline>& lines, double lift, const Colour& colour,
+               double pen) const;
+    std::vector<Polyline> survey_rings() const;
     void aim(vtkRenderer* renderer);
     void aim_from_eye(vtkRenderer* renderer);
     void keep_projection(vtkCamera* camera);
@@ -146,16 +149,31 @@ void BlockDrawing::lines(vtkRenderer* renderer) const {
     const double x1 = g.x_max(), y1 = g.y_max();
     renderer->AddActor(draped_actor({{{g.x0, g.y0}, {x1, g.y0}, {x1, y1}, {g.x0, y1}, {g.x0, g.y0}}}, surface_, 0.0,
                                     origin_, colours::note, 1.5));
-    if (!figure_.survey) return;
+    cased(renderer, survey_rings(), lift, colours::survey, 0.16);
+    std::vector<Polyline> barriers;
+    for (const NamedLine& barrier : figure_.barriers) barriers.push_back(barrier.line);
+    cased(renderer, barriers, lift, colours::barrier, kBarrierPen);
+}
+
+/// Lines on wider white ones; `pen` in sizes of ordinary text.
+void BlockDrawing::cased(vtkRenderer* renderer, const std::vector<Polyline>& lines, double lift, const Colour& colour,
+                         double pen) const {
+    if (lines.empty()) return;
+    renderer->AddActor(draped_actor(lines, surface_, lift, origin_, colours::white, 2.0 * pen * unit_));
+    renderer->AddActor(draped_actor(lines, surface_, 1.6 * lift, origin_, colour, pen * unit_));
+}
+
+/// Each ends where it begins.
+std::vector<Polyline> BlockDrawing::survey_rings() const {
     std::vector<Polyline> rings;
+    if (!figure_.survey) return rings;
     for (const Polygon& part : figure_.survey->parts)
         for (Polyline ring : part.rings) {
             if (ring.empty()) continue;
             ring.push_back(ring.front());
             rings.push_back(ring);
         }
-    renderer->AddActor(draped_actor(rings, surface_, lift, origin_, colours::white, 0.32 * unit_));
-    renderer->AddActor(draped_actor(rings, surface_, 1.6 * lift, origin_, colours::survey, 0.16 * unit_));
+    return rings;
 }
 
 std::vector<Vec3> BlockDrawing::silhouette() const {
@@ -284,14 +302,18 @@ void BlockDrawing::explanations(Canvas& canvas) const {
     }
     const Vec2 corner(1.5 * u, h - captions_.title_height() - 1.7 * u);
     draw_inset(canvas, figure_.objects.inset, corner, most_of_inset(), u);
-    if (figure_.survey) {
+    double x_of_entry = u;
+    const auto explain = [&](const Colour& colour, double pen, const std::string& text) {
         LegendEntry entry;
         entry.kind = LegendEntry::Kind::cased_line;
-        entry.pen.colour = colours::survey;
-        entry.pen.width = 0.16 * u;
-        entry.text = "surveyed outline";
-        draw_legend_entry(canvas, entry, {u, captions_.footer_height() + 1.6 * u}, u);
-    }
+        entry.pen.colour = colour;
+        entry.pen.width = pen * u;
+        entry.text = text;
+        draw_legend_entry(canvas, entry, {x_of_entry, captions_.footer_height() + 1.6 * u}, u);
+        x_of_entry += 4.0 * u + text_size(text, {u, Across::left, Upward::middle, 0.0, false, false, {}}).x();
+    };
+    if (figure_.survey) explain(colours::survey, 0.16, "surveyed outline");
+    if (!figure_.barriers.empty()) explain(colours::barrier, kBarrierPen, "barrier");
     const GridGeometry& g = surface_.geometry;
     const double x = 0.5 * g.cell * static_cast<double>(g.nx - 1), y = 0.5 * g.cell * static_cast<double>(g.ny - 1);
     const std::vector<double> sides = figure_.eye ? std::vector<double>{} : std::vector<double>{-1.0, 1.0};

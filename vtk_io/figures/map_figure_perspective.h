@@ -17,6 +17,7 @@ struct PerspectiveFigure {
     bool thick_release = false;  ///< the depth of a flow: map_range.h, Top::flow
     Colormap colormap = Colormap::depth;
     std::optional<Polygons> survey;
+    std::vector<NamedLine> barriers;  ///< as in MapFigure; drawn on the ground, without names
     std::string footer;
     std::optional<std::array<double, 4>> focus;  ///< the block: xmin, ymin, xmax, ymax [m]
     std::optional<double> look_azimuth_deg;      ///< direction of view, clockwise from north; default: up the

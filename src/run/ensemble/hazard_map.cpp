@@ -6,6 +6,7 @@
 
 #include "io/gdal_writer.h"
 #include "run/ensemble/outcomes.h"
+#include "run/folder/barrier_plans.h"
 #include "vtk_io/figures/map_figure.h"
 
 namespace frana {
@@ -58,6 +59,7 @@ void draw(const std::filesystem::path& dir, const EnsembleBase& base, const Haza
         figure.classes.push_back({one.name, {one.colour[0], one.colour[1], one.colour[2], 255}});
     figure.title = base.title;
     figure.survey = base.footprint;
+    figure.barriers = barrier_plans(base.barriers);
     figure.footer =
         fmt::format("Classes of hazard: {}. {}", rule_of(table), summary.hazard_remark + runs_sentence(summary));
     std::string why_not;

@@ -12,6 +12,7 @@
 #include "io/gdal_writer.h"
 #include "run/ensemble/kept_rows.h"
 #include "run/ensemble/outcomes.h"
+#include "run/folder/barrier_plans.h"
 #include "run/folder/states.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/writers.h"
@@ -174,6 +175,7 @@ private:
         figure.field_label = label + " [1]";
         figure.range = {0.0, 1.0};
         figure.survey = base_.footprint;
+        figure.barriers = barrier_plans(base_.barriers);
         figure.footer = runs_sentence(summary_);
         note(render_map(figure, dir_ / "figures" / (name + ".png"), why_not_), "figures/" + name + ".png");
     }

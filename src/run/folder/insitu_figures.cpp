@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "observe/insitu_tables.h"
 #include "observe/profiles.h"
+#include "run/folder/barrier_plans.h"
 #include "vtk_io/figures/chart_figure.h"
 #include "vtk_io/figures/map_figure.h"
 #include "vtk_io/figures/map_figure_perspective.h"
@@ -64,6 +65,7 @@ public:
         view_.width = map_.width = entry.width;
         view_.height = map_.height = entry.height;
         view_.survey = map_.survey = scene.survey;
+        view_.barriers = map_.barriers = barrier_plans(scene.barriers);
         view_.colormap = map_.colormap = is_signed(entry.fields.front()) ? Colormap::diverging : Colormap::depth;
         view_.raised = is_depth(entry.fields.front());
         view_.focus = map_.focus = scene.bed.geometry.pixel_extent();

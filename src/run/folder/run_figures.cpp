@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "compare/overlap.h"
+#include "run/folder/barrier_plans.h"
 #include "run/folder/run_3d.h"
 #include "run/folder/run_charts.h"
 #include "run/folder/run_film.h"
@@ -53,6 +54,7 @@ MapFigure map_of(const FigureSource& source, const ProductRaster& product, const
     map.field_label = fmt::format("{} [{}]", what.substr(0, what.find(" at ")),
                                   pascal ? "kPa" : product.unit);  // the title has the moment
     map.survey = source.survey;
+    map.barriers = barrier_plans(source.barriers);
     for (const Profile& profile : source.profiles) map.profiles.push_back({profile.name, profile.line});
     for (const Section& section : source.sections) map.profiles.push_back({section.name, section.line});
     for (const Gauge& gauge : source.gauges) map.gauges.push_back({gauge.name, gauge.point});
@@ -93,6 +95,7 @@ void add_view(const FigureSource& source, const ProductRaster& peak_depth, Galle
     view.thick_release = true;
     view.field_label = "peak depth [m]";
     view.survey = source.survey;
+    view.barriers = barrier_plans(source.barriers);
     view.footer = source.footer;
     view.width = source.width;
     view.height = source.height;

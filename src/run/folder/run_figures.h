@@ -30,7 +30,7 @@ struct FigureSource {
     std::vector<Section> sections;
     bool in_3d = false;                    ///< the case has a stage of 3D points
     std::vector<BarrierTop> barrier_tops;  ///< in the case's order
-    std::vector<Barrier> barriers;         ///< with what they stand on, for the page
+    std::vector<Barrier> barriers;         ///< with what they stand on
     double density = 0.0;                  ///< of the material [kg/m3]; 0: not known
     std::optional<double> time;            ///< of the profiles besides the first and the last [s]
     int width = 1400, height = 1200;       ///< of the maps; charts are as wide and 0.6 as high [pixels]

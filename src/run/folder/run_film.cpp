@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "run/folder/barrier_plans.h"
 #include "run/folder/cutoff.h"
 #include "terrain/part_of.h"
 #include "vtk_io/figures/film.h"
@@ -38,6 +39,7 @@ MapFigure depth_map(const FigureSource& source, Index number) {
     map.field_label = "depth [m]";
     map.thick_release = true;
     map.survey = source.survey;
+    map.barriers = barrier_plans(source.barriers);
     return map;
 }
 
