@@ -1,10 +1,14 @@
 // The order of points by tile, and the turns of tiles: the same for any number of threads. How far to the side of their
 // points mirror particles stand, which turns in space depend on.
+#include <unistd.h>
+
 #include <algorithm>
+#include <fstream>
 #include <random>
 
 #include "catch.h"
 #include "mpm/point_order.h"
+#include "mpm/tile_grid.h"
 #include "shallow/columns.h"
 #include "solid3d/material_points.h"
 #include "solid3d/surfaces.h"
@@ -240,4 +244,24 @@ TEST_CASE("No mirror particle in a plane or a bed stands farther to the side tha
         REQUIRE(farthest / kCell <= most * (1.0 + 1e-12));
         if (n % 3 < 2 && beyond == 0.0) REQUIRE(farthest / kCell > 0.8 * most);  // of 3000 points some are far off
     }
+}
+
+// Linux refuses a single block that is larger than the machine's memory, unless it is told that none need be set aside.
+TEST_CASE("Nodes of a grid that is larger than the memory are there, where few of them are touched", "[points]") {
+    int overcommit = 0;
+    std::ifstream("/proc/sys/vm/overcommit_memory") >> overcommit;
+    if (overcommit == 2) {
+        WARN("this system promises no memory that it does not have; this test is skipped");
+        return;
+    }
+    const double memory = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
+    const auto count = static_cast<Index>(4.0 * memory / sizeof(double));
+    LazyArray<double> nodes(count, 8);
+    CHECK(nodes.count() == count);
+    nodes[count - 1] = 3.0;
+    for (const Index k : {Index{-8}, Index{0}, count / 2, count - 2, count + 7}) CHECK(nodes[k] == 0.0);
+    LazyArray<double> moved = std::move(nodes);
+    CHECK(moved[count - 1] == 3.0);
+    moved = LazyArray<double>(10);
+    CHECK(moved[9] == 0.0);
 }

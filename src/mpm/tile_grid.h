@@ -1,11 +1,14 @@
 #pragma once
 // The background grid: nodes stored row-major in tiles of 16 x 16, with a ring of spare tiles around the domain.
 // Only tiles near material are ever touched; arrays come zeroed from the system and cost nothing until then.
+#include <sys/mman.h>
+
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -26,8 +29,7 @@ public:
     explicit LazyArray(Index count, Index guard = 0) : count_(count) {
         const std::size_t bytes = static_cast<std::size_t>(count + 2 * guard) * sizeof(T);
         std::size_t room = bytes + alignof(T);
-        block_.reset(std::calloc(room, 1));
-        if (!block_) throw std::bad_alloc();
+        block_ = zeroed(room);
         void* start = block_.get();
         first_ = static_cast<T*>(std::align(alignof(T), bytes, start, room)) + guard;
     }
@@ -40,9 +42,26 @@ public:
 
 private:
     struct Free {
-        void operator()(void* p) const { std::free(p); }
+        std::size_t mapped = 0;  ///< bytes that the system gave by itself; 0: of the heap
+        void operator()(void* p) const { mapped > 0 ? static_cast<void>(::munmap(p, mapped)) : std::free(p); }
     };
-    std::unique_ptr<void, Free> block_;
+    using Block = std::unique_ptr<void, Free>;
+
+    /// A large block is asked for without its pages being set aside. Linux refuses more than the machine has otherwise, even
+    /// where next to none of it will be touched.
+    static Block zeroed(std::size_t bytes) {
+        constexpr std::size_t large = std::size_t{1} << 26;
+        if (bytes < large) {
+            Block block(std::calloc(bytes, 1));
+            return block ? std::move(block) : throw std::bad_alloc();
+        }
+        void* pages =
+            ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (pages == MAP_FAILED) throw std::bad_alloc();
+        return Block(pages, Free{bytes});
+    }
+
+    Block block_;
     T* first_ = nullptr;
     Index count_ = 0;
 };
