@@ -182,6 +182,41 @@ TEST_CASE("A slab that slides becomes 3D and particles again without a change of
     }
 }
 
+TEST_CASE("Sand by the bed law is as strong inside as the flow needs, whatever a film at its margin does", "[stages]") {
+    constexpr double mu = 0.1, slope = 0.2;
+    Scene scene = scene_on(11, 11, 1.0, [](double x, double) { return 50.0 - slope * x; });
+    scene.bed_law = bed::Voellmy{mu, 500.0};
+    SolidStage stage;
+    stage.window = {0, 0, 10, 10};
+    stage.of_bed = stage.whole_bed_law = true;
+    stage.bed_friction = mu;
+    scene.solid = stage;
+    const auto add = [&](FlowColumns& columns, double depth, double speed) {
+        FlowColumns one;
+        one.x = one.y = {5.0}, one.bed = {49.0}, one.depth = {depth}, one.slope_x = {-slope}, one.slope_y = {0.0};
+        one.vx = {speed}, one.vy = {0.0}, one.mass = {1000.0 * depth}, one.volume = {depth}, one.bed_pressure = {0.0};
+        one.id = {0.0}, one.domain = {Mat2::Identity()};
+        columns.take(one, 0);
+    };
+    FlowColumns still;
+    add(still, 2.0, 0.0);
+    CHECK(choose_start(scene, still).friction == Approx(slope));  // that of the fastest flow on this slope
+    FlowColumns fast;
+    add(fast, 2.0, 20.0);
+    // Voellmy: mu + v^2 / (xi h cos), v along the bed and h across it.
+    const double cosine = 1.0 / std::hypot(1.0, slope), along = 20.0 / cosine;
+    const double of_bulk = mu + along * along / (500.0 * 2.0 * cosine * cosine);
+    REQUIRE(of_bulk > 0.4);
+    CHECK(choose_start(scene, fast).friction ==
+          Approx(of_bulk).epsilon(1e-3));  // to the step that finds a deceleration
+    add(fast, 0.01, 25.0);
+    CHECK(choose_start(scene, fast).friction < 1.01 * of_bulk);
+    scene.solid->whole_bed_law = false, scene.solid->bed_friction = 0.8;
+    CHECK(choose_start(scene, fast).friction == 0.8);
+    scene.solid->bed_friction = 0.0;
+    CHECK(choose_start(scene, fast).friction == mu);
+}
+
 TEST_CASE("A 3D frame has the mass of both models on its particles and on its nodes", "[stages]") {
     const Scene scene = slide();
     StagedRun run(scene);

@@ -239,6 +239,14 @@ TEST_CASE("Of many houses the report has those that are covered most, and a resu
     const std::string report = text_of(village.path() / "dammed" / "report.md");
     CHECK_THAT(report, Contains("\n| dam | - | - |"));
     CHECK_THAT(report, Contains("Of 26 barriers "));
+    // Or by what stands before it: nothing gets past this one.
+    write_text(village.path() / "held.toml",
+               text_of(village.path() / "case.toml") +
+                   "\n[[barrier]]\nname = \"dam\"\nline = [[50.0, 98.0], [50.0, 2.0]]\nheight = 60\n");
+    REQUIRE(call_frana(village.path(), "run held.toml --out held --quiet").code == 0);
+    const std::string held = text_of(village.path() / "held" / "report.md");
+    CHECK_THAT(held, Contains("\n| dam | - | - |"));
+    CHECK_THAT(held, Contains("Of 26 barriers 1 were hit. Shown are walls that were reached"));
 }
 
 TEST_CASE("Attributed polygons come back in the order of the polygons, types widened where features differ",

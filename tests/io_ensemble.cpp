@@ -180,6 +180,31 @@ TEST_CASE("Sobol's samples can be prolonged: those that have run stay", "[ensemb
     CHECK(other.code == 0);  // runs again what it could have taken; the maps are the same
 }
 
+// What is refused is tried again with the new ones. Their peaks must not take the place of those that are there.
+TEST_CASE("Samples can be prolonged twice when one of the first is always refused", "[ensemble]") {
+    const Pond pond;
+    const auto write = [&](int samples) {
+        pond.write("many.toml",
+                   "[ensemble]\ncase = \"case.toml\"\nmethod = \"sobol\"\nsamples = " + std::to_string(samples) +
+                       "\nfields = [\"peak_depth\"]\n[[ensemble.vary]]\nkey = \"release.0.outline\"\n"
+                       "distribution = \"discrete\"\nvalues = [\"all.geojson\", \"gone.geojson\"]\n"
+                       "weights = [0.75, 0.25]\n");
+    };
+    for (const int samples : {8, 16, 32}) {
+        write(samples);
+        const Outcome done =
+            pond.frana(std::string("ensemble many.toml --out many --quiet") + (samples > 8 ? " --resume" : ""));
+        CHECK(done.code == 3);  // more than 5 % failed
+    }
+    const Outcome joined = pond.frana("ensemble --join many");
+    CAPTURE(joined.err);
+    CHECK(joined.code == 3);
+    const Json page = Json::parse(text_of(pond.path("many/ensemble.json")));
+    CHECK(page["run"] == 32);
+    CHECK(page["failed"] == 8);
+    for (const double p : pond.map("many", "probability_reached").values) CHECK(p == Approx(1.0));
+}
+
 TEST_CASE("scenarios count by their weights", "[ensemble]") {
     const Pond pond;
     pond.write("many.toml",

@@ -7,9 +7,12 @@
 #include "base/error.h"
 #include "catch.h"
 #include "coupling/walled_columns.h"
+#include "fake_gis.h"
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "run/run_loop.h"
+#include "scene/build_scene.h"
+#include "slope_case.h"
 #include "terrain/holes.h"
 
 using namespace frana;
@@ -58,6 +61,27 @@ Scene slide_on_large() { return slide_on(kLarge, kBegin); }
 Scene slide_on_cut() {
     return slide_on(kCut.of(kLarge), {kBegin.i0 - kCut.i0, kBegin.j0 - kCut.j0, kBegin.nx, kBegin.ny});
 }
+
+/// A plane on nodes of which the scene takes a part, and a release at its west.
+class LargeGis final : public FakeGis {
+public:
+    explicit LargeGis(const GridGeometry& grid) : grid_(grid) {
+        polygons["release.geojson"] = rectangle(1000, 100, 1040, 140);
+    }
+    Raster read_dem(const std::filesystem::path&, const DemRequest& request, std::vector<std::string>&) const override {
+        return plane_on(request.choose({grid_, {}, "", ""}));
+    }
+    std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path&,
+                                                         const DemRequest&) const override {
+        return [this](const NodeBox& box) { return plane_on(box); };
+    }
+
+private:
+    Raster plane_on(const NodeBox& box) const {
+        return sampled(box.of(grid_), [](double x, double) { return 0.1 * x; });
+    }
+    GridGeometry grid_;
+};
 
 bool same_bits(const Field& a, const Field& b) {
     return a.name == b.name && a.count == b.count && a.components == b.components &&
@@ -263,6 +287,32 @@ TEST_CASE("A run on a part comes back to a state that was put aside, also just b
         other.advance(1e9);
     }
     require_same(run, other);
+}
+
+TEST_CASE(
+    "A part of a terrain has the corners of a thick wall that turns, and what is off the terrain is told of all of it",
+    "[terrain][barrier]") {
+    const GridGeometry all{3000, 60, 2.5, 2.5, 5.0};
+    const LargeGis gis(all);
+    const auto scene_with = [&](const std::string& line) {
+        const std::string text =
+            "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n"
+            "[material]\ndensity = 1000\nbed = { law = \"coulomb\", mu = 0.2 }\n[[barrier]]\nheight = 5\nthickness = "
+            "60\n"
+            "line = " +
+            line + "\n";
+        return build_scene(CaseFile::parse(text, "slide/case.toml"), gis);
+    };
+    // The line goes up and turns back: the outer corner is beyond it, to the east.
+    const Polyline line{{5900, 80}, {6000, 150}, {5900, 220}};
+    const Scene scene = scene_with("[[5900, 80], [6000, 150], [5900, 220]]");
+    REQUIRE(scene.wider);
+    for (const WetSide wet : {WetSide::left, WetSide::right})
+        for (const Polygon& part : wall_outline(line, wet, 60.0).parts)
+            for (const auto& ring : part.rings)
+                for (const Vec2& corner : ring) CHECK(corner.x() < scene.bed.geometry.x_max());  // x 6105
+    CHECK_THAT(only_problem([&] { scene_with("[[20000, 20], [20000, 280]]"); }),
+               Catch::Contains("expected the barrier within x 0 to 15000, y 0 to 300"));
 }
 
 TEST_CASE("Barriers stand on a part that grows as on all of the terrain: the same bits, births and resume included",

@@ -54,6 +54,8 @@ TEST_CASE("Mud by the bed law is mud in space, held by the bed", "[stages]") {
     CHECK(of(mud, "").stuck);
     CHECK_FALSE(of(mud, "stuck = false\n").stuck);
     CHECK_FALSE(of(mud, "law = \"fluid\"\n").stuck);
+    CHECK_FALSE(of(mud, "bed_friction = 0.4\n").stuck);  // it slides, by that coefficient
+    CHECK(of(mud, "bed_friction = 0.4\n").bed_friction == 0.4);
     CHECK(std::holds_alternative<solid::Fluid>(of("law = \"none\"\n", "").law));
 }
 
@@ -153,6 +155,8 @@ TEST_CASE("Stages that cannot be are refused in one sentence", "[stages]") {
               "stage.1.sound_speed: found, but the law \"elastic\" does not"));
     CHECK(has(problem_of(two + west + "law = \"drucker_prager\"\nyoung_modulus = 1e6\n"),
               "stage.1.friction_angle_deg: not given, but stage.law = \"drucker_prager\" needs it"));
+    CHECK(has(problem_of(two + west + "stuck = true\nbed_friction = 0.3\n"),
+              "stage.1.bed_friction: found with stage.stuck = true"));
     CHECK(has(problem_of("[[stage]]\nmodel = \"depth_averaged\"\ncell = 2\n"),
               "stage.0.cell: found, but stage.model = \"depth_averaged\" does not use it"));
 }

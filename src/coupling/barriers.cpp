@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "particles/bed_points.h"
@@ -49,6 +50,14 @@ bool stands_near(const Surface& barrier, const std::pair<Vec3, Vec3>& box, const
     Contact near[kMostContacts];
     return barrier.prism->inside(foot) ||
            (barrier.prism->contacts(foot, cell, near) > 0 && near[0].distance <= distance);
+}
+
+/// The face that a place is nearest to, if it can meet any in cells of that size.
+std::optional<Contact> nearest_face(const Surface& barrier, const Vec3& x, double cell) {
+    if (barrier.shape) return barrier.shape->contact(x);
+    Contact list[kMostContacts];
+    if (barrier.prism->contacts(x, cell, list) == 0) return {};
+    return list[0];
 }
 
 /// Whether the way from a place beside a barrier to another one leads over it, however thin it is.
@@ -250,8 +259,31 @@ void ColumnWatch::sample_at(std::size_t n, const ColumnAt& column, const Vec2* f
     if (over && !was_over) over_[column.id].push_back(barrier);
 }
 
+bool ColumnWatch::is_due(DepthAveraged& columns, double before, double until) {
+    for (const DepthAveraged::Birth& birth : columns.take_births()) inherit(birth.child, birth.parent);
+    const Status& now = columns.status();
+    moved_ += now.max_speed_on_map * (now.time - before);  // where something enters, dt begins anew
+    if (moved_ < 0.5 * cell_ && now.time < until) return false;
+    moved_ = 0.0;
+    return true;
+}
+
+void ColumnWatch::sample_columns(const DepthAveraged& columns, double density) {
+    const Flow& flow = columns.flow();
+    const GridGeometry& g = flow.grid.geometry();
+    const Columns& c = flow.columns;
+    begin_round();
+    for (Index p = 0; p < c.count(); ++p) {
+        const Vec2 place(g.x0 + g.cell * c.x[p], g.y0 + g.cell * c.y[p]);
+        if (!is_near(place)) continue;
+        const Sample there = columns.at(place);
+        sample({c.id[p], place, there.elevation + there.depth, c.mass[p] / density});
+    }
+}
+
 void ColumnWatch::serialize(Archive& archive) {
     const Archive::Part part(archive, "barriers");
+    archive.numbers("moved", {&moved_});
     std::vector<double> sums;
     for (const BarrierLoad& load : loads_.barriers) sums.insert(sums.end(), {load.run_up, load.overtopped});
     std::vector<Index> over;  // number of the column, of the barrier
@@ -285,6 +317,7 @@ BarrierWatch::BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur) :
         loads_.barriers.push_back(load);
     }
     over_.resize(surfaces_.size());
+    due_.assign(surfaces_.size(), std::numeric_limits<double>::max());
 }
 
 void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
@@ -295,6 +328,33 @@ void BarrierWatch::accumulate_loads(const Mpm3d& flow) {
             loads_.barriers[n].faces[f].impulse = -face.impulse;
             loads_.barriers[n].faces[f].moment = -FaceLedger::moment_about(face, loads_.barriers[n].about - origin);
         }
+    for (std::size_t n = 0; n < surfaces_.size(); ++n)
+        if (!loads_.barriers[n].touched) loads_.barriers[n].touched = is_touched(n, flow);
+}
+
+/// Nodes push what is still a cell away, and so slow down what comes fast. So it is there at the time at which it would have
+/// been without, when it is no farther than half a cell; at the latest when half of a point's width is left.
+bool BarrierWatch::is_touched(std::size_t n, const Mpm3d& flow) {
+    const auto has_impulse = [](const FaceLoad& face) { return !face.impulse.isZero(0.0); };
+    const std::vector<FaceLoad>& faces = loads_.barriers[n].faces;
+    if (std::none_of(faces.begin(), faces.end(), has_impulse)) return false;
+    const Surface& solid = flow.body().surfaces[static_cast<std::size_t>(surfaces_[n])];
+    const MaterialPoints& points = flow.body().points;
+    const double cell = flow.body().grid.cell(), now = flow.status().time;
+    double nearest = std::numeric_limits<double>::infinity();  // of what is left between a point's edge and the barrier
+    for (Index p = 0; p < points.count(); ++p) {
+        const Vec3 x = flow.position(p);
+        if (!near_box(boxes_[n], x.head<2>(), 2.0 * cell)) continue;
+        const std::optional<Contact> met = nearest_face(solid, x, cell);
+        if (!met) continue;
+        const auto at = static_cast<std::size_t>(p);
+        const double left = met->distance - 0.5 * std::cbrt(points.rest_volume[at] * points.j[at]),
+                     speed = -flow.velocity(p).dot(met->normal);
+        if (left > 2.0 * cell) continue;
+        nearest = std::min(nearest, left);
+        if (speed > 0.0) due_[n] = std::min(due_[n], now + std::max(left, 0.0) / speed);
+    }
+    return nearest <= 0.0 || (now >= due_[n] && nearest <= 0.5 * cell);
 }
 
 void BarrierWatch::sample(const Mpm3d& flow) {
@@ -316,6 +376,14 @@ void BarrierWatch::sample(const Mpm3d& flow) {
             load.overtopped += flow.body().points.mass[p] / density_;
         }
         load.run_up = std::max(load.run_up, reached_.level());
+    }
+}
+
+void BarrierWatch::add(const BarrierLoads& before, const BarrierLoads& after) {
+    for (std::size_t n = 0; n < loads_.barriers.size(); ++n) {
+        BarrierLoad& load = loads_.barriers[n];
+        load.run_up = std::max(load.run_up, after.barriers[n].run_up);
+        load.overtopped += after.barriers[n].overtopped - before.barriers[n].overtopped;
     }
 }
 
@@ -342,6 +410,10 @@ void BarrierWatch::serialize(Archive& archive) {
     for (std::size_t n = 0; n < over_.size(); ++n) {
         archive.array("over_" + std::to_string(n), over_[n]);
         archive.numbers("sums_" + std::to_string(n), {&loads_.barriers[n].run_up, &loads_.barriers[n].overtopped});
+        Index touched = loads_.barriers[n].touched ? 1 : 0;
+        archive.number("touched_" + std::to_string(n), touched);
+        loads_.barriers[n].touched = touched != 0;
+        archive.numbers("due_" + std::to_string(n), {&due_[n]});
     }
 }
 

@@ -8,6 +8,7 @@
 #include "coupling/run_up.h"
 #include "observe/observer.h"
 #include "scene/scene.h"
+#include "shallow/depth_averaged.h"
 #include "solid3d/mpm3d.h"
 
 namespace frana {
@@ -76,6 +77,11 @@ public:
     /// barrier, and once; a column that was not near before has no way yet. Of two that merge the one that keeps its number
     /// counts for both from then on.
     void sample(const ColumnAt& column);
+    /// After a step of columns, which note their parents, from the time `before` on: whether a round is due. It is when one
+    /// may have moved by half a cell, and at `until`, an output time.
+    bool is_due(DepthAveraged& columns, double before, double until);
+    /// A round over all columns, of a material of that density [kg/m3].
+    void sample_columns(const DepthAveraged& columns, double density);
     const BarrierLoads& loads() const { return loads_; }
     void serialize(Archive& archive);
 
@@ -91,6 +97,7 @@ private:
     std::vector<double> last_;                  ///< x and y of each column's place in that round, by its number [m]
     BarrierLoads loads_;
     double cell_;
+    double moved_ = 0.0;  ///< farthest way of a column since the last round [m]
 };
 
 /// What 3D points do to barriers.
@@ -98,19 +105,23 @@ class BarrierWatch {
 public:
     /// Barriers are the surfaces of that kind of the flow's scene, in the order of `scene`.
     BarrierWatch(const Scene& scene, const Mpm3d& flow, double blur);
-    /// Takes the impulses of the faces.
+    /// Takes the impulses of the faces, and whether something has come to them.
     void accumulate_loads(const Mpm3d& flow);
     /// Takes run-up, and what stands over the barriers.
     void sample(const Mpm3d& flow);
+    /// Points have become columns again, of which `after` is the watch, `before` its loads before the last round.
+    void add(const BarrierLoads& before, const BarrierLoads& after);
     const BarrierLoads& loads() const { return loads_; }
     /// The faces with what each of their patches got.
     std::vector<PatchedFace> patched(const Mpm3d& flow) const;
     void serialize(Archive& archive);
 
 private:
+    bool is_touched(std::size_t n, const Mpm3d& flow);
     std::vector<int> surfaces_;                    ///< of each barrier
     std::vector<std::pair<Vec3, Vec3>> boxes_;     ///< around each
     std::vector<std::vector<std::uint8_t>> over_;  ///< per barrier, by number of the point: was over it
+    std::vector<double> due_;  ///< of each: when the first point comes to it, at the speed it came with [s]
     BarrierLoads loads_;
     RunUp reached_;  ///< at one barrier at a time
     double density_;

@@ -105,22 +105,39 @@ std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
     return marked(scene.bed.geometry, box);
 }
 
+namespace {
+
+/// What brakes the columns at the bed, or will once they flow as fast as their slope lets them: then friction is the slope.
+/// A mean by volume: a film at the margin, which drag brakes most, says nothing of what the flow needs inside.
+double mean_friction(const Scene& scene, const FlowColumns& columns) {
+    constexpr double kSteepest = 1.0;  // no sand stands steeper than 45 degrees
+    double sum = 0.0, volume = 0.0;
+    for (std::size_t k = 0; k < columns.count(); ++k) {
+        const double slope = std::hypot(columns.slope_x[k], columns.slope_y[k]), cosine = 1.0 / std::hypot(1.0, slope);
+        const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
+        const double speed = std::hypot(columns.vx[k], columns.vy[k], climb);
+        const double now = friction_of_flow(scene, columns.depth[k], cosine, speed);
+        sum += columns.mass[k] * std::min(std::max(now, slope), kSteepest);
+        volume += columns.mass[k];
+    }
+    return volume > 0.0 ? sum / volume : 0.0;
+}
+
+}  // namespace
+
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
-    double fastest = 0.0, head = -INFINITY, deepest = scene.solid->cell, friction = friction_at_rest(scene.bed_law);
+    double fastest = 0.0, head = -INFINITY, deepest = scene.solid->cell;
     for (std::size_t k = 0; k < columns.count(); ++k) {
         const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
         const double v2 = columns.vx[k] * columns.vx[k] + columns.vy[k] * columns.vy[k] + climb * climb;
-        const double cosine =
-            1.0 / std::sqrt(1.0 + columns.slope_x[k] * columns.slope_x[k] + columns.slope_y[k] * columns.slope_y[k]);
-        if (scene.solid->whole_bed_law)
-            friction = std::max(friction, friction_of_flow(scene, columns.depth[k], cosine, std::sqrt(v2)));
         fastest = std::max({fastest, std::sqrt(v2), std::sqrt(2.0 * scene.gravity * columns.depth[k])});
         deepest = std::max(deepest, columns.depth[k]);
         head = std::max(head, columns.bed[k] + columns.depth[k] + 0.5 * v2 / scene.gravity);
     }
     const auto [low, high] = ground_of(scene);
     SolidStart start;
-    start.friction = friction;
+    start.friction = std::max({friction_at_rest(scene.bed_law), scene.solid->bed_friction,
+                               scene.solid->whole_bed_law ? mean_friction(scene, columns) : 0.0});
     start.sound_speed = scene.solid->sound_speed.value_or(10.0 * std::max(fastest, 0.1));
     constexpr double kRoom = 8.0;    // cells above the ground at least
     constexpr double kSplash = 4.0;  // jets that a wall throws up rise to several times the energy of their flow

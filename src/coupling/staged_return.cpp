@@ -143,7 +143,12 @@ void StagedRun::end_3d() {
         returning_.shrink_to_fit();
         ended_ = true;
     });
-    timed_("map", [&] { map_.sample(*points_, points_->status().time); });
+    timed_("map", [&] {
+        map_.sample(*points_, points_->status().time);
+        if (!watch_) return;
+        begin_columns_watch();
+        watch_columns();
+    });
 }
 
 }  // namespace frana

@@ -53,7 +53,7 @@ void StagedRun::advance(double until) {
     const double end = scene_.solid->until.value_or(until);
     try {
         if (ended_)
-            columns_->advance(until);
+            step_columns_alone(until);
         else
             step_points(std::min(until, end));
         if (!ended_ && scene_.solid->until && points_->status().time >= end) end_3d();
@@ -62,6 +62,24 @@ void StagedRun::advance(double until) {
         throw;
     }
     count();
+}
+
+/// After the stage: what columns do to barriers adds to what points did.
+void StagedRun::step_columns_alone(double until) {
+    const double before = columns_->status().time;
+    columns_->advance(until);
+    if (columns_watch_ && columns_watch_->is_due(*columns_, before, until)) timed_("map", [&] { watch_columns(); });
+}
+
+void StagedRun::begin_columns_watch() {
+    columns_->note_parents();
+    columns_watch_.emplace(scene_);
+}
+
+void StagedRun::watch_columns() {
+    const BarrierLoads before = columns_watch_->loads();
+    columns_watch_->sample_columns(*columns_, scene_.density);
+    watch_->add(before, columns_watch_->loads());
 }
 
 /// Columns that are left go a step ahead of the points, so that what flows into the window is there when the points arrive
@@ -274,9 +292,10 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
     const SolidStage& stage = *scene_.solid;
     if (stage.of_bed)
         remarks.push_back(fmt::format(
-            "points in space are sand with an internal friction of {:.3g} degrees, the bed's largest when the "
-            "stage began; stage.law names another law",
-            std::atan(start_.friction) / constants::kDegree));
+            "points in space are sand with an internal friction of {:.3g} degrees, {}; stage.law names another law",
+            std::atan(start_.friction) / constants::kDegree,
+            stage.whole_bed_law ? "the mean of what the bed brakes by when the stage begins, or will on that slope"
+                                : "as along the bed"));
     const bool all =
         std::holds_alternative<bed::None>(scene_.bed_law) || std::holds_alternative<bed::Coulomb>(scene_.bed_law);
     if (!all && !stage.stuck && !stage.whole_bed_law)
@@ -357,6 +376,11 @@ void StagedRun::serialize(Archive& archive) {
     if (!points_) return;
     map_.serialize(archive);
     if (watch_) watch_->serialize(archive);
+    if (watch_ && ended_) {
+        if (archive.loading()) begin_columns_watch();
+        const Archive::Part part(archive, "after");
+        columns_watch_->serialize(archive);
+    }
     {
         const Archive::Part part(archive, "points");
         points_->serialize(archive);

@@ -75,6 +75,9 @@ private:
     void note_departed();
     void convert_to_2d();
     void end_3d();
+    void begin_columns_watch();
+    void watch_columns();
+    void step_columns_alone(double until);
     Vec2 place_of_column(const DepartedPoint& point, const Vec2& to);
     std::optional<Vec2> nearest_before(const DepartedPoint& point, const Vec2& x,
                                        const std::function<bool(Index, Index)>& allowed) const;
@@ -104,8 +107,9 @@ private:
     std::unique_ptr<Mpm3d> points_;
     SolidStart start_;
     FlowMap map_;
-    std::optional<BarrierWatch> watch_;  ///< when there are barriers
-    std::vector<Departed> pending_;      ///< columns that left into the window, ahead of the points' time
+    std::optional<BarrierWatch> watch_;         ///< when there are barriers
+    std::optional<ColumnWatch> columns_watch_;  ///< then, once the stage has ended
+    std::vector<Departed> pending_;             ///< columns that left into the window, ahead of the points' time
     std::vector<std::uint8_t>
         at_edge_;  ///< nodes in the window, and around its open sides as far as points feel columns
     std::vector<std::uint8_t> raised_;      ///< with barriers: 1 at nodes whose ground they raise for columns

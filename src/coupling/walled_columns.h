@@ -22,14 +22,12 @@ private:
         if (growing_) return *growing_;
         return *whole_;
     }
-    void sample();
 
     double density_;
     std::unique_ptr<DepthAveraged> whole_;     ///< on all of the terrain
     std::unique_ptr<GrowingColumns> growing_;  ///< or on a part of it
     ColumnWatch watch_;
     StepClock timed_;
-    double moved_ = 0.0;  ///< farthest way of a column since the last look [m]
 };
 
 }  // namespace frana

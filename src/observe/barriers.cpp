@@ -74,7 +74,7 @@ void Barriers::step(const Status& now, const Probe& probe) {
         row.insert(row.end(), faces.begin(), faces.end());
         if (load.faces.empty()) row = {now.time, load.run_up, load.overtopped};
         tables_[n].add(row);
-        if (summary.first_contact < 0.0 && force.norm() > 0.0) summary.first_contact = now.time;
+        if (summary.first_contact < 0.0 && load.touched) summary.first_contact = now.time;
         if (mean > summary.peak_force) summary.peak_force = mean, summary.peak_force_time = now.time;
         summary.raw_peak_force = std::max(summary.raw_peak_force, force.head<2>().norm());
         summary.blur = loads->blur;

@@ -26,8 +26,9 @@ struct MeanForce {
 /// What a run did to a barrier.
 struct BarrierSummary {
     std::string name;
-    double first_contact = -1.0;   ///< [s]; -1: never. By force or, with columns alone, by the depth at its faces
-    double peak_force = 0.0;       ///< largest horizontal force, mean over `blur` [N]
+    double first_contact =
+        -1.0;                 ///< [s]; -1: never. When points are at a face or, with columns alone, by the depth there
+    double peak_force = 0.0;  ///< largest horizontal force, mean over `blur` [N]
     double peak_force_time = 0.0;  ///< end of that interval [s]
     double raw_peak_force = 0.0;   ///< largest of a single step: as hard as the artificial sound is fast [N]
     double blur = 0.0;             ///< [s]

@@ -26,6 +26,7 @@ struct BarrierLoad {
     Vec3 about{0, 0, 0};          ///< place that moments are about: the middle of the outline, on the bed [m]
     double run_up = 0.0;          ///< of what is within two cells of it, the highest ever [m]; of points 99.9 %
     double overtopped = 0.0;      ///< material that was over it at any time [m3]
+    bool touched = false;         ///< points have come to a face
 };
 
 struct BarrierLoads {

@@ -63,7 +63,7 @@ public:
         barrier.name = given("name") ? case_.word(prefix_ + "name") : fmt::format("barrier_{}", i + 1);
         std::vector<Vec2> vertices;
         if (given("mesh") ? !read_mesh(barrier, vertices) : !read_plan(barrier, vertices)) return;
-        const auto extent = scene_.bed.geometry.pixel_extent();
+        const auto extent = terrain_extent();
         if (!meets(vertices, extent))
             problems_.add(place(), "found no point of it on the terrain",
                           fmt::format("expected the barrier within x {:.10g} to {:.10g}, y {:.10g} to {:.10g}",
@@ -89,6 +89,10 @@ public:
     }
 
 private:
+    /// Of all of the terrain, of which the scene may hold a part [m].
+    std::array<double, 4> terrain_extent() const {
+        return (scene_.wider ? scene_.wider->grid : scene_.bed.geometry).pixel_extent();
+    }
     bool given(const char* name) const { return case_.given(prefix_ + name); }
     std::string place() const {
         return case_.place(prefix_ + (given("mesh") ? "mesh" : given("line") ? "line" : "outline"));
@@ -113,7 +117,7 @@ private:
 
     /// Every polygon on the terrain by itself. Files of a whole valley have many beyond it: their numbers are left out.
     void add_each(const Barrier& barrier) {
-        const auto extent = scene_.bed.geometry.pixel_extent();
+        const auto extent = terrain_extent();
         std::size_t beyond = 0;
         for (std::size_t n = 0; n < barrier.outline.parts.size(); ++n) {
             std::vector<Vec2> corners;

@@ -87,7 +87,10 @@ private:
         if (given("sound_speed")) stage.sound_speed = number("sound_speed");
         require_size(stage);
         stage.law = law(stage);
-        stage.stuck = given("stuck") ? case_.flag(prefix_ + "stuck") : mud_of_bed() != nullptr;
+        stage.stuck = given("stuck") ? case_.flag(prefix_ + "stuck") : mud_of_bed() && !given("bed_friction");
+        if (given("stuck") && stage.stuck && given("bed_friction"))
+            problems_.add(case_.place(prefix_ + "bed_friction"), "found with stage.stuck = true",
+                          "expected one of both: what is stuck does not slide", "remove one of them");
         stage.split = case_.flag(prefix_ + "split");
         stage.bed_friction = number_or("bed_friction", friction_at_rest(scene_.bed_law));
         stage.whole_bed_law = !given("bed_friction") && hangs_on_speed(scene_.bed_law);

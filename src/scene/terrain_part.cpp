@@ -78,9 +78,11 @@ void take_corners_of_barriers(const CaseFile& file, const GisReader& reader, con
     std::vector<std::string> said_later;
     for (Index i = 0; i < file.count("barrier"); ++i) {
         const std::string table = fmt::format("barrier.{}.", i);
-        const double thick = file.given(table + "thickness") ? file.number(table + "thickness") : 0.0;
+        const double cell = whole.geometry.cell, least = 1.5 * cell,  // of a wall askew to the cells: sqrt(2) of them
+            given = file.given(table + "thickness") ? file.number(table + "thickness") : 0.0;
         const auto take = [&](const std::vector<Vec2>& corners) {
-            const double beyond = thick + whole.geometry.cell;
+            // The outer corner of a wall that turns as sharply as it may, by 120 degrees, is two thicknesses away.
+            const double beyond = 2.0 * std::max(given, least) + cell;
             const NodeBox met = common(cells_of(corners, whole.geometry), NodeBox::all(whole.geometry));
             if (met.nx == 0 || met.ny == 0) return;
             for (const Vec2& corner : corners)

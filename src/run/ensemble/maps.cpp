@@ -241,9 +241,10 @@ EnsembleSummary write_maps(const fs::path& dir, const EnsemblePlan& plan, const 
         summary.core_seconds += result.seconds;
     }
     const std::vector<std::string> before = files_of_last_time(dir);
+    const WeightedRuns runs(plan, base,
+                            kept);  // refuses peaks that are not those of the runs before anything is written
     write_runs(dir, plan, base, results);
     summary.files = {"samples.csv", "runs.csv"};
-    const WeightedRuns runs(plan, base, kept);
     summary.effective = std::min(effective_number(runs.weights), runs.independent(plan));
     MapWriter(dir, plan, base, runs, summary).write();
     write_hazard(dir, plan, base, runs, summary);

@@ -165,7 +165,7 @@ void ShardStore::write() {
     block.grid = base_.whole, block.fields = plan_.fields;
     for (SampleResult& result : waiting_)
         if (result.ended()) block.samples.push_back(result.sample), block.peaks.push_back(std::move(result.peaks));
-    const std::string peaks = fmt::format("peaks_{:07}.h5", waiting_.front().sample);
+    const std::string peaks = block.samples.empty() ? "" : new_peaks_file(block.samples.front());
     if (!block.samples.empty()) write_peaks(folder_ / peaks, block);
     for (const SampleResult& result : waiting_)
         rows_ += row_of(result, result.ended() ? peaks : "", base_.gauges.size());
@@ -173,6 +173,13 @@ void ShardStore::write() {
     waiting_.clear();
     broken_ = false;
     written_ = std::chrono::steady_clock::now();
+}
+
+/// Of its first run that ended: one that was refused is tried again and has no file. What is there holds others' peaks.
+std::string ShardStore::new_peaks_file(Index first) const {
+    std::string name = fmt::format("peaks_{:07}.h5", first);
+    for (int k = 2; fs::exists(folder_ / name); ++k) name = fmt::format("peaks_{:07}_{}.h5", first, k);
+    return name;
 }
 
 KeptResults read_results(const fs::path& dir, const EnsemblePlan& plan, const EnsembleBase& base) {

@@ -39,6 +39,7 @@ public:
 
 private:
     void write();
+    std::string new_peaks_file(Index first) const;
 
     std::filesystem::path folder_;
     const EnsemblePlan& plan_;

@@ -206,18 +206,20 @@ std::string files(const RunRecord& r, const std::vector<Product>& products) {
     return text + "\n";
 }
 
-/// By contact, or where none is known, as of walls along lines, by what ran over it.
-bool was_hit(const BarrierSummary& b) { return b.first_contact >= 0.0 || b.overtopped > 0.0; }
+/// Whether something ran over a barrier, or stood before one of which no more is known, such as a wall along a line.
+bool was_reached(const BarrierSummary& b, const BarrierHit& hit) {
+    return b.overtopped > 0.0 || (std::isnan(hit.area) && b.run_up > b.about[2]);
+}
 
 /// The barriers that a report has rows for, in the case's order: all, or of many the most deeply covered ones. One whose depth
-/// is not known comes before them if something ran over it.
+/// is not known comes before them if it was reached.
 std::vector<std::size_t> shown_barriers(const RunRecord& r) {
     std::vector<std::size_t> shown(r.barriers.size());
     std::iota(shown.begin(), shown.end(), std::size_t{0});
     if (shown.size() <= kMostBarrierTables || r.barrier_hits.size() != shown.size()) return shown;
     const auto depth = [&](std::size_t n) {
         if (std::isfinite(r.barrier_hits[n].depth)) return r.barrier_hits[n].depth;
-        return r.barriers[n].overtopped > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+        return was_reached(r.barriers[n], r.barrier_hits[n]) ? std::numeric_limits<double>::infinity() : 0.0;
     };
     std::stable_sort(shown.begin(), shown.end(), [&](std::size_t a, std::size_t b) { return depth(a) > depth(b); });
     shown.resize(kMostBarrierTables);
@@ -273,9 +275,11 @@ std::string barriers(const RunRecord& r) {
     const std::vector<std::size_t> shown = shown_barriers(r);
     for (const std::size_t n : shown) text += barrier_row(r.barriers[n]);
     if (shown.size() < r.barriers.size()) {
-        const auto hit = std::count_if(r.barriers.begin(), r.barriers.end(), was_hit);
+        std::size_t hit = 0;
+        for (std::size_t n = 0; n < r.barriers.size(); ++n)
+            hit += r.barriers[n].first_contact >= 0.0 || was_reached(r.barriers[n], r.barrier_hits[n]);
         text += fmt::format("\nOf {} barriers {} were hit.{} `barriers.csv` has all.\n", r.barriers.size(), hit,
-                            shown.empty() ? "" : " Shown are walls that were run over, and those that stood deepest.");
+                            shown.empty() ? "" : " Shown are walls that were reached, and those that stood deepest.");
     }
     text += mean_forces(r, shown);
     if (hardest > 0.0)
