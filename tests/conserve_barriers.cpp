@@ -183,6 +183,34 @@ TEST_CASE("Columns see a barrier as ground as high as its top", "[barrier]") {
     CHECK_THROWS_AS(make_simulation(scene), UserError);
 }
 
+// Of many barriers each holds the ground around itself only, walls along lines as well.
+TEST_CASE("Many walls raise the ground as each of them does alone", "[barrier]") {
+    Scene many = scene_on(61, 61, 1.0, [](double x, double y) { return 20.0 - 0.1 * x + 0.2 * std::sin(y); });
+    for (int n = 0; n < 30; ++n) {
+        Barrier wall;
+        wall.name = "wall" + std::to_string(n);
+        const double x = 5.0 + 9.0 * (n % 6), y = 4.0 + 10.0 * (n / 6);
+        wall.line = {{x, y}, {x + 3.0, y + 2.0}, {x + 2.0, y + 6.0}};
+        wall.thickness = 1.5, wall.height = 2.0;
+        many.barriers.push_back(wall);
+    }
+    Scene alone = many;
+    Raster one_by_one = many.bed;
+    for (const Barrier& wall : many.barriers) {
+        alone.barriers = {wall};
+        const Raster raised = with_barriers(alone);
+        for (std::size_t k = 0; k < raised.values.size(); ++k)
+            one_by_one.values[k] = std::max(one_by_one.values[k], raised.values[k]);
+    }
+    const Raster together = with_barriers(many);
+    Index higher = 0;
+    for (std::size_t k = 0; k < together.values.size(); ++k) {
+        REQUIRE(together.values[k] == Approx(one_by_one.values[k]).epsilon(1e-12));  // counted from other nodes
+        higher += together.values[k] > many.bed.values[k] + 1.0;
+    }
+    CHECK(higher > 150);
+}
+
 TEST_CASE("Columns that go over a low barrier are counted once, and the count is taken up again", "[barrier]") {
     Scene scene = channel(0.5);
     scene.solid.reset();

@@ -126,15 +126,22 @@ void stand_on_barriers(FlowColumns& columns, const std::vector<Surface>& surface
     }
 }
 
+namespace {
+
+/// The outline of a barrier that is no mesh.
+Polygons plan_of(const Barrier& barrier, double cell) {
+    if (barrier.line.empty()) return barrier.outline;
+    const double least = least_wall_thickness(barrier.line, cell);
+    return wall_outline(barrier.line, barrier.wet_left ? WetSide::left : WetSide::right,
+                        std::max(barrier.thickness.value_or(0.0), least));
+}
+
+}  // namespace
+
 Prism solid_of(const Barrier& barrier, const Raster& bed, double cell) {
-    Polygons outline = barrier.outline;
-    if (!barrier.line.empty()) {
-        const double least = least_wall_thickness(barrier.line, cell);
-        outline = wall_outline(barrier.line, barrier.wet_left ? WetSide::left : WetSide::right,
-                               std::max(barrier.thickness.value_or(0.0), least));
-    }
-    if (barrier.top) return Prism(outline, *barrier.top);
-    return Prism(outline, lifted(bed, barrier.height));
+    const Polygons plan = plan_of(barrier, cell);
+    if (barrier.top) return Prism(plan, *barrier.top);
+    return Prism(plan, lifted(bed, barrier.height));
 }
 
 Surface surface_of(const Barrier& barrier, const Raster& bed, double cell) {
@@ -152,9 +159,10 @@ namespace {
 Surface surface_for_columns(const Barrier& barrier, const Scene& scene) {
     constexpr std::size_t kFew = 24;  // these hold all of the ground: their tops are interpolated as in space
     const double cell = cell_for_columns(barrier, scene);
-    if (scene.barriers.size() <= kFew || barrier.outline.parts.empty()) return surface_of(barrier, scene.bed, cell);
+    if (scene.barriers.size() <= kFew || barrier.shape) return surface_of(barrier, scene.bed, cell);
     std::vector<Vec2> corners;
-    for (const Polygon& polygon : barrier.outline.parts)
+    const Polygons plan = plan_of(barrier, cell);
+    for (const Polygon& polygon : plan.parts)
         for (const auto& ring : polygon.rings) corners.insert(corners.end(), ring.begin(), ring.end());
     const GridGeometry& g = scene.bed.geometry;
     const NodeBox near = common(widened(cells_of(corners, g), 3), NodeBox::all(g));

@@ -260,7 +260,8 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
         // Those that rest do as if they moved: nothing comes of it.
         const Double4 one = all(1.0), u = select(moves, on_map, one);
         const Double4 ux = select(moves, vx, one), uy = select(moves, vy, none);
-        const GroundOfFour ground(flow, curved_, means, lanes, ux, uy, select(moves, depth, one));
+        // A curved bed changes the weight alone, which only friction and laws of it ask for.
+        const GroundOfFour ground(flow, curved_ && feels, means, lanes, ux, uy, select(moves, depth, one));
         Double4 eroded = none, left = none, edge = one;
         if constexpr (Law::kSeesEroded) {
             const Double4 still = means.of(left_, lanes), scale = per_area_ * ground.below.cosine;
