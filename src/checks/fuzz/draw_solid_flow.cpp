@@ -72,8 +72,12 @@ double draw_3d(Dice& dice, Draft& draft, const std::string& stage) {
     say(draft, key(stage, "cell"), cell);
     say(draft, key(stage, "spacing"), share * cell);
     draw_law(dice, draft, stage, of);
-    if (dice.chance(0.15)) draft.keys[key(stage, "stuck")] = "true";
-    if (dice.chance(0.6)) say(draft, key(stage, "bed_friction"), dice.one_of({0.0, 0.1, 0.3, 0.7, 2.0}));
+    const bool stuck = dice.chance(0.15);
+    if (stuck) draft.keys[key(stage, "stuck")] = "true";
+    if (dice.chance(0.6)) {
+        const double friction = dice.one_of({0.0, 0.1, 0.3, 0.7, 2.0});  // drawn in any case: later numbers stay
+        if (!stuck) say(draft, key(stage, "bed_friction"), friction);
+    }
     if (dice.chance(0.3)) say(draft, key(stage, "cfl"), dice.between(0.05, 0.5));
     if (dice.chance(0.3)) say(draft, key(stage, "transfer"), dice.one_of({"tpic", "apic", "flip"}));
     if (dice.chance(0.15)) draft.keys[key(stage, "split")] = "true";
