@@ -217,6 +217,46 @@ TEST_CASE("Sand by the bed law is as strong inside as the flow needs, whatever a
     CHECK(choose_start(scene, fast).friction == mu);
 }
 
+// At an open edge half of what a node holds is columns. Without them the flow would seem half as deep there.
+TEST_CASE("The flow that a bed law sees at the edge of points has the columns beyond it", "[stages]") {
+    constexpr double slope = 0.2, depth = 2.0, speed = 5.0, spacing = 0.5;
+    Scene scene = scene_on(21, 11, 1.0, [](double x, double) { return 50.0 - slope * x; });
+    scene.density = 1000.0;
+    FlowMap map(scene);
+    SolidScene space;
+    space.density = scene.density;
+    space.law = solid::Fluid{1e6, 0.0};
+    space.grid = {Vec3(-1, -1, 40), 0.5, {47, 27, 40}};
+    FlowColumns columns;
+    for (double x = 0.25; x < 20.0; x += spacing)
+        for (double y = 0.25; y < 10.0; y += spacing) {
+            const double mass = scene.density * depth * spacing * spacing, bed = 50.0 - slope * x;
+            if (x < 10.0) {
+                FlowColumns one;
+                one.x = {x}, one.y = {y}, one.bed = {bed}, one.depth = {depth}, one.slope_x = {-slope},
+                one.slope_y = {0.0};
+                one.vx = {speed}, one.vy = {0.0}, one.mass = {mass}, one.volume = {mass / scene.density};
+                one.bed_pressure = {0.0}, one.id = {0.0}, one.domain = {Mat2::Identity()};
+                columns.take(one, 0);
+            } else {
+                space.points.add({x, y, bed + 1.0}, Vec3(speed, 0.0, -slope * speed), mass, 0.0);
+            }
+        }
+    const Mpm3d points(space);
+    map.sample(points, 0.0);
+    const FlowMap::Mean half = map.mean_at({10.0, 5.0});
+    for (int told = 0; told < 2; ++told) {  // the second time in place of the first
+        map.set_adjacent(columns);
+        for (const double x : {5.0, 9.5, 10.0, 10.5, 15.0}) {
+            const FlowMap::Mean here = map.mean_at({x, 5.0});
+            CHECK(here.depth == Approx(depth).epsilon(1e-12));
+            CHECK(here.speed == Approx(speed * std::hypot(1.0, slope)).epsilon(1e-12));
+        }
+    }
+    CHECK(half.depth == Approx(0.5 * depth));
+    CHECK(map.at({10.0, 5.0}).depth == Approx(0.5 * depth));  // the points' own, as before
+}
+
 TEST_CASE("A 3D frame has the mass of both models on its particles and on its nodes", "[stages]") {
     const Scene scene = slide();
     StagedRun run(scene);

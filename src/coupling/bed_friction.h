@@ -6,8 +6,8 @@
 
 namespace frana {
 
-/// The law's deceleration of a flow that is as deep and as fast as the points are there on the whole, over its normal
-/// acceleration. The lowest points are slower than the rest where material shears, and a bed law is one of the mean speed. Where
+/// The law's deceleration of a flow that is as deep and as fast as the points, and columns beside them, are there on the whole,
+/// over its normal acceleration. The lowest points are slower than the rest where material shears, and a bed law is one of the mean speed. Where
 /// no points stand in the map it is the friction of the slowest flow. THEORY.md (12).
 class BedFriction final : public SurfaceFriction {
 public:

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "convert/flow_columns.h"
-
 namespace frana {
 
 FlowMap::FlowMap(const Scene& scene)
@@ -73,12 +71,32 @@ FlowMap::Mean FlowMap::mean_at(const Vec2& point) const {
     Mean mean;
     Vec3 flux(0, 0, 0);
     Around(grid_, point.x(), point.y()).each([&](Index k, double w) {
-        mean.depth += w * depth(k);
+        const auto at = static_cast<std::size_t>(k);
+        Node all = nodes_[at];
+        if (!adjacent_.empty()) all.mass += adjacent_[at].mass, all.momentum += adjacent_[at].momentum;
+        const double share = w / (density_ * areas_[at]);
+        mean.depth += share * all.mass;
         mean.cosine += w * cosine(k);
-        flux += w * depth(k) * velocity(k);
+        flux += share * all.momentum;
     });
     if (mean.depth > 0.0) mean.speed = flux.norm() / mean.depth;
     return mean;
+}
+
+void FlowMap::set_adjacent(const FlowColumns& columns) {
+    if (adjacent_.empty()) adjacent_.resize(nodes_.size());
+    for (const Index k : adjacent_places_) adjacent_[static_cast<std::size_t>(k)] = Node{};
+    adjacent_places_.clear();
+    for (std::size_t c = 0; c < columns.count(); ++c) {
+        const Vec2 along(columns.vx[c], columns.vy[c]);
+        const Vec3 velocity(along.x(), along.y(), along.dot(Vec2(columns.slope_x[c], columns.slope_y[c])));
+        Around(grid_, columns.x[c], columns.y[c]).each([&](Index k, double w) {
+            Node& node = adjacent_[static_cast<std::size_t>(k)];
+            if (node.mass == 0.0) adjacent_places_.push_back(k);
+            node.mass += w * columns.mass[c];
+            node.momentum += w * columns.mass[c] * velocity;
+        });
+    }
 }
 
 /// One thread: it takes a hundredth of the steps between two looks.

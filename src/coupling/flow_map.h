@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "convert/flow_columns.h"
 #include "mpm/node_peak.h"
 #include "observe/archive.h"
 #include "observe/observer.h"
@@ -39,6 +40,8 @@ public:
     double cosine(Index k) const {
         return 1.0 / std::sqrt(steepening_[static_cast<std::size_t>(k)]);
     }  ///< of the slope
+    /// Columns that stand beside the points from now on: mean_at() counts them too.
+    void set_adjacent(const FlowColumns& columns);
     /// Of the flow between the nodes, bilinear; beyond them the nearest. The speed is that of the common momentum, up and down
     /// included.
     struct Mean {
@@ -67,6 +70,8 @@ private:
     std::vector<double> areas_;       ///< of the nodes' cells, half of one at a wall [m2]
     std::vector<double> steepening_;  ///< 1 + |grad Z|^2 at the nodes
     std::vector<Node> nodes_;
+    std::vector<Node> adjacent_;          ///< of the columns beside; empty: none were ever told
+    std::vector<Index> adjacent_places_;  ///< nodes that have any of that
     std::vector<NodePeak> peaks_;
     FlowExtent extent_;
 };
