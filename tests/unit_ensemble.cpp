@@ -245,6 +245,13 @@ TEST_CASE("Maps of many runs count weights: above a threshold, below a quantile,
     near(pixels.quantile(0.1), {0.0, 0.0, 0.0, 0.0});  // a fifth did not come
     near(pixels.quantile(0.5), {0.0, 2.0, 3.0, 0.0});
     near(pixels.quantile(0.95), {1.0, 4.0, 5.0, 0.0});
+    const std::vector<double> shares{0.95, 0.1, 0.5, 0.5, 0.2, 0.95, 0.7};
+    std::vector<std::size_t> given;
+    pixels.for_each_quantile(shares, [&](std::size_t n, const Raster& map) {
+        given.push_back(n);
+        CHECK(map.values == pixels.quantile(shares.at(n)).values);
+    });
+    CHECK(given == std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6});
     const SparseRasters all = row_of(0, {1.0F});
     pixels.gather(PeaksInMemory({&all, &all, &all}), {1.2, 1.2, 0.6}, 0);  // weights with no exact sum
     CHECK(standard_error(pixels.exceeds(0.3).values[0], 3.0) == 0.0);

@@ -86,6 +86,17 @@ std::vector<Raster> PixelValues::quantiles(const std::vector<double>& shares) co
     return all;
 }
 
+void PixelValues::for_each_quantile(const std::vector<double>& shares,
+                                    const std::function<void(std::size_t n, Raster raster)>& body) const {
+    constexpr std::size_t together = 3;  // values are sorted once for so many, each of which is as large as the terrain
+    for (std::size_t first = 0; first < shares.size(); first += together) {
+        const auto begin = shares.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto count = static_cast<std::ptrdiff_t>(std::min(together, shares.size() - first));
+        std::vector<Raster> rasters = quantiles({begin, begin + count});
+        for (std::size_t n = 0; n < rasters.size(); ++n) body(first + n, std::move(rasters[n]));
+    }
+}
+
 /// Of values that descend: what exceeds a value may be at most 1 - share.
 double PixelValues::quantile_of(const std::vector<Value>& sorted, double share) const {
     double above = 0.0;

@@ -2,6 +2,7 @@
 // Maps of an ensemble: in how many of its runs a pixel saw more than a threshold, and what a share of them stayed below.
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -29,6 +30,9 @@ public:
     /// For each share the least value that at least so much of the weights does not exceed; 0 where a run did not come.
     std::vector<Raster> quantiles(const std::vector<double>& shares) const;
     Raster quantile(double share) const { return quantiles({share}).front(); }
+    /// The same, handed to body(n, raster) in the order of the shares; only a few are held together.
+    void for_each_quantile(const std::vector<double>& shares,
+                           const std::function<void(std::size_t n, Raster raster)>& body) const;
     /// The least time by which at least a share `q` of the weights has come. A run that never came, or has a time below zero,
     /// comes later than any. NaN where fewer come.
     Raster arrival_quantile(double q) const;

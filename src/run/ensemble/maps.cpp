@@ -82,10 +82,10 @@ private:
         const auto asked = plan_.exceed.find(field.name);
         if (asked != plan_.exceed.end())
             for (const double threshold : asked->second) write_exceedance(field, threshold, pixels);
-        std::vector<Raster> quantiles = pixels.quantiles(plan_.quantiles);
-        for (std::size_t k = 0; k < quantiles.size(); ++k)
-            raster(fmt::format("quantile_{}_{:g}", field.name, plan_.quantiles[k]), std::move(quantiles[k]), field.unit,
+        pixels.for_each_quantile(plan_.quantiles, [&](std::size_t k, Raster quantile) {
+            raster(fmt::format("quantile_{}_{:g}", field.name, plan_.quantiles[k]), std::move(quantile), field.unit,
                    fmt::format("{}: {:g} of the runs do not exceed it", field.meaning, plan_.quantiles[k]));
+        });
         raster(fmt::format("mean_{}", field.name), pixels.mean(), field.unit, fmt::format("mean {}", field.meaning));
         write_sensitivity(field, pixels);
         if (f > 0) return;

@@ -157,12 +157,12 @@ private:
     Raster quantiles(const PixelValues& pixels, const Places& places, double factor) const {
         Raster table = places.table(plan_.quantiles.size());
         const Raster reached = pixels.reached();
-        const std::vector<Raster> maps = pixels.quantiles(plan_.quantiles);
-        for (std::size_t k = 0; k < maps.size(); ++k)
-            for (std::size_t n = 0; n < maps[k].values.size(); ++n)
+        pixels.for_each_quantile(plan_.quantiles, [&](std::size_t k, const Raster& map) {
+            for (std::size_t n = 0; n < map.values.size(); ++n)
                 if (reached.values[n] > 0.0)
                     keep_largest(table.at(static_cast<Index>(k), places.row(static_cast<Index>(n))),
-                                 factor * maps[k].values[n]);
+                                 factor * map.values[n]);
+        });
         return table;
     }
 
