@@ -137,7 +137,7 @@ TEST_CASE("The first contact with a barrier is when material is at its face", "[
     CAPTURE(cell, gap / speed, pushed, there, flow.status().dt);
     CHECK(pushed < gap / speed);
     CHECK(there >= gap / speed);
-    CHECK(there < gap / speed + 0.1 * cell / speed);
+    CHECK(there < gap / speed + 0.1 * cell / speed);  // three steps: it is told at the end of one
 }
 
 TEST_CASE("What goes over a low barrier is counted", "[barrier]") {

@@ -107,20 +107,25 @@ std::vector<std::uint8_t> nodes_at_edge(const Scene& scene) {
 
 namespace {
 
+/// Of a column along the bed [m^2/s^2].
+double squared_speed(const FlowColumns& columns, std::size_t k) {
+    const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
+    return columns.vx[k] * columns.vx[k] + columns.vy[k] * columns.vy[k] + climb * climb;
+}
+
 /// What brakes the columns at the bed, or will once they flow as fast as their slope lets them: then friction is the slope.
-/// A mean by volume: a film at the margin, which drag brakes most, says nothing of what the flow needs inside.
+/// A mean by mass: a film at the margin, which drag brakes most, says nothing of what the flow needs inside.
 double mean_friction(const Scene& scene, const FlowColumns& columns) {
     constexpr double kSteepest = 1.0;  // no sand stands steeper than 45 degrees
-    double sum = 0.0, volume = 0.0;
+    double sum = 0.0, mass = 0.0;
     for (std::size_t k = 0; k < columns.count(); ++k) {
         const double slope = std::hypot(columns.slope_x[k], columns.slope_y[k]), cosine = 1.0 / std::hypot(1.0, slope);
-        const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
-        const double speed = std::hypot(columns.vx[k], columns.vy[k], climb);
+        const double speed = std::sqrt(squared_speed(columns, k));
         const double now = friction_of_flow(scene, columns.depth[k], cosine, speed);
         sum += columns.mass[k] * std::min(std::max(now, slope), kSteepest);
-        volume += columns.mass[k];
+        mass += columns.mass[k];
     }
-    return volume > 0.0 ? sum / volume : 0.0;
+    return mass > 0.0 ? sum / mass : 0.0;
 }
 
 }  // namespace
@@ -128,8 +133,7 @@ double mean_friction(const Scene& scene, const FlowColumns& columns) {
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
     double fastest = 0.0, head = -INFINITY, deepest = scene.solid->cell;
     for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double climb = columns.vx[k] * columns.slope_x[k] + columns.vy[k] * columns.slope_y[k];
-        const double v2 = columns.vx[k] * columns.vx[k] + columns.vy[k] * columns.vy[k] + climb * climb;
+        const double v2 = squared_speed(columns, k);
         fastest = std::max({fastest, std::sqrt(v2), std::sqrt(2.0 * scene.gravity * columns.depth[k])});
         deepest = std::max(deepest, columns.depth[k]);
         head = std::max(head, columns.bed[k] + columns.depth[k] + 0.5 * v2 / scene.gravity);

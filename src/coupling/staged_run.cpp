@@ -294,7 +294,7 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
         remarks.push_back(fmt::format(
             "points in space are sand with an internal friction of {:.3g} degrees, {}; stage.law names another law",
             std::atan(start_.friction) / constants::kDegree,
-            stage.whole_bed_law ? "the mean of what the bed brakes by when the stage begins, or will on that slope"
+            stage.whole_bed_law ? "the mean friction at the bed when the stage begins, and no less than the slope"
                                 : "as along the bed"));
     const bool all =
         std::holds_alternative<bed::None>(scene_.bed_law) || std::holds_alternative<bed::Coulomb>(scene_.bed_law);

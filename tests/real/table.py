@@ -4,7 +4,7 @@
     python3 tests/real/table.py build/bin/frana DATA OUT [NAME ...]
 
 reads terrain and surveys in DATA where they lie and leaves its runs in OUT; what is there is not run again. Names pick rows:
-ryggfonn, alr, codes, rest, reach, deposit. Needs numpy and GDAL's module. The table stands in src/checks/verify/README.md.
+ryggfonn, alr, waves, codes, rest, reach, deposit. Needs numpy and GDAL's module. The table stands in src/checks/verify/README.md.
 """
 import json
 import math
@@ -56,87 +56,56 @@ class Run:
     def __getitem__(self, name):
         return Grid(self.folder / "rasters" / f"{name}.tif")
 
-    def __contains__(self, name):
-        return (self.folder / "rasters" / f"{name}.tif").exists()
-
 
 def row(what, before, now):
     print(f"| {what} | {before} | {now} |", flush=True)
 
 
-def output(every=1000, formats='["geotiff"]'):
-    return f"[output]\nevery = {every}\nformats = {formats}\nextent = \"terrain\"\n"
-
-
-def ryggfonn(cell=5, mu=0.4, end=800, at_rest=True, every=1000, extra=""):
+def slide(dem, bed, release, density, end, at_rest=True, every=1000, extra=""):
+    """The text of a case, all of whose terrain is in its rasters."""
     return f"""
 [terrain]
-dem = "{{data}}/ryggfonn_2021/dem.tif"
-[grid]
-cell = {cell}
+dem = "{{data}}/{dem}/dem.tif"
 [material]
-density = 250.0
-bed = {{ law = "voellmy", mu = {mu}, xi = 9810.0 }}
+density = {density}
+bed = {bed}
 [time]
 end = {end}
 stop_at_rest = {str(at_rest).lower()}
+[output]
+every = {every}
+formats = ["geotiff"]
+extent = "terrain"
 [[release]]
-outline = "{{data}}/ryggfonn_2021/release.geojson"
-depth = 1.0
-thickness = "normal"
+{release}
 {extra}
-{output(every)}"""
+"""
 
 
-def alr():
-    return f"""
-[terrain]
-dem = "{{data}}/avaframe_alr/dem.tif"
-[material]
-density = 200.0
-bed = {{ law = "voellmy", mu = 0.155, xi = 4000.0 }}
-[time]
-end = 118.8
-[[release]]
-outline = "{{data}}/avaframe_alr/release.geojson"
-depth = 1.0
-thickness = "normal"
-{output()}"""
+def across_the_slope(name, depth):
+    return f'outline = "{{data}}/{name}/release.geojson"\ndepth = {depth}\nthickness = "normal"'
 
 
-def isee(name, law):
-    return f"""
-[terrain]
-dem = "{{data}}/{name}/dem.tif"
-[material]
-density = 200.0
-bed = {law}
-[time]
-end = 400
-stop_at_rest = true
-[[release]]
-outline = "{{data}}/{name}/release.geojson"
-depth = 1.5
-thickness = "normal"
-{output()}"""
+def ryggfonn(cell=5, mu=0.4, extra="", end=800, **more):
+    return slide("ryggfonn_2021", f'{{ law = "voellmy", mu = {mu}, xi = 9810.0 }}', across_the_slope("ryggfonn_2021", 1.0),
+                 250.0, end, extra=f"[grid]\ncell = {cell}\n{extra}", **more)
 
 
-def frank(end=400, at_rest=True):
-    return f"""
-[terrain]
-dem = "{{data}}/frank_1903/dem.tif"
-[material]
-density = 2000.0
-bed = {{ law = "coulomb", friction_angle_deg = 15.0 }}
-[time]
-end = {end}
-stop_at_rest = {str(at_rest).lower()}
-[[release]]
-depth = "{{data}}/frank_1903/release.tif"
-{output()}"""
+def alr(cell=5, bed='{ law = "voellmy", mu = 0.155, xi = 4000.0 }', extra=""):
+    return slide("avaframe_alr", bed, across_the_slope("avaframe_alr", 1.0), 200.0, 118.8, at_rest=False,
+                 extra=f"[grid]\ncell = {cell}\n{extra}")
 
 
-def olivares(track, end=7200, at_rest=True, every=1000, extra=""):
+def isee(name, bed):
+    return slide(name, bed, across_the_slope(name, 1.5), 200.0, 400)
+
+
+def frank(end=400, **more):
+    return slide("frank_1903", '{ law = "coulomb", friction_angle_deg = 15.0 }', 'depth = "{data}/frank_1903/release.tif"',
+                 2000.0, end, **more)
+
+
+def olivares(track, end=7200, **more):
     sources = json.loads((DATA / "olivares_east/sources.geojson").read_text())
     [place] = [f["geometry"]["coordinates"] for f in sources["features"] if f["properties"]["id"] == track]
     ring = [[place[0] + 40 * math.cos(math.radians(a)), place[1] + 40 * math.sin(math.radians(a))]
@@ -144,20 +113,14 @@ def olivares(track, end=7200, at_rest=True, every=1000, extra=""):
     sources["features"] = [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [ring]}}]
     OUT.mkdir(parents=True, exist_ok=True)
     (OUT / f"olivares_{track}.geojson").write_text(json.dumps(sources))
-    return f"""
-[terrain]
-dem = "{{data}}/olivares_east/dem.tif"
-[material]
-density = 2000.0
-bed = {{ law = "voellmy", mu = 0.25, xi = 1500.0 }}
-[time]
-end = {end}
-stop_at_rest = {str(at_rest).lower()}
-[[release]]
-outline = "olivares_{track}.geojson"
-depth = 2.0
-{extra}
-{output(every)}"""
+    return slide("olivares_east", '{ law = "voellmy", mu = 0.25, xi = 1500.0 }',
+                 f'outline = "olivares_{track}.geojson"\ndepth = 2.0', 2000.0, end, **more)
+
+
+def events():
+    """Names, and their cases by what is changed of them."""
+    return [("ryggfonn", ryggfonn)] + [
+        (f"olivares_{track}", lambda track=track, **more: olivares(track, **more)) for track in (30, 33, 51)]
 
 
 def over_the_line(folder):
@@ -201,7 +164,7 @@ def error(ours, theirs):
 
 def compare_on_alr():
     for transfer in ("tpic", "pic"):
-        folder = run(f"alr_{transfer}", alr() + f'[scheme]\ntransfer = "{transfer}"\n')
+        folder = run(f"alr_{transfer}", alr(extra=f'[scheme]\ntransfer = "{transfer}"\n'))
         ours, depth = thickness(folder), folder["peak_depth"]
         wet = ours > SHOWN
         theirs = {kind: on(depth, Grid(DATA / f"avaframe_alr/com1dfa_{kind}_peak_thickness.tif")) for kind in ("visc", "novisc")}
@@ -223,6 +186,23 @@ def compare_on_alr():
                 f"{l1:.2f}; {bias:+.0f} %")
         if first:
             row("Alr: largest speed over that of the energy line", "above 1", f"{over_the_line(folder):.2f}")
+
+
+def waves_on_alr():
+    """Sums of peak thickness over com1DFA's without viscosity, in bands of height."""
+    theirs, z0 = (Grid(DATA / "avaframe_alr" / f"{name}.tif") for name in ("com1dfa_novisc_peak_thickness", "dem"))
+    coulomb = '{ law = "coulomb", mu = 0.4 }'
+    for what, more in (("Voellmy", {}), ("Voellmy, no merging", {"extra": "[scheme]\nmerge = false\n"}),
+                       ("Coulomb 0.4", {"bed": coulomb})):
+        sums = []
+        for cell in (10, 5, 2.5):
+            folder = run(f"alr_{what}_{cell:g}m".replace(" ", "_").replace(",", ""), alr(cell, **more))
+            ours, z = thickness(folder), folder["elevation"].array
+            bands = [(z >= low) & (z < low + 200) for low in (2200, 1200)]
+            there = [(z0.array >= low) & (z0.array < low + 200) for low in (2200, 1200)]
+            sums.append(" and ".join(f"{ours[b].sum() * cell ** 2 / (numpy.nansum(theirs.array[t]) * theirs.cell ** 2):.2f}"
+                                     for b, t in zip(bands, there)))
+        row(f"Alr, {what}: sum of peak thickness over com1DFA's from 2200 and from 1200 m, on 10, 5, 2.5 m", "", "; ".join(sums))
 
 
 def on(target, source):
@@ -273,28 +253,25 @@ def apart(first, second, count):
 
 
 def rest_is_rest():
-    cases = [("ryggfonn", lambda **k: ryggfonn(**k))] + [(f"olivares_{t}", lambda t=t, **k: olivares(t, **k)) for t in (30, 33, 51)]
-    cases.append(("frank", lambda **k: frank(**k)))
-    for name, case in cases:
+    for name, case in events() + [("frank", frank)]:
         stopped = run(f"{name}_rest", case())
         time, why = stopped.record["simulated_time"], stopped.record["rest"]
         on_and_on = run(f"{name}_on", case(end=2 * time, at_rest=False))
         share = 0.5 * apart(stopped, on_and_on, 2)  # what goes elsewhere is missing in one block and too much in another
         toes = [f.record["results"]["max_front"] for f in (stopped, on_and_on)]
         row(f"{name}: deposit that lies in other blocks of two cells after twice the time [%]; toe goes on by [cells]",
-            {"frank": "10", "ryggfonn": "a branch goes on by 160 m"}.get(name, ""),
+            "10" if name == "frank" else "",
             f"{share:.2f}; {(toes[1] - toes[0]) / stopped['final_depth'].cell:.1f} "
             f"(ends at {time:.0f} s, {100 * why['moving_mass_share']:.1f} % moving)")
 
 
 def reach():
-    cases = [("ryggfonn", lambda **k: ryggfonn(**k))] + [(f"olivares_{t}", lambda t=t, **k: olivares(t, **k)) for t in (30, 33, 51)]
-    for name, case in cases:
+    for name, case in events():
         by_every = [run(f"{name}_every{e}", case(every=e)) for e in (1, 5, 1000)]
         by_number = [run(f"{name}_per{n}", case(extra=f"[particles]\nper_cell = {n}\n")) for n in (4, 9, 16)]
         cell = by_every[0]["final_depth"].cell
         spread = lambda runs: numpy.ptp([r.record["results"]["max_front"] for r in runs]) / cell
-        row(f"{name}: reach lies apart by, for output.every 1, 5, 1000 s; per_cell 4, 9, 16 [cells]", "up to 8 (100 m)",
+        row(f"{name}: reach lies apart by, for output.every 1, 5, 1000 s; per_cell 4, 9, 16 [cells]", "to 100 m in a gully",
             f"{spread(by_every):.1f}; {spread(by_number):.1f}; "
             f"flow is {by_every[0].record['flow_width_cells']:.1f} cells wide")
 
@@ -305,7 +282,7 @@ def deposits():
         f"{apart(first, second, round(20 / first['final_depth'].cell)):.1f}")
 
 
-ROWS = {"ryggfonn": peaks_on_ryggfonn, "alr": compare_on_alr, "codes": compare_with_codes, "rest": rest_is_rest,
+ROWS = {"ryggfonn": peaks_on_ryggfonn, "alr": compare_on_alr, "waves": waves_on_alr, "codes": compare_with_codes, "rest": rest_is_rest,
         "reach": reach, "deposit": deposits}
 
 print("| Figure | 0db0741 | now |\n|---|---|---|")

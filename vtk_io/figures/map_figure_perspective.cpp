@@ -16,6 +16,7 @@
 #include "vtk_io/figures/actors_3d.h"
 #include "vtk_io/figures/map_figure_block.h"
 #include "vtk_io/figures/map_figure_furniture.h"
+#include "vtk_io/figures/map_figure_overlay.h"
 #include "vtk_io/figures/map_figure_paint.h"
 #include "vtk_io/figures/map_figure_piece.h"
 #include "vtk_io/figures/offscreen.h"
@@ -166,13 +167,9 @@ void BlockDrawing::cased(vtkRenderer* renderer, const std::vector<Polyline>& lin
 /// Each ends where it begins.
 std::vector<Polyline> BlockDrawing::survey_rings() const {
     std::vector<Polyline> rings;
-    if (!figure_.survey) return rings;
-    for (const Polygon& part : figure_.survey->parts)
-        for (Polyline ring : part.rings) {
-            if (ring.empty()) continue;
-            ring.push_back(ring.front());
-            rings.push_back(ring);
-        }
+    if (figure_.survey) rings = all_rings(*figure_.survey);
+    for (Polyline& ring : rings)
+        if (!ring.empty()) ring.push_back(ring.front());
     return rings;
 }
 
