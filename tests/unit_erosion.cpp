@@ -278,3 +278,25 @@ TEST_CASE("Erosion laws give what their papers' numbers say", "[erosion]") {
           Approx(0.5 * std::sqrt(8.0 * 2.0 * (800.0 - 320.0) / (2000.0 - 1600.0 / 1.8))));
     CHECK(erosion::Mechanical{0.6, 0.5}.rate(s) == 0.0);
 }
+
+TEST_CASE("Erosion laws give four points what they give each", "[erosion]") {
+    erosion::StateOf<Double4> four;
+    four.thickness = Double4{0.1, 2.0, 0.5, 7.0}, four.speed = Double4{30.0, 5.0, 0.01, 1.0};
+    four.stress = Double4{100.0, 3000.0, 900.0, 20000.0}, four.normal_gravity = Double4{8.0, 9.8, 3.0, 9.0};
+    four.eroded = Double4{0.0, 0.19, 0.3, 0.05}, four.left = Double4{0.3, 0.0, 1e-9, 2.0};
+    four.edge = Double4{1.0, 2.5, 0.3, 10.0};
+    four.density = 2000.0, four.bed_density = 1600.0, four.dt = 0.1;
+    for (const ErosionLaw& any_law : kLaws)
+        std::visit(
+            [&](const auto& law) {
+                const Double4 rates = law.rate(four);
+                for (int n = 0; n < 4; ++n) {
+                    INFO(law.name << ", point " << n);
+                    const erosion::State one{four.thickness[n], four.speed[n], four.stress[n], four.normal_gravity[n],
+                                             four.eroded[n],    four.left[n],  four.edge[n],   four.density,
+                                             four.bed_density,  four.dt};
+                    CHECK(rates[n] == law.rate(one));
+                }
+            },
+            any_law);
+}

@@ -60,6 +60,48 @@ Double4 decelerations(const Law& law, const BedStateOf<Double4>& bed, Double4 sp
     return (speed - speeds_after(law, bed, speed, speed, kShort)) * (1.0 / kShort);
 }
 
+/// exp(x) - 1 of four x >= 0. A step's growth is small: its Taylor series is right to round-off, the next term is 1e-17.
+Double4 growth_of_four(Double4 x) {
+    constexpr double kSeries = 1.0 / 16;
+    Double4 sum = x * (1.0 / 9);
+    for (int n = 8; n > 1; --n) sum = x * (1.0 / n) * (1.0 + sum);
+    sum = x * (1.0 + sum);
+    if (any(x > kSeries))
+        for (int lane = 0; lane < 4; ++lane)
+            if (x[lane] > kSeries) sum[lane] = std::expm1(x[lane]);
+    return sum;
+}
+
+/// Shares of their masses that four points want in a step; `middle`: to second order, for the middle of the step.
+template <class Law>
+Double4 wanted_shares(const Law& law, const erosion::StateOf<Double4>& s, bool middle) {
+    Double4 rate = law.rate(s);
+    if constexpr (!Law::kProportional) rate = min(rate, s.speed);  // no faster than the flow slides over the bed
+    const Double4 share = rate * s.dt * s.bed_density / (s.density * s.thickness);
+    if constexpr (!Law::kProportional) return share;
+    return middle ? share + 0.5 * share * share : growth_of_four(share);
+}
+
+/// Sums of four kinds at once, without loss (Knuth's sum of two).
+struct SumOfFour {
+    Double4 sum = {}, lost = {};
+    [[gnu::always_inline]] void add(Double4 term) {
+        const Double4 next = sum + term, part = next - sum;
+        lost += (sum - (next - part)) + (term - part), sum = next;
+    }
+    double value() const {
+        CompensatedSum all;
+        for (int lane = 0; lane < 4; ++lane) all.add(sum[lane]), all.add(lost[lane]);
+        return all.value();
+    }
+};
+
+/// Flow::share of four nodes in a row.
+Double4 shares_of_four(const Flow& flow, Index i, Index j) {
+    if (!flow.walls) return all(1.0);
+    return Double4{flow.share(i, j), flow.share(i + 1, j), flow.share(i + 2, j), flow.share(i + 3, j)};
+}
+
 }  // namespace
 
 Erosion::Erosion(const Scene& scene, Flow& flow)
@@ -132,16 +174,16 @@ Erosion::Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow)
 }
 
 void Erosion::count_tile(const Flow& flow, Index tile) {
-    CompensatedSum mass;
-    bool any = false;
-    double deepest = 0.0;
-    for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
-        if (!(initial_[k] > 0.0) && !(fresh(k) > 0.0)) return;
-        mass.add(flow.share(i, j) * (left_[k] + fresh(k)));
-        any = any || can_give(k) > 0.0;
-        deepest = std::max(deepest, eroded_depth(k));
+    SumOfFour mass;
+    Double4 deepest = {};
+    Mask4 holds = {};
+    for_each_four_of(flow.grid, tile, kAllGroups, [&](Index k, Index i, Index j) {
+        const Double4 left = load(&left_[k]), none = {};
+        mass.add(shares_of_four(flow, i, j) * (deposits_ ? left + load(&fresh_[k]) : left));
+        holds |= can_give<Double4>(k) > none;
+        deepest = max(deepest, (load(&initial_[k]) - left) * per_area_);
     });
-    tile_mass_[tile] = mass.value(), holds_[tile] = any, tile_deepest_[tile] = deepest;
+    tile_mass_[tile] = mass.value(), holds_[tile] = any(holds), tile_deepest_[tile] = largest(deepest);
 }
 
 /// Sums of all tiles, in their order.
@@ -159,10 +201,13 @@ Status::Bed Erosion::status() const {
     return {initial_mass_, mass_, eroded_.value(), deposited_.value(), energy_.value(), deepest_};
 }
 
-/// What a node can give at most, less than nothing where only a crumb is left [kg].
-double Erosion::can_give(Index k) const {
-    const double old = left_[k] - kCrumb * initial_[k];
-    return fresh(k) > 0.0 ? old + (fresh_[k] - fresh_crumb_) : old;
+/// What a node, or four, can give at most, less than nothing where only a crumb is left [kg].
+template <class Real>
+Real Erosion::can_give(Index k) const {
+    const Real old = read<Real>(&left_[k]) - kCrumb * read<Real>(&initial_[k]), none = {};
+    if (!deposits_) return old;
+    const Real lies = read<Real>(&fresh_[k]);
+    return select(lies > none, old + (lies - fresh_crumb_), old);
 }
 
 ExchangeSums Erosion::exchange(Flow& flow, double dt) {
@@ -224,7 +269,7 @@ void Erosion::find_demand(Flow& flow, double dt) {
             const auto demand = [&](const auto& law, const auto& friction) {
                 using Law = std::decay_t<decltype(law)>;
                 using Under = std::decay_t<decltype(friction)>;
-                if constexpr (Law::kSeesEroded)
+                if constexpr (Law::kSeesEroded || Law::kSeesLeft)
                     if (deposits_) return demand_of_tile<Law, Under, Real, true>(flow, n, dt, law, friction);
                 demand_of_tile<Law, Under, Real, false>(flow, n, dt, law, friction);
             };
@@ -239,87 +284,85 @@ void Erosion::find_demand(Flow& flow, double dt) {
     fold(flow, demand_);
 }
 
+/// What a law sees below four points besides their ground: how much was taken, and what is left. kFresh: material may have
+/// been left behind, that a law has not taken yet.
+template <class Law, bool kFresh>
+void Erosion::see_layer(const MeansOfFour& means, int lanes, Double4 cosine, erosion::StateOf<Double4>& state) const {
+    if constexpr (!Law::kSeesEroded && !Law::kSeesLeft) return;
+    const Double4 still = means.of(left_, lanes), scale = per_area_ * cosine;
+    Double4 lies = {};
+    if constexpr (kFresh) lies = per_area_of_flow_ * cosine * means.of(fresh_, lanes);
+    if constexpr (Law::kSeesEroded) state.eroded = scale * (means.of(initial_, lanes) - still) - lies;
+    if constexpr (Law::kSeesLeft) state.left = scale * still + lies;
+}
+
 /// Velocities are those of the step's momentum over the mass before it (leapfrog). In the middle of the step, where the
-/// way and the law are taken, half of the gain shares it: such points have come too far, and are set back. kFresh: material
-/// may have been left behind, that a law has not taken yet.
+/// way and the law are taken, half of the gain shares it: such points have come too far, and are set back.
 template <class Law, class Friction, class Real, bool kFresh>
 void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction) {
     Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
-    const bool feels = !Law::kProportional || momentum_ > 0.0;  // E over T does not hang on the stress
-    double farthest = 0.0;
+    const bool feels = Law::kSeesStress || momentum_ > 0.0;
+    Double4 farthest = {};
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
-        const Double4 depth = load(&held.depth[p], lanes), none = {};
+        const Double4 depth = load(&held.depth[p], lanes), none = {}, one = all(1.0);
         const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), on_map = sqrt(vx * vx + vy * vy);
         const Mask4 moves = (on_map > kSlowest) & (depth >= min_depth_) & (depth > flow.dry_depth());
-        for (Array* column : {&wanted_, &speed_, &braked_}) store(&(*column)[p], none, lanes);
-        if (!any(moves)) return;
-        const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
+        if (!any(moves)) return store(&wanted_[p], none, lanes);
+        const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes), mass = load(&c.mass[p], lanes);
         const MeansOfFour means(flow.grid, x, y);
         const auto& below = law_under(friction, flow, x, y);
         // Those that rest do as if they moved: nothing comes of it.
-        const Double4 one = all(1.0), u = select(moves, on_map, one);
-        const Double4 ux = select(moves, vx, one), uy = select(moves, vy, none);
+        const Double4 u = select(moves, on_map, one), ux = select(moves, vx, one), uy = select(moves, vy, none);
+        const Double4 deep = select(moves, depth, one);
         // A curved bed changes the weight alone, which only friction and laws of it ask for.
-        const GroundOfFour ground(flow, curved_ && feels, means, lanes, ux, uy, select(moves, depth, one));
-        Double4 eroded = none, left = none, edge = one;
-        if constexpr (Law::kSeesEroded) {
-            const Double4 still = means.of(left_, lanes), scale = per_area_ * ground.below.cosine;
-            eroded = scale * (means.of(initial_, lanes) - still), left = scale * still;
-            if constexpr (kFresh) {
-                const Double4 lies = per_area_of_flow_ * ground.below.cosine * means.of(fresh_, lanes);
-                eroded = eroded - lies, left = left + lies;
-            }
-            edge = sqrt(select(moves, load(&c.mass[p], lanes) / (flow.density * select(moves, depth, one)), one));
-        }
-        Double4 at_middle = all(1.0), gain = none, brake = none;  // the speed in the middle, over that at hand
-        for (int pass = 0; pass < 2; ++pass) {
-            if (pass == 1)
-                for (int lane = 0; lane < lanes; ++lane)
-                    at_middle[lane] = std::sqrt(speed_left(gain[lane], brake[lane] * dt / u[lane]));
+        const GroundOfFour ground(flow, curved_ && feels, means, lanes, ux, uy, deep);
+        erosion::StateOf<Double4> state;
+        state.density = flow.density, state.bed_density = density_, state.dt = dt;
+        state.thickness = ground.below.thickness;
+        state.normal_gravity = ground.below.kappa * ground.below.normal_gravity;
+        see_layer<Law, kFresh>(means, lanes, ground.below.cosine, state);
+        if constexpr (Law::kSeesLeft) state.edge = sqrt(select(moves, mass / (flow.density * deep), one));
+        Double4 at_middle = one, gain = none, brake = none;  // the speed in the middle, over that at hand
+        for (const bool middle : {true, false}) {
+            if (!middle) at_middle = sqrt(speeds_left(gain, brake * dt / u));
             if (feels) brake = decelerations(below, ground.below, at_middle * u);
-            for (int lane = 0; lane < lanes; ++lane) {
-                if (!moves[lane]) continue;
-                const double thickness = ground.below.thickness[lane], speed = at_middle[lane] * ground.speed[lane];
-                const double stress = flow.density * thickness * ground.below.kappa[lane] * brake[lane];
-                double rate =
-                    law.rate({thickness, speed, stress, eroded[lane], flow.density, density_, dt,
-                              ground.below.kappa[lane] * ground.below.normal_gravity[lane], left[lane], edge[lane]});
-                if (!Law::kProportional) rate = std::min(rate, speed);  // no faster than the flow slides over the bed
-                const double share = rate * dt * density_ / (flow.density * thickness);
-                gain[lane] = !Law::kProportional ? share : pass == 0 ? share + 0.5 * share * share : std::expm1(share);
-            }
+            state.speed = at_middle * ground.speed;
+            state.stress = flow.density * state.thickness * ground.below.kappa * brake;
+            gain = select(moves, wanted_shares(law, state, middle), none);
         }
-        store(&wanted_[p], gain * load(&c.mass[p], lanes), lanes);
+        store(&wanted_[p], gain * mass, lanes);
         store(&speed_[p], ground.speed, lanes);
-        store(&braked_[p], dt * brake / u, lanes);
-        for (int lane = 0; lane < lanes; ++lane)
-            if (gain[lane] > 0.0) {
-                const double back = (1.0 - at_middle[lane]) * dt;
-                farthest = std::max(farthest, set_back(flow, p + lane, back * vx[lane], back * vy[lane]));
-            }
+        if (momentum_ > 0.0) store(&braked_[p], dt * brake / u, lanes);
+        const Double4 back = (1.0 - at_middle) * dt;
+        farthest = max(farthest, set_back(flow, p, lanes, gain > none, back * vx, back * vy));
     });
-    sums_[static_cast<std::size_t>(n)].max_shift = farthest;
+    sums_[static_cast<std::size_t>(n)].max_shift = largest(farthest);
 }
 
-/// Moves a point back by (dx, dy) [m] unless ground ends there; returns how far [cells].
-double Erosion::set_back(Flow& flow, Index p, double dx, double dy) const {
+/// Moves those of four points that are chosen back by (dx, dy) [m] unless ground ends there; returns how far [cells].
+Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy) const {
     Columns& c = flow.columns;
-    const double x = c.x[p] - dx / flow.cell, y = c.y[p] - dy / flow.cell;
+    const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};
+    const Double4 x = x0 - dx / flow.cell, y = y0 - dy / flow.cell;
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
-    if (!(x >= 0.0 && x <= x_max && y >= 0.0 && y <= y_max)) return 0.0;
-    if (flow.bed.has_exits && flow.bed.exit[flow.grid.nearest(x, y)] != 0) return 0.0;
-    const double shift = std::max(std::abs(x - c.x[p]), std::abs(y - c.y[p]));
-    c.x[p] = x, c.y[p] = y;
-    return shift;
+    chosen &= (x >= 0.0) & (x <= x_max) & (y >= 0.0) & (y <= y_max);
+    if (flow.bed.has_exits)
+        for (int lane = 0; lane < lanes; ++lane)
+            if (chosen[lane] && flow.bed.exit[flow.grid.nearest(x[lane], y[lane])] != 0) chosen[lane] = 0;
+    store(&c.x[p], select(chosen, x, x0), lanes), store(&c.y[p], select(chosen, y, y0), lanes);
+    return select(chosen, max(abs(x - x0), abs(y - y0)), none);
 }
 
 /// THEORY (76): the share of its velocity that a point keeps when it grows by `gain` of its mass. What is taken brings at
 /// most the momentum that friction takes meanwhile, `braked` of the flow's own.
-double Erosion::speed_left(double gain, double braked) const {
-    const double grown = 1.0 + gain;
+Double4 Erosion::speeds_left(Double4 gain, Double4 braked) const {
+    const Double4 grown = 1.0 + gain;
     if (momentum_ == 0.0) return 1.0 / grown;
-    return std::min(std::pow(grown, momentum_), 1.0 + braked) / grown;
+    Double4 brought = grown;
+    if (momentum_ != 1.0)
+        for (int lane = 0; lane < 4; ++lane) brought[lane] = std::pow(grown[lane], momentum_);
+    return min(brought, 1.0 + braked) / grown;
 }
 
 /// Adds numbers of points to nodes as their columns are: by sub-points.
@@ -372,14 +415,16 @@ bool Erosion::find_shares(Flow& flow) {
     const Index count = static_cast<Index>(nodes_.size());
 #pragma omp parallel for schedule(dynamic, 1) if (count >= kTilesForThreads)
     for (Index n = 0; n < count; ++n) {
-        bool scarce = false;
+        Mask4 scarce = {};
+        const Double4 none = {}, one = all(1.0);
         const Index tile = nodes_[static_cast<std::size_t>(n)];
-        for_each_node_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index, Index) {
-            const double can = std::max(0.0, can_give(k));
-            share_[k] = demand_[k] > can ? can / demand_[k] : 1.0;
-            scarce = scarce || share_[k] < 1.0;
+        for_each_four_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index, Index) {
+            const Double4 can = max(can_give<Double4>(k), none), wants = load(&demand_[k]);
+            const Mask4 lacks = wants > can;
+            store(&share_[k], select(lacks, can / select(lacks, wants, one), one));
+            scarce |= lacks;
         });
-        next_[static_cast<std::size_t>(n)] = scarce;
+        next_[static_cast<std::size_t>(n)] = any(scarce);
     }
     return std::any_of(next_.begin(), next_.end(), [](Index scarce) { return scarce != 0; });
 }
@@ -395,7 +440,7 @@ void Erosion::share_out(Flow& flow) {
         fold(flow, taken_);
         for_each_in_parallel(nodes_, [&](Index tile) {
             for_each_node_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index, Index) {
-                const double can = can_give(k);
+                const double can = can_give<double>(k);
                 const double more = std::max(0.0, std::min(demand_[k], can) - taken_[k]);
                 share_[k] = demand_[k] > 0.0 ? more / demand_[k] : 0.0;
                 taken_[k] += share_[k] * demand_[k];
@@ -485,19 +530,26 @@ template <class Real>
 void Erosion::grow(Flow& flow, Index n) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
-    ExchangeSums& sums = sums_[static_cast<std::size_t>(n)];
-    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
-        const double gain = scarce_ ? gained_[p] : wanted_[p], mass = c.mass[p];
-        if (!(gain > 0.0)) continue;
-        const double vx = held.vx[p], vy = held.vy[p];
-        const double grown = 1.0 + gain / mass, factor = speed_left(gain / mass, braked_[p]);
+    const Array& gained = scarce_ ? gained_ : wanted_;
+    Double4 taken = {}, px = {}, py = {}, lost = {};
+    for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
+        const Double4 gain = load(&gained[p], lanes), mass = load(&c.mass[p], lanes), none = {}, one = all(1.0);
+        const Mask4 grows = gain > none;
+        if (!any(grows)) return;
+        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes);
+        const Double4 share = gain / select(grows, mass, one), grown = 1.0 + share;
+        const Double4 braked = momentum_ > 0.0 ? load(&braked_[p], lanes) : none;
+        const Double4 factor = select(grows, speeds_left(share, braked), one);
         for (auto* column : {&held.vx, &held.vy, &held.cxx, &held.cxy, &held.cyx, &held.cyy})
-            (*column)[p] = static_cast<Real>(factor * (*column)[p]);
-        c.mass[p] = mass + gain;
-        sums.taken += c.mass[p] - mass;
-        sums.px += c.mass[p] * held.vx[p] - mass * vx, sums.py += c.mass[p] * held.vy[p] - mass * vy;
-        sums.lost += 0.5 * mass * speed_[p] * speed_[p] * (1.0 - grown * factor * factor);
-    }
+            store(&(*column)[p], factor * load(&(*column)[p], lanes), lanes);
+        const Double4 now = mass + gain, speed = load(&speed_[p], lanes);
+        store(&c.mass[p], now, lanes);
+        taken += now - mass;
+        px += now * load(&held.vx[p], lanes) - mass * vx, py += now * load(&held.vy[p], lanes) - mass * vy;
+        lost += select(grows, 0.5 * mass * speed * speed * (1.0 - grown * factor * factor), none);
+    });
+    ExchangeSums& sums = sums_[static_cast<std::size_t>(n)];
+    sums.taken = sum(taken), sums.px = sum(px), sums.py = sum(py), sums.lost = sum(lost);
 }
 
 /// The bed loses what the points gained.
@@ -507,46 +559,42 @@ void Erosion::lower(Flow& flow) {
 }
 
 void Erosion::lower_tile(Flow& flow, Index tile) {
-    double energy = 0.0;
-    TileBox any;
-    for_each_node_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index i, Index j) {
-        const double taken = std::min(scarce_ ? taken_[k] : demand_[k], left_[k] + fresh(k));
-        demand_[k] = taken_[k] = 0.0;
-        if (!(taken > 0.0)) return;
-        const double old = taken - take_fresh(k, taken);
-        const double sinks = evolves_ ? old * per_area_ + (taken - old) * per_area_of_flow_ : 0.0,
-                     rises = taken / (flow.density * flow.area);
-        const double z = flow.bed.z[k], h = flow.nodes.depth[k];
-        energy += flow.share(i, j) * flow.gravity *
+    Double4 energy = {};
+    TileBox any_taken;
+    for_each_four_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index i, Index j) {
+        const Double4 none = {}, left = load(&left_[k]), lies = deposits_ ? load(&fresh_[k]) : none;
+        const Double4 taken = max(min(load(scarce_ ? &taken_[k] : &demand_[k]), left + lies), none);
+        store(&demand_[k], none), store(&taken_[k], none);
+        if (!any(taken > none)) return;
+        const Double4 of_fresh = min(taken, lies), old = taken - of_fresh;  // of a node the deposit goes first
+        const Double4 sinks = evolves_ ? old * per_area_ + of_fresh * per_area_of_flow_ : none,
+                      rises = taken / (flow.density * flow.area);
+        const Double4 z = load(&flow.bed.z[k]), h = load(&flow.nodes.depth[k]);
+        energy += shares_of_four(flow, i, j) * flow.gravity *
                   (taken * (z - sinks + 0.5 * rises) + flow.density * flow.area * h * (rises - sinks));
-        left_[k] = std::max(0.0, left_[k] - old);
-        any.add(one_node(flow.grid, tile, i, j));
+        store(&left_[k], max(left - old, none));
+        if (deposits_) store(&fresh_[k], lies - of_fresh);
+        const Index a = i - flow.grid.tile_i(tile), b = j - flow.grid.tile_j(tile);
+        any_taken.add({a, a + 4, b, b + 1});
         if (!evolves_) return;
-        flow.bed.z[k] -= sinks;
-        flow.bed.ground[k] -= sinks;
-        if (bent_path_) pending_[k] -= sinks;
+        store(&flow.bed.z[k], z - sinks);
+        store(&flow.bed.ground[k], load(&flow.bed.ground[k]) - sinks);
+        if (bent_path_) store(&pending_[k], load(&pending_[k]) - sinks);
     });
-    tile_energy_[tile] = energy;
-    if (any.empty()) return;
+    tile_energy_[tile] = sum(energy);
+    if (any_taken.empty()) return;
     if (bent_path_) tile_pending_[tile] = most_pending(flow, tile);
     changed_[tile] = 1;
     marked_[static_cast<std::size_t>(tile)] = evolves_;
-    if (evolves_) moved_[tile] = any;
+    if (evolves_) moved_[tile] = any_taken;
     count_tile(flow, tile);
 }
 
 double Erosion::most_pending(const Flow& flow, Index tile) const {
-    double most = 0.0;
-    for_each_node_of(flow.grid, tile, [&](Index k, Index, Index) { most = std::max(most, std::abs(pending_[k])); });
-    return most;
-}
-
-/// Of what is taken of a node the deposit goes first; returns how much that is [kg].
-double Erosion::take_fresh(Index k, double taken) {
-    if (!(fresh(k) > 0.0)) return 0.0;
-    const double of_fresh = std::min(taken, fresh_[k]);
-    fresh_[k] -= of_fresh;
-    return of_fresh;
+    Double4 most = {};
+    for_each_four_of(flow.grid, tile, kAllGroups,
+                     [&](Index k, Index, Index) { most = max(most, abs(load(&pending_[k]))); });
+    return largest(most);
 }
 
 }  // namespace frana

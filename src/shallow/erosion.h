@@ -17,6 +17,8 @@
 
 namespace frana {
 
+class MeansOfFour;
+
 /// What an exchange changed, of all points and nodes.
 struct ExchangeSums {
     double taken = 0.0;         ///< [kg]
@@ -59,6 +61,8 @@ private:
     Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
     template <class Law, class Friction, class Real, bool kFresh>
     void demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction);
+    template <class Law, bool kFresh>
+    void see_layer(const MeansOfFour& means, int lanes, Double4 cosine, erosion::StateOf<Double4>& state) const;
     template <class Real>
     void spread(const Flow& flow, Index n, const Array& masses, LazyArray<double>& into);
     template <class Real>
@@ -68,10 +72,10 @@ private:
     template <class Real>
     void grow(Flow& flow, Index n);
 
-    double set_back(Flow& flow, Index p, double dx, double dy) const;
-    double speed_left(double gain, double braked) const;
-    double can_give(Index k) const;
-    double take_fresh(Index k, double taken);
+    Double4 set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy) const;
+    Double4 speeds_left(Double4 gain, Double4 braked) const;
+    template <class Real>
+    Real can_give(Index k) const;
     void prepare_deposition(const Scene& scene, const Flow& flow);
     bool find_settled(Flow& flow);
     template <class Real>

@@ -11,19 +11,17 @@ constexpr double kSlowest = 1e-30;  ///< below any speed [m/s]
 /// Means of node values at four points.
 class MeansOfFour {
 public:
-    MeansOfFour(const TileGrid& grid, Double4 x, Double4 y) : stride_(grid.stride()) {
+    [[gnu::always_inline]] MeansOfFour(const TileGrid& grid, Double4 x, Double4 y) : stride_(grid.stride()) {
         const Stencils sx(x), sy(y);
-        for (int lane = 0; lane < 4; ++lane) {
-            node_[lane] = sy.first[lane] * stride_ + sx.first[lane];
-            along_[lane] = Double4{sx.w[0][lane], sx.w[1][lane], sx.w[2][lane], 0.0};
-            for (int j = 0; j < 3; ++j) across_[lane][j] = sy.w[j][lane];
-        }
+        for (int lane = 0; lane < 4; ++lane) node_[lane] = sy.first[lane] * stride_ + sx.first[lane];
+        transpose(sx.w[0], sx.w[1], sx.w[2], Double4{}, along_);
+        for (int j = 0; j < 3; ++j) across_[j] = sy.w[j];
     }
-    Double4 of(const LazyArray<double>& nodes, int lanes) const {
+    [[gnu::always_inline]] Double4 of(const LazyArray<double>& nodes, int lanes) const {
         Double4 rows[4] = {}, parts[4];
         for (int lane = 0; lane < lanes; ++lane) {
             const double* row = nodes.data() + node_[lane];
-            for (int j = 0; j < 3; ++j, row += stride_) rows[lane] += across_[lane][j] * load(row);
+            for (int j = 0; j < 3; ++j, row += stride_) rows[lane] += across_[j][lane] * load(row);
             rows[lane] *= along_[lane];
         }
         transpose(rows[0], rows[1], rows[2], rows[3], parts);
@@ -33,15 +31,15 @@ public:
 private:
     Index stride_, node_[4];
     Double4 along_[4];
-    double across_[4][3];
+    Double4 across_[3];
 };
 
 /// What the bed law sees below four points, and their speed along it; on gentle ground that of the map.
 struct GroundOfFour {
     BedStateOf<Double4> below;
     Double4 speed;
-    GroundOfFour(const Flow& flow, bool curved, const MeansOfFour& means, int lanes, Double4 vx, Double4 vy,
-                 Double4 depth) {
+    [[gnu::always_inline]] GroundOfFour(const Flow& flow, bool curved, const MeansOfFour& means, int lanes, Double4 vx,
+                                        Double4 vy, Double4 depth) {
         const Double4 one = all(1.0), none = {};
         Double4 bx = none, by = none, gravity = all(flow.gravity);
         if (flow.steep) bx = means.of(flow.bed.slope_x, lanes), by = means.of(flow.bed.slope_y, lanes);

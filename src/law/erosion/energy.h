@@ -13,14 +13,19 @@ struct Energy {
     static constexpr const char* name = "energy";
     static constexpr const char* is = "";
     static constexpr bool kProportional = false;
+    static constexpr bool kSeesStress = true;
     static constexpr bool kSeesEroded = false;
+    static constexpr bool kSeesLeft = false;
     static std::vector<laws::Key<Energy>> keys() {
         return {{&Energy::energy, "energy", "J/kg", ranges::positive,
                  "work of friction that loosens a kilogram of the bed", laws::Missing::usual}};
     }
 
     /// src/shallow/THEORY.md (70)
-    double rate(const State& s) const { return s.stress * s.speed / (s.bed_density * energy); }
+    template <class Real>
+    Real rate(const StateOf<Real>& s) const {
+        return s.stress * s.speed / (s.bed_density * energy);
+    }
 };
 
 }  // namespace frana::erosion

@@ -13,11 +13,16 @@ struct Front {
     static constexpr const char* name = "front";
     static constexpr const char* is = "";
     static constexpr bool kProportional = false;
-    static constexpr bool kSeesEroded = true;
+    static constexpr bool kSeesStress = false;
+    static constexpr bool kSeesEroded = false;
+    static constexpr bool kSeesLeft = true;
     static std::vector<laws::Key<Front>> keys() { return {}; }
 
     /// src/shallow/THEORY.md, section 18
-    double rate(const State& s) const { return s.left * s.speed / s.edge; }
+    template <class Real>
+    Real rate(const StateOf<Real>& s) const {
+        return s.left * s.speed / s.edge;
+    }
 };
 
 }  // namespace frana::erosion

@@ -14,14 +14,19 @@ struct Growth {
     static constexpr const char* name = "growth";
     static constexpr const char* is = "";
     static constexpr bool kProportional = true;  ///< E grows as the depth does: the step is exact by an exponential
+    static constexpr bool kSeesStress = false;
     static constexpr bool kSeesEroded = false;
+    static constexpr bool kSeesLeft = false;
     static std::vector<laws::Key<Growth>> keys() {
         return {{&Growth::growth, "growth", "1/m", ranges::positive,
                  "share of its mass that the flow takes up on a metre of its way along the bed"}};
     }
 
     /// src/shallow/THEORY.md (67)
-    double rate(const State& s) const { return growth * s.density / s.bed_density * s.thickness * s.speed; }
+    template <class Real>
+    Real rate(const StateOf<Real>& s) const {
+        return growth * s.density / s.bed_density * s.thickness * s.speed;
+    }
 };
 
 }  // namespace frana::erosion

@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <vector>
 
 #include "law/erosion/state.h"
@@ -15,14 +14,19 @@ struct Jump {
     static constexpr const char* name = "jump";
     static constexpr const char* is = "";
     static constexpr bool kProportional = false;
+    static constexpr bool kSeesStress = true;
     static constexpr bool kSeesEroded = false;
+    static constexpr bool kSeesLeft = false;
     static std::vector<laws::Key<Jump>> keys() {
         return {{&Jump::threshold, "threshold", "Pa", ranges::not_negative, "basal stress up to which the bed resists",
                  laws::Missing::usual}};
     }
 
     /// src/shallow/THEORY.md (71)
-    double rate(const State& s) const { return std::max(0.0, s.stress - threshold) / (s.density * s.speed); }
+    template <class Real>
+    Real rate(const StateOf<Real>& s) const {
+        return max(s.stress - threshold, Real{}) / (s.density * s.speed);
+    }
 };
 
 }  // namespace frana::erosion

@@ -1,6 +1,4 @@
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "law/erosion/state.h"
@@ -19,7 +17,9 @@ struct Mechanical {
     static constexpr const char* name = "mechanical";
     static constexpr const char* is = "";
     static constexpr bool kProportional = false;
+    static constexpr bool kSeesStress = true;
     static constexpr bool kSeesEroded = false;
+    static constexpr bool kSeesLeft = false;
     static std::vector<laws::Key<Mechanical>> keys() {
         return {{&Mechanical::bed_friction, "bed_friction", "1", ranges::positive,
                  "friction coefficient inside of the bed, which holds it back"},
@@ -29,10 +29,11 @@ struct Mechanical {
     }
 
     /// src/shallow/THEORY.md, section 18
-    double rate(const State& s) const {
-        const double held = s.bed_density * bed_friction * s.normal_gravity * s.thickness;
+    template <class Real>
+    Real rate(const StateOf<Real>& s) const {
+        const Real held = s.bed_density * bed_friction * s.normal_gravity * s.thickness;
         const double inertia = s.density * s.density / (s.density + s.bed_density);
-        return shear_velocity * std::sqrt(std::max(0.0, s.stress - held) / inertia);
+        return shear_velocity * sqrt(max(s.stress - held, Real{}) / inertia);
     }
 };
 

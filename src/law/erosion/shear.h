@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <vector>
 
 #include "law/erosion/state.h"
@@ -18,7 +17,9 @@ struct Shear {
     static constexpr const char* name = "shear";
     static constexpr const char* is = "";
     static constexpr bool kProportional = false;
+    static constexpr bool kSeesStress = true;
     static constexpr bool kSeesEroded = true;
+    static constexpr bool kSeesLeft = false;
     static std::vector<laws::Key<Shear>> keys() {
         return {{&Shear::erosion_rate, "rate", "m/s", ranges::positive, "speed at which the bed sinks, normal to it",
                  laws::Missing::usual},
@@ -29,9 +30,10 @@ struct Shear {
     }
 
     /// src/shallow/THEORY.md (69)
-    double rate(const State& s) const {
-        const double deepest = depth_per_stress * (s.stress - threshold);
-        return std::clamp((deepest - s.eroded) / s.dt, 0.0, erosion_rate);
+    template <class Real>
+    Real rate(const StateOf<Real>& s) const {
+        const Real deepest = depth_per_stress * (s.stress - threshold);
+        return min(max((deepest - s.eroded) / s.dt, Real{}), Real{} + erosion_rate);
     }
 };
 

@@ -14,14 +14,19 @@ struct Steady {
     static constexpr const char* name = "steady";
     static constexpr const char* is = "";
     static constexpr bool kProportional = true;
+    static constexpr bool kSeesStress = false;
     static constexpr bool kSeesEroded = false;
+    static constexpr bool kSeesLeft = false;
     static std::vector<laws::Key<Steady>> keys() {
         return {{&Steady::growth_per_second, "growth_per_second", "1/s", ranges::positive,
                  "share of its mass that the moving flow takes up in a second"}};
     }
 
     /// src/shallow/THEORY.md (68)
-    double rate(const State& s) const { return growth_per_second * s.density / s.bed_density * s.thickness; }
+    template <class Real>
+    Real rate(const StateOf<Real>& s) const {
+        return growth_per_second * s.density / s.bed_density * s.thickness;
+    }
 };
 
 }  // namespace frana::erosion
