@@ -256,7 +256,7 @@ bool Erosion::choose(const Flow& flow) {
 
 void Erosion::make_room(const Flow& flow) {
     const std::size_t count = static_cast<std::size_t>(flow.columns.count());
-    for (Array* column : {&wanted_, &gained_, &speed_, &braked_}) resize_sparingly(*column, count);
+    for (Array* column : {&wanted_, &missed_, &speed_, &braked_}) resize_sparingly(*column, count);
     const std::size_t tiles = static_cast<std::size_t>(flow.active.count());
     sums_.assign(tiles, {}), spread_to_.resize(tiles);
 }
@@ -429,21 +429,23 @@ bool Erosion::find_shares(Flow& flow) {
     return std::any_of(next_.begin(), next_.end(), [](Index scarce) { return scarce != 0; });
 }
 
-/// THEORY (74) and (75): each point gets by its poorest node, then what nodes have left over goes round.
+/// THEORY (74) and (75): each point gets by its poorest node, then what nodes have left over goes round. Few points get less
+/// than they want: what those miss goes to the nodes.
 void Erosion::share_out(Flow& flow) {
     flow.columns.with_real([&](auto real) {
         using Real = decltype(real);
         for_each_eroding_in_turn(flow, [&](Index n) {
             take_shares<Real>(flow, n);
-            spread<Real>(flow, n, gained_, taken_);
+            spread<Real>(flow, n, missed_, taken_);
         });
         fold(flow, taken_);
         for_each_in_parallel(nodes_, [&](Index tile) {
-            for_each_node_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index, Index) {
-                const double can = can_give<double>(k);
-                const double more = std::max(0.0, std::min(demand_[k], can) - taken_[k]);
-                share_[k] = demand_[k] > 0.0 ? more / demand_[k] : 0.0;
-                taken_[k] += share_[k] * demand_[k];
+            for_each_four_of(flow.grid, tile, in_reach_[tile], [&](Index k, Index, Index) {
+                const Double4 none = {}, one = all(1.0), wants = load(&demand_[k]);
+                const Double4 given = max(wants - load(&taken_[k]), none);
+                const Double4 more = max(min(wants, can_give<Double4>(k)) - given, none);
+                const Double4 share = select(wants > none, more / select(wants > none, wants, one), none);
+                store(&share_[k], share), store(&taken_[k], given + share * wants);
             });
         });
         for_each_eroding(flow, [&](Index n) { take_left_over<Real>(flow, n); });
@@ -452,10 +454,23 @@ void Erosion::share_out(Flow& flow) {
 
 namespace {
 
+/// Whether all nodes that sub-points of four points can touch have the same share; not beside the grid's sides.
+bool all_usual(const Flow& flow, const LazyArray<double>& share, double usual, Double4 x, Double4 y, int lanes) {
+    const Int4 i = floor_positive(x + (kTile - 1.0)) - 1, j = floor_positive(y + (kTile - 1.0)) - 1;
+    const Index stride = flow.grid.stride();
+    Mask4 other = {};
+    for (int lane = 0; lane < lanes; ++lane) {
+        const double* row = share.data() + j[lane] * stride + i[lane];
+        for (int b = 0; b < 6; ++b, row += stride) other |= (load(row) != usual) | (load(row + 2) != usual);
+    }
+    return !any(other);
+}
+
 /// Calls take(p, number) for the points of a tile that want something. The number is what of_window finds on the shares of
-/// the window's nodes. Where sub-points lie too far away for a window, it is that of of_point(p, edges).
+/// the window's nodes. Where sub-points lie too far away for a window, it is that of of_point(p, edges). Among nodes of the
+/// usual share it is that share.
 template <class Real, class OfWindow, class OfPoint, class Take>
-void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share,
+void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const LazyArray<double>& share, double usual,
                       OfWindow&& of_window, OfPoint&& of_point, Take&& take) {
     const Columns& c = flow.columns;
     const Carried<Real>& held = c.carried<Real>();
@@ -464,10 +479,16 @@ void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const Lazy
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
         const Double4 none = {};
         if (!any(load(&wanted[p], lanes) > none)) return;
+        const Double4 x = load(&c.x[p], lanes), y = load(&c.y[p], lanes);
+        if (!at_side && all_usual(flow, share, usual, x, y, lanes)) {
+            for (Index q = p; q < p + lanes; ++q)
+                if (wanted[q] > 0.0) take(q, usual);
+            return;
+        }
         const Domains r{load(&held.r1x[p], lanes), load(&held.r1y[p], lanes), load(&held.r2x[p], lanes),
                         load(&held.r2y[p], lanes)};
         WindowOfFour window;
-        const bool near = !at_side && find_window(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), r, window);
+        const bool near = !at_side && find_window(flow, x, y, r, window);
         for (int lane = 0; lane < lanes; ++lane) {
             const Index q = p + lane;
             if (!(wanted[q] > 0.0)) continue;
@@ -481,7 +502,7 @@ void for_each_wanting(const Flow& flow, Index n, const Array& wanted, const Lazy
 
 template <class Real>
 void Erosion::take_shares(const Flow& flow, Index n) {
-    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) gained_[p] = 0.0;
+    for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) missed_[p] = 0.0;
     const auto of_window = [&](const WindowOfFour& window, int lane, const double* row) {
         Double4 least = all(1.0);
         for (int b = 0; b < 4; ++b, row += flow.grid.stride())
@@ -499,8 +520,8 @@ void Erosion::take_shares(const Flow& flow, Index n) {
             });
         return least;
     };
-    for_each_wanting<Real>(flow, n, wanted_, share_, of_window, of_point,
-                           [&](Index p, double least) { gained_[p] = least * wanted_[p]; });
+    for_each_wanting<Real>(flow, n, wanted_, share_, 1.0, of_window, of_point,
+                           [&](Index p, double least) { missed_[p] = wanted_[p] - least * wanted_[p]; });
 }
 
 template <class Real>
@@ -521,8 +542,8 @@ void Erosion::take_left_over(const Flow& flow, Index n) {
             });
         return 0.25 * more;
     };
-    for_each_wanting<Real>(flow, n, wanted_, share_, of_window, of_point,
-                           [&](Index p, double mean) { gained_[p] += mean * wanted_[p]; });
+    for_each_wanting<Real>(flow, n, wanted_, share_, 0.0, of_window, of_point,
+                           [&](Index p, double mean) { wanted_[p] = (wanted_[p] - missed_[p]) + mean * wanted_[p]; });
 }
 
 /// Points take what they gained into their motion.
@@ -530,10 +551,9 @@ template <class Real>
 void Erosion::grow(Flow& flow, Index n) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
-    const Array& gained = scarce_ ? gained_ : wanted_;
     Double4 taken = {}, px = {}, py = {}, lost = {};
     for_each_four(flow.active.begin[n], flow.active.begin[n + 1], [&](Index p, int lanes) {
-        const Double4 gain = load(&gained[p], lanes), mass = load(&c.mass[p], lanes), none = {}, one = all(1.0);
+        const Double4 gain = load(&wanted_[p], lanes), mass = load(&c.mass[p], lanes), none = {}, one = all(1.0);
         const Mask4 grows = gain > none;
         if (!any(grows)) return;
         const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes);

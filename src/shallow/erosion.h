@@ -156,7 +156,8 @@ private:
     LazyArray<double> tile_energy_;      ///< [J]
     LazyArray<double> rows_;             ///< scratch of smooth_into_path; zero outside of it [m]
     bool scarce_ = false;                ///< some node has less than is wanted of it
-    Array wanted_, gained_;              ///< of points; what they wanted they gained, unless something is scarce [kg]
+    Array wanted_;                       ///< of points; in the end what they get [kg]
+    Array missed_;                       ///< of it, for their poorest nodes' sake; when something is scarce [kg]
     Array speed_;                        ///< along the bed [m/s]
     Array braked_;                       ///< share of the speed that friction takes in the step [1]
     CompensatedSum eroded_, deposited_, energy_;
