@@ -11,6 +11,18 @@ namespace {
 /// Change of the bed, in cells, from which on its curvature follows.
 constexpr double kFollows = 0.01;
 
+/// Adds to a tile's row of nodes what a symmetric filter makes of the values first to last steps away.
+void add_filtered(const std::vector<double>& half, Index first, Index last, const double* from, Index step,
+                  double* to) {
+    Double4 sums[kTile / 4];
+    for (Index n = 0; n < kTile / 4; ++n) sums[n] = load(to + 4 * n);
+    for (Index a = first; a <= last; ++a) {
+        const double w = half[static_cast<std::size_t>(std::abs(a))];
+        for (Index n = 0; n < kTile / 4; ++n) sums[n] += w * load(from + a * step + 4 * n);
+    }
+    for (Index n = 0; n < kTile / 4; ++n) store(to + 4 * n, sums[n]);
+}
+
 }  // namespace
 
 /// Slopes follow at once, curvature once the bed has moved far enough. Leaves the tiles where either did in `next_`.
@@ -65,24 +77,26 @@ void Erosion::smooth_into_path(Flow& flow) {
     const Index i_end = grid.tiles_x() * kTile - kTile, j_end = grid.tiles() / grid.tiles_x() * kTile - kTile;
     for_each_in_parallel(next_, [&](Index tile) {
         const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
-        for (Index j = j0; j < j0 + kTile; ++j)
-            for (Index a = -reach; a <= reach; ++a) {
-                const double w = filter_[static_cast<std::size_t>(std::abs(a))];
-                const Index first = std::max<Index>(0, -kTile - i0 - a), past = std::min(kTile, i_end - i0 - a);
-                double* to = &rows_[grid.at(i0, j)];
-                const double* from = pending_.data() + grid.at(i0, j) + a;
-                for (Index i = first; i < past; ++i) to[i] += w * from[i];
+        const bool inside = i0 - reach >= -kTile && i0 + kTile + reach <= i_end;
+        for (Index j = j0; j < j0 + kTile; ++j) {
+            double* const to = &rows_[grid.at(i0, j)];
+            const double* const middle = pending_.data() + grid.at(i0, j);
+            if (inside) {
+                add_filtered(filter_, -reach, reach, middle, 1, to);
+                continue;
             }
+            for (Index a = -reach; a <= reach; ++a) {
+                const Index first = std::max<Index>(0, -kTile - i0 - a), past = std::min(kTile, i_end - i0 - a);
+                for (Index i = first; i < past; ++i)
+                    to[i] += filter_[static_cast<std::size_t>(std::abs(a))] * middle[i + a];
+            }
+        }
     });
     for_each_in_parallel(next_, [&](Index tile) {
         const Index i0 = grid.tile_i(tile), j0 = grid.tile_j(tile);
         for (Index j = j0; j < j0 + kTile; ++j)
-            for (Index b = std::max(-reach, -kTile - j); b <= std::min(reach, j_end - 1 - j); ++b) {
-                const double w = filter_[static_cast<std::size_t>(std::abs(b))];
-                double* to = &flow.bed.smoothed[grid.at(i0, j)];
-                const double* from = rows_.data() + grid.at(i0, j) + b * up;
-                for (Index i = 0; i < kTile; ++i) to[i] += w * from[i];
-            }
+            add_filtered(filter_, std::max(-reach, -kTile - j), std::min(reach, j_end - 1 - j),
+                         rows_.data() + grid.at(i0, j), up, &flow.bed.smoothed[grid.at(i0, j)]);
     });
     for_each_in_parallel(next_, [&](Index tile) {
         for_each_node_of(grid, tile, [&](Index k, Index, Index) { pending_[k] = rows_[k] = 0.0; });
