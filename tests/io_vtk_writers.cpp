@@ -1,4 +1,5 @@
 // What VTK's own readers find in the files of the VTK writers.
+#include <vtkBase64OutputStream.h>
 #include <vtkCellArray.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
@@ -9,15 +10,20 @@
 #include <vtkStringArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <sstream>
+#include <vector>
 
 #include "base/error.h"
 #include "catch.h"
 #include "frame_maker.h"
 #include "fresh_folder.h"
 #include "small_disk.h"
+#include "vtk_io/base64_stream.h"
 #include "vtk_io/pvd.h"
 #include "vtk_io/writers.h"
 #include "vtk_read.h"
@@ -257,4 +263,45 @@ TEST_CASE("A folder that cannot be made is an error with path and reason", "[io]
                       Contains((run.path() / "grid").string()) && Contains("cannot be made"));
     CHECK_THROWS_WITH(make_particle_writer(run.path() / "no" / std::string(300, 'x'))->observe(maker.frame),
                       Contains("File name too long"));
+}
+
+TEST_CASE("Our base64 has the letters of VTK's, whatever the pieces that it comes in", "[io][vtk]") {
+    std::vector<unsigned char> bytes(1000);
+    for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<unsigned char>(k * k * 31 + 7 * k);
+    const auto letters = [&](vtkOutputStream* stream, std::size_t length, std::size_t piece) {
+        std::ostringstream text;
+        stream->SetStream(&text);
+        stream->StartWriting();
+        for (std::size_t at = 0; at < length; at += piece)
+            stream->Write(bytes.data() + at, std::min(piece, length - at));
+        stream->EndWriting();
+        return text.str();
+    };
+    vtkNew<vtkBase64OutputStream> theirs;
+    vtkNew<Base64Stream> ours;
+    for (const std::size_t length : {0, 1, 2, 3, 4, 5, 6, 7, 999, 1000})
+        for (const std::size_t piece : {1, 2, 3, 4, 5, 7, 64, 1000}) {
+            CAPTURE(length, piece);
+            CHECK(letters(ours, length, piece) == letters(theirs, length, piece));
+        }
+}
+
+TEST_CASE("A file in our base64 is the file that VTK alone writes", "[io][vtk]") {
+    const FreshFolder run;
+    FrameMaker maker(0, 1.5, 40000, FrameMaker::utm(40, 30));
+    make_particle_writer(run.path())->observe(maker.frame);
+    const fs::path file = run.path() / "particles/particles_000000.vtp";
+    const auto reader = read<vtkXMLPolyDataReader>(file);
+    vtkNew<vtkXMLPolyDataWriter> theirs;
+    vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> ours;
+    std::vector<std::string> texts;
+    for (vtkXMLPolyDataWriter* writer : {theirs.Get(), static_cast<vtkXMLPolyDataWriter*>(ours.Get())}) {
+        writer->SetInputDataObject(reader->GetOutput());
+        writer->WriteToOutputStringOn();
+        writer->SetDataModeToBinary();
+        REQUIRE(writer->Write() == 1);
+        texts.push_back(writer->GetOutputString());
+    }
+    CHECK(texts[0].size() > 1000000);
+    CHECK((texts[0] == texts[1]));  // without a megabyte in the message
 }

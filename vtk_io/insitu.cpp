@@ -74,7 +74,7 @@ public:
         contours->GetCellData()->AddArray(level_of);
         add_unit(contours->GetFieldData(), "level", scalar(frame.nodes, field_, "the grid").unit);
         add_time(contours->GetFieldData(), frame.status.time);
-        vtkNew<vtkXMLPolyDataWriter> writer;
+        vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
         series_.write(writer, contours, frame, number);
     }
     void serialize(Archive& archive) override { series_.serialize(archive); }
@@ -122,7 +122,7 @@ public:
         threshold->SetThresholdFunction(vtkThreshold::THRESHOLD_UPPER);
         threshold->SetUpperThreshold(1.0);
         threshold->AllScalarsOn();
-        vtkNew<vtkXMLUnstructuredGridWriter> writer;
+        vtkNew<WithBase64Stream<vtkXMLUnstructuredGridWriter>> writer;
         series_.write(writer, filtered(threshold.Get(), image), frame, number);
     }
     void serialize(Archive& archive) override { series_.serialize(archive); }
@@ -142,7 +142,7 @@ public:
     void sample(const Frame& frame, Index number) override {
         const auto cloud = cloud_of(frame);
         const Scalar values = scalar(frame.particles, field_, "the particles");
-        vtkNew<vtkXMLPolyDataWriter> writer;
+        vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
         if (cloud->GetNumberOfPoints() == 0) {  // VTK's filter calls that an error, loudly
             series_.write(writer, cloud, frame, number);
             return;

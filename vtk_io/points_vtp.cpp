@@ -100,7 +100,7 @@ void write_points_vtp(const std::filesystem::path& file, const PointTable& table
     for (const PointConstant& constant : table.constants) add_constant(field, constant);
     add_text(field, "crs_wkt", table.crs_wkt);
     for (const auto& [name, text] : table.texts) add_text(field, name, text);
-    vtkNew<vtkXMLPolyDataWriter> writer;
+    vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
     write_xml(writer, cloud, file);
 }
 

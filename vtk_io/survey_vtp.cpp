@@ -47,7 +47,7 @@ bool on_terrain(const GridGeometry& g, const Vec2& point) {
 }
 
 void write_polydata(vtkPolyData* data, const std::filesystem::path& file) {
-    vtkNew<vtkXMLPolyDataWriter> writer;
+    vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
     write_xml(writer, data, file);
 }
 

@@ -20,7 +20,7 @@ public:
 
     void observe(const Frame& frame) override {
         const auto cloud = cloud_of(frame);
-        vtkNew<vtkXMLPolyDataWriter> writer;
+        vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
         write_xml(writer, cloud, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }
@@ -38,7 +38,7 @@ public:
 
     void observe(const Frame& frame) override {
         const auto image = image_of(frame);
-        vtkNew<vtkXMLImageDataWriter> writer;
+        vtkNew<WithBase64Stream<vtkXMLImageDataWriter>> writer;
         write_xml(writer, image, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }

@@ -47,7 +47,7 @@ public:
         const auto data = polydata_of(frame, span > 0.0 ? span : 0.0);
         add_heights(frame, data);
         add_time(data->GetFieldData(), frame.status.time);
-        vtkNew<vtkXMLPolyDataWriter> writer;
+        vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
         write_xml(writer, data, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
         if (span > 0.0) time_ = frame.status.time;
@@ -167,7 +167,7 @@ void write_barrier_meshes(const std::filesystem::path& run_dir, const BarrierMes
     data->SetPolys(cells);
     data->GetCellData()->AddArray(barrier);
     add_unit(data->GetFieldData(), "barrier", "1");
-    vtkNew<vtkXMLPolyDataWriter> writer;
+    vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
     write_xml(writer, data, run_dir / "barrier_meshes.vtp");
 }
 

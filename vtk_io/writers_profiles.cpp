@@ -49,7 +49,7 @@ public:
             for (std::size_t row = 0; row < sampled[k].rows.size(); ++row) sampled[k].rows[row][4] = first_[k][row];
         const auto data = polydata_of(sampled);
         add_time(data->GetFieldData(), frame.status.time);
-        vtkNew<vtkXMLPolyDataWriter> writer;
+        vtkNew<WithBase64Stream<vtkXMLPolyDataWriter>> writer;
         write_xml(writer, data, series_.file(frame.number));
         series_.add(frame.number, frame.status.time);
     }

@@ -41,7 +41,7 @@ void write_image(const std::filesystem::path& file, const Frame& frame) {
         image->GetPointData()->AddArray(to_vtk(field, outside));
     }
     hide_nodes(image, outside);
-    vtkNew<vtkXMLImageDataWriter> writer;
+    vtkNew<WithBase64Stream<vtkXMLImageDataWriter>> writer;
     write_xml(writer, image, file);
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "observe/frame.h"
+#include "vtk_io/base64_stream.h"
 
 namespace frana {
 
