@@ -2,6 +2,7 @@
 #include "io_figures_scene.h"
 #include "vtk_io/figures/chart_figure.h"
 #include "vtk_io/figures/map_figure_perspective.h"
+#include "vtk_io/figures/png_file.h"
 
 using namespace frana;
 using figures::cannot_draw;
@@ -154,4 +155,24 @@ TEST_CASE("Without a renderer charts and views are refused with a reason and lea
     CHECK(chart_reason == "FRANA_NO_RENDER is set");
     CHECK(view_reason == "FRANA_NO_RENDER is set");
     CHECK(folder.files() == 0);
+}
+
+TEST_CASE("A picture comes back from its PNG as it was, whatever its shape", "[figures]") {
+    const figures::Folder folder;
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {9, 1}, {64, 48}}) {
+        Pixels picture(width, height);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                picture.set(x, y, {static_cast<std::uint8_t>(37 * x + y * y), static_cast<std::uint8_t>(x * y), 200});
+        const std::filesystem::path png = folder / "picture.png";
+        write_png(picture, png);
+        const Pixels found = read_png(png);
+        CAPTURE(width, height);
+        CHECK(found.width == width);
+        CHECK(found.height == height);
+        CHECK(found.rgb == picture.rgb);
+    }
+    CHECK_THROWS_WITH(write_png(Pixels(0, 5), folder / "none.png"),
+                      Catch::Matchers::Contains("none.png: libpng could not"));
+    CHECK(folder.files() == 1);
 }

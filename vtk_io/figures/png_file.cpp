@@ -6,6 +6,10 @@
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 
+#include <array>
+#include <csetjmp>
+#include <cstring>
+#include <new>
 #include <string>
 
 #include "base/atomic_file.h"
@@ -14,20 +18,69 @@
 namespace frana {
 namespace fs = std::filesystem;
 
+namespace {
+
+/// libpng's file in memory. Its errors jump back into make(): nothing that they jump over may need a destructor.
+class PngMaker {
+public:
+    PngMaker() : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, this, &fail, &ignore)) {
+        if (png_) info_ = png_create_info_struct(png_);
+    }
+    ~PngMaker() { png_destroy_write_struct(&png_, &info_); }
+    PngMaker(const PngMaker&) = delete;
+    PngMaker& operator=(const PngMaker&) = delete;
+
+    bool make(const Pixels& picture) {
+        if (!info_ || setjmp(png_jmpbuf(png_)) != 0) return false;
+        png_set_write_fn(png_, this, &take, nullptr);
+        png_set_IHDR(png_, info_, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height), 8,
+                     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        // Shaded ground is like the row above it: against level 3 without a filter, 0.8 of the bytes in 0.6 of the time.
+        png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
+        png_set_compression_level(png_, 1);
+        png_write_info(png_, info_);
+        for (int y = picture.height - 1; y >= 0; --y)  // ours begin at the lowest
+            png_write_row(png_, picture.rgb.data() + static_cast<std::size_t>(y) * picture.width * 3);
+        png_write_end(png_, nullptr);
+        return true;
+    }
+    const std::string& bytes() const { return bytes_; }
+    const char* why_not() const { return why_not_.data(); }
+
+private:
+    static void take(png_structp png, png_bytep data, std::size_t length) {
+        static_cast<PngMaker*>(png_get_io_ptr(png))->append(png, data, length);
+    }
+    void append(png_structp png, png_bytep data, std::size_t length) {
+        bool kept = true;
+        try {
+            bytes_.append(reinterpret_cast<const char*>(data), length);
+        } catch (const std::bad_alloc&) {
+            kept = false;
+        }
+        if (!kept) png_error(png, "there is no memory for it");
+    }
+    static void fail(png_structp png, png_const_charp why_not) {
+        auto& here = static_cast<PngMaker*>(png_get_error_ptr(png))->why_not_;
+        std::strncpy(here.data(), why_not, here.size() - 1);
+        png_longjmp(png, 1);
+    }
+    static void ignore(png_structp, png_const_charp) {}
+
+    std::array<char, 200> why_not_{"there is no memory for it"};
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+    std::string bytes_;
+};
+
+}  // namespace
+
 void write_png(const Pixels& picture, const fs::path& png) {
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = static_cast<png_uint_32>(picture.width);
-    image.height = static_cast<png_uint_32>(picture.height);
-    image.format = PNG_FORMAT_RGB;
-    image.flags = PNG_IMAGE_FLAG_FAST;  // a third of the time of all filters; files of maps are 4 % larger
-    std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
-    png_alloc_size_t size = bytes.size();
-    const int upwards = -3 * picture.width;  // from one row to the next: ours begin at the lowest
-    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgb.data(), upwards, nullptr))
-        throw UserError(fmt::format("{}: libpng could not make a PNG of the picture: {}", png.string(), image.message));
-    bytes.resize(size);
-    write_text(png, bytes);
+    PngMaker maker;
+    if (!maker.make(picture))
+        throw UserError(
+            fmt::format("{}: libpng could not make a PNG of the picture: {}", png.string(), maker.why_not()));
+    write_text(png, maker.bytes());
 }
 
 Pixels read_png(const fs::path& png) {
