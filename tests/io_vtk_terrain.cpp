@@ -1,4 +1,5 @@
 // terrain.vti, and the reader that gives a run back to figures.
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -117,6 +118,13 @@ TEST_CASE("read_frame gives back what the writers were shown", "[io][vtk]") {
         }
         CHECK(different == 0);
     }
+    const LoadedFrame some = read_frame(run.path(), -1, {"velocity", "not there"});
+    CHECK(some.nodes.size() == 3);  // with the elevation, and where it is not
+    CHECK(some.nodes.at("velocity") == frame.nodes.at("velocity"));
+    CHECK(std::isnan(some.nodes.at("elevation").back()));
+    CHECK(some.names.size() == frame.names.size());
+    CHECK(std::count(some.names.begin(), some.names.end(), "depth") == 1);
+    CHECK(std::count(some.names.begin(), some.names.end(), "not there") == 0);
     const LoadedParticles cloud = read_particles(run.path(), 3);
     CHECK(cloud.count == 300);
     CHECK(cloud.columns.at("position") == maker.particle_numbers("position"));

@@ -4,6 +4,7 @@
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkDataArraySelection.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkFieldData.h>
 #include <vtkIdList.h>
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "base/error.h"
@@ -28,10 +30,10 @@ namespace frana {
 namespace {
 
 /// Runs a VTK reader on a file, turning its complaints into a UserError.
-void read_file(vtkXMLReader* reader, const std::filesystem::path& file) {
+void read_file(vtkXMLReader* reader, const std::filesystem::path& file, const std::function<void()>& choose = {}) {
     const UserError unreadable(fmt::format("{}: cannot be read as a VTK file; run the case again", file.string()));
     if (!std::filesystem::exists(file)) throw UserError(file.string() + ": not found; run the case again");
-    if (!read_xml(reader, file)) throw unreadable;
+    if (!read_xml(reader, file, choose)) throw unreadable;
 }
 
 /// Points and what they make up, every number of a point being that of one.
@@ -87,10 +89,21 @@ LoadedFrame frame_of(vtkImageData* image) {
     return frame;
 }
 
-LoadedFrame read_image(const std::filesystem::path& file) {
+LoadedFrame read_image(const std::filesystem::path& file, const std::vector<std::string>& only = {}) {
     vtkNew<vtkXMLImageDataReader> reader;
-    read_file(reader, file);
-    return frame_of(reader->GetOutput());
+    std::vector<std::string> names;
+    read_file(reader, file, [&] {
+        vtkDataArraySelection* const columns = reader->GetPointDataArraySelection();
+        for (int k = 0; k < columns->GetNumberOfArrays(); ++k) {
+            const std::string& name = names.emplace_back(columns->GetArrayName(k));
+            const bool wanted = only.empty() || name == "elevation" || name == "outside" ||
+                                std::find(only.begin(), only.end(), name) != only.end();
+            columns->SetArraySetting(name.c_str(), wanted ? 1 : 0);
+        }
+    });
+    LoadedFrame frame = frame_of(reader->GetOutput());
+    frame.names = std::move(names);
+    return frame;
 }
 
 std::vector<double> times_in(const std::filesystem::path& pvd) {
@@ -125,9 +138,9 @@ Index nearest_frame(const std::filesystem::path& run_dir, double time) {
     return static_cast<Index>(nearest);
 }
 
-LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number) {
+LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number, const std::vector<std::string>& only) {
     const auto [entry, position] = entry_of(run_dir / "grid.pvd", number);
-    LoadedFrame frame = read_image(run_dir / entry.file);
+    LoadedFrame frame = read_image(run_dir / entry.file, only);
     frame.number = position;
     frame.time = entry.time;
     return frame;

@@ -24,6 +24,7 @@ struct LoadedFrame {
     std::map<std::string, std::vector<double>> nodes;
     std::map<std::string, int> components;
     std::map<std::string, std::string> units;
+    std::vector<std::string> names;  ///< of all columns in the file, read or not
 
     bool has(const std::string& name) const { return nodes.count(name) != 0; }
 };
@@ -49,7 +50,8 @@ Index nearest_frame(const std::filesystem::path& run_dir, double time);
 
 /// Frame `number` of RUN_DIR/grid.pvd; negative counts from the end (-1 is the last one).
 /// Throws UserError when there is no such frame or its file cannot be read.
-LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number);
+/// With names in `only`, the columns of these names alone, and the elevation.
+LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number, const std::vector<std::string>& only = {});
 
 /// The same frame of RUN_DIR/particles.pvd.
 LoadedParticles read_particles(const std::filesystem::path& run_dir, Index number);

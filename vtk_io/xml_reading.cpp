@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
@@ -31,10 +30,19 @@ bool knows_type_in(std::string_view tag) {
     return std::find(kTypes.begin(), kTypes.end(), rest.substr(0, rest.find('"'))) != kTypes.end();
 }
 
+std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    const std::streamoff end = stream.tellg();
+    std::string text(end > 0 ? static_cast<std::size_t>(end) : 0, '\0');
+    stream.seekg(0);
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    return text;
+}
+
 /// Every array of the file is of a type that VTK knows.
 bool types_are_known(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    const std::string text = bytes_of(file);
     const std::string_view all = text;
     for (std::size_t at = all.find('<'); at != all.npos; at = all.find('<', at + 1)) {
         const std::string_view tag = all.substr(at, all.find('>', at) - at);
@@ -47,7 +55,7 @@ bool types_are_known(const std::filesystem::path& file) {
 
 }  // namespace
 
-bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file) {
+bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file, const std::function<void()>& choose) {
     if (!types_are_known(file)) return false;
     bool complained = false;
     vtkNew<vtkCallbackCommand> listener;
@@ -61,6 +69,10 @@ bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file) {
     if (!reader->CanReadFile(file.string().c_str())) return false;
     reader->SetFileName(file.string().c_str());
     try {
+        if (choose) {
+            reader->UpdateInformation();
+            choose();
+        }
         reader->Update();
     } catch (const std::length_error&) {  // of a block that claims more than any memory has
         return false;

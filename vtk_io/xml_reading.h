@@ -1,6 +1,7 @@
 #pragma once
 // Files of VTK's XML kinds and meshes from anywhere: what VTK itself would die of is found before or after it reads.
 #include <filesystem>
+#include <functional>
 #include <string>
 
 class vtkPolyData;
@@ -9,8 +10,8 @@ class vtkXMLReader;
 namespace frana {
 
 /// Has `reader` read a file. False when it is not of the reader's kind, damaged, or VTK says anything about it;
-/// nothing reaches stderr.
-bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file);
+/// nothing reaches stderr. `choose` is called when the reader knows which arrays the file has, and may leave some out.
+bool read_xml(vtkXMLReader* reader, const std::filesystem::path& file, const std::function<void()>& choose = {});
 
 /// What is wrong with faces, lines or vertices, as "a face names point 7, counted from 0, of 4 points"; empty when
 /// nothing is. VTK's filters trust what a file says.

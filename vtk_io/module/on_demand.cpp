@@ -89,7 +89,9 @@ std::vector<PvdEntry> read_pvd(const fs::path& pvd) { return vtk().read_pvd(pvd)
 std::vector<double> frame_times(const fs::path& run_dir) { return vtk().frame_times(run_dir); }
 std::vector<double> particle_times(const fs::path& run_dir) { return vtk().particle_times(run_dir); }
 Index nearest_frame(const fs::path& run_dir, double time) { return vtk().nearest_frame(run_dir, time); }
-LoadedFrame read_frame(const fs::path& run_dir, Index number) { return vtk().read_frame(run_dir, number); }
+LoadedFrame read_frame(const fs::path& run_dir, Index number, const std::vector<std::string>& only) {
+    return vtk().read_frame(run_dir, number, only);
+}
 LoadedParticles read_particles(const fs::path& run_dir, Index number) { return vtk().read_particles(run_dir, number); }
 LoadedFrame read_terrain(const fs::path& run_dir) { return vtk().read_terrain(run_dir); }
 LoadedFrame read_maps(const fs::path& dir) { return vtk().read_maps(dir); }

@@ -133,9 +133,10 @@ Seen observe_frames(const fs::path& run_dir) {
     std::set<Index> chosen;
     for (Index k = 0; k < 7; ++k) chosen.insert(k * (frames - 1) / 6);
     for (const Index number : chosen) {
-        const LoadedFrame frame = read_frame(run_dir, number);
+        const LoadedFrame frame =
+            read_frame(run_dir, number, {"depth", "speed", "stress", "effective_stress", "cohesion", "water_depth"});
         if (!frame.has("depth") || !frame.has("elevation")) return seen;
-        for (const auto& column : frame.nodes) seen.arrays.insert(column.first);
+        seen.arrays.insert(frame.names.begin(), frame.names.end());
         const auto& depth = frame.nodes.at("depth");
         seen.grid = frame.grid;
         seen.deepest = std::max(seen.deepest, *std::max_element(depth.begin(), depth.end()));

@@ -29,7 +29,7 @@ std::vector<Index> spread_frames(Index count, Index most) {
 /// The depth of an output with the survey, without a title. Frames may show a smaller part of the terrain than the last
 /// one. UserError when the frame has none on the terrain's nodes.
 MapFigure depth_map(const FigureSource& source, Index number) {
-    LoadedFrame frame = read_frame(source.run_dir, number);
+    LoadedFrame frame = read_frame(source.run_dir, number, {"depth"});
     const auto box = box_of(source.bed.geometry, frame.grid);
     if (!frame.has("depth") || !box) throw UserError("the frames hold no depth on the terrain's nodes");
     MapFigure map;
