@@ -2,13 +2,17 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <exception>
 #include <sstream>
 
 #include "base/atomic_file.h"
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/layer_name.h"
+#include "base/on_threads.h"
 #include "base/version.h"
 #include "run/folder/input_sums.h"
 #include "run/folder/run_folder.h"
@@ -234,13 +238,27 @@ std::vector<std::string> CheckpointKeeper::warnings() const {
     return warnings;
 }
 
-/// A state that outlives a power cut is worth nothing without the frames that go with it.
+/// A state that outlives a power cut is worth nothing without the frames that go with it. Each file waits for the disk, and
+/// disks take what is asked of them together in little more time than one.
 void CheckpointKeeper::flush_new_files() {
+    constexpr std::size_t kTogether = 16;
     const auto now = fs::file_time_type::clock::now();
+    std::vector<fs::path> files;
     for (const fs::path& file : product_files(run_dir_)) {
         std::error_code gone;
-        if (fs::last_write_time(file, gone) >= flushed_ && !gone) flush_to_disk(file);
+        if (fs::last_write_time(file, gone) >= flushed_ && !gone) files.push_back(file);
     }
+    std::atomic<std::size_t> next{0};
+    std::vector<std::exception_ptr> failed(files.size());
+    on_threads(std::min(kTogether, files.size()), [&] {
+        for (std::size_t k = next++; k < files.size(); k = next++) try {
+                flush_to_disk(files[k]);
+            } catch (...) {
+                failed[k] = std::current_exception();
+            }
+    });
+    for (const std::exception_ptr& failure : failed)
+        if (failure) std::rethrow_exception(failure);
     flushed_ = now;
 }
 
