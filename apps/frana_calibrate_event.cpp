@@ -118,6 +118,7 @@ public:
     Watch(const EventSurvey& event, EventScores& scores)
         : event_(event), scores_(scores), depths_(event.gauges_.size(), 0.0), speeds_(event.gauges_.size(), 0.0) {}
     std::string name() const override { return "survey"; }
+    bool looks_at_fields() const override { return false; }  // at the end it does
 
     void step(const Status&, const Probe& probe) override {
         for (std::size_t k = 0; k < depths_.size(); ++k) {

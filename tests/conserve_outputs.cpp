@@ -93,3 +93,20 @@ TEST_CASE("A run has the same bits whatever the time between its frames, which a
         }
     }
 }
+
+TEST_CASE("The status of a frame without its fields has the same bits", "[conserve]") {
+    const Scene scene = gully();
+    DepthAveraged looked_at(scene), asked(scene);
+    for (int k = 0; k < 60; ++k) {
+        const Status whole = looked_at.frame().status, alone = asked.frame_status();
+        REQUIRE(whole.kinetic == alone.kinetic);
+        REQUIRE(whole.dissipated == alone.dissipated);
+        REQUIRE(whole.momentum == alone.momentum);
+        REQUIRE(whole.impulse == alone.impulse);
+        REQUIRE(whole.max_speed == alone.max_speed);
+        REQUIRE(whole.max_speed_on_map == alone.max_speed_on_map);
+        looked_at.advance(1e9);
+        asked.advance(1e9);
+    }
+    CHECK(looked_at.frame().status.max_speed > 0.0);
+}

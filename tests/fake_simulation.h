@@ -71,7 +71,10 @@ public:
     Sample at(const Vec2& p) const override { return {bed(p), depth(p, status_.time), Vec2(u, v)}; }
 
     std::shared_ptr<const void> give_frame_away() override { return {}; }
+    Status frame_status() override { return status_; }
+    int frames_made() const { return frames_made_; }
     Frame frame() override {
+        ++frames_made_;
         Frame frame;
         frame.status = status_;
         frame.grid = grid_;
@@ -156,6 +159,7 @@ private:
     }
 
     FakeScript script_;
+    int frames_made_ = 0;
     GridGeometry grid_;
     Status status_;
     std::vector<Vec2> start_;

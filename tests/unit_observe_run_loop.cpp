@@ -17,8 +17,9 @@ struct Notes {
 
 class NoteTaker : public Observer {
 public:
-    explicit NoteTaker(Notes& notes) : notes_(notes) {}
+    explicit NoteTaker(Notes& notes, bool looks = true) : notes_(notes), looks_(looks) {}
     std::string name() const override { return "notes"; }
+    bool looks_at_fields() const override { return looks_; }
     void step(const Status& now, const Probe&) override { notes_.step_times.push_back(now.time); }
     void observe(const Frame& frame) override {
         notes_.frame_times.push_back(frame.status.time);
@@ -31,6 +32,7 @@ public:
 
 private:
     Notes& notes_;
+    bool looks_;
 };
 
 struct Outcome {
@@ -231,4 +233,20 @@ TEST_CASE("wall time reads as a clock") {
     CHECK(clock_text(760.0) == "12:40");
     CHECK(clock_text(3 * 3600 + 5 * 60) == "3:05:00");
     CHECK(clock_text(std::numeric_limits<double>::infinity()) == "-:--");
+}
+
+TEST_CASE("where nobody looks at fields they are worked out once, for the end") {
+    for (const bool looks : {true, false}) {
+        CAPTURE(looks);
+        FakeSimulation simulation;
+        Notes notes;
+        Observers observers;
+        observers.push_back(std::make_unique<NoteTaker>(notes, looks));
+        std::ostringstream stream;
+        Progress progress(stream, Progress::Style::silent, FakeSimulation::density);
+        run(simulation, {1.0, 0.25, false}, observers, Interrupt(), progress);
+        CHECK(notes.frame_times == std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0});
+        CHECK(notes.end_times == std::vector<double>{1.0});
+        CHECK(simulation.frames_made() == (looks ? 6 : 1));
+    }
 }

@@ -130,11 +130,20 @@ void GrowingColumns::grow(const NodeBox& box) {
     ++times_grown_;
 }
 
-Frame GrowingColumns::frame() {
+void GrowingColumns::show_part() {
     NodeBox box = common(widened(shown_, kShownAround), held_);
     box.i0 -= held_.i0, box.j0 -= held_.j0;
     columns_->show(box);
+}
+
+Frame GrowingColumns::frame() {
+    show_part();
     return columns_->frame();
+}
+
+Status GrowingColumns::frame_status() {
+    show_part();
+    return columns_->frame_status();
 }
 
 std::vector<std::string> GrowingColumns::remarks() const {

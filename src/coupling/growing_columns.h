@@ -13,6 +13,7 @@ public:
     void advance(double until) override;
     /// Of the nodes that material has come near to, and of places that are always shown.
     Frame frame() override;
+    Status frame_status() override;
     std::vector<std::string> remarks() const override;
     const Raster* ground() const override { return &scene_.bed; }
     void serialize(Archive& archive) override;
@@ -30,6 +31,7 @@ private:
         double top;  ///< [m]
     };
 
+    void show_part();
     void find_raised();
     std::unique_ptr<DepthAveraged> columns_among_walls(Start start) const;
     void sample();

@@ -21,6 +21,7 @@ public:
     GaugePeaks(const std::vector<Gauge>& gauges, double footprint_depth)
         : gauges_(gauges), footprint_depth_(footprint_depth), peaks_(gauges.size()) {}
     std::string name() const override { return "gauges"; }
+    bool looks_at_fields() const override { return false; }
     void step(const Status& now, const Probe& probe) override;
     /// In the order of the case.
     const std::vector<GaugePeak>& peaks() const { return peaks_; }

@@ -24,6 +24,7 @@ class LastPeaks : public Observer {
 public:
     explicit LastPeaks(const std::vector<std::string>& fields) : fields_(fields) {}
     std::string name() const override { return "peaks"; }
+    bool looks_at_fields() const override { return false; }  // at the end it does
     void end(const Frame& last) override {
         grid = last.grid;
         const auto count = static_cast<std::size_t>(last.grid.size());

@@ -54,6 +54,7 @@ public:
     std::string name() const override { return "barriers"; }
     void step(const Status& now, const Probe& probe) override;
     void observe(const Frame& frame) override;
+    bool looks_at_fields() const override { return false; }
     void serialize(Archive& archive) override;
 
 private:

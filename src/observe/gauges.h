@@ -22,6 +22,7 @@ public:
     std::string name() const override { return "gauges"; }
     void step(const Status& now, const Probe& probe) override;
     void observe(const Frame&) override;
+    bool looks_at_fields() const override { return false; }
     void serialize(Archive& archive) override { serialize_all(archive, tables_); }
 
 private:

@@ -24,6 +24,7 @@ public:
     std::string name() const override { return "history"; }
     void step(const Status& now, const Probe&) override;
     void observe(const Frame& frame) override;
+    bool looks_at_fields() const override { return false; }
     void serialize(Archive& archive) override;
 
 private:

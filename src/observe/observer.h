@@ -57,7 +57,9 @@ public:
     virtual bool wants_frame(const Status&) { return false; }
     virtual void observe_between(const Frame&) {}
     virtual void observe(const Frame&) {}  ///< at the start, at every output time and at the end
-    virtual void end(const Frame&) {}      ///< once, with the last frame, after observe()
+    /// Whether observe() looks at more of a frame than its status: where nobody does, no fields are worked out.
+    virtual bool looks_at_fields() const { return true; }
+    virtual void end(const Frame&) {}  ///< once, with the last frame, after observe()
     /// Saves what the observer needs to go on, or takes it up again before its first call; then its files are those of
     /// that moment: what was written later is taken back. Throws UserError when they are not there any more.
     virtual void serialize(Archive&) {}

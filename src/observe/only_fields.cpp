@@ -15,6 +15,7 @@ public:
     std::string name() const override { return inner_->name(); }
     void step(const Status& now, const Probe& probe) override { inner_->step(now, probe); }
     void observe(const Frame& frame) override { inner_->observe(chosen(frame)); }
+    bool looks_at_fields() const override { return inner_->looks_at_fields(); }
     void end(const Frame& frame) override { inner_->end(chosen(frame)); }
     void serialize(Archive& archive) override { inner_->serialize(archive); }
 

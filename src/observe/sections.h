@@ -36,6 +36,7 @@ public:
     std::string name() const override { return "sections"; }
     void step(const Status& now, const Probe& probe) override;
     void observe(const Frame&) override;
+    bool looks_at_fields() const override { return false; }
     void serialize(Archive& archive) override;
 
 private:

@@ -34,6 +34,9 @@ public:
     void observe(const Frame& frame) override {
         for_all([&](Observer& part) { part.observe(frame); });
     }
+    bool looks_at_fields() const override {
+        return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->looks_at_fields(); });
+    }
     void end(const Frame& frame) override {
         for_all([&](Observer& part) { part.end(frame); });
     }

@@ -93,6 +93,7 @@ private:
     void serialize(Archive& archive);
     double wall_seconds() const { return wall_before_ + seconds_since(start_); }
     Frame frame();
+    Frame frame_to_observe();
 
     Simulation& simulation_;
     const RunPlan& plan_;
@@ -309,8 +310,17 @@ void Loop::show_between() {
     for (const std::size_t i : asking) timed(summary_.output[i], [&] { observers_[i]->observe_between(now); });
 }
 
+Frame Loop::frame_to_observe() {
+    const bool looked_at =
+        std::any_of(observers_.begin(), observers_.end(), [](const auto& one) { return one->looks_at_fields(); });
+    if (looked_at) return frame();
+    Frame result;
+    timed(summary_.output[frame_phase_], [&] { result.status = simulation_.frame_status(); });
+    return result;
+}
+
 void Loop::show_frame() {
-    Frame now = frame();
+    Frame now = frame_to_observe();
     now.number = summary_.frames;
     // A frame's sums belong to one moment; between frames a solver's velocities may lag behind its positions.
     summary_.last = now.status;

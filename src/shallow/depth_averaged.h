@@ -35,6 +35,7 @@ public:
         return (feed_ && !feed_->over()) || (late_ && late_->next() < std::numeric_limits<double>::infinity());
     }
     Frame frame() override;
+    Status frame_status() override;
     std::shared_ptr<const void> give_frame_away() override { return store_.give_away(); }
     std::vector<PhaseTime> timings() const override { return timed_.times(); }
     Sample at(const Vec2& point) const override;
@@ -138,8 +139,10 @@ private:
     void accumulate_points(const PointSums& sums);
     void require_finite(const PointSums& sums) const;
 
+    Status catch_up_on_copy();
+    double fastest_node() const;
     void particle_fields(Frame& frame);
-    void node_fields(Frame& frame);
+    double node_fields(Frame& frame);
     void stress_fields(Frame& frame);
     template <class Law>
     void stress_at_points(const Law& law, double* stresses) const;

@@ -58,37 +58,68 @@ BedHere bed_at(const Flow& flow, bool steep, bool curved, double x, double y) {
 
 }  // namespace
 
-/// Velocities are half a step behind: nodes are updated by the missing half on a copy, points gather from it.
+/// Velocities are half a step behind: nodes are updated by the missing half on a copy, points gather from it. The largest
+/// speed is not in it yet.
+Status DepthAveraged::catch_up_on_copy() {
+    const GridUpdateSums sums = grid_update_->update(flow_, 0.5 * status_.dt, 0.0);
+    mirror_motion(flow_);
+    transfer_->probe(flow_, probe_);
+    Status now = status_;
+    now.kinetic = sums.kinetic;
+    now.dissipated += sums.dissipated + 0.5 * status_.dt * stress_power_;
+    now.impulse[0] += sums.impulse_x;
+    now.impulse[1] += sums.impulse_y;
+    now.momentum = {0.0, 0.0};
+    double speed2 = 0.0;
+    for (Index p = 0; p < flow_.columns.count(); ++p) {
+        now.momentum[0] += flow_.columns.mass[p] * probe_.vx[p];
+        now.momentum[1] += flow_.columns.mass[p] * probe_.vy[p];
+        speed2 = std::max(speed2, probe_.vx[p] * probe_.vx[p] + probe_.vy[p] * probe_.vy[p]);
+    }
+    now.max_speed_on_map = std::sqrt(speed2);
+    if (flow_.walls)
+        for (int axis = 0; axis < 2; ++axis)
+            now.impulse[axis] = now.momentum[axis] + now.momentum_left[axis] - start_momentum_[axis];
+    return now;
+}
+
 Frame DepthAveraged::frame() {
     Frame frame;
     store_.begin();
     timed_("frame", [&] {
-        const GridUpdateSums sums = grid_update_->update(flow_, 0.5 * status_.dt, 0.0);
-        mirror_motion(flow_);
-        transfer_->probe(flow_, probe_);
         frame.grid = shown_.of(flow_.grid.geometry());
-        frame.status = status_;
-        frame.status.kinetic = sums.kinetic;
-        frame.status.dissipated += sums.dissipated + 0.5 * status_.dt * stress_power_;
-        frame.status.impulse[0] += sums.impulse_x;
-        frame.status.impulse[1] += sums.impulse_y;
-        frame.status.momentum = {0.0, 0.0};
-        double speed2 = 0.0;
-        for (Index p = 0; p < flow_.columns.count(); ++p) {
-            frame.status.momentum[0] += flow_.columns.mass[p] * probe_.vx[p];
-            frame.status.momentum[1] += flow_.columns.mass[p] * probe_.vy[p];
-            speed2 = std::max(speed2, probe_.vx[p] * probe_.vx[p] + probe_.vy[p] * probe_.vy[p]);
-        }
-        frame.status.max_speed_on_map = std::sqrt(speed2);
-        if (flow_.walls)
-            for (int axis = 0; axis < 2; ++axis)
-                frame.status.impulse[axis] =
-                    frame.status.momentum[axis] + frame.status.momentum_left[axis] - start_momentum_[axis];
+        frame.status = catch_up_on_copy();
         particle_fields(frame);
-        node_fields(frame);
+        frame.status.max_speed = node_fields(frame);
         if (rheology_.index() != 0) stress_fields(frame);
     });
     return frame;
+}
+
+Status DepthAveraged::frame_status() {
+    Status now;
+    timed_("frame", [&] {
+        now = catch_up_on_copy();
+        now.max_speed = fastest_node();
+    });
+    return now;
+}
+
+/// What counts for the largest speed: not the film at the flow's rim.
+static double speed_that_counts(double depth, double footprint_depth, double speed) {
+    return depth < 0.1 * footprint_depth ? 0.0 : speed;
+}
+
+double DepthAveraged::fastest_node() const {
+    const Motion* motions = flow_.nodes.motions();
+    double fastest = 0.0;
+    for_each_output_node(flow_, shown_, [&](Index k, Index) {
+        const double h = flow_.nodes.depth[k];
+        if (h <= 0.0) return;
+        const BedContact contact = bed_contact(flow_, steep_, curved_, k, motions[k].vx, motions[k].vy);
+        fastest = std::max(fastest, speed_that_counts(h, footprint_depth_, contact.speed));
+    });
+    return fastest;
 }
 
 void DepthAveraged::particle_fields(Frame& frame) {
@@ -133,7 +164,8 @@ void DepthAveraged::particle_fields(Frame& frame) {
     }
 }
 
-void DepthAveraged::node_fields(Frame& frame) {
+/// Returns the largest speed that counts.
+double DepthAveraged::node_fields(Frame& frame) {
     const Index count = shown_.nx * shown_.ny;
     const auto column = [&](const char* name, const char* unit, int components) {
         return store_.zeros(frame.nodes, name, unit, components, count);
@@ -187,10 +219,10 @@ void DepthAveraged::node_fields(Frame& frame) {
         velocity[3 * n + 1] = vy;
         if (steep_) velocity[3 * n + 2] = vx * flow_.bed.smooth_x[k] + vy * flow_.bed.smooth_y[k];
         speed[n] = contact.speed;
-        if (!(h < 0.1 * footprint_depth_)) fastest = std::max(fastest, contact.speed);
+        fastest = std::max(fastest, speed_that_counts(h, footprint_depth_, contact.speed));
         pressure[n] = contact.pressure;
     });
-    frame.status.max_speed = fastest;
+    return fastest;
 }
 
 /// Stress of the rheology at the points and, mass-weighted, on the nodes; effective_stress adds the depth-averaged

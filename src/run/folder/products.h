@@ -29,6 +29,7 @@ public:
     LastFields(std::string crs_wkt, std::vector<ProductRaster>& into) : crs_wkt_(std::move(crs_wkt)), into_(into) {}
     std::string name() const override { return "last fields"; }
     void end(const Frame& last) override;
+    bool looks_at_fields() const override { return false; }  // at the end it does
 
 private:
     std::string crs_wkt_;
