@@ -34,6 +34,7 @@ public:
         frame.status = now_;
         return frame;
     }
+    Status frame_status() override { return now_; }
     bool may_rest() const override { return ready; }
     MovingMass motion(const MotionQuery& query) const override {
         ++looks;
