@@ -23,7 +23,8 @@ Scene box_on(double slope, double mu) {
     scene.density = 1700.0;
     scene.curvature = Curvature::none;
     scene.bed_law = bed::Coulomb{mu};
-    scene.scheme.merge = false;  // which structured columns do not
+    scene.scheme.merge = false;     // which structured columns do not
+    scene.scheme.wave_shift = 0.0;  // nor this
     return scene;
 }
 

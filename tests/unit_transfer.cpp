@@ -4,6 +4,7 @@
 #include "analytic_scene.h"
 #include "catch.h"
 #include "shallow/transfer.h"
+#include "shallow/two_cell_wave.h"
 #include "terrain/holes.h"
 
 using namespace frana;
@@ -97,7 +98,8 @@ void set_motion(Flow& flow) {
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
             const double x = static_cast<double>(i), y = static_cast<double>(j);
             flow.nodes.motions()[k] = {3.0 * std::sin(0.1 * x + 0.2 * y), 2.0 * std::cos(0.3 * x), 1.0 + 0.01 * x,
-                                       0.5 + 0.5 * std::cos(0.7 * x - 0.2 * y)};
+                                       0.2 * std::cos(3.0 * x - 0.2 * y)};
+            flow.nodes.velocity_share[k] = 0.5 + 0.5 * std::cos(0.7 * x - 0.2 * y);
             flow.nodes.before[k] = {2.0 * std::sin(0.2 * x), 1.0 + 0.1 * std::cos(0.4 * y)};
         });
     });
@@ -128,6 +130,26 @@ TEST_CASE("Four points at a time transfer what one at a time does", "[transfer]"
     compare_points(a.flow, b.flow);
     CHECK(packed->gone() == plain->gone());
     CHECK((std::count(plain->gone().begin(), plain->gone().end(), 1) > 0) == (sides == Sides::open || hole));
+}
+
+TEST_CASE("A point on its way leaves the crests of two-cell waves, by at most half of its way", "[transfer]") {
+    const auto shifted = [](double strength, double slope_x, double slope_y, double dx, double dy) {
+        off_waves(strength, slope_x, slope_y, dx, dy);
+        return std::pair(dx, dy);
+    };
+    CHECK(shifted(1.0, 0.1, -0.2, 0.3, 0.4) == std::pair(0.3 - 0.5 * 0.1, 0.4 + 0.5 * 0.2));  // its way is 0.5
+    CHECK(shifted(1.0, 9.0, -9.0, 0.3, 0.4) == std::pair(0.3 - 0.25, 0.4 + 0.25));
+    CHECK(shifted(1.0, 9.0, -9.0, 0.0, 0.0) == std::pair(0.0, 0.0));
+    CHECK(shifted(0.0, 9.0, -9.0, 0.3, 0.4) == std::pair(0.3, 0.4));
+}
+
+TEST_CASE("A two-cell wave is one of the depth and of the level at once", "[transfer]") {
+    CHECK(common_wave(2.0, 1.9, 7.0, 7.0) == 0.0);    // a level surface over a rough bed
+    CHECK(common_wave(2.0, 2.0, 7.0, 6.9) == 0.0);    // a sheet as rough as its bed
+    CHECK(common_wave(2.0, 1.75, 7.0, 7.25) == 0.0);  // pits that are not full
+    CHECK(common_wave(2.0, 1.75, 7.0, 6.875) == 0.0625);
+    CHECK(common_wave(2.0, 2.25, 7.0, 7.125) == -0.0625);
+    CHECK(common_wave(0.0, 0.0, 7.0, 7.0) == 0.0);  // no material
 }
 
 TEST_CASE("What a hole's wall sets back counts in how far points came", "[transfer][holes]") {

@@ -44,6 +44,7 @@ struct Scheme {
     double flip_ratio = 0.99;          ///< share of FLIP in transfer "flip" [1]
     double cfl = 0.5;                  ///< fraction of a cell per step [1]
     double filter = 1.0;               ///< strength of the surface filter, 0 = off [1]
+    double wave_shift = 1.0;           ///< by how much points leave two-cell waves, 0 = not at all [1]
     bool margin = true;                ///< extrapolate the surface at margins from the inside
     double sub_point_reach = 0.25;     ///< of the four points that carry a column's mass, in domain edges; 0: one point
     double margin_limit = 1.0;         ///< clamp of the quadratic part of the margin extrapolation [1]

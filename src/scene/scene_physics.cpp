@@ -39,6 +39,7 @@ Scheme scheme_of(const CaseFile& file) {
     scheme.flip_ratio = value("flip_ratio");
     scheme.cfl = value("cfl");
     scheme.filter = value("filter");
+    scheme.wave_shift = value("wave_shift");
     scheme.margin = file.flag("scheme.margin");
     scheme.sub_point_reach = value("sub_point_reach");
     scheme.margin_limit = value("margin_limit");

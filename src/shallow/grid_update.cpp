@@ -7,6 +7,7 @@
 #include "shallow/lateral.h"
 #include "shallow/shock.h"
 #include "shallow/surface_gradient.h"
+#include "shallow/two_cell_wave.h"
 
 namespace frana {
 namespace {
@@ -153,6 +154,14 @@ private:
             return (law_);
     }
 
+    /// What points shift by.
+    template <class Real>
+    static Real wave_at(const Flow& flow, Index k) {
+        const Nodes& nodes = flow.nodes;
+        return common_wave(read<Real>(&nodes.depth[k]), read<Real>(&nodes.law_depth[k]), read<Real>(&nodes.level[k]),
+                           read<Real>(&nodes.surface[k]));
+    }
+
     static NodeGroups moving_groups(const Flow& flow, Index tile) {
         NodeGroups moving = 0;
         for_each_four_of(flow.grid, tile, flow.in_reach[tile], [&](Index k, Index i, Index j) {
@@ -176,8 +185,9 @@ private:
                 updated(flow, typename Terrain::template Bed<Double4>(flow, k), node, law_at<Double4>(flow, k), dt);
             add(flow, node, after, 1.0, work.four);
             Double4 out[4];
-            transpose(after.vx, after.vy, node.depth, after.velocity_share, out);
+            transpose(after.vx, after.vy, node.depth, wave_at<Double4>(flow, k), out);
             for (int n = 0; n < 4; ++n) store(motion + n, out[n]);
+            if (flow.keeps_shares) store(&flow.nodes.velocity_share[k], after.velocity_share);
         } else {
             update_some(flow, k, i, j, dt, work.single);
         }
@@ -189,7 +199,8 @@ private:
         std::array<double, 4> share{};
         int moving = 0, last = 0;
         for (int n = 0; n < 4; ++n) {
-            flow.nodes.motions()[k + n] = {0.0, 0.0, flow.nodes.depth[k + n], 1.0};
+            flow.nodes.motions()[k + n] = {0.0, 0.0, flow.nodes.depth[k + n], 0.0};
+            if (flow.keeps_shares) flow.nodes.velocity_share[k + n] = 1.0;
             if (flow.nodes.flags[k + n] & kMoving) share[static_cast<std::size_t>(n)] = flow.share(i + n, j);
             if (share[static_cast<std::size_t>(n)] == 0.0) continue;
             four.set(n, prepared_at(flow, k + n, i + n, j));
@@ -221,7 +232,8 @@ private:
 
     static void take(Flow& flow, Index k, const Node<double>& node, const Updated<double>& after, double share,
                      Sums<double>& sums) {
-        flow.nodes.motions()[k] = {after.vx, after.vy, node.depth, after.velocity_share};
+        flow.nodes.motions()[k] = {after.vx, after.vy, node.depth, wave_at<double>(flow, k)};
+        if (flow.keeps_shares) flow.nodes.velocity_share[k] = after.velocity_share;
         add(flow, node, after, share, sums);
     }
 

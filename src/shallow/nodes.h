@@ -16,9 +16,9 @@ struct alignas(32) Deposit {
 
 /// What points gather from a node.
 struct alignas(32) Motion {
-    double vx, vy;          ///< velocity after the grid update [m/s]
-    double depth;           ///< [m]
-    double velocity_share;  ///< share of the velocity that friction left [1]; read by flip
+    double vx, vy;  ///< velocity after the grid update [m/s]
+    double depth;   ///< [m]
+    double wave;    ///< two-cell wave of depth and surface, over the depth [1]
 };
 
 /// A pair of numbers per node.
@@ -64,6 +64,7 @@ struct Nodes {
           row_known(grid.size(), around(grid)),
           before(grid.size()),
           motion(grid.size()),
+          velocity_share(grid.size()),
           viscous_flux(grid.size()),
           lateral(grid.size()),
           shock(grid.size()),
@@ -89,11 +90,12 @@ struct Nodes {
     LazyArray<std::uint8_t> row_known;  ///< 1: the wave in x is known there
     LazyArray<Pair> before;             ///< momentum / mass, before the grid update [m/s]
     LazyArray<Motion> motion;
-    LazyArray<Pair> viscous_flux;    ///< artificial viscosity through the faces towards +x and +y [m^3/s^2]
-    LazyArray<Pair> lateral;         ///< acceleration by the lateral drag; used only when the scheme has one [m/s^2]
-    LazyArray<Pair> shock;           ///< sensor of those two faces, 0 (smooth) to 1 (bore) [1]
-    LazyArray<std::uint8_t> sensed;  ///< 1 where either of `shock` is above zero
-    LazyArray<std::uint8_t> flags;   ///< NodeFlag bits
+    LazyArray<double> velocity_share;  ///< share of the velocity that friction left; only where points keep some [1]
+    LazyArray<Pair> viscous_flux;      ///< artificial viscosity through the faces towards +x and +y [m^3/s^2]
+    LazyArray<Pair> lateral;           ///< acceleration by the lateral drag; used only when the scheme has one [m/s^2]
+    LazyArray<Pair> shock;             ///< sensor of those two faces, 0 (smooth) to 1 (bore) [1]
+    LazyArray<std::uint8_t> sensed;    ///< 1 where either of `shock` is above zero
+    LazyArray<std::uint8_t> flags;     ///< NodeFlag bits
 
 private:
     /// Stencils of the outermost spare nodes read so far beyond the array: two rows and a few.

@@ -10,6 +10,7 @@
 #include "shallow/sheet.h"
 #include "shallow/sides.h"
 #include "shallow/sub_points.h"
+#include "shallow/two_cell_wave.h"
 
 namespace frana {
 
@@ -123,7 +124,7 @@ public:
 
 private:
     struct Gathered {
-        double vx, vy, cxx, cxy, cyx, cyy, depth, velocity_share, old_x, old_y;
+        double vx, vy, cxx, cxy, cyx, cyy, depth, wave_x, wave_y, velocity_share, old_x, old_y;
     };
 
     /// APIC: C = D^-1 sum N v (x) d, D = cell^2/4 (quadratic) or cell^2/3 (cubic; Jiang et al. 2015);
@@ -144,7 +145,7 @@ private:
             for (int i = 0; i < S::kNodes; ++i) {
                 const Index k = flow.grid.at(sx.base + i, sy.base + j);
                 const double di = static_cast<double>(i) - sx.offset, dj = static_cast<double>(j) - sy.offset;
-                const double share = flow.carried_share * flow.nodes.motions()[k].velocity_share;
+                const double share = flow.carried_share * flow.nodes.velocity_share[k];
                 const double x = share * (c.vx[p] + flow.cell * (g.xx * di + g.xy * dj) - flow.nodes.before[k].x);
                 const double y = share * (c.vy[p] + flow.cell * (g.yx * di + g.yy * dj) - flow.nodes.before[k].y);
                 const double w = sx.w[i] * sy.w[j];
@@ -207,7 +208,7 @@ private:
         const S sx(c.x[p]), sy(c.y[p]);
         const Motion* motions = flow.nodes.motions();
         Double4 value = {}, by_x = {}, by_y = {};
-        double old_x = 0.0, old_y = 0.0;
+        double velocity_share = 0.0, old_x = 0.0, old_y = 0.0;
         for (int j = 0; j < S::kNodes; ++j) {
             const Index k = flow.grid.at(sx.base, sy.base + j);
             Double4 row = {}, row_x = {};
@@ -219,7 +220,8 @@ private:
                 else
                     row_x += sx.slope(i) * node;
                 if constexpr (kTransfer == Transfer::flip) {
-                    const double share = sx.w[i] * sy.w[j] * motions[k + i].velocity_share;
+                    const double share = sx.w[i] * sy.w[j] * flow.nodes.velocity_share[k + i];
+                    velocity_share += share;
                     old_x += share * flow.nodes.before[k + i].x;
                     old_y += share * flow.nodes.before[k + i].y;
                 }
@@ -232,8 +234,18 @@ private:
                 by_y += sy.slope(j) * row;
         }
         const double scale = gradient_scale() / flow.cell;
-        return {value[0],        value[1], scale * by_x[0], scale * by_y[0], scale * by_x[1],
-                scale * by_y[1], value[2], value[3],        old_x,           old_y};
+        return {value[0],
+                value[1],
+                scale * by_x[0],
+                scale * by_y[0],
+                scale * by_x[1],
+                scale * by_y[1],
+                value[2],
+                gradient_scale() * by_x[3],
+                gradient_scale() * by_y[3],
+                velocity_share,
+                old_x,
+                old_y};
     }
 
     /// FLIP: forces add to a point's velocity what they added to the nodes', friction leaves of it the share that it left of
@@ -259,7 +271,8 @@ private:
                 more = own(flow, p);
                 vx += more.vx, vy += more.vy;
             }
-        const double shift_x = dt * g.vx / flow.cell, shift_y = dt * g.vy / flow.cell;
+        double shift_x = dt * g.vx / flow.cell, shift_y = dt * g.vy / flow.cell;
+        off_waves(flow.scheme.wave_shift, g.wave_x, g.wave_y, shift_x, shift_y);
         const double shift = std::max(std::abs(shift_x), std::abs(shift_y));
         if (!(shift <= 4.0)) {  // also catches what is not finite
             if (sums.bad < 0) sums.bad = p;

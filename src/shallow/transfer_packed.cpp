@@ -13,6 +13,7 @@
 #include "shallow/sheet.h"
 #include "shallow/sides.h"
 #include "shallow/sub_points_of_four.h"
+#include "shallow/two_cell_wave.h"
 
 namespace frana {
 namespace {
@@ -235,9 +236,10 @@ private:
         return scaled(sigma, per_cell * volume);
     }
 
-    /// Velocity, its gradient (TPIC: sum v (x) grad N) and what stands third on nodes, at four points.
+    /// Velocity, its gradient (TPIC: sum v (x) grad N), depth and the change of the two-cell wave over a cell, at four
+    /// points.
     struct OfFour {
-        Double4 vx{}, vy{}, depth{}, cxx{}, cxy{}, cyx{}, cyy{};
+        Double4 vx{}, vy{}, depth{}, cxx{}, cxy{}, cyx{}, cyy{}, wave_x{}, wave_y{};
         /// From what each of the four has: value, and change over a cell.
         [[gnu::always_inline]] void take(const Double4 (&value)[4], const Double4 (&by_x)[4], const Double4 (&by_y)[4],
                                          double cell) {
@@ -246,9 +248,9 @@ private:
             transpose(value[0], value[1], value[2], value[3], of);
             vx = of[0], vy = of[1], depth = of[2];
             transpose(by_x[0], by_x[1], by_x[2], by_x[3], of);
-            cxx = scale * of[0], cyx = scale * of[1];
+            cxx = scale * of[0], cyx = scale * of[1], wave_x = of[3];
             transpose(by_y[0], by_y[1], by_y[2], by_y[3], of);
-            cxy = scale * of[0], cyy = scale * of[1];
+            cxy = scale * of[0], cyy = scale * of[1], wave_y = of[3];
         }
     };
 
@@ -307,7 +309,7 @@ private:
                     for (int j = 0; j < 3; ++j, k += stride, row += along_y) {
                         const auto more = [&](int i) {
                             const Pair& before = flow.nodes.before[k + i];
-                            const double share = flow.carried_share * flow.nodes.motions()[k + i].velocity_share;
+                            const double share = flow.carried_share * flow.nodes.velocity_share[k + i];
                             return share *
                                    (row + static_cast<double>(i) * along_x - Double4{before.x, before.y, 0.0, 0.0});
                         };
@@ -344,7 +346,8 @@ private:
         Columns& c = flow.columns;
         Carried<Real>& held = c.carried<Real>();
         const Gathered g(flow, p, lanes);
-        const Double4 shift_x = dt / flow.cell * g.vx, shift_y = dt / flow.cell * g.vy;
+        Double4 shift_x = dt / flow.cell * g.vx, shift_y = dt / flow.cell * g.vy;
+        off_waves(flow.scheme.wave_shift, g.wave_x, g.wave_y, shift_x, shift_y);
         const Double4 shift = max(abs(shift_x), abs(shift_y));
         const Mask4 is_finite = shift <= 4.0;  // also catches what is not finite
         if (any(~is_finite)) {

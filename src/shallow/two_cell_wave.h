@@ -19,4 +19,24 @@ Real wave_along_both(const double* e, Index up) {
     return ((row(-2) + row(2)) - 4.0 * (row(-1) + row(1)) + 6.0 * row(0)) / 16.0;
 }
 
+/// The wave that the level and the depth have in common, over the depth [1]; none where they disagree. `law_depth` is the
+/// depth without its wave, `surface` the level without its own. THEORY (50).
+template <class Real>
+Real common_wave(Real depth, Real law_depth, Real level, Real surface) {
+    constexpr double kDry = 1e-100;  // [m]
+    const Real none{}, of_depth = depth - law_depth, of_level = level - surface;
+    const Real wave = max(none, min(of_depth, of_level)) + min(none, max(of_depth, of_level));
+    return wave / max(depth, none + kDry);
+}
+
+/// Takes the way (dx, dy) of a point in a step [cells] off the crests of two-cell waves, by at most half of its length
+/// along each axis. Who stays in place stays. THEORY (50).
+/// wave_x, wave_y: change of the wave over a cell [1]. strength: `scheme.wave_shift`.
+template <class Real>
+void off_waves(double strength, const Real& wave_x, const Real& wave_y, Real& dx, Real& dy) {
+    const Real way = sqrt(dx * dx + dy * dy), most = 0.5 * way, scale = strength * way;
+    dx -= max(-most, min(most, scale * wave_x));
+    dy -= max(-most, min(most, scale * wave_y));
+}
+
 }  // namespace frana

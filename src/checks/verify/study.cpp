@@ -32,6 +32,7 @@ const std::vector<Component>& components() {
         with("no margin", &Scheme::margin, false),
         with("margin linear", &Scheme::margin_limit, 0.0),
         with("no filter", &Scheme::filter, 0.0),
+        with("no wave shift", &Scheme::wave_shift, 0.0),
         {"no viscosity", [](Scene& s) { s.scheme.viscosity_linear = s.scheme.viscosity_quadratic = 0.0; }},
         with("viscosity c1 0.1", &Scheme::viscosity_linear, 0.1),
         with("no shock gate", &Scheme::shock_gate, 0.0),
