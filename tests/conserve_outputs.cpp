@@ -110,3 +110,21 @@ TEST_CASE("The status of a frame without its fields has the same bits", "[conser
     }
     CHECK(looked_at.frame().status.max_speed > 0.0);
 }
+
+TEST_CASE("With all of FLIP the first frame shows the velocities that points start with", "[conserve]") {
+    Scene scene = gully();
+    scene.scheme.transfer = Transfer::flip;
+    scene.scheme.flip_ratio = 1.0;
+    for (std::size_t p = 0; p < scene.particles.vx.size(); ++p)
+        scene.particles.vx[p] = std::sin(static_cast<double>(p));
+    DepthAveraged simulation(scene);
+    const Frame first = simulation.frame();
+    const Columns& points = simulation.flow().columns;
+    const Field& velocity = *first.particle("velocity");
+    double largest = 0.0;
+    for (Index p = 0; p < velocity.count; ++p) {
+        largest = std::max(largest, points.vx[p]);
+        CHECK(velocity.data[velocity.components * p] == Approx(points.vx[p]).margin(1e-13));
+    }
+    CHECK(largest > 0.9);
+}

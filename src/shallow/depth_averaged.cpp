@@ -143,7 +143,6 @@ void DepthAveraged::advance(double until) {
     if (late_) until = std::min(until, late_->next());  // that time is hit
     const double share = share_of_ordinary_step();
     flow_.carried_share = 1.0 - share;
-    flow_.keeps_shares = flow_.carried_share > 0.0 || flow_.scheme.transfer == Transfer::flip;
     const double dt = timed_("kick and friction", [&] { return update_nodes(step_length(until)); });
     flow_.rest.settled = since_split_ == 0.0 || flow_.scheme.paper_pressure;  // that preset does neither
     since_split_ += share;

@@ -68,7 +68,8 @@ struct Flow {
     Scheme scheme;
     /// Of what affine points carry beyond the nodes' motion, the share that the next gather leaves them; less of flip [1].
     double carried_share = 0.0;
-    bool keeps_shares = false;  ///< nodes store what friction leaves of velocities, for those that points carry
+    /// Whether nodes store what friction leaves of velocities: points that keep some of their own ask for it.
+    bool keeps_shares() const { return carried_share > 0.0 || scheme.transfer == Transfer::flip; }
     /// Per tile of the domain, good for tiles of the work list: what the points of the last deposit touched, the only nodes
     /// with material. Stale elsewhere; deposits are cleared by it.
     LazyArray<NodeGroups> in_reach;

@@ -156,10 +156,9 @@ private:
 
     /// What points shift by.
     template <class Real>
-    static Real wave_at(const Flow& flow, Index k) {
-        const Nodes& nodes = flow.nodes;
-        return common_wave(read<Real>(&nodes.depth[k]), read<Real>(&nodes.law_depth[k]), read<Real>(&nodes.level[k]),
-                           read<Real>(&nodes.surface[k]));
+    static Real wave_at(const Flow& flow, Index k, const Node<Real>& node) {
+        return common_wave(node.depth, node.law_depth, read<Real>(&flow.nodes.level[k]),
+                           read<Real>(&flow.nodes.surface[k]));
     }
 
     static NodeGroups moving_groups(const Flow& flow, Index tile) {
@@ -185,9 +184,9 @@ private:
                 updated(flow, typename Terrain::template Bed<Double4>(flow, k), node, law_at<Double4>(flow, k), dt);
             add(flow, node, after, 1.0, work.four);
             Double4 out[4];
-            transpose(after.vx, after.vy, node.depth, wave_at<Double4>(flow, k), out);
+            transpose(after.vx, after.vy, node.depth, wave_at(flow, k, node), out);
             for (int n = 0; n < 4; ++n) store(motion + n, out[n]);
-            if (flow.keeps_shares) store(&flow.nodes.velocity_share[k], after.velocity_share);
+            if (flow.keeps_shares()) store(&flow.nodes.velocity_share[k], after.velocity_share);
         } else {
             update_some(flow, k, i, j, dt, work.single);
         }
@@ -200,7 +199,7 @@ private:
         int moving = 0, last = 0;
         for (int n = 0; n < 4; ++n) {
             flow.nodes.motions()[k + n] = {0.0, 0.0, flow.nodes.depth[k + n], 0.0};
-            if (flow.keeps_shares) flow.nodes.velocity_share[k + n] = 1.0;
+            if (flow.keeps_shares()) flow.nodes.velocity_share[k + n] = 1.0;
             if (flow.nodes.flags[k + n] & kMoving) share[static_cast<std::size_t>(n)] = flow.share(i + n, j);
             if (share[static_cast<std::size_t>(n)] == 0.0) continue;
             four.set(n, prepared_at(flow, k + n, i + n, j));
@@ -232,8 +231,8 @@ private:
 
     static void take(Flow& flow, Index k, const Node<double>& node, const Updated<double>& after, double share,
                      Sums<double>& sums) {
-        flow.nodes.motions()[k] = {after.vx, after.vy, node.depth, wave_at<double>(flow, k)};
-        if (flow.keeps_shares) flow.nodes.velocity_share[k] = after.velocity_share;
+        flow.nodes.motions()[k] = {after.vx, after.vy, node.depth, wave_at(flow, k, node)};
+        if (flow.keeps_shares()) flow.nodes.velocity_share[k] = after.velocity_share;
         add(flow, node, after, share, sums);
     }
 

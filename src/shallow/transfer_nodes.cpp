@@ -86,7 +86,7 @@ void mirror_motion(Flow& flow) {
         for_each_wall_pair(flow, axis, 1, [&](Index ghost, Index mirror) {
             motions[ghost] = motions[mirror];
             (axis == 0 ? motions[ghost].vx : motions[ghost].vy) *= -1.0;
-            if (flow.keeps_shares) flow.nodes.velocity_share[ghost] = flow.nodes.velocity_share[mirror];
+            if (flow.keeps_shares()) flow.nodes.velocity_share[ghost] = flow.nodes.velocity_share[mirror];
         });
 }
 
