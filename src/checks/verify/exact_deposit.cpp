@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 /// Integral of weight(x) depth(x) from 0 to `front` for a depth that ends as a square root: x = front (1 - w^2) makes it
 /// smooth, and the midpoint rule second order.

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/ode.h"
 
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 double clip(double x, double most) { return std::clamp(x, 0.0, most); }
 

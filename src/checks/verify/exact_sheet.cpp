@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::verify {
 namespace {
 
@@ -15,7 +17,7 @@ double mean_of(const F& f, double a, double b, int pieces) {
     return sum / (6 * pieces);
 }
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 }  // namespace
 

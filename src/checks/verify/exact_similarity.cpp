@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 }  // namespace
 

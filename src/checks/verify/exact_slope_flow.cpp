@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/ode.h"
 
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 /// Mass and momentum equation of (h, u)(x, t) by central differences of fourth order: what is left, and the terms.
 struct Balance {

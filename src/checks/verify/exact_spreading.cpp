@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 /// Integral of s^(n-1) (1 - s^2)^(1/3) from 0 to 1, n = 1, 2: B(n/2, 4/3) / 2.
 double shape_integral(int n) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_block.h"
 #include "checks/verify/library.h"
 #include "checks/verify/slide.h"
@@ -9,7 +10,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
+using constants::kDegree;
 constexpr double kTurns[] = {0.0, 15.0, 27.0, 45.0};
 
 /// Cells per 100 m.

@@ -2,13 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/body.h"
 #include "checks/verify/library.h"
 
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 /// An elastic bar without sideways strain (nu = 0): waves run with sqrt(E / rho).
 struct Bar {

@@ -3,13 +3,14 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/constants.h"
 #include "checks/verify/body.h"
 #include "checks/verify/library.h"
 
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0, kGravity = 9.81;
+using constants::kDegree, constants::kGravity;
 constexpr double kWidthCells = 3.0;  // of a slice
 
 /// End of the deposit that holds together: the first gap of a cell.

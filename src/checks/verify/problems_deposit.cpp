@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_deposit.h"
 #include "checks/verify/library.h"
 #include "checks/verify/trial.h"
@@ -10,7 +11,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 /// Bed friction and stress inside by the same material.
 void set_material(Scene& scene, const YieldMaterial& material, double viscosity) {

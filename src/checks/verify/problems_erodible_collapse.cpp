@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/library.h"
 #include "checks/verify/trial.h"
 
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 constexpr double kLength = 0.20, kHeight = 0.14;  ///< of the column, along the slope and normal to it [m]
 constexpr double kLayer = 0.005;                  ///< of loose grains on all of the slope [m]
 constexpr double kRepose = 26.0;                  ///< friction angle of flow and bed [degrees]

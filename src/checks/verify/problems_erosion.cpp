@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_erosion.h"
 #include "checks/verify/lakes.h"
 #include "checks/verify/library.h"
@@ -12,7 +13,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 /// Loose material on a bed that stays a plane.
 void add_bed(Scene& scene, ErosionLaw law, double kappa, double depth) {

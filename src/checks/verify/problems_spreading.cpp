@@ -2,6 +2,7 @@
 // shape at one time to a later one. Inertia against viscosity is h^2 / (15 nu t): a few 1e-4 here.
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_spreading.h"
 #include "checks/verify/library.h"
 #include "checks/verify/trial.h"
@@ -9,7 +10,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 
 void set_viscosity(Scene& scene, double nu) {
     scene.bed_law = bed::Bingham{nu * scene.density, 0.0, 0.0};

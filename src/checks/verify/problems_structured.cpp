@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_dam_break.h"
 #include "checks/verify/library.h"
 #include "checks/verify/structured.h"
@@ -10,7 +11,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0, kGravity = 9.81;
+using constants::kDegree, constants::kGravity;
 constexpr double kUnbreakable = 1e12;  // cohesion [Pa]
 
 /// Nothing pulls: motion in the plane alone.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "checks/verify/exact_track.h"
 #include "checks/verify/library.h"
 #include "checks/verify/slide.h"
@@ -9,7 +10,7 @@
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
+using constants::kDegree;
 
 using TrackPointer = std::shared_ptr<const Track>;
 

@@ -6,12 +6,13 @@
 #include <set>
 #include <utility>
 
+#include "base/constants.h"
 #include "mpm/stencil.h"
 
 namespace frana::verify {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using constants::kDegree;
 constexpr double kLength = 0.30, kWidth = 0.25,
                  kSide = 0.125;  // of the flume's block; its side's way to the wall [m]
 
