@@ -256,7 +256,7 @@ bool Erosion::choose(const Flow& flow) {
 
 void Erosion::make_room(const Flow& flow) {
     const std::size_t count = static_cast<std::size_t>(flow.columns.count());
-    for (Array* column : {&wanted_, &missed_, &speed_, &braked_}) resize_sparingly(*column, count);
+    for (Array* column : {&wanted_, &missed_, &speed_, &braked_, &from_x_, &from_y_}) resize_sparingly(*column, count);
     const std::size_t tiles = static_cast<std::size_t>(flow.active.count());
     sums_.assign(tiles, {}), spread_to_.resize(tiles);
 }
@@ -341,9 +341,10 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
 }
 
 /// Moves those of four points that are chosen back by (dx, dy) [m] unless ground ends there; returns how far [cells].
-Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy) const {
+Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy) {
     Columns& c = flow.columns;
     const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};
+    store(&from_x_[p], x0, lanes), store(&from_y_[p], y0, lanes);
     const Double4 x = x0 - dx / flow.cell, y = y0 - dy / flow.cell;
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
     chosen &= (x >= 0.0) & (x <= x_max) & (y >= 0.0) & (y <= y_max);
@@ -352,6 +353,14 @@ Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 
             if (chosen[lane] && flow.bed.exit[flow.grid.nearest(x[lane], y[lane])] != 0) chosen[lane] = 0;
     store(&c.x[p], select(chosen, x, x0), lanes), store(&c.y[p], select(chosen, y, y0), lanes);
     return select(chosen, max(abs(x - x0), abs(y - y0)), none);
+}
+
+/// A point that gets the share `got` < 1 of what it wants was set back too far by the rest. Where it gets nothing it is
+/// where it was, to the last bit: an empty bed changes nothing.
+void Erosion::return_part(Flow& flow, Index p, double got) const {
+    Columns& c = flow.columns;
+    c.x[p] = from_x_[p] + got * (c.x[p] - from_x_[p]);
+    c.y[p] = from_y_[p] + got * (c.y[p] - from_y_[p]);
 }
 
 /// THEORY (76): the share of its velocity that a point keeps when it grows by `gain` of its mass. What is taken brings at
@@ -525,7 +534,7 @@ void Erosion::take_shares(const Flow& flow, Index n) {
 }
 
 template <class Real>
-void Erosion::take_left_over(const Flow& flow, Index n) {
+void Erosion::take_left_over(Flow& flow, Index n) {
     const auto of_window = [&](const WindowOfFour& window, int lane, const double* row) {
         const Index up = flow.grid.stride();
         const auto of_row = [&](int b) { return window.of_lane[b][lane] * load(row + b * up); };
@@ -542,8 +551,11 @@ void Erosion::take_left_over(const Flow& flow, Index n) {
             });
         return 0.25 * more;
     };
-    for_each_wanting<Real>(flow, n, wanted_, share_, 0.0, of_window, of_point,
-                           [&](Index p, double mean) { wanted_[p] = (wanted_[p] - missed_[p]) + mean * wanted_[p]; });
+    for_each_wanting<Real>(flow, n, wanted_, share_, 0.0, of_window, of_point, [&](Index p, double mean) {
+        const double wanted = wanted_[p], gets = (wanted - missed_[p]) + mean * wanted;
+        wanted_[p] = gets;
+        if (gets < wanted) return_part(flow, p, gets / wanted);
+    });
 }
 
 /// Points take what they gained into their motion.

@@ -68,11 +68,12 @@ private:
     template <class Real>
     void take_shares(const Flow& flow, Index n);
     template <class Real>
-    void take_left_over(const Flow& flow, Index n);
+    void take_left_over(Flow& flow, Index n);
     template <class Real>
     void grow(Flow& flow, Index n);
 
-    Double4 set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy) const;
+    Double4 set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy);
+    void return_part(Flow& flow, Index p, double got) const;
     Double4 speeds_left(Double4 gain, Double4 braked) const;
     template <class Real>
     Real can_give(Index k) const;
@@ -159,6 +160,7 @@ private:
     Array wanted_;                       ///< of points; in the end what they get [kg]
     Array missed_;                       ///< of it, for their poorest nodes' sake; when something is scarce [kg]
     Array speed_;                        ///< along the bed [m/s]
+    Array from_x_, from_y_;              ///< where points that want something were before they were set back [cells]
     Array braked_;                       ///< share of the speed that friction takes in the step [1]
     CompensatedSum eroded_, deposited_, energy_;
     double initial_mass_ = 0.0, mass_ = 0.0, deepest_ = 0.0;
