@@ -1,4 +1,6 @@
 // The energy ledger: what weight gives, motion has, or friction, rheology and bores have taken.
+#include <algorithm>
+
 #include "analytic_scene.h"
 #include "catch.h"
 
@@ -53,4 +55,14 @@ TEST_CASE("The energy ledger closes to second order under friction, to first ord
     CHECK(std::log2(viscous[0] / viscous[1]) >= 0.9);
     CHECK(smooth[1] <= 0.005);  // a ledger without the one or the other is open by all of it, on any grid
     CHECK(viscous[1] <= 0.05);
+}
+
+TEST_CASE("What is released with a velocity has its kinetic energy from the start", "[conserve]") {
+    Scene scene = sliding_cap(2.0);
+    std::fill(scene.particles.vx.begin(), scene.particles.vx.end(), 3.0);
+    std::fill(scene.particles.vy.begin(), scene.particles.vy.end(), -1.0);
+    DepthAveraged simulation(scene);
+    const Status start = simulation.status();
+    CHECK(start.kinetic == simulation.frame().status.kinetic);
+    CHECK(start.kinetic == Approx(0.5 * start.mass * 10.0).epsilon(1e-13));  // the gentle model has no speed upwards
 }

@@ -57,10 +57,11 @@ TEST_CASE("A viscous sheet on a slope grows no wave of two cells", "[verify][she
     CHECK(end < start);
 }
 
-// Between nodes a particle sees the slope of a wave that no node sees. By linear theory (THEORY (50)) a wave a on nodes has
-// the slope 16 a / pi^2 a cell there, in its first harmonic. Here particles with a wave of 0.1 have 0.0243 on nodes that see
-// its crests, and none half a cell on. So it falls by exp(-0.5 * 16 / pi * 0.243) a cell, by exp(-2.5) in four. Steps of half
-// a cell leave some of that out. Pressure does nothing: it sees no slope, and the sheet is faster than its surface waves.
+// Between nodes a particle sees the slope of a wave that no node sees (THEORY (50)). By linear theory a wave a on nodes has
+// the slope 16 a / pi^2 a cell there, in its first harmonic. Particles that carry a wave of 0.1 give nodes at its crests one
+// of 0.0243. Half a cell on, nodes have none. So the wave falls by exp(-0.5 * 16 / pi * 0.243) a cell, by exp(-2.5) in four.
+// Steps of half a cell leave some of that out. Pressure does nothing: it sees no slope, and the sheet is faster than its
+// surface waves.
 TEST_CASE("A sheet that slides on levels its waves of two cells, one that lies keeps them", "[verify][sheet_waves]") {
     const double speed = GENERATE(0.0, 2.0), strength = GENERATE(0.0, 1.0);
     CAPTURE(speed, strength);

@@ -50,7 +50,7 @@ Index nearest_frame(const std::filesystem::path& run_dir, double time);
 
 /// Frame `number` of RUN_DIR/grid.pvd; negative counts from the end (-1 is the last one).
 /// Throws UserError when there is no such frame or its file cannot be read.
-/// With names in `only`, the columns of these names alone, and the elevation.
+/// With names in `only`, the columns of these names alone, the elevation and where the terrain ends.
 LoadedFrame read_frame(const std::filesystem::path& run_dir, Index number, const std::vector<std::string>& only = {});
 
 /// The same frame of RUN_DIR/particles.pvd.

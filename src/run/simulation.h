@@ -31,7 +31,7 @@ public:
     virtual bool more_comes() const { return false; }
     /// The state at status().time as named columns; borrowed until the next call of advance() or frame().
     virtual Frame frame() = 0;
-    /// The status of that frame, for those who need none of its fields.
+    /// The status of that frame, for those who need none of its fields. It too ends what a borrowed frame points to.
     virtual Status frame_status() { return frame().status; }
     /// What the last frame's fields point into, for those who look at them longer than until the next step: they stay as
     /// they are while somebody holds it. To be called before the next advance() or frame().

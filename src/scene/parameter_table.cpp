@@ -239,10 +239,12 @@ void add_scheme(Table& table) {
                          "scheme.transfer", {"flip"}));
     table.push_back(paper(number("scheme.cfl", "1", small, 0.5, "largest way in one time step, in cells"), 0.25));
     table.push_back(paper(number("scheme.filter", "1", fraction, 1.0, "strength of the surface filter"), 0.0));
-    table.push_back(
-        paper(number("scheme.wave_shift", "1", between(0.0, 2.0), 1.0,
-                     "how much particles on their way leave depths that repeat every two cells; 0: they stay"),
-              0.0));
+    table.push_back(paper(
+        number(
+            "scheme.wave_shift", "1", between(0.0, 2.0), 1.0,
+            "how much particles on their way leave depths that repeat every two cells; 0: they stay; nothing without "
+            "scheme.filter"),
+        0.0));
     table.push_back(flag("scheme.margin", true, "extrapolate the surface at margins from the inside"));
     table.push_back(number("scheme.sub_point_reach", "1", between(0.0, 0.5), 0.25,
                            "place of a particle's four sub-points, in edges of its domain; 0: all at its centre"));

@@ -154,7 +154,7 @@ private:
             return (law_);
     }
 
-    /// What points shift by.
+    /// The wave whose slope points shift by.
     template <class Real>
     static Real wave_at(const Flow& flow, Index k, const Node<Real>& node) {
         return common_wave(node.depth, node.law_depth, read<Real>(&flow.nodes.level[k]),

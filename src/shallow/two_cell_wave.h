@@ -29,8 +29,8 @@ Real common_wave(Real depth, Real law_depth, Real level, Real surface) {
     return wave / max(depth, none + kDry);
 }
 
-/// Takes the way (dx, dy) of a point in a step [cells] off the crests of two-cell waves, by at most half of its length
-/// along each axis. Who stays in place stays. THEORY (50).
+/// Takes the way (dx, dy) of a point in a step [cells] off the crests of two-cell waves. Along each axis that is at most half
+/// of its length. What stays in place stays. THEORY (50).
 /// wave_x, wave_y: change of the wave over a cell [1]. strength: `scheme.wave_shift`.
 template <class Real>
 void off_waves(double strength, const Real& wave_x, const Real& wave_y, Real& dx, Real& dy) {

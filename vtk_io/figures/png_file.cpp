@@ -38,6 +38,7 @@ public:
         // Shaded ground is like the row above it: against level 3 without a filter, 0.8 of the bytes in 0.6 of the time.
         png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
         png_set_compression_level(png_, 1);
+        png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
         png_write_info(png_, info_);
         for (int y = picture.height - 1; y >= 0; --y)  // ours begin at the lowest
             png_write_row(png_, picture.rgb.data() + static_cast<std::size_t>(y) * picture.width * 3);

@@ -19,6 +19,7 @@ double draw_mu(Dice& dice) { return dice.one_of({0.0, 1e-6, 0.1, 0.4, 1.0, 3.0, 
 /// Some keys of the scheme off their defaults.
 void draw_parts(Dice& dice, Draft& draft) {
     if (dice.chance(0.2)) say(draft, "scheme.filter", dice.one_of({0.0, 0.5, 1.0}));
+    if (dice.chance(0.2)) say(draft, "scheme.wave_shift", dice.one_of({0.0, 0.5, 2.0}));
     if (dice.chance(0.2)) draft.keys["scheme.margin"] = "false";
     if (dice.chance(0.2)) say(draft, "scheme.sub_point_reach", dice.one_of({0.0, 0.1, 0.25}));
     if (dice.chance(0.2)) say(draft, "scheme.margin_limit", dice.one_of({0.0, 1.0, 4.0}));

@@ -238,8 +238,8 @@ std::vector<std::string> CheckpointKeeper::warnings() const {
     return warnings;
 }
 
-/// A state that outlives a power cut is worth nothing without the frames that go with it. Each file waits for the disk, and
-/// disks take what is asked of them together in little more time than one.
+/// A state that outlives a power cut is worth nothing without the frames that go with it. Each file waits for the disk. Disks
+/// take what is asked of them together in little more time than one.
 void CheckpointKeeper::flush_new_files() {
     constexpr std::size_t kTogether = 16;
     const auto now = fs::file_time_type::clock::now();
