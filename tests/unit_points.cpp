@@ -202,18 +202,36 @@ TEST_CASE("Of two points that merge the heavier one keeps its number", "[points]
     Pool pool;
     pool.sort();
     Merger merger(pool.flow);
-    pool.add(5.10, 5.1, heavy_first ? 3.0 : 1.0, 0.2);
-    pool.add(5.12, 5.1, heavy_first ? 1.0 : 3.0, 0.2);
-    pool.add(5.45, 5.45, 1.0, 0.2);
+    pool.add(5.10, 5.1, heavy_first ? 2.0 : 1.0, 0.2);
+    pool.add(5.12, 5.1, heavy_first ? 1.0 : 2.0, 0.2);
+    pool.add(5.45, 5.45, 4.0, 0.2);
     pool.sort();
     const Columns& c = pool.flow.columns;
-    const auto heaviest = [&] { return c.id[std::max_element(c.mass.begin(), c.mass.end()) - c.mass.begin()]; };
-    const std::int64_t heavy = heaviest();
+    const auto number_of = [&](double mass) {
+        return c.id[std::find(c.mass.begin(), c.mass.end(), mass) - c.mass.begin()];
+    };
+    const std::int64_t heavy = number_of(2.0);
     std::vector<std::uint8_t> gone;
     REQUIRE(merger.merge(pool.flow, pool.as_sorted(), gone) == 1);
     pool.sort(gone);
     REQUIRE(c.count() == 2);
-    CHECK(heaviest() == heavy);
+    CHECK(number_of(3.0) == heavy);
+}
+
+TEST_CASE("A heavy point does not take in the light ones around it: they merge with one another", "[points]") {
+    Pool pool;
+    pool.sort();
+    Merger merger(pool.flow);
+    pool.add(5.10, 5.1, 10.0, 0.2);
+    pool.add(5.12, 5.1, 1.0, 0.2);  // by place alone, the first union would be of these two
+    pool.add(5.30, 5.3, 1.0, 0.2);
+    pool.sort();
+    std::vector<std::uint8_t> gone;
+    REQUIRE(merger.merge(pool.flow, pool.as_sorted(), gone) == 1);
+    pool.sort(gone);
+    std::vector<double> masses(pool.flow.columns.mass.begin(), pool.flow.columns.mass.end());
+    std::sort(masses.begin(), masses.end());
+    CHECK(masses == std::vector<double>{2.0, 10.0});
 }
 
 TEST_CASE("Equal points at the corners of a square are not merged: nothing but round-off would choose", "[points]") {

@@ -21,6 +21,8 @@ constexpr int kDeepest = 10;
 constexpr double kEdge = 1e-6;
 /// Unions whose costs differ by less than this share tie, for the same reason.
 constexpr double kTie = 1e-6;
+/// A union is at most so many times as heavy as a square's mean point; 2, and what round-off may add.
+constexpr double kHeaviest = 2.0 + 1e-6;
 /// A union shorter than this share of the splitting length will not split at once.
 constexpr double kNoResplit = 0.95;
 
@@ -98,12 +100,17 @@ struct Pick {
     Index a = -1, b = -1;
 };
 
-/// The cheapest union among `count` points, nothing when two tie.
+/// The cheapest union among `count` points, nothing when two tie. None is heavier than two points of their mean: else the
+/// heaviest takes in one light neighbour after the other, cheap as they are, and goes on as a lump.
 Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
+    double heaviest = 0.0;
+    for (Index m = 0; m < count; ++m) heaviest += c.mass[points[m]];
+    heaviest *= kHeaviest / static_cast<double>(count);
     Pick pick;
     double best = 0.0, second = 0.0;
     for (Index m = 0; m < count; ++m)
         for (Index n = m + 1; n < count; ++n) {
+            if (c.mass[points[m]] + c.mass[points[n]] > heaviest) continue;
             const double cost = cost_of(c, points[m], points[n]);
             if (pick.a < 0 || cost < best) {
                 second = pick.a < 0 ? std::numeric_limits<double>::infinity() : best;
