@@ -74,7 +74,8 @@ DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * longest); }));
     if (fit_) fit_->level_error = off_level(flow_, *scene.still_surface);
     start_momentum_ = status_.momentum;
-    if (status_.max_speed_on_map > 0.0) status_.kinetic = frame_status().kinetic;  // else the first step would bring it
+    if (status_.max_speed_on_map > 0.0)
+        status_.kinetic = catch_up_on_copy().kinetic;  // else the first step would bring it
     signal_ += std::sqrt(flow_.gravity * status_.max_depth);
     if (late_) enter_late();
 }
