@@ -140,8 +140,8 @@ TEST_CASE("Loose ground beside a flow that does not reach it changes no bit of a
     CHECK(far.status().potential == rock.status().potential);
     auto of_far = bits(far);
     for (const auto& [name, entry] : bits(rock)) {
-        INFO(
-            name);  // "sums" have how far points may have gone since they were sorted: those that want something, farther
+        INFO(name);
+        // "sums" have how far points may have gone since they were sorted. Those that want something may go farther.
         if (name != "status/numbers" && name != "sums") CHECK((of_far.at(name) == entry));
     }
 }

@@ -11,23 +11,6 @@
 #include "base/error.h"
 
 namespace frana {
-namespace {
-
-namespace geometry = boost::geometry;
-using Point = geometry::model::d2::point_xy<double>;
-using Edge = geometry::model::segment<Point>;
-
-std::vector<Edge> edges_of(const Rings& rings) {
-    std::vector<Edge> edges;
-    for (const auto& ring : rings)
-        for (std::size_t k = 0; k < ring.size(); ++k) {
-            const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-            edges.emplace_back(Point(a.x(), a.y()), Point(b.x(), b.y()));
-        }
-    return edges;
-}
-
-}  // namespace
 
 double nearest_fraction(const Vec2& a, const Vec2& b, const Vec2& p) {
     const Vec2 along = b - a;
@@ -36,11 +19,18 @@ double nearest_fraction(const Vec2& a, const Vec2& b, const Vec2& p) {
 }
 
 struct NearestOnRings::Tree {
-    geometry::index::rtree<Edge, geometry::index::rstar<16>> edges;
+    using Point = boost::geometry::model::d2::point_xy<double>;
+    using Edge = boost::geometry::model::segment<Point>;
+    boost::geometry::index::rtree<Edge, boost::geometry::index::rstar<16>> edges;
 };
 
 NearestOnRings::NearestOnRings(const Rings& rings) {
-    const std::vector<Edge> edges = edges_of(rings);
+    std::vector<Tree::Edge> edges;
+    for (const auto& ring : rings)
+        for (std::size_t k = 0; k < ring.size(); ++k) {
+            const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+            edges.emplace_back(Tree::Point(a.x(), a.y()), Tree::Point(b.x(), b.y()));
+        }
     expect(!edges.empty(), "distances need an outline");
     tree_ = std::make_unique<const Tree>(Tree{decltype(Tree::edges)(edges)});
 }
@@ -48,9 +38,9 @@ NearestOnRings::NearestOnRings(const Rings& rings) {
 NearestOnRings::~NearestOnRings() = default;
 
 double NearestOnRings::distance(const Vec2& p) const {
-    const Point from(p.x(), p.y());
-    const auto nearest = geometry::index::qbegin(tree_->edges, geometry::index::nearest(from, 1));
-    return geometry::distance(from, *nearest);
+    const Tree::Point from(p.x(), p.y());
+    const auto nearest = boost::geometry::index::qbegin(tree_->edges, boost::geometry::index::nearest(from, 1));
+    return boost::geometry::distance(from, *nearest);
 }
 
 }  // namespace frana

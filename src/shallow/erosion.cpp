@@ -340,7 +340,8 @@ void Erosion::demand_of_tile(Flow& flow, Index n, double dt, const Law& law, con
     sums_[static_cast<std::size_t>(n)].max_shift = largest(farthest);
 }
 
-/// Moves those of four points that are chosen back by (dx, dy) [m] unless ground ends there; returns how far [cells].
+/// Moves those of four points that are chosen back by (dx, dy) [m] unless ground ends there; returns how far [cells]. Notes
+/// where all four were.
 Double4 Erosion::set_back(Flow& flow, Index p, int lanes, Mask4 chosen, Double4 dx, Double4 dy) {
     Columns& c = flow.columns;
     const Double4 x0 = load(&c.x[p], lanes), y0 = load(&c.y[p], lanes), none = {};

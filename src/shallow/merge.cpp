@@ -100,8 +100,8 @@ struct Pick {
     Index a = -1, b = -1;
 };
 
-/// The cheapest union among `count` points, nothing when two tie. None is heavier than two points of their mean: else the
-/// heaviest takes in one light neighbour after the other, cheap as they are, and goes on as a lump.
+/// The cheapest union among `count` points, nothing when two tie. None is heavier than two points of their mean. Light
+/// neighbours are cheap: without that limit the heaviest takes in one after the other, and goes on as a lump.
 Pick cheapest(const Columns& c, const std::int32_t* points, Index count) {
     double heaviest = 0.0;
     for (Index m = 0; m < count; ++m) heaviest += c.mass[points[m]];
