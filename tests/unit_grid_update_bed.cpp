@@ -86,7 +86,7 @@ TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothe
     const Flow flow(scene);
     const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));
     REQUIRE(bed.bx > 0.9);
-    const double g = 9.81, dt = 0.01, own = *bed.smooth_x / bed.bx, cosine = 1.0;
+    const double g = 9.81, dt = 0.01, own = bed.smooth->x / bed.bx, cosine = 1.0;
     REQUIRE(own < 0.1);
     double vx = 8.0 - dt * g * bed.drive(bed.bx, 0.0, cosine).x, vy = 3.0;
     bed.climb(bed.bx, 0.0, 0.0, g, g, dt, vx, vy);

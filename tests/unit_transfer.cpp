@@ -134,7 +134,7 @@ TEST_CASE("Four points at a time transfer what one at a time does", "[transfer]"
 
 TEST_CASE("A point on its way leaves the crests of two-cell waves, by at most half of its way", "[transfer]") {
     const auto shifted = [](double strength, double slope_x, double slope_y, double dx, double dy) {
-        off_waves(strength, slope_x, slope_y, dx, dy);
+        off_waves(strength, slope_x, slope_y, std::hypot(dx, dy), dx, dy);
         return std::pair(dx, dy);
     };
     CHECK(shifted(1.0, 0.1, -0.2, 0.3, 0.4) == std::pair(0.3 - 0.5 * 0.1, 0.4 + 0.5 * 0.2));  // its way is 0.5

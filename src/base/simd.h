@@ -115,6 +115,12 @@ template <class Real>
     second = __builtin_shufflevector(a, b, 1, 3, 5, 7);
 }
 
+/// The same of one pair.
+[[gnu::always_inline]] inline void unzip(const void* pair, double& first, double& second) {
+    std::memcpy(&first, pair, sizeof first);
+    std::memcpy(&second, static_cast<const double*>(pair) + 1, sizeof second);
+}
+
 /// Back again.
 [[gnu::always_inline]] inline void zip(Double4 first, Double4 second, void* pairs) {
     store(pairs, __builtin_shufflevector(first, second, 0, 4, 1, 5));

@@ -42,8 +42,8 @@ constexpr double kTorn = 1.5, kLink = 1.25;
 constexpr PieceRule kPieces{kLink, 0.9, 0.02};  // of the damage; of the mass
 
 /// Coordinates along the ground have no slope left for velocities to follow.
-SmoothSlopes path_of(const Scene& scene, const TileGrid& grid) {
-    if (scene.structure->unrolled) return {LazyArray<double>(grid.size()), LazyArray<double>(grid.size())};
+LazyArray<Pair> path_of(const Scene& scene, const TileGrid& grid) {
+    if (scene.structure->unrolled) return LazyArray<Pair>(grid.size());
     return smooth_slopes(scene, grid);
 }
 

@@ -20,6 +20,11 @@ namespace frana {
 constexpr Index kTile = 16;   ///< nodes along a tile's edge
 constexpr Index kGhosts = 3;  ///< layers of nodes beyond the outer ones that material can reach
 
+/// A pair of numbers per node.
+struct Pair {
+    double x, y;
+};
+
 /// A zeroed array whose untouched pages take no memory. `guard` numbers before the first and behind the last may be read:
 /// they are zero. Numbers lie where their type wants to, which calloc alone does not promise beyond 16 bytes.
 template <class T>

@@ -172,12 +172,11 @@ void for_each_row(const TileGrid& grid, Index tile, const TileBox& nodes, Index 
         if (i0 < i1) body(grid.at(i0, row), i1 - i0);
 }
 
-SmoothSlopes slopes_of(const TileGrid& grid, const LazyArray<double>& smoothed) {
-    SmoothSlopes slopes{LazyArray<double>(grid.size()), LazyArray<double>(grid.size())};
+LazyArray<Pair> slopes_of(const TileGrid& grid, const LazyArray<double>& smoothed) {
+    LazyArray<Pair> slopes(grid.size());
     for_each_node(grid, 3, [&](Index, Index, Index k) {
         const double* c = smoothed.data() + k;
-        slopes.x[k] = slope_at(c, 1, grid.cell());
-        slopes.y[k] = slope_at(c, grid.stride(), grid.cell());
+        slopes[k] = {slope_at(c, 1, grid.cell()), slope_at(c, grid.stride(), grid.cell())};
     });
     return slopes;
 }
@@ -215,7 +214,7 @@ void mark_exits(const Scene& scene, const TileGrid& grid, BedGeometry& bed) {
 
 }  // namespace
 
-SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid) {
+LazyArray<Pair> smooth_slopes(const Scene& scene, const TileGrid& grid) {
     return slopes_of(grid, smoothed_bed(scene, grid, filled(scene.bed)));
 }
 
@@ -245,8 +244,7 @@ BedGeometry make_bed_geometry(const Scene& scene, const TileGrid& grid) {
     });
     if (scene.terrain == TerrainModel::shallow) return bed;
     LazyArray<double> smoothed = smoothed_bed(scene, grid, z);
-    SmoothSlopes slopes = slopes_of(grid, smoothed);
-    bed.smooth_x = std::move(slopes.x), bed.smooth_y = std::move(slopes.y);
+    bed.smooth = slopes_of(grid, smoothed);
     if (scene.curvature != Curvature::none) fill_curvature(grid, smoothed, bed);
     if (scene.bed_evolves()) bed.smoothed = std::move(smoothed);
     return bed;
@@ -269,8 +267,7 @@ void refresh_path(const TileGrid& grid, BedGeometry& bed, Index tile) {
     for_each_row(grid, tile, TileBox::whole(), 3, [&](Index first, Index count) {
         for (Index k = first; k < first + count; ++k) {
             const double* c = bed.smoothed.data() + k;
-            bed.smooth_x[k] = slope_at(c, 1, grid.cell());
-            bed.smooth_y[k] = slope_at(c, up, grid.cell());
+            bed.smooth[k] = {slope_at(c, 1, grid.cell()), slope_at(c, up, grid.cell())};
             if (!bed.hxx) continue;
             const Curved h = curvature_at(c, up, grid.cell());
             bed.hxx[k] = h.xx, bed.hxy[k] = h.xy, bed.hyy[k] = h.yy;

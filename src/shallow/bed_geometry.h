@@ -25,19 +25,15 @@ struct BedGeometry {
     LazyArray<double> slope_x;  ///< dz/dx by the 4th-order stencil that also differentiates the free surface [1]
     LazyArray<double> slope_y;  ///< [1]
     LazyArray<double> hxx, hxy,
-        hyy;  ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
-    LazyArray<double> smooth_x,
-        smooth_y;  ///< slopes of that smoothed bed, which the flow's path has [1]; empty on gentle terrain
+        hyy;                 ///< Hessian of the bed smoothed to `curvature_length` [1/m]; empty without curvature
+    LazyArray<Pair> smooth;  ///< slopes of that smoothed bed, which the flow's path has [1]; empty on gentle terrain
     LazyArray<double> smoothed;    ///< that smoothed bed, where an erodible one may change it; otherwise empty [m]
     LazyArray<std::uint8_t> exit;  ///< 0, or what kind of node it is
     bool has_exits = false;        ///< some node is of such a kind
 };
 
 /// Slopes of the bed smoothed to `curvature_length`, which velocities along the bed follow [1].
-struct SmoothSlopes {
-    LazyArray<double> x, y;
-};
-SmoothSlopes smooth_slopes(const Scene& scene, const TileGrid& grid);
+LazyArray<Pair> smooth_slopes(const Scene& scene, const TileGrid& grid);
 
 /// Fills the geometry of scene.bed for the scheme's shape function (quadratic: the elevation model is taken
 /// bilinear between nodes, and its average with the B-spline is exact: weights (1, 76, 230, 76, 1)/384 in each

@@ -47,7 +47,7 @@ BedHere bed_at(const Flow& flow, bool steep, bool curved, double x, double y) {
             here.z += w * flow.bed.z[k];
             here.slope_x += w * flow.bed.slope_x[k];
             here.slope_y += w * flow.bed.slope_y[k];
-            if (steep) here.path_x += w * flow.bed.smooth_x[k], here.path_y += w * flow.bed.smooth_y[k];
+            if (steep) here.path_x += w * flow.bed.smooth[k].x, here.path_y += w * flow.bed.smooth[k].y;
             if (!curved) continue;
             here.hxx += w * flow.bed.hxx[k];
             here.hxy += w * flow.bed.hxy[k];
@@ -217,7 +217,7 @@ double DepthAveraged::node_fields(Frame& frame) {
         surface[n] += h;
         velocity[3 * n] = vx;
         velocity[3 * n + 1] = vy;
-        if (steep_) velocity[3 * n + 2] = vx * flow_.bed.smooth_x[k] + vy * flow_.bed.smooth_y[k];
+        if (steep_) velocity[3 * n + 2] = vx * flow_.bed.smooth[k].x + vy * flow_.bed.smooth[k].y;
         speed[n] = contact.speed;
         fastest = std::max(fastest, speed_that_counts(h, footprint_depth_, contact.speed));
         pressure[n] = contact.pressure;
@@ -264,10 +264,10 @@ void DepthAveraged::stress_at_points(const Law& law, double* stresses) const {
             const Mask4 wet = depth > flow_.dry_depth();
             const PlaneOf<Double4> rate{four(probe_.cxx), four(probe_.cyy),
                                         0.5 * (four(probe_.cxy) + four(probe_.cyx))};
-            const Sheet<Double4> sheet =
-                sheet_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy, max(depth, all(flow_.dry_depth())));
-            const PlaneOf<Double4> sigma = law.stress(
-                StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow_.scheme.strain_rate_floor, cap});
+            const Double4 shear =
+                shear_of_four(flow_, four(c.x), four(c.y), lanes, vx, vy, max(depth, all(flow_.dry_depth())));
+            const PlaneOf<Double4> sigma =
+                law.stress(StrainState<Double4>{rate, shear, flow_.scheme.strain_rate_floor, cap});
             const Double4 xx = select(wet, sigma.xx, none), yy = select(wet, sigma.yy, none),
                           xy = select(wet, sigma.xy, none);
             for (int n = 0; n < lanes; ++n)

@@ -28,13 +28,13 @@ constexpr double kRoundOff2 = 1e-28;
 template <class Real, Curvature kCurvature, bool kLinear>
 struct SteepBed {
     Real bx, by, hxx{}, hxy{}, hyy{};
-    const double *smooth_x = nullptr, *smooth_y = nullptr;  ///< read where something climbs
+    const Pair* smooth = nullptr;  ///< read where something climbs
     SteepBed(const Flow& flow, Index k) : bx(read<Real>(&flow.bed.slope_x[k])), by(read<Real>(&flow.bed.slope_y[k])) {
         if constexpr (kCurvature != Curvature::none) {
             hxx = read<Real>(&flow.bed.hxx[k]);
             hxy = read<Real>(&flow.bed.hxy[k]);
             hyy = read<Real>(&flow.bed.hyy[k]);
-            smooth_x = &flow.bed.smooth_x[k], smooth_y = &flow.bed.smooth_y[k];
+            smooth = &flow.bed.smooth[k];
         }
     }
     /// What a velocity (dx, dy) that climbs loses besides, in dt; `weight`: gravity() of the grid update. Where the bed
@@ -47,7 +47,9 @@ struct SteepBed {
         if constexpr (kCurvature != Curvature::none) {
             const Real zero{}, one = zero + 1.0, up = dx * ex + dy * ey, up_bed = dx * bx + dy * by;
             if (!any((up > 0.0) | (at_front * up_bed > 0.0))) return;
-            const Real slope2 = bx * bx + by * by, along = read<Real>(smooth_x) * bx + read<Real>(smooth_y) * by;
+            Real smooth_x, smooth_y;
+            unzip(smooth, smooth_x, smooth_y);
+            const Real slope2 = bx * bx + by * by, along = smooth_x * bx + smooth_y * by;
             const Real known = min(one, max(zero, (along + kFlat) / (slope2 + kFlat)));
             const Real share = known * known, q = max(zero, bx * ex + by * ey);
             const Real hidden =

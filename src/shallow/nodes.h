@@ -21,11 +21,6 @@ struct alignas(32) Motion {
     double wave;    ///< two-cell wave of depth and surface, over the depth [1]
 };
 
-/// A pair of numbers per node.
-struct Pair {
-    double x, y;
-};
-
 enum NodeFlag : std::uint8_t {
     kWet = 1,      ///< depth above round-off
     kMargin = 2,   ///< wet with a dry node within two layers

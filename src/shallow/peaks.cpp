@@ -18,7 +18,8 @@ template <class Real>
 Contact<Real> contact(const Flow& flow, bool steep, bool curved, Index k, Real vx, Real vy) {
     Real gravity = Real{} + flow.gravity, rise{}, cosine2 = Real{} + 1.0;
     if (steep) {
-        const Real bx = read<Real>(&flow.bed.smooth_x[k]), by = read<Real>(&flow.bed.smooth_y[k]);
+        Real bx, by;
+        unzip(&flow.bed.smooth[k], bx, by);
         rise = vx * bx + vy * by;
         cosine2 = 1.0 / (1.0 + bx * bx + by * by);
         if (curved)

@@ -1,53 +1,47 @@
 #pragma once
-// What a sheet's shear is made of at points: its speed along the bed, and its thickness across it (THEORY (24), (25)).
-#include <cmath>
-
+// How fast a sheet shears at points: its speed along the bed over its thickness across it (THEORY (24), (25)).
 #include "base/simd.h"
-#include "mpm/stencils.h"
+#include "mpm/stencil.h"
 #include "shallow/flow.h"
 
 namespace frana {
 
+/// From the velocity on the map, the vertical depth and the bed's slopes: V / T [1/s], with V^2 = v^2 + (v . grad b)^2 and
+/// T = h / sqrt(1 + |grad b|^2).
 template <class Real>
-struct Sheet {
-    Real speed, thickness;
-};  ///< [m/s], [m]
-
-/// On gentle terrain those of the map. S: the scheme's stencil.
-template <class S>
-Sheet<double> sheet_at(const Flow& flow, const S& sx, const S& sy, double vx, double vy, double depth) {
-    const double on_map = std::hypot(vx, vy);
-    if (!flow.bed.smooth_x) return {on_map, depth};
-    double bx = 0.0, by = 0.0;
-    for (int j = 0; j < S::kNodes; ++j)
-        for (int i = 0; i < S::kNodes; ++i) {
-            const Index k = flow.grid.at(sx.base + i, sy.base + j);
-            bx += sx.w[i] * sy.w[j] * flow.bed.smooth_x[k], by += sx.w[i] * sy.w[j] * flow.bed.smooth_y[k];
-        }
-    return {std::hypot(on_map, vx * bx + vy * by), depth / std::sqrt(1.0 + bx * bx + by * by)};
+[[gnu::always_inline]] inline Real sheet_shear(Real vx, Real vy, Real depth, Real bx, Real by) {
+    const Real rise = vx * bx + vy * by;
+    return sqrt((vx * vx + vy * vy + rise * rise) * (1.0 + bx * bx + by * by)) / depth;
 }
 
-/// The same of four points at x, y [cells], with quadratic splines.
-[[gnu::always_inline]] inline Sheet<Double4> sheet_of_four(const Flow& flow, Double4 x, Double4 y, int lanes,
-                                                           Double4 vx, Double4 vy, Double4 depth) {
-    Double4 bx = {}, by = {};
-    if (flow.bed.smooth_x) {
-        const Stencils sx(x), sy(y);
-        const Index stride = flow.grid.stride();
-        for (int lane = 0; lane < lanes; ++lane) {
-            const Reach reach(sx, sy, stride, lane);
-            const auto mean = [&](const LazyArray<double>& nodes) {
-                const double* row = nodes.data() + reach.node;
-                double sum = 0.0;
-                for (int j = 0; j < 3; ++j, row += stride)
-                    sum += reach.wy[j] * (reach.wx[0] * row[0] + reach.wx[1] * row[1] + reach.wx[2] * row[2]);
-                return sum;
-            };
-            bx[lane] = mean(flow.bed.smooth_x), by[lane] = mean(flow.bed.smooth_y);
+/// At a point at x, y [cells]. The smoothed bed's slopes are linear between nodes; on gentle terrain there are none.
+inline double shear_at(const Flow& flow, double x, double y, double vx, double vy, double depth) {
+    if (!flow.bed.smooth) return sheet_shear(vx, vy, depth, 0.0, 0.0);
+    const Linear sx(x), sy(y);
+    double bx = 0.0, by = 0.0;
+    for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) {
+            const Pair& slope = flow.bed.smooth[flow.grid.at(sx.base + i, sy.base + j)];
+            bx += sx.w[i] * sy.w[j] * slope.x, by += sx.w[i] * sy.w[j] * slope.y;
         }
+    return sheet_shear(vx, vy, depth, bx, by);
+}
+
+/// The same at four points.
+[[gnu::always_inline]] inline Double4 shear_of_four(const Flow& flow, Double4 x, Double4 y, int lanes, Double4 vx,
+                                                    Double4 vy, Double4 depth) {
+    if (!flow.bed.smooth) return sheet_shear(vx, vy, depth, Double4{}, Double4{});
+    const Index stride = flow.grid.stride();
+    const Int4 i = floor_positive(x + kTile), j = floor_positive(y + kTile);
+    const Double4 along = x + kTile - to_double(i), across = y + kTile - to_double(j);
+    Double4 rows[4] = {}, of[4];
+    for (int lane = 0; lane < lanes; ++lane) {
+        const Pair* first = flow.bed.smooth.data() + (j[lane] * stride + i[lane]);
+        const Double4 lower = load(first), upper = load(first + stride);
+        rows[lane] = lower + across[lane] * (upper - lower);
     }
-    const Double4 rise = vx * bx + vy * by;
-    return {sqrt(vx * vx + vy * vy + rise * rise), depth / sqrt(1.0 + bx * bx + by * by)};
+    transpose(rows[0], rows[1], rows[2], rows[3], of);
+    return sheet_shear(vx, vy, depth, of[0] + along * (of[2] - of[0]), of[1] + along * (of[3] - of[1]));
 }
 
 }  // namespace frana

@@ -320,7 +320,8 @@ void filter_calm(const Flow& flow, Nodes& nodes, Index k, Index up) {
     store(&nodes.surface[k], load(&nodes.level[k]) - strength * (load(&nodes.wave_x[k]) + wave_y - both));
     const double* h = nodes.depth.data() + k;
     const Double4 depth_x = wave_along<Double4>(h, 1), depth_y = wave_along<Double4>(h, up);
-    const Double4 depth_both = strength * wave_along_both<Double4>(h, up);
+    const Double4 left_y = wave_along<Double4>(h - 2, up), right_y = wave_along<Double4>(h + 2, up);
+    const Double4 depth_both = strength * wave_of_row(left_y, right_y);
     store(&nodes.law_depth[k], without_wave(load(h), strength * (depth_x + depth_y - depth_both)));
 }
 

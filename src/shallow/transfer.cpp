@@ -189,8 +189,8 @@ private:
             if (c.depth[p] > flow.dry_depth()) {
                 const double volume = m / flow.density;
                 const Plane rate{c.cxx[p], c.cyy[p], 0.5 * (c.cxy[p] + c.cyx[p])};
-                const Sheet<double> sheet = sheet_at(flow, sx, sy, vx, vy, c.depth[p]);
-                const StrainState<double> state{rate, sheet.speed, sheet.thickness, flow.scheme.strain_rate_floor, cap};
+                const double shear = shear_at(flow, c.x[p], c.y[p], vx, vy, c.depth[p]);
+                const StrainState<double> state{rate, shear, flow.scheme.strain_rate_floor, cap};
                 const Plane sigma = law_.stress(state);
                 deposit_stress(flow, sx, sy, volume, sigma);
                 sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
@@ -272,7 +272,7 @@ private:
                 vx += more.vx, vy += more.vy;
             }
         double shift_x = dt * g.vx / flow.cell, shift_y = dt * g.vy / flow.cell;
-        off_waves(flow.scheme.wave_shift, g.wave_x, g.wave_y, shift_x, shift_y);
+        off_waves(flow.scheme.wave_shift, g.wave_x, g.wave_y, std::hypot(shift_x, shift_y), shift_x, shift_y);
         const double shift = std::max(std::abs(shift_x), std::abs(shift_y));
         if (!(shift <= 4.0)) {  // also catches what is not finite
             if (sums.bad < 0) sums.bad = p;

@@ -180,10 +180,14 @@ private:
     /// Stresses first: a chain of divisions and roots that points wait for side by side.
     void deposit_batch(Flow& flow, Index first, Index end, double cap, bool at_side, StencilMarks& marks, Sums& sums) {
         PlaneOf<Double4> internal_force[kBatch / 4];
-        if constexpr (kStress)
+        if constexpr (kStress) {
+            Double4 shear[kBatch / 4];
+            for_each_four(first, end, [&](Index p, int lanes) { shear[(p - first) / 4] = shear_of(flow, p, lanes); });
             for_each_four(first, end, [&](Index p, int lanes) {
-                internal_force[(p - first) / 4] = internal_force_of(flow, p, lanes, cap, sums);
+                const Index n = (p - first) / 4;
+                internal_force[n] = internal_force_of(flow, p, lanes, shear[n], cap, sums);
             });
+        }
         for_each_four(first, end, [&](Index p, int lanes) {
             deposit_four(flow, p, lanes, internal_force[(p - first) / 4], at_side, marks, sums);
         });
@@ -219,18 +223,25 @@ private:
         for (int lane = 0; lane < lanes; ++lane) deposit_quadratic_sub_points<Real>(flow, p + lane);
     }
 
-    /// V sigma / cell of four points [N], the explicit stress capped (scheme.stress_cap).
-    PlaneOf<Double4> internal_force_of(const Flow& flow, Index p, int lanes, double cap, Sums& sums) const {
+    /// Of four points [1/s].
+    static Double4 shear_of(const Flow& flow, Index p, int lanes) {
         const Columns& c = flow.columns;
         const Carried<Real>& held = c.carried<Real>();
-        const Double4 vx = load(&held.vx[p], lanes), vy = load(&held.vy[p], lanes), depth = load(&held.depth[p], lanes);
+        return shear_of_four(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), lanes, load(&held.vx[p], lanes),
+                             load(&held.vy[p], lanes), max(load(&held.depth[p], lanes), all(flow.dry_depth())));
+    }
+
+    /// V sigma / cell of four points [N], the explicit stress capped (scheme.stress_cap).
+    PlaneOf<Double4> internal_force_of(const Flow& flow, Index p, int lanes, Double4 shear, double cap,
+                                       Sums& sums) const {
+        const Columns& c = flow.columns;
+        const Carried<Real>& held = c.carried<Real>();
+        const Double4 depth = load(&held.depth[p], lanes);
         const Double4 cxy = load(&held.cxy[p], lanes), cyx = load(&held.cyx[p], lanes), zero = {};
         const double per_density = 1.0 / flow.density, per_cell = 1.0 / flow.cell;
         const PlaneOf<Double4> rate{load(&held.cxx[p], lanes), load(&held.cyy[p], lanes), 0.5 * (cxy + cyx)};
-        const Sheet<Double4> sheet = sheet_of_four(flow, load(&c.x[p], lanes), load(&c.y[p], lanes), lanes, vx, vy,
-                                                   max(depth, all(flow.dry_depth())));
         const PlaneOf<Double4> sigma =
-            law_.stress(StrainState<Double4>{rate, sheet.speed, sheet.thickness, flow.scheme.strain_rate_floor, cap});
+            law_.stress(StrainState<Double4>{rate, shear, flow.scheme.strain_rate_floor, cap});
         const Double4 volume = depth > flow.dry_depth() ? per_density * load(&c.mass[p], lanes) : zero;
         sums.stress_power += volume * (sigma.xx * rate.xx + sigma.yy * rate.yy + 2.0 * sigma.xy * rate.xy);
         return scaled(sigma, per_cell * volume);
@@ -346,8 +357,10 @@ private:
         Columns& c = flow.columns;
         Carried<Real>& held = c.carried<Real>();
         const Gathered g(flow, p, lanes);
-        Double4 shift_x = dt / flow.cell * g.vx, shift_y = dt / flow.cell * g.vy;
-        off_waves(flow.scheme.wave_shift, g.wave_x, g.wave_y, shift_x, shift_y);
+        const double cells = dt / flow.cell;
+        const Double4 gathered_speed = sqrt(g.vx * g.vx + g.vy * g.vy);
+        Double4 shift_x = cells * g.vx, shift_y = cells * g.vy;
+        off_waves(flow.scheme.wave_shift, g.wave_x, g.wave_y, cells * gathered_speed, shift_x, shift_y);
         const Double4 shift = max(abs(shift_x), abs(shift_y));
         const Mask4 is_finite = shift <= 4.0;  // also catches what is not finite
         if (any(~is_finite)) {
@@ -366,7 +379,7 @@ private:
         stretch(&held.r1x[p], &held.r1y[p], g, dt, lanes);
         stretch(&held.r2x[p], &held.r2y[p], g, dt, lanes);
 
-        const Double4 speed = flip ? speed_of(held, p, lanes) : sqrt(g.vx * g.vx + g.vy * g.vy), zero = {};
+        const Double4 speed = flip ? speed_of(held, p, lanes) : gathered_speed, zero = {};
         sums.shift = max(sums.shift, shift);
         sums.motion = max(
             sums.motion, max(max(abs(g.vx), abs(g.vy)), max(max(abs(g.cxx), abs(g.cxy)), max(abs(g.cyx), abs(g.cyy)))));

@@ -6,7 +6,7 @@
 
 namespace frana {
 
-StructuredMap::StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, SmoothSlopes path)
+StructuredMap::StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, LazyArray<Pair> path)
     : path_(std::move(path)),
       peaks_(grid.size()),
       nx_(grid.nx()),

@@ -11,7 +11,7 @@ namespace frana {
 class StructuredMap {
 public:
     /// `centre` of the release [m], from which the front is measured; `path`: slopes that velocities follow, on the grid.
-    StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, SmoothSlopes path);
+    StructuredMap(const TileGrid& grid, const Vec2& centre, double footprint_depth, LazyArray<Pair> path);
 
     /// Takes what the nodes are now into the peaks; visits tiles near material only. Same bits for any number of
     /// threads.
@@ -21,7 +21,7 @@ public:
     Index fronts(const StructuredBody& body, const WaterFlow* water, double since, double speed) const;
     double footprint_depth() const { return footprint_depth_; }
     /// How fast what moves along the map with (vx, vy) at a node climbs [m/s].
-    double climb(Index node, double vx, double vy) const { return vx * path_.x[node] + vy * path_.y[node]; }
+    double climb(Index node, double vx, double vy) const { return vx * path_[node].x + vy * path_[node].y; }
     const NodePeak& peak(Index node) const { return peaks_[node]; }
     /// Depth of columns on a node [m], also where parts of them reach and none's shape function does. Beside water it
     /// is spread by shape functions, and nothing lies beyond them.
@@ -37,7 +37,7 @@ public:
     void serialize(Archive& archive);
 
 private:
-    SmoothSlopes path_;
+    LazyArray<Pair> path_;
     LazyArray<NodePeak> peaks_;
     std::vector<Index> tiles_;  ///< with columns or water near
     std::vector<FlowExtent> of_tile_;

@@ -39,9 +39,8 @@ struct Bingham {
     template <class Real>
     [[gnu::always_inline]] PlaneOf<Real> stress(const StrainState<Real>& s) const {
         if (yield_stress <= 0.0) return viscous_stress(viscosity, s);
-        const Real rate = s.speed / s.depth;
         // I2 + floor^2 times (2 + zeta)^2: a division less.
-        const Real two_zeta = 2.0 + plug_share(6.0 * viscosity / yield_stress * rate), shear = 3.0 * rate;
+        const Real two_zeta = 2.0 + plug_share(6.0 * viscosity / yield_stress * s.shear), shear = 3.0 * s.shear;
         const Real zz = s.rate.xx + s.rate.yy;
         const Real plane =
             0.5 * (s.rate.xx * s.rate.xx + s.rate.yy * s.rate.yy + zz * zz) + s.rate.xy * s.rate.xy + s.floor * s.floor;

@@ -18,8 +18,7 @@ using Plane = PlaneOf<double>;
 template <class Real>
 struct StrainState {
     PlaneOf<Real> rate;  ///< sym grad v [1/s]
-    Real speed;          ///< along the bed [m/s]
-    Real depth;          ///< across the bed, > 0 [m]
+    Real shear;          ///< speed along the bed over thickness across it, V / T [1/s]
     double floor;        ///< regularisation of the yield stress [1/s]
     double cap;          ///< largest 2 mu_eff that is stable explicitly [Pa s]
 };
