@@ -313,6 +313,16 @@ void refuse_unknown(const CLI::App& app, const std::string& word) {
                                 near.empty() ? "see `frana --help`" : "did you mean " + near + "?"));
 }
 
+/// CLI11 takes what stands behind an option for its value, also another option: `--out --quiet` is a folder's name to it.
+void refuse_options_as_values(CLI::App& app) {
+    const auto mistake = [](const std::string& value) {
+        return value.rfind("--", 0) == 0 ? "its value is missing before " + value : std::string();
+    };
+    for (CLI::App* command : app.get_subcommands(nullptr))
+        for (CLI::Option* option : command->get_options())
+            if (option->get_expected_min() > 0) option->check(mistake, "");
+}
+
 /// Parses the command line and does what it says.
 int run_program(int argc, char** argv) {
     CLI::App app("frana: landslides with the depth-averaged material point method", "frana");
@@ -348,6 +358,7 @@ int run_program(int argc, char** argv) {
     add_verify(app, verify, action);
     add_bench(app, bench, action);
     add_stress(app, stress, action);
+    refuse_options_as_values(app);
     if (argc > 1) refuse_unknown(app, argv[1]);
     try {
         app.parse(argc, argv);

@@ -14,6 +14,7 @@
 #include "run/folder/run_insitu.h"
 #include "run/folder/run_page.h"
 #include "scene/memory_need.h"
+#include "shallow/feed.h"
 #include "vtk_io/barrier_mesh.h"
 
 namespace frana {
@@ -81,43 +82,66 @@ std::string total_text(const BuiltScene& built) {
     const double density =
         water ? (1.0 - water->share) * built.scene.density + water->share * water->exchange.material.fluid_density
               : built.scene.density;
-    return fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n", particles_of(built.scene),
-                       particle_volume, volume, particle_volume * density);
+    std::string text = fmt::format("total       {} particles, {:.9g} m3 of {:.9g} m3, {:.6g} kg\n",
+                                   particles_of(built.scene), particle_volume, volume, particle_volume * density);
+    if (!built.scene.inflows.empty())
+        text += fmt::format("            and {:.0f} that come in by the end, at most\n",
+                            Feed(built.scene.inflows).outlook(built.scene.end).columns);
+    return text;
 }
 
 struct Forecast {
-    double fewest_steps = 0.0;  ///< at the speeds of the start
-    double most_steps = 0.0;    ///< at free-fall speed all the time
-    double fall_speed = 0.0;    ///< [m/s]
+    double fewest_steps = 0.0;      ///< at the speeds of the start
+    double most_steps = 0.0;        ///< at free-fall speed all the time
+    double fall_speed = 0.0;        ///< [m/s]
+    double particle_seconds = 0.0;  ///< sum of the times that particles are in the flow [s]
 };
 
-Forecast forecast(const Scene& scene) {
-    const auto& bed = scene.bed;
-    double lowest = INFINITY;
-    for (const double z : bed.values)
-        if (!std::isnan(z)) lowest = std::min(lowest, z);
-    double speed = 0.0;
-    double depth = 0.0;
-    double top = lowest;
-    for (const Seeds* of : scene.all_particles()) {
-        const Seeds& seeds = *of;
-        for (std::size_t p = 0; p < seeds.x.size(); ++p) {
-            const auto i = std::clamp<Index>(std::lround((seeds.x[p] - bed.geometry.x0) / bed.geometry.cell), 0,
-                                             bed.geometry.nx - 1);
-            const auto j = std::clamp<Index>(std::lround((seeds.y[p] - bed.geometry.y0) / bed.geometry.cell), 0,
-                                             bed.geometry.ny - 1);
-            speed = std::max(speed, std::hypot(seeds.vx[p], seeds.vy[p]));
-            depth = std::max(depth, seeds.depth[p]);
-            if (!std::isnan(bed.at(i, j))) top = std::max(top, bed.at(i, j) + seeds.depth[p]);
-        }
+/// What a forecast sees of all material, at once or later.
+struct Start {
+    double lowest = INFINITY, top = -INFINITY;  ///< of the terrain, of the material's surface [m]
+    double speed = 0.0, depth = 0.0;            ///< largest [m/s], [m]
+    double particle_seconds = 0.0;
+
+    void add(const Raster& bed, double x, double y, double depth_here) {
+        const GridGeometry& grid = bed.geometry;
+        const auto i = std::clamp<Index>(std::lround((x - grid.x0) / grid.cell), 0, grid.nx - 1);
+        const auto j = std::clamp<Index>(std::lround((y - grid.y0) / grid.cell), 0, grid.ny - 1);
+        depth = std::max(depth, depth_here);
+        if (!std::isnan(bed.at(i, j))) top = std::max(top, bed.at(i, j) + depth_here);
     }
+};
+
+Start start_of(const Scene& scene) {
+    Start start;
+    for (const double z : scene.bed.values)
+        if (!std::isnan(z)) start.lowest = std::min(start.lowest, z);
+    start.top = start.lowest;
+    for (const Seeds* seeds : scene.all_particles())
+        for (std::size_t p = 0; p < seeds->x.size(); ++p) {
+            start.add(scene.bed, seeds->x[p], seeds->y[p], seeds->depth[p]);
+            start.speed = std::max(start.speed, std::hypot(seeds->vx[p], seeds->vy[p]));
+        }
+    start.particle_seconds = static_cast<double>(particles_of(scene)) * scene.end;
+    for (const LateRelease& late : scene.late)  // when the flow reaches one is not known
+        start.particle_seconds -= static_cast<double>(late.seeds.count()) * std::min(late.at.value_or(0.0), scene.end);
+    const Feed::Outlook inflow = Feed(scene.inflows).outlook(scene.end);
+    for (const Vec2& place : inflow.from) start.add(scene.bed, place.x(), place.y(), inflow.depth);
+    start.speed = std::max(start.speed, inflow.speed);
+    start.particle_seconds += inflow.column_seconds;
+    return start;
+}
+
+Forecast forecast(const Scene& scene) {
+    const Start start = start_of(scene);
     Forecast result;
-    double wave = std::sqrt(scene.gravity * depth);
+    double wave = std::sqrt(scene.gravity * start.depth);
     if (scene.structure) wave += ColumnLaw(scene.structure->material).sound_speed(scene.density);
-    result.fall_speed = std::sqrt(speed * speed + 2.0 * scene.gravity * (top - lowest));
-    const double reach = (scene.structure ? scene.structure->cfl : scene.scheme.cfl) * bed.geometry.cell;
-    result.fewest_steps = std::ceil(scene.end * (speed + wave) / reach);
+    result.fall_speed = std::sqrt(start.speed * start.speed + 2.0 * scene.gravity * (start.top - start.lowest));
+    const double reach = (scene.structure ? scene.structure->cfl : scene.scheme.cfl) * scene.bed.geometry.cell;
+    result.fewest_steps = std::ceil(scene.end * (start.speed + wave) / reach);
     result.most_steps = std::ceil(scene.end * (result.fall_speed + wave) / reach);
+    result.particle_seconds = start.particle_seconds;
     return result;
 }
 
@@ -158,7 +182,7 @@ std::string stage_text(const Scene& scene) {
 
 std::string forecast_text(const Scene& scene) {
     const Forecast f = forecast(scene);
-    const double per_step = double(particles_of(scene)) * seconds_per_particle_step;
+    const double per_step = scene.end > 0.0 ? f.particle_seconds / scene.end * seconds_per_particle_step : 0.0;
     std::string text =
         fmt::format("steps       {:.0f} (as fast as at the start) to {:.0f} (in free fall, {:.3g} m/s), for {} s\n",
                     f.fewest_steps, f.most_steps, f.fall_speed, scene.end);

@@ -129,6 +129,24 @@ TEST_CASE("Rows do not hang on the steps", "[inflow]") {
     CHECK(whole == half);
 }
 
+TEST_CASE("What will come in is known before, with the time that it will be there", "[inflow]") {
+    const std::vector<Inflow> inflows{flood()};
+    const double end = GENERATE(0.2, 4.0, 9.0);
+    const Feed::Outlook outlook = Feed(inflows).outlook(end);
+    Feed feed(inflows);
+    double columns = 0.0, seconds = 0.0, speed = 0.0;
+    for (double next = feed.next(); next <= end; next = feed.next()) {
+        const Seeds& seeds = feed.take(next).seeds;
+        columns += static_cast<double>(seeds.count());
+        seconds += static_cast<double>(seeds.count()) * (end - next);
+        for (std::size_t n = 0; n < seeds.vx.size(); ++n) speed = std::max(speed, std::hypot(seeds.vx[n], seeds.vy[n]));
+    }
+    CHECK(outlook.columns == columns);
+    CHECK((columns > 0.0) == (end > 0.5));                            // the table begins
+    CHECK(outlook.column_seconds == Approx(seconds).epsilon(1e-12));  // sums in another order
+    CHECK(outlook.speed == Approx(speed).epsilon(1e-12));
+}
+
 TEST_CASE("An inflow goes on in the middle of its table with the same bits, on any number of threads",
           "[inflow][resume]") {
     const Threads restored;

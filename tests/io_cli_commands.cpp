@@ -54,6 +54,10 @@ TEST_CASE("A mistake on the command line leaves with 2 and a sentence on stderr"
     CHECK(size.code == 2);
     CHECK_THAT(size.err, Contains("WIDTHxHEIGHT"));
     CHECK(scene.frana("check no_such.toml").code == 2);
+    const Outcome value = scene.frana("run CASE --out --quiet");
+    CHECK(value.code == 2);
+    CHECK_THAT(value.err, Contains("--out: its value is missing before --quiet"));
+    CHECK_FALSE(std::filesystem::exists(scene.folder() / "--quiet"));
 }
 
 TEST_CASE("describe explains a key, and leaves with 2 for one that does not exist", "[cli]") {

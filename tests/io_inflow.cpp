@@ -51,6 +51,7 @@ TEST_CASE("A flood leaves its budget, and a section its table, figure and lines 
     const Outcome check = plane.frana("check CASE");
     CHECK(check.code == 0);
     CHECK_THAT(check.out, Contains("inflow torrent: 240 m3 until 9 s, at most 60 m3/s at 2 s; the line is 30 m wide"));
+    CHECK_THAT(check.out, !Contains("time        0 s") && !Contains("and 0 that come in"));
     const fs::path dir = plane.folder() / "out";
     const Outcome run = plane.frana("run CASE --quiet --out " + dir.string());
     CHECK(run.code == 0);

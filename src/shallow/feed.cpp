@@ -214,6 +214,21 @@ Index Feed::in_a_square(double cell) const {
     return std::lround(most * most);
 }
 
+Feed::Outlook Feed::outlook(double end) const {
+    Outlook all;
+    for (const Source& source : sources_) {
+        const double wide = static_cast<double>(source.stations.size());
+        for (const InflowRow& row : source.rows) {
+            if (row.complete > end) break;
+            all.columns += wide, all.column_seconds += wide * (end - row.complete);
+            all.depth = std::max(all.depth, source.depth_of(row));
+            if (!source.rests()) all.speed = std::max(all.speed, row.speed);
+        }
+        for (const Station& station : source.stations) all.from.push_back(station.at);
+    }
+    return all;
+}
+
 Vec2 Feed::middle() const {
     Vec2 sum(0, 0);
     for (const Station& station : sources_.front().stations) sum += station.share * station.at;

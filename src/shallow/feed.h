@@ -53,6 +53,13 @@ public:
     double largest_column() const;
     /// Columns that a half-cell square of the inflow holds.
     Index in_a_square(double cell) const;
+    /// All that comes in before a time.
+    struct Outlook {
+        double columns = 0.0, column_seconds = 0.0;  ///< how many; the sum of their times in the flow [s]
+        double speed = 0.0, depth = 0.0;             ///< largest [m/s], [m]
+        std::vector<Vec2> from;                      ///< places where they come in, on the map
+    };
+    Outlook outlook(double end) const;
     /// The middle of the first line, on the map.
     Vec2 middle() const;
 
