@@ -6,6 +6,7 @@
 #include "catch.h"
 #include "shallow/depth_averaged.h"
 #include "shallow/surface_gradient.h"
+#include "shallow/two_cell_wave.h"
 
 using namespace frana;
 
@@ -42,4 +43,28 @@ TEST_CASE(
     CAPTURE(bend, speed, along_x, worst);
     CHECK(margins == 13 * 13 - 9 * 9);  // two layers
     CHECK(worst <= depth / cell);       // its own depth may fall over a cell
+}
+
+TEST_CASE("Friction sees the depth without its waves along x, along y and of both", "[solver][surface]") {
+    Scene scene = verify::scene_on(30, 30, 2.0, [](double x, double) { return 0.1 * x; });
+    verify::fill(scene, [](double x, double y) {
+        const bool inside = x > 8 && x < 50 && y > 8 && y < 50;
+        return inside ? 1.0 + 0.4 * std::sin(2.9 * x / 2.0) * std::cos(3.0 * y / 2.0) + 0.2 * std::sin(1.5 * y) : 0.0;
+    });
+    DepthAveraged simulation(scene);
+    simulation.advance(1e9);
+    const Flow& flow = simulation.flow();
+    const double strength = flow.scheme.filter;
+    double of_both = 0.0;
+    for (Index j = 10; j < 20; ++j)
+        for (Index i = 10; i < 20; ++i) {
+            const Index k = flow.grid.at(i, j), up = flow.grid.stride();
+            const double* h = &flow.nodes.depth[k];
+            const double both = wave_along_both<double>(h, up);
+            const double wave = wave_along<double>(h, 1) + wave_along<double>(h, up) - strength * both;
+            CHECK(flow.nodes.law_depth[k] ==
+                  Approx(*h - strength * wave).epsilon(1e-14));  // a few sums of numbers near 1
+            of_both = std::max(of_both, std::abs(both));
+        }
+    CHECK(of_both > 0.01);
 }
