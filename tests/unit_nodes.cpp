@@ -50,7 +50,7 @@ TEST_CASE("A wall turns a point round like a mirror", "[nodes]") {
     c.r1x[0] = 0.5, c.r1y[0] = 0.1, c.r2x[0] = -0.2, c.r2y[0] = 0.6, c.mass[0] = 7.0;
     std::vector<std::uint8_t> gone(1);
     PointSums sums;
-    meet_side<double>(flow, 0, gone, sums);
+    meet_side<double>(flow, 0, 0.3, -0.2, gone, sums);
     CHECK(c.x[0] == 38.75);
     CHECK(c.y[0] == 0.5);
     CHECK(c.vx[0] == -3.0);

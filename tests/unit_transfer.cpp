@@ -171,6 +171,30 @@ TEST_CASE("What a hole's wall sets back counts in how far points came", "[transf
     CHECK(came <= longest);
 }
 
+TEST_CASE("A long step leads over no wall of one pixel", "[transfer][holes]") {
+    Scene scene = scene_with(Sides::open, false, false);
+    for (Index j = 1; j < kNodesY - 1; ++j) scene.bed.at(20, j) = std::numeric_limits<double>::quiet_NaN();
+    scene.holes = holes_of(scene.bed);
+    scene.hole_top = 5.0;
+    const bool one_by_one = GENERATE(false, true);
+    const auto transfer = one_by_one ? make_plain_transfer(scene) : make_packed_transfer(scene);
+    Crowd crowd(scene, 7);
+    transfer->deposit(crowd.flow, 0.01);
+    set_motion(crowd.flow);
+    const Columns& c = crowd.flow.columns;
+    const std::vector<double> x(c.x.begin(), c.x.end());
+    const auto side_of = [](double place) { return place < 19.5 ? -1 : place > 20.5 ? 1 : 0; };
+    CHECK(transfer->gather(crowd.flow, 0.8).max_shift > 1.1);
+    int met = 0;
+    for (std::size_t p = 0; p < x.size(); ++p) {
+        if (transfer->gone()[p] || std::abs(c.y[p] - 0.5 * kNodesY) > 0.5 * kNodesY - 4.0)
+            continue;  // not round its ends
+        CHECK(side_of(c.x[p]) * side_of(x[p]) >= 0);
+        met += side_of(x[p]) != 0 && std::abs(c.x[p] - 20.0) < 1.0;
+    }
+    CHECK(met > 0);
+}
+
 TEST_CASE("Gathering and depositing in one sweep gives the bits of two", "[transfer]") {
     const Scene scene = scene_with(GENERATE(Sides::open, Sides::wall), true, true);
     const auto one = make_packed_transfer(scene), two = make_packed_transfer(scene);

@@ -82,12 +82,27 @@ double stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
     return std::max(std::abs(c.x[p] - x), std::abs(c.y[p] - y));
 }
 
+/// A long step could lead over a wall of one pixel. A point whose way does stops on the wall; where its way ends is looked
+/// at by who calls.
+void stop_on_way(Flow& flow, Index p, double dx, double dy) {
+    constexpr double kStride = 0.5;  // [cells]: no pixel is missed, but for the corners of some
+    Columns& c = flow.columns;
+    const double parts = std::ceil(std::max(std::abs(dx), std::abs(dy)) / kStride);
+    for (double part = 1.0; part < parts; ++part) {
+        const double left = 1.0 - part / parts, x = c.x[p] - left * dx, y = c.y[p] - left * dy;
+        if (flow.bed.exit[flow.grid.nearest(x, y)] != kWall) continue;
+        c.x[p] = x, c.y[p] = y;
+        return;
+    }
+}
+
 }  // namespace
 
 template <class Real>
-double meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums) {
+double meet_side(Flow& flow, Index p, double dx, double dy, std::vector<std::uint8_t>& gone, PointSums& sums) {
     Columns& c = flow.columns;
     Carried<Real>& held = c.carried<Real>();
+    if (flow.bed.has_exits) stop_on_way(flow, p, dx, dy);
     const double x_max = static_cast<double>(flow.grid.nx() - 1), y_max = static_cast<double>(flow.grid.ny() - 1);
     const bool outside_x = !(c.x[p] >= 0.0 && c.x[p] <= x_max), outside_y = !(c.y[p] >= 0.0 && c.y[p] <= y_max);
     if (flow.walls) {
@@ -128,7 +143,7 @@ double meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums
 
 template double leave<double>(const Flow&, Index, Index, PointSums&);
 template double leave<float>(const Flow&, Index, Index, PointSums&);
-template double meet_side<double>(Flow&, Index, std::vector<std::uint8_t>&, PointSums&);
-template double meet_side<float>(Flow&, Index, std::vector<std::uint8_t>&, PointSums&);
+template double meet_side<double>(Flow&, Index, double, double, std::vector<std::uint8_t>&, PointSums&);
+template double meet_side<float>(Flow&, Index, double, double, std::vector<std::uint8_t>&, PointSums&);
 
 }  // namespace frana

@@ -11,10 +11,10 @@ constexpr double kOnWall = 1e-11;
 template <class Real>
 double leave(const Flow& flow, Index p, Index k, PointSums& sums);
 
-/// Walls reflect point p, those in holes of the terrain stop it. Beyond open sides, and where the elevation model has
-/// no data, it leaves: marked in `gone`, recorded in `sums`, without mass from then on. Returns how far a wall in a
-/// hole set it back [cells].
+/// Walls reflect point p, those in holes of the terrain stop it, also on its way (dx, dy) of the step [cells]. Beyond open
+/// sides, and where the elevation model has no data, it leaves: marked in `gone`, recorded in `sums`, without mass from
+/// then on. Returns how far a wall in a hole set it back [cells].
 template <class Real>
-double meet_side(Flow& flow, Index p, std::vector<std::uint8_t>& gone, PointSums& sums);
+double meet_side(Flow& flow, Index p, double dx, double dy, std::vector<std::uint8_t>& gone, PointSums& sums);
 
 }  // namespace frana

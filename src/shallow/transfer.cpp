@@ -293,7 +293,7 @@ private:
             stretch(c.r1x[p], c.r1y[p], g, dt);
             stretch(c.r2x[p], c.r2y[p], g, dt);
         }
-        const double set_back = meet_side<double>(flow, p, gone_, sums);
+        const double set_back = meet_side<double>(flow, p, shift_x, shift_y, gone_, sums);
         const double speed = std::hypot(vx, vy), m = c.mass[p];
         sums.max_shift = std::max(sums.max_shift, shift + set_back);
         for (const double part :

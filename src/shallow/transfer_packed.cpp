@@ -390,7 +390,7 @@ private:
         const double on = flow.walls ? kOnWall : 0.0;
         if (flow.bed.has_exits || any((x < on) | (x > x_max - on) | (y < on) | (y > y_max - on))) {
             for (int lane = 0; lane < lanes; ++lane) {
-                const double set_back = meet_side<Real>(flow, p + lane, gone_, sums.rare);
+                const double set_back = meet_side<Real>(flow, p + lane, shift_x[lane], shift_y[lane], gone_, sums.rare);
                 if (set_back > 0.0) sums.rare.max_shift = std::max(sums.rare.max_shift, shift[lane] + set_back);
                 vx[lane] = held.vx[p + lane], vy[lane] = held.vy[p + lane];
                 if (gone_[p + lane]) m[lane] = 0.0;
