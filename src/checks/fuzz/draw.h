@@ -1,5 +1,6 @@
 #pragma once
 // Random hostile cases. The same seed and number give the same draft on every machine.
+#include <algorithm>
 #include <cstdint>
 
 #include "checks/fuzz/dice.h"
@@ -48,6 +49,15 @@ void draw_late(Dice& dice, Draft& draft);
 void draw_friction(Dice& dice, Draft& draft);
 /// Makes every raster, and velocity, its own mirror image.
 void mirror(Draft& draft, Mirror mirror);
+
+/// Whether all pixels up to five away are as `fits(i, j)` says: more than a run asks for between a release and a hole.
+template <class Fits>
+bool all_near(const GridGeometry& grid, Index i, Index j, Fits&& fits) {
+    for (Index b = std::max<Index>(0, j - 5); b <= std::min(grid.ny - 1, j + 5); ++b)
+        for (Index a = std::max<Index>(0, i - 5); a <= std::min(grid.nx - 1, i + 5); ++a)
+            if (!fits(a, b)) return false;
+    return true;
+}
 
 /// A number as TOML with all its digits.
 std::string toml_number(double value);

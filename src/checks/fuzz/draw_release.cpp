@@ -89,10 +89,8 @@ void draw_exits(Dice& dice, Draft& draft, const Raster& depth) {
     const double share = dice.between(0.01, 0.4);
     for (Index j = 0; j < dem.geometry.ny; ++j)
         for (Index i = 0; i < dem.geometry.nx; ++i) {
-            bool free = true;
-            for (Index b = std::max<Index>(0, j - 5); b <= std::min(dem.geometry.ny - 1, j + 5); ++b)
-                for (Index a = std::max<Index>(0, i - 5); a <= std::min(dem.geometry.nx - 1, i + 5); ++a)
-                    free = free && std::isnan(depth.at(a, b));
+            const bool free =
+                all_near(dem.geometry, i, j, [&](Index a, Index b) { return std::isnan(depth.at(a, b)); });
             if (free && dice.chance(share)) dem.at(i, j) = Raster::nodata;
         }
     draft.keys["boundary.holes"] = "\"open\"";
