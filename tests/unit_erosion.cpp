@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "analytic_scene.h"
 #include "catch.h"
@@ -47,22 +46,6 @@ Scene slide(const std::function<void(Scene&)>& edit = {}) {
 
 void run(DepthAveraged& simulation, double end) {
     while (simulation.status().time < end) simulation.advance(end);
-}
-
-void check_same(DepthAveraged& a, DepthAveraged& b) {
-    const auto of_a = bits(a), of_b = bits(b);
-    REQUIRE(of_a.size() == of_b.size());
-    REQUIRE(of_a.count("bed/left") == 1);
-    for (const auto& [name, entry] : of_a) {
-        INFO(name);
-        CHECK((of_b.at(name) == entry));
-    }
-    const BedGeometry &x = a.flow().bed, &y = b.flow().bed;
-    const auto size = static_cast<std::size_t>(a.flow().grid.size()) * sizeof(double);
-    for (const auto field : {&BedGeometry::z, &BedGeometry::ground, &BedGeometry::z_min, &BedGeometry::slope_x,
-                             &BedGeometry::slope_y, &BedGeometry::hxx, &BedGeometry::hxy})
-        CHECK(std::memcmp((x.*field).data(), (y.*field).data(), size) == 0);
-    CHECK(std::memcmp(x.smooth.data(), y.smooth.data(), 2 * size) == 0);
 }
 
 const ErosionLaw kLaws[] = {erosion::Growth{0.02},         erosion::Steady{0.2}, erosion::Shear{0.2, 500.0, 1e-4},
@@ -163,12 +146,12 @@ TEST_CASE("An eroding run has the same bits on any number of threads and after i
         DepthAveraged again(scene);
         run(again, 5.0);
         run(again, 10.0);
-        check_same(again, straight);
+        check_same(again, straight, "bed/left");
     }
     DepthAveraged resumed(scene, Start::resumed);
     resumed.serialize(kept.rewind());
     run(resumed, 10.0);
-    check_same(resumed, straight);
+    check_same(resumed, straight, "bed/left");
     omp_set_num_threads(before);
 }
 

@@ -151,19 +151,31 @@ TEST_CASE("A two-cell wave is one of the depth and of the level at once", "[tran
     CHECK(common_wave(0.0, 0.0, 7.0, 7.0) == 0.0);  // no material
 }
 
-TEST_CASE("What a hole's wall sets back counts in how far points came", "[transfer][holes]") {
-    Scene scene = scene_with(Sides::open, false, true);
+void wall_holes(Scene& scene) {
     scene.holes = holes_of(scene.bed);
     scene.hole_top = 5.0;
+}
+
+/// Points on nodes that move, before they gather.
+struct OnTheirWay {
+    OnTheirWay(const Scene& scene, bool one_by_one)
+        : transfer(one_by_one ? make_plain_transfer(scene) : make_packed_transfer(scene)), crowd(scene, 7) {
+        transfer->deposit(crowd.flow, 0.01);
+        set_motion(crowd.flow);
+    }
+    std::unique_ptr<TransferKernel> transfer;
+    Crowd crowd;
+};
+
+TEST_CASE("What a hole's wall sets back counts in how far points came", "[transfer][holes]") {
+    Scene scene = scene_with(Sides::open, false, true);
+    wall_holes(scene);
+    OnTheirWay points(scene, GENERATE(false, true));
     REQUIRE(scene.holes.nodes.size() == 1);
-    const bool one_by_one = GENERATE(false, true);
-    const auto transfer = one_by_one ? make_plain_transfer(scene) : make_packed_transfer(scene);
-    Crowd crowd(scene, 7);
-    transfer->deposit(crowd.flow, 0.01);
-    set_motion(crowd.flow);
-    const Columns& c = crowd.flow.columns;
+    const auto& transfer = points.transfer;
+    const Columns& c = points.crowd.flow.columns;
     const std::vector<double> x(c.x.begin(), c.x.end()), y(c.y.begin(), c.y.end());
-    const double longest = transfer->gather(crowd.flow, 1e-3).max_shift;
+    const double longest = transfer->gather(points.crowd.flow, 1e-3).max_shift;
     double came = 0.0;
     for (std::size_t p = 0; p < x.size(); ++p)
         if (!transfer->gone()[p]) came = std::max({came, std::abs(c.x[p] - x[p]), std::abs(c.y[p] - y[p])});
@@ -174,17 +186,13 @@ TEST_CASE("What a hole's wall sets back counts in how far points came", "[transf
 TEST_CASE("A long step leads over no wall of one pixel", "[transfer][holes]") {
     Scene scene = scene_with(Sides::open, false, false);
     for (Index j = 1; j < kNodesY - 1; ++j) scene.bed.at(20, j) = std::numeric_limits<double>::quiet_NaN();
-    scene.holes = holes_of(scene.bed);
-    scene.hole_top = 5.0;
-    const bool one_by_one = GENERATE(false, true);
-    const auto transfer = one_by_one ? make_plain_transfer(scene) : make_packed_transfer(scene);
-    Crowd crowd(scene, 7);
-    transfer->deposit(crowd.flow, 0.01);
-    set_motion(crowd.flow);
-    const Columns& c = crowd.flow.columns;
+    wall_holes(scene);
+    OnTheirWay points(scene, GENERATE(false, true));
+    const auto& transfer = points.transfer;
+    const Columns& c = points.crowd.flow.columns;
     const std::vector<double> x(c.x.begin(), c.x.end());
     const auto side_of = [](double place) { return place < 19.5 ? -1 : place > 20.5 ? 1 : 0; };
-    CHECK(transfer->gather(crowd.flow, 0.8).max_shift > 1.1);
+    CHECK(transfer->gather(points.crowd.flow, 0.8).max_shift > 1.1);
     int met = 0;
     for (std::size_t p = 0; p < x.size(); ++p) {
         if (transfer->gone()[p] || std::abs(c.y[p] - 0.5 * kNodesY) > 0.5 * kNodesY - 4.0)

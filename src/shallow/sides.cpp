@@ -82,8 +82,7 @@ double stay_out(Flow& flow, Index p, Index i, Index j, PointSums& sums) {
     return std::max(std::abs(c.x[p] - x), std::abs(c.y[p] - y));
 }
 
-/// A long step could lead over a wall of one pixel. A point whose way does stops on the wall; where its way ends is looked
-/// at by who calls.
+/// A long step could lead over a wall of one pixel. A point whose way does stops on that pixel, for the caller to set back.
 void stop_on_way(Flow& flow, Index p, double dx, double dy) {
     constexpr double kStride = 0.5;  // [cells]: no pixel is missed, but for the corners of some
     Columns& c = flow.columns;
