@@ -20,12 +20,22 @@ public:
                            std::vector<std::string>&) const override {
         return raster(file);
     }
-    frana::Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>&, const std::string&,
-                              std::vector<std::string>&) const override {
+    /// Only of this one, which has to stay.
+    std::shared_ptr<const frana::GisReader> lasting() const override { return {std::shared_ptr<void>(), this}; }
+    frana::RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                                const std::string&) const override {
+        const auto has = raster(file).geometry.pixel_extent();
+        return {has[0] < extent[2] && has[2] > extent[0] && has[1] < extent[3] && has[3] > extent[1], false};
+    }
+    frana::Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                              const std::string& crs, std::vector<std::string>&) const override {
+        if (!place_of(file, extent, crs).touches) throw frana::UserError(file.string() + ": does not touch it");
         return raster(file);
     }
-    frana::Raster read_onto(const std::filesystem::path& file, const frana::GridGeometry& grid, const std::string&,
+    frana::Raster read_onto(const std::filesystem::path& file, const frana::GridGeometry& grid, const std::string& crs,
                             std::vector<std::string>&) const override {
+        if (!place_of(file, grid.pixel_extent(), crs).touches)
+            throw frana::UserError(file.string() + ": does not touch it");
         const frana::Raster source = raster(file);
         frana::Raster result = frana::Raster::filled(grid, frana::Raster::nodata);
         for (frana::Index j = 0; j < grid.ny; ++j) {

@@ -53,6 +53,21 @@ public:
                           "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"
                           "[material.bed]\nlaw = \"coulomb\"\nmu = 0.1\n[time]\nend = 4\n[output]\nevery = 2\n"
                           "formats = [\"vtk\", \"geotiff\", \"xdmf\"]\n");
+        // The same with friction in space, loose ground and trees, on rasters of 100 m and 20 m.
+        spec.columns = spec.rows = 300;
+        spec.transform = {kWest, 100.0, 0.0, kSouth + kPixels * kCell, 0.0, -100.0};
+        spec.value = [](int column, int row) { return 0.0625 * (1 + (column + 2 * row) % 4); };
+        make_raster(folder_.path() / "mu.tif", spec);
+        spec.columns = spec.rows = 100;
+        spec.transform = {kWest + 14000.0, 20.0, 0.0, kSouth + 16000.0, 0.0, -20.0};
+        spec.value = [](int column, int row) { return 0.25 * ((column + row) % 3); };
+        make_raster(folder_.path() / "loose.tif", spec);
+        std::string text = text_of(folder_.path() / "case.toml");
+        text.replace(text.find("mu = 0.1"), 8, "mu = \"mu.tif\"");
+        frana::write_text(folder_.path() / "fields.toml",
+                          text +
+                              "[[material.zone]]\nbelow = 6000\nmu = 0.5\n[erodible]\nlaw = \"growth\"\n"
+                              "growth = 0.05\ndepth = \"loose.tif\"\n[forest]\ndetrainment = 20\n");
     }
     const fs::path& path() const { return folder_.path(); }
 
@@ -89,14 +104,16 @@ double peak_memory(const fs::path& folder, const std::vector<std::string>& argum
 
 TEST_CASE("A run on a large terrain takes memory by what the flow reaches", "[terrain]") {
     const fs::path folder = large_terrain().path();
-    const double bytes = peak_memory(folder, {"run", "case.toml", "--quiet", "--out", "large"});
+    const std::string file = GENERATE("case.toml", "fields.toml");
+    INFO(file);
+    const double bytes = peak_memory(folder, {"run", file, "--quiet", "--out", "large", "--overwrite"});
     // The elevations of all of the terrain, as doubles, with their slopes alone would be 36e6 x 24 bytes. The part that
     // the flow needs has 1250 x 1250 nodes of 160 bytes; the program itself takes 85 MB, before it draws anything.
     CHECK(bytes < 24.0 * kPixels * kPixels);
     CHECK(bytes < 0.5e9);
     const auto record = nlohmann::json::parse(std::ifstream(folder / "large" / "run.json"));
     CHECK(record["grid"]["nx"] == kPixels);
-    const Outcome check = call_frana(folder, "check case.toml");
+    const Outcome check = call_frana(folder, "check " + file);
     CHECK(check.code == 0);
     CHECK_THAT(check.out, Contains("6000 x 6000 nodes, 5 m apart") && Contains("around the releases to begin with") &&
                               Contains("ready to run"));
@@ -104,19 +121,26 @@ TEST_CASE("A run on a large terrain takes memory by what the flow reaches", "[te
 
 TEST_CASE("A run on a large terrain has the bits of a run on a window of it", "[terrain]") {
     const fs::path folder = large_terrain().path();
-    REQUIRE(call_frana(folder, "run case.toml --quiet --out whole --overwrite").code == 0);
+    const std::string file = GENERATE("case.toml", "fields.toml");
+    INFO(file);
+    REQUIRE(call_frana(folder, "run " + file + " --quiet --out whole --overwrite").code == 0);
     // 2001 pixels from the west, 1903 from the south: no multiple of a tile.
     std::ostringstream window;
     window.precision(12);
     window << "[" << kWest + 2001 * kCell << "," << kSouth + 1903 * kCell << "," << kWest + 4000 * kCell << ","
            << kSouth + 4100 * kCell << "]";
-    REQUIRE(call_frana(folder, "run case.toml --quiet --out window --set terrain.window=" + window.str()).code == 0);
+    REQUIRE(call_frana(folder, "run " + file + " --quiet --out window --overwrite --set terrain.window=" + window.str())
+                .code == 0);
     CHECK(text_of(folder / "whole" / "history.csv") == text_of(folder / "window" / "history.csv"));
-    for (const char* file : {"rasters/peak_depth.tif", "rasters/peak_speed.tif", "rasters/arrival_time.tif",
-                             "grid/grid_000002.vti", "particles/particles_000002.vtp"}) {
-        INFO(file);
-        REQUIRE(fs::exists(folder / "whole" / file));
-        CHECK(text_of(folder / "whole" / file) == text_of(folder / "window" / file));
+    std::vector<std::string> files{"rasters/peak_depth.tif", "rasters/peak_speed.tif", "rasters/arrival_time.tif",
+                                   "grid/grid_000002.vti", "particles/particles_000002.vtp"};
+    if (file == std::string("fields.toml"))
+        for (const char* name : {"mu", "eroded_depth", "deposited_depth"})
+            files.push_back(fmt::format("rasters/{}.tif", name));
+    for (const std::string& product : files) {
+        INFO(product);
+        REQUIRE(fs::exists(folder / "whole" / product));
+        CHECK(text_of(folder / "whole" / product) == text_of(folder / "window" / product));
     }
 }
 

@@ -1,5 +1,4 @@
 // Columns on a part of a large terrain: no result depends on what else of the terrain there is.
-#include <cstring>
 #include <memory>
 #include <sstream>
 
@@ -8,6 +7,7 @@
 #include "catch.h"
 #include "coupling/walled_columns.h"
 #include "fake_gis.h"
+#include "growing_slide.h"
 #include "observe/memory_archive.h"
 #include "run/memory_state.h"
 #include "run/run_loop.h"
@@ -19,48 +19,6 @@ using namespace frana;
 using namespace frana::test;
 
 namespace {
-
-/// Down to the west, with bumps, and rough at the node: whole metres and eighths, which every grid has alike.
-double ground(double x, double y) {
-    const double bumps = 3.0 * std::sin(0.01 * x) * std::cos(0.013 * y);
-    const auto i = static_cast<std::int64_t>(x), j = static_cast<std::int64_t>(y);
-    return 0.5 * x + bumps + 0.125 * static_cast<double>((7 * i + 13 * j) % 5);
-}
-
-Raster ground_on(const GridGeometry& grid) {
-    Raster bed = Raster::filled(grid, 0.0);
-    for (Index j = 0; j < grid.ny; ++j)
-        for (Index i = 0; i < grid.nx; ++i) bed.at(i, j) = ground(grid.x(i), grid.y(j));
-    return bed;
-}
-
-/// A flow that begins at 4000, 1000 on nodes of 5 m; `held` are nodes of the terrain.
-Scene slide_on(const GridGeometry& terrain, const NodeBox& held) {
-    Scene scene;
-    scene.bed = ground_on(held.of(terrain));
-    scene.wider = std::make_shared<WiderTerrain>(
-        WiderTerrain{terrain, held, [terrain](const NodeBox& box) { return ground_on(box.of(terrain)); }, {}});
-    scene.bed_law = bed::Coulomb{0.1};
-    for (int j = -4; j < 4; ++j)
-        for (int i = -4; i < 4; ++i) {
-            Seeds& s = scene.particles;
-            s.x.push_back(4000.0 + 2.5 * i), s.y.push_back(1000.0 + 2.5 * j);
-            s.vx.push_back(0.0), s.vy.push_back(0.0);
-            s.volume.push_back(6.25), s.depth.push_back(1.0), s.size.push_back(2.5);
-        }
-    scene.end = 1e9;
-    return scene;
-}
-
-constexpr GridGeometry kLarge{1000, 400, 0.0, 0.0, 5.0};
-/// A part of the large terrain's nodes that holds all that the run ever needs, and no multiple of a tile away.
-constexpr NodeBox kCut{397, 93, 520, 230};
-constexpr NodeBox kBegin{720, 120, 160, 160};  ///< nodes of the large terrain around the start
-
-Scene slide_on_large() { return slide_on(kLarge, kBegin); }
-Scene slide_on_cut() {
-    return slide_on(kCut.of(kLarge), {kBegin.i0 - kCut.i0, kBegin.j0 - kCut.j0, kBegin.nx, kBegin.ny});
-}
 
 /// A plane on nodes of which the scene takes a part, and a release at its west.
 class LargeGis final : public FakeGis {
@@ -82,22 +40,6 @@ private:
     }
     GridGeometry grid_;
 };
-
-bool same_bits(const Field& a, const Field& b) {
-    return a.name == b.name && a.count == b.count && a.components == b.components &&
-           std::memcmp(a.data, b.data, static_cast<std::size_t>(a.count * a.components) * sizeof(double)) == 0;
-}
-
-void require_same(Simulation& a, Simulation& b) {
-    const Frame one = a.frame(), other = b.frame();
-    REQUIRE(one.grid == other.grid);
-    REQUIRE(one.status.step == other.status.step);
-    REQUIRE(one.status.time == other.status.time);
-    REQUIRE(one.particles.size() == other.particles.size());
-    for (std::size_t n = 0; n < one.particles.size(); ++n) REQUIRE(same_bits(one.particles[n], other.particles[n]));
-    REQUIRE(one.nodes.size() == other.nodes.size());
-    for (std::size_t n = 0; n < one.nodes.size(); ++n) REQUIRE(same_bits(one.nodes[n], other.nodes[n]));
-}
 
 }  // namespace
 

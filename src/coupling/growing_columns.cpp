@@ -101,14 +101,22 @@ void GrowingColumns::hold(NodeBox box) {
     Raster bed = read_part(box);
     const NodeBox all = NodeBox::all(wider_->grid);
     if (has_nodata(bed) && !(box == all)) box = all, bed = read_part(all);
+    if (wider_->fields) take_fields(wider_->fields(bed));
     lay_over(bed, scene_.bed, held_.i0 - box.i0, held_.j0 - box.j0);
     scene_.bed = std::move(bed);
     scene_.holes = holes_of(scene_.bed);
     held_ = box;
 }
 
+void GrowingColumns::take_fields(GroundFields fields) {
+    scene_.friction = std::move(fields.friction);
+    if (scene_.erodible) scene_.erodible->depth = std::move(fields.loose);
+    if (scene_.forest) scene_.forest->pressure = std::move(fields.trees);
+}
+
 Raster GrowingColumns::read_part(const NodeBox& box) const {
-    require_memory(memory_of_part(double(box.nx * box.ny)), free_memory(),
+    const double nodes = double(box.nx * box.ny);
+    require_memory(memory_of_part(nodes) + memory_of_fields(scene_, nodes), free_memory(),
                    {"terrain.window", fmt::format("the flow has come so far that {} x {} nodes", box.nx, box.ny),
                     "give a window around the flow, or a larger grid.cell"});
     return wider_->read(box);

@@ -16,6 +16,7 @@ public:
     Status frame_status() override;
     std::vector<std::string> remarks() const override;
     const Raster* ground() const override { return &scene_.bed; }
+    const Friction* friction() const override { return scene_.friction.get(); }
     void serialize(Archive& archive) override;
     void add(const Seeds& columns) override;
 
@@ -38,6 +39,7 @@ private:
     NodeBox room_for(const NodeBox& worked, Index clear) const;
     void grow(const NodeBox& box);
     void hold(NodeBox box);
+    void take_fields(GroundFields fields);
     Raster read_part(const NodeBox& box) const;
 
     Scene scene_;

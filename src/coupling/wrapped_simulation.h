@@ -20,6 +20,7 @@ public:
     std::string why_not_add(const Seeds& columns) const override { return inner().why_not_add(columns); }
     void add(const Seeds& columns) override { inner().add(columns); }
     const Raster* ground() const override { return inner().ground(); }
+    const Friction* friction() const override { return inner().friction(); }
     std::vector<std::string> remarks() const override { return inner().remarks(); }
     Extras extras() const override { return inner().extras(); }
     std::vector<PhaseTime> timings() const override { return inner().timings(); }

@@ -140,6 +140,16 @@ void note_gaps(const RasterFile& raster, const GridGeometry& grid, std::vector<s
 
 }  // namespace
 
+RasterPlace GdalReader::place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                                 const std::string& crs_wkt) const {
+    std::vector<std::string> said_when_it_is_read;
+    const RasterFile raster(file, gdal::Meaning::any, said_when_it_is_read);
+    if (needs_warp(raster, crs_wkt)) return {true, true};
+    return {gdal::touched(raster.x_axis(), extent[0], extent[2])[1] > 0 &&
+                gdal::touched(raster.y_axis(), extent[1], extent[3])[1] > 0,
+            false};
+}
+
 Raster GdalReader::read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                const std::string& crs_wkt, std::vector<std::string>& log) const {
     const RasterFile raster(file, gdal::Meaning::any, log);

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <string>
 
 #include "scene/toolbox.h"
@@ -18,6 +19,11 @@ public:
 
     std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path& file,
                                                          const DemRequest& request) const override;
+
+    std::shared_ptr<const GisReader> lasting() const override { return std::make_shared<GdalReader>(); }
+
+    RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                         const std::string& crs_wkt) const override;
 
     /// A reprojected raster comes in square pixels of the mean area of its own, bilinear.
     Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,

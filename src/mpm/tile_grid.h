@@ -103,6 +103,8 @@ public:
         const Index j = static_cast<Index>(std::floor(y - 0.5)) + kTile;
         return (j / kTile) * tiles_x_ + i / kTile;
     }
+    /// Tile that node (i, j) is of.
+    Index tile_of_node(Index i, Index j) const { return (j + kTile) / kTile * tiles_x_ + (i + kTile) / kTile; }
     Index tile_i(Index tile) const { return (tile % tiles_x_ - 1) * kTile; }  ///< first node of the tile
     Index tile_j(Index tile) const { return (tile / tiles_x_ - 1) * kTile; }
 

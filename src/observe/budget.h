@@ -19,8 +19,10 @@ struct Budget {
 inline Budget budget(const Status& first, const Status& now) {
     Budget result;
     const double came = now.mass_in - first.mass_in, had = first.mass + first.bed.mass + came;
-    const double lost =
-        (now.mass - first.mass) + (now.mass_left - first.mass_left) + (now.bed.mass - first.bed.mass) - came;
+    // What the bed had at the start grows with the part of the terrain that is held.
+    const auto gained_by_bed = [](const Status& s) { return s.bed.mass - s.bed.initial; };
+    const double lost = (now.mass - first.mass) + (now.mass_left - first.mass_left) +
+                        (gained_by_bed(now) - gained_by_bed(first)) - came;
     result.mass_error = had > 0.0 ? lost / had : 0.0;
     const double of_bed = (now.bed.mass - now.bed.initial) + (now.bed.eroded - now.bed.deposited);
     const double bed_had = now.bed.initial + now.bed.deposited;

@@ -13,6 +13,7 @@
 
 namespace frana {
 
+struct Friction;
 struct Scene;
 struct Seeds;
 
@@ -46,6 +47,8 @@ public:
     virtual void add(const Seeds&) { throw InternalError("internal error: this model takes no material from outside"); }
     /// The ground that the run works on now, where that has grown beyond the scene's; frames lie within it.
     virtual const Raster* ground() const { return nullptr; }
+    /// Friction on that ground, where it differs in space.
+    virtual const Friction* friction() const { return nullptr; }
     /// What the user should know of how the run was set up.
     virtual std::vector<std::string> remarks() const { return {}; }
     /// What only some models can tell.

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/free_memory.h"
 #include "particles/outline_area.h"
+#include "scene/ground_fields.h"
 #include "scene/memory_need.h"
 #include "scene/problems.h"
 #include "scene/scene_parts.h"
@@ -94,6 +95,7 @@ private:
     /// and what is a hole in it, is known of the whole only.
     void hold_part(WiderTerrain& wider) {
         if (!has_nodata(scene_.bed)) {
+            wider.fields = fields_later(case_, reader_, wider.grid);
             scene_.wider = std::make_shared<WiderTerrain>(std::move(wider));
             return;
         }

@@ -310,16 +310,20 @@ void add_zones(std::vector<Combination>& table) {
 
 }  // namespace
 
-std::string raster_in(const CaseFile& file, const std::string& table) {
+std::vector<std::string> rasters_in(const CaseFile& file, const std::string& table) {
+    std::vector<std::string> keys;
     for (const Parameter& parameter : parameters())
         if (parameter.table() == table && parameter.kind == Kind::number_or_path && file.given(parameter.key) &&
             file.is_text(parameter.key))
-            return parameter.key;
-    return {};
+            keys.push_back(parameter.key);
+    return keys;
 }
 
 std::string Values::key_in(const CaseFile& file) const {
-    if (are == Are::rasters) return raster_in(file, key);
+    if (are == Are::rasters) {
+        const std::vector<std::string> keys = rasters_in(file, key);
+        return keys.empty() ? std::string() : keys.front();
+    }
     for (const std::string& one : keys_of(file, key))
         if (holds(file, *this, one)) return one;
     return {};

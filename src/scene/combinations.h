@@ -8,8 +8,8 @@
 
 namespace frana {
 
-/// The first key of a table of the case that a raster is given for; empty: none.
-std::string raster_in(const CaseFile& file, const std::string& table);
+/// The keys of a table of the case that rasters are given for.
+std::vector<std::string> rasters_in(const CaseFile& file, const std::string& table);
 
 /// Some of the values that a key can have, or tables of a name that are there at all.
 struct Values {

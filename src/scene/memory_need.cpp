@@ -67,8 +67,8 @@ double most_points(const Scene& scene) {
 }
 
 /// Of the laws of nodes, in the scene and in the solver [bytes].
-double memory_of(const Friction& friction) {
-    const double places = 2.0 * sizeof(std::uint32_t) * double(friction.laws.place.size());
+double memory_of(const Friction& friction, double nodes) {
+    const double places = 2.0 * sizeof(std::uint32_t) * nodes;
     return places + std::visit(
                         [](const auto& table) {
                             using Law = typename std::decay_t<decltype(table)>::value_type;
@@ -77,16 +77,22 @@ double memory_of(const Friction& friction) {
                         friction.laws.laws);
 }
 
+double memory_of_fields(const Scene& scene, double nodes) {
+    double bytes = 0.0;
+    if (scene.bed_changes()) bytes += (scene.bed_evolves() ? erodible_rate + path_rate : erodible_rate) * nodes;
+    if (scene.deposition || scene.forest) bytes += deposition_rate * nodes;
+    if (scene.forest) bytes += forest_rate * nodes;
+    if (scene.friction) bytes += memory_of(*scene.friction, nodes);
+    return bytes;
+}
+
 MemoryNeed memory_need(const Scene& scene) {
     const double nodes = double(scene.bed.geometry.size());
     double particles = 0.0;
     for (const Seeds* seeds : scene.all_particles()) particles += double(seeds->count());
     MemoryNeed need = memory_need(scene.wider ? 0.0 : nodes, particles, scene.output.vtk);
     if (scene.wider) need.nodes = memory_of_part(nodes);
-    if (scene.bed_changes()) need.nodes += (scene.bed_evolves() ? erodible_rate + path_rate : erodible_rate) * nodes;
-    if (scene.deposition || scene.forest) need.nodes += deposition_rate * nodes;
-    if (scene.forest) need.nodes += forest_rate * nodes;
-    if (scene.friction) need.nodes += memory_of(*scene.friction);
+    need.nodes += memory_of_fields(scene, nodes);
     if (scene.structure) need.nodes += structure_rate * nodes;
     if (scene.water) need.nodes += water_rate * nodes;
     const bool draws = std::any_of(scene.insitu.begin(), scene.insitu.end(),

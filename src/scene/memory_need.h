@@ -19,6 +19,8 @@ struct MemoryNeed {
 MemoryNeed memory_need(double nodes, double particles, bool vtk);
 /// Of the nodes of a part of a terrain (scene/terrain_part.h), most of which are never reached [bytes].
 double memory_of_part(double nodes);
+/// Besides, of what a scene has on so many nodes: loose material, forest, friction in space [bytes].
+double memory_of_fields(const Scene& scene, double nodes);
 /// Of a scene that is built.
 MemoryNeed memory_need(const Scene& scene);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "terrain/part_of.h"
 
 namespace frana {
 namespace {
@@ -28,6 +29,15 @@ std::vector<std::vector<double>> crossings_of(const Polygon& polygon, const Grid
     return rows;
 }
 
+/// Whether a raster lies beside the part of the terrain that the scene holds, but on the rest.
+bool misses_part(const std::filesystem::path& file, const GisReader& reader, const Scene& scene) {
+    if (!scene.wider) return false;
+    const auto touches = [&](const GridGeometry& grid) {
+        return reader.place_of(file, grid.pixel_extent(), scene.bed.crs_wkt).touches;
+    };
+    return !touches(scene.bed.geometry) && touches(scene.wider->grid);
+}
+
 }  // namespace
 
 std::string place_text(const GridGeometry& g, std::size_t k) {
@@ -41,6 +51,28 @@ double pixel_at(const Raster& raster, double x, double y) {
     if (!(i >= 0.0 && j >= 0.0 && i < static_cast<double>(g.nx) && j < static_cast<double>(g.ny)))
         return Raster::nodata;
     return raster.at(static_cast<Index>(i), static_cast<Index>(j));
+}
+
+std::string nodes_text(const Scene& scene) {
+    return scene.wider ? "the nodes around the releases" : "the terrain's nodes";
+}
+
+Raster pixels_on(const std::filesystem::path& file, const GisReader& reader, Scene& scene) {
+    if (misses_part(file, reader, scene)) return Raster::filled({1, 1, 0.0, 0.0, 1.0}, Raster::nodata);
+    return reader.read_raster(file, scene.bed.geometry.pixel_extent(), scene.bed.crs_wkt, scene.log);
+}
+
+Raster field_on(const std::filesystem::path& file, const GisReader& reader, Scene& scene) {
+    if (misses_part(file, reader, scene)) return Raster::filled(scene.bed.geometry, Raster::nodata);
+    return reader.read_onto(file, scene.bed.geometry, scene.bed.crs_wkt, scene.log);
+}
+
+bool touches(const Polygons& polygons, const GridGeometry& terrain) {
+    std::vector<Vec2> corners;
+    for (const Polygon& polygon : polygons.parts)
+        for (const auto& ring : polygon.rings) corners.insert(corners.end(), ring.begin(), ring.end());
+    const NodeBox met = common(cells_of(corners, terrain), NodeBox::all(terrain));
+    return met.nx > 0 && met.ny > 0;
 }
 
 void require_range(const Raster& pixels, const Range& range, const std::string& file) {

@@ -13,6 +13,18 @@ std::string place_text(const GridGeometry& g, std::size_t k);
 /// Of the pixel that holds a point; nodata beyond the raster.
 double pixel_at(const Raster& raster, double x, double y);
 
+/// "the terrain's nodes", or of the part of it that the scene holds.
+std::string nodes_text(const Scene& scene);
+
+/// A raster on the scene's terrain in its own pixels. Where that is a part which the raster does not touch, one pixel
+/// without data; UserError when it touches no part.
+Raster pixels_on(const std::filesystem::path& file, const GisReader& reader, Scene& scene);
+/// The same on the nodes of the terrain.
+Raster field_on(const std::filesystem::path& file, const GisReader& reader, Scene& scene);
+
+/// Whether the box around the polygons touches a terrain.
+bool touches(const Polygons& polygons, const GridGeometry& terrain);
+
 /// Throws UserError, naming a pixel, unless all that have data lie in a key's range.
 void require_range(const Raster& pixels, const Range& range, const std::string& file);
 

@@ -21,7 +21,7 @@ constexpr const char* salm =
 constexpr const char* martinelli = "Martinelli, Lang and Mears 1980, J. Glaciol.";
 constexpr const char* obrien = "O'Brien and Julien 1988, J. Hydraul. Eng. 114, table 2; Geotechnics 2025, 5, 37";
 constexpr const char* jop = "Jop, Forterre and Pouliquen 2006, Nature 441, 727";
-constexpr const char* common = "";
+constexpr const char* in_common_use = "";
 
 }  // namespace
 
@@ -46,25 +46,25 @@ const std::vector<ParameterRange>& parameter_ranges() {
         {"snow", mu, "voellmy", 0.15, 0.15, "large design avalanches", martinelli},
         {"snow", xi, "voellmy", 1200.0, 1600.0, "large design avalanches", martinelli},
         {"snow", xi, "voellmy", 700.0, 800.0, "hard slab, slow wet slab, soft slab through timber", martinelli},
-        {"snow", density, "", 200.0, 400.0, "flowing snow", common},
-        {"debris_flow", mu, "", 0.03, 0.40, "back-analysed events", common},
+        {"snow", density, "", 200.0, 400.0, "flowing snow", in_common_use},
+        {"debris_flow", mu, "", 0.03, 0.40, "back-analysed events", in_common_use},
         {"debris_flow", xi, "voellmy", 100.0, 1000.0, "back-analysed events; granular ones lower, muddy ones higher",
-         common},
-        {"debris_flow", manning, "manning", 0.10, 0.18, "back-analysed events", common},
-        {"debris_flow", yield, "", 500.0, 5000.0, "field estimates", common},
-        {"debris_flow", viscosity, "", 10.0, 1000.0, "field estimates", common},
-        {"debris_flow", density, "", 1700.0, 2100.0, "flowing", common},
+         in_common_use},
+        {"debris_flow", manning, "manning", 0.10, 0.18, "back-analysed events", in_common_use},
+        {"debris_flow", yield, "", 500.0, 5000.0, "field estimates", in_common_use},
+        {"debris_flow", viscosity, "", 10.0, 1000.0, "field estimates", in_common_use},
+        {"debris_flow", density, "", 1700.0, 2100.0, "flowing", in_common_use},
         {"rock_avalanche", mu, "voellmy", 0.03, 0.35, "back-analysed events; on glaciers and wet ground lowest",
-         common},
-        {"rock_avalanche", xi, "voellmy", 100.0, 1000.0, "back-analysed events", common},
-        {"rock_avalanche", mu, "coulomb", 0.25, 0.58, "bulk friction, 14 to 30 degrees", common},
-        {"rock_avalanche", density, "", 1800.0, 2400.0, "broken rock", common},
+         in_common_use},
+        {"rock_avalanche", xi, "voellmy", 100.0, 1000.0, "back-analysed events", in_common_use},
+        {"rock_avalanche", mu, "coulomb", 0.25, 0.58, "bulk friction, 14 to 30 degrees", in_common_use},
+        {"rock_avalanche", density, "", 1800.0, 2400.0, "broken rock", in_common_use},
         {"mud", yield, "", 0.54, 528.0, "13 samples at volume concentrations of 0.30 to 0.40", obrien},
         {"mud", viscosity, "", 0.042, 34.0, "13 samples at volume concentrations of 0.30 to 0.40", obrien},
-        {"mud", yield, "", 20.0, 500.0, "mudflows; earth flows reach 10 000 Pa", common},
-        {"mud", viscosity, "", 1.0, 100.0, "mudflows", common},
-        {"mud", manning, "manning", 0.03, 0.06, "hyperconcentrated flows", common},
-        {"mud", density, "", 1300.0, 1900.0, "flowing", common},
+        {"mud", yield, "", 20.0, 500.0, "mudflows; earth flows reach 10 000 Pa", in_common_use},
+        {"mud", viscosity, "", 1.0, 100.0, "mudflows", in_common_use},
+        {"mud", manning, "manning", 0.03, 0.06, "hyperconcentrated flows", in_common_use},
+        {"mud", density, "", 1300.0, 1900.0, "flowing", in_common_use},
         {"", "material.bed.mu_s", "pouliquen", 0.38, 0.38, "glass beads", jop},
         {"", "material.bed.mu_2", "pouliquen", 0.64, 0.64, "glass beads", jop},
         {"", "material.bed.i0", "pouliquen", 0.279, 0.279, "glass beads", jop},

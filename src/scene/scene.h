@@ -249,12 +249,21 @@ struct Output {
     double checkpoint_minutes = 10.0;  ///< of wall time between checkpoints; 0: one at the end of the run [min]
 };
 
+/// What else differs in space on the nodes of a terrain, of that what a scene has.
+struct GroundFields {
+    std::shared_ptr<const Friction> friction;
+    Raster loose;  ///< ErodibleBed::depth [m]
+    Raster trees;  ///< Forest::pressure [Pa]
+};
+
 /// A terrain of which a scene holds a part, and where more of it comes from as the flow goes on.
 struct WiderTerrain {
     GridGeometry grid;                           ///< all of its nodes
     NodeBox held;                                ///< the scene's bed, of these nodes
     std::function<Raster(const NodeBox&)> read;  ///< elevations of a part of it; throws UserError
     std::vector<Vec2> shown;                     ///< places that rasters and frames are to reach as well [m]
+    /// On the nodes of such a part, with its elevations; throws UserError. Nothing: all are as they are.
+    std::function<GroundFields(const Raster& part)> fields = {};
 };
 
 struct Scene {

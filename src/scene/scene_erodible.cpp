@@ -28,18 +28,19 @@ Raster depth_of(const CaseFile& file, const GisReader& reader, Scene& scene) {
     const GridGeometry& grid = scene.bed.geometry;
     if (!file.is_text("erodible.depth")) return Raster::filled(grid, file.number("erodible.depth"));
     const std::filesystem::path path = file.path("erodible.depth");
-    std::vector<std::string> said;  // of the first reading, which the second says again
-    refuse_negative(reader.read_raster(path, grid.pixel_extent(), scene.bed.crs_wkt, said), path.string());
-    Raster depth = reader.read_onto(path, grid, scene.bed.crs_wkt, scene.log);
+    std::vector<std::string> before = scene.log;  // what the first reading says the second says again
+    refuse_negative(pixels_on(path, reader, scene), path.string());
+    scene.log = std::move(before);
+    Raster depth = field_on(path, reader, scene);
     Index missing = 0;
     for (double& value : depth.values) {
         if (std::isnan(value)) ++missing;
         value = value > 0.0 ? value : 0.0;  // cubic interpolation may undershoot
     }
     if (missing > 0)
-        scene.log.push_back(
-            fmt::format("{}: {:.3g} % of the terrain's nodes have no depth of loose material there and count as rock",
-                        file.place("erodible.depth"), 100.0 * double(missing) / double(grid.size())));
+        scene.log.push_back(fmt::format("{}: {:.3g} % of {} have no depth of loose material there and count as rock",
+                                        file.place("erodible.depth"), 100.0 * double(missing) / double(grid.size()),
+                                        nodes_text(scene)));
     return depth;
 }
 
@@ -66,7 +67,7 @@ void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Ra
     Raster covered = Raster::filled(scene.bed.geometry, 0.0);
     covered.crs_wkt = scene.bed.crs_wkt;
     const double inside = cut_release(unit, covered), all = area_of(*unit.outline);
-    if (inside < 0.999 * all)
+    if (inside < 0.999 * all && !(scene.wider && touches(*unit.outline, scene.wider->grid)))
         scene.log.push_back(fmt::format("{}: {:.3g} % of its area lie outside of the terrain",
                                         file.place("erodible.outline"), 100.0 * (1.0 - inside / all)));
     const GridGeometry& g = depth.geometry;
@@ -88,7 +89,8 @@ void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
         scene.log.push_back(
             fmt::format("{}: the loose material is up to {:.3g} m deep; is that a depth, and in metres?",
                         file.place("erodible.depth"), deepest));
-    scene.log.push_back(fmt::format("erodible: up to {:.6g} m3 of loose material can be taken up", volume));
+    scene.log.push_back(fmt::format("erodible: up to {:.6g} m3 of loose material can be taken up{}", volume,
+                                    scene.wider ? " around the releases, and more where the flow comes beyond" : ""));
 }
 
 /// What ploughs takes all that lies in its way: that has to end somewhere.

@@ -23,7 +23,7 @@ Raster pressure_of(const CaseFile& file, const GisReader& reader, Scene& scene) 
     const GridGeometry& grid = scene.bed.geometry;
     if (!file.is_text(kKey)) return Raster::filled(grid, file.number(kKey));
     const std::filesystem::path path = file.path(kKey);
-    const Raster pixels = reader.read_raster(path, grid.pixel_extent(), scene.bed.crs_wkt, scene.log);
+    const Raster pixels = pixels_on(path, reader, scene);
     require_range(pixels, find_parameter(kKey)->range, path.string());
     Raster pressure = Raster::filled(grid, 0.0);
     Index missing = 0;
@@ -35,8 +35,8 @@ Raster pressure_of(const CaseFile& file, const GisReader& reader, Scene& scene) 
             pressure.values[k] = value;
     });
     if (missing > 0)
-        scene.log.push_back(fmt::format("{}: {:.3g} % of the terrain's nodes have no data there and no forest",
-                                        file.place(kKey), 100.0 * double(missing) / double(grid.size())));
+        scene.log.push_back(fmt::format("{}: {:.3g} % of {} have no data there and no forest", file.place(kKey),
+                                        100.0 * double(missing) / double(grid.size()), nodes_text(scene)));
     return pressure;
 }
 
@@ -46,14 +46,14 @@ void clear_outside(const CaseFile& file, const GisReader& reader, Scene& scene, 
     NodeMarks inside(pressure.values.size(), 0);
     const Polygons outline = reader.read_polygons(file.path("forest.outline"), scene.bed.crs_wkt, scene.log);
     for (const Polygon& polygon : outline.parts) mark_inside(polygon, grid, inside);
-    if (std::count(inside.begin(), inside.end(), 1) == 0)
+    if (std::count(inside.begin(), inside.end(), 1) == 0 && !(scene.wider && touches(outline, scene.wider->grid)))
         throw UserError(
             "found no node of the terrain in it; expected some; correct the outline or its CRS, or remove it");
     for (std::size_t k = 0; k < inside.size(); ++k)
         if (!inside[k]) pressure.values[k] = 0.0;
 }
 
-/// How much forest there is. Ground without elevation has none.
+/// Whether and how much forest there is: beyond a part that is held there may be some. Ground without elevation has none.
 bool any_forest(const CaseFile& file, Scene& scene, Raster& pressure) {
     double low = INFINITY, high = 0.0, area = 0.0;
     for (std::size_t k = 0; k < pressure.values.size(); ++k) {
@@ -64,12 +64,12 @@ bool any_forest(const CaseFile& file, Scene& scene, Raster& pressure) {
         area += pressure.geometry.cell * pressure.geometry.cell;
     }
     if (area > 0.0)
-        scene.log.push_back(
-            fmt::format("forest: {:.4g} ha, with a detrainment of {} Pa", 1e-4 * area,
-                        low < high ? fmt::format("{:.4g} to {:.4g}", low, high) : fmt::format("{:.4g}", high)));
-    else
+        scene.log.push_back(fmt::format(
+            "forest: {:.4g} ha{}, with a detrainment of {} Pa", 1e-4 * area, scene.wider ? " around the releases" : "",
+            low < high ? fmt::format("{:.4g} to {:.4g}", low, high) : fmt::format("{:.4g}", high)));
+    else if (!scene.wider)
         scene.log.push_back(fmt::format("{}: it is 0 everywhere on the terrain: no forest", file.place(kKey)));
-    return area > 0.0;
+    return area > 0.0 || scene.wider;
 }
 
 }  // namespace

@@ -102,6 +102,7 @@ public:
             part.name = zone        ? name_of(case_, fmt::format("material.zone.{}", i))
                         : zones > 0 ? "elsewhere"
                                     : "everywhere";
+            if (part.area == 0.0 && scene_.wider) continue;  // it may begin farther on
             if (zone && part.area == 0.0)
                 scene_.log.push_back(fmt::format("{}: later zones cover all of it",
                                                  case_.table_place(fmt::format("material.zone.{}", i))));
@@ -172,7 +173,7 @@ private:
     /// Of the pixel at each node. Where there is none: the key's default, or NaN.
     void lay_raster(const Key<Law>& key, const std::string& name) {
         const std::filesystem::path path = case_.path(name);
-        const Raster pixels = reader_.read_raster(path, grid_.pixel_extent(), scene_.bed.crs_wkt, scene_.log);
+        const Raster pixels = pixels_on(path, reader_, scene_);
         require_range(pixels, key.range, path.string());
         Index gaps = 0;
         for_each_node([&](std::size_t k, double x, double y) {
@@ -186,8 +187,8 @@ private:
         });
         if (gaps > 0 && key.missing != laws::Missing::refused)
             scene_.log.push_back(fmt::format(
-                "{}: {:.3g} % of the terrain's nodes have no data there; they have {:.6g} where no zone says more",
-                case_.place(name), 100.0 * double(gaps) / double(ground_count()), Law{}.*key.parameter));
+                "{}: {:.3g} % of {} have no data there; they have {:.6g} where no zone says more", case_.place(name),
+                100.0 * double(gaps) / double(ground_count()), nodes_text(scene_), Law{}.*key.parameter));
     }
 
     /// By outline, by elevation, or what both have.
@@ -222,10 +223,19 @@ private:
                 if (const std::string name = zone + "." + key.name; case_.given(name))
                     laws_[k].*key.parameter = key.convert(case_.number(name));
         }
-        if (!any)
+        if (!any && !may_lie_farther(zone))
             throw UserError(
                 "found no node of the terrain in it; expected some; correct the outline, its CRS or the elevations, or "
                 "remove the zone");
+    }
+
+    /// Whether the terrain beyond the part that is held may have nodes of a zone.
+    bool may_lie_farther(const std::string& zone) const {
+        if (!scene_.wider) return false;
+        if (!case_.given(zone + ".outline")) return true;
+        std::vector<std::string> said;
+        return touches(reader_.read_polygons(case_.path(zone + ".outline"), scene_.bed.crs_wkt, said),
+                       scene_.wider->grid);
     }
 
     [[noreturn]] void refuse_gaps(const std::string& key, std::size_t count, std::size_t first) const {
@@ -300,7 +310,7 @@ private:
 bool friction_by_table(const CaseFile& file) { return file.word("material.bed.table") != "none"; }
 
 bool friction_differs(const CaseFile& file) {
-    return friction_by_table(file) || file.count("material.zone") > 0 || !raster_in(file, "material.bed").empty();
+    return friction_by_table(file) || file.count("material.zone") > 0 || !rasters_in(file, "material.bed").empty();
 }
 
 void read_friction(const CaseFile& file, const GisReader& reader, double released, Scene& scene, Problems& problems) {

@@ -80,6 +80,17 @@ std::function<Raster(const NodeBox&)> SharedReader::read_dem_later(const std::fi
     };
 }
 
+std::shared_ptr<const GisReader> SharedReader::lasting() const {
+    const std::lock_guard<std::recursive_mutex> alone(*mutex_);
+    return inner_.lasting();
+}
+
+RasterPlace SharedReader::place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                                   const std::string& crs_wkt) const {
+    const std::lock_guard<std::recursive_mutex> alone(*mutex_);
+    return inner_.place_of(file, extent, crs_wkt);
+}
+
 Raster SharedReader::read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                                  const std::string& crs_wkt, std::vector<std::string>& log) const {
     return recalled(rasters_, fmt::format("raster {} {} {}", file.string(), extent, crs_wkt), log,

@@ -18,6 +18,10 @@ public:
                     std::vector<std::string>& log) const override;
     std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path& file,
                                                          const DemRequest& request) const override;
+    /// Not this one, which remembers what was read: what it would hold grows with each part.
+    std::shared_ptr<const GisReader> lasting() const override;
+    RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
+                         const std::string& crs_wkt) const override;
     Raster read_raster(const std::filesystem::path& file, const std::array<double, 4>& extent,
                        const std::string& crs_wkt, std::vector<std::string>& log) const override;
     Raster read_onto(const std::filesystem::path& file, const GridGeometry& grid, const std::string& crs_wkt,

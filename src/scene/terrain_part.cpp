@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "base/layer_name.h"
 #include "scene/bed_smoothing.h"
+#include "scene/combinations.h"
+#include "scene/ground_fields.h"
 #include "scene/scene_parts.h"
 #include "terrain/part_of.h"
 
@@ -23,14 +25,25 @@ bool may_begin_with_part(const CaseFile& file, const Scene& scene) {
         if (file.count(table) > 0) return false;
     for (Index i = 0; i < file.count("barrier"); ++i)
         if (file.given(fmt::format("barrier.{}.mesh", i))) return false;  // its place is known once it is read
-    for (const char* law : {"erodible.law", "deposition.law"})
-        if (file.word(law) != "none") return false;  // the ledger is of all of it
-    if (file.given("forest.detrainment")) return false;
-    if (friction_differs(file)) return false;  // so is friction
+    if (friction_by_table(file)) return false;  // its classes follow from terrain around a node
+    if (friction_differs(file) && file.word("deposition.law") != "none") return false;  // if any node holds, all may
     if (file.word("material.structure.law") != "none" || file.word("water.model") != "none") return false;
     for (Index i = 0; i < file.count("release"); ++i)
         if (!file.given(fmt::format("release.{}.outline", i))) return false;
     return true;
+}
+
+/// Rasters that differ in space besides the elevations can be read again later, with the same values at a node.
+bool fields_may_follow(const CaseFile& file, const GisReader& reader, const Raster& whole) {
+    if (!has_fields(file)) return true;
+    if (!reader.lasting()) return false;
+    const auto hangs_on_part = [&](const std::string& key) {
+        return file.given(key) && file.is_text(key) &&
+               reader.place_of(file.path(key), whole.geometry.pixel_extent(), whole.crs_wkt).needs_warp;
+    };
+    std::vector<std::string> keys{"erodible.depth", "forest.detrainment"};
+    for (const std::string& key : rasters_in(file, "material.bed")) keys.push_back(key);
+    return std::none_of(keys.begin(), keys.end(), hangs_on_part);
 }
 
 /// Of all tables of a name.
@@ -124,6 +137,7 @@ std::optional<TerrainPart> part_to_begin_with(const CaseFile& file, const Scene&
     TerrainPart part;
     std::vector<Vec2> others;
     try {
+        if (!fields_may_follow(file, reader, whole)) return {};
         part.box = common(cells_of(corners_of_material(file, reader, whole), whole.geometry), all);
         part.shown = shown_places(file, reader, whole);
         take_lines(file, "section", reader, whole, others);

@@ -22,6 +22,12 @@ struct DemRequest {
     std::function<NodeBox(const Raster& whole)> choose = {};
 };
 
+/// How a raster lies to a part of the map.
+struct RasterPlace {
+    bool touches = true;      ///< otherwise read_raster and read_onto refuse it
+    bool needs_warp = false;  ///< its CRS is another one: pixels then hang on the part that is read
+};
+
 /// Polygons with a number each.
 struct ValuedPolygons {
     Polygons polygons;
@@ -41,6 +47,13 @@ public:
     /// Reads parts of that model later on; may outlive this reader. Nothing: parts cannot be read here.
     virtual std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path& /*file*/,
                                                                  const DemRequest& /*request*/) const {
+        return {};
+    }
+    /// A reader of the same files that may outlive this one. Nothing: parts cannot be read here.
+    virtual std::shared_ptr<const GisReader> lasting() const { return {}; }
+    /// How a raster lies to `extent` of a map of that CRS.
+    virtual RasterPlace place_of(const std::filesystem::path& /*file*/, const std::array<double, 4>& /*extent*/,
+                                 const std::string& /*crs_wkt*/) const {
         return {};
     }
     /// Any raster (depth, mask, velocity, ...) in its own pixels, cut to the pixels that touch `extent`

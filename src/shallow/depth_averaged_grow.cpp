@@ -47,6 +47,10 @@ void DepthAveraged::take_over(DepthAveraged& from, Index east, Index north) {
     lost_in_holes_ = from.lost_in_holes_;
     signal_ = from.signal_, since_split_ = from.since_split_, stress_power_ = from.stress_power_;
     centre_ = from.centre_ + Vec2(static_cast<double>(east), static_cast<double>(north));
+    if (erosion_) {
+        erosion_->take_over(*from.erosion_, from.flow_, flow_, east, north);
+        status_.bed = erosion_->status();
+    }
     sorter_.sort(c, flow_.grid, {}, flow_.active);
     drift_ = 0.0;
     arrive(timed_("deposit", [&] { return transfer_->deposit(flow_, 0.5 * (status_.dt + longest_step())); }));

@@ -56,8 +56,11 @@ public:
     bool evolves() const { return evolves_; }
     /// The ledger, and the bed where it has changed; aside those that a step may change, which reaches the tiles `reached`.
     void serialize(Archive& archive, Flow& flow, const std::vector<Index>& reached);
+    /// Ledger and bed of a run on a part of this grid; its node (0, 0) is (east, north) here.
+    void take_over(const Erosion& from, const Flow& old, Flow& flow, Index east, Index north);
 
 private:
+    struct Moved;
     Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
     template <class Law, class Friction, class Real, bool kFresh>
     void demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction);
@@ -91,6 +94,10 @@ private:
     void list_given(const Flow& flow);
     void raise_tile(Flow& flow, Index tile);
     void list_ledger(Index tile);
+    std::vector<Moved> moved_nodes(const Flow& flow, const TileGrid& to, Index east, Index north) const;
+    void take_node(const Erosion& from, const Flow& old, Flow& flow, const Moved& node);
+    void bend_taken_over(const Erosion& from, Flow& flow, const std::vector<Moved>& nodes,
+                         const std::vector<Index>& tiles);
     void serialize_deposition(Archive& archive, const Flow& flow);
     bool choose(const Flow& flow);
     void make_room(const Flow& flow);

@@ -89,7 +89,7 @@ struct Flow {
     StencilMarks marks_of(Index tile) const { return {grid.tile_i(tile) + kTile, grid.tile_j(tile) + kTile}; }
     /// Whether a node was touched.
     bool is_in_reach(Index i, Index j) const {
-        const Index tile = (j + kTile) / kTile * grid.tiles_x() + (i + kTile) / kTile;
+        const Index tile = grid.tile_of_node(i, j);
         return active.in_work[tile] && (in_reach[tile] & group_of((i + kTile) % kTile, (j + kTile) % kTile));
     }
     double dry_depth() const { return 1e-14 * cell; }  ///< round-off of a depth [m]

@@ -40,6 +40,18 @@ void RestClocks::stop_all(const TileGrid& grid) {
     tiles_.clear();
 }
 
+void RestClocks::take_over(const RestClocks& from, const TileGrid& part, const TileGrid& grid, Index east,
+                           Index north) {
+    for (const Index tile : from.tiles_)
+        for_each_node_of(part, tile, from.known_[tile], [&](Index k, Index i, Index j) {
+            if (!(from.rested_[k] > 0.0)) return;
+            const Index a = i + east, b = j + north, to = grid.tile_of_node(a, b);
+            if (known_[to] == 0) tiles_.push_back(to);
+            known_[to] |= group_of((a + kTile) % kTile, (b + kTile) % kTile);
+            rested_[grid.at(a, b)] = from.rested_[k];
+        });
+}
+
 void RestClocks::serialize(Archive& archive, const Flow& flow) {
     const Archive::Part part(archive, "rest");
     std::vector<std::uint64_t> groups;

@@ -22,6 +22,8 @@ public:
     bool any_has_run(Index tile, double time) const { return longest_[tile] > 0.0 && longest_[tile] >= time; }
     /// Those of the work list.
     void serialize(Archive& archive, const Flow& flow);
+    /// Those of a part of the grid; its node (0, 0) is (east, north) here.
+    void take_over(const RestClocks& from, const TileGrid& part, const TileGrid& grid, Index east, Index north);
 
 private:
     void tick_tile(const Flow& flow, Index tile, double dt);

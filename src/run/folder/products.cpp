@@ -128,13 +128,12 @@ std::vector<ProductRaster> product_rasters(const Frame& last, const std::string&
     return rasters;
 }
 
-std::vector<ProductRaster> friction_rasters(const Scene& scene) {
+std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed) {
     std::vector<ProductRaster> rasters;
-    if (!scene.friction) return rasters;
-    for (const std::string& name : scene.friction->keys) {
-        Raster raster = scene.bed;
+    for (const std::string& name : friction.keys) {
+        Raster raster = bed;
         raster.source = name;
-        const std::vector<double> values = bed::parameter_on_nodes(scene.friction->laws, name);
+        const std::vector<double> values = bed::parameter_on_nodes(friction.laws, name);
         for (std::size_t node = 0; node < values.size(); ++node)
             if (!std::isnan(raster.values[node])) raster.values[node] = values[node];
         const Parameter& key = *find_parameter("material.bed." + name);

@@ -42,8 +42,8 @@ private:
 /// arrival times and all nodes without terrain become nodata.
 std::vector<ProductRaster> product_rasters(const Frame& last, const std::string& crs_wkt);
 
-/// The parameters of a friction that differs in space, as the nodes have them: mu, xi, ... Nothing where it does not.
-std::vector<ProductRaster> friction_rasters(const Scene& scene);
+/// The parameters of a friction that differs in space, as the nodes of its bed have them: mu, xi, ...
+std::vector<ProductRaster> friction_rasters(const Friction& friction, const Raster& bed);
 
 /// Whether a raster of that name is one of those.
 bool is_friction(const std::string& name);

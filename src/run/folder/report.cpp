@@ -317,6 +317,7 @@ std::string friction(const RunRecord& r) {
     if (r.friction.empty()) return "";
     std::string text = "## Friction\n\n| Where | Area and friction |\n|---|---|\n";
     for (const FrictionPart& part : r.friction) text += row(part.name, friction_sentence(part));
+    if (r.friction_of_part) text += "\nAreas are those within the part of the terrain that the run needed.";
     return text + "\nLater zones win. `rasters/` has each parameter as the nodes had it.\n\n";
 }
 

@@ -72,6 +72,7 @@ void note_width(RunRecord& record, const std::vector<ProductRaster>& rasters) {
 void note_simulation(RunRecord& record, const Scene& scene, const Simulation& simulation) {
     record.extras = simulation.extras();
     for (const std::string& remark : simulation.remarks()) record.warnings.push_back(remark);
+    if (const Friction* used = simulation.friction()) record.friction = used->parts, record.friction_of_part = true;
     if (!record.extras.water) record.release_volume = record.summary.first.mass / scene.density;
 }
 
@@ -168,6 +169,19 @@ Raster shown_bed(const Scene& scene, const Simulation& simulation, const std::ve
     const Raster* const ground = simulation.ground();
     if (ground == nullptr || rasters.empty()) return scene.bed;
     return part_of(*ground, box_of(rasters.front().raster.geometry, ground->geometry).value());
+}
+
+/// As the run used it, where rasters show the terrain.
+void add_friction(const Scene& scene, const Simulation& simulation, std::vector<ProductRaster>& rasters) {
+    const Friction* const used = simulation.friction() != nullptr ? simulation.friction() : scene.friction.get();
+    if (used == nullptr) return;
+    const Raster& ground = simulation.ground() != nullptr ? *simulation.ground() : scene.bed;
+    const GridGeometry shown = shown_bed(scene, simulation, rasters).geometry;
+    for (ProductRaster& product : friction_rasters(*used, ground)) {
+        if (!(shown == ground.geometry))
+            product.raster = part_of(product.raster, box_of(shown, ground.geometry).value());
+        rasters.push_back(std::move(product));
+    }
 }
 
 void close_record(RunRecord& record, const fs::path& run_dir) {
@@ -291,7 +305,7 @@ RunRecord carry_out(const Scene& scene, Simulation& simulation, const fs::path& 
     }
     for (const std::string& warning : insitu_warnings(record.insitu)) record.warnings.push_back(warning);
     note_results(record, rasters);
-    for (ProductRaster& friction : friction_rasters(scene)) rasters.push_back(std::move(friction));
+    add_friction(scene, simulation, rasters);
     const Raster bed = shown_bed(scene, simulation, rasters);
     if (scene.output.geotiff && !rasters.empty() && bed.geometry == rasters.front().raster.geometry)
         rasters.push_back(elevation_raster(bed));
@@ -328,7 +342,7 @@ RunRecord carry_out_in_memory(const Scene& scene, Simulation& simulation, RunRec
         run(simulation, plan_of(scene, record.end < record.whole_end), observers, interrupt, progress, nullptr);
     note_simulation(record, scene, simulation);
     note_results(record, rasters);
-    for (ProductRaster& friction : friction_rasters(scene)) rasters.push_back(std::move(friction));
+    add_friction(scene, simulation, rasters);
     return record;
 }
 

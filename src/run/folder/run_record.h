@@ -64,6 +64,7 @@ struct RunRecord {
     std::vector<BarrierHit> barrier_hits;  ///< in their order; none before the end of the run
     std::vector<SectionSummary> sections;
     std::vector<FrictionPart> friction;  ///< where it differs in space
+    bool friction_of_part = false;       ///< their areas are those of the part of the terrain that the run held
     CheckpointKeeper::Progress checkpoints;
     Extras extras;
     std::vector<std::string> warnings;
