@@ -239,6 +239,36 @@ TEST_CASE("A flow down the middle of a valley takes as much on both sides", "[er
     CHECK(apart <= 1e-10 * most);  // round-off, as it grows in some sixty steps
 }
 
+TEST_CASE("No point gathers what lies on its way: grown ones spread over as many cells as their mass fills",
+          "[erosion]") {
+    // A slide of snow runs down a rough slope that is loose all over and takes up many times its mass.
+    const auto rough = [](double x, double y) {
+        const auto i = static_cast<std::uint64_t>(x), j = static_cast<std::uint64_t>(y);
+        return 300.0 - 0.3 * x + 0.02 * static_cast<double>((i * 7919 + j * 104729) % 53);
+    };
+    Scene scene = scene_on(400, 60, 2.0, rough);
+    scene.density = 300.0;
+    scene.bed_law = bed::Voellmy{0.12, 400};
+    verify::place(
+        scene, [](double x, double y) { return std::abs(x - 30) < 20 && std::abs(y - 59) < 20 ? 0.8 : 0.0; },
+        verify::Placement::shifted, 2);
+    scene.erodible = loose(scene, erosion::Growth{0.008}, [](double, double) { return 0.2; });
+    scene.erodible->density = 200.0;
+    DepthAveraged simulation(scene);
+    const Status first = simulation.status();
+    double fullest = 0.0;  // cells that a point's mass would fill at the depth around it
+    while (simulation.status().time < 90.0) {
+        simulation.advance(90.0);
+        const Columns& c = simulation.flow().columns;
+        for (Index p = 0; p < c.count(); ++p)
+            if (c.depth[p] > 0.5)
+                fullest = std::max(fullest, c.mass[p] / (scene.density * simulation.flow().area * c.depth[p]));
+    }
+    CHECK(simulation.status().mass > 4.0 * first.mass);
+    // Domains that do not split are shorter than split_length; four times what one holds is not widened.
+    CHECK(fullest < 4.0 * scene.scheme.split_length * scene.scheme.split_length);
+}
+
 TEST_CASE("What rests on loose ground sleeps and takes nothing", "[erosion][sleep]") {
     Scene scene = scene_on(80, 60, 1.0, [](double x, double) { return 0.05 * x; });
     scene.bed_law = bed::Coulomb{0.6};

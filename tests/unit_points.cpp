@@ -336,6 +336,32 @@ TEST_CASE("A point that splits is not drawn in first, one that may not is", "[po
     for (const double edge : pool.flow.columns.r1x) CHECK(std::abs(edge - 1.0) <= 1e-15);
 }
 
+TEST_CASE("A point that has grown far too heavy for its domain becomes as wide as its mass is, and splits",
+          "[points]") {
+    const auto split = [](Pool& pool, double mass, double depth) {
+        pool.add(6.0, 6.0, mass, 0.5);
+        pool.flow.columns.depth[0] = depth;
+        pool.sort();
+        Splitter splitter(0.0, 2.0 * pool.flow.density * pool.flow.area);
+        splitter.set_next_id(1);
+        return splitter.split(pool.flow);
+    };
+    Pool probe;
+    const double filled = probe.flow.density * probe.flow.area;  // of a cell, a metre deep [kg]
+    const auto edge_after = [&](double mass, double depth, Index born) {
+        Pool pool;
+        CHECK(split(pool, mass, depth) == born);
+        CHECK(Sums(pool.flow.columns).mass == mass);
+        for (const double edge : pool.flow.columns.r1x) CHECK(edge == pool.flow.columns.r1x[0]);
+        return pool.flow.columns.r1x[0];
+    };
+    // Three cells a metre deep in a quarter of one: its edge becomes sqrt(3) cells, and each part's half of it.
+    CHECK(edge_after(3.0 * filled, 1.0, 3) == Approx(0.5 * std::sqrt(3.0)).epsilon(1e-15));
+    CHECK(edge_after(64.0 * filled, 1.0, 3) == Approx(1.0).epsilon(1e-15));  // two cells at most
+    CHECK(edge_after(3.0 * filled, 3.5, 0) == 0.5);                          // no more than margins have
+    CHECK(edge_after(1.9 * filled, 0.5, 0) == 0.5);                          // it has not grown
+}
+
 TEST_CASE("Points in a row split and are straightened as each alone", "[points]") {
     struct Edge {
         double r1x, r1y, r2x, r2y;

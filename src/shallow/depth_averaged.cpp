@@ -30,13 +30,19 @@ double least_split_mass(const Scene& scene) {
     return scene.scheme.split_min_mass * largest_column(scene) * scene.density;
 }
 
+/// From which on a point counts as one that has taken up bed: what merges stays below it, but in crowds.
+double grown_mass(const Scene& scene) {
+    constexpr double kGrown = 2.0;  // of the largest at the start
+    return scene.erodible ? kGrown * largest_column(scene) * scene.density : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 DepthAveraged::DepthAveraged(const Scene& scene, Start start)
     : flow_(scene),
       transfer_(make_transfer(scene)),
       grid_update_(make_grid_update(scene)),
-      splitter_(least_split_mass(scene)),
+      splitter_(least_split_mass(scene), grown_mass(scene)),
       peaks_(flow_.grid),
       shown_(NodeBox::all(scene.bed.geometry)),
       rheology_(scene.rheology),

@@ -1,6 +1,34 @@
 #include "shallow/split.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace frana {
+
+/// THEORY, section 11. A point that takes up bed gains mass, not width: alone in its front it would gather all that lies on its
+/// way, and one point cannot spread. It becomes as wide as its mass is at the depth around it, and splits.
+template <class Real>
+void Splitter::widen_grown(Flow& flow) const {
+    constexpr double kCrowded = 4.0;  // at margins the depth at a point is a half or a quarter of its own
+    const double longest = 2.0 * std::max(1.0, flow.scheme.split_length);
+    const Columns& c = flow.columns;
+    Carried<Real>& held = flow.columns.carried<Real>();
+    for_each_tile(flow.active, [&](Index n) {
+        std::uint8_t& quiet = flow.active.quiet[flow.active.tile[n]];
+        if (quiet >= kAsleep) return;
+        for (Index p = flow.active.begin[n]; p < flow.active.begin[n + 1]; ++p) {
+            if (!(c.mass[p] > grown_mass_) || !(held.depth[p] > flow.dry_depth())) continue;
+            const Edges e = edges_of(held, p);
+            const double area = std::abs(e.area()), fills = c.mass[p] / (flow.density * flow.area * held.depth[p]);
+            if (!(area > 0.0) || fills <= kCrowded * area) continue;
+            const double wider =
+                std::min(std::sqrt(fills / area), longest / std::sqrt(std::max(e.length1_2(), e.length2_2())));
+            if (!(wider > 1.0)) continue;
+            set_edges(held, p, {wider * e.r1x, wider * e.r1y, wider * e.r2x, wider * e.r2y});
+            quiet = 0;
+        }
+    });
+}
 
 Index Splitter::split(Flow& flow) {
     constexpr double kOff = 1e-9;  // [cells]
@@ -8,6 +36,7 @@ Index Splitter::split(Flow& flow) {
     const HalvingRules rules{scheme.split_length, least_mass_, scheme.split, scheme.reset_domains,
                              scheme.shape == Shape::linear ? kOff : 0.0};
     return flow.columns.with_real([&](auto real) {
+        if (std::isfinite(grown_mass_)) widen_grown<decltype(real)>(flow);
         return halve_points(flow.grid, flow.active, rules, flow.columns, flow.columns.carried<decltype(real)>(),
                             halves_, [](Index) { return true; });
     });

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -10,9 +11,11 @@ namespace frana {
 /// Splits points whose domain has grown, so that spreading material does not fall apart (numerical fracture).
 class Splitter {
 public:
-    /// `least_mass`: no point lighter than this is split [kg].
-    explicit Splitter(double least_mass) : least_mass_(least_mass) {}
-    /// Clamps domain edges to one cell (or scheme.split_length, if longer) and gives strongly sheared domains a
+    /// `least_mass`: no point lighter than this is split; `grown_mass`: a heavier one may have taken up more than its domain
+    /// holds [kg].
+    explicit Splitter(double least_mass, double grown_mass = std::numeric_limits<double>::infinity())
+        : least_mass_(least_mass), grown_mass_(grown_mass) {}
+    /// Widens domains that have grown far too heavy for their size. Clamps domain edges to one cell (or scheme.split_length, if longer) and gives strongly sheared domains a
     /// rectangle; then, when scheme.split is on, halves every point whose longer edge reaches scheme.split_length
     /// cells (both ways where both are equally long): children at +- r/4 along that edge, with the velocity there.
     /// Mass and momentum are kept exactly.
@@ -29,7 +32,10 @@ public:
     void set_next_id(Index id) { halves_.next_id = id; }
 
 private:
-    double least_mass_;
+    template <class Real>
+    void widen_grown(Flow& flow) const;
+
+    double least_mass_, grown_mass_;
     Halves halves_;
 };
 
