@@ -4,7 +4,7 @@
     python3 tests/real/table.py build/bin/frana DATA OUT [NAME ...]
 
 reads terrain and surveys in DATA where they lie and leaves its runs in OUT; what is there is not run again. Names pick rows:
-ryggfonn, alr, waves, codes, rest, friction, reach, deposit. Needs numpy and GDAL's module. The table stands in src/checks/verify/README.md.
+ryggfonn, alr, waves, codes, rest, friction, reach, deposit, torrents. Needs numpy and GDAL's module. The table stands in src/checks/verify/README.md.
 """
 import json
 import math
@@ -105,16 +105,33 @@ def frank(end=400, **more):
                  2000.0, end, **more)
 
 
-def olivares(track, end=7200, mu=0.25, **more):
+def olivares(track, end=7200, mu=0.25, xi=1500.0, radius=40.0, **more):
     sources = json.loads((DATA / "olivares_east/sources.geojson").read_text())
     [place] = [f["geometry"]["coordinates"] for f in sources["features"] if f["properties"]["id"] == track]
-    ring = [[place[0] + 40 * math.cos(math.radians(a)), place[1] + 40 * math.sin(math.radians(a))]
+    ring = [[place[0] + radius * math.cos(math.radians(a)), place[1] + radius * math.sin(math.radians(a))]
             for a in range(0, 361, 30)]
     sources["features"] = [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [ring]}}]
     OUT.mkdir(parents=True, exist_ok=True)
-    (OUT / f"olivares_{track}.geojson").write_text(json.dumps(sources))
-    return slide("olivares_east", f'{{ law = "voellmy", mu = {mu}, xi = 1500.0 }}',
-                 f'outline = "olivares_{track}.geojson"\ndepth = 2.0', 2000.0, end, **more)
+    (OUT / f"olivares_{track}_{radius:g}.geojson").write_text(json.dumps(sources))
+    return slide("olivares_east", f'{{ law = "voellmy", mu = {mu}, xi = {xi} }}',
+                 f'outline = "olivares_{track}_{radius:g}.geojson"\ndepth = 2.0', 2000.0, end, **more)
+
+
+def torrent(track, growth):
+    """A slide of 2900 m3 at a mapped source, on loose ground within the mapped track."""
+    mapped = json.loads((DATA / "olivares_east/footprint.geojson").read_text())
+    mapped["features"] = [f for f in mapped["features"] if f["properties"]["id"] == track]
+    OUT.mkdir(parents=True, exist_ok=True)
+    (OUT / f"mapped_{track}.geojson").write_text(json.dumps(mapped))
+    loose = f"""[erodible]
+law = "growth"
+growth = {growth}
+depth = 3.0
+outline = "mapped_{track}.geojson"
+"""
+    return olivares(track, mu=0.10, xi=200.0, radius=22.0, end=3600, extra=f"""[survey]
+footprint = "mapped_{track}.geojson"
+{loose if growth else ""}""")
 
 
 def events():
@@ -292,6 +309,17 @@ def reach():
             f"flow is {by_every[0].record['flow_width_cells']:.1f} cells wide")
 
 
+def growth_of_torrents():
+    for growth in (0, 5e-4, 1e-3, 1.5e-3, 2e-3):
+        cells = []
+        for track in (30, 33, 51):
+            done = run(f"torrent_{track}_{growth:g}", torrent(track, growth))
+            scores = json.loads((done.folder / "compare.json").read_text())
+            cells.append(f"{done.record['budgets']['mass']['final'] / 2000:.0f} m3, {scores['runout_difference']:.0f} m, "
+                         f"recall {scores['recall']:.2f}, fastest {done.record['results']['max_speed']:.0f} m/s")
+        row(f"growth {growth:g}: volume at the end, toe beyond the mapped one; tracks 30, 33, 51", "", "; ".join(cells))
+
+
 def deposits():
     first, second = run("ryggfonn_rest", ryggfonn()), run("ryggfonn_mu", ryggfonn(mu=0.4004))
     row("Ryggfonn, final depth for 0.1 % more friction, blocks of 20 m (relative L1) [%]", "11 for 0.17 %",
@@ -300,7 +328,7 @@ def deposits():
 
 ROWS = {"ryggfonn": peaks_on_ryggfonn, "alr": compare_on_alr, "waves": waves_on_alr, "codes": compare_with_codes, "rest": rest_is_rest,
         "friction": rest_for_any_friction,
-        "reach": reach, "deposit": deposits}
+        "reach": reach, "deposit": deposits, "torrents": growth_of_torrents}
 
 print("| Figure | 0db0741 | now |\n|---|---|---|")
 for name in sys.argv[4:] or ROWS:
