@@ -32,10 +32,8 @@ public:
         if (!place_of(file, extent, crs).touches) throw frana::UserError(file.string() + ": does not touch it");
         return raster(file);
     }
-    frana::Raster read_onto(const std::filesystem::path& file, const frana::GridGeometry& grid, const std::string& crs,
+    frana::Raster read_onto(const std::filesystem::path& file, const frana::GridGeometry& grid, const std::string&,
                             std::vector<std::string>&) const override {
-        if (!place_of(file, grid.pixel_extent(), crs).touches)
-            throw frana::UserError(file.string() + ": does not touch it");
         const frana::Raster source = raster(file);
         frana::Raster result = frana::Raster::filled(grid, frana::Raster::nodata);
         for (frana::Index j = 0; j < grid.ny; ++j) {
