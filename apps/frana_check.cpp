@@ -222,7 +222,8 @@ std::string told_of(const BuiltScene& built) {
     text += total_text(built) + width_text(built.scene) + forecast_text(built.scene);
     if (built.scene.friction)
         for (const FrictionPart& part : built.scene.friction->parts)
-            text += fmt::format("friction    {}: {}\n", part.name, friction_sentence(part));
+            text += fmt::format("friction    {}{}: {}\n", part.name, built.scene.wider ? ", around the releases" : "",
+                                friction_sentence(part));
     text += barriers_text(built.scene);
     if (built.scene.solid) text += stage_text(built.scene);
     check_insitu(built.scene);

@@ -67,12 +67,14 @@ Raster field_on(const std::filesystem::path& file, const GisReader& reader, Scen
     return reader.read_onto(file, scene.bed.geometry, scene.bed.crs_wkt, scene.log);
 }
 
-bool touches(const Polygons& polygons, const GridGeometry& terrain) {
+bool may_begin_beyond(const Polygons& polygons, const Scene& scene) {
+    if (!scene.wider) return false;
     std::vector<Vec2> corners;
     for (const Polygon& polygon : polygons.parts)
         for (const auto& ring : polygon.rings) corners.insert(corners.end(), ring.begin(), ring.end());
-    const NodeBox met = common(cells_of(corners, terrain), NodeBox::all(terrain));
-    return met.nx > 0 && met.ny > 0;
+    const auto met = [&](const GridGeometry& grid) { return common(cells_of(corners, grid), NodeBox::all(grid)); };
+    const NodeBox here = met(scene.bed.geometry), there = met(scene.wider->grid);
+    return there.nx > here.nx || there.ny > here.ny;
 }
 
 void require_range(const Raster& pixels, const Range& range, const std::string& file) {

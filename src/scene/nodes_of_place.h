@@ -22,8 +22,9 @@ Raster pixels_on(const std::filesystem::path& file, const GisReader& reader, Sce
 /// The same on the nodes of the terrain.
 Raster field_on(const std::filesystem::path& file, const GisReader& reader, Scene& scene);
 
-/// Whether the box around the polygons touches a terrain.
-bool touches(const Polygons& polygons, const GridGeometry& terrain);
+/// Whether polygons that hold no node of the part of a terrain that the scene holds may hold some beyond it. Never where the
+/// scene has all of the terrain.
+bool may_begin_beyond(const Polygons& polygons, const Scene& scene);
 
 /// Throws UserError, naming a pixel, unless all that have data lie in a key's range.
 void require_range(const Raster& pixels, const Range& range, const std::string& file);

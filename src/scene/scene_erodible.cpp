@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "law/catalogue.h"
+#include "particles/outline_area.h"
 #include "scene/nodes_of_place.h"
 
 namespace frana {
@@ -44,39 +45,71 @@ Raster depth_of(const CaseFile& file, const GisReader& reader, Scene& scene) {
     return depth;
 }
 
-double area_of(const Polygons& polygons) {
-    double area = 0.0;
+/// Rings counted from the grid's first node [m].
+Rings rings_of(const Polygons& polygons, const GridGeometry& grid) {
+    Rings rings;
     for (const Polygon& polygon : polygons.parts)
         for (std::size_t n = 0; n < polygon.rings.size(); ++n) {
-            const std::vector<Vec2>& ring = polygon.rings[n];
-            double twice = 0.0;
-            for (std::size_t k = 0; k < ring.size(); ++k) {
-                const Vec2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-                twice += a.x() * b.y() - b.x() * a.y();
-            }
-            area += (n == 0 ? 0.5 : -0.5) * std::abs(twice);
+            std::vector<Vec2> ring;
+            for (const Vec2& corner : polygon.rings[n]) ring.push_back(corner - Vec2(grid.x0, grid.y0));
+            if (ring.size() < 3) continue;
+            const bool counter_clockwise = n == 0;
+            if ((ring_area(ring) > 0.0) != counter_clockwise) std::reverse(ring.begin(), ring.end());
+            rings.push_back(std::move(ring));
         }
-    return area;
+    return rings;
+}
+
+/// Where the pixels of a row of nodes meet, from its first node to its last, which bound it [m].
+std::vector<double> pixel_edges(Index count, double cell) {
+    std::vector<double> edges{0.0};
+    for (Index n = 0; n + 1 < count; ++n) edges.push_back((static_cast<double>(n) + 0.5) * cell);
+    edges.push_back(static_cast<double>(count - 1) * cell);
+    return edges;
+}
+
+/// An outline that leaves the terrain, of which the scene may hold a part.
+void remark_on_outline(const CaseFile& file, const Polygons& outline, double share_inside, Scene& scene) {
+    if (share_inside >= 0.999 || may_begin_beyond(outline, scene)) return;
+    scene.log.push_back(fmt::format("{}: {:.3g} % of its area lie outside of the terrain",
+                                    file.place("erodible.outline"), 100.0 * (1.0 - share_inside)));
+}
+
+[[noreturn]] void refuse_outline(const Rings& rings, const GridGeometry& g) {
+    Vec2 low(INFINITY, INFINITY), high(-INFINITY, -INFINITY);
+    for (const auto& ring : rings)
+        for (const Vec2& corner : ring) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+    throw UserError(fmt::format(
+        "found an outline of x {:.10g} to {:.10g}, y {:.10g} to {:.10g} without any of the terrain; expected some "
+        "of its x {:.10g} to {:.10g}, y {:.10g} to {:.10g}; correct the outline or its CRS",
+        g.x0 + low.x(), g.x0 + high.x(), g.y0 + low.y(), g.y0 + high.y(), g.x0, g.x_max(), g.y0, g.y_max()));
 }
 
 /// Each node keeps what part of its pixel the outline covers.
 void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Raster& depth) {
-    Release unit;
-    unit.outline = reader.read_polygons(file.path("erodible.outline"), scene.bed.crs_wkt, scene.log);
-    unit.depth = 1.0, unit.name = file.place("erodible.outline");
-    Raster covered = Raster::filled(scene.bed.geometry, 0.0);
-    covered.crs_wkt = scene.bed.crs_wkt;
-    const double inside = cut_release(unit, covered), all = area_of(*unit.outline);
-    if (inside < 0.999 * all && !(scene.wider && touches(*unit.outline, scene.wider->grid)))
-        scene.log.push_back(fmt::format("{}: {:.3g} % of its area lie outside of the terrain",
-                                        file.place("erodible.outline"), 100.0 * (1.0 - inside / all)));
+    const Polygons outline = reader.read_polygons(file.path("erodible.outline"), scene.bed.crs_wkt, scene.log);
     const GridGeometry& g = depth.geometry;
-    const auto within = [](Index n, Index count) {
-        return n == 0 || n == count - 1 ? 0.5 : 1.0;
-    };  // outer nodes bound it
-    for (Index j = 0; j < g.ny; ++j)
-        for (Index i = 0; i < g.nx; ++i)
-            depth.at(i, j) *= std::min(1.0, -covered.at(i, j) / (within(i, g.nx) * within(j, g.ny)));
+    const Rings rings = rings_of(outline, g);
+    const std::vector<double> x = pixel_edges(g.nx, g.cell), y = pixel_edges(g.ny, g.cell);
+    OutlineArea covered(rings, x, y);
+    std::vector<double> area(static_cast<std::size_t>(g.nx));
+    double inside = 0.0, all = 0.0;
+    for (const auto& ring : rings) all += ring_area(ring);
+    for (Index j = 0; j < g.ny; ++j) {
+        const auto [first, past] = covered.row(j, area);
+        for (Index i = 0; i < g.nx; ++i) {
+            const double part = i >= first && i < past ? area[static_cast<std::size_t>(i)] : 0.0;
+            const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(j);
+            depth.at(i, j) *= part / ((x[k + 1] - x[k]) * (y[n + 1] - y[n]));
+            inside += part;
+        }
+    }
+    if (covered.faults().negative > 1e-9 * all)
+        throw UserError(
+            "found an outline that crosses itself, or a hole outside of its polygon; expected simple polygons; "
+            "repair it (ogr2ogr -makevalid)");
+    if (!(inside > 0.0) && !may_begin_beyond(outline, scene)) refuse_outline(rings, g);
+    remark_on_outline(file, outline, inside / all, scene);
 }
 
 /// What looks like a mistake.
@@ -90,7 +123,7 @@ void remark_on_depth(const CaseFile& file, const Raster& depth, Scene& scene) {
             fmt::format("{}: the loose material is up to {:.3g} m deep; is that a depth, and in metres?",
                         file.place("erodible.depth"), deepest));
     scene.log.push_back(fmt::format("erodible: up to {:.6g} m3 of loose material can be taken up{}", volume,
-                                    scene.wider ? " around the releases, and more where the flow comes beyond" : ""));
+                                    scene.wider ? " around the releases; what lies farther on is not counted" : ""));
 }
 
 /// What ploughs takes all that lies in its way: that has to end somewhere.

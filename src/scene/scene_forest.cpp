@@ -46,7 +46,7 @@ void clear_outside(const CaseFile& file, const GisReader& reader, Scene& scene, 
     NodeMarks inside(pressure.values.size(), 0);
     const Polygons outline = reader.read_polygons(file.path("forest.outline"), scene.bed.crs_wkt, scene.log);
     for (const Polygon& polygon : outline.parts) mark_inside(polygon, grid, inside);
-    if (std::count(inside.begin(), inside.end(), 1) == 0 && !(scene.wider && touches(outline, scene.wider->grid)))
+    if (std::count(inside.begin(), inside.end(), 1) == 0 && !may_begin_beyond(outline, scene))
         throw UserError(
             "found no node of the terrain in it; expected some; correct the outline or its CRS, or remove it");
     for (std::size_t k = 0; k < inside.size(); ++k)

@@ -102,7 +102,11 @@ public:
             part.name = zone        ? name_of(case_, fmt::format("material.zone.{}", i))
                         : zones > 0 ? "elsewhere"
                                     : "everywhere";
-            if (part.area == 0.0 && scene_.wider) continue;  // it may begin farther on
+            if (part.area == 0.0 && scene_.wider) {
+                if (zone)
+                    scene_.log.push_back(part.name + ": not around the releases; it counts where the flow comes to it");
+                continue;
+            }
             if (zone && part.area == 0.0)
                 scene_.log.push_back(fmt::format("{}: later zones cover all of it",
                                                  case_.table_place(fmt::format("material.zone.{}", i))));
@@ -231,11 +235,9 @@ private:
 
     /// Whether the terrain beyond the part that is held may have nodes of a zone.
     bool may_lie_farther(const std::string& zone) const {
-        if (!scene_.wider) return false;
-        if (!case_.given(zone + ".outline")) return true;
+        if (!case_.given(zone + ".outline")) return scene_.wider != nullptr;
         std::vector<std::string> said;
-        return touches(reader_.read_polygons(case_.path(zone + ".outline"), scene_.bed.crs_wkt, said),
-                       scene_.wider->grid);
+        return may_begin_beyond(reader_.read_polygons(case_.path(zone + ".outline"), scene_.bed.crs_wkt, said), scene_);
     }
 
     [[noreturn]] void refuse_gaps(const std::string& key, std::size_t count, std::size_t first) const {

@@ -18,7 +18,7 @@ public:
                     std::vector<std::string>& log) const override;
     std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path& file,
                                                          const DemRequest& request) const override;
-    /// Not this one, which remembers what was read: what it would hold grows with each part.
+    /// The inner one's: what this one remembers would grow with each part.
     std::shared_ptr<const GisReader> lasting() const override;
     RasterPlace place_of(const std::filesystem::path& file, const std::array<double, 4>& extent,
                          const std::string& crs_wkt) const override;

@@ -49,7 +49,7 @@ public:
                                                                  const DemRequest& /*request*/) const {
         return {};
     }
-    /// A reader of the same files that may outlive this one. Nothing: parts cannot be read here.
+    /// A reader of the same files that may outlive this one, for several threads at once. Nothing: parts cannot be read here.
     virtual std::shared_ptr<const GisReader> lasting() const { return {}; }
     /// How a raster lies to `extent` of a map of that CRS.
     virtual RasterPlace place_of(const std::filesystem::path& /*file*/, const std::array<double, 4>& /*extent*/,

@@ -43,8 +43,8 @@ std::vector<Erosion::Moved> Erosion::moved_nodes(const Flow& flow, const TileGri
 }
 
 void Erosion::take_node(const Erosion& from, const Flow& old, Flow& flow, const Moved& node) {
-    // What was read anew, resampled, may differ in its last bit.
-    initial_[node.to] = from.initial_[node.from], left_[node.to] = from.left_[node.from];
+    left_[node.to] =
+        from.left_[node.from];  // what it had at the start is as it was read for this part: a state keeps none
     if (deposits_) fresh_[node.to] = from.fresh_[node.from];
     if (!evolves_) return;
     double& z = flow.bed.z[node.to];

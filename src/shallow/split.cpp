@@ -10,7 +10,7 @@ namespace frana {
 template <class Real>
 void Splitter::widen_grown(Flow& flow) const {
     constexpr double kCrowded = 4.0;  // at margins the depth at a point is a half or a quarter of its own
-    const double longest = 2.0 * std::max(1.0, flow.scheme.split_length);
+    const double longest = (flow.scheme.split ? 2.0 : 1.0) * std::max(1.0, flow.scheme.split_length);
     const Columns& c = flow.columns;
     Carried<Real>& held = flow.columns.carried<Real>();
     for_each_tile(flow.active, [&](Index n) {

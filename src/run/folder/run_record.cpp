@@ -355,6 +355,7 @@ std::string run_json(const RunRecord& record) {
     if (!record.extras.late.empty()) json["late_releases"] = late_json(record.extras.late);
     if (s.last.bed.initial > 0.0 || s.last.bed.deposited > 0.0) json["budgets"]["bed"] = bed_json(s);
     if (!record.friction.empty()) json["friction"] = friction_json(record.friction);
+    if (record.friction_of_part) json["friction_of_part"] = true;
     if (!record.sections.empty()) json["sections"] = sections_json(record.sections);
     return json.dump(2) + "\n";
 }
