@@ -42,22 +42,16 @@ Material::Material(const Release& release, const GridGeometry& grid, std::string
 void Material::take_outline(const GridGeometry& grid) {
     Box around{kFar, kFar, -kFar, -kFar};
     for (const Polygon& part : release_.outline->parts)
-        for (std::size_t r = 0; r < part.rings.size(); ++r) {
-            std::vector<Vec2> ring;
-            for (const Vec2& vertex : part.rings[r]) {
+        for (const auto& ring : part.rings)
+            for (const Vec2& vertex : ring) {
                 if (!vertex.allFinite())
                     throw UserError(fmt::format("{}: its outline {} has a vertex that is not a number; repair the file",
                                                 name_, release_.outline->source));
                 const Vec2 local(vertex.x() - grid.x0, vertex.y() - grid.y0);
                 around = {std::min(around.x0, local.x()), std::min(around.y0, local.y()),
                           std::max(around.x1, local.x()), std::max(around.y1, local.y())};
-                ring.push_back(local);
             }
-            if (ring.size() < 3) continue;
-            const bool wanted_counter_clockwise = r == 0;
-            if ((ring_area(ring) > 0.0) != wanted_counter_clockwise) std::reverse(ring.begin(), ring.end());
-            rings_.push_back(std::move(ring));
-        }
+    rings_ = rings_of(*release_.outline, {grid.x0, grid.y0});
     if (rings_.empty())
         throw UserError(fmt::format("{}: its outline {} holds no polygon; give a file with polygons", name_,
                                     release_.outline->source));

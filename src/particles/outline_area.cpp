@@ -139,4 +139,18 @@ std::pair<Index, Index> OutlineArea::row(Index j, std::vector<double>& area) {
     return {first, columns};
 }
 
+Rings rings_of(const Polygons& polygons, const Vec2& origin) {
+    Rings rings;
+    for (const Polygon& polygon : polygons.parts)
+        for (std::size_t n = 0; n < polygon.rings.size(); ++n) {
+            std::vector<Vec2> ring;
+            for (const Vec2& corner : polygon.rings[n]) ring.push_back(corner - origin);
+            if (ring.size() < 3) continue;
+            const bool counter_clockwise = n == 0;
+            if ((ring_area(ring) > 0.0) != counter_clockwise) std::reverse(ring.begin(), ring.end());
+            rings.push_back(std::move(ring));
+        }
+    return rings;
+}
+
 }  // namespace frana

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "terrain/raster.h"
 
 namespace frana {
 
@@ -50,6 +51,9 @@ private:
     double tolerance_ = 0.0;  ///< heights below this are round-off of the coordinates [m]
     OutlineFaults faults_;
 };
+
+/// Rings of polygons, counted from a place. Those of fewer than three corners are left out.
+Rings rings_of(const Polygons& polygons, const Vec2& origin);
 
 /// Signed area of a ring, positive when counter-clockwise [m^2].
 double ring_area(const std::vector<Vec2>& ring);

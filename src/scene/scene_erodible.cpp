@@ -45,21 +45,6 @@ Raster depth_of(const CaseFile& file, const GisReader& reader, Scene& scene) {
     return depth;
 }
 
-/// Rings counted from the grid's first node [m].
-Rings rings_of(const Polygons& polygons, const GridGeometry& grid) {
-    Rings rings;
-    for (const Polygon& polygon : polygons.parts)
-        for (std::size_t n = 0; n < polygon.rings.size(); ++n) {
-            std::vector<Vec2> ring;
-            for (const Vec2& corner : polygon.rings[n]) ring.push_back(corner - Vec2(grid.x0, grid.y0));
-            if (ring.size() < 3) continue;
-            const bool counter_clockwise = n == 0;
-            if ((ring_area(ring) > 0.0) != counter_clockwise) std::reverse(ring.begin(), ring.end());
-            rings.push_back(std::move(ring));
-        }
-    return rings;
-}
-
 /// Where the pixels of a row of nodes meet, from its first node to its last, which bound it [m].
 std::vector<double> pixel_edges(Index count, double cell) {
     std::vector<double> edges{0.0};
@@ -89,7 +74,7 @@ void remark_on_outline(const CaseFile& file, const Polygons& outline, double sha
 void keep_inside(const CaseFile& file, const GisReader& reader, Scene& scene, Raster& depth) {
     const Polygons outline = reader.read_polygons(file.path("erodible.outline"), scene.bed.crs_wkt, scene.log);
     const GridGeometry& g = depth.geometry;
-    const Rings rings = rings_of(outline, g);
+    const Rings rings = rings_of(outline, {g.x0, g.y0});
     const std::vector<double> x = pixel_edges(g.nx, g.cell), y = pixel_edges(g.ny, g.cell);
     OutlineArea covered(rings, x, y);
     std::vector<double> area(static_cast<std::size_t>(g.nx));
