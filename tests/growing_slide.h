@@ -1,10 +1,12 @@
 #pragma once
 // A slide on a part of a large terrain, which grows.
+#include <cmath>
 #include <cstring>
 #include <memory>
 
 #include "catch.h"
 #include "coupling/growing_columns.h"
+#include "fake_gis.h"
 
 namespace frana::test {
 
@@ -49,6 +51,25 @@ inline Scene slide_on_large() { return slide_on(kLarge, kBegin); }
 inline Scene slide_on_cut() {
     return slide_on(kCut.of(kLarge), {kBegin.i0 - kCut.i0, kBegin.j0 - kCut.j0, kBegin.nx, kBegin.ny});
 }
+
+/// A plane that falls to the west, on nodes of which a scene takes a part.
+class LargeGis : public FakeGis {
+public:
+    explicit LargeGis(const GridGeometry& grid) : grid_(grid) {}
+    Raster read_dem(const std::filesystem::path&, const DemRequest& request, std::vector<std::string>&) const override {
+        return plane_on(request.choose({grid_, {}, "", ""}));
+    }
+    std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path&,
+                                                         const DemRequest&) const override {
+        return [this](const NodeBox& box) { return plane_on(box); };
+    }
+    Raster plane_on(const NodeBox& box) const {
+        return sampled(box.of(grid_), [](double x, double) { return 0.1 * x; });
+    }
+
+private:
+    GridGeometry grid_;
+};
 
 inline bool same_bits(const Field& a, const Field& b) {
     return a.name == b.name && a.count == b.count && a.components == b.components &&

@@ -18,31 +18,6 @@
 using namespace frana;
 using namespace frana::test;
 
-namespace {
-
-/// A plane on nodes of which the scene takes a part, and a release at its west.
-class LargeGis final : public FakeGis {
-public:
-    explicit LargeGis(const GridGeometry& grid) : grid_(grid) {
-        polygons["release.geojson"] = rectangle(1000, 100, 1040, 140);
-    }
-    Raster read_dem(const std::filesystem::path&, const DemRequest& request, std::vector<std::string>&) const override {
-        return plane_on(request.choose({grid_, {}, "", ""}));
-    }
-    std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path&,
-                                                         const DemRequest&) const override {
-        return [this](const NodeBox& box) { return plane_on(box); };
-    }
-
-private:
-    Raster plane_on(const NodeBox& box) const {
-        return sampled(box.of(grid_), [](double x, double) { return 0.1 * x; });
-    }
-    GridGeometry grid_;
-};
-
-}  // namespace
-
 TEST_CASE("A run on a part of a terrain has the same bits whatever lies beyond", "[terrain]") {
     GrowingColumns large(slide_on_large()), cut(slide_on_cut());
     const NodeBox begin = large.held();
@@ -235,7 +210,8 @@ TEST_CASE(
     "A part of a terrain has the corners of a thick wall that turns, and what is off the terrain is told of all of it",
     "[terrain][barrier]") {
     const GridGeometry all{3000, 60, 2.5, 2.5, 5.0};
-    const LargeGis gis(all);
+    LargeGis gis(all);
+    gis.polygons["release.geojson"] = rectangle(1000, 100, 1040, 140);
     const auto scene_with = [&](const std::string& line) {
         const std::string text =
             "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n[time]\nend = 20\n"

@@ -16,16 +16,13 @@ using namespace frana::test;
 
 namespace {
 
-using Function = std::function<double(double, double)>;
 using Edit = std::function<void(Scene&)>;
 /// Numbers at a node, exact on every grid.
 double stripes(double x, double y) { return static_cast<double>(static_cast<std::int64_t>(x + 2.0 * y) / 40 % 4); }
 
-Raster on_nodes(const GridGeometry& grid, const Function& of) { return sampled(grid, of); }
-
 std::shared_ptr<const Friction> striped_friction(const GridGeometry& grid) {
     std::vector<bed::Coulomb> laws;
-    for (const double stripe : on_nodes(grid, stripes).values) laws.push_back({0.0625 + 0.03125 * stripe});
+    for (const double stripe : sampled(grid, stripes).values) laws.push_back({0.0625 + 0.03125 * stripe});
     return std::make_shared<const Friction>(Friction{bed::law_map(laws), {"mu"}, {}});
 }
 double loose_depth(double x, double y) { return 0.125 * stripes(y, x); }
@@ -36,13 +33,13 @@ void add_loose(Scene& scene) {
     // Resampled, it differs from part to part in its last bit.
     const double bit = scene.bed.geometry.nx > 200 ? 0x1p-52 : 0.0;
     const auto depth = [bit](double x, double y) { return (1.0 + bit) * loose_depth(x, y); };
-    scene.erodible = ErodibleBed{on_nodes(scene.bed.geometry, depth), 1500.0, erosion::Growth{0.01}, 0.0, 0.02};
+    scene.erodible = ErodibleBed{sampled(scene.bed.geometry, depth), 1500.0, erosion::Growth{0.01}, 0.0, 0.02};
 }
-void add_trees(Scene& scene) { scene.forest = Forest{on_nodes(scene.bed.geometry, trees), {}}; }
+void add_trees(Scene& scene) { scene.forest = Forest{sampled(scene.bed.geometry, trees), {}}; }
 /// Some of the material lies where friction holds it; it becomes bed after the part has grown.
 void add_deposits(Scene& scene) {
     std::vector<bed::Coulomb> laws;
-    for (const double y : on_nodes(scene.bed.geometry, [](double, double y) { return y; }).values)
+    for (const double y : sampled(scene.bed.geometry, [](double, double y) { return y; }).values)
         laws.push_back({y < 1000.0 ? 4.0 : 0.1});
     scene.friction = std::make_shared<const Friction>(Friction{bed::law_map(laws), {"mu"}, {}});
     scene.deposition = Deposition{8.0};
@@ -80,6 +77,10 @@ void grow_once(GrowingColumns& run, const std::vector<Simulation*>& others = {})
     }
 }
 
+double mu_at(const Friction& friction, Index node) {
+    return std::get<bed::Coulomb>(friction.laws.at(static_cast<std::size_t>(node))).mu;
+}
+
 struct Named {
     const char* name;
     Edit edit;
@@ -93,9 +94,9 @@ const std::vector<Named> kAll{{"friction", add_friction, "points/mass", false},
                               {"all", add_all, "bed/pending", true}};
 
 /// A plane of 3000 x 60 nodes that falls to the west, a release near its east, and fields on all of it or on a part.
-class LargeGis final : public FakeGis {
+class GisOfFields final : public LargeGis {
 public:
-    LargeGis() {
+    GisOfFields() : LargeGis(kAllNodes) {
         polygons["release.geojson"] = rectangle(14000, 100, 14040, 140);
         polygons["fan.geojson"] = rectangle(1000, 0, 2000, 300);
         polygons["gully.geojson"] = rectangle(503, 21, 902, 97);  // on no edge of a pixel
@@ -106,16 +107,6 @@ public:
         rasters["loose.tif"] = sampled({200, 60, 2.5, 2.5, 5.0}, [](double, double) { return 1.5; });  // x to 1000
         rasters["trees.tif"] = sampled({200, 60, 2.5, 2.5, 5.0}, [](double, double) { return 30.0; });
         rasters["off.tif"] = sampled({200, 60, -9e5, 2.5, 5.0}, [](double, double) { return 1.5; });
-    }
-    Raster read_dem(const std::filesystem::path&, const DemRequest& request, std::vector<std::string>&) const override {
-        return plane_on(request.choose({kAllNodes, {}, "", ""}));
-    }
-    std::function<Raster(const NodeBox&)> read_dem_later(const std::filesystem::path&,
-                                                         const DemRequest&) const override {
-        return [](const NodeBox& box) { return plane_on(box); };
-    }
-    static Raster plane_on(const NodeBox& box) {
-        return sampled(box.of(kAllNodes), [](double x, double) { return 0.1 * x; });
     }
     static constexpr GridGeometry kAllNodes{3000, 60, 2.5, 2.5, 5.0};
 
@@ -190,13 +181,10 @@ TEST_CASE("Fields of a part that grows are those of a run on all of the terrain,
                 ledger = std::max(ledger, std::abs(bed->left(k) - of_whole->left(n)));
                 ledger = std::max(ledger, std::abs(bed->fresh(k) - of_whole->fresh(n)));
             }
-        const auto mu = [](const Friction& friction, Index node) {
-            return std::get<bed::Coulomb>(friction.laws.at(static_cast<std::size_t>(node))).mu;
-        };
         Index others = 0;
         for (Index n = 0; whole.friction && n < held.nx * held.ny; ++n)
-            others += mu(*part.friction(), n) !=
-                      mu(*whole.friction, (n / held.nx + held.j0) * kLarge.nx + n % held.nx + held.i0);
+            others += mu_at(*part.friction(), n) !=
+                      mu_at(*whole.friction, (n / held.nx + held.j0) * kLarge.nx + n % held.nx + held.i0);
         CHECK(others == 0);
         CHECK(farthest < 1e-8);
         CHECK(path < 1e-8);
@@ -206,7 +194,7 @@ TEST_CASE("Fields of a part that grows are those of a run on all of the terrain,
 
 TEST_CASE("A part of a terrain has the friction, the loose ground and the trees of the case, there and farther on",
           "[terrain][zones]") {
-    const LargeGis gis;
+    const GisOfFields gis;
     const std::string bed = "bed = { law = \"coulomb\", mu = \"mu.tif\" }\n";
     const std::string fields = bed +
                                "[[material.zone]]\noutline = \"fan.geojson\"\nmu = 0.5\n"
@@ -226,19 +214,16 @@ TEST_CASE("A part of a terrain has the friction, the loose ground and the trees 
     for (const std::string& remark : part.log) CHECK_THAT(remark, !Catch::Contains("later zones cover all of it"));
     // Farther on: on a part, and on all of it.
     const NodeBox west{50, 0, 900, 60};
-    for (const NodeBox& box : {west, NodeBox::all(LargeGis::kAllNodes)}) {
-        const GroundFields fields_there = part.wider->fields(LargeGis::plane_on(box));
+    for (const NodeBox& box : {west, NodeBox::all(GisOfFields::kAllNodes)}) {
+        const GroundFields fields_there = part.wider->fields(gis.plane_on(box));
         REQUIRE(fields_there.friction);
-        REQUIRE(fields_there.loose.geometry == box.of(LargeGis::kAllNodes));
-        REQUIRE(fields_there.trees.geometry == box.of(LargeGis::kAllNodes));
+        REQUIRE(fields_there.loose.geometry == box.of(GisOfFields::kAllNodes));
+        REQUIRE(fields_there.trees.geometry == box.of(GisOfFields::kAllNodes));
         Index others = 0;
         for (Index j = 0; j < box.ny; ++j)
             for (Index i = 0; i < box.nx; ++i) {
-                const auto mu = [](const Friction& friction, Index node) {
-                    return std::get<bed::Coulomb>(friction.laws.at(static_cast<std::size_t>(node))).mu;
-                };
-                others += mu(*fields_there.friction, j * box.nx + i) !=
-                          mu(*whole.friction, (j + box.j0) * LargeGis::kAllNodes.nx + i + box.i0);
+                others += mu_at(*fields_there.friction, j * box.nx + i) !=
+                          mu_at(*whole.friction, (j + box.j0) * GisOfFields::kAllNodes.nx + i + box.i0);
                 // Shares of pixels are counted from the part's first node: 15 km in doubles, over a pixel of 5 m.
                 others += std::abs(fields_there.loose.at(i, j) - whole.erodible->depth.at(i + box.i0, j + box.j0)) >
                           1.5 * 15e3 / 5.0 * 0x1p-50;
@@ -252,7 +237,7 @@ TEST_CASE("A part of a terrain has the friction, the loose ground and the trees 
 }
 
 TEST_CASE("What lies off all of a large terrain is refused, not taken for what begins farther on", "[terrain][zones]") {
-    const LargeGis gis;
+    const GisOfFields gis;
     const std::string bed = "bed = { law = \"coulomb\", mu = 0.2 }\n";
     const auto problem = [&](const std::string& more) { return only_problem([&] { gis.scene(bed + more); }); };
     CHECK_THAT(problem("[[material.zone]]\noutline = \"nowhere.geojson\"\nmu = 0.5\n"),
@@ -270,7 +255,7 @@ TEST_CASE("What lies off all of a large terrain is refused, not taken for what b
 }
 
 TEST_CASE("What hangs on the part that is read holds all of the terrain", "[terrain][zones]") {
-    const LargeGis gis;
+    const GisOfFields gis;
     CHECK_FALSE(gis.scene("bed = { law = \"voellmy\", table = \"voellmy-salm\", return_period = 100 }\n").wider);
     const std::string zone = "bed = { law = \"coulomb\", mu = 0.2 }\n[[material.zone]]\nbelow = 50\nmu = 0.5\n";
     CHECK(gis.scene(zone).wider);

@@ -29,7 +29,7 @@ std::vector<std::vector<double>> crossings_of(const Polygon& polygon, const Grid
     return rows;
 }
 
-/// Whether a raster lies beside the part of the terrain that the scene holds, but on the rest.
+/// Whether a raster touches the terrain, but not the part of it that the scene holds.
 bool misses_part(const std::filesystem::path& file, const GisReader& reader, const Scene& scene) {
     if (!scene.wider) return false;
     const auto touches = [&](const GridGeometry& grid) {

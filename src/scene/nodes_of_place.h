@@ -17,7 +17,7 @@ double pixel_at(const Raster& raster, double x, double y);
 std::string nodes_text(const Scene& scene);
 
 /// A raster on the scene's terrain in its own pixels. Where that is a part which the raster does not touch, one pixel
-/// without data; UserError when it touches no part.
+/// without data; UserError when it touches none of the terrain.
 Raster pixels_on(const std::filesystem::path& file, const GisReader& reader, Scene& scene);
 /// The same on the nodes of the terrain.
 Raster field_on(const std::filesystem::path& file, const GisReader& reader, Scene& scene);

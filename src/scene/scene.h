@@ -249,7 +249,7 @@ struct Output {
     double checkpoint_minutes = 10.0;  ///< of wall time between checkpoints; 0: one at the end of the run [min]
 };
 
-/// What else differs in space on the nodes of a terrain, of that what a scene has.
+/// What differs in space on the nodes of a terrain besides its elevations; empty where a scene has none of it.
 struct GroundFields {
     std::shared_ptr<const Friction> friction;
     Raster loose;  ///< ErodibleBed::depth [m]
@@ -262,7 +262,7 @@ struct WiderTerrain {
     NodeBox held;                                ///< the scene's bed, of these nodes
     std::function<Raster(const NodeBox&)> read;  ///< elevations of a part of it; throws UserError
     std::vector<Vec2> shown;                     ///< places that rasters and frames are to reach as well [m]
-    /// On the nodes of such a part, with its elevations; throws UserError. Nothing: all are as they are.
+    /// The same for a part with these elevations; throws UserError. Nothing: the case has none of it.
     std::function<GroundFields(const Raster& part)> fields = {};
 };
 

@@ -30,7 +30,7 @@ double least_split_mass(const Scene& scene) {
     return scene.scheme.split_min_mass * largest_column(scene) * scene.density;
 }
 
-/// From which on a point counts as one that has taken up bed: what merges stays below it, but in crowds.
+/// Heavier points count as ones that have taken up bed. Few merged points are so heavy.
 double grown_mass(const Scene& scene) {
     constexpr double kGrown = 2.0;  // of the largest at the start
     return scene.erodible ? kGrown * largest_column(scene) * scene.density : std::numeric_limits<double>::infinity();

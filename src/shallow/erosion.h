@@ -60,7 +60,7 @@ public:
     void take_over(const Erosion& from, const Flow& old, Flow& flow, Index east, Index north);
 
 private:
-    struct Moved;
+    struct SharedNode;
     Erosion(const Scene& scene, const ErodibleBed& bed, Flow& flow);
     template <class Law, class Friction, class Real, bool kFresh>
     void demand_of_tile(Flow& flow, Index n, double dt, const Law& law, const Friction& friction);
@@ -94,9 +94,9 @@ private:
     void list_given(const Flow& flow);
     void raise_tile(Flow& flow, Index tile);
     void list_ledger(Index tile);
-    std::vector<Moved> moved_nodes(const Flow& flow, const TileGrid& to, Index east, Index north) const;
-    void take_node(const Erosion& from, const Flow& old, Flow& flow, const Moved& node);
-    void bend_taken_over(const Erosion& from, Flow& flow, const std::vector<Moved>& nodes,
+    std::vector<SharedNode> changed_nodes(const Flow& flow, const TileGrid& to, Index east, Index north) const;
+    void take_node(const Erosion& from, const Flow& old, Flow& flow, const SharedNode& node);
+    void bend_taken_over(const Erosion& from, Flow& flow, const std::vector<SharedNode>& nodes,
                          const std::vector<Index>& tiles);
     void serialize_deposition(Archive& archive, const Flow& flow);
     bool choose(const Flow& flow);

@@ -3,16 +3,16 @@
 
 namespace frana {
 
-/// A node of another grid, as it is there.
-struct Erosion::Moved {
+/// A node that both grids have.
+struct Erosion::SharedNode {
     Index from, to, tile, i, j;  ///< storage indices; tile and place of `to`
 };
 
-/// The smoothed bed follows from all that it has followed so far, in one pass.
+/// The bed is smoothed once for all changes that it was smoothed for before.
 void Erosion::take_over(const Erosion& from, const Flow& old, Flow& flow, Index east, Index north) {
-    const std::vector<Moved> nodes = from.moved_nodes(old, flow.grid, east, north);
+    const std::vector<SharedNode> nodes = from.changed_nodes(old, flow.grid, east, north);
     std::vector<Index> tiles;
-    for (const Moved& node : nodes) {
+    for (const SharedNode& node : nodes) {
         take_node(from, old, flow, node);
         if (!changed_[node.tile]) tiles.push_back(node.tile);
         changed_[node.tile] = 1;
@@ -28,8 +28,9 @@ void Erosion::take_over(const Erosion& from, const Flow& old, Flow& flow, Index 
 }
 
 /// Nodes of the ground of this bed that have changed.
-std::vector<Erosion::Moved> Erosion::moved_nodes(const Flow& flow, const TileGrid& to, Index east, Index north) const {
-    std::vector<Moved> nodes;
+std::vector<Erosion::SharedNode> Erosion::changed_nodes(const Flow& flow, const TileGrid& to, Index east,
+                                                        Index north) const {
+    std::vector<SharedNode> nodes;
     for (Index tile = 0; tile < flow.grid.tiles(); ++tile) {
         if (!changed_[tile]) continue;
         for_each_node_of(flow.grid, tile, [&](Index k, Index i, Index j) {
@@ -42,9 +43,9 @@ std::vector<Erosion::Moved> Erosion::moved_nodes(const Flow& flow, const TileGri
     return nodes;
 }
 
-void Erosion::take_node(const Erosion& from, const Flow& old, Flow& flow, const Moved& node) {
-    left_[node.to] =
-        from.left_[node.from];  // what it had at the start is as it was read for this part: a state keeps none
+void Erosion::take_node(const Erosion& from, const Flow& old, Flow& flow, const SharedNode& node) {
+    // Not what it had at the start: a run that is resumed knows that only as it was read for this part.
+    left_[node.to] = from.left_[node.from];
     if (deposits_) fresh_[node.to] = from.fresh_[node.from];
     if (!evolves_) return;
     double& z = flow.bed.z[node.to];
@@ -54,15 +55,15 @@ void Erosion::take_node(const Erosion& from, const Flow& old, Flow& flow, const 
     moved_[node.tile].add(one_node(flow.grid, node.tile, node.i, node.j));
 }
 
-/// Slopes, and the smoothed bed with its curvature. What that has not followed yet waits on.
-void Erosion::bend_taken_over(const Erosion& from, Flow& flow, const std::vector<Moved>& nodes,
+/// Slopes follow the changed bed, and so does the smoothed bed with its curvature. Changes that wait for it wait on.
+void Erosion::bend_taken_over(const Erosion& from, Flow& flow, const std::vector<SharedNode>& nodes,
                               const std::vector<Index>& tiles) {
     for (const Index tile : tiles) marked_[static_cast<std::size_t>(tile)] = 1;
     refresh_moved(flow, tiles);
     if (!bent_path_) return;
     for (const Index tile : tiles) tile_pending_[tile] = most_pending(flow, tile);
     smooth_into_path(flow);
-    for (const Moved& node : nodes) pending_[node.to] = from.pending_[node.from];
+    for (const SharedNode& node : nodes) pending_[node.to] = from.pending_[node.from];
     for (const Index tile : tiles) tile_pending_[tile] = most_pending(flow, tile);
 }
 
