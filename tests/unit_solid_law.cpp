@@ -83,6 +83,21 @@ TEST_CASE("Sand that was pulled apart carries nothing until the gap is closed", 
     CHECK(stretch(-1e-3) == Approx(-3.0 * bulk * std::log(1.0 - 1e-3)).epsilon(1e-9));
 }
 
+TEST_CASE("Sand that flew far apart carries pressure again once it is pressed", "[solid]") {
+    const auto law = solid::DruckerPrager::of(solid::Elastic::of(1e6, 0.3), 0.5, 0.0);
+    double state[7] = {}, j = 1.0;
+    const auto stretch = [&](double ratio) {
+        Deformation d{Mat3::Zero(), 1.0};
+        d.gradient.diagonal().setConstant(std::cbrt(ratio) - 1.0);
+        law.update(d, j, state);
+        return -law.stress(j, state, Mat3::Zero()).trace() / 3.0;
+    };
+    for (int step = 0; step < 2000; ++step) REQUIRE(stretch(2.0) == 0.0);  // 2^2000 is no number
+    CHECK(j == law.kLoosest);
+    CHECK(stretch(1.01 / law.kLoosest) == 0.0);
+    CHECK(stretch(0.99 / 1.01) > 0.0);
+}
+
 TEST_CASE("Bingham's stress below the yield stress is elastic; sheared on, it goes to tau_Y + mu rate", "[solid]") {
     const solid::Bingham law{1e6, 1e5, 50.0, 1000.0};
     double state[7] = {}, j = 1.0;

@@ -51,7 +51,13 @@ TEST_CASE("Mud by the bed law is mud in space, held by the bed", "[stages]") {
     const auto law = std::get<solid::Bingham>(of(mud, "").law);
     CHECK(law.viscosity == 20.0);
     CHECK(law.yield_stress == 300.0);
-    CHECK(of(mud, "").stuck);
+    CHECK(of(mud, "").stuck_where_resolved);  // else the bed law brakes it
+    CHECK(of(mud, "").whole_bed_law);
+    CHECK(of(mud, "stuck = true\n").stuck);
+    for (const char* more : {"stuck = true\n", "stuck = false\n", "law = \"fluid\"\n", "bed_friction = 0.4\n"})
+        CHECK_FALSE(of(mud, more).stuck_where_resolved);
+    CHECK(of(mud, "stuck = false\n").whole_bed_law);
+    CHECK_FALSE(of(mud, "bed_friction = 0.4\n").whole_bed_law);
     CHECK_FALSE(of(mud, "stuck = false\n").stuck);
     CHECK_FALSE(of(mud, "law = \"fluid\"\n").stuck);
     CHECK_FALSE(of(mud, "bed_friction = 0.4\n").stuck);  // it slides, by that coefficient

@@ -7,6 +7,9 @@ namespace frana {
 
 double friction_of_flow(const Scene& scene, double depth, double cosine, double speed) {
     const double least = friction_at_rest(scene.bed_law);
+    // Mud at rest is held by its yield stress, as what creeps is.
+    constexpr double kCreep = 1e-3;  // [m/s]
+    if (std::holds_alternative<bed::Bingham>(scene.bed_law)) speed = std::max(speed, kCreep);
     if (!(depth > 0.0) || !(speed > 0.0)) return least;
     const double normal_gravity = scene.gravity * cosine;
     const BedState bed{normal_gravity, depth * cosine, 1.0, cosine, scene.gravity, scene.density};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "base/error.h"
@@ -128,7 +129,45 @@ double mean_friction(const Scene& scene, const FlowColumns& columns) {
     return mass > 0.0 ? sum / mass : 0.0;
 }
 
+/// Of fluids and mud: what their weight, of a column on a slope of 45 degrees, drives it to at most; without viscosity
+/// that of a fall by its own depth.
+double own_speed(const SolidLaw& law, double density, double gravity, double depth) {
+    const double fall = std::sqrt(2.0 * gravity * depth);
+    const auto of = [&](double viscosity, double yield_stress) {
+        const double sheared = std::max(0.0, density * gravity * depth - yield_stress) * depth;
+        return sheared < 3.0 * viscosity * fall ? sheared / (3.0 * viscosity) : fall;
+    };
+    if (const auto* fluid = std::get_if<solid::Fluid>(&law)) return of(fluid->viscosity, 0.0);
+    if (const auto* mud = std::get_if<solid::Bingham>(&law)) return of(mud->viscosity, mud->yield_stress);
+    return fall;
+}
+
+/// Means by mass of depth and speed.
+void add_means(const Scene& scene, const FlowColumns& columns, SolidStart& start) {
+    double mass = 0.0;
+    for (std::size_t k = 0; k < columns.count(); ++k) {
+        const double own = own_speed(scene.solid->law, scene.density, scene.gravity, columns.depth[k]);
+        mass += columns.mass[k];
+        start.depth += columns.mass[k] * columns.depth[k];
+        start.speed += columns.mass[k] * std::max(std::sqrt(squared_speed(columns, k)), own);
+    }
+    if (mass > 0.0) start.depth /= mass, start.speed /= mass;
+}
+
 }  // namespace
+
+double resolving_cell(const SolidLaw& law, double density, double depth, double speed) {
+    const double shear_rate = depth > 0.0 ? 3.0 * speed / depth : 0.0;  // at the bed, of a parabola
+    if (!(shear_rate > 0.0)) return std::numeric_limits<double>::infinity();
+    double stress = 0.0;
+    if (const auto* fluid = std::get_if<solid::Fluid>(&law)) stress = fluid->viscosity * shear_rate;
+    if (const auto* mud = std::get_if<solid::Bingham>(&law)) stress = mud->yield_stress + mud->viscosity * shear_rate;
+    if (const auto* mud = std::get_if<solid::HerschelBulkley>(&law))
+        stress = mud->yield_stress + mud->consistency * std::pow(shear_rate, mud->exponent);
+    if (!(stress > 0.0)) return std::numeric_limits<double>::infinity();
+    constexpr double kNearest = 0.75;  // of the distance that is seen of a profile [cells]: MirrorBatch::add
+    return std::sqrt(2.0 * stress / density) / (kNearest * shear_rate);
+}
 
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
     double fastest = 0.0, head = -INFINITY, deepest = scene.solid->cell;
@@ -146,6 +185,10 @@ SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
     constexpr double kRoom = 8.0;    // cells above the ground at least
     constexpr double kSplash = 4.0;  // jets that a wall throws up rise to several times the energy of their flow
     start.top = scene.solid->top.value_or(std::max(low + kSplash * (head - low), high + kRoom * scene.solid->cell));
+    add_means(scene, columns, start);
+    start.stuck = scene.solid->stuck ||
+                  (scene.solid->stuck_where_resolved &&
+                   scene.solid->cell <= resolving_cell(scene.solid->law, scene.density, start.depth, start.speed));
     constexpr double kTransits = 20.0;
     const SolidLaw law = law_of(*scene.solid, scene.density, start);
     start.blur =
@@ -182,8 +225,8 @@ SolidScene solid_scene(const Scene& scene, const SolidStart& start) {
     for (int axis = 0; axis < 3; ++axis)
         result.grid.nodes[static_cast<std::size_t>(axis)] =
             static_cast<Index>(std::ceil((high[axis] - result.grid.origin[axis]) / stage.cell)) + 1;
-    Surface ground = Surface::ground(without_gaps(scene.bed), stage.stuck ? Hold::stuck : Hold::free,
-                                     stage.stuck ? 0.0 : stage.bed_friction);
+    Surface ground = Surface::ground(without_gaps(scene.bed), start.stuck ? Hold::stuck : Hold::free,
+                                     start.stuck ? 0.0 : stage.bed_friction);
     ground.name = "ground";
     result.surfaces.insert(result.surfaces.begin(), std::move(ground));
     for (const Barrier& barrier : scene.barriers) result.surfaces.push_back(surface_of(barrier, scene.bed, stage.cell));

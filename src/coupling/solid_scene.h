@@ -12,6 +12,9 @@ struct SolidStart {
     double top = 0.0;          ///< elevation where the space ends [m]
     double friction = 0.0;  ///< inside of sand that has the bed's friction: as large as that of any of its columns [1]
     double blur = 0.0;      ///< time over which forces on barriers are averaged: see BarrierLoads [s]
+    double depth = 0.0;     ///< of the flow along gravity, mean by mass [m]
+    double speed = 0.0;     ///< of the flow, or that of its own weight where that is more, mean by mass [m/s]
+    bool stuck = false;     ///< the lowest material does not slide on the bed
 };
 
 /// Sound ten times as fast as the fastest of `columns`, or as one that falls by its own depth, so that the
@@ -19,6 +22,10 @@ struct SolidStart {
 /// reaches. A first contact with a barrier lasts as long as sound takes through the flow: means over twenty
 /// times that know nothing of it.
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns);
+
+/// Largest cell that resolves how a flow of fluid or mud shears above a bed that holds it [m]: there the speed over
+/// three quarters of a cell is at most sqrt(2) shear velocities. Any cell, of what has no such stress. THEORY.md (13).
+double resolving_cell(const SolidLaw& law, double density, double depth, double speed);
 
 /// Grid, law and surfaces of scene.solid, without points. The ground comes first, then the window's closed sides,
 /// then the barriers in their order. Open sides lie a cell of the terrain's grid outside the

@@ -127,7 +127,7 @@ void StagedRun::begin_3d(const std::function<FlowColumns(const Marks&)>& columns
 /// The ground comes first; it brakes by the bed law, where that hangs on speed.
 SolidScene StagedRun::space_of_stage() const {
     SolidScene space = solid_scene(scene_, start_);
-    if (scene_.solid->whole_bed_law && !scene_.solid->stuck)
+    if (scene_.solid->whole_bed_law && !start_.stuck)
         space.surfaces.front().law = std::make_shared<BedFriction>(scene_, map_);
     return space;
 }
@@ -158,12 +158,14 @@ void StagedRun::require_below_top(const FlowColumns& columns) const {
                             std::max(columns_->status().time, scene_.solid->from)));
 }
 
-SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) const {
+SolidSeeds StagedRun::seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) {
     require_room(columns);
     FlowColumns parts =
         in_parts(columns, scene_.solid->spacing, scene_.bed.geometry.cell, scene_.bed, reach_of(scene_));
     stand_on_barriers(parts, surfaces);
     require_below_top(parts);
+    for (std::size_t k = 0; k < columns.count(); ++k)
+        became_points_ += columns.mass[k], their_depth_ += columns.mass[k] * columns.depth[k];
     return seeds_of(parts, *scene_.solid);
 }
 
@@ -256,6 +258,9 @@ void StagedRun::accumulate(const Status& columns) {
     status_.covered_area += map_.extent().covered_area;
     status_.front = std::max(columns.front, map_.extent().front);
     if (start_.sound_speed > 0.0) largest_mach_ = std::max(largest_mach_, s.max_speed / start_.sound_speed);
+    if (start_.stuck && s.mass > 0.0)
+        finest_needed_ = std::min(
+            finest_needed_, resolving_cell(scene_.solid->law, scene_.density, depth_of_points(), s.speeds / s.mass));
 }
 
 /// Columns and points on their way from one model to the other move.
@@ -298,11 +303,35 @@ void StagedRun::remark_law(std::vector<std::string>& remarks) const {
                                 : "as along the bed"));
     const bool all =
         std::holds_alternative<bed::None>(scene_.bed_law) || std::holds_alternative<bed::Coulomb>(scene_.bed_law);
-    if (!all && !stage.stuck && !stage.whole_bed_law)
+    if (!all && !start_.stuck && !stage.whole_bed_law)
         remarks.push_back(fmt::format(
             "points in space feel of the bed law its Coulomb friction alone, {:.3g}: what grows with speed is missing "
             "there, so they are too fast rather than too slow",
             stage.bed_friction));
+}
+
+/// Whether the cells in 3D show what decides: the depth of the flow, and the layer that shears at a bed that holds it.
+void StagedRun::remark_cells(std::vector<std::string>& remarks) const {
+    constexpr double kEnough = 4.0;
+    const SolidStage& stage = *scene_.solid;
+    const double depth = depth_of_points(), cells = depth / stage.cell;
+    if (became_points_ > 0.0 && cells < kEnough)
+        remarks.push_back(
+            fmt::format("points in space came in {:.3g} m deep (mean by mass), {:.2g} cells; expected {:.0f} or more, "
+                        "or forces hang on the cell, and run-up and what goes over a barrier much more; "
+                        "stage.cell = {:.3g} would do",
+                        depth, cells, kEnough, depth / kEnough));
+    if (stage.stuck_where_resolved && !start_.stuck)
+        remarks.push_back(fmt::format(
+            "points in space slide over the bed, which brakes them by material.bed; to stick to it, {:.3g} m deep and "
+            "with {:.3g} m/s, they would need cells of {:.2g} m; stage.stuck = true lets them stick all the same",
+            start_.depth, start_.speed, resolving_cell(stage.law, scene_.density, start_.depth, start_.speed)));
+    if (start_.stuck && stage.cell > finest_needed_)
+        remarks.push_back(
+            fmt::format("points in space stick to the bed, on cells that do not show the layer that shears there; "
+                        "expected {:.2g} m or less, or the bed holds back more than the material does; give a "
+                        "smaller stage.cell, or stage.stuck = false, with which the bed law brakes them",
+                        finest_needed_));
 }
 
 std::vector<std::string> StagedRun::remarks() const {
@@ -317,14 +346,19 @@ std::vector<std::string> StagedRun::remarks() const {
         scene_.solid->from, s.points, converted_.mass_later / density, returned_.mass / density,
         gone > kRoundOff * s.mass_left ? gone / density : 0.0, start_.top));
     remark_law(remarks);
+    remark_cells(remarks);
     const bool fluid = std::visit([](const auto& law) { return law.kAverages; }, scene_.solid->law);
-    if (fluid || scene_.solid->of_bed)
-        remarks.push_back(fmt::format(
-            "speed of sound {:.4g} m/s (artificial): the fastest point had {:.2g} of it, so that densities "
-            "err by up to "
-            "{:.2g} %{}; volume {:.4g} of that without pressure",
-            start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
-            largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : "", rest > 0.0 ? s.volume / rest : 1.0));
+    if (fluid || scene_.solid->of_bed) {
+        remarks.push_back(
+            fmt::format("speed of sound {:.4g} m/s (artificial): the fastest point had {:.2g} of it, so that densities "
+                        "err by up to {:.2g} %{}",
+                        start_.sound_speed, largest_mach_, 100.0 * largest_mach_ * largest_mach_,
+                        largest_mach_ > 0.2 ? "; set stage.sound_speed higher" : ""));
+        // Of sand that flew apart the volume says nothing.
+        if (fluid)
+            remarks.back() +=
+                fmt::format("; volume {:.4g} of that without pressure", rest > 0.0 ? s.volume / rest : 1.0);
+    }
     if (returned_.raised > 0.0)
         remarks.push_back(fmt::format(
             "{:.6g} m3 became columns on ground that barriers or walls in holes raise, and gained height: columns have "
@@ -351,7 +385,11 @@ std::vector<PhaseTime> StagedRun::timings() const {
 void StagedRun::serialize(Archive& archive) {
     Index in_3d = ended_ ? 2 : points_ ? 1 : 0;
     archive.number("in_space", in_3d);
-    archive.numbers("start", {&start_.sound_speed, &start_.top, &start_.blur, &start_.friction});
+    archive.numbers("start",
+                    {&start_.sound_speed, &start_.top, &start_.blur, &start_.friction, &start_.depth, &start_.speed});
+    Index stuck = start_.stuck;
+    archive.number("stuck", stuck);
+    start_.stuck = stuck != 0;
     if (archive.loading() && in_3d) {
         ended_ = in_3d == 2;
         points_ = std::make_unique<Mpm3d>(space_of_stage());
@@ -367,7 +405,7 @@ void StagedRun::serialize(Archive& archive) {
     frana::serialize(archive, "status", status_);
     archive.numbers("sums", {&converted_.mass, &converted_.energy, &converted_.mass_later, &converted_.momentum[0],
                              &converted_.momentum[1], &returned_.mass, &returned_.lost, &returned_.raised, &moved_,
-                             &largest_mach_});
+                             &largest_mach_, &became_points_, &their_depth_, &finest_needed_});
     archive.number("pieces", apart_.pieces);
     archive.numbers("apart", {&apart_.apart, &apart_.alone, &apart_.most_apart, &apart_.most_apart_time});
     spray_.serialize(archive);

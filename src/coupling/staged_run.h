@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -90,12 +91,15 @@ private:
     void show_columns();
     FlowColumns columns_at_edge(std::vector<Mat2>& gradients) const;
     GhostParticles ghosts_of(const FlowColumns& columns, const std::vector<Mat2>& gradients) const;
-    SolidSeeds seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces) const;
+    SolidSeeds seeds_of_window(const FlowColumns& columns, const std::vector<Surface>& surfaces);
     void require_room(const FlowColumns& columns) const;
     void require_below_top(const FlowColumns& columns) const;
     void sample(double until);
     void find_pieces();
     void remark_law(std::vector<std::string>& remarks) const;
+    void remark_cells(std::vector<std::string>& remarks) const;
+    /// Of columns as they became points, mean by mass [m].
+    double depth_of_points() const { return became_points_ > 0.0 ? their_depth_ / became_points_ : 0.0; }
     void remark_pieces(std::vector<std::string>& remarks) const;
     void accumulate(const Status& columns);
     void serialize_returning(Archive& archive);
@@ -124,6 +128,10 @@ private:
     PointsApart apart_;
     Spray spray_;
     double largest_mach_ = 0.0;  ///< fastest point over the speed of sound [1]
+    double became_points_ = 0.0,
+           their_depth_ = 0.0;  ///< mass of columns that did, and the sum of mass times depth [kg, kg m]
+    double finest_needed_ =
+        std::numeric_limits<double>::infinity();  ///< least resolving_cell() of the points so far [m]
     FrameStore store_;
 };
 

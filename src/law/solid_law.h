@@ -203,6 +203,9 @@ enum class Cone { compression, plane_strain };
 struct DruckerPrager {
     static constexpr int kStates = 7;  ///< logarithmic elastic strain; volume gained at the apex, ln J [1]
     static constexpr bool kAverages = false;
+    /// Volume over that without stress of points that have parted: twice as far apart in each direction. What flies
+    /// apart further leaves room between points, which need not close before they carry pressure again.
+    static constexpr double kLoosest = 8.0;
     Elastic elastic;
     double alpha = 0.0;    ///< |s| per pressure [1]
     double tension = 0.0;  ///< p_t, the pressure at the apex, negated [Pa]
@@ -228,7 +231,8 @@ struct DruckerPrager {
         const Real yielding = strength / select(size > 0.0, size, Real{} + 1.0);
         const Real kept = select(parted, Real{}, select(size > strength, yielding, Real{} + 1.0));
         (shear_strain * kept).plus_isotropic(select(parted, Real{} + apex, volume) / 3.0).write(state);
-        state[6] = select(parted, volume - apex, Real{});
+        state[6] = min(select(parted, volume - apex, Real{}), Real{} + std::log(kLoosest));
+        j = min(j, Real{} + kLoosest);
     }
     template <class Real>
     [[gnu::always_inline]] Real stored(Real j, const Given<Real>* state) const {

@@ -140,9 +140,10 @@ void add_stages(Table& table) {
     table.push_back(of_3d(number("stage.top", "m", any_number, "elevation above which points leave the space"),
                           "four times as high above the lowest ground as the energy of the material reaches"));
     add_laws(table);
-    table.push_back(
-        of_3d(make("stage.stuck", Kind::flag, "", "the lowest material does not slide on the bed"),
-              "false; true where the bed law is that of mud, and neither stage.law nor stage.bed_friction is given"));
+    table.push_back(of_3d(
+        make("stage.stuck", Kind::flag, "", "the lowest material does not slide on the bed"),
+        "false; of mud by its bed law, with neither stage.law nor stage.bed_friction: true where the cells show the "
+        "layer that shears at the bed"));
     table.push_back(of_3d(number("stage.bed_friction", "1", between(0.0, 10.0),
                                  "Coulomb's friction coefficient between the points and the bed"),
                           "the whole law of material.bed"));

@@ -151,6 +151,7 @@ struct SolidStage {
     std::optional<double> top;           ///< elevation where the space ends [m]; nothing: chosen when the stage begins
     bool split = false;                  ///< points that are drawn apart become two
     bool stuck = false;                  ///< the lowest material does not slide on the bed
+    bool stuck_where_resolved = false;   ///< the same, if the cells resolve the layer that shears at the bed then
     double bed_friction = 0.0;           ///< Coulomb's coefficient [1]
     bool whole_bed_law = false;          ///< the case's bed law brakes points, not that coefficient
     double cfl = 0.4;                    ///< fraction of a cell that sound and flow may pass in a step [1]

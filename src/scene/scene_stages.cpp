@@ -87,8 +87,9 @@ private:
         if (given("sound_speed")) stage.sound_speed = number("sound_speed");
         require_size(stage);
         stage.law = law(stage);
-        stage.stuck = given("stuck") ? case_.flag(prefix_ + "stuck") : mud_of_bed() && !given("bed_friction");
-        if (given("stuck") && stage.stuck && given("bed_friction"))
+        stage.stuck = given("stuck") && case_.flag(prefix_ + "stuck");
+        stage.stuck_where_resolved = !given("stuck") && mud_of_bed() && !given("bed_friction");
+        if (stage.stuck && given("bed_friction"))
             problems_.add(case_.place(prefix_ + "bed_friction"), "found with stage.stuck = true",
                           "expected one of both: what is stuck does not slide", "remove one of them");
         stage.split = case_.flag(prefix_ + "split");
@@ -200,10 +201,9 @@ private:
         return viscous || !(friction_at_rest(scene_.bed_law) > 0.0) ? "fluid" : "of_bed";
     }
 
-    /// Laws that are more than a coefficient. That of mud is not among them: it stands for what happens inside.
+    /// Laws that are more than a coefficient.
     static bool hangs_on_speed(const BedLaw& law) {
-        return std::holds_alternative<bed::Voellmy>(law) || std::holds_alternative<bed::Manning>(law) ||
-               std::holds_alternative<bed::Pouliquen>(law);
+        return !std::holds_alternative<bed::None>(law) && !std::holds_alternative<bed::Coulomb>(law);
     }
 
     /// A bed law that stands for mud that shears over its depth, where no rheology says otherwise.

@@ -59,19 +59,57 @@ struct MirrorBatch {
     }
 };
 
+struct Vec3x4 {
+    Double4 entry[3];
+    Double4& operator[](int k) { return entry[k]; }
+    const Double4& operator[](int k) const { return entry[k]; }
+};
+
+[[gnu::always_inline]] inline Vec3x4 times(const Mat3x4& a, const Double4* b) {
+    Vec3x4 c;
+    for (int k = 0; k < 3; ++k) c[k] = a(k, 0) * b[0] + a(k, 1) * b[1] + a(k, 2) * b[2];
+    return c;
+}
+
+/// Square of the part of a vector that lies along a surface with that unit normal.
+[[gnu::always_inline]] inline Double4 squared_along(const Vec3x4& a, const Double4* normal) {
+    const Double4 across = a[0] * normal[0] + a[1] * normal[1] + a[2] * normal[2];
+    Double4 sum{};
+    for (int k = 0; k < 3; ++k) {
+        const Double4 along = a[k] - across * normal[k];
+        sum += along * along;
+    }
+    return sum;
+}
+
+/// How much a layer beside a stuck surface is one that its stress holds: 1 where the speed over the distance m is at
+/// most the shear velocity, 0 where its square is twice that and more. A layer that is faster would have a thinner
+/// boundary layer than these nodes can show. Its profile is one of the transfer's making, and carried on behind the
+/// surface it would drive what it should hold. THEORY.md, section 4.
+[[gnu::always_inline]] inline Double4 settled(const MirrorBatch& batch, const Vec3x4& slope, const Vec3x4& traction,
+                                              const Double4& per_mass) {
+    const Double4 none{}, one = none + 1.0;
+    const Double4 m2 = 4.0 * batch.above / select(batch.steeper > 0.0, batch.steeper, one);
+    const Double4 speed2 = squared_along(slope, batch.normal) * m2;
+    const Double4 friction2 = sqrt(squared_along(traction, batch.normal)) * per_mass;
+    return min(max(2.0 * friction2 - speed2, none), friction2) / select(friction2 > 0.0, friction2, one);
+}
+
 /// In a stuck surface mirror particles turn velocities round; this changes v and its gradient so that what flows along
 /// the surface goes on through it with its bend, which each step would otherwise take from the layer beside it. With v
 /// and v' at the distance d, and at rest on the surface, the speed is a z + b z^2, b = (v' d - v) / d^2: at -d it is 2
 /// b d^2 - v, its gradient v' - 4 b d. What bends by more than a third of v over d (kGentle: the square of b d^2 / v),
 /// and at 0.47 of it and more altogether (kRough), is no layer that has settled, but strikes the surface or is noise,
-/// and is turned round only: a sheet's bend is d / (2 H - d), a third at half of its depth H.
-[[gnu::always_inline]] inline void bend(const MirrorBatch& batch, Double4* v, Mat3x4& gradient) {
+/// and is turned round only: a sheet's bend is d / (2 H - d), a third at half of its depth H. Nor is it a layer that has
+/// settled where the stress does not hold it (`settled`).
+/// `stress` is an impulse, that of a step on the point's volume [J s]; per_mass: 1 over the step and the mass.
+[[gnu::always_inline]] inline void bend(const MirrorBatch& batch, const Mat3x4& stress, const Double4& per_mass,
+                                        Double4* v, Mat3x4& gradient) {
     constexpr double kGentle = 1.0 / 9.0, kRough = 2.0 / 9.0;
+    const Vec3x4 slope = times(gradient, batch.normal);
     Double4 q[3], across{}, sinks{};
     for (int k = 0; k < 3; ++k) {
-        const Double4 slope =
-            gradient(k, 0) * batch.normal[0] + gradient(k, 1) * batch.normal[1] + gradient(k, 2) * batch.normal[2];
-        q[k] = slope * batch.above - v[k];
+        q[k] = slope[k] * batch.above - v[k];
         across += q[k] * batch.normal[k], sinks += v[k] * batch.normal[k];
     }
     Double4 bends{}, moves{};
@@ -81,7 +119,9 @@ struct MirrorBatch {
         bends += q[k] * q[k], moves += along * along;
     }
     const Double4 none{}, share = min(max(kRough * moves - bends, none), (kRough - kGentle) * moves);
-    const Double4 whole = (kRough - kGentle) * moves, weight = share / select(whole > 0.0, whole, none + 1.0);
+    const Double4 whole = (kRough - kGentle) * moves;
+    const Double4 weight =
+        settled(batch, slope, times(stress, batch.normal), per_mass) * share / select(whole > 0.0, whole, none + 1.0);
     for (int k = 0; k < 3; ++k) {
         v[k] -= weight * batch.shift * q[k];
         for (int l = 0; l < 3; ++l) gradient(k, l) -= weight * batch.steeper * q[k] * batch.normal[l];
@@ -115,7 +155,7 @@ template <bool bends, class Law>
     const Double4 impulse_scale = -dt * batch.of(q.rest_volume);
     const Mat3x4 stress = (law.stress(batch.of(q.j), state, gradient) * impulse_scale).matrix();
     for (int k = 0; k < 3; ++k) v[k] = batch.of(q.v[k]);
-    if (bends && any(batch.above > 0.0)) bend(batch, v, gradient);
+    if (bends && any(batch.above > 0.0)) bend(batch, stress, 1.0 / (dt * batch.of(q.mass)), v, gradient);
     if (batch.slides > 0) slide(batch, gradient);
     for (int k = 0; k < 3; ++k) v[k] += dt * gravity[k];
     const Mat3x4 affine = product(product(batch.motion, gradient), batch.turned_back),
