@@ -39,7 +39,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 }  // namespace
 
-TEST_CASE("Mud by the bed law is mud in space, held by the bed", "[stages]") {
+TEST_CASE("Mud by the bed law is mud in space, which its bed holds or brakes", "[stages]") {
     const auto of = [](const std::string& bed, const std::string& more) {
         const std::string text =
             "[terrain]\ndem = \"dem.tif\"\n[[release]]\noutline = \"release.geojson\"\ndepth = 2\n"

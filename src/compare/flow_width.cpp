@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/round_number.h"
+
 namespace frana {
 namespace {
 
@@ -173,14 +175,7 @@ double flow_width(const Raster& depth, double limit) {
     return *middle * depth.geometry.cell;
 }
 
-double cell_that_resolves(double width) {
-    const double most = width / least_cells_across;
-    const double power = std::pow(10.0, std::floor(std::log10(most)));
-    double best = power;
-    for (const double step : {2.0, 2.5, 5.0})
-        if (step * power <= most) best = step * power;
-    return best;
-}
+double cell_that_resolves(double width) { return round_number_below(width / least_cells_across); }
 
 std::string width_remark(double width, double cell) {
     if (!(width < least_cells_across * cell)) return "";

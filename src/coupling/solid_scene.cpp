@@ -129,10 +129,9 @@ double mean_friction(const Scene& scene, const FlowColumns& columns) {
     return mass > 0.0 ? sum / mass : 0.0;
 }
 
-/// Of fluids and mud: what their weight, of a column on a slope of 45 degrees, drives it to at most; without viscosity
-/// that of a fall by its own depth.
-double own_speed(const SolidLaw& law, double density, double gravity, double depth) {
-    const double fall = std::sqrt(2.0 * gravity * depth);
+/// Of fluids and mud: what all of their weight, as shear at the bed, drives them to at most; no more than `fall`, the speed
+/// that the way down gives.
+double own_speed(const SolidLaw& law, double density, double gravity, double depth, double fall) {
     const auto of = [&](double viscosity, double yield_stress) {
         const double sheared = std::max(0.0, density * gravity * depth - yield_stress) * depth;
         return sheared < 3.0 * viscosity * fall ? sheared / (3.0 * viscosity) : fall;
@@ -142,14 +141,16 @@ double own_speed(const SolidLaw& law, double density, double gravity, double dep
     return fall;
 }
 
-/// Means by mass of depth and speed.
-void add_means(const Scene& scene, const FlowColumns& columns, SolidStart& start) {
+/// Means by mass of depth and speed. `low`: elevation of the lowest ground.
+void add_means(const Scene& scene, const FlowColumns& columns, double low, SolidStart& start) {
     double mass = 0.0;
     for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double own = own_speed(scene.solid->law, scene.density, scene.gravity, columns.depth[k]);
+        const double v2 = squared_speed(columns, k), depth = columns.depth[k];
+        const double fall = std::sqrt(v2 + 2.0 * scene.gravity * std::max(0.0, columns.bed[k] + depth - low));
+        const double own = own_speed(scene.solid->law, scene.density, scene.gravity, depth, fall);
         mass += columns.mass[k];
-        start.depth += columns.mass[k] * columns.depth[k];
-        start.speed += columns.mass[k] * std::max(std::sqrt(squared_speed(columns, k)), own);
+        start.depth += columns.mass[k] * depth;
+        start.speed += columns.mass[k] * std::max(std::sqrt(v2), own);
     }
     if (mass > 0.0) start.depth /= mass, start.speed /= mass;
 }
@@ -166,7 +167,7 @@ double resolving_cell(const SolidLaw& law, double density, double depth, double 
         stress = mud->yield_stress + mud->consistency * std::pow(shear_rate, mud->exponent);
     if (!(stress > 0.0)) return std::numeric_limits<double>::infinity();
     constexpr double kNearest = 0.75;  // of the distance that is seen of a profile [cells]: MirrorBatch::add
-    return std::sqrt(2.0 * stress / density) / (kNearest * shear_rate);
+    return std::sqrt(stress / density) / (kNearest * shear_rate);
 }
 
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
@@ -185,7 +186,7 @@ SolidStart choose_start(const Scene& scene, const FlowColumns& columns) {
     constexpr double kRoom = 8.0;    // cells above the ground at least
     constexpr double kSplash = 4.0;  // jets that a wall throws up rise to several times the energy of their flow
     start.top = scene.solid->top.value_or(std::max(low + kSplash * (head - low), high + kRoom * scene.solid->cell));
-    add_means(scene, columns, start);
+    add_means(scene, columns, low, start);
     start.stuck = scene.solid->stuck ||
                   (scene.solid->stuck_where_resolved &&
                    scene.solid->cell <= resolving_cell(scene.solid->law, scene.density, start.depth, start.speed));

@@ -24,7 +24,7 @@ struct SolidStart {
 SolidStart choose_start(const Scene& scene, const FlowColumns& columns);
 
 /// Largest cell that resolves how a flow of fluid or mud shears above a bed that holds it [m]: there the speed over
-/// three quarters of a cell is at most sqrt(2) shear velocities. Any cell, of what has no such stress. THEORY.md (13).
+/// three quarters of a cell is at most the shear velocity. Any cell, of what has no such stress. THEORY.md (13).
 double resolving_cell(const SolidLaw& law, double density, double depth, double speed);
 
 /// Grid, law and surfaces of scene.solid, without points. The ground comes first, then the window's closed sides,

@@ -8,6 +8,7 @@
 #include "base/constants.h"
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "base/round_number.h"
 #include "coupling/bed_friction.h"
 #include "coupling/start_pressure.h"
 
@@ -319,19 +320,19 @@ void StagedRun::remark_cells(std::vector<std::string>& remarks) const {
         remarks.push_back(
             fmt::format("points in space came in {:.3g} m deep (mean by mass), {:.2g} cells; expected {:.0f} or more, "
                         "or forces hang on the cell, and run-up and what goes over a barrier much more; "
-                        "stage.cell = {:.3g} would do",
-                        depth, cells, kEnough, depth / kEnough));
+                        "stage.cell = {:g} would do",
+                        depth, cells, kEnough, round_number_below(depth / kEnough)));
     if (stage.stuck_where_resolved && !start_.stuck)
         remarks.push_back(fmt::format(
-            "points in space slide over the bed, which brakes them by material.bed; to stick to it, {:.3g} m deep and "
-            "with {:.3g} m/s, they would need cells of {:.2g} m; stage.stuck = true lets them stick all the same",
-            start_.depth, start_.speed, resolving_cell(stage.law, scene_.density, start_.depth, start_.speed)));
+            "points in space slide over the bed, which brakes them by material.bed; for mud that sticks to it, with "
+            "{:.3g} m/s, which it has or may come to by its weight, cells of {:g} m would be needed",
+            start_.speed, round_number_below(resolving_cell(stage.law, scene_.density, start_.depth, start_.speed))));
     if (start_.stuck && stage.cell > finest_needed_)
-        remarks.push_back(
-            fmt::format("points in space stick to the bed, on cells that do not show the layer that shears there; "
-                        "expected {:.2g} m or less, or the bed holds back more than the material does; give a "
-                        "smaller stage.cell, or stage.stuck = false, with which the bed law brakes them",
-                        finest_needed_));
+        remarks.push_back(fmt::format(
+            "points in space stick to the bed, on cells that did not show the layer that shears there when "
+            "they were fastest; expected {:g} m or less, or the bed holds back more than the material does; "
+            "give a smaller stage.cell, or stage.stuck = false, with which the bed law brakes them",
+            round_number_below(finest_needed_)));
 }
 
 std::vector<std::string> StagedRun::remarks() const {

@@ -89,7 +89,8 @@ struct Vec3x4 {
 [[gnu::always_inline]] inline Double4 settled(const MirrorBatch& batch, const Vec3x4& slope, const Vec3x4& traction,
                                               const Double4& per_mass) {
     const Double4 none{}, one = none + 1.0;
-    const Double4 m2 = 4.0 * batch.above / select(batch.steeper > 0.0, batch.steeper, one);
+    const auto held = (batch.above > 0.0) | (batch.above < 0.0);  // below the ground both are negative
+    const Double4 m2 = 4.0 * batch.above / select(held, batch.steeper, one);
     const Double4 speed2 = squared_along(slope, batch.normal) * m2;
     const Double4 friction2 = sqrt(squared_along(traction, batch.normal)) * per_mass;
     return min(max(2.0 * friction2 - speed2, none), friction2) / select(friction2 > 0.0, friction2, one);
