@@ -231,7 +231,8 @@ struct DruckerPrager {
         const Real yielding = strength / select(size > 0.0, size, Real{} + 1.0);
         const Real kept = select(parted, Real{}, select(size > strength, yielding, Real{} + 1.0));
         (shear_strain * kept).plus_isotropic(select(parted, Real{} + apex, volume) / 3.0).write(state);
-        state[6] = min(select(parted, volume - apex, Real{}), Real{} + std::log(kLoosest));
+        const Real gap = select(parted, volume - apex, Real{}), widest = Real{} + std::log(kLoosest);
+        state[6] = min(gap, widest);
         j = min(j, Real{} + kLoosest);
     }
     template <class Real>

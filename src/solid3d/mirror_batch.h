@@ -66,7 +66,7 @@ struct Vec3x4 {
 };
 
 [[gnu::always_inline]] inline Vec3x4 times(const Mat3x4& a, const Double4* b) {
-    Vec3x4 c;
+    Vec3x4 c{};
     for (int k = 0; k < 3; ++k) c[k] = a(k, 0) * b[0] + a(k, 1) * b[1] + a(k, 2) * b[2];
     return c;
 }
