@@ -254,9 +254,7 @@ TEST_CASE("A floor that holds fast mud takes energy from it", "[solid]") {
         SolidScene s = thrown_mud(0.45);
         if (transfer[0] == 'a') s.affine = Affine::apic;
         Mpm3d flow(s);
-        while (flow.status().time < 1.2) {
-            flow.advance(1.2);
-        }
+        while (flow.status().time < 1.2) flow.advance(1.2);
         CHECK(flow.status().friction > 0.0);
     }
 }

@@ -129,8 +129,8 @@ double mean_friction(const Scene& scene, const FlowColumns& columns) {
     return mass > 0.0 ? sum / mass : 0.0;
 }
 
-/// Of fluids and mud: what all of their weight, as shear at the bed, drives them to at most; no more than `fall`, the speed
-/// that the way down gives.
+/// The speed that a column's whole weight, as shear at the bed, drives a fluid or mud to; `fall` at most, the speed that the
+/// way down gives [m/s].
 double own_speed(const SolidLaw& law, double density, double gravity, double depth, double fall) {
     const auto of = [&](double viscosity, double yield_stress) {
         const double sheared = std::max(0.0, density * gravity * depth - yield_stress) * depth;

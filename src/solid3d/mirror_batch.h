@@ -82,10 +82,10 @@ struct Vec3x4 {
     return sum;
 }
 
-/// How much a layer beside a stuck surface is one that its stress holds: 1 where the speed over the distance m is at
-/// most the shear velocity, 0 where its square is twice that and more. A layer that is faster would have a thinner
-/// boundary layer than these nodes can show. Its profile is one of the transfer's making, and carried on behind the
-/// surface it would drive what it should hold. THEORY.md, section 4.
+/// Whether the stress holds the layer beside a stuck surface. 1 where the change of speed over the distance m is at most
+/// the shear velocity; 0 where its square is twice as large. A faster layer has a thinner boundary layer than these nodes
+/// can show. The transfer has made its profile. Carried on behind the surface that would drive the layer, not hold it.
+/// THEORY.md, section 4.
 [[gnu::always_inline]] inline Double4 settled(const MirrorBatch& batch, const Vec3x4& slope, const Vec3x4& traction,
                                               const Double4& per_mass) {
     const Double4 none{}, one = none + 1.0;
@@ -133,11 +133,9 @@ struct Vec3x4 {
 [[gnu::noinline]] inline void slide(const MirrorBatch& batch, Mat3x4& gradient) {
     for (int s = 0; s < batch.slides; ++s) {
         const Double4* const n = batch.slide[s];
-        Double4 across[3], out{};
-        for (int k = 0; k < 3; ++k) {
-            across[k] = gradient(k, 0) * n[0] + gradient(k, 1) * n[1] + gradient(k, 2) * n[2];
-            out += across[k] * n[k];
-        }
+        const Vec3x4 across = times(gradient, n);
+        Double4 out{};
+        for (int k = 0; k < 3; ++k) out += across[k] * n[k];
         for (int k = 0; k < 3; ++k)
             for (int l = 0; l < 3; ++l) gradient(k, l) -= (across[k] - out * n[k]) * n[l];
     }
