@@ -1,6 +1,7 @@
 // Structured columns and free water on one grid: momentum, volumes, rest, slopes, the limits of one phase.
 #include <omp.h>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/structured.h"
 #include "coupling/two_phase_flow.h"
@@ -9,7 +10,7 @@ using namespace frana;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+using constants::kGravity;
 
 /// Columns of 0.8 m on level ground that hold together, and water up to `level` around and above them.
 struct Basin {

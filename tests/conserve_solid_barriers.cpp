@@ -7,15 +7,13 @@
 
 #include "catch.h"
 #include "checks/verify/body.h"
+#include "prism_maker.h"
 
 using namespace frana;
 
 namespace {
 
-constexpr double kGravity = 10.0, kDensity = 1000.0;
-
-Polygons ring(const std::vector<Vec2>& corners) { return {{Polygon{{corners}}}, "", ""}; }
-Polygons box(double x0, double y0, double x1, double y1) { return ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}); }
+constexpr double kRoundGravity = 10.0, kDensity = 1000.0;
 
 /// A scene's axes, turned about z.
 struct Turn {
@@ -36,16 +34,16 @@ struct Turn {
 /// Water in a box of the turned axes, at rest with its pressure, and a grid that holds `room`.
 SolidScene water(const Turn& turn, const Vec3& size, const Vec3& room, double cell) {
     SolidScene s;
-    s.gravity = {0, 0, -kGravity};
+    s.gravity = {0, 0, -kRoundGravity};
     s.density = kDensity;
-    const double bulk = kDensity * 100.0 * kGravity * size.z();
+    const double bulk = kDensity * 100.0 * kRoundGravity * size.z();
     s.law = solid::Fluid{bulk, 0.0};
     const double a = turn.degrees * M_PI / 180.0;
     const verify::Frame3 frame{
         (Mat3() << std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1).finished()};
     s.grid = verify::grid_around(frame, {0, 0, 0}, room, cell);
     verify::for_each_part({0, 0, 0}, size, cell, 2, [&](const Vec3& x, double volume) {
-        const double p = kDensity * kGravity * (size.z() - x.z());
+        const double p = kDensity * kRoundGravity * (size.z() - x.z());
         s.points.add(turn.at(x), Vec3::Zero(), kDensity * volume / (1.0 - p / bulk), p);
     });
     return s;
@@ -96,7 +94,7 @@ TEST_CASE("Water at rest pushes a wall by rho g h^2 / 2, low down more than high
     run_to(flow, 0.35), run_to(other, 0.35);
     const Face& front = flow.body().ledger.face(4, 3);
     const Vec3 push = (front.impulse - early.impulse) / kSpan;
-    const double exact = 0.5 * flow.status().mass * kGravity;  // of a square of water, which it is
+    const double exact = 0.5 * flow.status().mass * kRoundGravity;  // of a square of water, which it is
     CAPTURE(degrees, push.norm() / exact);
     // The gates of the tank in `frana verify`: half a per cent of the force, one per cent of the pressure.
     CHECK(push.norm() == Approx(exact).epsilon(0.005));
@@ -121,10 +119,11 @@ TEST_CASE("Water at rest pushes a wall by rho g h^2 / 2, low down more than high
     }
     CHECK((all / kSpan - push).norm() < 1e-9 * exact);
     const auto below = static_cast<std::size_t>(std::lround(-s.grid.origin.z() / cell));
-    const double foot_row = kDensity * kGravity * (height - 0.5 * cell) * cell * width;
+    const double foot_row = kDensity * kRoundGravity * (height - 0.5 * cell) * cell * width;
     for (std::size_t row = 0; row < rows.size(); ++row) {
         const double middle = (static_cast<double>(row) - static_cast<double>(below) + 0.5) * cell;
-        const double rest = middle > 0.0 ? kDensity * kGravity * std::max(0.0, height - middle) * cell * width : 0.0;
+        const double rest =
+            middle > 0.0 ? kDensity * kRoundGravity * std::max(0.0, height - middle) * cell * width : 0.0;
         CAPTURE(row, middle);
         // 3 %: what a designer is promised of each square. Shapes reach a cell and a half, from anywhere in a square: what they smear across the water's surface is held
         // against the foot's.
@@ -178,7 +177,7 @@ TEST_CASE("Water at rest in the inner corner of an angle stays quiet, and pushes
     CHECK(inside_barriers(flow) == 0);
     const Face& one = flow.body().ledger.face(3, 0);
     const Face& two = flow.body().ledger.face(3, 5);
-    const double exact = 0.5 * kDensity * kGravity * height * height * side * 0.5;
+    const double exact = 0.5 * kDensity * kRoundGravity * height * height * side * 0.5;
     CHECK(one.impulse.norm() == Approx(exact).epsilon(0.005));
     CHECK(two.impulse.norm() == Approx(exact).epsilon(0.005));
     CHECK(flow.momentum_residual().norm() < 1e-12 * flow.status().weight_impulse.norm());

@@ -96,7 +96,9 @@ inline Release release_of(std::vector<Polygon> parts, double depth) {
 
 inline Release release_of_ring(Ring ring, double depth) { return release_of({Polygon{{std::move(ring)}}}, depth); }
 
-inline Ring rectangle(double x0, double y0, double x1, double y1) { return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}; }
+inline Ring rectangle_ring(double x0, double y0, double x1, double y1) {
+    return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
 
 /// A smooth positive depth with a corner of nodata.
 inline Raster bumpy_depth(const GridGeometry& geometry) {

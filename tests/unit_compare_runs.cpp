@@ -29,10 +29,10 @@ bool within(double x, double y, double x0, double y0, double x1, double y1) {
 Polygon box(double x0, double y0, double x1, double y1) { return Polygon{{{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}}}; }
 
 /// A flow along x from 50 m to `front`, 100 m wide; it rests on the last 100 m of it. Released at x < 100 m.
-struct Flow {
+struct ComparedFlow {
     Raster bed, peak, last, arrival;
 
-    explicit Flow(double front) {
+    explicit ComparedFlow(double front) {
         bed = made([](double x, double) { return 300.0 - 0.5 * x; });
         peak = made([&](double x, double y) { return within(x, y, 50, 50, front, 150) ? 2.0 : 0.0; });
         last = made([&](double x, double y) { return within(x, y, front - 100, 50, front, 150) ? 1.0 : 0.0; });
@@ -46,7 +46,7 @@ struct Flow {
 }  // namespace
 
 TEST_CASE("On a plane the steepest path runs straight down to the edge") {
-    const Flow flow(300);
+    const ComparedFlow flow(300);
     const Polyline path = steepest_path(flow.bed, {75, 105});
     REQUIRE(path.size() == 53);  // nodes from 75 m to 595 m
     for (const Vec2& p : path) CHECK(p.y() == Approx(105));
@@ -84,7 +84,7 @@ TEST_CASE("The farthest point of an outline counts along a path, also round a be
 }
 
 TEST_CASE("A flow that runs 50 m too far is told so, and both of its extents are scored") {
-    const Flow flow(350);
+    const ComparedFlow flow(350);
     Survey survey;
     survey.footprint = {{box(50, 50, 300, 150)}, "", "survey.geojson"};
     const Comparison c = compare(flow.run(), survey);
@@ -103,7 +103,7 @@ TEST_CASE("A flow that runs 50 m too far is told so, and both of its extents are
 }
 
 TEST_CASE("A given path is used downhill, and its end is not the end of the runout") {
-    const Flow flow(350);
+    const ComparedFlow flow(350);
     Survey survey;
     survey.footprint = {{box(50, 50, 300, 150)}, "", "survey.geojson"};
     survey.path = Polyline{{280, 100}, {80, 100}};
@@ -117,7 +117,7 @@ TEST_CASE("A given path is used downhill, and its end is not the end of the runo
 }
 
 TEST_CASE("Where the flow leaves the way of water, the runout is put in doubt") {
-    Flow flow(300);
+    ComparedFlow flow(300);
     // a valley across: the water turns north at x = 300 m, the survey goes on up the opposite slope
     flow.bed = made([](double x, double y) { return 300.0 + 0.5 * std::abs(x - 305.0) - 0.1 * y; });
     Survey survey;
@@ -129,7 +129,7 @@ TEST_CASE("Where the flow leaves the way of water, the runout is put in doubt") 
 }
 
 TEST_CASE("Without terrain, or with nothing covered, there is no runout but there are scores", "[nan]") {
-    Flow flow(300);
+    ComparedFlow flow(300);
     Survey survey;
     survey.footprint = {{box(50, 50, 300, 250)}, "", "survey.geojson"};
     SimulatedRun run = flow.run();

@@ -272,6 +272,27 @@ TEST_CASE("No point gathers what lies on its way: grown ones spread over as many
     CHECK(fullest < 4.0 * scene.scheme.split_length * scene.scheme.split_length);
 }
 
+TEST_CASE("A flow that grows more than a hundredfold is remarked upon", "[erosion]") {
+    const Scene scene =
+        slide([](Scene& s) { s.erodible = loose(s, erosion::Steady{1.0}, [](double, double) { return 30.0; }); });
+    DepthAveraged simulation(scene);
+    const double released = simulation.status().mass;
+    const auto says = [&] {
+        for (const std::string& remark : simulation.remarks())
+            if (remark.find("erodible: the flow took up") == 0) return true;
+        return false;
+    };
+    const auto until_taken = [&](double times) {
+        while (simulation.status().bed.eroded < times * released && simulation.status().time < 20.0)
+            simulation.advance(20.0);
+        return simulation.status().bed.eroded >= times * released;
+    };
+    REQUIRE(until_taken(50.0));
+    CHECK_FALSE(says());
+    REQUIRE(until_taken(101.0));
+    CHECK(says());
+}
+
 TEST_CASE("What rests on loose ground sleeps and takes nothing", "[erosion][sleep]") {
     Scene scene = scene_on(80, 60, 1.0, [](double x, double) { return 0.05 * x; });
     scene.bed_law = bed::Coulomb{0.6};

@@ -11,7 +11,7 @@ using namespace frana;
 
 namespace {
 
-std::string problem_of(const std::string& text) {
+std::string problem_of_table(const std::string& text) {
     try {
         parse_hydrograph(text, "q.csv");
     } catch (const UserError& error) {
@@ -45,18 +45,23 @@ TEST_CASE("A table of discharge is read whatever its marks and units", "[inflow]
 
 TEST_CASE("What is wrong with a table is said in a sentence", "[inflow]") {
     const std::string head = "t [s], discharge [m3/s]\n";
-    CHECK(problem_of("t, discharge [m3/s]\n0, 1\n").rfind("q.csv: found the column \"t\"; expected a header", 0) == 0);
-    CHECK(problem_of("t [s], discharge [l/s]\n0, 1\n").rfind("q.csv: found the column \"discharge [l/s]\"", 0) == 0);
-    CHECK(problem_of("t [s], t_min\n0, 1\n").rfind("q.csv: found 2 columns of time, 0 of discharge", 0) == 0);
-    CHECK(problem_of("").rfind("q.csv: found an empty file", 0) == 0);
-    CHECK(problem_of(head + "0, 1\n").rfind("q.csv: found 1 row; expected two or more", 0) == 0);
-    CHECK(problem_of(head + "0, 1\n5\n").rfind("q.csv:3: found 1 cells; expected 2", 0) == 0);
-    CHECK(problem_of(head + "0, 1\n5, nan\n").rfind("q.csv:3: found \"nan\"; expected a number", 0) == 0);
-    CHECK(problem_of(head + "0, 1\n0, 2\n").rfind("q.csv: row 2 (t = 0 s): found a time that is not later", 0) == 0);
-    CHECK(problem_of(head + "-1, 1\n0, 2\n").rfind("q.csv: row 1 (t = -1 s): found a time before 0", 0) == 0);
-    CHECK(problem_of(head + "0, 1\n9, -2\n").rfind("q.csv: row 2 (t = 9 s): found a discharge of -2 m3/s", 0) == 0);
-    CHECK(problem_of(head + "0, 0\n9, 0\n").rfind("q.csv: found no discharge above 0", 0) == 0);
-    CHECK(problem_of("t [s], discharge [m3/s], velocity [m/s]\n0, 0, 0\n9, 2, 0\n")
+    CHECK(
+        problem_of_table("t, discharge [m3/s]\n0, 1\n").rfind("q.csv: found the column \"t\"; expected a header", 0) ==
+        0);
+    CHECK(problem_of_table("t [s], discharge [l/s]\n0, 1\n").rfind("q.csv: found the column \"discharge [l/s]\"", 0) ==
+          0);
+    CHECK(problem_of_table("t [s], t_min\n0, 1\n").rfind("q.csv: found 2 columns of time, 0 of discharge", 0) == 0);
+    CHECK(problem_of_table("").rfind("q.csv: found an empty file", 0) == 0);
+    CHECK(problem_of_table(head + "0, 1\n").rfind("q.csv: found 1 row; expected two or more", 0) == 0);
+    CHECK(problem_of_table(head + "0, 1\n5\n").rfind("q.csv:3: found 1 cells; expected 2", 0) == 0);
+    CHECK(problem_of_table(head + "0, 1\n5, nan\n").rfind("q.csv:3: found \"nan\"; expected a number", 0) == 0);
+    CHECK(problem_of_table(head + "0, 1\n0, 2\n").rfind("q.csv: row 2 (t = 0 s): found a time that is not later", 0) ==
+          0);
+    CHECK(problem_of_table(head + "-1, 1\n0, 2\n").rfind("q.csv: row 1 (t = -1 s): found a time before 0", 0) == 0);
+    CHECK(problem_of_table(head + "0, 1\n9, -2\n").rfind("q.csv: row 2 (t = 9 s): found a discharge of -2 m3/s", 0) ==
+          0);
+    CHECK(problem_of_table(head + "0, 0\n9, 0\n").rfind("q.csv: found no discharge above 0", 0) == 0);
+    CHECK(problem_of_table("t [s], discharge [m3/s], velocity [m/s]\n0, 0, 0\n9, 2, 0\n")
               .rfind("q.csv: row 2 (t = 9 s): found a velocity of 0 m/s with 2 m3/s", 0) == 0);
 }
 
@@ -72,10 +77,12 @@ TEST_CASE("Rows of r.avaflow are read, with or without their header, and their p
     CHECK(two.velocity == std::vector<double>{5, 5});
     CHECK(two.remark.find("of 2 phases, which come in as one: their discharges are summed") != std::string::npos);
     CHECK(parse_hydrograph("t Q1 v1 Q2 v2 Q3 v3\n0 1 1 1 1 1 1\n9 1 1 1 1 1 1\n", "q.txt").volume() == 27.0);
-    CHECK(problem_of("0 1 1\n5 -1 1\n").rfind("q.csv:2: found -1; expected discharges and velocities", 0) == 0);
-    CHECK(problem_of("0 1 1\n5 1 1 1\n").rfind("q.csv:2: found 4 cells; expected 3", 0) == 0);
-    CHECK(problem_of("0 1 1\n5 nan 1\n").rfind("q.csv:2: found \"nan\"", 0) == 0);
-    CHECK(problem_of("t, v, Q\n0, 1, 1\n9, 1, 1\n").rfind("q.csv: found the column \"t\"; expected a header", 0) == 0);
+    CHECK(problem_of_table("0 1 1\n5 -1 1\n").rfind("q.csv:2: found -1; expected discharges and velocities", 0) == 0);
+    CHECK(problem_of_table("0 1 1\n5 1 1 1\n").rfind("q.csv:2: found 4 cells; expected 3", 0) == 0);
+    CHECK(problem_of_table("0 1 1\n5 nan 1\n").rfind("q.csv:2: found \"nan\"", 0) == 0);
+    CHECK(
+        problem_of_table("t, v, Q\n0, 1, 1\n9, 1, 1\n").rfind("q.csv: found the column \"t\"; expected a header", 0) ==
+        0);
     CHECK(parse_hydrograph("t [s], discharge [m3/s]\n0, 1\n60, 3\n", "q.csv").remark.empty());
 }
 

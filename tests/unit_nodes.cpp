@@ -78,11 +78,15 @@ TEST_CASE("Peaks hold the speed and the pressure along the bed, and when the flo
     flow.nodes.depth[k] = 2.0;
     flow.nodes.before[k] = {3.0, 4.0};
     Peaks peaks(flow.grid);
-    update_peaks(flow, true, false, 2.5, 0.1, peaks);
+    // A node as deep beside it rests: half of the mass moves.
+    flow.nodes.depth[k + 1] = 2.0;
+    const FlowSpeeds speeds = update_peaks(flow, true, false, 2.5, 0.1, peaks);
     flow.nodes.depth[k] = 1.0;
     flow.nodes.before[k] = {0.0, 0.0};
     update_peaks(flow, true, false, 3.5, 0.1, peaks);
     const double rise = 0.3 * 3.0 - 0.2 * 4.0, speed2 = 25.0 + rise * rise;
+    CHECK(speeds.fastest == Approx(std::sqrt(speed2)).epsilon(1e-12));
+    CHECK(speeds.mean == Approx(0.5 * std::sqrt(speed2)).epsilon(1e-12));
     CHECK(peaks.depth[k] == 2.0);
     CHECK(peaks.arrival[k] == 2.5);
     CHECK(peaks.speed[k] == Approx(std::sqrt(speed2)).epsilon(1e-12));
@@ -105,7 +109,7 @@ TEST_CASE("Speeds are along the bed smoothed to the curvature's length, with and
     flow.nodes.depth[k] = 2.0;
     flow.nodes.before[k] = {20.0, 5.0};
     Peaks peaks(flow.grid);
-    const double fastest = update_peaks(flow, true, scene.curvature != Curvature::none, 1.0, 0.1, peaks);
+    const double fastest = update_peaks(flow, true, scene.curvature != Curvature::none, 1.0, 0.1, peaks).fastest;
     const double average = (230.0 + 2.0 * 76.0 * std::cos(turn) + 2.0 * std::cos(2.0 * turn)) / 384.0;
     const double kept = std::pow(0.5 + 0.5 * std::cos(turn), 2.0 * length * length / (cell * cell));
     const double difference =

@@ -53,7 +53,7 @@ TEST_CASE("CSV gives back every particle bit by bit", "[particles]") {
 
 TEST_CASE("Particles that are no numbers or stand off the bed are never exported", "[particles][nan]") {
     const Raster bed = flat_bed(11, 11, 1.0);
-    Made made = make({release_of_ring(rectangle(2, 2, 5, 5), 1.0)}, bed);
+    Made made = make({release_of_ring(rectangle_ring(2, 2, 5, 5), 1.0)}, bed);
     SeedsExport data = make_seeds_export(made.seeds, 1000.0, bed);
     made.seeds.depth[3] = Raster::nodata;
     CHECK_THROWS_AS(seeds_columns(data), InternalError);

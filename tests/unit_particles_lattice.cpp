@@ -156,8 +156,8 @@ TEST_CASE("A count near that of a grid-aligned lattice gives that lattice", "[pa
 TEST_CASE("A patch covered by less than a thousandth gives its volume to a neighbour", "[particles]") {
     const Raster bed = flat_bed(11, 11, 1.0);
     const double sliver = 1e-4;  // beyond the lattice line, in m of a patch edge of 0.5 m
-    const Release exact = release_of_ring(rectangle(2, 2, 6, 5), 3.0);
-    const Release wider = release_of_ring(rectangle(2, 2, 6 + sliver, 5 + sliver), 3.0);
+    const Release exact = release_of_ring(rectangle_ring(2, 2, 6, 5), 3.0);
+    const Release wider = release_of_ring(rectangle_ring(2, 2, 6 + sliver, 5 + sliver), 3.0);
     const Made made = make({wider}, bed);
     CHECK(made.seeds.count() == make({exact}, bed).seeds.count());
     check_volume(made, 3.0 * (4 + sliver) * (3 + sliver));
@@ -224,7 +224,7 @@ TEST_CASE("Overlapping parts of an outline count once and are said", "[particles
 }
 
 TEST_CASE("An outline that reaches beyond its depth raster is said", "[particles]") {
-    Release release = release_of_ring(rectangle(10, 10, 30, 30), 0.0);
+    Release release = release_of_ring(rectangle_ring(10, 10, 30, 30), 0.0);
     release.depth_field = Raster::filled({10, 20, 10.5, 10.5, 1.0}, 1.0);
     release.depth_field->source = "depth.tif";
     CHECK(make({release}, flat_bed(51, 51, 1.0)).said("50 % of its outline has no depth in depth.tif"));
@@ -232,7 +232,7 @@ TEST_CASE("An outline that reaches beyond its depth raster is said", "[particles
 
 TEST_CASE("A release that cannot be is explained", "[particles][nan]") {
     const Raster bed = flat_bed(51, 51, 1.0);
-    const auto square = [](double x) { return rectangle(x, 10, x + 20, 30); };
+    const auto square = [](double x) { return rectangle_ring(x, 10, x + 20, 30); };
     CHECK_THROWS_WITH(make({release_of_ring(square(1000), 1.0)}, bed),
                       Catch::Contains("release 1: no material of outline.geojson on the grid") &&
                           Catch::Contains("x 1000.00 to 1020.00"));

@@ -103,7 +103,7 @@ TEST_CASE("Splitting keeps mass, momentum and its ledger, with the same bits for
             Mpm3d flow(scene);
             const double mass = flow.status().mass;
             const Index before = flow.status().points;
-            for (int n = 0; n < 300; ++n) flow.advance(1e9);
+            for (int n = 0; n < 220; ++n) flow.advance(1e9);
             CHECK(flow.status().points > before);
             CHECK(flow.status().points == flow.body().points.count());
             CHECK(flow.status().mass + flow.status().mass_left == Approx(mass).epsilon(1e-13));

@@ -4,14 +4,13 @@
 
 #include "base/error.h"
 #include "catch.h"
+#include "prism_maker.h"
 #include "solid3d/face_ledger.h"
 
 using namespace frana;
 
 namespace {
 
-Polygons ring(const std::vector<Vec2>& corners) { return {{Polygon{{corners}}}, "", ""}; }
-Polygons box(double x0, double y0, double x1, double y1) { return ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}); }
 /// Its corner that stands in is at (2, 2).
 Polygons l_shape() { return ring({{0, 0}, {6, 0}, {6, 2}, {2, 2}, {2, 6}, {0, 6}}); }
 

@@ -32,7 +32,7 @@ Scene scene_of(const std::string& rest, const std::string& terrain = "") {
                        gis());
 }
 
-std::string problem_of(const std::string& rest, const std::string& terrain = "") {
+std::string problem_of_structure(const std::string& rest, const std::string& terrain = "") {
     return only_problem([&] { scene_of(rest, terrain); });
 }
 
@@ -96,46 +96,50 @@ TEST_CASE("Water beside a structure reaches the scene, and what does not fit it 
     CHECK(water.exchange.void_ratio == 0.67);
     CHECK(WaterExchange{}.void_ratio == 0.67);  // one default, whoever asks for it
     CHECK(water.exchange.material.solid_density == Approx((1900.0 - 250.0) / 0.75).epsilon(1e-15));
-    CHECK(has(problem_of(density + free), "found \"free\" without material.structure"));
-    CHECK(has(problem_of(density + structure + "confined_water = 0.2\n"), "found 0.2 without free water"));
-    CHECK(has(problem_of(structure + free), "expected grains denser than water.density = 1000"));
-    CHECK(has(problem_of(density + structure + free + "share = 1.0\n"), "water.share: found 1"));
-    CHECK(has(problem_of(density + structure + "confined_water = 1.5\n" + free), "confined_water: found 1.5"));
-    CHECK(has(problem_of(density + structure + free, "unrolled = true\n"), "where water finds its level"));
-    CHECK(has(problem_of(density + structure + free + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"),
-              "found a barrier with water.model"));
-    CHECK(has(problem_of(density + structure + "fraction = 0.0\nconfined_water = 0.2\n" + free),
+    CHECK(has(problem_of_structure(density + free), "found \"free\" without material.structure"));
+    CHECK(has(problem_of_structure(density + structure + "confined_water = 0.2\n"), "found 0.2 without free water"));
+    CHECK(has(problem_of_structure(structure + free), "expected grains denser than water.density = 1000"));
+    CHECK(has(problem_of_structure(density + structure + free + "share = 1.0\n"), "water.share: found 1"));
+    CHECK(
+        has(problem_of_structure(density + structure + "confined_water = 1.5\n" + free), "confined_water: found 1.5"));
+    CHECK(has(problem_of_structure(density + structure + free, "unrolled = true\n"), "where water finds its level"));
+    CHECK(
+        has(problem_of_structure(density + structure + free + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n"),
+            "found a barrier with water.model"));
+    CHECK(has(problem_of_structure(density + structure + "fraction = 0.0\nconfined_water = 0.2\n" + free),
               "found 0.2 with fraction = 0"));
 }
 
 TEST_CASE("What does not fit a structure is refused in one sentence", "[structured]") {
-    CHECK(has(problem_of("[material.structure]\ncohesion = 2e4\n"),
+    CHECK(has(problem_of_structure("[material.structure]\ncohesion = 2e4\n"),
               "material.structure.cohesion: found, but material.structure.law = \"none\" does not use it"));
-    CHECK(has(problem_of(structure + "fraction = 1.2\n"), "material.structure.fraction: found 1.2"));
-    CHECK(has(problem_of(structure + "fraction = -0.1\n"), "material.structure.fraction: found -0.1"));
-    CHECK(has(problem_of(structure + "poisson_ratio = 0.5\n"), "material.structure.poisson_ratio: found 0.5"));
-    CHECK(has(problem_of(structure + "poisson_ratio = 0\n"), "material.structure.poisson_ratio: found 0"));
-    CHECK(has(problem_of(structure + "bulk_modulus = 1e7\n"), "which no solid can have"));
-    CHECK(has(problem_of(structure + "bulk_modulus = 3e7\n"), "a negative Poisson ratio"));
-    CHECK(has(problem_of(structure + "dilatancy_angle_deg = 31\n"), "expected at most friction_angle_deg = 30"));
+    CHECK(has(problem_of_structure(structure + "fraction = 1.2\n"), "material.structure.fraction: found 1.2"));
+    CHECK(has(problem_of_structure(structure + "fraction = -0.1\n"), "material.structure.fraction: found -0.1"));
+    CHECK(
+        has(problem_of_structure(structure + "poisson_ratio = 0.5\n"), "material.structure.poisson_ratio: found 0.5"));
+    CHECK(has(problem_of_structure(structure + "poisson_ratio = 0\n"), "material.structure.poisson_ratio: found 0"));
+    CHECK(has(problem_of_structure(structure + "bulk_modulus = 1e7\n"), "which no solid can have"));
+    CHECK(has(problem_of_structure(structure + "bulk_modulus = 3e7\n"), "a negative Poisson ratio"));
+    CHECK(has(problem_of_structure(structure + "dilatancy_angle_deg = 31\n"),
+              "expected at most friction_angle_deg = 30"));
     const auto steep = [](const char* angle) {
         return "[material.structure]\nlaw = \"drucker_prager\"\ncohesion = 2e4\nyoung_modulus = "
                "1e8\nfriction_angle_deg = " +
                std::string(angle) + "\n";
     };
     CHECK(has(
-        problem_of(steep("60.5")),
+        problem_of_structure(steep("60.5")),
         "material.structure.friction_angle_deg: found 60.5; expected at most 60 with earth_pressure = \"rankine\""));
     CHECK(scene_of(steep("60")).structure.has_value());
     CHECK(scene_of(steep("75") + "earth_pressure = \"hydrostatic\"\n").structure.has_value());
-    CHECK(has(problem_of(structure + "onset = 0.1\n"), "material.structure.onset: found, but"));
-    CHECK(has(problem_of(structure + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = 1\n"),
+    CHECK(has(problem_of_structure(structure + "onset = 0.1\n"), "material.structure.onset: found, but"));
+    CHECK(has(problem_of_structure(structure + "[material.rheology]\nlaw = \"newtonian\"\nviscosity = 1\n"),
               "material.rheology.law: found \"newtonian\" with material.structure.law"));
-    CHECK(has(problem_of(structure, "curvature = \"full\"\n"), "terrain.curvature: found \"full\" with"));
-    CHECK(has(problem_of(structure + "[scheme]\nshape = \"cubic\"\n"), "scheme.shape: found \"cubic\" with"));
-    CHECK(has(problem_of("", "unrolled = true\n"), "terrain.unrolled: found true"));
-    CHECK(has(problem_of(structure + "[[stage]]\nmodel = \"solid_flow\"\n"), "found a stage with"));
-    CHECK(has(problem_of(structure + "[[barrier]]\noutline = \"askew.geojson\"\nheight = 3\n"),
+    CHECK(has(problem_of_structure(structure, "curvature = \"full\"\n"), "terrain.curvature: found \"full\" with"));
+    CHECK(has(problem_of_structure(structure + "[scheme]\nshape = \"cubic\"\n"), "scheme.shape: found \"cubic\" with"));
+    CHECK(has(problem_of_structure("", "unrolled = true\n"), "terrain.unrolled: found true"));
+    CHECK(has(problem_of_structure(structure + "[[stage]]\nmodel = \"solid_flow\"\n"), "found a stage with"));
+    CHECK(has(problem_of_structure(structure + "[[barrier]]\noutline = \"askew.geojson\"\nheight = 3\n"),
               "expected an outline that is one rectangle along x and y"));
     CHECK(scene_of(structure + "[[barrier]]\noutline = \"wall.geojson\"\nheight = 3\n").barriers.size() == 1);
     const auto holed = [](const std::string& rest) {
@@ -150,6 +154,6 @@ TEST_CASE("What does not fit a structure is refused in one sentence", "[structur
         only_problem([&] { holed(""); }),
         "boundary.holes: found \"wall\" beside material.structure with 1 node without elevation inside the terrain"));
     CHECK_FALSE(holed("[boundary]\nholes = \"open\"\n").hole_top.has_value());
-    CHECK(has(problem_of("[[insitu]]\nname = \"a\"\nkind = \"figure\"\nfield = \"damage\"\n"),
+    CHECK(has(problem_of_structure("[[insitu]]\nname = \"a\"\nkind = \"figure\"\nfield = \"damage\"\n"),
               "in a case without structure"));
 }

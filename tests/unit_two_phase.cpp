@@ -11,7 +11,7 @@ namespace {
 constexpr double kMc = 900.0, kMu = 500.0, kReduced = kMc * kMu / (kMc + kMu);
 
 /// Two phases with a slip of 2 m/s aslant.
-struct Pair {
+struct TwoPhases {
     Phase c{kMc, {3.0, -1.0}}, u{kMu, {1.8, 0.6}};
     Vec2 momentum() const { return c.mass * c.velocity + u.mass * u.velocity; }
     double kinetic() const { return 0.5 * (c.mass * c.velocity.squaredNorm() + u.mass * u.velocity.squaredNorm()); }
@@ -25,19 +25,19 @@ struct Pair {
 
 TEST_CASE("V10: slip decays exponentially under linear drag and as a hyperbola under quadratic, in any steps",
           "[two_phase][solver]") {
-    const Pair start;
+    const TwoPhases start;
     const double slip = start.slip().norm(), time = 1.3;
     REQUIRE(slip == Approx(2.0).epsilon(1e-14));
     for (const int steps : {1, 7, 100})
         for (const double chi : {0.0, 250.0}) {
             CAPTURE(steps, chi);
-            Pair one, two;
+            TwoPhases one, two;
             const Exchange linear{400.0, 1, chi}, quadratic{300.0, 2, chi};
             one.run(linear, time, steps), two.run(quadratic, time, steps);
             const double tau = (kReduced + chi) / 400.0, length = (kReduced + chi) / 300.0;
             CHECK((one.slip() - start.slip() * std::exp(-time / tau)).norm() < 1e-13 * slip);
             CHECK((two.slip() - start.slip() / (1.0 + slip * time / length)).norm() < 1e-13 * slip);
-            for (const Pair& pair : {one, two})
+            for (const TwoPhases& pair : {one, two})
                 CHECK((pair.momentum() - start.momentum()).norm() < 1e-14 * start.momentum().norm());
         }
 }
@@ -45,7 +45,7 @@ TEST_CASE("V10: slip decays exponentially under linear drag and as a hyperbola u
 TEST_CASE("V10: when the slip is gone, mu slip^2 / 2 of the kinetic energy is gone, however stiff the drag",
           "[two_phase][solver]") {
     for (const double drag : {1e4, 1e12}) {
-        Pair pair;
+        TwoPhases pair;
         const double before = pair.kinetic(), slip = pair.slip().norm();
         pair.run({drag, 1}, 10.0, 1);
         CHECK(pair.slip().norm() < 1e-12);
@@ -57,7 +57,7 @@ TEST_CASE("V10: drag takes energy and never turns the slip around", "[two_phase]
     for (const int power : {1, 2})
         for (const double drag : {1.0, 1e3, 1e7})
             for (const double dt : {1e-3, 1.0, 1e3}) {
-                Pair pair;
+                TwoPhases pair;
                 const Vec2 slip = pair.slip();
                 const double before = pair.kinetic();
                 pair.run({drag, power, 100.0}, dt, 1);
@@ -69,7 +69,7 @@ TEST_CASE("V10: drag takes energy and never turns the slip around", "[two_phase]
 
 TEST_CASE("V10: where a force turns a quadratic slip the step is of first order", "[two_phase][solver]") {
     const auto after = [](int steps) {
-        Pair pair;
+        TwoPhases pair;
         pair.c.force = {100.0, 900.0};
         pair.run({300.0, 2}, 1.0, steps);
         return pair.slip();

@@ -1,6 +1,7 @@
 // Free water: limiter, flux through a face, friction.
 #include <cmath>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "law/friction_step.h"
 #include "law/water_friction.h"
@@ -10,7 +11,7 @@ using namespace frana;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+using constants::kGravity;
 
 FaceFlux<double> flux(const FaceSide<double>& l, const FaceSide<double>& r) {
     return face_flux<double>(l, r, kGravity);

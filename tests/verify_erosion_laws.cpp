@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/ode.h"
 #include "shallow/depth_averaged.h"
@@ -11,7 +12,9 @@ using namespace frana::test;
 
 namespace {
 
-constexpr double kSlope = 0.5235987755982988, kGravity = 9.81, kMu = 0.3;
+using constants::kGravity;
+
+constexpr double kSlope = 0.5235987755982988, kMu = 0.3;
 
 /// A slab of 200 m with Coulomb friction on a strip between walls that falls along x by 30 degrees; loose ground from
 /// `begin` on, `loose` deep along gravity.

@@ -23,7 +23,7 @@ Scene lake(const Function& z, double shift) {
     Scene scene = scene_on(51, 51, 0.2, z);
     scene.sides = Sides::wall;
     scene.still_surface = 10.0;
-    fill(
+    frana::test::fill(
         scene, [&](double x, double y) { return 10.0 - z(x, y); }, 2, shift, 2.2 * shift);
     return scene;
 }
@@ -88,7 +88,7 @@ TEST_CASE("A pile below its friction angle does not move by one bit", "[rest]") 
             const double c = std::cos(turn * M_PI / 180), s = std::sin(turn * M_PI / 180);
             Scene scene = scene_on(61, 61, 1.0, [&](double x, double y) { return 100 - pile.slope * (c * x + s * y); });
             scene.bed_law = bed::Coulomb{pile.mu};
-            fill(scene, [&](double x, double y) { return 4 - pile.surface * std::hypot(x - 30, y - 30); });
+            frana::test::fill(scene, [&](double x, double y) { return 4 - pile.surface * std::hypot(x - 30, y - 30); });
             DepthAveraged simulation(scene);
             const Columns before = simulation.flow().columns;
             run_to(simulation, 5.0);
@@ -108,7 +108,7 @@ TEST_CASE("A slab holds at tan(th) = mu and slides just below it", "[rest]") {
         Scene scene = scene_on(41, 41, 2.0, [&](double x, double) { return 100 - slope * x; });
         scene.bed_law = bed::Coulomb{slope * factor};
         // a slab without margins in the middle of the slope: thin enough that its rim hardly pushes
-        fill(scene, [](double x, double y) { return std::hypot(x - 40, y - 40) < 20 ? 1e-6 : 0.0; });
+        frana::test::fill(scene, [](double x, double y) { return std::hypot(x - 40, y - 40) < 20 ? 1e-6 : 0.0; });
         DepthAveraged simulation(scene);
         run_to(simulation, 2.0);
         double fastest = simulation.status().max_speed_on_map;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <complex>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/trial.h"
 
@@ -10,7 +11,8 @@ using namespace frana::verify;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+using constants::kGravity;
+
 constexpr double kWavelength = 10.0;  ///< on the map [m]
 constexpr double kSmall = 1e-3;       ///< height of the wave over the depth
 
@@ -50,7 +52,8 @@ double measured_rate(const Sheet& sheet, double cell) {
     scene.bed_law = bed::Voellmy{sheet.mu, sheet.xi};
     scene.sides = Sides::wall;
     const auto phase = [](double x) { return 2.0 * M_PI * x / kWavelength; };
-    fill(scene, [&](double x, double) { return x > 40.0 && x < 160.0 ? 1.0 + kSmall * std::sin(phase(x)) : 0.0; });
+    verify::fill(scene,
+                 [&](double x, double) { return x > 40.0 && x < 160.0 ? 1.0 + kSmall * std::sin(phase(x)) : 0.0; });
     const std::complex<double> s = sheet.rate() / sheet.wavenumber();
     for (std::size_t p = 0; p < scene.particles.vx.size(); ++p) {
         const double at = phase(scene.particles.x[p]), wave = s.real() * std::cos(at) - s.imag() * std::sin(at);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/trial.h"
 
@@ -11,7 +12,9 @@ using namespace frana::verify;
 
 namespace {
 
-constexpr double kGravity = 9.81, kDepth = 0.05, kNoise = 0.02, kCell = 0.25;
+using constants::kGravity;
+
+constexpr double kDepth = 0.05, kNoise = 0.02, kCell = 0.25;
 
 /// The largest two-cell wave over the depth, in a window well inside the sheet.
 double wave_in(const Frame& frame, double from, double to) {
@@ -40,7 +43,7 @@ TEST_CASE("A viscous sheet on a slope grows no wave of two cells", "[verify][she
     std::uniform_real_distribution<double> noise(-kNoise, kNoise);
     std::vector<double> along(700);
     for (double& n : along) n = noise(random);
-    fill(scene, [&](double x, double) {
+    verify::fill(scene, [&](double x, double) {
         const auto at = static_cast<std::size_t>(x / kCell);
         return x > 10.0 && x < 130.0 ? kDepth * (1.0 + along[at]) : 0.0;
     });
@@ -69,7 +72,7 @@ TEST_CASE("A sheet that slides on levels its waves of two cells, one that lies k
     scene.scheme.wave_shift = strength;
     scene.bed_law = speed > 0.0 ? BedLaw{bed::None{}} : BedLaw{bed::Coulomb{0.4}};
     scene.sides = Sides::wall;
-    fill(scene, [&](double x, double) {
+    verify::fill(scene, [&](double x, double) {
         return x > 5.0 && x < 40.0 ? kDepth * (1.0 + 0.1 * std::cos(M_PI * x / kCell)) : 0.0;
     });
     for (double& v : scene.particles.vx) v = speed;

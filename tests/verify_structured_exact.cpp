@@ -1,6 +1,7 @@
 // Columns of structured solids against closed forms: the push of grains (V16), and what would be the tensile instability (V18).
 #include <cmath>
 
+#include "base/constants.h"
 #include "catch.h"
 #include "checks/verify/structured.h"
 #include "structured/breakage.h"
@@ -9,7 +10,7 @@ using namespace frana;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+using constants::kGravity;
 
 /// Savage and Hutter (1989): a parabolic heap of grains on a plane with friction, all of it on its way down, spreads evenly
 /// about its centre, which slides as a block. With lengths over the half length L and times over sqrt(L / g_z), its stretch

@@ -88,7 +88,7 @@ void StructuredRun::accumulate() {
     status_.dissipated = s.friction + s.obstacle_work + (s.worked - s.stored);
     status_.energy_left = s.energy_left;
     status_.max_speed = map_.extent().max_speed, status_.max_speed_on_map = s.max_speed;
-    status_.mean_speed = s.mass > 0.0 ? s.speeds / s.mass : 0.0;
+    status_.mean_speed = map_.extent().mean_speed();
     status_.max_depth = map_.extent().max_depth;
     status_.covered_area = map_.extent().covered_area;
     status_.front = map_.extent().front;
@@ -118,8 +118,6 @@ void StructuredRun::accumulate_water() {
     const WaterBody& body = both_->water().body();
     status_.energy_left += density * (l.energy_out + body.gravity * body.datum * (l.left + l.infiltrated - l.rained));
     status_.max_speed_on_map = std::max(status_.max_speed_on_map, w.max_speed);
-    const double speeds = density * both_->water_speeds();
-    status_.mean_speed = mass > 0.0 ? (status_.mean_speed * solids + speeds) / mass : 0.0;
 }
 
 /// Free water counts as material; below the film's depth it stands still.

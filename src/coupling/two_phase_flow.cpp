@@ -102,7 +102,7 @@ void TwoPhaseFlow::touch(const std::vector<Index>& tiles) {
 
 void TwoPhaseFlow::update_totals() {
     const WaterBody& w = water_.body();
-    potential_ = speeds_ = kinetic_ = 0.0;
+    potential_ = kinetic_ = 0.0;
     const double per = w.steep ? 0.5 / w.grid.cell() : 0.0;
     for (const Index tile : w.work) {
         const Index i0 = w.grid.tile_i(tile), j0 = w.grid.tile_j(tile);
@@ -113,14 +113,13 @@ void TwoPhaseFlow::update_totals() {
                 potential_ += h * (w.datum + w.bed[k] + w.confined[k] + 0.5 * h);
                 if (h <= w.film) continue;
                 const double qx = w.now.qx[k], qy = w.now.qy[k];
-                speeds_ += std::hypot(qx, qy);
                 const double up = per * (qx * (w.bed[k + 1] - w.bed[k - 1]) +
                                          qy * (w.bed[k + w.grid.stride()] - w.bed[k - w.grid.stride()]));
                 kinetic_ += 0.5 * (qx * qx + qy * qy + up * up) / h;
             }
     }
     const double area = w.grid.cell() * w.grid.cell();
-    potential_ *= area * w.gravity, speeds_ *= area, kinetic_ *= area;
+    potential_ *= area * w.gravity, kinetic_ *= area;
 }
 
 void TwoPhaseFlow::serialize(Archive& archive) {
@@ -132,7 +131,7 @@ void TwoPhaseFlow::serialize(Archive& archive) {
         const Archive::Part part(archive, "water");
         water_.serialize(archive);
     }
-    archive.numbers("weights", {&volume_given_, &potential_, &speeds_, &kinetic_});
+    archive.numbers("weights", {&volume_given_, &potential_, &kinetic_});
     if (!archive.loading()) return;
     columns_.sample();  // beside the water that has been loaded
     confine();

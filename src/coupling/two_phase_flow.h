@@ -37,7 +37,6 @@ public:
     /// speed [m^4/s].
     double water_potential() const { return potential_; }
     double water_kinetic() const { return kinetic_; }
-    double water_speeds() const { return speeds_; }
     /// Saves the state between two steps, or takes it up again with all its bits, in a flow of the same scene.
     void serialize(Archive& archive);
 
@@ -53,7 +52,7 @@ private:
     std::vector<Index> confined_;       ///< tiles where the water lies on columns
     std::vector<Index> reached_tiles_;  ///< tiles where columns were since the last step of the water
     std::vector<Index> scratch_;
-    double volume_given_ = 0.0, potential_ = 0.0, speeds_ = 0.0, kinetic_ = 0.0;
+    double volume_given_ = 0.0, potential_ = 0.0, kinetic_ = 0.0;
 };
 
 }  // namespace frana

@@ -44,17 +44,21 @@ struct NodePeak {
     static NodePeak of(const double* n) { return {n[0], n[1], n[2], n[3], n[4]}; }
 };
 
-/// Extremes over the nodes at one time.
+/// What all nodes have at one time.
 struct FlowExtent {
     double max_depth = 0.0;     ///< [m]
     double max_speed = 0.0;     ///< along the bed, where deeper than a tenth of the footprint depth [m/s]
     double covered_area = 0.0;  ///< deeper than the footprint depth [m2]
     double front = 0.0;         ///< farthest of these nodes from the release's centre [m]
+    double mass = 0.0;          ///< [kg]
+    double motion = 0.0;        ///< sum of the nodes' mass times their speed along the bed [kg m/s]
 
     /// Takes in a node whose cell has `area` [m2] and that is `distance` [m] from the release's centre.
     void note(const NodeState& now, double footprint_depth, double area, double distance) {
         max_depth = std::max(max_depth, now.depth);
         if (now.depth >= 0.1 * footprint_depth) max_speed = std::max(max_speed, now.speed);
+        const double of_node = now.density * now.depth * area;
+        mass += of_node, motion += of_node * now.speed;
         if (!(now.depth > footprint_depth)) return;
         covered_area += area;
         front = std::max(front, distance);
@@ -64,7 +68,9 @@ struct FlowExtent {
         max_speed = std::max(max_speed, other.max_speed);
         covered_area += other.covered_area;
         front = std::max(front, other.front);
+        mass += other.mass, motion += other.motion;
     }
+    double mean_speed() const { return mass > 0.0 ? motion / mass : 0.0; }  ///< along the bed [m/s]
 };
 
 }  // namespace frana

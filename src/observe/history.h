@@ -15,8 +15,8 @@ namespace frana {
 ///   max_depth [m], max_speed [m/s], mean_speed [m/s], covered_area [m2], front [m],
 ///   p2g_mass_error [1], p2g_momentum_error [1], ..., max_speed_on_map [m/s],
 ///   eroded_mass, deposited_mass, mass_in [kg]
-/// max_speed is along the bed, max_speed_on_map its largest horizontal part. mean_speed is
-/// horizontal; of 3D points it is the whole speed.
+/// max_speed and mean_speed are along the bed; 3D points have their whole speed. max_speed_on_map is the largest
+/// horizontal part.
 /// The residuals are those of observe/budget.h against the first line.
 class History : public Observer {
 public:

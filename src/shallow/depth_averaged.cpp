@@ -212,14 +212,14 @@ void DepthAveraged::arrive(const PointSums& points) {
     if (feed_) timed_("inflow", [&] { support_inflows(); });
     timed_("depth", [&] { fold_walls(flow_); });
     const NodeSums sums = raise_surface();
-    status_.max_speed =
+    const FlowSpeeds speeds =
         timed_("peaks", [&] { return update_peaks(flow_, steep_, curved_, status_.time, footprint_depth_, peaks_); });
+    status_.max_speed = speeds.fastest, status_.mean_speed = speeds.mean;
 
     stress_power_ = points.stress_power;
     status_.particles = flow_.columns.count();
     status_.mass = points.mass;
     status_.momentum = {points.px, points.py};
-    status_.mean_speed = points.mass > 0.0 ? points.p_abs / points.mass : 0.0;
     status_.potential = sums.potential - potential_of_support();
     status_.max_depth = sums.max_depth;
     status_.covered_area = sums.covered_area;
@@ -388,6 +388,23 @@ Index DepthAveraged::particle_bytes() const {
     return flow_.columns.bytes() + sorter_.bytes() + allocated(transfer_->gone()) + (merger_ ? merger_->bytes() : 0);
 }
 
+namespace {
+
+/// Debris flows grow tenfold on their way, few of them fiftyfold. What grows more has numbers that nobody has measured,
+/// and hangs on where it begins to take its bed, which is a matter of the cell.
+std::string remark_on_growth(const Status& now) {
+    constexpr double kMost = 100.0;
+    const double taken = now.bed.eroded - now.bed.deposited, given = now.mass + now.mass_left - taken;
+    if (!(given > 0.0 && taken > kMost * given)) return "";
+    return fmt::format(
+        "erodible: the flow took up {:.3g} times the mass that was given to it; expected {:g} at most, since "
+        "few debris flows grow fiftyfold; check erodible.depth, where it is loose (erodible.outline) and "
+        "the law's numbers, and how the growth hangs on the cell (frana converge)",
+        taken / given, kMost);
+}
+
+}  // namespace
+
 std::vector<std::string> DepthAveraged::remarks() const {
     std::vector<std::string> remarks = remarks_on_lost(lost_in_holes_, status_.mass + status_.mass_left);
     for (const LateEntry& late : extras().late)
@@ -395,6 +412,7 @@ std::vector<std::string> DepthAveraged::remarks() const {
             remarks.push_back(
                 fmt::format("{}: its {:.6g} m3 did not enter: no flow deeper than {:.3g} m reached it (when_hit)",
                             late.name, late.volume, footprint_depth_));
+    if (const std::string grown = remark_on_growth(status_); !grown.empty()) remarks.push_back(grown);
     if (!fit_) return remarks;
     constexpr double kLevel = 1e-6;  // [cells]; far above round-off, and currents of it are slow
     const bool rests = fit_->level_error <= kLevel * flow_.cell;

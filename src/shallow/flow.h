@@ -1,6 +1,7 @@
 #pragma once
 // Everything the phases of a depth-averaged step share.
 #include "base/error.h"
+#include "base/simd.h"
 #include "mpm/node_groups.h"
 #include "mpm/tile_grid.h"
 #include "scene/scene.h"
@@ -51,6 +52,7 @@ struct Flow {
           reach(grid.tiles()),
           deposit_sums(grid.tiles()),
           depth_sums(grid.tiles()),
+          speed_sums(grid.tiles()),
           rest(grid) {}
 
     TileGrid grid;
@@ -80,6 +82,7 @@ struct Flow {
     std::vector<std::uint8_t> marked;              ///< scratch of mark_margin, one per tile of the work list
     std::vector<std::vector<Departed>> departed;   ///< in the last gather, by thread
     LazyArray<TileSums> deposit_sums, depth_sums;  ///< per tile, of node_sums and depth_pass
+    LazyArray<Pair> speed_sums;  ///< per tile, of update_peaks: depths [m] and their products with speeds [m^2/s]
     Rest rest;
     /// Nodes that the passes go over.
     NodeGroups active_nodes(Index tile) const { return rest.active[tile] ? in_reach[tile] : 0; }
@@ -99,6 +102,11 @@ struct Flow {
         if (!walls) return 1.0;
         const auto along = [](Index k, Index n) { return k < 0 || k >= n ? 0.0 : k == 0 || k == n - 1 ? 0.5 : 1.0; };
         return along(i, grid.nx()) * along(j, grid.ny());
+    }
+    Double4 share_of_four(Index i, Index j) const {
+        if (!walls) return all(1.0);
+        const Double4 shares = {share(i, j), share(i + 1, j), share(i + 2, j), share(i + 3, j)};
+        return shares;
     }
 };
 

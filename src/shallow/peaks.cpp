@@ -1,6 +1,7 @@
 #include "shallow/peaks.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/simd.h"
 
@@ -39,17 +40,18 @@ BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, doubl
     return {c.speed, c.pressure};
 }
 
-double update_peaks(const Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
-    double fastest = 0.0;
+FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks) {
+    FlowSpeeds all;
     for_each_work_run(flow.active, [&](const TileRun& run) {
         Double4 most = {};
-        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index, Index k, Index, Index) {
+        std::array<Double4, kRunTiles> volume{}, motion{};
+        for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index n, Index k, Index i, Index j) {
             const Double4 h = load(&flow.nodes.depth[k]), none = {};
             if (!any(h > 0.0)) return;
             if (any((h > footprint_depth) & (load(&peaks.depth[k]) <= footprint_depth)))
-                for (Index n = k; n < k + 4; ++n)
-                    if (flow.nodes.depth[n] > footprint_depth && !(peaks.depth[n] > footprint_depth))
-                        peaks.arrival[n] = time;
+                for (Index m = k; m < k + 4; ++m)
+                    if (flow.nodes.depth[m] > footprint_depth && !(peaks.depth[m] > footprint_depth))
+                        peaks.arrival[m] = time;
             Double4 vx, vy;
             unzip(&flow.nodes.before[k], vx, vy);
             const Contact<Double4> c = contact(flow, steep, curved, k, vx, vy);
@@ -58,13 +60,22 @@ double update_peaks(const Flow& flow, bool steep, bool curved, double time, doub
             raise(&peaks.pressure[k], c.pressure);
             raise(&peaks.speed[k], speed);
             most = max(most, speed);
+            const Double4 of_node = flow.share_of_four(i, j) * h;
+            volume[static_cast<std::size_t>(n)] += of_node, motion[static_cast<std::size_t>(n)] += of_node * c.speed;
             raise(&peaks.dynamic_pressure[k], flow.density * speed * speed);
         });
+        for (Index n = 0; n < run.count; ++n)
+            if (flow.rest.active[run.tile[n]])
+                flow.speed_sums[run.tile[n]] = {sum(volume[static_cast<std::size_t>(n)]),
+                                                sum(motion[static_cast<std::size_t>(n)])};
         const double of_run = largest(most);
 #pragma omp critical(frana_fastest_node)
-        fastest = std::max(fastest, of_run);
+        all.fastest = std::max(all.fastest, of_run);
     });
-    return fastest;
+    double volume = 0.0, motion = 0.0;
+    for (const Index tile : flow.active.work) volume += flow.speed_sums[tile].x, motion += flow.speed_sums[tile].y;
+    if (volume > 0.0) all.mean = motion / volume;
+    return all;
 }
 
 }  // namespace frana

@@ -27,8 +27,13 @@ struct BedContact {
 };
 BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, double vx, double vy);
 
-/// Takes the present depth and velocity into the peaks. Returns the largest speed along the bed of nodes deeper than a
-/// tenth of the footprint depth [m/s].
-double update_peaks(const Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks);
+/// Speeds along the bed of all material at one time [m/s].
+struct FlowSpeeds {
+    double fastest = 0.0;  ///< of nodes deeper than a tenth of the footprint depth
+    double mean = 0.0;     ///< over the material's volume on the nodes
+};
+
+/// Takes the present depth and velocity into the peaks.
+FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double footprint_depth, Peaks& peaks);
 
 }  // namespace frana

@@ -366,7 +366,7 @@ void depth_of_four(Flow& flow, const DepthRequest& request, Index k, Index i, In
     store(&nodes.surface[k], z + h);
     zip(select(moving, px / mass, none), select(moving, py / mass, none), &nodes.before[k]);
     if (!any(wet)) return;
-    const Double4 share = {flow.share(i, j), flow.share(i + 1, j), flow.share(i + 2, j), flow.share(i + 3, j)};
+    const Double4 share = flow.share_of_four(i, j);
     sums.potential += share * column * flow.gravity * h * (z + 0.5 * h);
     sums.max_depth = max(sums.max_depth, select(share > 0.0, h, none));
     const Mask4 covered = (h > request.footprint_depth) & (share > 0.0);

@@ -236,7 +236,7 @@ void StructuredFlow::accumulate() {
         all.max_speed2 = std::max(all.max_speed2, tile.max_speed2),
         all.max_wave = std::max(all.max_wave, tile.max_wave),
         all.max_signal = std::max(all.max_signal, tile.max_signal);
-        all.speeds += tile.speeds, all.stored += tile.stored, all.worked += tile.worked;
+        all.stored += tile.stored, all.worked += tile.worked;
         all.momentum += tile.momentum, all.left_mass += tile.left_mass, all.left_momentum += tile.left_momentum;
         all.left_energy += tile.left_energy, all.released += tile.released;
         all.left_confined += tile.left_confined, all.lost_in_holes += tile.lost_in_holes;
@@ -254,7 +254,7 @@ void StructuredFlow::accumulate() {
                         "that are not finite; a smaller cfl may help",
                         status_.step, status_.time, status_.dt, body_.points.id[all.bad]));
     status_.mass = all.mass, status_.momentum = all.momentum, status_.kinetic = all.kinetic;
-    status_.speeds = all.speeds, status_.stored = all.stored, status_.worked += all.worked;
+    status_.stored = all.stored, status_.worked += all.worked;
     status_.energy_left += all.left_energy;
     status_.damage = all.mass > 0.0 ? all.damaged / all.mass : 0.0;
     status_.max_speed = std::sqrt(all.max_speed2);

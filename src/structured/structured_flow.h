@@ -93,7 +93,6 @@ struct StructuredStatus : Clock {
     double kinetic = 0.0;                        ///< sum of m v^2 / 2, in the plane of the columns [J]
     double damage = 0.0;                         ///< mean over the mass [1]
     double max_speed = 0.0;                      ///< [m/s]
-    double speeds = 0.0;                         ///< sum of m |v| [kg m/s]
     double bed_kinetic = 0.0, potential = 0.0;   ///< of the nodes, along the bed and above z = 0 [J]
     double stored = 0.0;                         ///< elastic, of the structure in the plane [J]
     double friction = 0.0, obstacle_work = 0.0;  ///< lost at the bed and to obstacles since the start [J]
@@ -107,7 +106,7 @@ struct StructuredStatus : Clock {
 /// Sums of the loops over points, tile by tile.
 struct StructuredSums {
     double mass = 0.0, kinetic = 0.0, damaged = 0.0, max_speed2 = 0.0, max_wave = 0.0, max_signal = 0.0;
-    double speeds = 0.0, stored = 0.0, worked = 0.0;
+    double stored = 0.0, worked = 0.0;
     Vec2 momentum{0, 0};
     double left_mass = 0.0, left_energy = 0.0, left_confined = 0.0, released = 0.0, lost_in_holes = 0.0;
     Vec2 left_momentum{0, 0};

@@ -103,12 +103,12 @@ void release(StructuredBody& body, Index p, double damage_before, StructuredSums
 
 /// StructuredSums of the lanes, in a fixed order.
 struct Sums {
-    Double4 mass = {}, kinetic = {}, damaged = {}, px = {}, py = {}, speeds = {}, stored = {}, worked = {};
+    Double4 mass = {}, kinetic = {}, damaged = {}, px = {}, py = {}, stored = {}, worked = {};
     Double4 max_speed2 = {}, max_wave = {}, max_signal = {};
     StructuredSums rare;
     StructuredSums columns() const {
         StructuredSums s = rare;
-        s.mass = sum(mass), s.kinetic = sum(kinetic), s.damaged = sum(damaged), s.speeds = sum(speeds);
+        s.mass = sum(mass), s.kinetic = sum(kinetic), s.damaged = sum(damaged);
         s.momentum = Vec2(sum(px), sum(py)), s.stored = sum(stored), s.worked = sum(worked);
         s.max_speed2 = largest(max_speed2), s.max_wave = largest(max_wave), s.max_signal = largest(max_signal);
         return s;
@@ -176,7 +176,7 @@ bool leaves(StructuredBody& body, Index p, StructuredSums& sums) {
             if (leaves(body, p + n, sums.rare)) m[n] = held[n] = 0.0, here[n] = 0;
     const Double4 speed = sqrt(speed2), high = select(damage < 1.0, max(b.layer, depth), b.layer);
     sums.mass += m, sums.kinetic += (0.5 * m) * speed2, sums.damaged += m * damage;
-    sums.px += m * b.vx, sums.py += m * b.vy, sums.speeds += m * speed, sums.stored += held;
+    sums.px += m * b.vx, sums.py += m * b.vy, sums.stored += held;
     sums.max_speed2 = max(sums.max_speed2, select(here, speed2, none));
     sums.max_wave = max(sums.max_wave, select(here, speed + sqrt(2.0 * b.normal_gravity * high), none));
     sums.max_signal = max(sums.max_signal, select(here, speed + sqrt(b.normal_gravity * high), none));

@@ -129,7 +129,8 @@ void StructuredMap::serialize(Archive& archive) {
             for (const double number : q.numbers()) all.push_back(number);
         });
     archive.array("peaks", all);
-    archive.numbers("sums", {&extent_.max_depth, &extent_.max_speed, &extent_.covered_area, &extent_.front});
+    FlowExtent& e = extent_;
+    archive.numbers("sums", {&e.max_depth, &e.max_speed, &e.covered_area, &e.front, &e.mass, &e.motion});
     const std::size_t expected = NodePeak::kNumbers * static_cast<std::size_t>(nx_ * ny_);
     if (all.size() != expected) Archive::wrong_length("peaks", all.size(), expected);
     if (!archive.loading()) return;

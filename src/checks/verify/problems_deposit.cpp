@@ -115,6 +115,7 @@ std::vector<Problem> deposit_problems() {
                    {30, 60, 120},
                    flat_residuals,
                    run_arrest};
+    arrest.finest_is_long = true;
     arrest.gates = {{60, "wall_depth_error", 1e-2, "goal"},
                     {60, "front_cells", 1.0, "goal"},
                     {60, "l1_depth", 2.5e-2, "goal; 6.9e-3 is still to flow at 400 s"},
@@ -124,6 +125,7 @@ std::vector<Problem> deposit_problems() {
                     {25, 50, 100},
                     [] { return incline_deposit().residuals(); },
                     run_incline};
+    incline.finest_is_long = true;
     incline.gates = {{0, "mass_error", 1e-13, "round-off"}};
     Problem axial{"bingham_axial",
                   "a Bingham cylinder slumps on flat ground and arrests",
@@ -132,6 +134,7 @@ std::vector<Problem> deposit_problems() {
                       return RoundDeposit{{1000.0, 50.0}, 1.0}.residuals();
                   },
                   run_axial};
+    axial.finest_is_long = true;
     axial.gates = {{30, "l1_depth", 5e-2, "goal"}, {0, "mass_error", 1e-13, "round-off"}};
     return {arrest, incline, axial};
 }

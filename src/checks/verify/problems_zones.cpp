@@ -60,7 +60,7 @@ Slid slide_over(const TwoZones& zones, const Setup& setup, double turn_deg, Meas
     Trial trial(std::move(scene), setup);
     const BlobState start = blob_state(trial, slide, plane);
     double fastest = 0.0;
-    trial.run_to(1.2 * zones.time(), [&](const Status& now) { fastest = std::max(fastest, now.mean_speed / cosine); });
+    trial.run_to(1.2 * zones.time(), [&](const Status& now) { fastest = std::max(fastest, now.mean_speed); });
     const BlobState end = blob_state(trial, slide, plane);
     m = trial.measure();
     return {(end.along - start.along) / cosine - zones.way, fastest, std::abs(end.across - start.across)};

@@ -137,7 +137,7 @@ ChartFigure motion_chart(const FigureSource& source, const Table& history) {
     ChartPanel speed{"speed [m/s]", {}, false, {}, 1.0}, front{"front [m]", {}, false, {}, 1.0},
         errors{"relative error [1]", {}, true, {}, 1.0};
     speed.curves = {curve("fastest, along the bed", t, history.column("max_speed")),
-                    curve("mean, along the map", t, history.column("mean_speed"))};
+                    curve("mean", t, history.column("mean_speed"))};
     front.curves = {curve("from the release's centre", t, history.column("front"))};
     errors.curves = {curve("mass", t, sizes(history.column("mass_error"))),
                      curve("mass, particles to grid", t, sizes(history.column("p2g_mass_error"))),
