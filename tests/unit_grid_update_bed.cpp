@@ -78,6 +78,29 @@ TEST_CASE("A bend turns what is higher than half its radius, and adds nothing to
     CHECK(std::abs(work) <= kRoundOff * (g + std::abs(k)) * 5.0 * 7.0);  // speed, slope of the surface
 }
 
+TEST_CASE("Where the bed falls away faster than what flies would, a flow keeps its direction and wins nothing",
+          "[grid_update]") {
+    Scene scene = bent();
+    scene.scheme.curvature_length = 0.0;
+    const Flow flow(scene);
+    const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));
+    const double g = 9.81, cosine = 1.0 / std::sqrt(1.0 + bed.bx * bed.bx + bed.by * bed.by);
+    for (const double turn : {1.0, -1.0})
+        for (const double high : {0.0, 1e3}) {
+            const double vx = turn * 10.0, vy = turn * 100.0, w = bed.bx * vx + bed.by * vy;
+            const double k = 0.004 * vx * vx + 2.0 * 0.002 * vx * vy - 0.006 * vy * vy;
+            REQUIRE(g + k < 0.0);
+            CHECK(bed.gravity(g, vx, vy) == 0.0);
+            const Drive<double> a = bed.driving(bed.drive(bed.bx, bed.by, cosine), g, high, vx, vy, cosine);
+            const double held = (g + k) * w / (vx * vx + vy * vy + w * w);
+            CHECK(a.x == Approx(held * vx).epsilon(1e-10));
+            CHECK(a.y == Approx(held * vy).epsilon(1e-10));
+            // The speed along the bed changes by what gravity does on the way down, and by nothing else.
+            const double power = -(vx * a.x + vy * a.y) + w * (k - (bed.bx * a.x + bed.by * a.y));
+            CHECK(power == Approx(-g * w).epsilon(1e-9));
+        }
+}
+
 TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothed curvature", "[grid_update]") {
     // A ramp of 1 m/m over three cells of 2 m in a plain; smoothed over 40 m it is next to nothing.
     Scene scene =

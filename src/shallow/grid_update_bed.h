@@ -77,16 +77,22 @@ struct SteepBed {
     /// depth times the bed's bend, and not in the model. From a column of that height down to its foot it gives v^2/2 a
     /// share 2 |k| high / v^2. So the rest fades where the slope of the bed along the path changes by more than a quarter
     /// within the depth, |k| high > v^2 / 4, and is gone at a half: half of v^2/2 at most. `high`: depth a cell around [m].
+    /// Where g + k is below 0 the flow would fly. It has no weight there, but it takes the slope of the bed all the same.
+    /// With its velocity along the map kept it would win energy by falling faster than what flies. It keeps its direction,
+    /// and a speed along the bed that gravity alone changes. (To turn it with the bed would do no work either, but pull a
+    /// flow that passes a spur uphill.)
     Drive<Real> driving(const Drive<Real>& slope, double g, Real high, Real vx, Real vy, Real cosine) const {
         const Real weight = gravity(g, vx, vy);
         const Drive<Real> whole{weight * slope.x, weight * slope.y};
         if constexpr (kCurvature == Curvature::none) return whole;
         const Real k = vx * vx * hxx + 2.0 * vx * vy * hxy + vy * vy * hyy, speed2 = vx * vx + vy * vy;
         const auto too_high = 4.0 * abs(k) * high > speed2;
-        if (!any(too_high)) return whole;
+        const Real flies = min(Real{}, g + k);
+        if (!any(too_high | (flies < 0.0))) return whole;
         const Real share = max(Real{}, 2.0 - 4.0 * abs(k) * high / max(speed2, Real{} + 1e-300));
         const Real lift = select(too_high, weight - max(Real{}, g + share * k), Real{}), c2 = cosine * cosine;
-        return {whole.x - lift * (slope.x - c2 * bx), whole.y - lift * (slope.y - c2 * by)};
+        const Real up = vx * bx + vy * by, held = flies * up / max(speed2 + up * up, Real{} + 1e-300);
+        return {whole.x - lift * (slope.x - c2 * bx) + held * vx, whole.y - lift * (slope.y - c2 * by) + held * vy};
     }
     /// grad(eta) / (1 + q), q = gradZ . grad(eta): a column that accelerates vertically with its bed. Where the surface
     /// slopes against the bed (q < 0) that would grow without bound and make energy of nothing (at q = -1 the column would

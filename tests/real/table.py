@@ -4,7 +4,7 @@
     python3 tests/real/table.py build/bin/frana DATA OUT [NAME ...]
 
 reads terrain and surveys in DATA where they lie and leaves its runs in OUT; what is there is not run again. Names pick rows:
-ryggfonn, alr, waves, codes, rest, friction, reach, deposit, torrents. Needs numpy and GDAL's module. The table stands in src/checks/verify/README.md.
+ryggfonn, alr, waves, codes, rest, friction, reach, deposit, torrents, grown. Needs numpy and GDAL's module. The table stands in src/checks/verify/README.md.
 """
 import json
 import math
@@ -320,6 +320,28 @@ def growth_of_torrents():
         row(f"growth {growth:g}: volume at the end, toe beyond the mapped one; tracks 30, 33, 51", "", "; ".join(cells))
 
 
+def growth_on_cells():
+    """What a flow takes up must not hang on the cell."""
+    laws = {"growth": "growth = 3e-4", "shear": "threshold = 8000.0", "energy": "energy = 5000.0"}
+    on = {"Ryggfonn, 10, 5, 2.5 m": (
+              (10, 5, 2.5), {"growth": "growth = 5e-4\ndensity = 140"}, 0.5,
+              lambda cell, extra: ryggfonn(cell, end=200, at_rest=False, extra=extra)),
+          "Olivares track 33, 12.5, 6.25, 4 m": (
+              (12.5, 6.25, 4), laws, 1.0,
+              lambda cell, extra: olivares(33, mu=0.12, xi=300.0, end=900, extra=f"[grid]\ncell = {cell:g}\n{extra}"))}
+    for place, (cells, of_place, depth, case) in on.items():
+        for law, keys in of_place.items():
+            grown, fastest = [], []
+            for cell in cells:
+                loose = f'[erodible]\nlaw = "{law}"\ndepth = {depth}\n{keys}\n'
+                record = run(f"grown_{law}_{place.split(',')[0].replace(' ', '_')}_{cell:g}", case(cell, loose)).record
+                mass = record["budgets"]["mass"]
+                grown.append(f"{mass['final'] / mass['initial']:.2f}")
+                fastest.append(f"{record['results']['max_speed']:.1f}")
+            row(f"{place}: mass at the end over the released, law {law}; fastest [m/s]", "",
+                f"{', '.join(grown)}; {', '.join(fastest)}")
+
+
 def deposits():
     first, second = run("ryggfonn_rest", ryggfonn()), run("ryggfonn_mu", ryggfonn(mu=0.4004))
     row("Ryggfonn, final depth for 0.1 % more friction, blocks of 20 m (relative L1) [%]", "11 for 0.17 %",
@@ -328,7 +350,7 @@ def deposits():
 
 ROWS = {"ryggfonn": peaks_on_ryggfonn, "alr": compare_on_alr, "waves": waves_on_alr, "codes": compare_with_codes, "rest": rest_is_rest,
         "friction": rest_for_any_friction,
-        "reach": reach, "deposit": deposits, "torrents": growth_of_torrents}
+        "reach": reach, "deposit": deposits, "torrents": growth_of_torrents, "grown": growth_on_cells}
 
 print("| Figure | 0db0741 | now |\n|---|---|---|")
 for name in sys.argv[4:] or ROWS:
