@@ -178,7 +178,7 @@ TEST_CASE("A fast slide in the Olivares valley has no more energy than its fall 
     const Scene scene = build_scene(CaseFile::parse(text, own.path() / "case.toml", {}), GdalReader());
     const PeakSpeeds speeds = peak_speeds(scene);
     CAPTURE(speeds.high, speeds.over_line);
-    CHECK(speeds.over_line < 1.01);
+    CHECK(speeds.over_line < 0.9);  // 0.80; it was 1.27
     const auto simulation = make_simulation(scene);
     const auto total = [&] {
         const Status s = simulation->frame().status;

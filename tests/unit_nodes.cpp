@@ -80,6 +80,7 @@ TEST_CASE("Peaks hold the speed and the pressure along the bed, and when the flo
     Peaks peaks(flow.grid);
     // A node as deep beside it rests: half of the mass moves.
     flow.nodes.depth[k + 1] = 2.0;
+    flow.nodes.mass[k] = flow.nodes.mass[k + 1] = 70.0;
     const FlowSpeeds speeds = update_peaks(flow, true, false, 2.5, 0.1, peaks);
     flow.nodes.depth[k] = 1.0;
     flow.nodes.before[k] = {0.0, 0.0};

@@ -394,13 +394,13 @@ namespace {
 /// and hangs on where it begins to take its bed, which is a matter of the cell.
 std::string remark_on_growth(const Status& now) {
     constexpr double kMost = 100.0;
-    const double taken = now.bed.eroded - now.bed.deposited, given = now.mass + now.mass_left - taken;
-    if (!(given > 0.0 && taken > kMost * given)) return "";
+    const double given = now.mass + now.mass_left - (now.bed.eroded - now.bed.deposited);
+    if (!(given > 0.0 && now.bed.eroded > kMost * given)) return "";
     return fmt::format(
         "erodible: the flow took up {:.3g} times the mass that was given to it; expected {:g} at most, since "
         "few debris flows grow fiftyfold; check erodible.depth, where it is loose (erodible.outline) and "
         "the law's numbers, and how the growth hangs on the cell (frana converge)",
-        taken / given, kMost);
+        now.bed.eroded / given, kMost);
 }
 
 }  // namespace

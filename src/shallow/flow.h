@@ -82,7 +82,7 @@ struct Flow {
     std::vector<std::uint8_t> marked;              ///< scratch of mark_margin, one per tile of the work list
     std::vector<std::vector<Departed>> departed;   ///< in the last gather, by thread
     LazyArray<TileSums> deposit_sums, depth_sums;  ///< per tile, of node_sums and depth_pass
-    LazyArray<Pair> speed_sums;  ///< per tile, of update_peaks: depths [m] and their products with speeds [m^2/s]
+    LazyArray<Pair> speed_sums;  ///< per tile, of update_peaks: mass [kg] and its product with speed [kg m/s]
     Rest rest;
     /// Nodes that the passes go over.
     NodeGroups active_nodes(Index tile) const { return rest.active[tile] ? in_reach[tile] : 0; }

@@ -30,7 +30,7 @@ BedContact bed_contact(const Flow& flow, bool steep, bool curved, Index k, doubl
 /// Speeds along the bed of all material at one time [m/s].
 struct FlowSpeeds {
     double fastest = 0.0;  ///< of nodes deeper than a tenth of the footprint depth
-    double mean = 0.0;     ///< over the material's volume on the nodes
+    double mean = 0.0;     ///< over the mass on the nodes
 };
 
 /// Takes the present depth and velocity into the peaks.
