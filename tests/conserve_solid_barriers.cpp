@@ -7,6 +7,7 @@
 
 #include "catch.h"
 #include "checks/verify/body.h"
+#include "fake_gis.h"
 #include "prism_maker.h"
 
 using namespace frana;
@@ -85,7 +86,8 @@ TEST_CASE("Water at rest pushes a wall by rho g h^2 / 2, low down more than high
     const Turn turn{degrees};
     SolidScene s = water(turn, {1, width, height}, {1.6, width, 1.4}, cell);
     s.surfaces = {turn.plane({0, 0, 0}, {0, 0, 1}), turn.plane({0, 0, 0}, {1, 0, 0}), turn.plane({0, 0, 0}, {0, 1, 0}),
-                  turn.plane({0, width, 0}, {0, -1, 0}), Surface::barrier(Prism(turn.at(box(1, -1, 1.6, 2)), 3.0))};
+                  turn.plane({0, width, 0}, {0, -1, 0}),
+                  Surface::barrier(Prism(turn.at(rectangle(1, -1, 1.6, 2)), 3.0))};
     SolidScene planes = s;
     planes.surfaces[4] = turn.plane({1, 0, 0}, {-1, 0, 0});
     Mpm3d flow(s), other(planes);
@@ -144,7 +146,7 @@ TEST_CASE("Not one point of a block of water that strikes a wall gets into it or
     const Turn turn{degrees};
     SolidScene s = water(turn, {0.5, width, 0.5}, {1.0, width, 1.2}, cell);
     for (Vec3& v : s.points.velocity) v = turn.at({blow.speed, 0, 0});
-    const Prism wall(turn.at(box(face, -1, face + blow.cells * cell, 2)), 3.0);
+    const Prism wall(turn.at(rectangle(face, -1, face + blow.cells * cell, 2)), 3.0);
     s.surfaces = {turn.plane({0, 0, 0}, {0, 0, 1}), turn.plane({0, 0, 0}, {0, 1, 0}),
                   turn.plane({0, width, 0}, {0, -1, 0}), Surface::barrier(wall)};
     Mpm3d flow(s);
@@ -216,7 +218,7 @@ TEST_CASE("Water poured over a low wall ends on both sides of it, and its mass a
     CAPTURE(cells);
     const double cell = 0.1, width = 3 * cell, face = 1.0, back = face + cells * cell, top = 0.3;
     SolidScene s = water({}, {1.0, width, 0.9}, {3.0, width, 1.2}, cell);
-    const Prism wall(box(face, -1, back, 2), top);
+    const Prism wall(rectangle(face, -1, back, 2), top);
     s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}),    Surface::plane({0, 0, 0}, {1, 0, 0}),
                   Surface::plane({0, 0, 0}, {0, 1, 0}),    Surface::plane({0, width, 0}, {0, -1, 0}),
                   Surface::plane({3.0, 0, 0}, {-1, 0, 0}), Surface::barrier(wall)};
@@ -311,7 +313,7 @@ TEST_CASE("A cube as a field of distances is pushed like one with a footprint", 
             }
     s.surfaces = {Surface::plane({0, 0, 0}, {0, 0, 1}), Surface::plane({0, 0, 0}, {1, 0, 0}),
                   Surface::plane({0, 0, 0}, {0, 1, 0}), Surface::plane({0, 1.2, 0}, {0, -1, 0}),
-                  Surface::barrier(Prism(box(low.x(), low.y(), high.x(), high.y()), high.z()))};
+                  Surface::barrier(Prism(rectangle(low.x(), low.y(), high.x(), high.y()), high.z()))};
     SolidScene shaped = s;
     shaped.surfaces[4] = Surface::barrier(field);
     for (Vec3& v : s.points.velocity) v.x() = 2.0;

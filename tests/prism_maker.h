@@ -1,5 +1,5 @@
 #pragma once
-// Outlines of barriers and walls for tests.
+// The outline of a barrier by its corners; a rectangle is in fake_gis.h.
 #include <vector>
 
 #include "terrain/raster.h"
@@ -7,8 +7,5 @@
 namespace frana {
 
 inline Polygons ring(const std::vector<Vec2>& corners) { return {{Polygon{{corners}}}, "", ""}; }
-inline Polygons box(double x0, double y0, double x1, double y1) {
-    return ring({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
-}
 
 }  // namespace frana

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "catch.h"
+#include "fake_gis.h"
 #include "prism_maker.h"
 #include "solid3d/face_ledger.h"
 
@@ -32,7 +33,7 @@ struct Dice {
 }  // namespace
 
 TEST_CASE("A box's nearest face, edge or corner is found from all around, and from inside", "[solid]") {
-    const Surface house = Surface::barrier(Prism(box(0, 0, 10, 4), 3.0));
+    const Surface house = Surface::barrier(Prism(rectangle(0, 0, 10, 4), 3.0));
     Dice dice;
     for (int n = 0; n < 2000; ++n) {
         const Vec3 x(-5 + 20 * dice(), -5 + 14 * dice(), -3 + 9 * dice());
@@ -55,9 +56,9 @@ TEST_CASE("A box's nearest face, edge or corner is found from all around, and fr
 }
 
 TEST_CASE("Outlines may run either way round, have holes, and end where they began", "[solid]") {
-    const Prism with(box(0, 0, 4, 4), 1.0);
+    const Prism with(rectangle(0, 0, 4, 4), 1.0);
     const Prism against(ring({{0, 4}, {4, 4}, {4, 0}, {0, 0}, {0, 4}}), 1.0);
-    Polygons court = box(0, 0, 10, 10);
+    Polygons court = rectangle(0, 0, 10, 10);
     court.parts[0].rings.push_back({{4, 4}, {6, 4}, {6, 6}, {4, 6}});
     const Prism hole(court, 1.0);
     Dice dice;
@@ -150,7 +151,7 @@ TEST_CASE("No way that ends inside or beyond a barrier misses its faces, seams i
 }
 
 TEST_CASE("Images in a wall stop at half of its thickness, and those in a thick one are not cut short", "[solid]") {
-    const std::vector<Surface> wall = {Surface::barrier(Prism(box(0, -50, 2, 50), 50.0))};
+    const std::vector<Surface> wall = {Surface::barrier(Prism(rectangle(0, -50, 2, 50), 50.0))};
     const MirrorParticles mirrors(wall, 1u, {-0.7, 0, 0}, 1.0);
     REQUIRE(mirrors.end() - mirrors.begin() == 1);
     const MirrorParticle& mirror = *mirrors.begin();
@@ -163,7 +164,7 @@ TEST_CASE("The top of a barrier may follow the ground", "[solid]") {
     Raster top = Raster::filled({21, 21, -10.0, -10.0, 1.0}, 0.0);
     for (Index j = 0; j < 21; ++j)
         for (Index i = 0; i < 21; ++i) top.at(i, j) = 2.0 + 0.3 * top.geometry.x(i);
-    const Surface dam = Surface::barrier(Prism(box(-5, -2, 5, 2), top));
+    const Surface dam = Surface::barrier(Prism(rectangle(-5, -2, 5, 2), top));
     const Contact above = contact(dam, {1, 0, 3});
     const Vec3 normal = Vec3(-0.3, 0, 1).normalized();
     CHECK((above.normal - normal).norm() < 1e-12);
@@ -178,12 +179,12 @@ TEST_CASE("A barrier that follows the ground is drawn no higher than the ground 
     Raster top = Raster::filled({21, 21, -10.0, -10.0, 1.0}, 6.0);
     top.at(20, 20) = 470.0;
     top.at(10, 12) = 6.5;
-    const Prism wall(box(-5.5, -2, 5.5, 2), top);
+    const Prism wall(rectangle(-5.5, -2, 5.5, 2), top);
     CHECK(wall.box().second == Vec3(5.5, 2, 6.5));
-    CHECK(Prism(box(8.5, 8.5, 9.5, 9.5), top).box().second.z() == 470.0);  // a part of that cell is in it
+    CHECK(Prism(rectangle(8.5, 8.5, 9.5, 9.5), top).box().second.z() == 470.0);  // a part of that cell is in it
     const FaceLedger ledger({Surface::barrier(wall)}, {-9, -9, 0}, {9, 9, 500}, 1.0);
     CHECK(ledger.face(0, 0).patches.count[1] == 7);
-    CHECK(Prism(box(-50, -50, -40, -40), top).box().second.z() == 6.0);  // beyond the field it is as at its edge
+    CHECK(Prism(rectangle(-50, -50, -40, -40), top).box().second.z() == 6.0);  // beyond the field it is as at its edge
 }
 
 TEST_CASE("A wall along a line keeps its wet face on the line", "[solid]") {
@@ -237,7 +238,7 @@ TEST_CASE("A ball as a field of distances: values, faces, ways into it", "[solid
 
 TEST_CASE("Patches of a face tell places apart, and a face's moment is about any point", "[solid]") {
     const std::vector<Surface> list = {Surface::plane({0, 0, 0}, {0, 0, 1}),
-                                       Surface::barrier(Prism(box(2, 1, 3, 5), 2.0))};
+                                       Surface::barrier(Prism(rectangle(2, 1, 3, 5), 2.0))};
     FaceLedger ledger(list, {0, 0, -1}, {8, 8, 7}, 0.5);
     REQUIRE(ledger.faces().size() == 5);
     const Face& front = ledger.face(1, 3);  // at x = 2, from (2, 5) to (2, 1)

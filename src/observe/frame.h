@@ -60,7 +60,7 @@ struct Status : Clock {
     double max_speed = 0.0;  ///< largest speed along the bed, of nodes deeper than a tenth of the footprint depth
                              ///< [m/s]; of 3D points that of the fastest
     double max_speed_on_map = 0.0;  ///< largest particle speed along the map [m/s]
-    double mean_speed = 0.0;        ///< mean over the mass of the speed along the bed, of 3D points of all of it [m/s]
+    double mean_speed = 0.0;        ///< mean over the mass, along the bed; 3D points have their whole speed [m/s]
     double covered_area = 0.0;      ///< deeper than the footprint depth now [m2]
     double front = 0.0;             ///< largest map distance of such a node from the release's centre [m]
 };

@@ -390,8 +390,8 @@ Index DepthAveraged::particle_bytes() const {
 
 namespace {
 
-/// Debris flows grow tenfold on their way, few of them fiftyfold. What grows more has numbers that nobody has measured,
-/// and hangs on where it begins to take its bed, which is a matter of the cell.
+/// Debris flows grow tenfold on their way, few of them fiftyfold. A flow that grows more takes all that it reaches, and
+/// what it reaches hangs on the cell.
 std::string remark_on_growth(const Status& now) {
     constexpr double kMost = 100.0;
     const double given = now.mass + now.mass_left - (now.bed.eroded - now.bed.deposited);

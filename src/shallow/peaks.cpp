@@ -1,7 +1,6 @@
 #include "shallow/peaks.h"
 
 #include <algorithm>
-#include <array>
 
 #include "base/simd.h"
 
@@ -44,7 +43,7 @@ FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double
     FlowSpeeds all;
     for_each_work_run(flow.active, [&](const TileRun& run) {
         Double4 most = {};
-        std::array<Double4, kRunTiles> mass{}, motion{};
+        Double4 mass[kRunTiles] = {}, motion[kRunTiles] = {};
         for_each_four_of_run(flow.grid, run, flow.active_nodes(), [&](Index n, Index k, Index i, Index j) {
             const Double4 h = load(&flow.nodes.depth[k]), none = {};
             if (!any(h > 0.0)) return;
@@ -61,13 +60,11 @@ FlowSpeeds update_peaks(Flow& flow, bool steep, bool curved, double time, double
             raise(&peaks.speed[k], speed);
             most = max(most, speed);
             const Double4 of_node = flow.share_of_four(i, j) * load(&flow.nodes.mass[k]);
-            mass[static_cast<std::size_t>(n)] += of_node, motion[static_cast<std::size_t>(n)] += of_node * c.speed;
+            mass[n] += of_node, motion[n] += of_node * c.speed;
             raise(&peaks.dynamic_pressure[k], flow.density * speed * speed);
         });
         for (Index n = 0; n < run.count; ++n)
-            if (flow.rest.active[run.tile[n]])
-                flow.speed_sums[run.tile[n]] = {sum(mass[static_cast<std::size_t>(n)]),
-                                                sum(motion[static_cast<std::size_t>(n)])};
+            if (flow.rest.active[run.tile[n]]) flow.speed_sums[run.tile[n]] = {sum(mass[n]), sum(motion[n])};
         const double of_run = largest(most);
 #pragma omp critical(frana_fastest_node)
         all.fastest = std::max(all.fastest, of_run);
