@@ -101,6 +101,26 @@ TEST_CASE("Where the bed falls away faster than what flies would, a flow keeps i
         }
 }
 
+TEST_CASE("A bank that only the raw bed has gives no speed to a flow that would fly", "[grid_update]") {
+    // A ramp of 1 m/m over three cells of 2 m on a crest that bends by 0.02 1/m; smoothed over 40 m it is next to nothing.
+    Scene scene = verify::scene_on(41, 31, 2.0, [](double x, double) {
+        return std::min(std::max(x - 38.0, 0.0), 6.0) - 0.01 * (x - 40.0) * (x - 40.0);
+    });
+    scene.scheme.curvature_length = 40.0;
+    const Flow flow(scene);
+    const SteepBed<double, Curvature::full, false> bed(flow, flow.grid.at(20, 15));
+    const double g = 9.81, cosine = 1.0 / std::sqrt(1.0 + bed.bx * bed.bx), v = 60.0, smooth = bed.smooth->x;
+    REQUIRE(bed.bx > 0.9);
+    REQUIRE(g + bed.hxx * v * v < 0.0);
+    REQUIRE(smooth < 0.1 * bed.bx);
+    const Drive<double> slope = bed.drive(bed.bx, 0.0, cosine);
+    const double up = bed.driving(slope, g, 0.0, v, 0.0, cosine).x, down = bed.driving(slope, g, 0.0, -v, 0.0, cosine).x;
+    // Speed is won (a = -drive) by no more than the smoothed slope allows; the way down is whole.
+    const double whole = (g + bed.hxx * v * v) * bed.bx / (1.0 + bed.bx * bed.bx);
+    CHECK(up == Approx(whole * std::max(0.0, smooth) / bed.bx).epsilon(1e-10));
+    CHECK(down == Approx(whole).epsilon(1e-10));
+}
+
 TEST_CASE("A climb costs what it lifts where the bed is sharper than its smoothed curvature", "[grid_update]") {
     // A ramp of 1 m/m over three cells of 2 m in a plain; smoothed over 40 m it is next to nothing.
     Scene scene =

@@ -28,7 +28,7 @@ constexpr double kRoundOff2 = 1e-28;
 template <class Real, Curvature kCurvature, bool kLinear>
 struct SteepBed {
     Real bx, by, hxx{}, hxy{}, hyy{};
-    const Pair* smooth = nullptr;  ///< read where something climbs
+    const Pair* smooth = nullptr;  ///< read where something climbs or flies
     SteepBed(const Flow& flow, Index k) : bx(read<Real>(&flow.bed.slope_x[k])), by(read<Real>(&flow.bed.slope_y[k])) {
         if constexpr (kCurvature != Curvature::none) {
             hxx = read<Real>(&flow.bed.hxx[k]);
@@ -80,7 +80,8 @@ struct SteepBed {
     /// Where g + k is below 0 the flow would fly. It has no weight there, but it takes the slope of the bed all the same.
     /// With its velocity along the map kept it would win energy by falling faster than what flies. It keeps its direction,
     /// and a speed along the bed that gravity alone changes. (To turn it with the bed would do no work either, but pull a
-    /// flow that passes a spur uphill.)
+    /// flow that passes a spur uphill.) A climb counts by the smoothed bed: H is its bend, and a bank that only the raw
+    /// bed has may give no speed.
     Drive<Real> driving(const Drive<Real>& slope, double g, Real high, Real vx, Real vy, Real cosine) const {
         const Real weight = gravity(g, vx, vy);
         const Drive<Real> whole{weight * slope.x, weight * slope.y};
@@ -91,7 +92,10 @@ struct SteepBed {
         if (!any(too_high | (flies < 0.0))) return whole;
         const Real share = max(Real{}, 2.0 - 4.0 * abs(k) * high / max(speed2, Real{} + 1e-300));
         const Real lift = select(too_high, weight - max(Real{}, g + share * k), Real{}), c2 = cosine * cosine;
-        const Real up = vx * bx + vy * by, held = flies * up / max(speed2 + up * up, Real{} + 1e-300);
+        Real smooth_x, smooth_y;
+        unzip(smooth, smooth_x, smooth_y);
+        const Real w = vx * bx + vy * by, up = min(w, max(Real{}, vx * smooth_x + vy * smooth_y));
+        const Real held = flies * up / max(speed2 + w * w, Real{} + 1e-300);
         return {whole.x - lift * (slope.x - c2 * bx) + held * vx, whole.y - lift * (slope.y - c2 * by) + held * vy};
     }
     /// grad(eta) / (1 + q), q = gradZ . grad(eta): a column that accelerates vertically with its bed. Where the surface
