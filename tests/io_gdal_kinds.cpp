@@ -18,7 +18,7 @@ namespace {
 /// No two pixels alike, no symmetry: any flip or shift shows. Whole numbers, so that int16 holds them.
 double stored(int column, int row) { return 100.0 + 7.0 * column - 13.0 * row + column * row; }
 
-Raster read(const std::filesystem::path& file, const DemRequest& request = {}) {
+Raster dem_of(const std::filesystem::path& file, const DemRequest& request = {}) {
     std::vector<std::string> log;
     return GdalReader().read_dem(file, request, log);
 }
@@ -60,7 +60,7 @@ TEST_CASE("GeoTIFFs plain, tiled, compressed, BigTIFF and cloud-optimised hold t
         spec.options = kind.options;
         spec.value = stored;
         make_raster(folder.path() / "dem.tif", spec);
-        const Raster dem = read(folder.path() / "dem.tif");
+        const Raster dem = dem_of(folder.path() / "dem.tif");
         check_values(dem, spec);
         CHECK(contains(dem.crs_wkt, "PROJCRS[\"WGS 84 / UTM zone 32N\""));
     }
@@ -74,7 +74,7 @@ TEST_CASE("Elevations from int16 to float64 keep their values", "[gdal]") {
         spec.type = type;
         spec.value = stored;
         make_raster(folder.path() / "dem.tif", spec);
-        check_values(read(folder.path() / "dem.tif"), spec);
+        check_values(dem_of(folder.path() / "dem.tif"), spec);
     }
 }
 
@@ -85,11 +85,11 @@ TEST_CASE("An ESRI ASCII grid reads like the GeoTIFF of the same terrain", "[gda
     spec.value = stored;
     spec.nodata = -9999.0;
     make_raster(folder.path() / "dem.asc", spec);
-    check_values(read(folder.path() / "dem.asc"), spec);
+    check_values(dem_of(folder.path() / "dem.asc"), spec);
 
     std::ofstream(folder.path() / "by_hand.asc") << "ncols 3\nnrows 2\nxllcenter 10\nyllcenter 20\ncellsize 4\n"
                                                     "NODATA_value -1\n1 2 3\n4 -1 6\n";
-    const Raster dem = read(folder.path() / "by_hand.asc");
+    const Raster dem = dem_of(folder.path() / "by_hand.asc");
     CHECK(dem.geometry == GridGeometry{3, 2, 10.0, 20.0, 4.0});
     CHECK(dem.at(0, 0) == 4.0);
     CHECK(dem.at(2, 1) == 3.0);
@@ -103,10 +103,10 @@ TEST_CASE("A south-up raster is not turned over", "[gdal]") {
     spec.transform = {500000.0, 10.0, 0.0, 6000000.0, 0.0, 10.0};
     spec.value = stored;
     make_raster(folder.path() / "dem.tif", spec);
-    check_values(read(folder.path() / "dem.tif"), spec, true);
+    check_values(dem_of(folder.path() / "dem.tif"), spec, true);
     DemRequest part;
     part.window = {{500020.0, 6000010.0, 500050.0, 6000030.0}};
-    const Raster dem = read(folder.path() / "dem.tif", part);
+    const Raster dem = dem_of(folder.path() / "dem.tif", part);
     CHECK(dem.geometry == GridGeometry{3, 2, 500025.0, 6000015.0, 10.0});
     CHECK(dem.at(0, 0) == stored(2, 1));
     CHECK(dem.at(2, 1) == stored(4, 2));
@@ -144,7 +144,7 @@ TEST_CASE("Nodata as value, NaN, mask band or alpha band becomes NaN, and only t
     for (std::size_t k = 0; k < specs.size(); ++k) {
         INFO("kind " << k);
         make_raster(folder.path() / "dem.tif", specs[k]);
-        const Raster dem = read(folder.path() / "dem.tif");
+        const Raster dem = dem_of(folder.path() / "dem.tif");
         for (int j = 0; j < 6; ++j)
             for (int i = 0; i < 8; ++i) {
                 INFO("node " << i << " " << j);
@@ -163,7 +163,7 @@ TEST_CASE("A mask band and a nodata value in one file both count", "[gdal]") {
     spec.value = [](int column, int row) { return column == 0 ? -9999.0 : stored(column, row); };
     spec.valid = [](int, int row) { return row != 0; };
     make_raster(folder.path() / "dem.tif", spec);
-    const Raster dem = read(folder.path() / "dem.tif");
+    const Raster dem = dem_of(folder.path() / "dem.tif");
     CHECK(std::isnan(dem.at(0, 2)));
     CHECK(std::isnan(dem.at(4, 5)));
     CHECK(dem.at(4, 2) == stored(4, 3));
@@ -179,12 +179,12 @@ TEST_CASE("Undeclared nodata is refused with its pixel and a gdal_translate that
         RasterSpec spec;
         spec.value = [=](int column, int row) { return column == 5 && row == 4 ? bad : stored(column, row); };
         make_raster(file, spec);
-        const std::string message = user_error([&] { read(file); });
+        const std::string message = user_error([&] { dem_of(file); });
         INFO(message);
         CHECK(contains(message, "pixel 5 4"));
         CHECK(contains(message, "500055 6000015"));
         run_gdal_line(cure_in(message));
-        const Raster cured = read(folder.path() / "dem_nodata.tif");
+        const Raster cured = dem_of(folder.path() / "dem_nodata.tif");
         CHECK(std::isnan(cured.at(5, 1)));
         CHECK(cured.at(4, 1) == stored(4, 4));
     }
@@ -209,7 +209,7 @@ TEST_CASE("A word in a raster of numbers in words is refused with its line, and 
     };
     const std::string arc = "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 4\nNODATA_value -9999\n";
     const std::string grass = "north: 2\nsouth: 0\neast: 3\nwest: 0\nrows: 2\ncols: 3\nnull: *\n";
-    const auto refused = [&](const std::filesystem::path& of) { return user_error([&] { read(of); }); };
+    const auto refused = [&](const std::filesystem::path& of) { return user_error([&] { dem_of(of); }); };
     CHECK(contains(refused(file("a.asc", arc + "1 2 3\n4 water 6\n")),
                    "a.asc:8: found \"water\"; expected numbers only; put a number there"));
     CHECK(contains(refused(file("b.asc", arc + "1 2 3\n4 1.2.3 6\n")), "b.asc:8: found \"1.2.3\""));
@@ -220,7 +220,7 @@ TEST_CASE("A word in a raster of numbers in words is refused with its line, and 
         for (int column = 0; column < 20; ++column)
             points += fmt::format("{},{},{}\n", column, row, row == 15 && column == 3 ? "?" : "7");
     CHECK(contains(refused(file("e.xyz", points)), "e.xyz:305: found \"?\""));
-    const Raster dem = read(file("good.asc", arc + "+1 2,5 -3e-2\r\n-9999 nan .5\n"));
+    const Raster dem = dem_of(file("good.asc", arc + "+1 2,5 -3e-2\r\n-9999 nan .5\n"));
     CHECK(dem.at(0, 1) == 1.0);
     CHECK(dem.at(1, 1) == 2.5);
     CHECK(dem.at(2, 1) == Approx(-0.03));
@@ -233,7 +233,7 @@ TEST_CASE("A file that is missing, no raster, cut off or without georeference is
     const FreshFolder folder;
     const auto refused = [&](const char* name) {
         std::string message;
-        const std::string noise = heard_on_stderr([&] { message = user_error([&] { read(folder.path() / name); }); });
+        const std::string noise = heard_on_stderr([&] { message = user_error([&] { dem_of(folder.path() / name); }); });
         CHECK(noise == "");
         CHECK_FALSE(contains(message, "\n"));
         CHECK(contains(message, name));
@@ -268,10 +268,10 @@ TEST_CASE("A rotated raster is refused, and the gdalwarp in the message makes it
     spec.columns = spec.rows = 30;
     spec.value = [](int, int) { return 321.0; };
     make_raster(folder.path() / "dem.tif", spec);
-    const std::string message = user_error([&] { read(folder.path() / "dem.tif"); });
+    const std::string message = user_error([&] { dem_of(folder.path() / "dem.tif"); });
     CHECK(contains(message, "rotated"));
     run_gdal_line(cure_in(message));
-    const Raster dem = read(folder.path() / "dem_north_up.tif");
+    const Raster dem = dem_of(folder.path() / "dem_north_up.tif");
     Index valid = 0;
     for (const double z : dem.values)
         if (!std::isnan(z)) {

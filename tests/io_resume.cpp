@@ -27,7 +27,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const char* const plane = R"(
+const char* const slope_case = R"(
 [terrain]
 dem = "dem.asc"
 [[release]]
@@ -78,7 +78,7 @@ public:
         write_text(path() / "release.geojson",
                    R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": {
                       "type": "Polygon", "coordinates": [[[20, 30], [50, 30], [50, 70], [20, 70], [20, 30]]]}}]})");
-        write_text(path() / "case.toml", plane);
+        write_text(path() / "case.toml", slope_case);
     }
     void write_dem(double top) const {
         std::ostringstream dem;
@@ -163,7 +163,8 @@ TEST_CASE("what is no state of this case is refused with the reason, and the fol
             "--set it was left with, or run without --resume to start at the beginning";
     }
     SECTION("another number of tables") {
-        write_text(folder.path() / "case.toml", std::string(plane) + "[[gauge]]\nname = \"a\"\npoint = [20, 30]\n");
+        write_text(folder.path() / "case.toml",
+                   std::string(slope_case) + "[[gauge]]\nname = \"a\"\npoint = [20, 30]\n");
         sentence = "gauge.0.name is not given there and \"a\" here";
     }
     SECTION("another law") {
@@ -218,8 +219,8 @@ TEST_CASE("a state is refused when any file that the case names has changed sinc
     outline("survey.geojson", 20, 100);
     rain(1e-5);
     const bool water = GENERATE(false, true);
-    write_text(folder.path() / "case.toml",
-               std::string(plane) + (water ? rain_on_blocks : barrier) + "[survey]\nfootprint = \"survey.geojson\"\n");
+    write_text(folder.path() / "case.toml", std::string(slope_case) + (water ? rain_on_blocks : barrier) +
+                                                "[survey]\nfootprint = \"survey.geojson\"\n");
     REQUIRE(folder.run("--until 1").code == 0);
     REQUIRE(folder.run("--resume --until 1.5").code == 0);
     std::string name = "survey.geojson";
@@ -277,7 +278,7 @@ TEST_CASE("a state of another version or precision is refused", "[resume]") {
     const FreshFolder folder;
     FakeSimulation simulation;
     const Scene scene = fake_scene(simulation);
-    const CaseFile file = CaseFile::parse(plane, "hill/case.toml");
+    const CaseFile file = CaseFile::parse(slope_case, "hill/case.toml");
     const CheckpointLabels here = checkpoint_labels(scene, file);
     const auto refused = [&](const char* name, const char* value) {
         CheckpointLabels there = here;
@@ -332,7 +333,7 @@ TEST_CASE("a disk that is full while a state is kept leaves the earlier one, and
     scene.output.vtk = scene.output.xdmf = scene.output.geotiff = scene.output.png = false;
     scene.gauges.clear();
     scene.profiles.clear();
-    const CaseFile file = CaseFile::parse(plane, "hill/case.toml");
+    const CaseFile file = CaseFile::parse(slope_case, "hill/case.toml");
     const CheckpointLabels labels = checkpoint_labels(scene, file);
     const fs::path state = folder.path() / "checkpoint.h5";
     prepare_run_folder(folder.path());

@@ -1,11 +1,12 @@
 #include "coupling/barriers.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "particles/bed_points.h"
@@ -187,6 +188,41 @@ Raster with_barriers(const Scene& scene) {
             }
     }
     return bed;
+}
+
+std::vector<RaisedNode> raised_nodes(const Scene& scene) {
+    std::vector<RaisedNode> nodes;
+    if (scene.barriers.empty()) return nodes;
+    const Raster walled = with_barriers(scene);
+    const GridGeometry& g = walled.geometry;
+    for (Index j = 0; j < g.ny; ++j)
+        for (Index i = 0; i < g.nx; ++i)
+            if (walled.at(i, j) > scene.bed.at(i, j)) nodes.push_back({i, j, walled.at(i, j)});
+    return nodes;
+}
+
+double stand_in(Scene& scene, const std::vector<RaisedNode>& raised, Index i0, Index j0) {
+    constexpr Index kFooting = 1;  // the slopes of a raised node's neighbours have its top in them
+    double firm = 0.0;
+    const NodeBox all = NodeBox::all(scene.bed.geometry);
+    for (const RaisedNode& node : raised) {
+        scene.bed.at(node.i - i0, node.j - j0) = node.top;
+        if (!scene.erodible) continue;
+        Raster& loose = scene.erodible->depth;
+        const NodeBox footing = common(widened({node.i - i0, node.j - j0, 1, 1}, kFooting), all);
+        for (Index j = footing.j0; j < footing.j0 + footing.ny; ++j)
+            for (Index i = footing.i0; i < footing.i0 + footing.nx; ++i) firm += std::exchange(loose.at(i, j), 0.0);
+    }
+    const double cell = scene.bed.geometry.cell;
+    return firm * cell * cell;
+}
+
+std::string remark_on_footings(double volume) {
+    if (!(volume > 0.0)) return {};
+    return fmt::format(
+        "erodible: {:.6g} m3 of loose ground under barriers and a cell around them is taken for firm, or it "
+        "would be carried away from under them; no scour at their foot is foretold",
+        volume);
 }
 
 BarrierTiles::BarrierTiles(const GridGeometry& grid, const std::vector<std::pair<Vec3, Vec3>>& boxes, double margin)

@@ -2,6 +2,7 @@
 // Barriers as both models see them.
 #include <algorithm>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "convert/flow_columns.h"
@@ -21,6 +22,22 @@ Prism solid_of(const Barrier& barrier, const Raster& bed, double cell);
 /// The bed as columns see it: where a node lies in a barrier, or within half a cell of it, as high as its
 /// top.
 Raster with_barriers(const Scene& scene);
+
+/// A node that a barrier raises for columns.
+struct RaisedNode {
+    Index i, j;
+    double top;  ///< [m]
+};
+
+/// All nodes that with_barriers() raises, row after row.
+std::vector<RaisedNode> raised_nodes(const Scene& scene);
+
+/// Puts the tops of those nodes into a scene whose first node is (i0, j0) of the one they were found in. The ground under them
+/// and a cell around is firm from then on: a barrier that stands has a footing that holds. Loose ground so far there [m3].
+double stand_in(Scene& scene, const std::vector<RaisedNode>& raised, Index i0, Index j0);
+
+/// What a report says of loose ground that stand_in() took for firm; nothing without any.
+std::string remark_on_footings(double volume);
 
 /// A barrier of that scene as a 3D surface. Throws as solid_of().
 Surface surface_of(const Barrier& barrier, const Raster& bed, double cell);

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
-#include "coupling/barriers.h"
 #include "mpm/stored_points.h"
 #include "scene/bed_smoothing.h"
 #include "scene/memory_need.h"
@@ -43,17 +42,17 @@ GrowingColumns::GrowingColumns(const Scene& scene, Start start)
 
 /// Barriers stand on the part that the run begins with: a larger one has the same tops, to the last bit.
 void GrowingColumns::find_raised() {
-    if (scene_.barriers.empty()) return;
-    const Raster walled = with_barriers(scene_);
-    for (Index j = 0; j < held_.ny; ++j)
-        for (Index i = 0; i < held_.nx; ++i)
-            if (walled.at(i, j) > scene_.bed.at(i, j)) raised_.push_back({held_.i0 + i, held_.j0 + j, walled.at(i, j)});
+    raised_ = raised_nodes(scene_);
+    if (raised_.empty()) return;
+    for (RaisedNode& node : raised_) node.i += held_.i0, node.j += held_.j0;
+    Scene walled = scene_;
+    remark_ = remark_on_footings(stand_in(walled, raised_, held_.i0, held_.j0));
 }
 
 std::unique_ptr<DepthAveraged> GrowingColumns::columns_among_walls(Start start) const {
     if (raised_.empty()) return std::make_unique<DepthAveraged>(scene_, start);
     Scene walled = scene_;
-    for (const Raised& node : raised_) walled.bed.at(node.i - held_.i0, node.j - held_.j0) = node.top;
+    stand_in(walled, raised_, held_.i0, held_.j0);
     return std::make_unique<DepthAveraged>(walled, start);
 }
 
@@ -156,6 +155,7 @@ Status GrowingColumns::frame_status() {
 
 std::vector<std::string> GrowingColumns::remarks() const {
     std::vector<std::string> all = columns_->remarks();
+    if (!remark_.empty()) all.push_back(remark_);
     const GridGeometry& g = wider_->grid;
     const auto extent = scene_.bed.geometry.pixel_extent();
     all.push_back(

@@ -1,5 +1,6 @@
 #pragma once
 // Columns on a part of a large terrain, which grows before they come near its edge.
+#include "coupling/barriers.h"
 #include "coupling/wrapped_simulation.h"
 #include "shallow/depth_averaged.h"
 
@@ -26,12 +27,6 @@ public:
 private:
     Simulation& inner() const override { return *columns_; }
 
-    /// A node of the whole terrain that a barrier raises for columns.
-    struct Raised {
-        Index i, j;
-        double top;  ///< [m]
-    };
-
     void show_part();
     void find_raised();
     std::unique_ptr<DepthAveraged> columns_among_walls(Start start) const;
@@ -44,9 +39,10 @@ private:
 
     Scene scene_;
     std::shared_ptr<const WiderTerrain> wider_;
-    NodeBox held_;                ///< the scene's bed, of the whole terrain
-    NodeBox shown_;               ///< nodes of the whole terrain that frames show
-    std::vector<Raised> raised_;  ///< all that barriers raise
+    NodeBox held_;                    ///< the scene's bed, of the whole terrain
+    NodeBox shown_;                   ///< nodes of the whole terrain that frames show
+    std::vector<RaisedNode> raised_;  ///< all that barriers raise, of the whole terrain
+    std::string remark_;              ///< on what carries the barriers
     std::unique_ptr<DepthAveraged> columns_;
     Index times_grown_ = 0;
     bool aside_ = false;  ///< it comes back to a state that was put aside: until then there is room enough

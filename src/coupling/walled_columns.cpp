@@ -1,22 +1,26 @@
 #include "coupling/walled_columns.h"
 
 namespace frana {
-namespace {
-
-Scene with_walls(Scene scene) {
-    scene.bed = with_barriers(scene);
-    return scene;
-}
-
-}  // namespace
 
 WalledColumns::WalledColumns(const Scene& scene, Start start) : density_(scene.density), watch_(scene) {
     if (scene.wider)
         growing_ = std::make_unique<GrowingColumns>(scene, start);
     else
-        whole_ = std::make_unique<DepthAveraged>(with_walls(scene), start);
+        hold_all(scene, start);
     columns().note_parents();
     if (start == Start::placed) watch_.sample_columns(columns(), density_);
+}
+
+void WalledColumns::hold_all(Scene scene, Start start) {
+    const double firm = stand_in(scene, raised_nodes(scene), 0, 0);
+    remark_ = remark_on_footings(firm);
+    whole_ = std::make_unique<DepthAveraged>(scene, start);
+}
+
+std::vector<std::string> WalledColumns::remarks() const {
+    std::vector<std::string> all = inner().remarks();
+    if (!remark_.empty()) all.push_back(remark_);
+    return all;
 }
 
 void WalledColumns::advance(double until) {

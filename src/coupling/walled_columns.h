@@ -12,6 +12,7 @@ public:
     void advance(double until) override;
     /// Without faces: no force is known.
     const BarrierLoads* loads() const override { return &watch_.loads(); }
+    std::vector<std::string> remarks() const override;
     std::vector<PhaseTime> timings() const override;
     void serialize(Archive& archive) override;
 
@@ -23,7 +24,10 @@ private:
         return *whole_;
     }
 
+    void hold_all(Scene scene, Start start);
+
     double density_;
+    std::string remark_;                       ///< on what carries the barriers
     std::unique_ptr<DepthAveraged> whole_;     ///< on all of the terrain
     std::unique_ptr<GrowingColumns> growing_;  ///< or on a part of it
     ColumnWatch watch_;

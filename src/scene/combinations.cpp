@@ -156,10 +156,6 @@ void add_erodible_bed(std::vector<Combination>& table) {
                      {erodible},
                      "expected none: points in 3D take up no bed",
                      "remove the stage, or the erodible bed"});
-    table.push_back({{"barrier", Are::tables},
-                     {erodible},
-                     "expected none: no barrier's footing is known to hold",
-                     "raise the elevation model there, or remove the erodible bed"});
 }
 
 /// Where material cannot be left behind as bed.
@@ -185,10 +181,6 @@ void add_deposits(std::vector<Combination>& table) {
                      {deposits},
                      "expected none: points in 3D leave no bed behind",
                      "remove the stage, or the deposition"});
-    table.push_back({{"barrier", Are::tables},
-                     {deposits},
-                     "expected none: no barrier is known to stand in ground that rises",
-                     "raise the elevation model there, or remove the deposition"});
 }
 
 /// Where trees cannot take mass out of the flow.
@@ -214,10 +206,6 @@ void add_forest(std::vector<Combination>& table) {
                      {forest},
                      "expected none: points in 3D leave nothing in a forest",
                      "remove the stage, or the forest"});
-    table.push_back({{"barrier", Are::tables},
-                     {forest},
-                     "expected none: no barrier is known to stand in ground that rises",
-                     "raise the elevation model there, or remove the forest"});
 }
 
 /// What the schemes of the depth-averaged flow do not know of.
