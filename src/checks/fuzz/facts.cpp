@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/compensated_sum.h"
+#include "checks/fuzz/snapshot.h"
 #include "coupling/staged_run.h"
 #include "coupling/structured_run.h"
-#include "coupling/walled_columns.h"
 #include "shallow/depth_averaged.h"
 
 namespace frana::stress {
@@ -244,10 +244,8 @@ Facts facts_of(const Scene& scene, const Simulation& simulation, const Claims& c
     facts.cell = scene.bed.geometry.cell;
     facts.nodes_x = scene.bed.geometry.nx, facts.nodes_y = scene.bed.geometry.ny;
     learn_release(scene, facts);
-    if (const auto* columns = dynamic_cast<const DepthAveraged*>(&simulation)) {
+    if (const DepthAveraged* columns = columns_of(simulation)) {
         learn_columns(scene, columns->flow(), facts);
-    } else if (const auto* walled = dynamic_cast<const WalledColumns*>(&simulation)) {
-        learn_columns(scene, walled->columns().flow(), facts);
     } else if (const auto* staged = dynamic_cast<const StagedRun*>(&simulation)) {
         facts.in_3d = facts.cancels = true, facts.all_in_points = false;
         facts.cell_3d = scene.solid->cell;

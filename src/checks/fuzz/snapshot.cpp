@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coupling/structured_run.h"
+#include "coupling/walled_columns.h"
 #include "shallow/depth_averaged.h"
 
 namespace frana::stress {
@@ -121,6 +122,11 @@ double Snapshot::fastest() const {
     return fastest;
 }
 
+const DepthAveraged* columns_of(const Simulation& simulation) {
+    if (const auto* walled = dynamic_cast<const WalledColumns*>(&simulation)) return &walled->columns();
+    return dynamic_cast<const DepthAveraged*>(&simulation);
+}
+
 Snapshot snapshot_of(Simulation& simulation, bool steep) {
     Snapshot shot;
     shot.between = simulation.status();
@@ -130,7 +136,7 @@ Snapshot snapshot_of(Simulation& simulation, bool steep) {
     shot.max_speed = fastest_of(frame, shot.points);
     shot.nodes = nodes_of(frame);
     shot.not_finite = count_not_finite(frame);
-    if (const auto* columns = dynamic_cast<const DepthAveraged*>(&simulation)) sharpen(*columns, steep, shot);
+    if (const DepthAveraged* columns = columns_of(simulation)) sharpen(*columns, steep, shot);
     if (const auto* columns = dynamic_cast<const StructuredRun*>(&simulation)) sharpen(*columns, shot);
     return shot;
 }

@@ -5,6 +5,10 @@
 
 #include "run/simulation.h"
 
+namespace frana {
+class DepthAveraged;
+}
+
 namespace frana::stress {
 
 /// A node of the domain near material.
@@ -41,6 +45,9 @@ struct Snapshot {
     /// Of all material, in space too [m/s].
     double fastest() const;
 };
+
+/// The depth-averaged flow of a run that is nothing else, among barriers or not; nullptr of other runs.
+const DepthAveraged* columns_of(const Simulation& simulation);
 
 /// The present state. Looking does not change the run (tests/conserve_runs.cpp).
 Snapshot snapshot_of(Simulation& simulation, bool steep);
