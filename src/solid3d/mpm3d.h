@@ -124,8 +124,8 @@ struct SolidBody {
     Grid3d grid;
     MaterialPoints points;
     ActiveTiles active;
-    /// Positions of tiles near surfaces: those two, three and four apart, each by colour.
-    std::array<std::vector<Index>, 3 * 64> mirror_colour;
+    /// Positions of tiles near surfaces: those two, three and four apart, each by one of 64 colours.
+    std::array<std::vector<Index>, 192> mirror_colour;
     std::vector<double>
         mirror_reach;  ///< per particle tile: how far to the side its mirror particles may stand [cells]
     std::vector<SurfaceSet> near_points;  ///< per particle tile

@@ -82,7 +82,7 @@ std::vector<double> amplitudes_by_length(std::vector<double> heights) {
     for (Index i = 0; i < count; ++i)
         heights[i] *= 0.5 - 0.5 * std::cos(2.0 * M_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
     std::vector<double> bands;
-    for (Index most = count / 2; most >= 4 * kWaves; most /= 2) {
+    for (Index most = count / 2; most >= 4 * Index{kWaves}; most /= 2) {
         double sum = 0.0;
         for (Index n = most / 2 + 1; n <= most; ++n) sum += std::pow(amplitude(heights, n), 2);
         bands.push_back(std::sqrt(sum));

@@ -1,5 +1,7 @@
 // A column of dry grains collapses on a slope, over rock and over a thin loose layer: by how much the layer lengthens the
 // runout (after Mangeney et al. 2010, J. Geophys. Res. 115, F03040).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -63,7 +65,7 @@ Measurement run_collapse(const Setup& setup) {
         m.add("rigid" + at, rigid, "m");
         for (const auto& [name, law] : laws)
             for (const int kappa : {0, 1})
-                m.add(name + std::to_string(kappa) + at, runout(slope, setup, m, &law, kappa) / rigid);
+                m.add(fmt::format("{}{}{}", name, kappa, at), runout(slope, setup, m, &law, kappa) / rigid);
     }
     return m;
 }
